@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "analysis/cli/verbs.hpp"
+#include "analysis/demo.hpp"
+#include "data-schema/cli/progress.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+struct Options {
+  std::string folder = "demo";
+};
+
+cli::Report row_of(const DemoSurface& surface) {
+  cli::Report row;
+  row.add("surface", surface.surface)
+      .add("record_speed_mps", surface.record_speed_mps)
+      .add("force_rms_n", surface.force_rms_n)
+      .add("peak_frequency_per_m", surface.peak_frequency_per_m)
+      .add("replay_speed_mps", surface.replay_speed_mps)
+      .add("gain_m_per_n", surface.gain_m_per_n)
+      .add("wanted_rms_m", surface.wanted_rms_m)
+      .add("drive_peak_v", surface.drive_peak_v)
+      .add("error_rms_m", surface.error_rms_m)
+      .add("error_db", surface.error_db)
+      .add("delay_s", surface.delay_s);
+  return row;
+}
+
+schema::Result<cli::Report> demonstrate(const Options& options) {
+  cli::Progress progress("demo");
+  const auto summary = run_demo(options.folder, [&](double fraction) { progress.update(fraction); });
+  if (!summary) return schema::forward_error(summary);
+  std::vector<cli::Report> rows;
+  for (const DemoSurface& surface : summary->surfaces) rows.push_back(row_of(surface));
+  cli::Report report;
+  report.add("simulated", summary->simulated).add("surfaces", std::move(rows)).add("page", summary->page);
+  report.add("next", "open " + summary->page + " in a browser; look into a file with: tactograph info " +
+                         options.folder + "/C");
+  return report;
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("-o,--output", options->folder,
+                 "Folder to write to; what an earlier demo left there is replaced")
+      ->type_name("DIR");
+  return [options] { return demonstrate(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kDemoVerb{
+    "demo",
+    "Record five emulated surfaces, make textures and pictures, replay them, and write one page about it",
+    "tactograph demo -o demo", declare};
+
+}  // namespace tacto::analysis

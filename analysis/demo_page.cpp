@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/demo_page.hpp"
+
+#include <fmt/format.h>
+
+#include "analysis/html.hpp"
+#include "data-schema/quantity.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Dimension;
+using schema::for_people;
+
+std::string replay_row_error(const DemoSurface& s) {
+  return fmt::format("{:.1f} dB ({})", s.error_db, for_people(s.error_rms_m, Dimension::length));
+}
+
+std::string figures(const std::vector<DemoSurface>& surfaces) {
+  std::vector<std::vector<std::string>> rows = {{"surface", "recorded at", "force, RMS", "strongest line",
+                                                 "replayed at", "wanted, RMS", "drive, peak",
+                                                 "error, 15-500 Hz"}};
+  for (const DemoSurface& s : surfaces)
+    rows.push_back({s.surface, for_people(s.record_speed_mps, Dimension::speed),
+                    for_people(s.force_rms_n, Dimension::force),
+                    for_people(s.peak_frequency_per_m, Dimension::spatial_frequency),
+                    for_people(s.replay_speed_mps, Dimension::speed),
+                    for_people(s.gain_m_per_n, Dimension::compliance),
+                    for_people(s.wanted_rms_m, Dimension::length),
+                    for_people(s.drive_peak_v, Dimension::voltage), replay_row_error(s)});
+  return html_table(rows);
+}
+
+std::string section(const DemoSurface& s) {
+  return fmt::format(
+      "<h2>Surface {}</h2>\n<p>{}. The strongest cell of the spectrogram lies at {} and {}.</p>\n{}"
+      "<p>Replayed along a path that turns round, at {} on average: the tray's displacement against what was "
+      "wanted. The "
+      "error over 15-500 Hz is {}, once the delay of {} is taken out.</p>\n{}<p class=\"note\">simulated: "
+      "{}</p>\n",
+      escaped(s.surface), escaped(s.description), for_people(s.peak_position_m, Dimension::length),
+      for_people(s.peak_frequency_per_m, Dimension::spatial_frequency),
+      inline_svg(s.spectrogram_svg, fmt::format("Spatial spectrogram of surface {}, simulated", s.surface)),
+      for_people(s.replay_speed_mps, Dimension::speed), replay_row_error(s),
+      for_people(s.delay_s, Dimension::time),
+      inline_svg(s.replay_svg,
+                 fmt::format("Wanted and achieved displacement on surface {}, simulated", s.surface)),
+      escaped(s.simulated));
+}
+
+constexpr std::string_view kIntroduction =
+    "<p>Each of the five surfaces of Wiertlewski, Lozada and Hayward (2011) was stroked by a simulated "
+    "finger on the simulated "
+    "transducer and recorded; the recording was turned into force against position (piecewise cubic Hermite, "
+    "1 µm grid, "
+    "15-500 Hz, divided by the sensor's response); that texture was played back along another path at "
+    "another speed: force "
+    "times a gain of 1 mm/N (less where the drive would pass the transducer's 5 V), through the inverse of "
+    "the modelled actuator, to the drive in volts. The emulated "
+    "transducer, integrated "
+    "from its equations of motion and knowing nothing of that inverse, then moved its tray.</p>\n";
+
+}  // namespace
+
+std::string demo_page(const std::vector<DemoSurface>& surfaces, const std::string& simulated) {
+  std::string body = fmt::format(
+      "<h1>tactograph: five surfaces, recorded and played back</h1>\n<p "
+      "class=\"simulated\"><strong>Simulated.</strong> Nothing "
+      "on this page was measured on hardware or on a finger: {}.</p>\n{}{}",
+      escaped(simulated), kIntroduction, figures(surfaces));
+  for (const DemoSurface& surface : surfaces) body += section(surface);
+  return html_document("tactograph demo (simulated)", body);
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/audio_source.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "data-schema/wav.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::size_t kPieceFrames = 65536;
+
+tl::unexpected<schema::Error> not_finite(const Source& source, std::size_t frame, std::size_t column,
+                                         double value) {
+  return fail(Fault::malformed, std::isnan(value) ? "is NaN" : "is infinite",
+              fmt::format("{}: sample {}, {}", source.file, frame, column_in_words(source.columns, column)),
+              "import the part without it: a value that isn't known is never filled in");
+}
+
+Result<void> keep(const Source& source, std::span<const std::size_t> columns, std::span<const double> piece,
+                  SourceData& data) {
+  const std::size_t channels = source.columns.size();
+  for (std::size_t i = 0; i < piece.size(); i += channels)
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const double value = piece[i + columns[k]];
+      if (!std::isfinite(value)) return not_finite(source, data.columns[k].size(), columns[k], value);
+      data.columns[k].push_back(value);
+    }
+  return {};
+}
+
+}  // namespace
+
+Result<Source> open_audio(const std::string& file) {
+  const auto reader = schema::WavReader::open(file);
+  if (!reader) {
+    schema::Error error = reader.error();
+    if (error.remedy.empty())
+      error.remedy = "import reads tables (CSV) and what libsndfile knows (WAV, FLAC, OGG ...)";
+    return tl::unexpected(error);
+  }
+  const schema::WavInfo& info = reader->info();
+  if (info.frames == 0) return fail(Fault::malformed, "holds no samples", file);
+  Source source{file, {}, std::nullopt, info.sample_rate_hz, info.code_bits, info.format};
+  for (std::size_t i = 0; i < info.channels; ++i) source.columns.push_back(fmt::format("ch{}", i + 1));
+  return source;
+}
+
+Result<SourceData> read_audio(const Source& source, std::span<const std::size_t> columns,
+                              const std::function<void(double)>& progress) {
+  auto reader = schema::WavReader::open(source.file);
+  if (!reader) return schema::forward_error(reader);
+  const std::size_t channels = source.columns.size();
+  SourceData data{std::vector<std::vector<double>>(columns.size()), {}};
+  std::vector<double> piece(kPieceFrames * channels);
+  for (std::uint64_t done = 0;;) {
+    const auto got = reader->read(std::span(piece));
+    if (!got) return schema::forward_error(got);
+    if (*got == 0) break;
+    const auto kept = keep(source, columns, std::span(piece).first(*got * channels), data);
+    if (!kept) return schema::forward_error(kept);
+    done += *got;
+    progress(static_cast<double>(done) / static_cast<double>(std::max(reader->info().frames, done)));
+  }
+  if (data.columns[0].empty()) return fail(Fault::malformed, "holds no samples", source.file);
+  return data;
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/import.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+
+#include "capture/cli/verbs.hpp"
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/cli/report.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Dimension;
+
+double parsed_percent(const std::string& text) {
+  double percent = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, percent);
+  if (error != std::errc() || std::string_view(stop, end) != "%" || !std::isfinite(percent))
+    throw CLI::ValidationError("--humidity", fmt::format("'{}' is no percentage; write it as 45%", text));
+  return percent;
+}
+
+void declare_data(CLI::App& app, ImportRequest& request) {
+  app.add_option("FILE", request.file, "CSV table, or sound file that libsndfile reads (WAV, FLAC, OGG ...)")
+      ->required();
+  app.add_option("-o,--output", request.name, "The recording's name: NAME.wav and NAME.json")->required();
+  app.add_option(
+         "--channel", request.channels,
+         "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit; again for each. COLUMN by header name or "
+         "number "
+         "from 1; LABEL:QUANTITY for a second channel of one quantity. Not needed for mono audio: a signal")
+      ->allow_extra_args(false);
+  cli::add_quantity(app, "--rate", request.rate_hz, Dimension::frequency,
+                    "Samples per second of a table (or of audio whose header is wrong)");
+  app.add_option("--time-column", request.time_column,
+                 "Find the rate from a column of times, COLUMN*SCALE and a unit: t_ms*1ms");
+  cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,
+                    "Where there is no position: make a nominal one at this speed");
+  app.add_flag("!--no-position", request.integrate_speed, "Do not integrate a speed channel to a position");
+  app.add_flag("--force", request.replace, "Replace a recording of that name");
+}
+
+void declare_circumstances(CLI::App& app, ImportRequest& request) {
+  app.add_option("--date", request.recorded, "Day of the measurement, as 2026-03-14");
+  app.add_option("--calibrated", request.calibrated, "Day of the calibration that the scales are from");
+  app.add_option("--subject", request.subject, "A code for the person, never a name");
+  app.add_option("--finger", request.finger, "Which finger, or what slid instead of one");
+  app.add_option("--surface", request.surface, "What was touched");
+  app.add_option("--notes", request.notes, "Anything else");
+  app.add_option_function<std::string>(
+         "--humidity",
+         [&request](const std::string& text) { request.humidity_percent = parsed_percent(text); },
+         "Relative humidity of the room")
+      ->type_name("PERCENT");
+}
+
+cli::Report row_of(const schema::Channel& channel, const ChannelRange& range) {
+  cli::Report row;
+  row.add("name", channel.name).add("quantity", channel.quantity).add("unit", channel.unit);
+  row.add("smallest", range.smallest).add("largest", range.largest);
+  row.add("scale", channel.scale).add("offset", channel.offset);
+  return row.add("from", channel.derivation.empty() ? channel.source : channel.derivation);
+}
+
+std::vector<cli::Report> rows_of(const Imported& imported) {
+  std::vector<cli::Report> rows;
+  for (std::size_t k = 0; k < imported.ranges.size(); ++k)
+    rows.push_back(row_of(imported.recording.header.channels[k], imported.ranges[k]));
+  return rows;
+}
+
+// Gaps counted, and the last frame's own period.
+double duration_s(const schema::RecordingHeader& header) {
+  return schema::frame_time_s(header, header.frames - 1) + 1 / header.sample_rate_hz;
+}
+
+std::string next_command(const schema::Recording& recording) {
+  const auto& channels = recording.header.channels;
+  const bool placed = std::ranges::find(channels, "position", &schema::Channel::quantity) != channels.end();
+  const bool quoted = recording.stem.find(' ') != std::string::npos;
+  const std::string name = quoted ? "'" + recording.stem + "'" : recording.stem;
+  return placed ? fmt::format("tactograph spatial {0} -o {0}", name)
+                : fmt::format("tactograph info {}", name);
+}
+
+cli::Report report_on(const Imported& imported, const ImportRequest& request) {
+  const schema::RecordingHeader& header = imported.recording.header;
+  cli::Report report;
+  report.add("source", request.file).add("format", imported.format);
+  report.add("frames", header.frames).add("sample_rate_hz", header.sample_rate_hz);
+  report.add("duration_s", duration_s(header)).add("clock", header.clock).add("gaps", header.gaps.size());
+  report.add("channels", rows_of(imported));
+  if (!header.warnings.empty()) report.add("warnings", header.warnings);
+  report.add("files", std::vector{imported.recording.stem + ".wav", imported.recording.stem + ".json"});
+  return report.add("next", next_command(imported.recording));
+}
+
+schema::Result<cli::Report> run(const ImportRequest& request) {
+  schema::Result<Imported> imported = [&] {
+    cli::Progress progress("importing");
+    return import_file(request, [&](double fraction) { progress.update(fraction); });
+  }();
+  if (!imported) return schema::forward_error(imported);
+  for (const std::string& warning : imported->recording.header.warnings) cli::warn(warning);
+  return report_on(*imported, request);
+}
+
+cli::Action declare(CLI::App& app) {
+  auto request = std::make_shared<ImportRequest>();
+  declare_data(app, *request);
+  declare_circumstances(app, *request);
+  return [request] { return run(*request); };
+}
+
+}  // namespace
+
+const cli::Verb kImportVerb{
+    "import", "Make a recording of another program's file: CSV table or sound file",
+    "tactograph import trial.csv -o trial --rate 10kHz --channel tangential_force=lateral_V*0.444444N"
+    " --channel position=encoder_count*0.5um\n"
+    "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "
+    "40mm/s\n"
+    "  tactograph import tap.flac -o tap",
+    declare};
+
+}  // namespace tacto::capture

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a table of another program is laid out, found from its first lines.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data-schema/error.hpp"
+
+namespace tacto::capture {
+
+/// What the first lines of a file told about all of it.
+struct CsvLayout {
+  char delimiter = ',';              ///< comma, semicolon or tab
+  char line_end = '\n';              ///< '\r' in files of very old programs; "\r\n" counts as '\n'
+  std::vector<std::string> columns;  ///< header names in UTF-8; empty strings where there is no name
+  bool header = false;
+  std::size_t data_offset =
+      0;                      ///< where the first line after the header (or byte-order mark) begins, in bytes
+  std::size_t data_line = 1;  ///< and which line of the file that is, from 1
+};
+
+/// Bytes of a file that are enough to find its layout.
+inline constexpr std::size_t kLayoutBytes = std::size_t{1} << 18;
+
+/// Finds the layout from the first kLayoutBytes of a file, or all of it where it is shorter (`whole`).
+/// The first line that is neither blank nor a comment is a header where most of its fields are no numbers.
+/// Pure: `file` is only for messages. Errors: malformed, for an empty file, a header without data, a first
+/// line that mixes names and numbers, UTF-16, zero bytes.
+schema::Result<CsvLayout> find_csv_layout(std::string_view head, bool whole, const std::string& file);
+
+}  // namespace tacto::capture

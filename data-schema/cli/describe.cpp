@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/cli/describe.hpp"
+
+#include <fmt/format.h>
+
+#include "data-schema/cli/verb.hpp"
+
+namespace tacto::schema {
+
+cli::Report report_of(FileKind kind, const std::string& path, const std::string& simulated) {
+  cli::Report report;
+  report.add("file", path).add("kind", kind_name(kind));
+  add_text(report, "simulated", simulated);
+  return report;
+}
+
+void add_text(cli::Report& report, const char* key, const std::string& text) {
+  if (!text.empty()) report.add(key, text);
+}
+
+std::string key_in(const char* key, const std::string& unit) {
+  constexpr std::pair<const char*, const char*> kEndings[] = {
+      {"N", "_n"}, {"m", "_m"}, {"m/s", "_mps"}, {"m/s^2", "_mps2"}, {"V", "_v"}};
+  for (const auto& [symbol, ending] : kEndings)
+    if (unit == symbol) return std::string(key) + ending;
+  return key;
+}
+
+void warn_of_version(const std::string& path, const std::string& newer_version) {
+  if (newer_version.empty()) return;
+  cli::warn(fmt::format("{}: its version {} is newer than this program's; what it doesn't know is left out",
+                        path, newer_version));
+}
+
+}  // namespace tacto::schema

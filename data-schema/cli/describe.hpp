@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `info` says of each kind of file, as a report.
+#pragma once
+
+#include <string>
+
+#include "data-schema/cli/report.hpp"
+#include "data-schema/file_kind.hpp"
+
+namespace tacto::schema {
+
+/// Reads the file and describes it; warns of a newer minor version. Errors: as of reading such a file.
+Result<cli::Report> describe_recording(const std::string& path);
+Result<cli::Report> describe_texture(const std::string& path);
+Result<cli::Report> describe_transducer(const std::string& path);
+Result<cli::Report> describe_spectrogram(const std::string& path);
+
+/// The report's first lines: file, kind, and by what it was simulated where it was.
+cli::Report report_of(FileKind kind, const std::string& path, const std::string& simulated);
+
+/// Adds the text where there is one.
+void add_text(cli::Report& report, const char* key, const std::string& text);
+
+/// `key` with the ending of a unit: key_in("rms", "N") is "rms_n". Without an ending for "1".
+std::string key_in(const char* key, const std::string& unit);
+
+/// Says on stderr that a file is of a newer minor version, where it is.
+void warn_of_version(const std::string& path, const std::string& newer_version);
+
+}  // namespace tacto::schema

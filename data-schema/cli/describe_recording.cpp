@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/cli/describe.hpp"
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/recording.hpp"
+#include "data-schema/statistics.hpp"
+
+namespace tacto::schema {
+namespace {
+
+using cli::Report;
+
+Report channel_row(const Channel& channel, const Statistics& statistics) {
+  Report row;
+  row.add("name", channel.name).add("quantity", channel.quantity).add("unit", channel.unit);
+  row.add("min", statistics.min()).add("max", statistics.max());
+  row.add("mean", statistics.mean()).add("rms", statistics.rms());
+  row.add("scale", channel.scale).add("offset", channel.offset);
+  if (channel.native_rate_hz) row.add("native_rate_hz", *channel.native_rate_hz);
+  if (channel.range_min) row.add("range_min", *channel.range_min);
+  if (channel.range_max) row.add("range_max", *channel.range_max);
+  if (statistics.not_finite() > 0) row.add("not_finite", statistics.not_finite());
+  add_text(row, "source", channel.source);
+  add_text(row, "derivation", channel.derivation);
+  add_text(row, "calibrated", channel.calibrated);
+  return row;
+}
+
+// The frames' own time and what is missing between them.
+double duration_s(const RecordingHeader& header) {
+  return header.frames == 0 ? 0 : frame_time_s(header, header.frames - 1) + 1 / header.sample_rate_hz;
+}
+
+void add_time(Report& report, const RecordingHeader& header) {
+  std::uint64_t missing = 0;
+  for (const Gap& gap : header.gaps) missing += gap.count;
+  report.add("sample_rate_hz", header.sample_rate_hz).add("duration_s", duration_s(header));
+  report.add("frames", header.frames).add("gaps", header.gaps.size()).add("missing_frames", missing);
+  report.add("marks", header.marks.size());
+  add_text(report, "clock", header.clock);
+}
+
+void add_origin(Report& report, const RecordingHeader& header) {
+  add_text(report, "device", header.device);
+  if (header.transducer) report.add("transducer", header.transducer->name);
+  add_text(report, "source_file", header.source_file);
+  add_text(report, "surface", header.surface);
+  add_text(report, "finger", header.finger);
+  add_text(report, "subject", header.subject);
+  if (header.humidity_percent) report.add("humidity_percent", *header.humidity_percent);
+  add_text(report, "notes", header.notes);
+  add_text(report, "created", header.created);
+  add_text(report, "creator", header.creator);
+  if (!header.warnings.empty()) report.add("warnings", header.warnings);
+}
+
+}  // namespace
+
+Result<Report> describe_recording(const std::string& path) {
+  const auto recording = open_recording(path);
+  if (!recording) return forward_error(recording);
+  const RecordingHeader& header = recording->header;
+  warn_of_version(path, header.newer_version);
+  cli::Progress progress("reading");
+  const auto statistics = channel_statistics(wav_path(*recording), header.channels,
+                                             [&](double fraction) { progress.update(fraction); });
+  if (!statistics) return forward_error(statistics);
+  Report report = report_of(FileKind::recording, path, header.simulated);
+  add_time(report, header);
+  add_origin(report, header);
+  std::vector<Report> rows;
+  for (std::size_t c = 0; c < header.channels.size(); ++c)
+    rows.push_back(channel_row(header.channels[c], (*statistics)[c]));
+  report.add("channels", std::move(rows));
+  return report;
+}
+
+}  // namespace tacto::schema

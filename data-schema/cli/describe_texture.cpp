@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "data-schema/cli/describe.hpp"
+#include "data-schema/statistics.hpp"
+#include "data-schema/texture.hpp"
+
+namespace tacto::schema {
+namespace {
+
+using cli::Report;
+
+void add_values(Report& report, const Texture& texture) {
+  const Statistics statistics = statistics_of(texture.signal.values);
+  report.add("quantity", texture.quantity).add("unit", texture.unit);
+  report.add(key_in("min", texture.unit), statistics.min())
+      .add(key_in("max", texture.unit), statistics.max());
+  report.add(key_in("mean", texture.unit), statistics.mean())
+      .add(key_in("rms", texture.unit), statistics.rms());
+}
+
+void add_grid(Report& report, const Texture& texture) {
+  report.add("pitch_m", texture.signal.pitch_m).add("length_m", texture.signal.length_m());
+  report.add("samples", texture.signal.values.size()).add("direction", texture.direction);
+  report.add("source_origin_m", texture.source_origin_m);
+}
+
+// The band that holds at every position, and the one that holds anywhere.
+void add_band(Report& report, const std::vector<BandPoint>& band) {
+  if (band.empty()) return;
+  const auto low = std::ranges::minmax_element(band, {}, &BandPoint::low_per_m);
+  const auto high = std::ranges::minmax_element(band, {}, &BandPoint::high_per_m);
+  report.add("band_low_per_m", low.max->low_per_m).add("band_high_per_m", high.min->high_per_m);
+  report.add("widest_band_low_per_m", low.min->low_per_m).add("widest_band_high_per_m", high.max->high_per_m);
+}
+
+void add_source(Report& report, const TextureSource& source) {
+  if (source.recording.empty()) return;
+  report.add("recording", source.recording);
+  if (source.stroke != 0) report.add("stroke", source.stroke);
+  report.add("from_s", source.from_s).add("to_s", source.to_s);
+  report.add("mean_speed_mps", source.mean_speed_mps);
+  report.add("min_speed_mps", source.min_speed_mps).add("max_speed_mps", source.max_speed_mps);
+  add_text(report, "method", source.method);
+  add_text(report, "filter", source.filter);
+  if (source.order != 0) report.add("order", source.order);
+  add_text(report, "edges", source.edges);
+  if (source.high_hz > 0) report.add("low_hz", source.low_hz).add("high_hz", source.high_hz);
+  report.add("equalised", source.equalised).add("position_moved_m", source.position_moved_m);
+}
+
+}  // namespace
+
+Result<Report> describe_texture(const std::string& path) {
+  const auto texture = read_texture(path);
+  if (!texture) return forward_error(texture);
+  warn_of_version(path, texture->newer_version);
+  Report report = report_of(FileKind::texture, path, texture->simulated);
+  add_grid(report, *texture);
+  add_values(report, *texture);
+  add_band(report, texture->valid_band);
+  add_source(report, texture->source);
+  add_text(report, "surface", texture->surface);
+  add_text(report, "finger", texture->finger);
+  add_text(report, "subject", texture->subject);
+  add_text(report, "notes", texture->notes);
+  add_text(report, "created", texture->created);
+  add_text(report, "creator", texture->creator);
+  return report;
+}
+
+}  // namespace tacto::schema

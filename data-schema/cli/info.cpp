@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/cli/describe.hpp"
+#include "data-schema/cli/verbs.hpp"
+
+namespace tacto::schema {
+namespace {
+
+struct Options {
+  std::vector<std::string> names;
+};
+
+Result<cli::Report> describe(const StoredFile& file) {
+  switch (file.kind) {
+    case FileKind::recording:
+      return describe_recording(file.path);
+    case FileKind::texture:
+      return describe_texture(file.path);
+    case FileKind::transducer:
+      return describe_transducer(file.path);
+    case FileKind::spectrogram:
+      return describe_spectrogram(file.path);
+  }
+  return fail(Fault::internal, "a kind of file that nobody describes", file.path);
+}
+
+// A stem can stand for several files: the first is described, the others are named.
+Result<cli::Report> describe_name(const std::string& name) {
+  const auto files = stored_files(name);
+  if (!files) return forward_error(files);
+  auto report = describe(files->front());
+  if (!report || files->size() == 1) return report;
+  std::vector<std::string> others;
+  for (std::size_t i = 1; i < files->size(); ++i) others.push_back((*files)[i].path);
+  report->add("also", std::move(others));
+  return report;
+}
+
+Result<cli::Report> run(const Options& options) {
+  if (options.names.size() == 1) return describe_name(options.names.front());
+  std::vector<cli::Report> reports;
+  for (const std::string& name : options.names) {
+    auto report = describe_name(name);
+    if (!report) return report;
+    reports.push_back(std::move(*report));
+  }
+  cli::Report all;
+  all.add("files", std::move(reports));
+  return all;
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->names,
+                 "Recordings, textures, spectrograms, transducers: by stem, in full, or a preset's name")
+      ->required();
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kInfoVerb{
+    "info", "Say what a file holds: channels, units, ranges, gaps, calibration, where it came from",
+    "tactograph info oak\n  tactograph info oak.texture.json wiertlewski2011 --json", declare};
+
+}  // namespace tacto::schema

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Progress on stderr for work that takes over a second; quick work stays silent.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace tacto::cli {
+
+/// Shows "recording  42 %" once a second has passed: redrawn in place on a terminal, a line every 5 s
+/// elsewhere.
+class Progress {
+ public:
+  explicit Progress(std::string task);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  /// Clears the line.
+  ~Progress();
+  /// 0 to 1. Cheap: call it as often as you like.
+  void update(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string task_;
+  bool terminal_;
+  bool shown_ = false;
+  Clock::time_point next_;
+};
+
+}  // namespace tacto::cli

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/check.hpp"
+#include "data-schema/cli/describe.hpp"
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/cli/verbs.hpp"
+
+namespace tacto::schema {
+namespace {
+
+struct Options {
+  std::vector<std::string> names;
+};
+
+// Every file of every name, checked.
+struct Outcome {
+  std::vector<cli::Report> files, faults;
+};
+
+Result<void> check(const StoredFile& file, Outcome& outcome) {
+  cli::Progress progress("checking " + file.path);
+  const auto checked = check_file(file, [&](double fraction) { progress.update(fraction); });
+  if (!checked) return forward_error(checked);
+  warn_of_version(file.path, checked->newer_version);
+  outcome.files.push_back(report_of(file.kind, file.path, "").add("valid", checked->findings.empty()));
+  for (const auto& [where, what] : checked->findings)
+    outcome.faults.push_back(cli::Report().add("where", where).add("what", what));
+  return {};
+}
+
+Result<void> check_name(const std::string& name, Outcome& outcome) {
+  const auto files = stored_files(name);
+  // A file that is no JSON, or no kind of ours, is a fault of the file like any other.
+  if (!files && files.error().fault == Fault::malformed) {
+    outcome.files.push_back(cli::Report().add("file", name).add("kind", "unknown").add("valid", false));
+    outcome.faults.push_back(cli::Report().add("where", files.error().where).add("what", files.error().what));
+    return {};
+  }
+  if (!files) return forward_error(files);
+  for (const StoredFile& file : *files)
+    if (auto done = check(file, outcome); !done) return done;
+  return {};
+}
+
+Result<cli::Report> run(const Options& options) {
+  Outcome outcome;
+  for (const std::string& name : options.names)
+    if (const auto done = check_name(name, outcome); !done) return forward_error(done);
+  cli::Report report;
+  report.add("valid", outcome.faults.empty()).add("files", std::move(outcome.files));
+  if (outcome.faults.empty()) return report;
+  report.add("faults", std::move(outcome.faults)).ends_with(Fault::malformed);
+  return report;
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->names,
+                 "Files to check, by stem (all files under it), in full, or a preset's name")
+      ->required();
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kValidateVerb{
+    "validate", "Check files against their schema, checksum and samples, and list every fault",
+    "tactograph validate oak\n  tactograph validate oak.texture.json bench.transducer.json", declare};
+
+}  // namespace tacto::schema

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/cli/verb.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace tacto::cli {
+namespace {
+
+std::string type_name(schema::Dimension dimension) {
+  if (dimension == schema::Dimension::none) return "NUMBER";
+  return "NUMBER+UNIT(" + schema::units_of(dimension) + ")";
+}
+
+double parsed(const std::string& name, const std::string& text, schema::Dimension dimension) {
+  const auto value = schema::parse_quantity(text, dimension);
+  if (!value) throw CLI::ValidationError(name, schema::message(value.error()));
+  return *value;
+}
+
+}  // namespace
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value_si,
+                          schema::Dimension dimension, const std::string& help) {
+  auto read = [name, &value_si, dimension](const std::string& text) {
+    value_si = parsed(name, text, dimension);
+  };
+  return app.add_option_function<std::string>(name, read, help)
+      ->type_name(type_name(dimension))
+      ->default_str(schema::for_people(value_si, dimension));
+}
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, std::optional<double>& value_si,
+                          schema::Dimension dimension, const std::string& help) {
+  auto read = [name, &value_si, dimension](const std::string& text) {
+    value_si = parsed(name, text, dimension);
+  };
+  return app.add_option_function<std::string>(name, read, help)->type_name(type_name(dimension));
+}
+
+void warn(const std::string& text) {
+  fmt::print(stderr, "tactograph: warning: {}\n", text);
+}
+
+}  // namespace tacto::cli

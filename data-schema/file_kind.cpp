@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/file_kind.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "data-schema/json_document.hpp"
+#include "data-schema/transducer.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::array<std::string_view, 4> kNames = {"recording", "texture", "transducer", "spectrogram"};
+
+struct Ending {
+  FileKind kind;
+  std::string_view text;
+};
+
+constexpr Ending kEndings[] = {
+    {FileKind::recording, ".json"},
+    {FileKind::texture, ".texture.json"},
+    {FileKind::transducer, ".transducer.json"},
+    {FileKind::spectrogram, ".nc"},
+};
+
+bool is_file(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+Result<StoredFile> by_content(const std::string& path) {
+  const auto name = kind_of(path);
+  if (!name) return forward_error(name);
+  const auto found = std::ranges::find(kNames, *name);
+  if (found == kNames.end())
+    return fail(Fault::malformed, fmt::format("is of the kind '{}', which this program doesn't know", *name),
+                path, fmt::format("the kinds are {}", fmt::join(kNames, ", ")));
+  return StoredFile{static_cast<FileKind>(found - kNames.begin()), path};
+}
+
+// "oak.wav" stands for "oak.json", "oak.texture.wav" for "oak.texture.json".
+Result<StoredFile> by_wav(const std::string& path) {
+  const std::string sidecar = path.substr(0, path.size() - 4) + ".json";
+  if (is_file(sidecar)) return by_content(sidecar);
+  return fail(Fault::not_found, fmt::format("has no sidecar {}", sidecar), path,
+              "a sound file of another program becomes a recording with 'tactograph import'");
+}
+
+Result<StoredFile> named_in_full(const std::string& path) {
+  if (path.ends_with(".nc")) return StoredFile{FileKind::spectrogram, path};
+  if (path.ends_with(".wav")) return by_wav(path);
+  if (path.ends_with(".json")) return by_content(path);
+  return fail(Fault::malformed, "is no file of tactograph", path, "its files end in .json, .wav or .nc");
+}
+
+std::vector<StoredFile> under_stem(const std::string& stem) {
+  std::vector<StoredFile> files;
+  for (const auto& [kind, ending] : kEndings)
+    if (const std::string path = stem + std::string(ending); is_file(path))
+      // The stem may itself end in ".texture"; a file too broken to say its kind has the kind of its name.
+      files.push_back(kind == FileKind::recording ? by_content(path).value_or(StoredFile{kind, path})
+                                                  : StoredFile{kind, path});
+  return files;
+}
+
+}  // namespace
+
+std::string_view kind_name(FileKind kind) {
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+Result<std::vector<StoredFile>> stored_files(const std::string& name) {
+  if (is_file(name))
+    return named_in_full(name).map([](StoredFile file) { return std::vector{std::move(file)}; });
+  if (auto files = under_stem(name); !files.empty()) return files;
+  const auto presets = preset_names();
+  if (std::ranges::find(presets, name) != presets.end())
+    return std::vector{StoredFile{FileKind::transducer, name}};
+  return fail(Fault::not_found, "there is no such file", name, "name a file in full, or by its stem");
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nettle/sha2.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+namespace tacto::schema {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using OpenFile = std::unique_ptr<std::FILE, CloseFile>;
+
+std::string reason(int error_number) {
+  return std::generic_category().message(error_number);
+}
+
+tl::unexpected<Error> unreadable(const std::string& path, int error_number) {
+  const std::string what =
+      error_number == ENOENT ? "there is no such file" : "can't be read: " + reason(error_number);
+  return fail(Fault::not_found, what, path);
+}
+
+Result<OpenFile> opened(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return fail(Fault::not_found, "is a folder, not a file", path);
+  OpenFile file(std::fopen(path.c_str(), "rbe"));
+  if (!file) return unreadable(path, errno);
+  return file;
+}
+
+// Gives the file to `take` piece by piece.
+template <class Take>
+Result<void> for_each_piece(const std::string& path, Take take) {
+  const auto file = opened(path);
+  if (!file) return forward_error(file);
+  std::vector<char> piece(std::size_t{1} << 20);
+  for (std::size_t got = 1; got > 0;) {
+    got = std::fread(piece.data(), 1, piece.size(), file->get());
+    take(std::string_view(piece.data(), got));
+  }
+  if (std::ferror(file->get()) != 0) return unreadable(path, errno);
+  return {};
+}
+
+class Sha256 {
+ public:
+  Sha256() { sha256_init(&state_); }
+  void add(std::string_view bytes) {
+    sha256_update(&state_, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+  }
+  std::string hexadecimal() {
+    std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
+    sha256_digest(&state_, digest.size(), digest.data());
+    return fmt::format("{:02x}", fmt::join(digest, ""));
+  }
+
+ private:
+  sha256_ctx state_{};
+};
+
+tl::unexpected<Error> unwritable(const std::string& path, int error_number) {
+  return fail(Fault::cannot_write, "can't be written: " + reason(error_number), path);
+}
+
+// ".oak.wav.PID.N.tmp": hidden, in the same folder so that a rename suffices, and never two alike.
+fs::path temporary_for(const fs::path& path) {
+  static std::atomic<unsigned> count{0};
+  return path.parent_path() / fmt::format(".{}.{}.{}.tmp", path.filename().string(), getpid(), count++);
+}
+
+Result<void> check_target(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!fs::is_directory(folder, ignored))
+    return fail(Fault::cannot_write, "there is no such folder", folder.string(), "make it first");
+  if (path.filename().empty() || fs::is_directory(path, ignored))
+    return fail(Fault::cannot_write, "is a folder, not a file", path.string());
+  return {};
+}
+
+Result<void> write_all(const std::string& temporary, const std::string& path, std::string_view content) {
+  std::FILE* const file = std::fopen(temporary.c_str(), "wbe");
+  if (file == nullptr) return unwritable(path, errno);
+  const bool whole = std::fwrite(content.data(), 1, content.size(), file) == content.size();
+  const int error_number = errno;
+  if (std::fclose(file) != 0) return unwritable(path, errno);
+  return whole ? Result<void>{} : unwritable(path, error_number);
+}
+
+Result<void> sync(const std::string& temporary, const std::string& path) {
+  const int file = open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return unwritable(path, errno);
+  const int failed = fsync(file) == 0 ? 0 : errno;
+  close(file);
+  return failed == 0 ? Result<void>{} : unwritable(path, failed);
+}
+
+}  // namespace
+
+Result<void> check_readable(const std::string& path) {
+  const auto file = opened(path);
+  return file ? Result<void>{} : forward_error(file);
+}
+
+Result<std::string> read_file(const std::string& path) {
+  std::string text;
+  const auto done = for_each_piece(path, [&](std::string_view piece) { text += piece; });
+  return done ? Result<std::string>(std::move(text)) : forward_error(done);
+}
+
+Result<std::string> sha256_of_file(const std::string& path) {
+  Sha256 sum;
+  const auto done = for_each_piece(path, [&](std::string_view piece) { sum.add(piece); });
+  return done ? Result<std::string>(sum.hexadecimal()) : forward_error(done);
+}
+
+std::string sha256_of(std::string_view text) {
+  Sha256 sum;
+  sum.add(text);
+  return sum.hexadecimal();
+}
+
+PendingFiles::~PendingFiles() {
+  for (const Pending& file : pending_) std::remove(file.temporary.c_str());
+}
+
+Result<std::string> PendingFiles::add(const std::string& path) {
+  if (const auto fits = check_target(path); !fits) return forward_error(fits);
+  const std::string temporary = temporary_for(path).string();
+  if (const auto made = write_all(temporary, path, ""); !made) return forward_error(made);
+  pending_.push_back({temporary, path});
+  return temporary;
+}
+
+Result<void> PendingFiles::write(const std::string& path, std::string_view content) {
+  const auto temporary = add(path);
+  return temporary ? write_all(*temporary, path, content) : forward_error(temporary);
+}
+
+Result<void> PendingFiles::commit() {
+  for (const Pending& file : pending_)
+    if (auto synced = sync(file.temporary, file.path); !synced) return synced;
+  while (!pending_.empty()) {
+    const Pending& file = pending_.front();
+    if (std::rename(file.temporary.c_str(), file.path.c_str()) != 0) return unwritable(file.path, errno);
+    pending_.erase(pending_.begin());
+  }
+  return {};
+}
+
+std::string stem_of(const std::string& name, std::string_view suffix) {
+  for (const std::string_view extension : {".json", ".wav", ""}) {
+    const std::string ending = std::string(suffix) + std::string(extension);
+    if (name.size() > ending.size() && name.ends_with(ending))
+      return name.substr(0, name.size() - ending.size());
+  }
+  return name;
+}
+
+}  // namespace tacto::schema

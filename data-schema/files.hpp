@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files that appear whole or not at all, and their checksums.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data-schema/error.hpp"
+
+namespace tacto::schema {
+
+/// That a file is there and may be read. Errors: not_found, saying whether it is absent, a folder or not
+/// permitted.
+Result<void> check_readable(const std::string& path);
+
+/// The whole file. Errors: not_found (absent, a folder, no permission).
+Result<std::string> read_file(const std::string& path);
+
+/// Lower-case hexadecimal SHA-256 of a file, or of text in memory. Errors: not_found.
+Result<std::string> sha256_of_file(const std::string& path);
+std::string sha256_of(std::string_view text);
+
+/// A set of files that are written beside their names and take them together at commit(). Until then, and
+/// after a failure, the folder is as it was; leftovers are removed by the destructor.
+class PendingFiles {
+ public:
+  PendingFiles() = default;
+  PendingFiles(const PendingFiles&) = delete;
+  PendingFiles& operator=(const PendingFiles&) = delete;
+  ~PendingFiles();
+
+  /// The temporary path to write what will be `path`, in the same folder; an empty file until it is written.
+  /// Errors: cannot_write, where the folder is absent or read-only, or where `path` is a folder.
+  Result<std::string> add(const std::string& path);
+  /// add() and the content at once.
+  Result<void> write(const std::string& path, std::string_view content);
+  /// Syncs all to disk, then renames them in the order they were added. Errors: cannot_write.
+  Result<void> commit();
+
+ private:
+  struct Pending {
+    std::string temporary, path;
+  };
+  std::vector<Pending> pending_;
+};
+
+/// Where a file of ours is kept: "oak" and "oak.texture.json" and "oak.texture.wav" all have the stem "oak"
+/// for the suffix ".texture". For plain recordings the suffix is empty.
+std::string stem_of(const std::string& name, std::string_view suffix);
+
+}  // namespace tacto::schema

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/json_schema.hpp"
+
+#define VALIJSON_USE_EXCEPTIONS 1
+#include <fmt/format.h>
+
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+#include "data-schema/embedded_files.hpp"
+
+namespace tacto::schema {
+namespace {
+
+Json embedded_json(std::string_view name) {
+  for (const EmbeddedFile& file : embedded_files())
+    if (file.name == name) return Json::parse(file.text);
+  return {};
+}
+
+Json expanded(const Json& node, const Json& root) {
+  if (node.contains("$ref")) {
+    const auto target = node["$ref"].get<std::string>();
+    const auto hash = target.find('#');
+    const Json document = hash == 0 ? root : embedded_json(target.substr(0, hash));
+    const Json::json_pointer pointer(hash == std::string::npos ? "" : target.substr(hash + 1));
+    return expanded(document.at(pointer), document);
+  }
+  Json copy = node;
+  if (node.is_structured())
+    for (auto member = copy.begin(); member != copy.end(); ++member) *member = expanded(*member, root);
+  return copy;
+}
+
+// The context is "<root>", "[channels]", "[0]": a JSON pointer in other clothes.
+Json::json_pointer pointer_of(const std::vector<std::string>& context) {
+  Json::json_pointer pointer;
+  for (std::size_t i = 1; i < context.size(); ++i) pointer /= context[i].substr(1, context[i].size() - 2);
+  return pointer;
+}
+
+// The part of the schema that rules the value at `pointer`; null where the schema does not say.
+Json rule_at(const Json& rules, const Json::json_pointer& pointer) {
+  if (pointer.empty()) return rules;
+  const Json above = rule_at(rules, pointer.parent_pointer());
+  if (above.contains("items")) return above["items"];
+  if (above.contains("properties")) return above["properties"].value(pointer.back(), Json());
+  return {};
+}
+
+std::string list_of(const Json& values) {
+  if (values.is_string()) return values.get<std::string>();
+  std::string list;
+  for (const Json& value : values)
+    list += (list.empty() ? "" : ", ") + (value.is_string() ? value.get<std::string>() : value.dump());
+  return list;
+}
+
+std::string brief(const Json& value) {
+  if (value.is_object()) return "an object";
+  if (value.is_array()) return fmt::format("an array of {}", value.size());
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+}
+
+// The validator's own words leave out what stands there and what may.
+std::string explained(const std::string& said, const Json& value, const Json& rule) {
+  if (said.starts_with("Missing")) return said.substr(0, said.size() - 1);
+  const bool type = said.find("'type' constraint") != std::string::npos;
+  if (type && rule.contains("type"))
+    return fmt::format("{} is not of type {}", brief(value), list_of(rule["type"]));
+  if (said.find("enum") != std::string::npos && rule.contains("enum"))
+    return fmt::format("{} is none of {}", brief(value), list_of(rule["enum"]));
+  if (rule.contains("const")) return fmt::format("{} is not {}", brief(value), rule["const"].dump());
+  if (said.find("regex") != std::string::npos && rule.contains("pattern"))
+    return fmt::format("{} does not match {}", brief(value), rule["pattern"].dump());
+  return fmt::format("{} ({})", said.substr(0, said.find_last_not_of('.') + 1), brief(value));
+}
+
+// Said of the object around a breach that has an entry of its own.
+bool repeats(const std::string& said) {
+  return said.starts_with("Failed to validate");
+}
+
+std::vector<Violation> told(const valijson::ValidationResults& results, const Json& document,
+                            const Json& rules) {
+  std::vector<Violation> list;
+  for (const auto& error : results) {
+    if (repeats(error.description)) continue;
+    const auto pointer = pointer_of(error.context);
+    const std::string what = explained(error.description, document.at(pointer), rule_at(rules, pointer));
+    list.push_back({pointer.to_string(), what});
+  }
+  return list;
+}
+
+std::vector<Violation> validated(const Json& document, const Json& rules) {
+  using valijson::adapters::NlohmannJsonAdapter;
+  const nlohmann::json plain_rules = rules;
+  const nlohmann::json plain_document = document;
+  valijson::Schema schema;
+  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+      .populateSchema(NlohmannJsonAdapter(plain_rules), schema);
+  valijson::ValidationResults results;
+  valijson::Validator validator;
+  const bool sound = validator.validate(schema, NlohmannJsonAdapter(plain_document), &results);
+  auto list = told(results, document, rules);
+  if (!sound && list.empty()) list.push_back({"", "the document does not fit its schema"});
+  return list;
+}
+
+}  // namespace
+
+std::optional<Json> schema_of(std::string_view kind) try {
+  const Json root = embedded_json(std::string(kind) + ".schema.json");
+  if (root.is_null()) return std::nullopt;
+  return expanded(root, root);
+} catch (const std::exception&) {
+  return std::nullopt;
+}
+
+std::vector<Violation> breaches(const Json& document, const Json& rules) try {
+  return validated(document, rules);
+} catch (const std::exception& thrown) {
+  return {{"", fmt::format("the schema cannot be used: {}", thrown.what())}};
+}
+
+}  // namespace tacto::schema

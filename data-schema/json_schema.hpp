@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// JSON Schemas (draft-07) of this folder, and what in a document breaks them. Internal to this folder.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "data-schema/json_document.hpp"
+
+namespace tacto::schema {
+
+/// The embedded `KIND.schema.json` with every $ref replaced by what it names ("other.schema.json",
+/// "#/definitions/x"); none where no such schema is embedded. Schemas must not refer to themselves.
+std::optional<Json> schema_of(std::string_view kind);
+
+/// Every breach of `rules`, in the order they were found.
+std::vector<Violation> breaches(const Json& document, const Json& rules);
+
+}  // namespace tacto::schema

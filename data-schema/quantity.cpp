@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace tacto::schema {
+namespace {
+
+// In each dimension from small to large: for_people picks the largest unit that leaves the value at 1 or
+// above.
+constexpr Unit kUnits[] = {
+    {"nm", Dimension::length, 1e-9},
+    {"um", Dimension::length, 1e-6},
+    {"mm", Dimension::length, 1e-3},
+    {"cm", Dimension::length, 1e-2},
+    {"m", Dimension::length, 1},
+    {"ns", Dimension::time, 1e-9},
+    {"us", Dimension::time, 1e-6},
+    {"ms", Dimension::time, 1e-3},
+    {"s", Dimension::time, 1},
+    {"min", Dimension::time, 60},
+    {"h", Dimension::time, 3600},
+    {"mHz", Dimension::frequency, 1e-3},
+    {"Hz", Dimension::frequency, 1},
+    {"kHz", Dimension::frequency, 1e3},
+    {"MHz", Dimension::frequency, 1e6},
+    {"/m", Dimension::spatial_frequency, 1},
+    {"/cm", Dimension::spatial_frequency, 1e2},
+    {"/mm", Dimension::spatial_frequency, 1e3},
+    {"/um", Dimension::spatial_frequency, 1e6},
+    {"um/s", Dimension::speed, 1e-6},
+    {"mm/s", Dimension::speed, 1e-3},
+    {"cm/s", Dimension::speed, 1e-2},
+    {"m/s", Dimension::speed, 1},
+    {"mm/s^2", Dimension::acceleration, 1e-3},
+    {"m/s^2", Dimension::acceleration, 1},
+    {"uN", Dimension::force, 1e-6},
+    {"mN", Dimension::force, 1e-3},
+    {"N", Dimension::force, 1},
+    {"kN", Dimension::force, 1e3},
+    {"uV", Dimension::voltage, 1e-6},
+    {"mV", Dimension::voltage, 1e-3},
+    {"V", Dimension::voltage, 1},
+    {"kV", Dimension::voltage, 1e3},
+    {"nm/N", Dimension::compliance, 1e-9},
+    {"um/N", Dimension::compliance, 1e-6},
+    {"mm/N", Dimension::compliance, 1e-3},
+    {"m/N", Dimension::compliance, 1},
+    {"1", Dimension::none, 1},
+    {"dB", Dimension::level, 1},
+};
+
+// Units that are read but never chosen to write with: "cm" would surprise where "12 mm" is expected.
+bool for_reading_only(std::string_view symbol) {
+  return symbol == "cm" || symbol == "cm/s" || symbol == "/cm" || symbol == "min" || symbol == "h" ||
+         symbol == "/um";
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+// Both Unicode micro signs (U+00B5 and U+03BC) become "u"; "1/mm" and "mm^-1" become "/mm".
+std::string canonical(std::string_view symbol) {
+  std::string text(trimmed(symbol));
+  for (std::string_view micro : {"\xC2\xB5", "\xCE\xBC"})
+    for (auto at = text.find(micro); at != std::string::npos; at = text.find(micro)) text.replace(at, 2, "u");
+  if (text.size() > 2 && text.starts_with("1/")) text.erase(0, 1);
+  if (text.ends_with("^-1")) text = "/" + text.substr(0, text.size() - 3);
+  return text;
+}
+
+std::optional<Unit> unit_named(std::string_view symbol) {
+  for (const Unit& unit : kUnits)
+    if (unit.symbol == symbol) return unit;
+  return std::nullopt;
+}
+
+struct NumberAndUnit {
+  double number = 0;
+  std::string unit;
+};
+
+std::optional<NumberAndUnit> split(std::string_view text) {
+  NumberAndUnit parts;
+  text = trimmed(text);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), parts.number);
+  if (fault != std::errc() || !std::isfinite(parts.number)) return std::nullopt;
+  parts.unit = canonical(text.substr(static_cast<std::size_t>(end - text.data())));
+  return parts;
+}
+
+tl::unexpected<Error> wrong(std::string_view text, std::string_view why, Dimension dimension) {
+  return fail(Fault::usage, fmt::format("'{}' {}", text, why), {},
+              fmt::format("write a number with one of: {}", units_of(dimension)));
+}
+
+}  // namespace
+
+std::string units_of(Dimension dimension) {
+  std::string list;
+  for (const Unit& unit : kUnits) {
+    if (unit.dimension != dimension) continue;
+    list += (list.empty() ? "" : ", ") + std::string(unit.symbol);
+  }
+  return list;
+}
+
+Result<double> parse_quantity(std::string_view text, Dimension dimension) {
+  const auto parts = split(text);
+  if (!parts) return wrong(text, "is not a finite number with a unit", dimension);
+  if (parts->unit.empty()) {
+    if (dimension == Dimension::none) return parts->number;
+    return wrong(text, "has no unit", dimension);
+  }
+  const auto unit = unit_named(parts->unit);
+  if (!unit) return wrong(text, fmt::format("has the unknown unit '{}'", parts->unit), dimension);
+  if (unit->dimension != dimension) return wrong(text, "has a unit of another quantity", dimension);
+  return parts->number * unit->si;
+}
+
+Result<Unit> parse_unit(std::string_view symbol) {
+  if (const auto unit = unit_named(canonical(symbol))) return *unit;
+  std::string known;
+  for (const Unit& unit : kUnits) known += (known.empty() ? "" : ", ") + std::string(unit.symbol);
+  return fail(Fault::usage, fmt::format("'{}' is no known unit", symbol), {}, "the units are: " + known);
+}
+
+std::string_view si_symbol(Dimension dimension) {
+  constexpr std::array<std::string_view, 11> kSymbols = {"m", "s", "Hz",  "1/m", "m/s", "m/s^2",
+                                                         "N", "V", "m/N", "1",   "dB"};
+  return kSymbols[static_cast<std::size_t>(dimension)];
+}
+
+std::string for_people(double value_si, Dimension dimension) {
+  const Unit* best = nullptr;
+  for (const Unit& unit : kUnits) {
+    if (unit.dimension != dimension || for_reading_only(unit.symbol)) continue;
+    if (best == nullptr || std::abs(value_si) >= unit.si || value_si == 0) best = &unit;
+  }
+  if (best->dimension == Dimension::none) return fmt::format("{:.4g}", value_si);
+  const bool inverse = best->symbol.starts_with('/');
+  return fmt::format("{:.4g}{}{}", value_si / best->si, inverse ? "" : " ", best->symbol);
+}
+
+}  // namespace tacto::schema

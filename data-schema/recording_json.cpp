@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/recording_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "data-schema/transducer_json.hpp"
+
+namespace tacto::schema {
+namespace {
+
+struct TextMember {
+  const char* name;
+  std::string RecordingHeader::*member;
+};
+
+constexpr TextMember kTexts[] = {
+    {"clock", &RecordingHeader::clock},
+    {"device", &RecordingHeader::device},
+    {"simulated", &RecordingHeader::simulated},
+    {"source_file", &RecordingHeader::source_file},
+    {"source_sha256", &RecordingHeader::source_sha256},
+    {"recorded", &RecordingHeader::recorded},
+    {"created", &RecordingHeader::created},
+    {"creator", &RecordingHeader::creator},
+    {"subject", &RecordingHeader::subject},
+    {"finger", &RecordingHeader::finger},
+    {"surface", &RecordingHeader::surface},
+    {"notes", &RecordingHeader::notes},
+};
+
+struct FormatName {
+  SampleFormat format;
+  const char* name;
+};
+
+constexpr FormatName kFormats[] = {
+    {SampleFormat::pcm32, "pcm32"}, {SampleFormat::float32, "float32"}, {SampleFormat::float64, "float64"}};
+
+const char* name_of(SampleFormat format) {
+  return std::ranges::find(kFormats, format, &FormatName::format)->name;
+}
+
+SampleFormat format_named(std::string_view name) {
+  return std::ranges::find(kFormats, name, &FormatName::name)->format;
+}
+
+void put_number(Json& body, const char* key, const std::optional<double>& number) {
+  if (number) body[key] = *number;
+}
+
+std::optional<double> optional_number(const Json& body, const char* key) {
+  return body.contains(key) ? std::optional(body[key].get<double>()) : std::nullopt;
+}
+
+template <class Item, class ToJson>
+void put_list(Json& body, const char* key, const std::vector<Item>& items, ToJson to_json) {
+  for (const Item& item : items) body[key].push_back(to_json(item));
+}
+
+template <class FromJson>
+auto list_from(const Json& body, const char* key, FromJson from_json) {
+  std::vector<decltype(from_json(body))> items;
+  if (body.contains(key)) std::ranges::transform(body[key], std::back_inserter(items), from_json);
+  return items;
+}
+
+Json channel_body(const Channel& channel) {
+  Json body = {{"name", channel.name},
+               {"quantity", channel.quantity},
+               {"unit", channel.unit},
+               {"scale", channel.scale},
+               {"offset", channel.offset}};
+  put_number(body, "native_rate_hz", channel.native_rate_hz);
+  put_number(body, "range_min", channel.range_min);
+  put_number(body, "range_max", channel.range_max);
+  put_text(body, "source", channel.source);
+  put_text(body, "derivation", channel.derivation);
+  put_text(body, "calibrated", channel.calibrated);
+  return body;
+}
+
+Channel channel_from(const Json& body) {
+  Channel channel;
+  channel.name = body["name"];
+  channel.quantity = body["quantity"];
+  channel.unit = body["unit"];
+  channel.scale = body["scale"];
+  channel.offset = body["offset"];
+  channel.native_rate_hz = optional_number(body, "native_rate_hz");
+  channel.range_min = optional_number(body, "range_min");
+  channel.range_max = optional_number(body, "range_max");
+  channel.source = text_or(body, "source");
+  channel.derivation = text_or(body, "derivation");
+  channel.calibrated = text_or(body, "calibrated");
+  return channel;
+}
+
+Json gap_body(const Gap& gap) {
+  return {{"frame", gap.frame}, {"device_sequence", gap.device_sequence}, {"count", gap.count}};
+}
+Gap gap_from(const Json& body) {
+  return {body["frame"], body["device_sequence"], body["count"]};
+}
+
+Json mark_body(const Mark& mark) {
+  return {{"frame", mark.frame}, {"label", mark.label}};
+}
+Mark mark_from(const Json& body) {
+  return {body["frame"], body["label"]};
+}
+
+// A document of its own inside the sidecar: it says its version, and can be taken out as a file.
+Json embedded_transducer(const Transducer& transducer) {
+  Json body = {{"kind", "transducer"}, {"version", kVersion}};
+  body.update(transducer_body(transducer));
+  return body;
+}
+
+Json data_body(const RecordingHeader& header) {
+  return {{"file", header.wav_file},
+          {"sha256", header.sha256},
+          {"format", name_of(header.format)},
+          {"frames", header.frames}};
+}
+
+Json recording_body(const RecordingHeader& header) {
+  Json body = {
+      {"data", data_body(header)}, {"sample_rate_hz", header.sample_rate_hz}, {"channels", Json::array()}};
+  put_list(body, "channels", header.channels, channel_body);
+  for (const auto& [name, member] : kTexts) put_text(body, name, header.*member);
+  put_number(body, "humidity_percent", header.humidity_percent);
+  if (header.transducer) body["transducer"] = embedded_transducer(*header.transducer);
+  put_list(body, "gaps", header.gaps, gap_body);
+  put_list(body, "marks", header.marks, mark_body);
+  put_list(body, "warnings", header.warnings, [](const std::string& text) { return Json(text); });
+  return body;
+}
+
+RecordingHeader header_from(const Json& body) {
+  RecordingHeader header;
+  const Json& data = body["data"];
+  header.wav_file = data["file"];
+  header.sha256 = data["sha256"];
+  header.format = format_named(data["format"].get_ref<const std::string&>());
+  header.frames = data["frames"];
+  header.sample_rate_hz = body["sample_rate_hz"];
+  header.channels = list_from(body, "channels", channel_from);
+  for (const auto& [name, member] : kTexts) header.*member = text_or(body, name);
+  header.humidity_percent = optional_number(body, "humidity_percent");
+  if (body.contains("transducer")) header.transducer = transducer_from(body["transducer"]);
+  header.gaps = list_from(body, "gaps", gap_from);
+  header.marks = list_from(body, "marks", mark_from);
+  header.warnings = list_from(body, "warnings", [](const Json& text) { return text.get<std::string>(); });
+  return header;
+}
+
+// What no schema can say of a channel: its unit is its quantity's, its name is no other's.
+std::optional<Violation> channel_breach(const RecordingHeader& header, std::size_t i) {
+  const Channel& channel = header.channels[i];
+  const auto quantity = quantity_named(channel.quantity);
+  if (quantity && si_symbol(quantity->dimension) != channel.unit)
+    return Violation{fmt::format("/channels/{}/unit", i),
+                     fmt::format("{} is in {}, not in {}", channel.quantity, si_symbol(quantity->dimension),
+                                 channel.unit)};
+  const auto first = std::ranges::find(header.channels, channel.name, &Channel::name);
+  if (first != header.channels.begin() + static_cast<std::ptrdiff_t>(i))
+    return Violation{fmt::format("/channels/{}/name", i),
+                     fmt::format("there are two channels '{}'", channel.name)};
+  return std::nullopt;
+}
+
+std::optional<Violation> gap_breach(const RecordingHeader& header, std::size_t i) {
+  const std::uint64_t frame = header.gaps[i].frame;
+  if (frame > header.frames || (i > 0 && frame < header.gaps[i - 1].frame))
+    return Violation{fmt::format("/gaps/{}/frame", i),
+                     fmt::format("gaps must grow and end at frame {}", header.frames)};
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Violation> recording_breaches(const RecordingHeader& header) {
+  std::vector<Violation> breaches;
+  for (std::size_t i = 0; i < header.channels.size(); ++i)
+    if (auto breach = channel_breach(header, i)) breaches.push_back(std::move(*breach));
+  for (std::size_t i = 0; i < header.gaps.size(); ++i)
+    if (auto breach = gap_breach(header, i)) breaches.push_back(std::move(*breach));
+  return breaches;
+}
+
+Result<std::string> recording_text(const RecordingHeader& header) {
+  if (const auto breaches = recording_breaches(header); !breaches.empty())
+    return fail(Fault::unsuitable, breaches.front().what, breaches.front().pointer);
+  return document_text("recording", recording_body(header), header.extra_json);
+}
+
+RecordingHeader recording_header_unchecked(const Document& document) {
+  RecordingHeader header = header_from(document.body);
+  header.extra_json = unknown_members(document.body, "recording");
+  header.newer_version = document.newer_version;
+  return header;
+}
+
+Result<RecordingHeader> recording_header_from(const Document& document, const std::string& path) {
+  RecordingHeader header = recording_header_unchecked(document);
+  if (const auto breaches = recording_breaches(header); !breaches.empty())
+    return fail(Fault::malformed, breaches.front().what, path + "#" + breaches.front().pointer);
+  return header;
+}
+
+}  // namespace tacto::schema

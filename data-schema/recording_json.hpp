@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A recording's sidecar as JSON and back. Internal to this folder.
+#pragma once
+
+#include "data-schema/json_document.hpp"
+#include "data-schema/recording.hpp"
+
+namespace tacto::schema {
+
+/// The sidecar's text. Errors: unsuitable, by JSON pointer, where the header can't be stored (a channel
+/// twice, a unit that is not its quantity's, a scale that is not finite ...).
+Result<std::string> recording_text(const RecordingHeader& header);
+
+/// The sidecar of a document that fits its schema, whatever else is wrong in it.
+RecordingHeader recording_header_unchecked(const Document& document);
+
+/// What no schema can say, and is wrong: a unit that is not its quantity's, a channel twice, gaps out of
+/// order.
+std::vector<Violation> recording_breaches(const RecordingHeader& header);
+
+/// The sidecar of a document that fits its schema; `path` names it in errors.
+/// Errors: malformed, by JSON pointer, for what no schema can say.
+Result<RecordingHeader> recording_header_from(const Document& document, const std::string& path);
+
+}  // namespace tacto::schema

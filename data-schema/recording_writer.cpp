@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cassert>
+#include <filesystem>
+
+#include "data-schema/creation_time.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/recording.hpp"
+#include "data-schema/recording_json.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::schema {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<void> check_free(const std::string& stem) {
+  std::error_code ignored;
+  for (const std::string& path : {stem + ".json", stem + ".wav"})
+    if (fs::exists(path, ignored))
+      return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
+  return {};
+}
+
+// That the header can be stored is known before the first sample, not after the last.
+Result<void> check_header(const RecordingHeader& header) {
+  RecordingHeader complete = header;
+  complete.sha256 = std::string(64, '0');
+  complete.gaps.clear();  // they are measured against the frames to come
+  const auto text = recording_text(complete);
+  return text ? Result<void>{} : forward_error(text);
+}
+
+}  // namespace
+
+struct RecordingWriter::State {
+  std::string stem;
+  RecordingHeader header;
+  PendingFiles pending;
+  std::string temporary_wav;
+  std::optional<WavWriter> wav;
+
+  template <class Sample>
+  Result<void> write(std::span<const Sample> interleaved) {
+    header.frames += interleaved.size() / header.channels.size();
+    return wav->write(interleaved);
+  }
+  Result<void> describe();
+};
+
+RecordingWriter::RecordingWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
+RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = default;
+RecordingWriter::~RecordingWriter() = default;
+
+Result<RecordingWriter> RecordingWriter::create(const std::string& name, RecordingHeader header,
+                                                bool replace) {
+  auto state = std::make_unique<State>();
+  state->stem = stem_of(name, "");
+  if (const auto free = check_free(state->stem); !replace && !free) return forward_error(free);
+  const std::string wav = state->stem + ".wav";
+  header.wav_file = fs::path(wav).filename().string();
+  header.frames = 0;
+  if (const auto fits = check_header(header); !fits) return forward_error(fits);
+  const auto temporary = state->pending.add(wav);
+  if (!temporary) return forward_error(temporary);
+  auto writer = WavWriter::create(*temporary, header.sample_rate_hz, header.channels.size(), header.format);
+  if (!writer) return forward_error(writer);
+  state->temporary_wav = *temporary;
+  state->header = std::move(header);
+  state->wav.emplace(std::move(*writer));
+  return RecordingWriter(std::move(state));
+}
+
+Result<void> RecordingWriter::write(std::span<const double> interleaved) {
+  return state_->write(interleaved);
+}
+
+Result<void> RecordingWriter::write(std::span<const std::int32_t> interleaved) {
+  return state_->write(interleaved);
+}
+
+RecordingHeader& RecordingWriter::header() {
+  return state_->header;
+}
+
+Result<void> RecordingWriter::State::describe() {
+  const auto sum = sha256_of_file(temporary_wav);
+  if (!sum) return forward_error(sum);
+  header.sha256 = *sum;
+  header.created = creation_time();
+  header.creator = kCreator;
+  const auto text = recording_text(header);
+  return text ? pending.write(stem + ".json", *text) : forward_error(text);
+}
+
+Result<Recording> RecordingWriter::close() {
+  assert(state_->wav);
+  const auto closed = state_->wav->close();
+  state_->wav.reset();
+  if (!closed) return forward_error(closed);
+  if (const auto described = state_->describe(); !described) return forward_error(described);
+  if (const auto committed = state_->pending.commit(); !committed) return forward_error(committed);
+  return Recording{state_->header, state_->stem};
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A texture: a quantity against position on an even grid, as NAME.texture.wav + NAME.texture.json.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/error.hpp"
+#include "data-schema/signal.hpp"
+
+namespace tacto::schema {
+
+/// The band that the texture knows at a position: what the recording's band in Hz became at the finger's
+/// speed there.
+struct BandPoint {
+  double position_m = 0;
+  double low_per_m = 0;
+  double high_per_m = 0;
+};
+
+/// How a texture was made from a recording, so that it can be made again.
+struct TextureSource {
+  std::string recording;         ///< file name of the recording's sidecar
+  std::string recording_sha256;  ///< of its WAV
+  double from_s = 0, to_s = 0;   ///< the stretch of the recording
+  int stroke = 0;                ///< 1-based; 0 where a stretch was asked for by time
+  std::string method;            ///< "hermite"
+  std::string filter;            ///< "fourier", "butterworth", "none"
+  std::string edges;             ///< "treated", "none"
+  int order = 0;                 ///< of the Butterworth filter; 0 of others
+  double low_hz = 0, high_hz = 0;
+  bool equalised = false;  ///< divided by the sensor's response
+  double mean_speed_mps = 0, min_speed_mps = 0, max_speed_mps = 0;
+  double position_moved_m = 0;  ///< how far the positions were moved, at most, to make them monotone
+};
+
+struct Texture {
+  /// Values in `unit`; origin_m is 0 and the first sample lies at position 0.
+  SpaceSignal signal;
+  std::string quantity = "tangential_force";
+  std::string unit = "N";
+  int direction = 1;  ///< -1: the stroke was made backwards; it is stored by growing position all the same
+  double source_origin_m = 0;  ///< where position 0 lay on the bench
+  std::vector<BandPoint> valid_band;
+  TextureSource source;
+  std::string simulated;  ///< by what, where it is simulated
+  std::string surface, subject, finger, notes;
+  std::string created, creator;
+  std::string extra_json;
+  std::string newer_version;
+};
+
+/// Opens by stem, NAME.texture.json or NAME.texture.wav; checks schema, length and grid, and that every
+/// sample is a number; not the checksum (check_file does). Errors: not_found; unsuitable, for another kind of
+/// file; malformed, with the sample where one is NaN or infinite; unsupported_version.
+Result<Texture> read_texture(const std::string& name);
+
+/// Writes STEM.texture.wav (32-bit float, header rate = samples per metre, rounded) and STEM.texture.json,
+/// together. Errors: cannot_write; unsuitable, where there are no samples, one is no number, or the schema
+/// doesn't allow it.
+Result<void> write_texture(const std::string& stem, const Texture& texture);
+
+}  // namespace tacto::schema

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "data-schema/embedded_files.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/json_document.hpp"
+#include "data-schema/transducer_json.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kKind = "transducer";
+constexpr std::string_view kSuffix = ".transducer";
+
+const EmbeddedFile* preset_named(std::string_view name) {
+  const auto files = embedded_files();
+  const auto found = std::ranges::find(files, fmt::format("{}.transducer.json", name), &EmbeddedFile::name);
+  return found == files.end() ? nullptr : &*found;
+}
+
+Transducer transducer_of(const Document& document) {
+  Transducer transducer = transducer_from(document.body);
+  transducer.extra_json = unknown_members(document.body, kKind);
+  transducer.newer_version = document.newer_version;
+  return transducer;
+}
+
+std::string path_of(const std::string& stem) {
+  return stem + std::string(kSuffix) + ".json";
+}
+
+// A file named in full may have any name; a stem has the suffix added.
+std::string existing_path(const std::string& name) {
+  const std::string path = path_of(stem_of(name, kSuffix));
+  std::error_code ignored;
+  return !std::filesystem::exists(path, ignored) && std::filesystem::is_regular_file(name, ignored) ? name
+                                                                                                    : path;
+}
+
+}  // namespace
+
+std::vector<std::string_view> preset_names() {
+  std::vector<std::string_view> names;
+  for (const EmbeddedFile& file : embedded_files())
+    if (const auto at = file.name.find(".transducer.json"); at != std::string_view::npos)
+      names.push_back(file.name.substr(0, at));
+  std::ranges::sort(names);
+  return names;
+}
+
+Result<Transducer> read_transducer(const std::string& name) {
+  if (const EmbeddedFile* preset = preset_named(name))
+    return parse_document(preset->text, std::string(preset->name), kKind).map(transducer_of);
+  const std::string path = existing_path(name);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    return fail(
+        Fault::not_found, "there is no such transducer", name,
+        fmt::format("the presets are {}; a file is NAME.transducer.json", fmt::join(preset_names(), ", ")));
+  return open_document(path, kKind).map(transducer_of);
+}
+
+Result<void> write_transducer(const std::string& stem, const Transducer& transducer) {
+  const auto text = document_text(kKind, transducer_body(transducer), transducer.extra_json);
+  if (!text) return forward_error(text);
+  PendingFiles pending;
+  if (const auto written = pending.write(path_of(stem_of(stem, kSuffix)), *text); !written) return written;
+  return pending.commit();
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/device.hpp"
+
+#include <fmt/format.h>
+
+#include "firmware-host/sim/sim_device.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+struct Transport {
+  std::string_view scheme;
+  schema::Result<std::unique_ptr<Device>> (*open)(const std::string& uri, std::string_view parameters);
+};
+
+constexpr Transport kTransports[] = {{"sim:", open_sim_device}};
+
+std::string schemes() {
+  std::string list;
+  for (const Transport& transport : kTransports)
+    list += (list.empty() ? "" : ", ") + std::string(transport.scheme);
+  return list;
+}
+
+}  // namespace
+
+schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri) {
+  for (const Transport& transport : kTransports)
+    if (uri.starts_with(transport.scheme))
+      return transport.open(uri, std::string_view(uri).substr(transport.scheme.size()));
+  return schema::fail(
+      schema::Fault::usage, fmt::format("'{}' is not a device that can be opened", uri), "device",
+      fmt::format("the transports are: {} (for example sim:surface=C,speed=50mm/s)", schemes()));
+}
+
+}  // namespace tacto::firmware_host

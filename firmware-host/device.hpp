@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The device as the host sees it: what it can do, and its stream of frames. Real and emulated ones are chosen
+// alike.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "data-schema/error.hpp"
+#include "data-schema/recording.hpp"
+#include "data-schema/transducer.hpp"
+
+namespace tacto::firmware_host {
+
+/// What a device says of itself when it is opened.
+struct Capabilities {
+  std::string uri;  ///< as it was asked for
+  std::string name;
+  std::string serial;
+  std::string simulated;  ///< by what; empty for a real device
+  std::string clock;      ///< what gives the time: "device"
+  double sample_rate_hz = 0;
+  /// One a sample of each frame, in order. Physical = code x scale + offset, in `unit`. The transducer's own
+  /// channel, `tangential_force`, is in volts at its output: how many newtons that is depends on the
+  /// transducer's model, and the device does not know it.
+  std::vector<schema::Channel> channels;
+  std::optional<schema::Transducer> transducer;
+  std::string surface;  ///< what lies on the tray, where the device knows it
+};
+
+/// What has happened in a stream since start().
+struct StreamCounts {
+  std::uint64_t frames = 0;
+  std::uint64_t lost_frames = 0;
+  std::uint64_t clipped = 0;  ///< samples at either end of a converter's range, over all channels
+};
+
+/// A device that is open. Not safe to share between threads.
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  virtual const Capabilities& capabilities() const = 0;
+  /// Begins the stream. Errors: device.
+  virtual schema::Result<void> start() = 0;
+  /// Fills whole frames, at most as many as fit; a sample is a converter code left-justified in 32 bits, of
+  /// an encoder its plain count. Gives the number of frames; 0 where the stream has ended. Errors: device:
+  /// not started, gone, or failed, with the time at which.
+  virtual schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) = 0;
+  /// Ends the stream. Errors: device.
+  virtual schema::Result<void> stop() = 0;
+  virtual StreamCounts counts() const = 0;
+};
+
+/// Opens by URI; there is `sim:`, with every parameter by key=value (see sim/sim_parameters.hpp).
+/// Errors: usage: a transport, key or value that does not exist, naming what there is; not_found: the
+/// transducer's file.
+schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri);
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/sim/sensor_motion.hpp"
+
+namespace tacto::firmware_host {
+
+SensorMotion::SensorMotion(const schema::Transducer& t)
+    : mass_kg_(t.mass_kg),
+      damping_n_s_per_m_(t.damping_n_s_per_m),
+      stiffness_n_per_m_(t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m),
+      bender_n_per_m_(t.bender_stiffness_n_per_m),
+      time_constant_s_(2 * t.sensor_resistance_ohm * t.capacitance_f),
+      output_v_per_n_(t.sensor_scale * t.sensor_gain * t.deflection_m / (2 * t.max_voltage_v) /
+                      t.capacitance_f) {}
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the emulated device is asked to be: "surface=C,speed=50mm/s,seed=1".
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "data-schema/error.hpp"
+#include "firmware-host/sim/finger_parameters.hpp"
+#include "firmware-host/sim/finger_path.hpp"
+#include "firmware-host/sim/surface.hpp"
+
+namespace tacto::firmware_host {
+
+struct SimParameters {
+  SurfaceChoice surface;
+  FingerParameters finger;
+  StrokePlan strokes;   ///< its ends are left to the device, which knows the surface's length
+  double load_n = 0.5;  ///< Wiertlewski 2011, section IV-A5: 0.5 N and 50 mm/s
+  bool finger_down = true;
+  bool noise = true;
+  std::uint64_t seed = 1;
+  /// Whose finger: seeds the places of its ridges. Fingers differ; with this one the triangular grating of
+  /// Figure 1 keeps its second harmonic above its fundamental for every seed from 1 to 20.
+  std::uint64_t person = 1;
+  double sample_rate_hz = 10e3;     ///< the paper's
+  double encoder_quantum_m = 1e-6;  ///< the paper's
+  std::string transducer = "wiertlewski2011";
+};
+
+/// Reads key=value pairs between commas; a quantity has its unit. Keys that are absent keep their defaults.
+/// Errors: usage: a key that does not exist (with those that do), one that comes twice, a value that is no
+/// such quantity or out of its range (with the range).
+schema::Result<SimParameters> parse_sim_parameters(std::string_view text);
+
+/// The keys, each with meaning and default, one a line, for help.
+std::string sim_parameters_help();
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/sim/sim_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tacto::firmware_host {
+namespace {
+
+enum Stream : std::uint64_t { kSpeedStream = 100, kLoadStream, kSensorStream, kNormalStream, kNetStream };
+
+// ATI Nano17 of Wiertlewski 2011, calibration SI-12-0.12.
+constexpr double kNormalRangeN = 17;
+constexpr double kTangentialRangeN = 12;
+
+constexpr double kLoadKnotS = 0.25;  // ours: a hand's load wanders below about 1 Hz
+constexpr double kLeastLoad = 0.2;   // of the load: a finger that is down stays down
+
+// Keeps the whole patch, jitter included, on the surface.
+constexpr double kMarginM = 0.3e-3;
+
+StrokePlan plan_on(const HeightProfile& profile, const SimParameters& parameters) {
+  StrokePlan plan = parameters.strokes;
+  plan.from_m = parameters.finger.patch_m / 2 + kMarginM;
+  plan.to_m = profile.length_m() - plan.from_m;
+  return plan;
+}
+
+// A floor of n newtons per root hertz, white up to half the rate, as volts at the output. The paper gives it
+// as a force; the flat middle of the band is where force and output are the same thing.
+double noise_rms_v(const SimParameters& parameters, const schema::Transducer& transducer) {
+  if (!parameters.noise) return 0;
+  return transducer.noise_n_per_sqrt_hz * SensorMotion(transducer).middle_gain_v_per_n() *
+         std::sqrt(parameters.sample_rate_hz / 2);
+}
+
+}  // namespace
+
+SimRun::SimRun(const SimParameters& p, const schema::Transducer& transducer, const HeightProfile& profile)
+    : parameters_(p),
+      path_(plan_on(profile, p), 1 / p.sample_rate_hz, Random(p.seed, kSpeedStream)),
+      load_wander_(Random(p.seed, kLoadStream), kLoadKnotS),
+      bench_(transducer, p.finger, profile, p.sample_rate_hz, path_.place().position_m, p.person),
+      noise_(p.seed, kSensorStream),
+      noise_v_(noise_rms_v(p, transducer)),
+      converter_(transducer.converter_bits, transducer.converter_range_v),
+      normal_cell_(kNormalRangeN, p.sample_rate_hz, p.noise, Random(p.seed, kNormalStream)),
+      net_cell_(kTangentialRangeN, p.sample_rate_hz, p.noise, Random(p.seed, kNetStream)) {}
+
+double SimRun::load_n(const FingerPlace& place) {
+  const double time_s = static_cast<double>(frames_) / parameters_.sample_rate_hz;
+  const double factor = std::max(kLeastLoad, 1 + parameters_.strokes.wander * load_wander_.at(time_s));
+  return parameters_.finger_down ? parameters_.load_n * place.press * factor : 0;
+}
+
+bool SimRun::next(std::span<std::int32_t, kSimChannels> frame) {
+  const FingerPlace place = path_.step();
+  if (!bench_.step(place, load_n(place))) return false;
+  ++frames_;
+  const BenchReading reading = bench_.reading();
+  frame[0] = converter_.convert(reading.sensor_v + noise_v_ * noise_.normal());
+  frame[1] = static_cast<std::int32_t>(std::floor(reading.position_m / parameters_.encoder_quantum_m));
+  frame[2] = normal_cell_.step(reading.normal_n);
+  frame[3] = net_cell_.step(reading.tangential_n);
+  return true;
+}
+
+std::uint64_t SimRun::clipped() const {
+  return converter_.clipped() + normal_cell_.converter().clipped() + net_cell_.converter().clipped();
+}
+
+}  // namespace tacto::firmware_host

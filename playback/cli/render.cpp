@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/statistics.hpp"
+#include "playback/cli/verbs.hpp"
+#include "playback/drive_files.hpp"
+#include "playback/render.hpp"
+
+namespace tacto::playback {
+
+using cli::Report;
+using schema::Dimension;
+using schema::Result;
+
+namespace {
+
+struct Options {
+  std::string texture, path, transducer, drive, displacement, wanted;
+  RenderOptions render;
+};
+
+void add_files(CLI::App& app, Options& o) {
+  app.add_option("texture", o.texture, "Texture: its stem, NAME.texture.json or NAME.texture.wav")
+      ->required();
+  app.add_option("--path", o.path, "Finger path: CSV with the columns time_s,position_m")->required();
+  app.add_option("--transducer", o.transducer, "Transducer: a preset or NAME.transducer.json")->required();
+  app.add_option("-o,--output", o.drive, "The drive: float WAV in volts at the amplifier's input")
+      ->required();
+  app.add_option("--displacement", o.displacement,
+                 "Also write what the modelled tray does with that drive: float WAV in metres");
+  app.add_option("--wanted", o.wanted, "Also write the displacement that was wanted: float WAV in metres");
+}
+
+void add_quantities(CLI::App& app, RenderOptions& o) {
+  cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency, "Sample rate of the drive");
+  cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance, "Displacement for force");
+  cli::add_quantity(
+      app, "--at", o.at_m, Dimension::length,
+      "Where the texture's position 0 lies on the path's axis; for a path in bench positions give the "
+      "source_origin_m that `info TEXTURE` tells");
+  cli::add_quantity(app, "--low", o.band.low_hz, Dimension::frequency,
+                    "Lowest frequency of the displacement");
+  cli::add_quantity(app, "--high", o.band.high_hz, Dimension::frequency,
+                    "Highest frequency of the displacement");
+  cli::add_quantity(app, "--onset", o.onset_s, Dimension::time,
+                    "Fade at either end of the path, for a finger that starts inside the texture");
+}
+
+template <class Choice>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Choice& choice,
+                        const std::map<std::string, Choice>& choices, const std::string& help) {
+  const auto chosen =
+      std::ranges::find_if(choices, [&](const auto& entry) { return entry.second == choice; });
+  const std::string standard = chosen->first;
+  std::string names;
+  for (const auto& [key, value] : choices) names += (names.empty() ? "" : "|") + key;
+  return app.add_option(name, choice, help)
+      ->transform(CLI::CheckedTransformer(choices).description(""))
+      ->type_name(names)
+      ->default_str(standard);
+}
+
+void add_model(CLI::App& app, RenderOptions& o) {
+  add_choice<Inverse>(
+      app, "--inverse", o.inverse,
+      {{"full", Inverse::full}, {"magnitude", Inverse::magnitude}, {"gain", Inverse::gain}},
+      "What of the transducer the drive undoes: amplitude and phase, amplitude, or the gain at rest");
+  add_choice<Reconstruction>(app, "--reconstruction", o.reconstruction,
+                             {{"none", Reconstruction::none}, {"butterworth3", Reconstruction::butterworth3}},
+                             "Analog filter behind the converter, undone as well");
+  cli::add_quantity(app, "--cutoff", o.reconstruction_cutoff_hz, Dimension::frequency,
+                    "Cut-off of butterworth3");
+  add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
+                   "Whether the converter holds each sample until the next, undone as well");
+  add_choice<OverLimit>(app, "--over-limit", o.over_limit,
+                        {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
+                        "What to do with a drive that passes a limit of the transducer");
+}
+
+std::vector<SignalFile> files_of(const Options& o, const Rendering& rendering) {
+  std::vector<SignalFile> files{{o.drive, &rendering.drive_v}};
+  if (!o.displacement.empty()) files.push_back({o.displacement, &rendering.modelled_m});
+  if (!o.wanted.empty()) files.push_back({o.wanted, &rendering.wanted_m});
+  return files;
+}
+
+void add_limits(Report& report, const Rendering& r) {
+  report.add("drive_peak_v", r.peaks.drive_v.value)
+      .add("drive_limit_used_percent", 100 * r.peaks.drive_v.used())
+      .add("displacement_peak_m", r.peaks.displacement_m.value)
+      .add("displacement_limit_used_percent", 100 * r.peaks.displacement_m.used())
+      .add("slew_peak_v_per_s", r.peaks.slew_v_per_s.value)
+      .add("slew_limit_used_percent", 100 * r.peaks.slew_v_per_s.used());
+  if (!r.clipping) return;
+  report.add("clipped_samples", r.clipping->samples)
+      .add("clipped_peak_reduction_db", r.clipping->peak_reduced_db)
+      .add("clipped_removed_db", r.clipping->removed_db);
+}
+
+void add_way(Report& report, const Rendering& r) {
+  report.add("samples_outside_texture", r.samples_outside)
+      .add("texture_end_fade_m", r.fade_m)
+      .add("onset_s", r.onset_s)
+      .add("max_speed_mps", r.max_speed_mps)
+      .add("highest_passed_at_max_speed_per_m", r.highest_passed_per_m)
+      .add("texture_highest_per_m", r.texture_highest_per_m)
+      .add("reading_rate_hz", r.reading_rate_hz);
+}
+
+Report report_of(const Options& o, const schema::Transducer& transducer, const Rendering& r) {
+  Report report;
+  report.add("drive", o.drive).add("transducer", transducer.name).add("duration_s", r.drive_v.duration_s());
+  report.add("rate_hz", r.drive_v.sample_rate_hz).add("gain_m_per_n", o.render.gain_m_per_n);
+  report.add("drive_rms_v", schema::statistics_of(r.drive_v.values).rms())
+      .add("wanted_rms_m", schema::statistics_of(r.wanted_m.values).rms());
+  report.add("displacement_error_db", r.error_db).add("delay_s", r.delay_s);
+  add_limits(report, r);
+  add_way(report, r);
+  return report;
+}
+
+void warn_of(const Rendering& r) {
+  for (const std::string& warning : r.warnings) cli::warn(warning);
+  if (!r.clipping) return;
+  cli::warn(fmt::format(
+      "the limits clipped {} samples: the peak is {:.1f} dB lower, what was removed is {:.1f} dB re "
+      "the whole drive",
+      r.clipping->samples, r.clipping->peak_reduced_db, r.clipping->removed_db));
+}
+
+// The signals' addresses serve as names only: nothing is rendered yet.
+Result<void> check_outputs(const Options& o) {
+  return check_signal_files(files_of(o, Rendering{}));
+}
+
+Result<Rendering> rendered(const Options& o, const schema::Transducer& transducer) {
+  const auto texture = schema::read_texture(o.texture);
+  if (!texture) return schema::forward_error(texture);
+  const auto path = read_finger_path(o.path);
+  if (!path) return schema::forward_error(path);
+  cli::Progress progress("rendering");
+  return render(*texture, *path, transducer, o.render, [&](double fraction) { progress.update(fraction); });
+}
+
+Result<Report> run(const Options& o) {
+  if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
+  const auto transducer = schema::read_transducer(o.transducer);
+  if (!transducer) return schema::forward_error(transducer);
+  const auto rendering = rendered(o, *transducer);
+  if (!rendering) return schema::forward_error(rendering);
+  if (const auto written = write_signal_files(files_of(o, *rendering)); !written)
+    return schema::forward_error(written);
+  warn_of(*rendering);
+  return report_of(o, *transducer, *rendering);
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_files(app, *options);
+  add_quantities(app, options->render);
+  add_model(app, options->render);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kRenderVerb{
+    "render", "Play a texture along a finger path, offline: the drive for the transducer",
+    "tactograph render oak --path path.csv --transducer wiertlewski2011 -o drive.wav --displacement tray.wav",
+    declare};
+
+}  // namespace tacto::playback

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/reference/padded_spectrum.hpp"
+
+#include <algorithm>
+
+#include "spatial/dsp/fft.hpp"
+
+namespace tacto::playback {
+
+PaddedSpectrum spectrum_of(std::span<const double> values, double rate_hz, std::size_t period) {
+  PaddedSpectrum spectrum{rate_hz, values.size(), period, {}};
+  spatial::RealFft fft(period);
+  std::vector<double> padded(period, 0.0);
+  std::ranges::copy(values, padded.begin());
+  spectrum.bins.resize(fft.bins());
+  fft.forward(padded, spectrum.bins);
+  return spectrum;
+}
+
+std::vector<double> signal_of(const PaddedSpectrum& spectrum, std::size_t oversampling) {
+  spatial::RealFft fft(spectrum.period * oversampling);
+  auto bins = spectrum.bins;
+  // What stood at half the rate once is now two bins, one of each sign.
+  if (oversampling > 1 && spectrum.period % 2 == 0) bins.back() /= 2;
+  for (auto& bin : bins) bin *= static_cast<double>(oversampling);
+  bins.resize(fft.bins());
+  std::vector<double> values(fft.length());
+  fft.inverse(bins, values);
+  values.resize((spectrum.samples - 1) * oversampling + 1);
+  return values;
+}
+
+void keep_band(PaddedSpectrum& spectrum, const spatial::Band& band) {
+  const double width_hz = spectrum.rate_hz / static_cast<double>(spectrum.period);
+  for (std::size_t k = 0; k < spectrum.bins.size(); ++k) {
+    const double middle_hz = spectrum.frequency_hz(k);
+    const double from_hz = std::max(middle_hz - width_hz / 2, band.low_hz);
+    const double to_hz = std::min(middle_hz + width_hz / 2, band.high_hz);
+    spectrum.bins[k] *= std::max(0.0, to_hz - from_hz) / width_hz;
+  }
+}
+
+PaddedSpectrum through(const PaddedSpectrum& spectrum, const Response& response) {
+  PaddedSpectrum result = spectrum;
+  for (std::size_t k = 0; k < result.bins.size(); ++k)
+    if (result.bins[k] != 0.0) result.bins[k] *= response(result.frequency_hz(k));
+  return result;
+}
+
+double energy_in(const PaddedSpectrum& spectrum, const spatial::Band& band) {
+  double energy = 0;
+  for (std::size_t k = 0; k < spectrum.bins.size(); ++k)
+    if (band.contains(spectrum.frequency_hz(k))) energy += std::norm(spectrum.bins[k]);
+  return energy;
+}
+
+}  // namespace tacto::playback

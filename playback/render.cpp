@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data-schema/statistics.hpp"
+#include "playback/reference/exact_drive.hpp"
+#include "playback/reference/spatial_content.hpp"
+#include "playback/reference/wanted.hpp"
+#include "playback/texture_lookup.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+// Beyond this the padded transforms alone take over a gigabyte.
+constexpr double kMostSamples = 1 << 24;
+
+double level_db(double ratio) {
+  return 20 * std::log10(ratio);
+}
+
+Result<void> check_options(const RenderOptions& o) {
+  const auto wrong = [](std::string what, std::string remedy) {
+    return fail(Fault::usage, std::move(what), {}, std::move(remedy));
+  };
+  if (!(o.band.low_hz > 0 && o.band.low_hz < o.band.high_hz && std::isfinite(o.band.high_hz)))
+    return wrong("the band is empty or reaches 0 Hz", "0 < --low < --high");
+  if (!(o.rate_hz > 2 * o.band.high_hz && std::isfinite(o.rate_hz)))
+    return wrong(fmt::format("a rate of {:g} Hz can't hold a band up to {:g} Hz", o.rate_hz, o.band.high_hz),
+                 fmt::format("take a --rate above {:g}Hz", 2 * o.band.high_hz));
+  if (!(o.gain_m_per_n > 0 && std::isfinite(o.gain_m_per_n)))
+    return wrong("the gain is not above 0", "a fingertip asks for about 1mm/N");
+  if (!std::isfinite(o.at_m)) return wrong("the texture's place is not finite", "give --at a length");
+  if (!(o.onset_s >= 0 && std::isfinite(o.onset_s))) return wrong("the onset is below 0", "0s turns it off");
+  if (!(o.reconstruction_cutoff_hz > 0))
+    return wrong("the filter's cut-off is not above 0", "the paper's is 600Hz");
+  return {};
+}
+
+Result<void> check_texture(const schema::Texture& texture) {
+  if (texture.unit != "N")
+    return fail(Fault::unsuitable, fmt::format("the texture holds {} in {}", texture.quantity, texture.unit),
+                "texture", "only force in N can be played");
+  if (texture.signal.values.size() < 2 || !(texture.signal.pitch_m > 0))
+    return fail(Fault::unsuitable, "the texture has fewer than 2 samples", "texture");
+  const auto& values = texture.signal.values;
+  const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
+  if (bad != values.end())
+    return fail(Fault::unsuitable, "the texture's value is not a finite number",
+                fmt::format("texture, sample {}", bad - values.begin()));
+  return {};
+}
+
+Result<void> check_length(const FingerPath& path, const RenderOptions& options) {
+  if (path.duration_s() < 1 / options.band.low_hz)
+    return fail(Fault::unsuitable,
+                fmt::format("the path takes {:.4g} s, one period of {:g} Hz is longer", path.duration_s(),
+                            options.band.low_hz),
+                "path", "take a longer path, or a higher --low");
+  if (path.duration_s() * options.rate_hz > kMostSamples)
+    return fail(Fault::unsuitable,
+                fmt::format("the path of {:.4g} s is too long to render at once", path.duration_s()), "path",
+                fmt::format("cut it into parts of at most {:.0f} s", kMostSamples / options.rate_hz));
+  return {};
+}
+
+Result<void> check_inputs(const schema::Texture& texture, const FingerPath& path,
+                          const RenderOptions& options) {
+  if (auto sound = check_options(options); !sound) return sound;
+  if (auto sound = check_texture(texture); !sound) return sound;
+  if (auto sound = check_finger_path(path); !sound) return sound;
+  return check_length(path, options);
+}
+
+std::size_t count_outside(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid) {
+  const auto positions = positions_along(path, grid.rate_hz, grid.samples);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(positions, [&](double x) { return !texture.contains(x); }));
+}
+
+tl::unexpected<schema::Error> never_met(const schema::Texture& texture, const FingerPath& path, double at_m) {
+  const auto [low, high] = std::ranges::minmax(path.position_m);
+  return fail(
+      Fault::unsuitable,
+      fmt::format("the finger moves between {:.4g} mm and {:.4g} mm and never meets the texture, which lies "
+                  "from {:.4g} mm to {:.4g} mm",
+                  low * 1e3, high * 1e3, at_m * 1e3, (at_m + texture.signal.length_m()) * 1e3),
+      "path", "--at lays the texture elsewhere");
+}
+
+Clipping clipping_of(const std::vector<double>& wished, const std::vector<double>& clipped) {
+  std::vector<double> removed(wished.size());
+  std::ranges::transform(wished, clipped, removed.begin(), std::minus<>());
+  const auto peak = [](const std::vector<double>& v) {
+    return std::abs(*std::ranges::max_element(v, {}, [](double x) { return std::abs(x); }));
+  };
+  const double smallest = 1e-6 * peak(wished);
+  Clipping clipping;
+  clipping.samples = static_cast<std::size_t>(
+      std::ranges::count_if(removed, [&](double value) { return std::abs(value) > smallest; }));
+  clipping.peak_reduced_db = level_db(peak(wished) / peak(clipped));
+  clipping.removed_db = level_db(schema::statistics_of(removed).rms() / schema::statistics_of(wished).rms());
+  return clipping;
+}
+
+Result<ExactDrive> limited_drive(Rendering& rendering, const PaddedSpectrum& wanted, const Chain& chain,
+                                 const RenderOptions& options) {
+  auto drive = exact_drive(wanted, options.band, chain, options.inverse);
+  const auto within = check_limits(drive.peaks, options.gain_m_per_n);
+  if (within) return drive;
+  if (options.over_limit == OverLimit::refuse) return schema::forward_error(within);
+  auto held = clipped_drive(wanted, options.band, chain, options.inverse);
+  if (held) rendering.clipping = clipping_of(drive.drive_v, held->drive_v);
+  return held;
+}
+
+double error_db(const Rendering& rendering, const PaddedSpectrum& wanted, const spatial::Band& band) {
+  std::vector<double> difference(rendering.wanted_m.values.size());
+  std::ranges::transform(rendering.modelled_m.values, rendering.wanted_m.values, difference.begin(),
+                         std::minus<>());
+  const auto error = spectrum_of(difference, wanted.rate_hz, wanted.period);
+  const auto whole = spectrum_of(rendering.wanted_m.values, wanted.rate_hz, wanted.period);
+  return level_db(std::sqrt(energy_in(error, band) / energy_in(whole, band)));
+}
+
+void warn_of_folding(Rendering& rendering, const ReadingGrid& grid, const spatial::Band& band) {
+  const double safe_hz = grid.reading_rate_hz() - band.high_hz;
+  rendering.warnings.push_back(fmt::format(
+      "the path is too long to read the texture's finest content at full speed: what is finer than "
+      "{:.4g} /mm may fold into the band at {:.4g} mm/s",
+      1e-3 * safe_hz / rendering.max_speed_mps, 1e3 * rendering.max_speed_mps));
+}
+
+Rendering described(const schema::Texture& texture, const FingerPath& path, const RenderOptions& options) {
+  Rendering rendering;
+  rendering.max_speed_mps = greatest_speed_mps(path);
+  rendering.highest_passed_per_m = options.band.high_hz / rendering.max_speed_mps;
+  rendering.texture_highest_per_m = highest_spatial_frequency(texture.signal);
+  rendering.onset_s = std::min(options.onset_s, path.duration_s() / 4);
+  return rendering;
+}
+
+Chain chain_of(const schema::Transducer& transducer, const RenderOptions& o) {
+  return {transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz};
+}
+
+}  // namespace
+
+Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
+                         const schema::Transducer& transducer, const RenderOptions& options,
+                         const std::function<void(double)>& progress) {
+  if (auto sound = check_inputs(texture, path, options); !sound) return schema::forward_error(sound);
+  const auto report = [&](double fraction) {
+    if (progress) progress(fraction);
+  };
+  Rendering rendering = described(texture, path, options);
+  const TextureLookup lookup(texture.signal, options.at_m);
+  const double finest_hz = rendering.texture_highest_per_m * rendering.max_speed_mps;
+  const auto grid = reading_grid(path.duration_s(), options.rate_hz, options.band, finest_hz);
+  rendering.samples_outside = count_outside(lookup, path, grid);
+  if (rendering.samples_outside == grid.samples) return never_met(texture, path, options.at_m);
+  if (grid.capped) warn_of_folding(rendering, grid, options.band);
+  rendering.reading_rate_hz = grid.reading_rate_hz();
+  rendering.fade_m = lookup.fade_m();
+  report(0.1);
+  const auto wanted = exact_wanted(lookup, path, grid, options.band, options.gain_m_per_n, rendering.onset_s);
+  report(0.8);
+  auto drive = limited_drive(rendering, wanted, chain_of(transducer, options), options);
+  if (!drive) return schema::forward_error(drive);
+  const double start_s = path.time_s.front();
+  rendering.wanted_m = {options.rate_hz, start_s, signal_of(wanted)};
+  rendering.drive_v = {options.rate_hz, start_s, std::move(drive->drive_v)};
+  rendering.modelled_m = {options.rate_hz, start_s, std::move(drive->modelled_m)};
+  rendering.peaks = drive->peaks;
+  rendering.error_db = error_db(rendering, wanted, options.band);
+  report(1);
+  return rendering;
+}
+
+}  // namespace tacto::playback

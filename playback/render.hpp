@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A texture played along a finger's path, offline: the drive that makes the tray move as the texture asks.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/error.hpp"
+#include "data-schema/signal.hpp"
+#include "data-schema/texture.hpp"
+#include "data-schema/transducer.hpp"
+#include "playback/chain.hpp"
+#include "playback/finger_path.hpp"
+#include "playback/limits.hpp"
+#include "spatial/dsp/band.hpp"
+
+namespace tacto::playback {
+
+/// What to do with a drive that passes a limit of the transducer.
+enum class OverLimit { refuse, clip };
+
+struct RenderOptions {
+  double rate_hz = 10e3;       ///< of the drive; Wiertlewski 2011 records at 10 kHz
+  double gain_m_per_n = 1e-3;  ///< G_psi: displacement for force. A fingertip has about 1e3 N/m
+  double at_m = 0;             ///< where the texture's position 0 lies on the path's axis
+  spatial::Band band;          ///< of the displacement
+  Inverse inverse = Inverse::full;
+  Reconstruction reconstruction = Reconstruction::none;
+  double reconstruction_cutoff_hz = 600;
+  Hold hold = Hold::none;
+  OverLimit over_limit = OverLimit::refuse;
+  /// Raised-cosine fade of the force at either end of the path, at most a quarter of it: nothing starts with
+  /// a jump where the finger starts inside the texture. What is left then is the ringing of the band's edges:
+  /// the drive starts below 0.3 of its RMS, and its cut there costs at most -47 dB (for noise and tones in
+  /// the band).
+  double onset_s = 0.02;
+};
+
+/// What the limits took away from a clipped drive.
+struct Clipping {
+  std::size_t samples = 0;     ///< drive samples that differ by more than 1e-6 of the wished peak
+  double peak_reduced_db = 0;  ///< wished peak drive over the clipped one
+  double removed_db = 0;       ///< RMS of what was removed, re RMS of the wished drive
+};
+
+struct Rendering {
+  schema::TimeSignal drive_v;     ///< rounded to 32-bit float, as it is stored and played
+  schema::TimeSignal wanted_m;    ///< gain x force along the path, in the band
+  schema::TimeSignal modelled_m;  ///< drive_v through the transducer's model, over all frequencies
+  double error_db = 0;  ///< RMS of modelled - wanted in the band, re RMS of wanted; from drive_v as it is
+  double delay_s = 0;  ///< of the displacement behind the wanted one: none, the inverse is applied to spectra
+  Peaks peaks;         ///< of the drive and the modelled displacement, against the limits
+  std::optional<Clipping> clipping;
+  std::size_t samples_outside = 0;  ///< of the drive, where the finger is beside the texture
+  double max_speed_mps = 0;
+  double highest_passed_per_m = 0;   ///< band.high_hz / max_speed: finer content is out of the band there
+  double texture_highest_per_m = 0;  ///< highest_spatial_frequency() of the texture
+  double reading_rate_hz = 0;        ///< at which the texture was read along the path
+  double fade_m = 0;                 ///< TextureLookup::fade_m
+  double onset_s = 0;                ///< as used
+  std::vector<std::string> warnings;
+};
+
+/// Renders in double precision; all signals share the path's time axis. `progress` hears 0 to 1.
+///
+/// Errors: usage, for options out of range (rate <= 2 band.high_hz, 0 < low < high, gain, onset not finite);
+/// unsuitable, for a texture that isn't force in N, a path that check_finger_path() refuses, that never meets
+/// the texture, that is shorter than one period of the band's lowest frequency or too long to render at once,
+/// for displacement or drive beyond a limit (see check_limits). Not for the tick: allocates, and plans
+/// Fourier transforms. Source: Wiertlewski, Lozada, Hayward 2011, equations (5), (6) inverted in the
+/// frequency domain.
+schema::Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
+                                 const schema::Transducer& transducer, const RenderOptions& options,
+                                 const std::function<void(double)>& progress = {});
+
+}  // namespace tacto::playback

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verbs of this folder, for the table in tactograph.cpp.
+#pragma once
+
+#include "data-schema/cli/verb.hpp"
+
+namespace tacto::spatial {
+
+extern const cli::Verb kSpatialVerb;
+extern const cli::Verb kSpectrogramVerb;
+
+}  // namespace tacto::spatial

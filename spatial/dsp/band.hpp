@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A pass-band in time.
+#pragma once
+
+namespace tacto::spatial {
+
+/// Passes low_hz <= f <= high_hz, both ends included. The default is the transducer's useful band
+/// (Wiertlewski 2011).
+struct Band {
+  double low_hz = 15;
+  double high_hz = 500;
+  bool contains(double frequency_hz) const { return frequency_hz >= low_hz && frequency_hz <= high_hz; }
+};
+
+}  // namespace tacto::spatial

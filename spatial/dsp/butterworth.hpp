@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Butterworth band-pass as second-order sections: bilinear transform, both edges prewarped.
+#pragma once
+
+#include <vector>
+
+#include "data-schema/error.hpp"
+#include "spatial/dsp/band.hpp"
+#include "spatial/dsp/sections.hpp"
+
+namespace tacto::spatial {
+
+/// The digital filter of scipy.signal.butter(order, [low, high], "bandpass", output="sos"): `order` sections,
+/// -3 dB at both edges (-6 dB once run forwards and backwards). Errors: usage for an order outside 1 ... 20;
+/// unsuitable unless 0 < low < high < sample rate / 2.
+schema::Result<std::vector<Section>> butterworth_band_pass(int order, Band band, double sample_rate_hz);
+
+}  // namespace tacto::spatial

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture of textures: force against position, under it the spectrogram with a logarithmic axis, its mean
+// at the side; several textures one under the other, on the same axes and at one colour scale.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/spectrogram.hpp"
+#include "data-schema/texture.hpp"
+#include "spatial/picture/axis.hpp"
+#include "spatial/picture/figure.hpp"
+#include "spatial/picture/heatmap.hpp"
+#include "spatial/picture/spectrogram_layout.hpp"
+
+namespace tacto::spatial {
+
+/// One texture and its spectrogram; both must outlive the figure. The spectrogram's name is the title.
+struct SpectrogramPanel {
+  const schema::Texture* texture = nullptr;
+  const schema::Spectrogram* spectrogram = nullptr;
+};
+
+struct SpectrogramPictureOptions {
+  /// Lower end of the frequency axis; unless told, a little under the lowest valid band, else 0.1/mm.
+  std::optional<double> min_frequency_per_m;
+  /// From the darkest to the brightest colour.
+  double dynamic_range_db = 60;
+};
+
+class SpectrogramFigure : public Figure {
+ public:
+  /// Precondition: at least one panel.
+  explicit SpectrogramFigure(std::vector<SpectrogramPanel> panels, SpectrogramPictureOptions options = {});
+
+  Size page() const override;
+  /// Errors: usage (dynamic range not above 0, minimum frequency not under the maximum); unsuitable (textures
+  /// of different units, hardly any frequency bins).
+  schema::Result<void> draw(Canvas& canvas) const override;
+
+  /// The shared axes as panel `panel` has them on the page, in mm and 1/mm, and the shared colour scale.
+  Axis positions(std::size_t panel) const;
+  Axis frequencies(std::size_t panel) const;
+  LevelRange levels() const;
+  /// Lower end of the frequency axis.
+  double lowest_per_m() const;
+  PanelLayout layout(std::size_t panel) const { return panel_layout(panel, panels_.size()); }
+
+ private:
+  schema::Result<void> check() const;
+  double highest_per_m() const;
+
+  std::vector<SpectrogramPanel> panels_;
+  SpectrogramPictureOptions options_;
+};
+
+}  // namespace tacto::spatial

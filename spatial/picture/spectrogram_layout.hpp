@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where things stand on a page of spectrograms, and the axes that its panels share.
+#pragma once
+
+#include <cstddef>
+
+#include "data-schema/spectrogram.hpp"
+#include "spatial/picture/axis.hpp"
+#include "spatial/picture/geometry.hpp"
+
+namespace tacto::spatial {
+
+/// One texture's part of the page.
+struct PanelLayout {
+  Box heading, trace, heat, mean, bar, notes;
+};
+
+/// The page for so many panels, and the place of one of them. A panel alone is higher than one of several.
+Size page_of(std::size_t panels);
+PanelLayout panel_layout(std::size_t panel, std::size_t panels);
+
+/// In the units of the page's axes: millimetres and 1/mm.
+Axis position_axis(double low_mm, double high_mm, const Box& box);
+Axis frequency_axis(double low_per_mm, double high_per_mm, const Box& box);
+
+/// The part of `heat` that the spectrogram covers, on whole pixels of a PNG: half a window is missing at both
+/// ends of a texture.
+Box covered(const Box& heat, const Axis& position_mm, const schema::Spectrogram& spectrogram);
+
+}  // namespace tacto::spatial

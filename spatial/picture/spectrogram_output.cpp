@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/picture/spectrogram_output.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+#include "data-schema/files.hpp"
+
+namespace tacto::spatial {
+
+using schema::Fault;
+using schema::PendingFiles;
+using schema::Result;
+using schema::Spectrogram;
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kExtensions = {".png", ".svg", ".nc", ".csv"};
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension;
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  return std::filesystem::path(a).lexically_normal() == std::filesystem::path(b).lexically_normal();
+}
+
+Result<void> check_output(const std::string& path, std::span<const std::string> earlier) {
+  const std::string extension = extension_of(path);
+  if (std::ranges::find(kExtensions, extension) == kExtensions.end())
+    return schema::fail(Fault::usage,
+                        extension.empty() ? "the name has no extension to say what to write"
+                                          : "'" + extension + "' is not a form of a spectrogram",
+                        path, "take .png, .svg, .nc or .csv");
+  if (std::ranges::any_of(earlier, [&](const std::string& other) { return same_file(path, other); }))
+    return schema::fail(Fault::usage, "is named twice", path, "give each output a name of its own");
+  return {};
+}
+
+Result<void> add_output(PendingFiles& files, const std::string& path, const SpectrogramFigure& figure,
+                        std::span<const Spectrogram> spectrograms) {
+  const std::string extension = extension_of(path);
+  if (extension == ".png" || extension == ".svg") return add_figure(files, path, figure);
+  const auto temporary = files.add(path);
+  if (!temporary) return schema::forward_error(temporary);
+  if (extension == ".nc") return schema::write_spectrogram_nc(*temporary, spectrograms);
+  return schema::write_spectrogram_csv(*temporary, spectrograms);
+}
+
+}  // namespace
+
+Result<void> check_outputs(std::span<const std::string> paths) {
+  PendingFiles trial;  // never committed: its empty files prove that the folders take them, and vanish
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (auto checked = check_output(paths[i], paths.first(i)); !checked) return checked;
+    if (const auto added = trial.add(paths[i]); !added) return schema::forward_error(added);
+  }
+  return {};
+}
+
+Result<void> write_outputs(std::span<const std::string> paths, const SpectrogramFigure& figure,
+                           std::span<const Spectrogram> spectrograms) {
+  PendingFiles files;
+  for (const std::string& path : paths)
+    if (auto added = add_output(files, path, figure, spectrograms); !added) return added;
+  return files.commit();
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/picture/spectrogram_panel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "spatial/picture/axes.hpp"
+#include "spatial/picture/display_unit.hpp"
+#include "spatial/picture/heading.hpp"
+#include "spatial/picture/trace.hpp"
+#include "spatial/picture/valid_band.hpp"
+#include "spatial/spectrogram_summary.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+constexpr Colour kTrace{0.16, 0.28, 0.45};
+constexpr Colour kNoWindow{0.93, 0.93, 0.94};
+constexpr double kCaptionGap = 50;
+
+double largest_of(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+Axis value_axis(std::span<const double> values, const Box& box) {
+  const auto [low, high] = std::ranges::minmax(values);
+  Axis axis = roomy_axis(low, high);
+  axis.at_low = box.bottom();
+  axis.at_high = box.y;
+  return axis;
+}
+
+std::vector<Tick> without_labels(std::vector<Tick> ticks) {
+  for (Tick& tick : ticks) tick.label.clear();
+  return ticks;
+}
+
+// The wavelength 1/k runs against the frequency k on the same place of the page.
+Axis wavelength_axis(const Axis& frequency) {
+  return {AxisScale::logarithmic, 1 / frequency.high, 1 / frequency.low, frequency.at_high, frequency.at_low};
+}
+
+}  // namespace
+
+schema::Result<void> PanelPainter::paint() {
+  const std::string title =
+      spectrogram.name + (texture.surface.empty() ? "" : ", surface " + texture.surface);
+  draw_heading(canvas, layout.heading, title, method_facts(texture, spectrogram), texture.simulated);
+  paint_trace();
+  if (auto painted = paint_heat(); !painted) return painted;
+  paint_wavelengths();
+  paint_mean();
+  paint_bar();
+  paint_notes();
+  return {};
+}
+
+void PanelPainter::paint_trace() {
+  const auto& signal = texture.signal;
+  const DisplayUnit unit = display_unit(texture.unit, largest_of(signal.values));
+  std::vector<double> x(signal.values.size());
+  std::vector<double> y(signal.values.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = 1e3 * signal.position_m(i);
+    y[i] = unit.factor * signal.values[i];
+  }
+  const Axis axis = value_axis(y, layout.trace);
+  const auto ticks = ticks_of(axis, 5);
+  draw_grid(canvas, layout.trace, true, axis, ticks);
+  canvas.clip(layout.trace);
+  for (const auto& piece : trace(x, y, position, axis)) canvas.polyline(piece, {kTrace, 0.6});
+  canvas.release();
+  canvas.frame(layout.trace, {});
+  draw_axis(canvas, layout.trace, Side::left, axis, ticks);
+  draw_axis(canvas, layout.trace, Side::bottom, position, without_labels(ticks_of(position, 10)));
+  draw_caption(canvas, layout.trace, Side::left,
+               fmt::format("{} ({})", axis_name(texture.quantity), unit.text), kCaptionGap);
+}
+
+schema::Result<void> PanelPainter::paint_heat() {
+  const Box area = covered(layout.heat, position, spectrogram);
+  const auto pixels = heatmap(spectrogram, 1e3 * frequency.low, 1e3 * frequency.high, levels,
+                              static_cast<int>(std::lround(area.width * kPixelsPerPoint)),
+                              static_cast<int>(std::lround(area.height * kPixelsPerPoint)));
+  if (!pixels) return schema::forward_error(pixels);
+  const double start = position.place(1e3 * texture.signal.origin_m);
+  const double end = position.place(1e3 * (texture.signal.origin_m + texture.signal.length_m()));
+  canvas.fill({start, layout.heat.y, end - start, layout.heat.height}, kNoWindow);
+  canvas.image(area, *pixels);
+  if (!texture.valid_band.empty()) draw_valid_band(canvas, area, texture.valid_band, position, frequency);
+  canvas.frame(layout.heat, {});
+  draw_axis(canvas, layout.heat, Side::bottom, position, ticks_of(position, 10));
+  draw_axis(canvas, layout.heat, Side::left, frequency, ticks_of(frequency, 6));
+  draw_caption(canvas, layout.heat, Side::bottom, "position (mm)", 29);
+  draw_caption(canvas, layout.heat, Side::left, "spatial frequency (1/mm)", kCaptionGap);
+  return {};
+}
+
+void PanelPainter::paint_wavelengths() {
+  const Axis wavelength = wavelength_axis(frequency);
+  draw_axis(canvas, layout.heat, Side::right, wavelength, ticks_of(wavelength, 6));
+  draw_caption(canvas, layout.heat, Side::right, "wavelength (mm)", 45);
+}
+
+void PanelPainter::paint_mean() {
+  const LevelReference reference = level_reference(spectrogram);
+  const Axis level{AxisScale::linear, levels.low_db, levels.high_db, layout.mean.x, layout.mean.right()};
+  std::vector<double> frequencies_per_mm;
+  std::vector<double> levels_db;
+  const auto mean = mean_spectrum(spectrogram);
+  for (std::size_t k = 1; k < mean.size(); ++k) {
+    frequencies_per_mm.push_back(1e-3 * spectrogram.frequency_per_m(k));
+    levels_db.push_back(std::max(level_db(mean[k], reference), levels.low_db - 100));
+  }
+  const auto level_ticks = ticks_of(level, 3);
+  draw_grid(canvas, layout.mean, false, level, level_ticks);
+  draw_grid(canvas, layout.mean, true, frequency, ticks_of(frequency, 6));
+  canvas.clip(layout.mean);
+  for (auto piece : trace(frequencies_per_mm, levels_db, frequency, level)) {
+    for (Point& point : piece) std::swap(point.x, point.y);
+    canvas.polyline(piece, {kTrace, 1});
+  }
+  canvas.release();
+  canvas.frame(layout.mean, {});
+  draw_axis(canvas, layout.mean, Side::bottom, level, level_ticks);
+  draw_caption(canvas, layout.mean, Side::bottom, "mean (dB)", 29);
+}
+
+void PanelPainter::paint_bar() {
+  constexpr int kShades = 256;
+  const Axis level{AxisScale::linear, levels.low_db, levels.high_db, layout.bar.bottom(), layout.bar.y};
+  Pixels shades{1, kShades, {}};
+  for (int i = 0; i < kShades; ++i) {
+    const double part = 1 - (i + 0.5) / kShades;
+    shades.rgb.push_back(level_pixel(std::lerp(levels.low_db, levels.high_db, part), levels));
+  }
+  canvas.image(layout.bar, shades);
+  canvas.frame(layout.bar, {});
+  draw_axis(canvas, layout.bar, Side::right, level, ticks_of(level, 6));
+  const std::string unit = typeset(level_reference(spectrogram).unit);
+  draw_caption(canvas, layout.bar, Side::right, fmt::format("power spectral density (dB re {})", unit), 42);
+}
+
+// The key to lines and greys, in the corner that the plots leave free.
+void PanelPainter::paint_notes() {
+  const TextStyle style{.size = 9.5, .colour = kGreyInk, .align_y = 0.5};
+  const Box& box = layout.notes;
+  double y = box.y + 6;
+  const auto swatch = [&](const Colour& colour) {
+    canvas.fill({box.x, y - 4.5, 18, 9},
+                level_colour(std::lerp(levels.low_db, levels.high_db, 0.35), levels));
+    canvas.fill({box.x, y - 4.5, 18, 9}, colour);
+  };
+  const auto note = [&](const std::string& text) {
+    canvas.text({box.x + 24, y}, text, style);
+    y += 15;
+  };
+  const double rms = band_rms(spectrogram, 1e3 * frequency.low);
+  const DisplayUnit unit = display_unit(texture.unit, rms);
+  canvas.text({box.x, y},
+              fmt::format("RMS {:.4g} {}, {:.2g} to {:.3g} /mm", unit.factor * rms, unit.text, frequency.low,
+                          frequency.high),
+              style);
+  y += 15;
+  if (!texture.valid_band.empty()) {
+    swatch({0, 0, 0, 0});
+    canvas.line({box.x, y}, {box.x + 18, y}, kBandPen);
+    note("limits of the valid band");
+    swatch(kOutsideBand);
+    note("outside it: not measured");
+  }
+  swatch(kNoWindow);
+  note("no whole window");
+}
+
+std::string method_facts(const schema::Texture& texture, const schema::Spectrogram& spectrogram) {
+  std::string facts =
+      fmt::format("Blackman window {:.4g} mm, hop {:.4g} mm, {:.3g} /mm a bin", 1e3 * spectrogram.window_m,
+                  1e3 * spectrogram.hop_m, 1e-3 * spectrogram.frequency_step_per_m);
+  const auto& source = texture.source;
+  if (source.mean_speed_mps > 0)
+    facts += fmt::format("; recorded at {:.3g} mm/s", 1e3 * source.mean_speed_mps);
+  facts += texture.direction < 0 ? ", backwards" : ", forwards";
+  if (!source.filter.empty() && source.filter != "none")
+    facts += fmt::format(", {:g}\u2013{:g} Hz ({})", source.low_hz, source.high_hz, source.filter);
+  return facts;
+}
+
+}  // namespace tacto::spatial

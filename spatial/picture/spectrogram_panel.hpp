@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Paints one texture's panel of a spectrogram figure.
+#pragma once
+
+#include "data-schema/spectrogram.hpp"
+#include "data-schema/texture.hpp"
+#include "spatial/picture/axis.hpp"
+#include "spatial/picture/canvas.hpp"
+#include "spatial/picture/heatmap.hpp"
+#include "spatial/picture/spectrogram_layout.hpp"
+
+namespace tacto::spatial {
+
+/// What is needed for it, and the steps. Axes in mm and 1/mm, placed on the panel's spectrogram.
+struct PanelPainter {
+  Canvas& canvas;
+  const schema::Texture& texture;
+  const schema::Spectrogram& spectrogram;
+  PanelLayout layout;
+  Axis position;
+  Axis frequency;
+  LevelRange levels;
+
+  /// Errors: those of heatmap().
+  schema::Result<void> paint();
+
+ private:
+  void paint_trace();
+  schema::Result<void> paint_heat();
+  void paint_wavelengths();
+  void paint_mean();
+  void paint_bar();
+  void paint_notes();
+};
+
+/// Window, hop, bins, speed, direction and band in a line.
+std::string method_facts(const schema::Texture& texture, const schema::Spectrogram& spectrogram);
+
+}  // namespace tacto::spatial

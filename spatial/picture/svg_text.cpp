@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/picture/svg_text.hpp"
+
+#include <fmt/format.h>
+
+namespace tacto::spatial {
+namespace {
+
+std::string escaped(std::string_view text) {
+  std::string xml;
+  for (const char c : text) {
+    if (c == '&')
+      xml += "&amp;";
+    else if (c == '<')
+      xml += "&lt;";
+    else if (c == '>')
+      xml += "&gt;";
+    else if (static_cast<unsigned char>(c) >= ' ')
+      xml += c;
+  }
+  return xml;
+}
+
+}  // namespace
+
+std::string svg_text(const PlacedText& placed) {
+  return fmt::format(
+      "<text transform=\"translate({:.2f} {:.2f}){}\" x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:g}\"{} "
+      "textLength=\"{:.2f}\">{}</text>\n",
+      placed.at.x, placed.at.y, placed.style.upward ? " rotate(-90)" : "", placed.start.x, placed.start.y,
+      placed.style.size, placed.style.bold ? " font-weight=\"bold\"" : "", placed.width,
+      escaped(placed.text));
+}
+
+std::string with_text_layer(std::string svg, std::string_view elements) {
+  const auto end = svg.rfind("</svg>");
+  if (end == std::string::npos) return svg;
+  svg.insert(
+      end, fmt::format("<g fill-opacity=\"0\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n{}</g>\n",
+                       elements));
+  return svg;
+}
+
+}  // namespace tacto::spatial

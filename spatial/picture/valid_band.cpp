@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/picture/valid_band.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tacto::spatial {
+
+using schema::BandPoint;
+
+namespace {
+
+// A standing finger's band is infinitely high: everything is outside it.
+double place_of(const Axis& frequency, double per_m) {
+  return frequency.place(std::clamp(1e-3 * per_m, frequency.low, frequency.high));
+}
+
+void draw_side(Canvas& canvas, std::vector<Point> limit, double edge) {
+  canvas.polyline(limit, kBandPen);
+  limit.insert(limit.begin(), {limit.front().x, edge});
+  limit.push_back({limit.back().x, edge});
+  canvas.polygon(limit, kOutsideBand);
+}
+
+}  // namespace
+
+BandPoint band_at(std::span<const BandPoint> band, double position_m) {
+  const auto next = std::ranges::upper_bound(band, position_m, {}, &BandPoint::position_m);
+  if (next == band.begin()) return band.front();
+  if (next == band.end()) return band.back();
+  const BandPoint& last = *std::prev(next);
+  const double part = (position_m - last.position_m) / (next->position_m - last.position_m);
+  return {position_m, std::lerp(last.low_per_m, next->low_per_m, part),
+          std::lerp(last.high_per_m, next->high_per_m, part)};
+}
+
+void draw_valid_band(Canvas& canvas, const Box& area, std::span<const BandPoint> band, const Axis& position,
+                     const Axis& frequency) {
+  std::vector<Point> low;
+  std::vector<Point> high;
+  const int columns = std::max(1, static_cast<int>(area.width));
+  for (int column = 0; column <= columns; ++column) {
+    const double x = area.x + area.width * column / columns;
+    const BandPoint at = band_at(band, 1e-3 * position.value(x));
+    low.push_back({x, place_of(frequency, at.low_per_m)});
+    high.push_back({x, place_of(frequency, at.high_per_m)});
+  }
+  canvas.clip(area);
+  draw_side(canvas, low, area.bottom());
+  draw_side(canvas, high, area.y);
+  canvas.release();
+}
+
+}  // namespace tacto::spatial

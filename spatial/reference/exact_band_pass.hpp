@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Truncation of the Fourier transform by its definition, in extended precision.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "spatial/dsp/band.hpp"
+
+namespace tacto::spatial::reference {
+
+/// What fourier_filter gives with Edges::none and no gain: each frequency of the record that lies in the
+/// band, summed directly. Takes size x (frequencies in the band) steps: for records of some thousand samples.
+std::vector<double> exact_band_pass(std::span<const double> values, double sample_rate_hz, Band band);
+
+}  // namespace tacto::spatial::reference

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Slow exact references in extended precision, against which the library states its errors.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace tacto::spatial::reference {
+
+/// The monotone cubic through knots (t, x), in long double, with its inverse by bisection alone.
+class ExactHermite {
+ public:
+  /// As HermiteInverse asks: t and x strictly increasing, at least 2.
+  ExactHermite(std::span<const double> t, std::span<const double> x);
+  long double value(long double t) const;
+  /// Halves its bracket 120 times: to the last bit of t.
+  long double inverse(long double x) const;
+
+ private:
+  long double slope(std::size_t i) const;
+  std::vector<long double> t_, x_;
+};
+
+}  // namespace tacto::spatial::reference

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/spectrogram_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tacto::spatial {
+
+using schema::Spectrogram;
+
+namespace {
+
+std::size_t first_bin(const Spectrogram& spectrogram, double min_frequency_per_m) {
+  const double bin = std::ceil(min_frequency_per_m / spectrogram.frequency_step_per_m * (1 - 1e-12));
+  return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(spectrogram.bins - 1)));
+}
+
+}  // namespace
+
+std::vector<double> mean_spectrum(const Spectrogram& spectrogram) {
+  std::vector<double> mean(spectrogram.bins, 0.0);
+  const std::size_t positions = spectrogram.position_m.size();
+  for (std::size_t p = 0; p < positions; ++p)
+    for (std::size_t k = 0; k < spectrogram.bins; ++k) mean[k] += static_cast<double>(spectrogram.at(p, k));
+  for (double& value : mean) value /= static_cast<double>(positions);
+  return mean;
+}
+
+SpectralPeak strongest_peak(const Spectrogram& spectrogram, double min_frequency_per_m) {
+  const std::size_t first = first_bin(spectrogram, min_frequency_per_m);
+  std::size_t best = first;
+  for (std::size_t p = 0; p < spectrogram.position_m.size(); ++p)
+    for (std::size_t k = first; k < spectrogram.bins; ++k)
+      if (spectrogram.at(p, k) > spectrogram.density[best]) best = p * spectrogram.bins + k;
+  return {spectrogram.position_m[best / spectrogram.bins],
+          spectrogram.frequency_per_m(best % spectrogram.bins),
+          static_cast<double>(spectrogram.density[best])};
+}
+
+double band_rms(const Spectrogram& spectrogram, double min_frequency_per_m) {
+  const auto mean = mean_spectrum(spectrogram);
+  double sum = 0;
+  for (std::size_t k = first_bin(spectrogram, min_frequency_per_m); k < mean.size(); ++k) sum += mean[k];
+  return std::sqrt(sum * spectrogram.frequency_step_per_m);
+}
+
+double resolution_per_m(const Spectrogram& spectrogram) {
+  return 1.7268 / spectrogram.window_m;
+}
+
+LevelReference level_reference(const Spectrogram& spectrogram) {
+  constexpr double kMillimetresPerMetre = 1e3;
+  if (spectrogram.unit == "m") return {"1 um^2 mm", 1e12 * kMillimetresPerMetre};
+  if (spectrogram.unit == "1") return {"1 mm", kMillimetresPerMetre};
+  if (spectrogram.unit.find('/') != std::string::npos)
+    return {"1 (" + spectrogram.unit + ")^2 mm", kMillimetresPerMetre};
+  return {"1 " + spectrogram.unit + "^2 mm", kMillimetresPerMetre};
+}
+
+double level_db(double density, const LevelReference& reference) {
+  return 10 * std::log10(density * reference.factor);
+}
+
+}  // namespace tacto::spatial

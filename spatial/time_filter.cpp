@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/time_filter.hpp"
+
+#include <fmt/format.h>
+
+#include "spatial/dsp/butterworth.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+
+std::vector<double> copy_of(std::span<const double> values) {
+  return {values.begin(), values.end()};
+}
+
+schema::Result<std::vector<double>> butterworth(std::span<const double> values, double sample_rate_hz,
+                                                const TimeFilter& filter) {
+  const auto sections = butterworth_band_pass(filter.order, filter.band, sample_rate_hz);
+  if (!sections) return schema::forward_error(sections);
+  if (values.size() < 2) return copy_of(values);
+  const std::size_t padding =
+      filter.edges == Edges::none
+          ? default_padding(*sections)
+          : EndTreatment::for_lowest(filter.band.low_hz, sample_rate_hz, values.size()).padding;
+  return filter_zero_phase(*sections, values, padding);
+}
+
+}  // namespace
+
+Band TimeFilter::passed(double sample_rate_hz) const {
+  return method == FilterMethod::none ? Band{0, sample_rate_hz / 2} : band;
+}
+
+std::string_view name_of(FilterMethod method) {
+  switch (method) {
+    case FilterMethod::fourier:
+      return "fourier";
+    case FilterMethod::butterworth:
+      return "butterworth";
+    case FilterMethod::none:
+      break;
+  }
+  return "none";
+}
+
+std::string_view name_of(Edges edges) {
+  return edges == Edges::treated ? "treated" : "none";
+}
+
+schema::Result<void> check(const TimeFilter& filter, double sample_rate_hz) {
+  const auto [low_hz, high_hz] = filter.band;
+  if (filter.method == FilterMethod::none) return {};
+  if (!(low_hz >= 0 && low_hz < high_hz))
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("the band {:g} Hz to {:g} Hz does not rise", low_hz, high_hz));
+  if (high_hz > sample_rate_hz / 2)
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("the band reaches to {:g} Hz, the recording only to {:g} Hz", high_hz,
+                                    sample_rate_hz / 2),
+                        {}, "choose a band under half the sample rate, or --band off");
+  if (filter.method == FilterMethod::fourier) return {};
+  const auto sections = butterworth_band_pass(filter.order, filter.band, sample_rate_hz);
+  return sections ? schema::Result<void>{} : schema::forward_error(sections);
+}
+
+schema::Result<std::vector<double>> filter_in_time(std::span<const double> values, double sample_rate_hz,
+                                                   const TimeFilter& filter, const SpectralGain& equaliser) {
+  if (const auto fine = check(filter, sample_rate_hz); !fine) return schema::forward_error(fine);
+  if (filter.method == FilterMethod::fourier)
+    return fourier_filter(values, sample_rate_hz, filter.band, filter.edges, equaliser);
+  auto filtered = filter.method == FilterMethod::butterworth
+                      ? butterworth(values, sample_rate_hz, filter)
+                      : schema::Result<std::vector<double>>(copy_of(values));
+  if (!filtered || !equaliser) return filtered;
+  return fourier_filter(*filtered, sample_rate_hz, {0, sample_rate_hz / 2}, filter.edges, equaliser);
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/valid_band.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tacto::spatial {
+namespace {
+
+constexpr double kSpacing_m = 1e-4;
+constexpr double kTolerance = 0.01;
+constexpr std::size_t kLongestLine =
+    200;  // points between two that are kept: bounds the search for the next one
+// Keeps k = f / v finite where a double cannot tell the creep of a long stop from standing still.
+constexpr double kSlowest_mps = 1e-12;
+
+// Whether a straight line in k = f / v from point i to point j tells those between.
+bool line_tells(const SpeedProfile& profile, std::size_t i, std::size_t j) {
+  const auto slowness = [&](std::size_t p) { return 1 / profile.speed_mps[p]; };
+  const double from_m = profile.position_m[i], length_m = profile.position_m[j] - from_m;
+  for (std::size_t p = i + 1; p < j; ++p) {
+    const double u = (profile.position_m[p] - from_m) / length_m;
+    const double line = slowness(i) + u * (slowness(j) - slowness(i));
+    if (std::abs(line - slowness(p)) > kTolerance * slowness(p)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+LocalSpeed::LocalSpeed(const MonotonePath& path, double sample_rate_hz, double window)
+    : path_(path),
+      way_(path.sample, path.way_m),
+      sample_(path.sample, path.way_m),
+      sample_rate_hz_(sample_rate_hz),
+      half_window_(window / 2) {}
+
+double LocalSpeed::at(double way_m) const {
+  const double sample = sample_(way_m);
+  const double before = std::max(sample - half_window_, path_.sample.front());
+  const double after = std::min(sample + half_window_, path_.sample.back());
+  return std::max((way_(after) - way_(before)) / (after - before) * sample_rate_hz_, kSlowest_mps);
+}
+
+SpeedProfile speed_profile(const LocalSpeed& speed, double origin_m, double length_m, int direction) {
+  const auto steps = static_cast<std::size_t>(std::ceil(length_m / kSpacing_m));
+  SpeedProfile profile;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    profile.position_m.push_back(std::min(static_cast<double>(i) * kSpacing_m, length_m));
+    profile.speed_mps.push_back(speed.at(direction * (origin_m + profile.position_m.back())));
+  }
+  return profile;
+}
+
+std::vector<schema::BandPoint> valid_band(const SpeedProfile& profile, Band band) {
+  const auto point = [&](std::size_t i) {
+    const double speed = profile.speed_mps[i];
+    return schema::BandPoint{profile.position_m[i], band.low_hz / speed, band.high_hz / speed};
+  };
+  std::vector<schema::BandPoint> points{point(0)};
+  const std::size_t last = profile.position_m.size() - 1;
+  for (std::size_t i = 0; i < last;) {
+    std::size_t j = i + 1;
+    while (j < last && j - i < kLongestLine && line_tells(profile, i, j + 1)) ++j;
+    points.push_back(point(j));
+    i = j;
+  }
+  return points;
+}
+
+schema::BandPoint band_throughout(std::span<const schema::BandPoint> band) {
+  schema::BandPoint common = band.front();
+  for (const schema::BandPoint& point : band) {
+    common.low_per_m = std::max(common.low_per_m, point.low_per_m);
+    common.high_per_m = std::min(common.high_per_m, point.high_per_m);
+  }
+  return common;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The table of verbs.
+#include <array>
+
+#include "analysis/cli/verbs.hpp"
+#include "capture/cli/verbs.hpp"
+#include "data-schema/cli/command.hpp"
+#include "data-schema/cli/verbs.hpp"
+#include "playback/cli/verbs.hpp"
+#include "spatial/cli/verbs.hpp"
+
+namespace {
+
+// In the order of the work: get data, look at it, make textures, see them, play them.
+constexpr std::array<const tacto::cli::Verb*, 8> kVerbs = {
+    &tacto::capture::kImportVerb,  &tacto::capture::kRecordVerb,  &tacto::schema::kInfoVerb,
+    &tacto::schema::kValidateVerb, &tacto::spatial::kSpatialVerb, &tacto::spatial::kSpectrogramVerb,
+    &tacto::playback::kRenderVerb, &tacto::analysis::kDemoVerb,
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tacto::cli::run_command(kVerbs, argc, argv);
+}

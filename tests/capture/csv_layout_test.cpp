@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/csv_layout.hpp"
+
+#include <gtest/gtest.h>
+
+#include "capture/csv_fields.hpp"
+#include "capture/text_encoding.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using Names = std::vector<std::string>;
+
+CsvLayout layout_of(std::string_view text, bool whole = true) {
+  const auto layout = find_csv_layout(text, whole, "t.csv");
+  EXPECT_TRUE(layout) << (layout ? "" : schema::message(layout.error()));
+  return layout.value_or(CsvLayout{});
+}
+
+struct LayoutCase {
+  const char* what;
+  std::string text;
+  char delimiter;
+  bool header;
+  Names columns;
+  std::size_t data_line;
+};
+
+class CsvLayouts : public testing::TestWithParam<LayoutCase> {};
+
+TEST_P(CsvLayouts, IsFound) {
+  const LayoutCase& wanted = GetParam();
+  const CsvLayout found = layout_of(wanted.text);
+  EXPECT_EQ(found.delimiter, wanted.delimiter);
+  EXPECT_EQ(found.header, wanted.header);
+  EXPECT_EQ(found.columns, wanted.columns);
+  EXPECT_EQ(found.data_line, wanted.data_line);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CsvLayouts,
+    testing::Values(
+        LayoutCase{"comma", "f,x\n1,2\n", ',', true, {"f", "x"}, 2},
+        LayoutCase{"semicolon", "f;x\n1.5;2\n", ';', true, {"f", "x"}, 2},
+        LayoutCase{"tab", "f\tx\n1\t2\n", '\t', true, {"f", "x"}, 2},
+        LayoutCase{"no_header", "1,2,3\n4,5,6\n", ',', false, {"", "", ""}, 1},
+        LayoutCase{"decimal_commas", "0,5;1,5\n0,6;1,6\n", ';', false, {"", ""}, 1},
+        LayoutCase{"decimal_commas_under_a_header", "Kraft;Weg\n0,5;1,5\n", ';', true, {"Kraft", "Weg"}, 2},
+        LayoutCase{"tabs_and_decimal_commas", "0,5\t1,5\t2\n0,6\t1,6\t2\n", '\t', false, {"", "", ""}, 1},
+        LayoutCase{
+            "comma_in_a_unit", "t;F [N, raw];x\n1;2;3\n4;5;6\n", ';', true, {"t", "F [N, raw]", "x"}, 2},
+        LayoutCase{"quotes", "\"F, left\",\" x \"\n1,2\n", ',', true, {"F, left", "x"}, 2},
+        LayoutCase{"doubled_quotes", "\"3\"\" disk\",x\n1,2\n", ',', true, {"3\" disk", "x"}, 2},
+        LayoutCase{"byte_order_mark",
+                   "\xEF\xBB\xBF"
+                   "f,x\n1,2\n",
+                   ',',
+                   true,
+                   {"f", "x"},
+                   2},
+        LayoutCase{"mark_and_no_header",
+                   "\xEF\xBB\xBF"
+                   "1,2\n",
+                   ',',
+                   false,
+                   {"", ""},
+                   1},
+        LayoutCase{"latin1",
+                   "f,Gr\xF6\xDF"
+                   "e\n1,2\n",
+                   ',',
+                   true,
+                   {"f",
+                    "Gr\xC3\xB6\xC3\x9F"
+                    "e"},
+                   2},
+        LayoutCase{"utf8",
+                   "f,Gr\xC3\xB6\xC3\x9F"
+                   "e\n1,2\n",
+                   ',',
+                   true,
+                   {"f",
+                    "Gr\xC3\xB6\xC3\x9F"
+                    "e"},
+                   2},
+        LayoutCase{"crlf", "f,x\r\n1,2\r\n", ',', true, {"f", "x"}, 2},
+        LayoutCase{"old_mac", "f,x\r1,2\r", ',', true, {"f", "x"}, 2},
+        LayoutCase{"comments_and_blanks", "# made by x\n\n# 1,2\nf,x\n1,2\n", ',', true, {"f", "x"}, 5},
+        LayoutCase{"one_column", "force\n1\n2\n", ',', true, {"force"}, 2},
+        LayoutCase{"nameless_index", ",f,x\n0,1,2\n", ',', true, {"", "f", "x"}, 2},
+        LayoutCase{"text_column_without_header", "a,1,2\nb,3,4\n", ',', false, {"", "", ""}, 1},
+        LayoutCase{"nan_is_no_name", "nan,1\n2,3\n", ',', false, {"", ""}, 1},
+        LayoutCase{"last_line_broken_off", "f\tx\ty\n1\t2\t3\n4\t5\t6\n7", '\t', true, {"f", "x", "y"}, 2}),
+    [](const auto& one) { return one.param.what; });
+
+TEST(CsvLayout, ALineThatIsCutOffIsNotLookedAt) {
+  EXPECT_EQ(layout_of("f,x\n1,2\n3", false).columns, (Names{"f", "x"}));
+  EXPECT_EQ(layout_of("f,x\n1,2\n", false).data_offset, 4U);
+}
+
+TEST(CsvLayout, Latin1IsReadOnlyWhereUtf8IsNot) {
+  EXPECT_TRUE(is_utf8("\xC2\xB5m \xE2\x82\xAC \xF0\x9F\x91\x86"));
+  for (const char* text : {"\xB5", "\xC0\xAF", "\xED\xA0\x80", "\xF5\x80\x80\x80", "\xE2\x82", "\xC3("})
+    EXPECT_FALSE(is_utf8(text)) << text;
+  EXPECT_EQ(to_utf8("\xB5m"), "\xC2\xB5m");
+  EXPECT_EQ(to_utf8("\xFF"), "\xC3\xBF");
+}
+
+TEST(CsvFields, QuotesGuardDelimiters) {
+  EXPECT_EQ(fields_of("a,\"b,c\",d", ','), (Names{"a", "b,c", "d"}));
+  EXPECT_EQ(fields_of("a,,", ','), (Names{"a", "", ""}));
+  EXPECT_EQ(fields_of("3.5\" disk,x", ','), (Names{"3.5\" disk", "x"}));
+  EXPECT_EQ(field_count("\"a,b", ','), 1U);
+  EXPECT_EQ(field_count("", ','), 1U);
+}
+
+}  // namespace
+}  // namespace tacto::capture

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What import refuses: the fault, the words, and nothing left behind.
+#include <functional>
+
+#include "tests/capture/import_fixture.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Fault;
+
+class ImportRefusals : public ImportTest {
+ protected:
+  ImportRequest good() const {
+    auto made = request(folder_ / "t.csv", {"tangential_force=f*1N"});
+    made.name = folder_ / "out";
+    return made;
+  }
+
+  void refused(const ImportRequest& asked, Fault fault, const std::string& says) const {
+    const std::size_t before = folder_.files();
+    const auto done = import(asked);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().fault, fault) << schema::message(done.error());
+    EXPECT_NE(schema::message(done.error()).find(says), std::string::npos) << schema::message(done.error());
+    EXPECT_EQ(folder_.files(), before);
+  }
+
+  void refused(const std::function<void(ImportRequest&)>& spoil, Fault fault, const std::string& says) const {
+    ImportRequest asked = good();
+    spoil(asked);
+    refused(asked, fault, says);
+  }
+
+  void SetUp() override { write("t.csv", "f,x,v,t\n1,2,3,0\n4,5,6,1\n7,8,9,2\n"); }
+};
+
+TEST_F(ImportRefusals, TheGoodRequestIsGood) {
+  EXPECT_TRUE(import(good()));
+}
+
+TEST_F(ImportRefusals, Files) {
+  refused([&](auto& r) { r.file = folder_ / "absent.csv"; }, Fault::not_found,
+          "absent.csv: there is no such file");
+  refused([&](auto& r) { r.file = folder_ / "."; }, Fault::not_found, "folder");
+  refused([&](auto& r) { r.file = "/dev/zero"; }, Fault::not_found, "no regular file");
+  refused([&](auto& r) { r.file = write("binary.csv", std::string("PK\3\4\0\0\0\0 zip", 12)); },
+          Fault::malformed, "not a sound file");
+  refused([&](auto& r) { r.file = write("oak.json", "{}"); }, Fault::unsuitable, "is JSON");
+  refused([&](auto& r) { r.file = write("oak.csv", " {\"kind\": \"recording\"}"); }, Fault::unsuitable,
+          "is JSON");
+  refused([&](auto& r) { r.file = write("oak.texture.wav", "RIFF"); }, Fault::unsuitable,
+          "is a texture already");
+  refused(
+      [&](auto& r) {
+        r.file = write("bad.csv", "f,x\n1,2\n3,4\n5,\n");
+        r.channels = {"signal=x"};
+      },
+      Fault::malformed, "bad.csv: line 4, column 2 ('x'): has no value");
+}
+
+TEST_F(ImportRefusals, Options) {
+  refused([](auto& r) { r.rate_hz = 0; }, Fault::usage, "a rate of 0 Hz");
+  refused([](auto& r) { r.rate_hz = -5; }, Fault::usage, "a rate of -5 Hz");
+  refused([](auto& r) { r.rate_hz = 3e9; }, Fault::usage, "a rate of 3e+09 Hz");
+  refused([](auto& r) { r.rate_hz.reset(); }, Fault::usage,
+          "add --rate, as in --rate 10kHz, or --time-column");
+  refused([](auto& r) { r.time_column = "t*1s"; }, Fault::usage, "both --rate and --time-column");
+  refused([](auto& r) { r.channels.clear(); }, Fault::usage, "1 'f', 2 'x', 3 'v', 4 't'");
+  refused([](auto& r) { r.channels.clear(); }, Fault::usage,
+          "--rate 10kHz --channel 'tangential_force=f*1N'");
+  refused([](auto& r) { r.channels = {"position=y*1mm"}; }, Fault::usage, "there is no column 'y'");
+  refused([](auto& r) { r.speed_mps = 0; }, Fault::usage, "a speed of zero");
+  refused(
+      [](auto& r) {
+        r.speed_mps = 1;
+        r.channels = {"position=x*1mm"};
+      },
+      Fault::usage, "there is a position channel");
+  refused(
+      [](auto& r) {
+        r.speed_mps = 1;
+        r.channels = {"speed=v*1mm/s"};
+      },
+      Fault::usage, "there is a speed channel");
+  refused([](auto& r) { r.recorded = "14.3.2026"; }, Fault::usage, "--date: '14.3.2026' is no date");
+  refused([](auto& r) { r.calibrated = "2026-13-01"; }, Fault::usage, "--calibrated");
+  refused([](auto& r) { r.humidity_percent = 101; }, Fault::usage, "101 % is no relative humidity");
+}
+
+TEST_F(ImportRefusals, ClocksThatAreNone) {
+  const auto timed = [&](const char* text) {
+    return [this, text](auto& r) {
+      r.file = write("timed.csv", text);
+      r.rate_hz.reset();
+      r.time_column = "t*1s";
+    };
+  };
+  write("timed.csv", "");
+  refused(timed("f,t\n1,0\n1,1\n1,1\n"), Fault::malformed, "timed.csv: line 4: time goes from 1 s to 1 s");
+  refused(timed("f,t\n1,0\n1,1\n1,2\n1,3\n1,4.4\n1,5\n"), Fault::malformed,
+          "timed.csv: line 6: the time step of 1.4 s");
+}
+
+TEST_F(ImportRefusals, Outputs) {
+  refused([&](auto& r) { r.name = folder_ / "absent/out"; }, Fault::cannot_write, "there is no such folder");
+  refused([](auto& r) { r.name = "/proc/out"; }, Fault::cannot_write, "/proc/out");
+  ASSERT_TRUE(import(good()));
+  refused([](auto&) {}, Fault::usage, "is there already; choose another name, or --force");
+}
+
+TEST_F(ImportRefusals, TheOutputIsCheckedBeforeTheDataAreRead) {
+  write("broken.csv", "f\n1\nbroken\n");
+  refused(
+      [&](auto& r) {
+        r.file = folder_ / "broken.csv";
+        r.name = folder_ / "absent/out";
+      },
+      Fault::cannot_write, "there is no such folder");
+}
+
+TEST_F(ImportRefusals, TheSourceIsNeverTheTarget) {
+  const std::string wav = folder_ / "a.wav";
+  auto writer = schema::WavWriter::create(wav, 1000, 1, schema::SampleFormat::float64);
+  const std::vector<double> samples = {1, 2};
+  ASSERT_TRUE(writer && writer->write(std::span<const double>(samples)) && writer->close());
+  auto asked = request(wav);
+  asked.name = folder_ / "a";
+  asked.replace = true;
+  refused(asked, Fault::usage, "is the file that is imported");
+}
+
+TEST_F(ImportRefusals, AFailedImportLeavesTheOldRecording) {
+  ASSERT_TRUE(import(good()));
+  refused(
+      [&](auto& r) {
+        r.file = write("broken.csv", "f\n1\nbroken\n");
+        r.replace = true;
+      },
+      Fault::malformed, "broken");
+  EXPECT_TRUE(schema::open_recording(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace tacto::capture

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/plausibility.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace tacto::capture {
+namespace {
+
+std::vector<double> noisy(std::size_t count, double level) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise;
+  std::vector<double> values(count);
+  for (double& value : values) value = level + noise(random);
+  return values;
+}
+
+std::vector<std::string> warnings_of(const char* quantity, const std::vector<double>& values,
+                                     double scale = 1) {
+  schema::Channel channel;
+  channel.name = channel.quantity = quantity;
+  channel.scale = scale;
+  return implausible(channel, values, [](std::size_t i) { return fmt::format("line {}", i + 2); });
+}
+
+TEST(Plausibility, LostExponentsAreFound) {
+  auto values = noisy(5000, 100);
+  values[1000] = 4581.47818;
+  values[3000] = 6.99807232;
+  EXPECT_EQ(lone_samples(values), (std::vector<std::size_t>{1000, 3000}));
+}
+
+TEST(Plausibility, TheFirstAndLastSampleCount) {
+  auto values = noisy(5000, 100);
+  values.front() = 1e5;
+  values.back() = 1e-5;
+  EXPECT_EQ(lone_samples(values), (std::vector<std::size_t>{0, 4999}));
+}
+
+TEST(Plausibility, NoiseStepsAndTransientsPass) {
+  auto values = noisy(5000, 0);
+  EXPECT_TRUE(lone_samples(values).empty());
+  for (std::size_t i = 2000; i < 3000; ++i) values[i] += 1000;
+  EXPECT_TRUE(lone_samples(values).empty());
+  for (std::size_t i = 0; i < 60; ++i)  // a tap: up in some samples, then ringing
+    values[4000 + i] += 500 * std::exp(-static_cast<double>(i) / 20) * std::sin(0.3 * static_cast<double>(i));
+  EXPECT_TRUE(lone_samples(values).empty());
+}
+
+TEST(Plausibility, OneFlickeringCountOfAnEncoderPasses) {
+  std::vector<double> counts(1000, 0);
+  for (const std::size_t i : {100, 300, 310, 900}) counts[i] = 1;
+  EXPECT_TRUE(lone_samples(counts).empty());
+  counts[500] = 65536;
+  EXPECT_EQ(lone_samples(counts), (std::vector<std::size_t>{500}));
+}
+
+TEST(Plausibility, ShortChannelsAreNotJudged) {
+  EXPECT_TRUE(lone_samples(std::vector<double>{0, 0, 1e9, 0}).empty());
+}
+
+TEST(Plausibility, AWarningNamesTheFirstSamplesAndCountsAll) {
+  auto values = noisy(5000, 100);
+  for (std::size_t i = 0; i < 7; ++i) values[100 * (i + 1)] = 9999;
+  const auto warnings = warnings_of("signal", values);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("7 of 5000 samples"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("9999 (9999) at line 102, "), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("at line 502, ..."), std::string::npos) << warnings[0];
+  EXPECT_EQ(warnings[0].find("line 602"), std::string::npos) << warnings[0];
+}
+
+TEST(Plausibility, ValuesThatNoBenchHasPointAtTheUnit) {
+  auto values = noisy(100, 40);
+  EXPECT_TRUE(warnings_of("speed", values, 1e-3).empty());
+  const auto warnings = warnings_of("speed", values);  // mm/s taken for m/s
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("100 of 100 samples beyond any plausible speed (5 m/s)"), std::string::npos)
+      << warnings[0];
+  EXPECT_NE(warnings[0].find("check unit and scale"), std::string::npos) << warnings[0];
+}
+
+TEST(Plausibility, AChannelThatNeverChangesIsSaid) {
+  const auto warnings = warnings_of("position", std::vector<double>(50, 3), 1e-3);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0], "position never changes: 3 mm throughout");
+}
+
+}  // namespace
+}  // namespace tacto::capture

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using firmware_host::Capabilities;
+using firmware_host::StreamCounts;
+using schema::Fault;
+using tests::TemporaryFolder;
+
+schema::Channel channel(const std::string& quantity, const std::string& unit, double scale) {
+  schema::Channel result;
+  result.name = result.quantity = quantity;
+  result.unit = unit;
+  result.scale = scale;
+  return result;
+}
+
+// Counts up in two channels at 1 kHz, in small pieces; ends, or fails, after `length` frames.
+class CountingDevice final : public firmware_host::Device {
+ public:
+  explicit CountingDevice(std::uint64_t length, bool fails = false) : length_(length), fails_(fails) {
+    capabilities_.uri = "test:counting";
+    capabilities_.clock = "device";
+    capabilities_.sample_rate_hz = 1000;
+    capabilities_.transducer = *schema::read_transducer("wiertlewski2011");
+    capabilities_.channels = {channel("tangential_force", "V", 10 / 0x1p31), channel("position", "m", 1e-6)};
+  }
+
+  Capabilities& can() { return capabilities_; }
+  const Capabilities& capabilities() const override { return capabilities_; }
+  schema::Result<void> start() override {
+    counts_ = {};
+    return {};
+  }
+  schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) override {
+    if (fails_ && counts_.frames == length_)
+      return schema::fail(Fault::device, "unplugged", capabilities_.uri);
+    const std::size_t frames = std::min<std::size_t>({interleaved.size() / 2, length_ - counts_.frames, 300});
+    for (std::size_t i = 0; i < frames; ++i, ++counts_.frames) {
+      interleaved[2 * i] = static_cast<std::int32_t>(counts_.frames) << 16;
+      interleaved[2 * i + 1] = -static_cast<std::int32_t>(counts_.frames);
+    }
+    return frames;
+  }
+  schema::Result<void> stop() override {
+    ++stops;
+    return {};
+  }
+  StreamCounts counts() const override { return counts_; }
+
+  int stops = 0;
+
+ private:
+  Capabilities capabilities_;
+  std::uint64_t length_;
+  bool fails_;
+  StreamCounts counts_;
+};
+
+RecordRequest request(const std::string& name, double time_s) {
+  RecordRequest result;
+  result.name = name;
+  result.time_s = time_s;
+  return result;
+}
+
+TEST(Record, WritesTheCodesAsTheyCame) {
+  const TemporaryFolder folder;
+  CountingDevice device(1U << 30);
+  const auto recorded = record(device, request(folder / "oak", 2.5));
+  ASSERT_TRUE(recorded) << message(recorded.error());
+  EXPECT_EQ(device.stops, 1);
+  const auto opened = schema::open_recording(folder / "oak");
+  ASSERT_TRUE(opened) << message(opened.error());
+  EXPECT_EQ(opened->header.format, schema::SampleFormat::pcm32);
+  ASSERT_EQ(opened->header.frames, 2500U);
+  const auto codes = schema::read_stored(*opened, 0), counts = schema::read_stored(*opened, 1);
+  for (std::size_t i = 0; i < 2500; ++i) {
+    ASSERT_EQ((*codes)[i], static_cast<double>(i) * 65536);
+    ASSERT_EQ((*counts)[i], -static_cast<double>(i));
+  }
+}
+
+// 26 V/N: 10 V are 0.385 N of the opposite sign, for the sensor's gain is negative.
+TEST(Record, ReadsVoltsAsNominalNewtonsAndSaysSo) {
+  const TemporaryFolder folder;
+  CountingDevice device(2000);
+  device.can().channels[0].range_min = -10;
+  device.can().channels[0].range_max = 9.9;
+  const auto recorded = record(device, request(folder / "oak", 2));
+  ASSERT_TRUE(recorded);
+  const schema::Channel& force = recorded->recording.header.channels[0];
+  EXPECT_EQ(force.unit, "N");
+  EXPECT_NEAR(force.scale, -10 / 0x1p31 / 26, 1e-3 * 10 / 0x1p31 / 26);
+  EXPECT_NEAR(*force.range_max, 10.0 / 26, 1e-3);
+  EXPECT_NEAR(*force.range_min, -9.9 / 26, 1e-3);
+  EXPECT_NE(force.derivation.find("not flat"), std::string::npos);
+  EXPECT_NEAR(recorded->statistics[0].min(), -1999 * 65536 * 10 / 0x1p31 / 26, 1e-3);
+  EXPECT_DOUBLE_EQ(recorded->statistics[1].min(), -1999e-6);
+}
+
+TEST(Record, KeepsWhatTheDeviceAndTheUserSay) {
+  const TemporaryFolder folder;
+  CountingDevice device(1000);
+  device.can().simulated = "by a test";
+  device.can().surface = "glass";
+  RecordRequest asked = request(folder / "oak", 1);
+  asked.subject = "S01", asked.finger = "index", asked.notes = "dry";
+  ASSERT_TRUE(record(device, asked));
+  const auto header = schema::open_recording(folder / "oak")->header;
+  EXPECT_EQ(header.device, "test:counting");
+  EXPECT_EQ(header.simulated, "by a test");
+  EXPECT_EQ(header.clock, "device");
+  EXPECT_EQ(header.surface, "glass");
+  EXPECT_EQ(header.subject, "S01");
+  EXPECT_EQ(header.finger, "index");
+  EXPECT_EQ(header.notes, "dry");
+  EXPECT_EQ(header.transducer->name, "wiertlewski2011");
+  EXPECT_TRUE(header.warnings.empty());
+}
+
+TEST(Record, WhatTheUserCallsTheSurfaceComesFirst) {
+  const TemporaryFolder folder;
+  CountingDevice device(1000);
+  device.can().surface = "glass";
+  RecordRequest asked = request(folder / "oak", 1);
+  asked.surface = "oak, planed";
+  EXPECT_EQ(record(device, asked)->recording.header.surface, "oak, planed");
+}
+
+TEST(Record, NeverOverwrites) {
+  const TemporaryFolder folder;
+  CountingDevice first(1000), second(1000);
+  const auto kept = record(first, request(folder / "oak", 0.5));
+  ASSERT_TRUE(kept);
+  const auto refused = record(second, request(folder / "oak", 1));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, Fault::usage);
+  EXPECT_EQ(schema::open_recording(folder / "oak")->header.sha256, kept->recording.header.sha256);
+}
+
+TEST(Record, RefusesATimeThatIsNone) {
+  const TemporaryFolder folder;
+  CountingDevice device(1000);
+  for (const double time_s : {0.0, -1.0, 1e-9, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    const auto refused = record(device, request(folder / "oak", time_s));
+    ASSERT_FALSE(refused) << time_s;
+    EXPECT_EQ(refused.error().fault, Fault::usage);
+  }
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Record, ADeviceThatFailsLeavesNothingAndIsStopped) {
+  const TemporaryFolder folder;
+  CountingDevice device(500, true);
+  const auto failed = record(device, request(folder / "oak", 1));
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().what, "unplugged");
+  EXPECT_EQ(device.stops, 1);
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Record, AStreamThatEndsEarlyIsKeptWithAWarning) {
+  const TemporaryFolder folder;
+  CountingDevice device(500);
+  ASSERT_TRUE(record(device, request(folder / "oak", 1)));
+  const auto header = schema::open_recording(folder / "oak")->header;
+  EXPECT_EQ(header.frames, 500U);
+  ASSERT_EQ(header.warnings.size(), 1U);
+  EXPECT_NE(header.warnings[0].find("500 of 1000"), std::string::npos);
+}
+
+TEST(Record, AStreamOfNothingIsAnError) {
+  const TemporaryFolder folder;
+  CountingDevice device(0);
+  EXPECT_EQ(record(device, request(folder / "oak", 1)).error().what, "the device gave no frames");
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Record, VoltsWithoutATransducerAreRefused) {
+  const TemporaryFolder folder;
+  CountingDevice device(500);
+  device.can().transducer.reset();
+  EXPECT_EQ(record(device, request(folder / "oak", 1)).error().fault, Fault::device);
+}
+
+TEST(Record, AFolderThatIsNotThereIsSaidBeforeTheDeviceStarts) {
+  const TemporaryFolder folder;
+  CountingDevice device(500);
+  const auto refused = record(device, request(folder / "none/oak", 1));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, Fault::cannot_write);
+  EXPECT_EQ(device.counts().frames, 0U);
+}
+
+TEST(Record, ProgressRunsToOne) {
+  const TemporaryFolder folder;
+  CountingDevice device(2000);
+  std::vector<double> heard;
+  ASSERT_TRUE(record(device, request(folder / "oak", 2), [&](double part) { heard.push_back(part); }));
+  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
+  EXPECT_EQ(heard.back(), 1);
+}
+
+TEST(Record, TheEmulatedDevicesClippingIsWarnedOf) {
+  const TemporaryFolder folder;
+  const auto device = firmware_host::open_device("sim:surface=B,load=3N");
+  const auto recorded = record(**device, request(folder / "loud", 0.5));
+  ASSERT_TRUE(recorded);
+  EXPECT_GT(recorded->counts.clipped, 0U);
+  ASSERT_FALSE(recorded->recording.header.warnings.empty());
+  EXPECT_NE(recorded->recording.header.warnings[0].find("clipped"), std::string::npos);
+}
+
+// What the finger did at 100 Hz, where nominal newtons are newtons: friction through the high-pass apart, the
+// load cell's net force and the transducer must have one sign.
+TEST(Record, TheForceHasTheSignOfTheFingersPull) {
+  const TemporaryFolder folder;
+  const auto device = firmware_host::open_device("sim:surface=flat,strokes=1");
+  ASSERT_TRUE(record(**device, request(folder / "flat", 0.25)));
+  const auto opened = schema::open_recording(folder / "flat");
+  const auto force = schema::read_channel(*opened, 0), net = schema::read_channel(*opened, 3);
+  double together = 0;
+  for (std::size_t i = 1000; i < 1800; ++i)
+    together += force->values[i] * net->values[i];  // the finger sets off
+  EXPECT_GT(together, 0);
+}
+
+}  // namespace
+}  // namespace tacto::capture

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files that appear whole or not at all.
+#include "data-schema/files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::schema {
+namespace {
+
+using tests::TemporaryFolder;
+
+TEST(PendingFiles, AppearTogetherAtCommit) {
+  const TemporaryFolder folder;
+  PendingFiles pending;
+  ASSERT_TRUE(pending.write(folder / "a", "one"));
+  ASSERT_TRUE(pending.write(folder / "b", "two"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+  ASSERT_TRUE(pending.commit());
+  EXPECT_EQ(read_file(folder / "a").value(), "one");
+  EXPECT_EQ(read_file(folder / "b").value(), "two");
+  EXPECT_EQ(folder.files(), 2U);
+}
+
+TEST(PendingFiles, LeaveTheFolderAsItWasWhenDropped) {
+  const TemporaryFolder folder;
+  {
+    PendingFiles first;
+    ASSERT_TRUE(first.write(folder / "a", "old"));
+    ASSERT_TRUE(first.commit());
+  }
+  {
+    PendingFiles dropped;
+    ASSERT_TRUE(dropped.write(folder / "a", "new"));
+    ASSERT_TRUE(dropped.write(folder / "b", "new"));
+  }
+  EXPECT_EQ(read_file(folder / "a").value(), "old");
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST(PendingFiles, LeaveNothingAfterAFailedCommit) {
+  const TemporaryFolder folder;
+  {
+    PendingFiles pending;
+    ASSERT_TRUE(pending.write(folder / "a", "content"));
+    std::filesystem::create_directories(folder / "a" + "/inside");
+    const auto committed = pending.commit();
+    ASSERT_FALSE(committed);
+    EXPECT_EQ(committed.error().fault, Fault::cannot_write);
+  }
+  EXPECT_EQ(folder.files(), 1U);  // the folder that stood in the way
+}
+
+TEST(PendingFiles, RefuseFoldersThatAreAbsentOrInTheWay) {
+  const TemporaryFolder folder;
+  PendingFiles pending;
+  for (const std::string& path : {folder / "absent/a", folder / "", std::string("/proc/a")}) {
+    const auto added = pending.add(path);
+    ASSERT_FALSE(added) << path;
+    EXPECT_EQ(added.error().fault, Fault::cannot_write);
+  }
+  EXPECT_NE(pending.add(folder / "absent/a").error().what.find("no such folder"), std::string::npos);
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Files, SayWhyTheyCantBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(read_file(folder / "absent").error().what, "there is no such file");
+  EXPECT_EQ(read_file(folder / "").error().what, "is a folder, not a file");
+  EXPECT_EQ(check_readable(folder / "absent").error().fault, Fault::not_found);
+  EXPECT_EQ(sha256_of_file(folder / "absent").error().fault, Fault::not_found);
+}
+
+// The vectors of FIPS 180-4's examples: "", "abc" and a million times "a".
+TEST(Sha256, MatchesTheStandard) {
+  EXPECT_EQ(sha256_of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  const TemporaryFolder folder;
+  PendingFiles pending;
+  ASSERT_TRUE(pending.write(folder / "a", std::string(1000000, 'a')));
+  ASSERT_TRUE(pending.commit());
+  EXPECT_EQ(sha256_of_file(folder / "a").value(),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Files, StemIsTheNameWithoutWhatOursAdd) {
+  for (const char* name : {"d/oak", "d/oak.texture.json", "d/oak.texture.wav", "d/oak.texture"})
+    EXPECT_EQ(stem_of(name, ".texture"), "d/oak");
+  for (const char* name : {"oak.1", "oak.1.json", "oak.1.wav"}) EXPECT_EQ(stem_of(name, ""), "oak.1");
+  EXPECT_EQ(stem_of("oak.csv", ""), "oak.csv");
+}
+
+}  // namespace
+}  // namespace tacto::schema

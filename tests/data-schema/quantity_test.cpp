@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Quantities as people write them.
+#include "data-schema/quantity.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tacto::schema {
+namespace {
+
+void expect_si(std::string_view text, Dimension dimension, double si) {
+  const auto value = parse_quantity(text, dimension);
+  ASSERT_TRUE(value) << message(value.error());
+  EXPECT_DOUBLE_EQ(*value, si) << text;
+}
+
+void expect_refused(std::string_view text, Dimension dimension, std::string_view why) {
+  const auto value = parse_quantity(text, dimension);
+  ASSERT_FALSE(value) << text << " was read as " << *value;
+  EXPECT_EQ(value.error().fault, Fault::usage);
+  EXPECT_NE(value.error().what.find(why), std::string::npos) << message(value.error());
+  EXPECT_NE(value.error().remedy.find(units_of(dimension)), std::string::npos) << message(value.error());
+}
+
+TEST(Quantity, ReadsPrefixesAndExponents) {
+  expect_si("10mm", Dimension::length, 0.01);
+  expect_si("1e-3m", Dimension::length, 1e-3);
+  expect_si(" -2.5 cm ", Dimension::length, -0.025);
+  expect_si("+15Hz", Dimension::frequency, 15);
+  expect_si("10kHz", Dimension::frequency, 1e4);
+  expect_si("4.5s", Dimension::time, 4.5);
+  expect_si("50mm/s", Dimension::speed, 0.05);
+  expect_si("1mm/N", Dimension::compliance, 1e-3);
+  expect_si("9.81 m/s^2", Dimension::acceleration, 9.81);
+}
+
+TEST(Quantity, ReadsBothMicroSigns) {
+  expect_si("0.5\u00B5m", Dimension::length, 0.5e-6);
+  expect_si("0.5\u03BCm", Dimension::length, 0.5e-6);
+  expect_si("0.5um", Dimension::length, 0.5e-6);
+  expect_si("3 \u00B5m/N", Dimension::compliance, 3e-6);
+}
+
+TEST(Quantity, ReadsSpatialFrequencyInEverySpelling) {
+  expect_si("15/mm", Dimension::spatial_frequency, 15e3);
+  expect_si("1/mm", Dimension::spatial_frequency, 1e3);
+  expect_si("15 1/mm", Dimension::spatial_frequency, 15e3);
+  expect_si("15 mm^-1", Dimension::spatial_frequency, 15e3);
+}
+
+TEST(Quantity, TakesBareNumbersOnlyWhereThereIsNoUnit) {
+  expect_si("5", Dimension::none, 5);
+  expect_refused("5", Dimension::length, "has no unit");
+  expect_refused("15", Dimension::spatial_frequency, "has no unit");
+}
+
+TEST(Quantity, RefusesUnitsOfOtherQuantities) {
+  expect_refused("5mm", Dimension::time, "another quantity");
+  expect_refused("5mm/s", Dimension::length, "another quantity");
+  expect_refused("5furlong", Dimension::length, "unknown unit 'furlong'");
+  expect_refused("5MM", Dimension::length, "unknown unit 'MM'");
+}
+
+TEST(Quantity, RefusesWhatIsNoFiniteNumber) {
+  for (const char* text :
+       {"infmm", "-infmm", "nanmm", "1e400mm", "", "mm", "--5mm", "+-5mm", "++5mm", "five mm"})
+    expect_refused(text, Dimension::length, "not a finite number");
+  expect_refused("1,5mm", Dimension::length, "unknown unit");
+  expect_refused("0x10m", Dimension::length, "unknown unit");
+}
+
+TEST(Quantity, FindsUnitsInAnyDimension) {
+  const auto unit = parse_unit("\u00B5m");
+  ASSERT_TRUE(unit);
+  EXPECT_EQ(unit->dimension, Dimension::length);
+  EXPECT_DOUBLE_EQ(unit->si, 1e-6);
+  EXPECT_EQ(parse_unit("1")->dimension, Dimension::none);
+  ASSERT_FALSE(parse_unit("kg"));
+  EXPECT_NE(parse_unit("kg").error().remedy.find("mm/s"), std::string::npos);
+}
+
+TEST(Quantity, WritesForPeopleWhatItReadsBack) {
+  EXPECT_EQ(for_people(0.0123, Dimension::length), "12.3 mm");
+  EXPECT_EQ(for_people(15e3, Dimension::spatial_frequency), "15/mm");
+  EXPECT_EQ(for_people(-0.25, Dimension::force), "-250 mN");
+  for (const double si : {1e-9, 3.3e-5, 0.5, 12.0, 999.0}) {
+    const auto back = parse_quantity(for_people(si, Dimension::length), Dimension::length);
+    ASSERT_TRUE(back);
+    EXPECT_NEAR(*back, si, 5e-4 * si);  // four digits
+  }
+}
+
+}  // namespace
+}  // namespace tacto::schema

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "data-schema/files.hpp"
+#include "data-schema/spectrogram.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::schema {
+namespace {
+
+Spectrogram example(std::size_t positions, const char* name) {
+  Spectrogram s;
+  s.bins = 65;
+  s.frequency_step_per_m = 250;
+  s.hop_m = 1e-3;
+  s.window_m = 10e-3;
+  s.pitch_m = 1e-6;
+  s.padded_samples = 128;
+  s.window = "blackman";
+  s.quantity = "tangential_force";
+  s.unit = "N";
+  s.name = name;
+  for (std::size_t p = 0; p < positions; ++p) s.position_m.push_back(5e-3 + 1e-3 * static_cast<double>(p));
+  for (std::size_t i = 0; i < positions * s.bins; ++i) s.density.push_back(1e-9F * static_cast<float>(i + 1));
+  return s;
+}
+
+void expect_same(const Spectrogram& read, const Spectrogram& wrote) {
+  EXPECT_EQ(read.name, wrote.name);
+  EXPECT_EQ(read.window, "blackman");
+  EXPECT_EQ(read.quantity, wrote.quantity);
+  EXPECT_EQ(read.unit, wrote.unit);
+  EXPECT_EQ(read.bins, wrote.bins);
+  EXPECT_EQ(read.padded_samples, wrote.padded_samples);
+  // Millimetres and back: one rounding each way.
+  EXPECT_DOUBLE_EQ(read.frequency_step_per_m, wrote.frequency_step_per_m);
+  EXPECT_DOUBLE_EQ(read.window_m, wrote.window_m);
+  EXPECT_DOUBLE_EQ(read.hop_m, wrote.hop_m);
+  EXPECT_DOUBLE_EQ(read.pitch_m, wrote.pitch_m);
+  ASSERT_EQ(read.position_m.size(), wrote.position_m.size());
+  ASSERT_EQ(read.density.size(), wrote.density.size());
+  for (std::size_t p = 0; p < wrote.position_m.size(); ++p)
+    EXPECT_DOUBLE_EQ(read.position_m[p], wrote.position_m[p]);
+  for (std::size_t i = 0; i < wrote.density.size(); ++i) EXPECT_FLOAT_EQ(read.density[i], wrote.density[i]);
+}
+
+class SpectrogramFile : public testing::Test {
+ protected:
+  std::string path(const char* name = "oak.nc") { return folder_ / name; }
+  tests::TemporaryFolder folder_;
+};
+
+TEST_F(SpectrogramFile, ReadsBackOne) {
+  const std::array all = {example(20, "oak")};
+  ASSERT_TRUE(write_spectrogram_nc(path(), all));
+  const auto read = read_spectrogram_nc(path());
+  ASSERT_TRUE(read) << message(read.error());
+  expect_same(*read, all[0]);
+  EXPECT_EQ(read->strokes, 1u);
+  EXPECT_EQ(folder_.files(), 1u);
+}
+
+TEST_F(SpectrogramFile, ReadsBackSeveralOfUnequalLength) {
+  const std::array all = {example(12, "oak-01"), example(20, "oak-02"), example(3, "oak-03")};
+  ASSERT_TRUE(write_spectrogram_nc(path(), all));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto read = read_spectrogram_nc(path(), i);
+    ASSERT_TRUE(read) << message(read.error());
+    expect_same(*read, all[i]);
+    EXPECT_EQ(read->strokes, 3u);
+  }
+  EXPECT_EQ(read_spectrogram_nc(path(), 3).error().fault, Fault::unsuitable);
+}
+
+TEST_F(SpectrogramFile, EqualSpectrogramsGiveEqualFiles) {
+  const std::array all = {example(20, "oak")};
+  ASSERT_TRUE(write_spectrogram_nc(path("a.nc"), all));
+  ASSERT_TRUE(write_spectrogram_nc(path("b.nc"), all));
+  EXPECT_EQ(sha256_of_file(path("a.nc")).value(), sha256_of_file(path("b.nc")).value());
+}
+
+TEST_F(SpectrogramFile, RefusesOtherAxesAndNames) {
+  std::array all = {example(20, "oak"), example(20, "ash")};
+  all[1].frequency_step_per_m = 125;
+  const auto written = write_spectrogram_nc(path(), all);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().fault, Fault::unsuitable);
+  EXPECT_NE(message(written.error()).find("ash: its frequency axes differ"), std::string::npos);
+  EXPECT_FALSE(write_spectrogram_csv(path("oak.csv"), all));
+  EXPECT_FALSE(write_spectrogram_nc(path(), {}));
+  EXPECT_EQ(folder_.files(), 0u);
+  EXPECT_EQ(write_spectrogram_nc(folder_ / "absent/oak.nc", std::span(all).first(1)).error().fault,
+            Fault::cannot_write);
+}
+
+TEST_F(SpectrogramFile, RefusesForeignAndBrokenFiles) {
+  EXPECT_EQ(read_spectrogram_nc(path()).error().fault, Fault::not_found);
+  PendingFiles pending;
+  ASSERT_TRUE(pending.write(path(), "no netCDF"));
+  ASSERT_TRUE(pending.commit());
+  EXPECT_EQ(read_spectrogram_nc(path()).error().fault, Fault::malformed);
+
+  const std::array all = {example(20, "oak")};
+  ASSERT_TRUE(write_spectrogram_nc(path(), all));
+  std::filesystem::resize_file(path(), std::filesystem::file_size(path()) / 2);
+  EXPECT_EQ(read_spectrogram_nc(path()).error().fault, Fault::malformed);
+}
+
+TEST_F(SpectrogramFile, TableSaysItsUnits) {
+  Spectrogram s = example(2, "oak");
+  s.bins = 3;
+  s.density = {0, 1e-3F, 2.5e-3F, 3e-3F, 4e-3F, 5e-3F};
+  ASSERT_TRUE(write_spectrogram_csv(path("one.csv"), std::array{s}));
+  EXPECT_EQ(read_file(path("one.csv")).value(),
+            "position_mm,N2 mm at 0/mm,N2 mm at 0.25/mm,N2 mm at 0.5/mm\n5,0,1,2.5\n6,3,4,5\n");
+  ASSERT_TRUE(write_spectrogram_csv(path("two.csv"), std::array{s, s}));
+  EXPECT_EQ(read_file(path("two.csv")).value(),
+            "stroke,position_mm,N2 mm at 0/mm,N2 mm at 0.25/mm,N2 mm at 0.5/mm\n"
+            "1,5,0,1,2.5\n1,6,3,4,5\n2,5,0,1,2.5\n2,6,3,4,5\n");
+}
+
+}  // namespace
+}  // namespace tacto::schema

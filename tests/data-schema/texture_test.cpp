@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "data-schema/files.hpp"
+#include "data-schema/recording.hpp"
+#include "data-schema/texture.hpp"
+#include "data-schema/wav.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::schema {
+namespace {
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+Texture example() {
+  Texture texture;
+  texture.signal.pitch_m = 1e-6;
+  for (int i = 0; i < 5000; ++i) texture.signal.values.push_back(std::sin(0.01 * i) * 0.3);
+  texture.direction = -1;
+  texture.source_origin_m = 0.0914;
+  texture.valid_band = {{0, 375, 12500}, {0.002, 300, 1e4}};
+  texture.source = {"oak.json", std::string(64, 'a'),
+                    4.55,       6.85,
+                    2,          "hermite",
+                    "fourier",  "treated",
+                    4,          15,
+                    500,        true,
+                    0.04,       0.03,
+                    0.05,       2e-7};
+  texture.surface = "oak";
+  texture.created = "2024-05-01T12:00:00Z";
+  texture.creator = "a test";
+  return texture;
+}
+
+class TextureFile : public testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) {
+    PendingFiles pending;
+    ASSERT_TRUE(pending.write(folder_ / name, text));
+    ASSERT_TRUE(pending.commit());
+  }
+  std::string sidecar() { return read_file(folder_ / "oak.texture.json").value(); }
+  Error error_of(const std::string& name) {
+    const auto read = read_texture(folder_ / name);
+    EXPECT_FALSE(read);
+    return read ? Error{} : read.error();
+  }
+  tests::TemporaryFolder folder_;
+};
+
+TEST_F(TextureFile, ReadsBack) {
+  const Texture wrote = example();
+  ASSERT_TRUE(write_texture(folder_ / "oak", wrote));
+  EXPECT_EQ(folder_.files(), 2u);
+  for (const char* name : {"oak", "oak.texture.json", "oak.texture.wav"}) {
+    const auto read = read_texture(folder_ / name);
+    ASSERT_TRUE(read) << message(read.error());
+    ASSERT_EQ(read->signal.values.size(), wrote.signal.values.size());
+    for (std::size_t i = 0; i < wrote.signal.values.size(); ++i)
+      ASSERT_EQ(read->signal.values[i],
+                static_cast<float>(wrote.signal.values[i]));  // the WAV is single precision
+    EXPECT_EQ(read->signal.pitch_m, 1e-6);
+    EXPECT_EQ(read->signal.origin_m, 0);
+    EXPECT_EQ(read->direction, -1);
+    EXPECT_EQ(read->source_origin_m, 0.0914);
+    ASSERT_EQ(read->valid_band.size(), 2u);
+    EXPECT_EQ(read->valid_band[1].high_per_m, 1e4);
+    EXPECT_EQ(read->source.recording, "oak.json");
+    EXPECT_EQ(read->source.stroke, 2);
+    EXPECT_EQ(read->source.order, 4);
+    EXPECT_EQ(read->source.position_moved_m, 2e-7);
+    EXPECT_EQ(read->source.max_speed_mps, 0.05);
+    EXPECT_TRUE(read->source.equalised);
+    EXPECT_EQ(read->surface, "oak");
+    EXPECT_EQ(read->creator, "a test");
+  }
+}
+
+TEST_F(TextureFile, HeaderRateIsSamplesPerMetre) {
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  const auto wav = WavReader::open(folder_ / "oak.texture.wav");
+  ASSERT_TRUE(wav);
+  EXPECT_EQ(wav->info().sample_rate_hz, 1e6);
+  EXPECT_EQ(wav->info().frames, 5000u);
+  EXPECT_EQ(wav->info().channels, 1u);
+}
+
+TEST_F(TextureFile, EqualTexturesGiveEqualFiles) {
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  const std::string wav = sha256_of_file(folder_ / "oak.texture.wav").value(), json = sidecar();
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  EXPECT_EQ(sha256_of_file(folder_ / "oak.texture.wav").value(), wav);
+  EXPECT_EQ(sidecar(), json);
+}
+
+TEST_F(TextureFile, NewerMinorIsReadAndItsMembersKept) {
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  write("oak.texture.json",
+        replaced(sidecar(), "\"version\": \"1.0\"", "\"version\": \"1.3\", \"grain\": [1, 2]"));
+  const auto read = read_texture(folder_ / "oak");
+  ASSERT_TRUE(read) << message(read.error());
+  EXPECT_EQ(read->newer_version, "1.3");
+  ASSERT_TRUE(write_texture(folder_ / "copy", *read));
+  const auto copy = read_file(folder_ / "copy.texture.json").value();
+  EXPECT_NE(copy.find("\"grain\""), std::string::npos);
+  EXPECT_NE(copy.find("copy.texture.wav"), std::string::npos);
+  write("oak.texture.json", replaced(sidecar(), "\"1.3\"", "\"2.0\""));
+  EXPECT_EQ(error_of("oak").fault, Fault::unsupported_version);
+}
+
+TEST_F(TextureFile, ARecordingIsToldApart) {
+  RecordingHeader header;
+  header.format = SampleFormat::float64;
+  header.sample_rate_hz = 1000;
+  header.channels.emplace_back();
+  header.channels[0].name = header.channels[0].quantity = "tangential_force";
+  header.channels[0].unit = "N";
+  auto writer = RecordingWriter::create(folder_ / "raw", header);
+  ASSERT_TRUE(writer) << message(writer.error());
+  ASSERT_TRUE(writer->write(std::vector<double>(10, 0.5)));
+  ASSERT_TRUE(writer->close());
+  for (const char* name : {"raw", "raw.json", "raw.wav"}) {
+    const Error error = error_of(name);
+    EXPECT_EQ(error.fault, Fault::unsuitable) << name;
+    EXPECT_NE(message(error).find("is a recording; make a texture with 'tactograph spatial'"),
+              std::string::npos)
+        << message(error);
+  }
+}
+
+TEST_F(TextureFile, AbsentBrokenAndDisagreeing) {
+  EXPECT_EQ(error_of("nothing").fault, Fault::not_found);
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  const std::string sound = sidecar();
+
+  write("oak.texture.json", replaced(sound, "\"samples\": 5000", "\"samples\": 6000"));
+  EXPECT_NE(message(error_of("oak")).find("5000 samples, its sidecar says 6000"), std::string::npos);
+  write("oak.texture.json", replaced(sound, "\"pitch_m\": 1e-06", "\"pitch_m\": 2e-06"));
+  EXPECT_EQ(error_of("oak").fault, Fault::malformed);
+  write("oak.texture.json", replaced(sound, "\"direction\": -1", "\"direction\": 0"));
+  EXPECT_NE(error_of("oak").where.find("#/direction"), std::string::npos);
+  write("oak.texture.json", sound);
+  std::filesystem::remove(folder_ / "oak.texture.wav");
+  EXPECT_EQ(error_of("oak").fault, Fault::not_found);
+}
+
+TEST_F(TextureFile, NamesTheSampleThatIsNoNumber) {
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  auto writer = WavWriter::create(folder_ / "oak.texture.wav", 1e6, 1, SampleFormat::float32);
+  ASSERT_TRUE(writer);
+  auto values = example().signal.values;
+  values[1234] = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_TRUE(writer->write(values));
+  ASSERT_TRUE(writer->close());
+  EXPECT_NE(message(error_of("oak")).find("sample 1234"), std::string::npos);
+}
+
+TEST_F(TextureFile, WritesNothingWhereItCannotWriteAll) {
+  Texture broken = example();
+  broken.signal.values[7] = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(write_texture(folder_ / "oak", broken));
+  broken = example();
+  broken.direction = 3;
+  EXPECT_FALSE(write_texture(folder_ / "oak", broken));
+  broken.signal.values.clear();
+  EXPECT_FALSE(write_texture(folder_ / "oak", broken));
+  EXPECT_EQ(folder_.files(), 0u);
+  const auto nowhere = write_texture(folder_ / "absent/oak", example());
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().fault, Fault::cannot_write);
+}
+
+}  // namespace
+}  // namespace tacto::schema

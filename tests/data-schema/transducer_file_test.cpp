@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "data-schema/files.hpp"
+#include "data-schema/transducer.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::schema {
+namespace {
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+class TransducerFile : public testing::Test {
+ protected:
+  std::string written(const Transducer& transducer, const std::string& stem) {
+    EXPECT_TRUE(write_transducer(folder_ / stem, transducer));
+    return read_file(folder_ / (stem + ".transducer.json")).value();
+  }
+  void write(const std::string& name, const std::string& text) {
+    PendingFiles pending;
+    ASSERT_TRUE(pending.write(folder_ / name, text));
+    ASSERT_TRUE(pending.commit());
+  }
+  tests::TemporaryFolder folder_;
+  Transducer preset_ = read_transducer("wiertlewski2011").value();
+};
+
+TEST_F(TransducerFile, ListsThePresets) {
+  EXPECT_EQ(preset_names(), (std::vector<std::string_view>{"wiertlewski2011", "wiertlewski2011-as-printed"}));
+}
+
+TEST_F(TransducerFile, PresetKeepsThePapersTable) {
+  EXPECT_EQ(preset_.deflection_m, 82.35e-6);
+  EXPECT_EQ(preset_.bender_stiffness_n_per_m, 76.47e3);
+  EXPECT_EQ(preset_.mass_kg, 6.8e-3);
+  EXPECT_EQ(preset_.capacitance_f, 818e-9);
+  EXPECT_EQ(preset_.drive_limit_v * preset_.amplifier_gain, preset_.max_voltage_v);
+  EXPECT_NEAR(preset_.slew_limit_v_per_s, 2 * 3.14159265 * 500 * 5, 0.5);
+  EXPECT_NE(preset_.origin.find("15708"), std::string::npos);
+  const Transducer printed = read_transducer("wiertlewski2011-as-printed").value();
+  EXPECT_EQ(printed.flexure_stiffness_n_per_m, 4.05e-3);
+  EXPECT_EQ(printed.damping_n_s_per_m, 4490);
+  EXPECT_EQ(printed.actuator_scale, 0.5);
+}
+
+TEST_F(TransducerFile, ReadsBackToTheBit) {
+  written(preset_, "bench");
+  for (const char* name : {"bench", "bench.transducer.json", "bench.transducer"}) {
+    const auto read = read_transducer(folder_ / name);
+    ASSERT_TRUE(read) << message(read.error());
+    EXPECT_EQ(read->name, preset_.name);
+    EXPECT_EQ(read->sensor_scale, preset_.sensor_scale);
+    EXPECT_EQ(read->converter_bits, 16);
+    EXPECT_EQ(read->slew_limit_v_per_s, preset_.slew_limit_v_per_s);
+    EXPECT_EQ(read->origin, preset_.origin);
+    EXPECT_EQ(read->newer_version, "");
+  }
+}
+
+TEST_F(TransducerFile, UnknownNameListsThePresets) {
+  const auto read = read_transducer(folder_ / "nobody");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().fault, Fault::not_found);
+  EXPECT_NE(message(read.error()).find("wiertlewski2011, wiertlewski2011-as-printed"), std::string::npos);
+}
+
+TEST_F(TransducerFile, LimitsAreObligatoryAndAboveZero) {
+  const std::string sound = written(preset_, "sound");
+  write("a.transducer.json", replaced(sound, "\"drive_limit_v\"", "\"drive_limit\""));
+  const auto without = read_transducer(folder_ / "a");
+  ASSERT_FALSE(without);
+  EXPECT_EQ(without.error().fault, Fault::malformed);
+  EXPECT_NE(message(without.error()).find("drive_limit_v"), std::string::npos);
+  for (const char* limit : {"drive_limit_v", "displacement_limit_m", "slew_limit_v_per_s"}) {
+    const std::string key = std::string("\"") + limit + "\": ";
+    write("b.transducer.json", replaced(sound, key, key + "0, \"was\": "));
+    const auto zero = read_transducer(folder_ / "b");
+    ASSERT_FALSE(zero) << limit;
+    EXPECT_NE(zero.error().where.find("#/" + std::string(limit)), std::string::npos) << message(zero.error());
+  }
+}
+
+TEST_F(TransducerFile, RefusesToWriteWhatItWouldNotRead) {
+  Transducer limitless = preset_;
+  limitless.slew_limit_v_per_s = 0;
+  EXPECT_FALSE(write_transducer(folder_ / "limitless", limitless));
+  EXPECT_EQ(folder_.files(), 0u);
+}
+
+TEST_F(TransducerFile, NewerMinorIsReadAndKeptNewerMajorRefused) {
+  const std::string sound = written(preset_, "sound");
+  const std::string newer =
+      replaced(sound, "\"version\": \"1.0\"", "\"version\": \"1.7\", \"tray\": {\"colour\": \"red\"}");
+  write("newer.transducer.json", newer);
+  const auto read = read_transducer(folder_ / "newer");
+  ASSERT_TRUE(read) << message(read.error());
+  EXPECT_EQ(read->newer_version, "1.7");
+  EXPECT_NE(written(*read, "again").find("\"colour\": \"red\""), std::string::npos);
+
+  write("future.transducer.json", replaced(sound, "\"1.0\"", "\"2.0\""));
+  const auto future = read_transducer(folder_ / "future");
+  ASSERT_FALSE(future);
+  EXPECT_EQ(future.error().fault, Fault::unsupported_version);
+}
+
+}  // namespace
+}  // namespace tacto::schema

@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The demo: five surfaces there and back, one page that needs nothing beside it and says that it is simulated."""
+import html.parser
+import pathlib
+import re
+
+import tacto
+
+
+class Page(html.parser.HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.links, self.pictures = [], 0
+
+    def handle_starttag(self, tag, attributes):
+        self.pictures += tag in ("img", "svg")
+        self.links += [v for k, v in attributes if k in ("src", "href") and not v.startswith(("data:", "#"))]
+
+
+def demo_makes_its_page():
+    report = tacto.run_json("demo", "-o", "shown")
+    surfaces = {row["surface"]: row for row in report["surfaces"]}
+    assert sorted(surfaces) == ["A", "B", "C", "D", "E"]
+    for name, row in surfaces.items():
+        print(f"{name}: displacement error {row['error_db']:.1f} dB, force {row['force_rms_n'] * 1e3:.1f} mN RMS")
+        assert row["error_db"] < -30 and row["force_rms_n"] > 1e-4 and row["replay_speed_mps"] != row["record_speed_mps"]
+    page_text = pathlib.Path("shown/index.html").read_text()
+    page = Page()
+    page.feed(page_text)
+    assert page.pictures >= 10 and not page.links, page.links
+    assert page_text.lower().count("simulated") >= 5 and not re.search(r"https?://(?!www\.w3\.org)", page_text)
+    for stem in ("A", "E"):
+        tacto.run("validate", f"shown/{stem}.json", f"shown/{stem}.texture.json")
+
+
+def demo_may_be_repeated():
+    tacto.run("demo", "-o", "twice")
+    tacto.run("demo", "-o", "twice")
+
+
+if __name__ == "__main__":
+    for test in (demo_makes_its_page, demo_may_be_repeated):
+        tacto.in_folder(test)

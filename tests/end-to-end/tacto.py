@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the end-to-end tests share: running the command, finding real data, reading what the command wrote."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import soundfile
+
+COMMAND = os.environ["TACTOGRAPH"]
+DATA = pathlib.Path(os.environ.get("TACTO_DATA", "/nonexistent"))
+BARE_FINGER = DATA / "bare-finger" / "bare_finger_10kHz.csv"
+
+IMPORT_BARE_FINGER = [
+    "import", str(BARE_FINGER), "-o", "finger", "--rate", "10kHz",
+    "--channel", "tangential_force=lateral_V*0.444444N",
+    "--channel", "normal_force=normal_V*-0.31+1.6647N",
+    "--channel", "position=encoder_count*0.5um",
+]
+
+
+def run(*arguments, code=0, cwd=None):
+    """Runs `tactograph ARGUMENTS`, checks the exit code, gives (stdout, stderr)."""
+    done = subprocess.run([COMMAND, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=600)
+    shown = f"tactograph {' '.join(map(str, arguments))}\nexit {done.returncode}, wanted {code}\n{done.stdout}\n{done.stderr}"
+    assert done.returncode == code, shown
+    return done.stdout, done.stderr
+
+
+def run_json(*arguments, cwd=None):
+    return json.loads(run(*arguments, "--json", cwd=cwd)[0])
+
+
+def texture(stem):
+    """(positions in m from the texture's start, values, sidecar)."""
+    side = json.loads(pathlib.Path(f"{stem}.texture.json").read_text())
+    values, _ = soundfile.read(f"{stem}.texture.wav", dtype="float64")
+    return np.arange(len(values)) * side["pitch_m"], values, side
+
+
+def need_real_data():
+    if not BARE_FINGER.exists():
+        print("skipped: no real data")
+        sys.exit(77)
+
+
+def in_folder(function):
+    """Runs a test in a folder of its own, which goes when the test has passed."""
+    with tempfile.TemporaryDirectory(prefix="tacto-") as folder:
+        os.chdir(folder)
+        function()
+        os.chdir("/")
+    print(f"{function.__name__}: passed")
+
+
+def rms(x):
+    return float(np.sqrt(np.mean(np.square(x))))

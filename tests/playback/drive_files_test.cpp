@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/drive_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "data-schema/wav.hpp"
+
+namespace tacto::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DriveFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("tacto_drive_files_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string in(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+  schema::TimeSignal signal_{10e3, 0, {0.5, -0.25, 1}};
+};
+
+TEST_F(DriveFiles, HoldTheSignal) {
+  const std::vector<SignalFile> files{{in("a.wav"), &signal_}, {in("b.wav"), &signal_}};
+  ASSERT_TRUE(check_signal_files(files));
+  ASSERT_TRUE(write_signal_files(files));
+  EXPECT_EQ(*schema::read_wav_channel(in("b.wav"), 0), signal_.values);
+  EXPECT_EQ(schema::WavReader::open(in("a.wav"))->info().sample_rate_hz, 10e3);
+}
+
+TEST_F(DriveFiles, AppearTogetherOrNotAtAll) {
+  const std::vector<SignalFile> files{{in("a.wav"), &signal_}, {in("absent/b.wav"), &signal_}};
+  const auto written = write_signal_files(files);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().fault, schema::Fault::cannot_write);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(DriveFiles, NeverTakeTheNameOfARecording) {
+  std::ofstream(in("oak.json")) << "{}";
+  const std::vector<SignalFile> taken{{in("oak.wav"), &signal_}};
+  EXPECT_EQ(check_signal_files(taken).error().fault, schema::Fault::usage);
+  const std::vector<SignalFile> twice{{in("a.wav"), &signal_}, {in("./a.wav"), &signal_}};
+  EXPECT_EQ(check_signal_files(twice).error().fault, schema::Fault::usage);
+  const std::vector<SignalFile> other{{in("a.flac"), &signal_}};
+  EXPECT_EQ(check_signal_files(other).error().fault, schema::Fault::usage);
+}
+
+}  // namespace
+}  // namespace tacto::playback

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/finger_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tacto::playback {
+namespace {
+
+TEST(FingerPathCsv, TakesItsColumnsByNameWhereverTheyStand) {
+  const auto path =
+      parse_finger_path("\xEF\xBB\xBFnote,position_m, time_s\r\na,0.001,0\r\nb,+2e-3, 0.5\r\n\r\n", "p.csv");
+  ASSERT_TRUE(path) << message(path.error());
+  EXPECT_EQ(path->time_s, (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(path->position_m, (std::vector<double>{0.001, 0.002}));
+}
+
+struct Bad {
+  const char* text;
+  const char* said;
+};
+
+class BadFingerPath : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadFingerPath, IsNamedByPlace) {
+  const auto path = parse_finger_path(GetParam().text, "p.csv");
+  ASSERT_FALSE(path);
+  EXPECT_EQ(path.error().fault, schema::Fault::malformed);
+  const std::string said = message(path.error());
+  EXPECT_NE(said.find(GetParam().said), std::string::npos) << said;
+  EXPECT_NE(said.find("p.csv"), std::string::npos) << said;
+  EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, BadFingerPath,
+    testing::Values(
+        Bad{"", "empty"}, Bad{"time_s,position_m\n", "at least 2 rows, here are 0"},
+        Bad{"time_s,position_m\n0,0\n", "at least 2 rows, here are 1"},
+        Bad{"time,position_m\n0,0\n1,1\n", "no column 'time_s', only time, position_m"},
+        Bad{"time_s;position_m\n0;0\n1;1\n", "only time_s;position_m"},
+        Bad{"0,0\n1,1\n", "no column 'time_s', only 0, 0"},
+        Bad{"time_s,position_m\n0,0\n1,abc\n", "line 3, column 2 (position_m): 'abc' is no number"},
+        Bad{"time_s,position_m\n0,0\n1,\n", "line 3, column 2 (position_m): '' is no number"},
+        Bad{"time_s,position_m\n0,0\n1,1mm\n", "'1mm' is no number"},
+        Bad{"time_s,position_m\n0,nan\n1,1\n", "line 2, column 2 (position_m): 'nan' is not finite"},
+        Bad{"time_s,position_m\n0,0\ninf,1\n", "line 3, column 1 (time_s): 'inf' is not finite"},
+        Bad{"time_s,position_m\n0,0\n1,1\n1,2\n", "line 4, column 1 (time_s): time does not grow"},
+        Bad{"time_s,position_m\n0,0\n1,1,2\n", "line 3: the row has 3 fields, the header 2"},
+        Bad{"time_s,position_m\n0,0\n\n1,1\n", "line 3: the row has 1 fields"}));
+
+TEST(FingerPathCsv, AbsentFileIsNotFound) {
+  const auto path = read_finger_path("/nowhere/path.csv");
+  ASSERT_FALSE(path);
+  EXPECT_EQ(path.error().fault, schema::Fault::not_found);
+}
+
+TEST(FingerPath, OfASignalHasOneKnotASample) {
+  const auto path = finger_path_of({100, 0.5, {1, 2, 4}});
+  EXPECT_EQ(path.time_s, (std::vector<double>{0.5, 0.51, 0.52}));
+  EXPECT_EQ(path.position_m, (std::vector<double>{1, 2, 4}));
+}
+
+TEST(FingerPath, CheckNamesTheKnot) {
+  EXPECT_TRUE(check_finger_path({{0, 1}, {0, 1}}));
+  EXPECT_FALSE(check_finger_path({{0}, {0}}));
+  EXPECT_FALSE(check_finger_path({{0, 1}, {0}}));
+  EXPECT_EQ(check_finger_path({{0, 1, 1}, {0, 1, 2}}).error().where, "path, knot 2");
+  EXPECT_EQ(check_finger_path({{0, 1}, {0, std::nan("")}}).error().where, "path, knot 1");
+}
+
+TEST(FingerPath, AFingerAtRestBetweenKnotsStaysThere) {
+  const FingerPath path{{0, 1, 2, 3}, {0, 1, 1, 0}};
+  const auto positions = positions_along(path, 100, 301);
+  for (std::size_t i = 100; i <= 200; ++i) EXPECT_EQ(positions[i], 1);
+  EXPECT_EQ(positions[300], 0);
+}
+
+// Against the finite differences of the path itself, 1 us apart: their error is that of the second
+// derivative, below 1e-5 of the speed here.
+TEST(FingerPath, GreatestSpeedIsTheGreatestSlope) {
+  const FingerPath path{{0, 0.1, 0.15, 0.4, 0.6}, {0, 0.01, 0.03, 0.035, -0.02}};
+  const auto positions = positions_along(path, 1e6, 600001);
+  double greatest = 0;
+  for (std::size_t i = 1; i < positions.size(); ++i)
+    greatest = std::max(greatest, std::abs(positions[i] - positions[i - 1]) * 1e6);
+  EXPECT_NEAR(greatest_speed_mps(path), greatest, 1e-5 * greatest);
+}
+
+}  // namespace
+}  // namespace tacto::playback

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The verb `render` as a command: what it refuses, in one line and with nothing half-written, and what it reports."""
+import pathlib
+import tempfile
+
+import numpy as np
+
+import made_files as made
+
+USAGE, NOT_FOUND, MALFORMED, UNSUITABLE, CANNOT_WRITE = 2, 3, 4, 5, 7
+
+
+def files_in(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def expect_refusal(folder, code, said, **changed):
+    arguments = {"texture": folder / "t", "--path": folder / "path.csv", "--transducer": "wiertlewski2011", "-o": folder / "drive.wav"}
+    arguments |= {("--" + key if len(key) > 1 else "-" + key) if key != "texture" else key: value for key, value in changed.items()}
+    texture = arguments.pop("texture")
+    before = files_in(folder)
+    done = made.run("render", texture, *[str(part) for pair in arguments.items() for part in pair])
+    assert done.returncode == code, (code, done.returncode, done.stderr)
+    lines = [line for line in done.stderr.splitlines() if "warning" not in line]
+    assert len(lines) == 1 and said in lines[0], done.stderr
+    assert done.stdout == "" and files_in(folder) == before, files_in(folder)
+
+
+def check_refusals(folder):
+    expect_refusal(folder, NOT_FOUND, "wiertlewski2011-as-printed", transducer="nobody2012")
+    expect_refusal(folder, NOT_FOUND, "absent", texture=folder / "absent")
+    expect_refusal(folder, NOT_FOUND, "absent.csv", path=folder / "absent.csv")
+    expect_refusal(folder, CANNOT_WRITE, "absent", o=folder / "absent" / "drive.wav")
+    expect_refusal(folder, USAGE, "recording or texture", o=folder / "t.texture.wav")
+    expect_refusal(folder, USAGE, "two outputs", wanted=folder / "drive.wav")
+    expect_refusal(folder, USAGE, "mm/N", gain="1")
+    expect_refusal(folder, USAGE, "1000Hz", rate="1kHz")
+    expect_refusal(folder, USAGE, "--inverse", inverse="none")
+    expect_refusal(folder, UNSUITABLE, "never meets", at="1m")
+    expect_refusal(folder, UNSUITABLE, "largest gain that fits", gain="100mm/N")
+    (folder / "bad.csv").write_text("time_s,position_m\n0,0\n1,x\n")
+    expect_refusal(folder, MALFORMED, "line 3, column 2", path=folder / "bad.csv")
+    (folder / "bad.csv").unlink()
+
+
+def check_clipping(folder):
+    drive = folder / "clipped.wav"
+    done = made.run("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", drive, "--gain", "20mm/N", "--over-limit", "clip")
+    assert done.returncode == 0, done.stderr
+    assert "clipped" in done.stderr and "dB" in done.stderr, done.stderr
+    assert abs(np.abs(made.samples(drive)).max() - 5) < 1e-6
+    assert "clipped removed" in done.stdout, done.stdout
+
+
+def check_report(folder):
+    report = made.report_of("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav")
+    drive = made.samples(folder / "drive.wav")
+    assert abs(report["drive_peak_v"] - np.abs(drive).max()) < 1e-9
+    assert abs(report["drive_rms_v"] - np.sqrt(np.mean(drive**2))) < 1e-9
+    assert abs(report["duration_s"] - len(drive) / 10e3) < 1e-9
+    assert report["samples_outside_texture"] == 0 and report["delay_s"] == 0
+    assert abs(report["highest_passed_at_max_speed_per_m"] - 500 / report["max_speed_mps"]) < 1e-6
+    # The same input gives the same file.
+    first = (folder / "drive.wav").read_bytes()
+    made.report_of("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav")
+    assert (folder / "drive.wav").read_bytes() == first
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        made.write_texture(folder / "t", 0.01 * np.sin(2 * np.pi * 3e3 * np.arange(50_001) * made.PITCH_M))
+        made.write_path(folder / "path.csv", [0, 0.1, 1.1, 1.2], [0.002, 0.002, 0.04, 0.04])
+        check_refusals(folder)
+        check_clipping(folder)
+        check_report(folder)
+
+
+if __name__ == "__main__":
+    main()

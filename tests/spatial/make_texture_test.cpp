@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/make_texture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "spatial/equaliser.hpp"
+#include "spatial/valid_band.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+constexpr double kRate_hz = 10000;
+constexpr double kTurn = 2 * std::numbers::pi;
+using Surface = std::function<double(double position_m)>;
+
+// A chirp from 0.5 to 6 /mm over 80 mm, in N.
+double chirp(double x_m) {
+  return 0.1 * std::sin(kTurn * (500 * x_m + 0.5 * 5500 / 0.08 * x_m * x_m));
+}
+
+double ridges(double x_m) {
+  return 0.2 * std::sin(kTurn * 2000 * x_m) + 0.1 * std::sin(kTurn * 3300 * x_m + 1);
+}
+
+// A finger that goes `length_m` with `wobble` of its speed too fast and too slow three times, rests 0.5 s at
+// each end.
+std::vector<double> stroke_path(double from_m, double length_m, double speed_mps, double wobble) {
+  const auto moving = static_cast<int>(std::abs(length_m) / speed_mps * kRate_hz), rest = 5000;
+  std::vector<double> path(rest, from_m);
+  for (int i = 1; i <= moving; ++i) {
+    const double u = static_cast<double>(i) / moving;
+    path.push_back(from_m + length_m * (u + wobble / (3 * kTurn) * std::sin(3 * kTurn * u)));
+  }
+  path.insert(path.end(), rest, path.back());
+  return path;
+}
+
+void append(std::vector<double>& path, const std::vector<double>& more) {
+  path.insert(path.end(), more.begin(), more.end());
+}
+
+schema::Channel channel(const std::string& quantity, const std::string& unit) {
+  schema::Channel made;
+  made.name = made.quantity = quantity;
+  made.unit = unit;
+  return made;
+}
+
+class MakeTexture : public testing::Test {
+ protected:
+  // What a surface gives along a path, with the position rounded to the encoder's quantum, as a recording on
+  // disk.
+  schema::Recording record(const std::vector<double>& path, const Surface& surface, double quantum_m,
+                           const std::function<void(schema::RecordingHeader&)>& change = {}) {
+    schema::RecordingHeader header;
+    header.sample_rate_hz = kRate_hz;
+    header.clock = "computed";
+    header.channels = {channel("tangential_force", "N"), channel("position", "m"),
+                       channel("normal_force", "N")};
+    if (change) change(header);
+    auto writer = schema::RecordingWriter::create(folder_ / ("touch" + std::to_string(++count_)), header);
+    std::vector<double> frames;
+    for (const double x : path) {
+      const double seen = quantum_m > 0 ? std::round(x / quantum_m) * quantum_m : x;
+      frames.insert(frames.end(), {surface(x), seen, 0.5});
+    }
+    EXPECT_TRUE(writer->write(std::span<const double>(frames)));
+    const auto closed = writer->close();
+    EXPECT_TRUE(closed) << schema::message(closed.error());
+    return *schema::open_recording(closed->stem);
+  }
+
+  schema::Texture texture_of(const schema::Recording& recording, const TextureOptions& options,
+                             int number = 1) {
+    auto maker = TextureMaker::open(recording, options);
+    EXPECT_TRUE(maker) << schema::message(maker.error());
+    const auto stroke = maker->record().stroke(number);
+    EXPECT_TRUE(stroke) << schema::message(stroke.error());
+    auto texture = maker->make(*stroke, number);
+    EXPECT_TRUE(texture) << schema::message(texture.error());
+    return *texture;
+  }
+
+  tests::TemporaryFolder folder_;
+  int count_ = 0;
+};
+
+// RMS difference from the surface, re its RMS, where it lies `margin_m` and more from the stroke's ends.
+double error_of(const schema::Texture& texture, const Surface& surface, double margin_m) {
+  double miss = 0, size = 0;
+  for (std::size_t i = 0; i < texture.signal.values.size(); ++i) {
+    const double at_m = texture.signal.position_m(i);
+    if (at_m < margin_m || at_m > texture.signal.length_m() - margin_m) continue;
+    const double exact = surface(texture.source_origin_m + at_m);
+    miss += std::pow(texture.signal.values[i] - exact, 2);
+    size += exact * exact;
+  }
+  return std::sqrt(miss / size);
+}
+
+TEST_F(MakeTexture, AChirpInSpaceComesBackFromAnUnevenFinger) {
+  // 30 to 70 mm/s, so that the chirp lies within 15 to 420 Hz. What is left is the cubic's own error at 24
+  // samples a period, and of the filter at the start, where the chirp is at the band's edge.
+  const auto recording = record(stroke_path(0, 0.08, 0.05, 0.4), chirp, 0);
+  EXPECT_LT(error_of(texture_of(recording, {}), chirp, 0.008), 0.01);
+  TextureOptions whole;
+  whole.filter.method = FilterMethod::none;
+  EXPECT_LT(error_of(texture_of(recording, whole), chirp, 0), 0.004);
+}
+
+TEST_F(MakeTexture, AnEncodersMicrometreCostsWhatItsPhaseIsWorth) {
+  // 1 um at 6 /mm is 2.2 degrees from end to end: 1.1 % RMS of a uniform error, at most.
+  const auto recording = record(stroke_path(0, 0.08, 0.05, 0.4), chirp, 1e-6);
+  TextureOptions whole;
+  whole.filter.method = FilterMethod::none;
+  EXPECT_LT(error_of(texture_of(recording, whole), chirp, 0), 0.012);
+}
+
+TEST_F(MakeTexture, BothWaysGiveTheSameSurface) {
+  auto path = stroke_path(0.01, 0.06, 0.05, 0.2);
+  append(path, stroke_path(path.back(), -0.06, 0.03, 0.2));
+  const auto recording = record(path, ridges, 0);
+  const auto forth = texture_of(recording, {}, 1), back = texture_of(recording, {}, 2);
+  EXPECT_EQ(forth.direction, 1);
+  EXPECT_EQ(back.direction, -1);
+  EXPECT_LT(error_of(forth, ridges, 0.005), 0.01);
+  EXPECT_LT(error_of(back, ridges, 0.005), 0.01);
+  EXPECT_EQ(back.source.stroke, 2);
+  EXPECT_NEAR(back.source.mean_speed_mps, 0.03, 0.001);
+}
+
+TEST_F(MakeTexture, PositionsLieOnTheGridOfTheBench) {
+  const auto recording = record(stroke_path(-0.0312345, 0.05, 0.05, 0), ridges, 0.5e-6);
+  TextureOptions options;
+  options.pitch_m = 1e-5;
+  const auto texture = texture_of(recording, options);
+  EXPECT_EQ(texture.signal.origin_m, 0);
+  EXPECT_NEAR(std::remainder(texture.source_origin_m, 1e-5), 0, 1e-15);
+  EXPECT_NEAR(texture.source_origin_m, -0.0312345, 2e-3);
+  EXPECT_LT(error_of(texture, ridges, 0.005), 0.015);
+}
+
+TEST_F(MakeTexture, ValidBandFollowsTheSpeed) {
+  const auto recording = record(stroke_path(0, 0.08, 0.05, 0.4), ridges, 1e-6);
+  const auto texture = texture_of(recording, {});
+  const auto& band = texture.valid_band;
+  EXPECT_LT(band.size(), 200U);
+  EXPECT_EQ(band.front().position_m, 0);
+  EXPECT_EQ(band.back().position_m, texture.signal.length_m());
+  for (const auto& point : band) {
+    EXPECT_NEAR(point.high_per_m / point.low_per_m, 500.0 / 15, 1e-9);
+    EXPECT_GT(point.high_per_m, 500 / 0.071);
+  }
+  const auto throughout = band_throughout(band);
+  EXPECT_NEAR(throughout.high_per_m, 500 / 0.07, 0.02 * 500 / 0.07);
+  EXPECT_LT(throughout.low_per_m, throughout.high_per_m);
+  EXPECT_NEAR(texture.source.max_speed_mps, 0.07, 0.001);
+}
+
+TEST_F(MakeTexture, ValidBandIsTrueToOnePercentBetweenItsPoints) {
+  SpeedProfile profile;
+  for (int i = 0; i <= 900; ++i) {
+    profile.position_m.push_back(i * 1e-4);
+    profile.speed_mps.push_back(0.05 + 0.03 * std::sin(i * 0.03));
+  }
+  const auto band = valid_band(profile, {15, 500});
+  EXPECT_LT(band.size(), 150U);
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < profile.position_m.size(); ++i) {
+    while (j + 2 < band.size() && profile.position_m[i] > band[j + 1].position_m) ++j;
+    const double u =
+        (profile.position_m[i] - band[j].position_m) / (band[j + 1].position_m - band[j].position_m);
+    const double told = band[j].high_per_m + u * (band[j + 1].high_per_m - band[j].high_per_m);
+    EXPECT_NEAR(told * profile.speed_mps[i], 500, 5.0001);
+  }
+}
+
+TEST_F(MakeTexture, EqualisingUndoesTheSensor) {
+  // The sensor of the paper sees ridges at 50 mm/s: 100 Hz and 165 Hz, turned and raised by its response.
+  const auto transducer = *schema::read_transducer("wiertlewski2011");
+  const double nominal = schema::nominal_newtons_per_volt(transducer);
+  const auto seen = [&](double size, double per_m, double phase) {
+    const auto response = schema::sensor_response(transducer, per_m * 0.05) * nominal;
+    return [=](double x) {
+      return std::abs(response) * size * std::sin(kTurn * per_m * x + phase + std::arg(response));
+    };
+  };
+  const auto low = seen(0.2, 2000, 0), high = seen(0.1, 6600, 1);
+  const auto true_force = [](double x) {
+    return 0.2 * std::sin(kTurn * 2000 * x) + 0.1 * std::sin(kTurn * 6600 * x + 1);
+  };
+  const auto named = [&](schema::RecordingHeader& header) { header.transducer = transducer; };
+  const auto recording = record(
+      stroke_path(0, 0.1, 0.05, 0), [&](double x) { return low(x) + high(x); }, 0, named);
+  TextureOptions raw;
+  raw.equalise = Equalise::off;
+  const auto equalised = texture_of(recording, {});
+  EXPECT_TRUE(equalised.source.equalised);
+  EXPECT_LT(error_of(equalised, true_force, 0.02), 0.01);
+  EXPECT_GT(error_of(texture_of(recording, raw), true_force, 0.02), 0.2);
+  TextureOptions butterworth;
+  butterworth.filter = {FilterMethod::butterworth, {10, 1500}, Edges::treated, 4};
+  EXPECT_LT(error_of(texture_of(recording, butterworth), true_force, 0.02), 0.01);
+}
+
+TEST_F(MakeTexture, EqualiserEndsWhereTheSensorSeesNothing) {
+  const auto transducer = *schema::read_transducer("wiertlewski2011");
+  const auto gain = equaliser(transducer);
+  EXPECT_EQ(gain(0), std::complex<double>(0));
+  EXPECT_NEAR(std::abs(gain(0.01)), kMostEqualiserGain, 1e-9);
+  EXPECT_NEAR(std::abs(gain(4900)), kMostEqualiserGain, 1e-9);
+  // At 300 Hz the sensor gives 1.4 times its nominal gain (PAPERS.md).
+  EXPECT_NEAR(1 / std::abs(gain(300)), 1.4, 0.05);
+}
+
+TEST_F(MakeTexture, CarriesWhatTheRecordingSays) {
+  const auto change = [](schema::RecordingHeader& header) {
+    header.simulated = "a test";
+    header.surface = "oak";
+    header.subject = "S01";
+  };
+  const auto recording = record(stroke_path(0, 0.05, 0.05, 0), ridges, 1e-6, change);
+  TextureOptions options;
+  options.filter = {FilterMethod::butterworth, {20, 400}, Edges::none, 3};
+  const auto texture = texture_of(recording, options);
+  EXPECT_EQ(texture.simulated, "a test");
+  EXPECT_EQ(texture.surface, "oak");
+  EXPECT_EQ(texture.subject, "S01");
+  EXPECT_EQ(texture.source.filter, "butterworth");
+  EXPECT_EQ(texture.source.order, 3);
+  EXPECT_EQ(texture.source.edges, "none");
+  EXPECT_EQ(texture.source.low_hz, 20);
+  EXPECT_EQ(texture.source.recording_sha256, recording.header.sha256);
+  EXPECT_FALSE(texture.source.equalised);
+  EXPECT_EQ(texture.source.recording, "touch1.json");
+  EXPECT_GT(texture.source.position_moved_m, 0);
+  EXPECT_LE(texture.source.position_moved_m, 1e-6);
+}
+
+std::string refusal(const schema::Recording& recording, const TextureOptions& options) {
+  auto maker = TextureMaker::open(recording, options);
+  if (!maker) return schema::message(maker.error());
+  const auto made = maker->make(maker->record().strokes().at(0), 1);
+  return made ? "" : schema::message(made.error());
+}
+
+std::string stretch_refusal(const schema::Recording& recording, double from_s, double to_s) {
+  const auto record = TouchRecord::open(recording, "tangential_force");
+  const auto stretch = record->stretch(from_s, to_s);
+  return stretch ? "" : schema::message(stretch.error());
+}
+
+TEST_F(MakeTexture, RefusesWhatCannotBecomeATexture) {
+  const auto recording = record(stroke_path(0, 0.05, 0.05, 0), ridges, 1e-6);
+  const auto with = [&](auto change) {
+    TextureOptions options;
+    change(options);
+    return refusal(recording, options);
+  };
+  EXPECT_EQ(with([](auto&) {}), "");
+  EXPECT_NE(with([](auto& o) { o.channel = "drive"; }).find("tangential_force"), std::string::npos);
+  EXPECT_NE(with([](auto& o) { o.filter.band = {15, 5001}; }).find("5000 Hz"), std::string::npos);
+  EXPECT_NE(with([](auto& o) {
+              o.filter.band = {0.5, 500};
+            }).find("less than one period"),
+            std::string::npos);
+  EXPECT_NE(with([](auto& o) { o.pitch_m = 1e-12; }).find("1e9"), std::string::npos);
+  EXPECT_NE(with([](auto& o) { o.pitch_m = 1; }).find("grid"), std::string::npos);
+  EXPECT_NE(with([](auto& o) { o.pitch_m = 0; }).find("above 0"), std::string::npos);
+  EXPECT_NE(with([](auto& o) { o.equalise = Equalise::on; }).find("transducer"), std::string::npos);
+  EXPECT_NE(with([](auto& o) { o.filter = {FilterMethod::butterworth, {15, 5000}, Edges::none, 4}; }), "");
+}
+
+TEST_F(MakeTexture, RefusesWhatHasNoPosition) {
+  const auto still = record(std::vector<double>(1000, 0.02), ridges, 0);
+  EXPECT_NE(refusal(still, {}).find("never moves"), std::string::npos);
+  const auto blind = record(stroke_path(0, 0.05, 0.05, 0), ridges, 0,
+                            [](schema::RecordingHeader& h) { h.channels[1] = channel("displacement", "m"); });
+  EXPECT_NE(refusal(blind, {}).find("no position channel"), std::string::npos);
+}
+
+TEST_F(MakeTexture, StretchesMustLieInOneStrokeWithoutAGap) {
+  auto path = stroke_path(0, 0.05, 0.05, 0);
+  append(path, stroke_path(path.back(), -0.05, 0.05, 0));
+  const auto recording = record(path, ridges, 1e-6);
+  EXPECT_EQ(stretch_refusal(recording, 0.6, 1.4), "");
+  EXPECT_EQ(stretch_refusal(recording, 0.5, 1.5), "");
+  EXPECT_NE(stretch_refusal(recording, 0.6, 3.4).find("turns round"), std::string::npos);
+  EXPECT_NE(stretch_refusal(recording, 0.1, 0.4).find("gets nowhere"), std::string::npos);
+  EXPECT_NE(stretch_refusal(recording, 3.5, 4.5).find("out of the recording"), std::string::npos);
+  EXPECT_NE(stretch_refusal(recording, -1, 1).find("out of the recording"), std::string::npos);
+  EXPECT_NE(stretch_refusal(recording, 1, 0.9).find("not after its start"), std::string::npos);
+  const auto record_of_touch = TouchRecord::open(recording, "tangential_force");
+  ASSERT_EQ(record_of_touch->strokes().size(), 2U);
+  const auto third = record_of_touch->stroke(3);
+  ASSERT_FALSE(third);
+  EXPECT_NE(schema::message(third.error()).find("there are 1: 0.49"), std::string::npos);
+  EXPECT_FALSE(record_of_touch->stroke(0));
+}
+
+TEST_F(MakeTexture, AGapPartsStrokesAndFilters) {
+  const auto path = stroke_path(0, 0.1, 0.05, 0);
+  const auto gapped = [](schema::RecordingHeader& header) { header.gaps = {{15000, 15000, 500}}; };
+  const auto recording = record(path, ridges, 1e-6, gapped);
+  EXPECT_NE(stretch_refusal(recording, 0.8, 2).find("500 frames are missing"), std::string::npos);
+  auto maker = TextureMaker::open(recording, {});
+  ASSERT_EQ(maker->record().strokes().size(), 2U);
+  for (int number : {1, 2}) {
+    const auto texture = maker->make(*maker->record().stroke(number), number);
+    ASSERT_TRUE(texture);
+    EXPECT_LT(error_of(*texture, ridges, 0.01), 0.02);
+  }
+  const Stroke across{{14000, 16000}, 1};
+  EXPECT_FALSE(maker->make(across, 0));
+}
+
+TEST_F(MakeTexture, TheMeanNormalForceIsReported) {
+  const auto recording = record(stroke_path(0, 0.05, 0.05, 0), ridges, 1e-6);
+  const auto touch = TouchRecord::open(recording, "tangential_force");
+  EXPECT_DOUBLE_EQ(*touch->mean_normal_force_n(touch->strokes()[0]), 0.5);
+}
+
+}  // namespace
+}  // namespace tacto::spatial
