@@ -24,9 +24,18 @@ function(tacto_library name)
   target_link_libraries(${name} PUBLIC tacto_options)
 endfunction()
 
+# tacto_compile_quickly(NAME header): for code that waits for people or files, and includes one huge header: that header
+# once, and little optimisation. Halves the time of a build.
+function(tacto_compile_quickly name header)
+  target_precompile_headers(${name} PRIVATE ${header})
+  target_compile_options(${name} PRIVATE -O1)
+endfunction()
+
 # tacto_cli(NAME sources...) : a folder's verbs, linked into the command.
 function(tacto_cli name)
   add_library(${name} STATIC ${ARGN})
   target_link_libraries(${name} PUBLIC tacto_options tacto_command_line)
+  target_precompile_headers(${name} REUSE_FROM tacto_command_line)
+  target_compile_options(${name} PRIVATE -O1)
   target_link_libraries(tacto_verbs INTERFACE ${name})
 endfunction()

@@ -34,8 +34,8 @@ std::vector<Finding> check_layout(const ExpectedWav& expected, const WavInfo& in
 void add_checksum(const ExpectedWav& expected, std::vector<Finding>& findings) {
   const auto sum = sha256_of_file(expected.path);
   if (sum && *sum != expected.sha256)
-    findings.push_back(
-        {expected.path, fmt::format("its SHA-256 is {}, by its sidecar {}", *sum, expected.sha256)});
+    findings.push_back({expected.path, fmt::format("its checksum (SHA-256) is {}, by its sidecar {}", *sum,
+                                                   expected.sha256)});
 }
 
 void add_samples(const ExpectedWav& expected, const Progress& progress, std::vector<Finding>& findings) {

@@ -57,8 +57,8 @@ constexpr Unit kUnits[] = {
 
 // Units that are read but never chosen to write with: "cm" would surprise where "12 mm" is expected.
 bool for_reading_only(std::string_view symbol) {
-  return symbol == "cm" || symbol == "cm/s" || symbol == "/cm" || symbol == "min" || symbol == "h" ||
-         symbol == "/um";
+  return symbol == "cm" || symbol == "cm/s" || symbol == "/cm" || symbol == "/m" || symbol == "min" ||
+         symbol == "h" || symbol == "/um";
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -144,7 +144,7 @@ std::string for_people(double value_si, Dimension dimension) {
   const Unit* best = nullptr;
   for (const Unit& unit : kUnits) {
     if (unit.dimension != dimension || for_reading_only(unit.symbol)) continue;
-    if (best == nullptr || std::abs(value_si) >= unit.si || value_si == 0) best = &unit;
+    if (best == nullptr || std::abs(value_si) >= unit.si || (value_si == 0 && unit.si <= 1)) best = &unit;
   }
   if (best->dimension == Dimension::none) return fmt::format("{:.4g}", value_si);
   const bool inverse = best->symbol.starts_with('/');

@@ -7,7 +7,8 @@
 
 namespace tacto::schema {
 
-/// A value over time: sample i was taken at start_s + i / sample_rate_hz. Values in the SI unit of their quantity.
+/// A value over time: sample i was taken at start_s + i / sample_rate_hz. Values in the SI unit of their
+/// quantity.
 struct TimeSignal {
   double sample_rate_hz = 0;
   double start_s = 0;
@@ -17,7 +18,8 @@ struct TimeSignal {
   double duration_s() const { return static_cast<double>(values.size()) / sample_rate_hz; }
 };
 
-/// A value over position: sample i belongs to origin_m + i * pitch_m. Values in the SI unit of their quantity.
+/// A value over position: sample i belongs to origin_m + i * pitch_m. Values in the SI unit of their
+/// quantity.
 struct SpaceSignal {
   double pitch_m = 0;
   double origin_m = 0;

@@ -61,6 +61,7 @@ void put_windowing(NetcdfWriter& file, const Spectrogram& first) {
   file.attribute("quantity_unit", first.unit);
   file.attribute("scaling", std::string("density, one-sided"));
   file.attribute("window", first.window);
+  file.attribute("detrend", first.detrend);
   file.attribute("window_mm", first.window_m * kMillimetres);
   file.attribute("hop_mm", first.hop_m * kMillimetres);
   file.attribute("pitch_mm", first.pitch_m * kMillimetres);
@@ -152,6 +153,7 @@ void read_attributes(NetcdfReader& file, std::size_t stroke, Spectrogram& spectr
   spectrogram.quantity = file.text("quantity");
   spectrogram.unit = file.text("quantity_unit");
   spectrogram.window = file.text("window");
+  spectrogram.detrend = file.text("detrend");
   spectrogram.simulated = file.text("simulated");
   spectrogram.window_m = file.number("window_mm") / kMillimetres;
   spectrogram.hop_m = file.number("hop_mm") / kMillimetres;

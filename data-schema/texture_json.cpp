@@ -44,7 +44,6 @@ constexpr SourceNumber kSourceNumbers[] = {
     {"min_speed_mps", &TextureSource::min_speed_mps},
     {"max_speed_mps", &TextureSource::max_speed_mps},
     {"position_moved_m", &TextureSource::position_moved_m},
-    {"position_moved_m", &TextureSource::position_moved_m},
 };
 
 Json source_body(const TextureSource& source) {
@@ -52,7 +51,6 @@ Json source_body(const TextureSource& source) {
   for (const auto& [name, member] : kSourceTexts) put_text(body, name, source.*member);
   for (const auto& [name, member] : kSourceNumbers) body[name] = source.*member;
   if (source.stroke != 0) body["stroke"] = source.stroke;
-  if (source.order != 0) body["order"] = source.order;
   if (source.order != 0) body["order"] = source.order;
   body["equalised"] = source.equalised;
   return body;
@@ -63,7 +61,6 @@ TextureSource source_from(const Json& body) {
   for (const auto& [name, member] : kSourceTexts) source.*member = text_or(body, name);
   for (const auto& [name, member] : kSourceNumbers) source.*member = number_or(body, name, 0);
   source.stroke = static_cast<int>(number_or(body, "stroke", 0));
-  source.order = static_cast<int>(number_or(body, "order", 0));
   source.order = static_cast<int>(number_or(body, "order", 0));
   source.equalised = body.contains("equalised") && body["equalised"].get<bool>();
   return source;

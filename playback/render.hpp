@@ -32,10 +32,9 @@ struct RenderOptions {
   Hold hold = Hold::none;
   OverLimit over_limit = OverLimit::refuse;
   /// Raised-cosine fade of the force at either end of the path, at most a quarter of it: nothing starts with
-  /// a jump where the finger starts inside the texture. What is left then is the ringing of the band's edges:
-  /// the drive starts below 0.3 of its RMS, and its cut there costs at most -47 dB (for noise and tones in
-  /// the band).
-  double onset_s = 0.02;
+  /// a jump where the finger starts inside the texture. What is left is the ringing of the band's edges: on a
+  /// real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3 of it.
+  double onset_s = 0.005;
 };
 
 /// What the limits took away from a clipped drive.
@@ -47,7 +46,7 @@ struct Clipping {
 
 struct Rendering {
   schema::TimeSignal drive_v;     ///< rounded to 32-bit float, as it is stored and played
-  schema::TimeSignal wanted_m;    ///< gain x force along the path, in the band
+  schema::TimeSignal wanted_m;    ///< gain x force along the path, in the band (keep_band)
   schema::TimeSignal modelled_m;  ///< drive_v through the transducer's model, over all frequencies
   double error_db = 0;  ///< RMS of modelled - wanted in the band, re RMS of wanted; from drive_v as it is
   double delay_s = 0;  ///< of the displacement behind the wanted one: none, the inverse is applied to spectra

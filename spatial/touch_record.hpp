@@ -42,8 +42,8 @@ class TouchRecord {
   /// The stroke of a 1-based number. Errors: unsuitable, with those there are.
   schema::Result<Stroke> stroke(int number) const;
   /// All frames from one time to another, both included. Errors: usage, where they do not rise;
-  /// unsuitable, outside of the recording, with a gap inside, or where the finger turns round or stays where it
-  /// is.
+  /// unsuitable, outside of the recording, with a gap inside, or where the finger turns round or stays where
+  /// it is.
   schema::Result<Stroke> stretch(double from_s, double to_s) const;
 
  private:

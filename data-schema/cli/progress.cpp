@@ -22,7 +22,8 @@ void Progress::update(double fraction) {
   if (now < next_) return;
   next_ = now + (terminal_ ? 100ms : 5000ms);
   shown_ = true;
-  fmt::print(stderr, "{}{}  {:3.0f} %{}", terminal_ ? "\r" : "", task_, 100 * fraction, terminal_ ? "" : "\n");
+  fmt::print(stderr, "{}{}  {:3.0f} %{}", terminal_ ? "\r" : "", task_, 100 * fraction,
+             terminal_ ? "" : "\n");
   std::fflush(stderr);
 }
 

@@ -2,10 +2,16 @@
 #include "playback/reference/padded_spectrum.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "spatial/dsp/fft.hpp"
 
 namespace tacto::playback {
+namespace {
+constexpr double kLowSkirt = 0.2;
+constexpr double kHighSkirt = 0.01;
+}  // namespace
 
 PaddedSpectrum spectrum_of(std::span<const double> values, double rate_hz, std::size_t period) {
   PaddedSpectrum spectrum{rate_hz, values.size(), period, {}};
@@ -31,12 +37,11 @@ std::vector<double> signal_of(const PaddedSpectrum& spectrum, std::size_t oversa
 }
 
 void keep_band(PaddedSpectrum& spectrum, const spatial::Band& band) {
-  const double width_hz = spectrum.rate_hz / static_cast<double>(spectrum.period);
   for (std::size_t k = 0; k < spectrum.bins.size(); ++k) {
-    const double middle_hz = spectrum.frequency_hz(k);
-    const double from_hz = std::max(middle_hz - width_hz / 2, band.low_hz);
-    const double to_hz = std::min(middle_hz + width_hz / 2, band.high_hz);
-    spectrum.bins[k] *= std::max(0.0, to_hz - from_hz) / width_hz;
+    const double frequency_hz = spectrum.frequency_hz(k);
+    const double beside = std::max((band.low_hz - frequency_hz) / (kLowSkirt * band.low_hz),
+                                   (frequency_hz - band.high_hz) / (kHighSkirt * band.high_hz));
+    spectrum.bins[k] *= 0.5 + 0.5 * std::cos(std::numbers::pi * std::clamp(beside, 0.0, 1.0));
   }
 }
 

@@ -35,9 +35,11 @@ PaddedSpectrum spectrum_of(std::span<const double> values, double rate_hz, std::
 /// old samples by Fourier interpolation.
 std::vector<double> signal_of(const PaddedSpectrum& spectrum, std::size_t oversampling = 1);
 
-/// Fourier truncation. A bin across an edge of the band keeps the share of it that lies inside: the result
-/// then comes within 0.2 % RMS of that of an endless period, where whole bins would leave 1 % (noise up to
-/// the edge, period 1.6 times the signal).
+/// Passes the band whole and falls to nothing beside it by raised cosines, over a fifth of low_hz below and a
+/// hundredth of high_hz above: from 15 to 12 Hz, from 500 to 505 Hz. Plain truncation rings for as long as
+/// the path lasts, and what it leaves near 15 Hz depends on the record's length: a real finger's texture then
+/// differs over 15-500 Hz by up to 2.2 % RMS between two lengths of record, with these skirts by 0.9 % (0.1 s
+/// at either end left out).
 void keep_band(PaddedSpectrum& spectrum, const spatial::Band& band);
 
 /// Multiplied by a response.

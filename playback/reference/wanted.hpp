@@ -30,7 +30,7 @@ struct ReadingGrid {
 /// stay below 2^24, about 0.5 GB of memory: `capped` says that oversampling had to stop there.
 ReadingGrid reading_grid(double duration_s, double rate_hz, const spatial::Band& band, double finest_hz);
 
-/// Reads the texture along the path, keeps the band by Fourier truncation and gives the result's samples:
+/// Reads the texture along the path, keeps the band (keep_band) and gives the result's samples:
 /// gain_m_per_n * force, m. Before and after the path the force rests at its mean over the first and the last
 /// period of band.low_hz; over onset_s at either end it leaves and reaches that rest by a raised cosine, so
 /// that neither end is a step although the finger may move there. Precondition: a checked path, 0 <

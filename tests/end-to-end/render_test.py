@@ -63,7 +63,7 @@ def displaced(drive, extra=lambda f: 1.0):
 
 
 def made(name):
-    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=3", "--time", "1.2s", "-o", "rec")
+    tacto.run("record", "-d", "sim:surface=E,speed=50mm/s,seed=3", "--time", "1.2s", "-o", "rec")
     tacto.run("spatial", "rec", "-o", name, "--stroke", "1")
     finger_path()
 
@@ -96,7 +96,8 @@ def displacement_file_is_the_model():
               "--displacement", "tray.wav")
     drive, _ = soundfile.read("drive.wav")
     tray, _ = soundfile.read("tray.wav")
-    error = error_after_delay(tray, displaced(drive), 0.0)
+    kept = np.fft.irfft(band(tray, RATE)[0], len(tray))
+    error = error_after_delay(kept, displaced(drive), 0.0)
     print(f"--displacement against SciPy's actuator: {error:.4%}")
     assert error < 0.005
 

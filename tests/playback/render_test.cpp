@@ -129,7 +129,8 @@ TEST(Render, BesideTheTextureThereIsSilenceAndNoClickAtItsEnds) {
     ASSERT_LT(std::abs(wanted[i] - wanted[i - 1]), 1.1 * steepest);
 }
 
-// Without the onset the drive begins with a jump of its own size. 5 %, -54 dB: the band's edges ring.
+// Without the onset the drive begins with a jump of its own size; 15 % and -54 dB: the band's edges ring a
+// little.
 TEST(Render, StartsAndEndsAtRestWhereTheFingerDoesNot) {
   const auto texture = texture_of(0.12, [](double x) { return 0.02 * std::cos(kTwoPi * 2e3 * x); });
   RenderOptions options;
@@ -138,8 +139,8 @@ TEST(Render, StartsAndEndsAtRestWhereTheFingerDoesNot) {
   const auto hard = render(texture, steady_path(0.01, 0.05, 2), paper(), options);
   ASSERT_TRUE(soft && hard);
   const double inside = rms_between(soft->drive_v, 0.5, 1.5);
-  EXPECT_LT(std::abs(soft->drive_v.values.front()), 0.05 * inside);
-  EXPECT_LT(std::abs(soft->drive_v.values.back()), 0.05 * inside);
+  EXPECT_LT(std::abs(soft->drive_v.values.front()), 0.15 * inside);
+  EXPECT_LT(std::abs(soft->drive_v.values.back()), 0.15 * inside);
   EXPECT_GT(std::abs(hard->drive_v.values.front()), 0.5 * inside);
   EXPECT_LT(soft->error_db, -54);
 }

@@ -14,7 +14,7 @@ import tempfile
 import numpy as np
 import soundfile
 from scipy.interpolate import PchipInterpolator
-from scipy.signal import butter, sosfiltfilt, welch
+from scipy.signal import butter, fftconvolve, sosfiltfilt, welch
 
 COMMAND = os.environ["TACTOGRAPH"]
 CSV = pathlib.Path(os.environ["TACTO_DATA"]) / "bare-finger/bare_finger_10kHz.csv"
@@ -94,14 +94,26 @@ def check_butterworth(folder, force, position):
     assert rms(values - expected) < 1e-6 * rms(expected)
 
 
-def check_treated_ends(folder, plain, inside):
-    """The default against plain truncation of the record with both ends drawn out: it must not ring in the middle."""
+def ideal_band_pass(values, low_hz, high_hz):
+    """Convolution with the ideal kernel: no bins, and the ends are brought level so that there is no step at them."""
+    level = values - np.linspace(values[:200].mean(), values[-200:].mean(), values.size)
+    t = np.arange(1 - values.size, values.size) / RATE_HZ
+    kernel = (2 * high_hz * np.sinc(2 * high_hz * t) - 2 * low_hz * np.sinc(2 * low_hz * t)) / RATE_HZ
+    return fftconvolve(level, kernel)[values.size - 1:2 * values.size - 1]
+
+
+def check_treated_ends(folder, force, position, plain, inside):
     run("spatial", folder / "finger", "--from", "4.55s", "--to", "6.85s", "-o", folder / "treated")
-    sidecar, _, values = texture(folder, "treated")
+    sidecar, at_m, values = texture(folder, "treated")
     assert sidecar["source"]["edges"] == "treated"
-    ringing = rms(plain[inside] - values[inside]) / rms(values[inside])
-    print(f"plain truncation rings by {100 * ringing:.2f} % of the RMS between 10 and 80 mm")
-    assert 0.005 < ringing < 0.05
+    t = np.arange(force.size)
+    frames = slice(45500, 68501)
+    when = PchipInterpolator(position[frames], t[frames])(at_m[inside])
+    ideal = PchipInterpolator(t, ideal_band_pass(force, 15, 500))(when)
+    treated_error, plain_error = (rms(each[inside] - ideal) / rms(ideal) for each in (values, plain))
+    print(f"off the ideal band-pass between 10 and 80 mm: {treated_error:.2%} of the RMS, plain {plain_error:.2%}")
+    assert treated_error < 0.002
+    assert plain_error > 0.02
 
 
 def band_power(values):
@@ -167,7 +179,7 @@ def main():
         import_finger(folder)
         plain, inside = check_against_scipy(folder, force, position)
         check_butterworth(folder, force, position)
-        check_treated_ends(folder, plain, inside)
+        check_treated_ends(folder, force, position, plain, inside)
         check_finger_up(folder)
         check_strokes(folder)
         check_refusals(folder)
