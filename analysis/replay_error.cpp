@@ -101,7 +101,8 @@ ReplayError replay_error(const schema::TimeSignal& came, const schema::TimeSigna
   assert(came.values.size() == wanted.values.size() && came.duration_s() > 2 * settle_s);
   Comparison comparison(came, wanted, band, settle_s);
   ReplayError found;
-  found.delay_s = std::round(best_delay(comparison, max_delay_s) / kResolutionS) * kResolutionS;
+  found.delay_s =
+      std::round(best_delay(comparison, max_delay_s) / kResolutionS) * kResolutionS + 0.0;  // no -0
   found.error_rms = comparison.error_rms(found.delay_s);
   found.wanted_rms = comparison.wanted_rms();
   found.error_db = 20 * std::log10(found.error_rms / found.wanted_rms);

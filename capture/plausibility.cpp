@@ -68,13 +68,20 @@ bool has_other_size(double value, double median) {
   return std::abs(value) > kOtherSize * std::abs(median) || std::abs(value) * kOtherSize < std::abs(median);
 }
 
-// Further from each neighbour than half its distance from the median, and on the same side of both.
+// Further from each neighbour than half its distance from the median, and on the same side of both. The first
+// and the last sample have one neighbour: there the signal beside them must be calm, for a sine that begins
+// at zero is no fault.
 bool is_peak(std::span<const double> values, std::size_t i, double distance) {
   const double half = distance / 2;
   const auto stands_out = [&](std::size_t other) {
     return distance > 0 ? values[i] - values[other] > half : values[i] - values[other] < half;
   };
-  return (i == 0 || stands_out(i - 1)) && (i + 1 == values.size() || stands_out(i + 1));
+  const auto calm = [&](std::size_t a, std::size_t b) {
+    return std::abs(values[a] - values[b]) < std::abs(distance) / 4;
+  };
+  const std::size_t last = values.size() - 1;
+  const bool from_left = i == 0 ? calm(1, 2) : stands_out(i - 1);
+  return from_left && (i == last ? calm(last - 1, last - 2) : stands_out(i + 1));
 }
 
 std::string people(double si_value, const schema::Channel& channel) {

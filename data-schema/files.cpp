@@ -6,6 +6,7 @@
 #include <nettle/sha2.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -160,6 +161,17 @@ Result<void> PendingFiles::commit() {
     if (std::rename(file.temporary.c_str(), file.path.c_str()) != 0) return unwritable(file.path, errno);
     pending_.erase(pending_.begin());
   }
+  return {};
+}
+
+Result<void> check_stem(const std::string& stem) {
+  const std::string name = fs::path(stem).filename().string();
+  std::error_code ignored;
+  if (name.empty() || name == "." || name == ".." || fs::is_directory(stem, ignored))
+    return fail(Fault::usage, fmt::format("'{}' is no name for a file", stem), {},
+                "give one, as in FOLDER/NAME");
+  if (std::ranges::any_of(name, [](char c) { return c >= 0 && c < ' '; }))
+    return fail(Fault::usage, "the name of the output holds control characters", {}, "choose another name");
   return {};
 }
 

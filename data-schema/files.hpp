@@ -45,6 +45,10 @@ class PendingFiles {
   std::vector<Pending> pending_;
 };
 
+/// Whether files may be named after `stem`. Errors: usage, for a name that is empty, a folder, "." or "..",
+/// or holds control characters.
+Result<void> check_stem(const std::string& stem);
+
 /// Where a file of ours is kept: "oak" and "oak.texture.json" and "oak.texture.wav" all have the stem "oak"
 /// for the suffix ".texture". For plain recordings the suffix is empty.
 std::string stem_of(const std::string& name, std::string_view suffix);

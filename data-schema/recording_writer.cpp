@@ -58,6 +58,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& name, Recordi
                                                 bool replace) {
   auto state = std::make_unique<State>();
   state->stem = stem_of(name, "");
+  if (auto named = check_stem(state->stem); !named) return forward_error(named);
   if (const auto free = check_free(state->stem); !replace && !free) return forward_error(free);
   const std::string wav = state->stem + ".wav";
   header.wav_file = fs::path(wav).filename().string();

@@ -90,6 +90,7 @@ Result<Texture> read_texture(const std::string& name) {
 
 Result<void> write_texture(const std::string& name, const Texture& texture) {
   const std::string stem = stem_of(name, kSuffix);
+  if (auto named = check_stem(stem); !named) return named;
   if (auto writable = check_writable(stem, texture.signal); !writable) return writable;
   const std::string wav = stem + ".texture.wav";
   PendingFiles pending;

@@ -66,6 +66,9 @@ struct Table {
 };
 
 Result<Table> read_header(std::string_view line, const std::string& name) {
+  if (std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
+    return fail(Fault::malformed, "this is no table: its first line holds binary data", name,
+                "a path is a CSV with the columns time_s,position_m");
   Table table{name, split(line, ','), {}};
   for (std::size_t which = 0; which < kColumns.size(); ++which) {
     const auto found = std::ranges::find(table.header, kColumns[which]);

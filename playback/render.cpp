@@ -22,6 +22,8 @@ namespace {
 
 // Beyond this the padded transforms alone take over a gigabyte.
 constexpr double kMostSamples = 1 << 24;
+// A thousand times the compliance of a fingertip: more is a slip of the unit.
+constexpr double kLargestGain = 1;
 
 double level_db(double ratio) {
   return 20 * std::log10(ratio);
@@ -36,8 +38,8 @@ Result<void> check_options(const RenderOptions& o) {
   if (!(o.rate_hz > 2 * o.band.high_hz && std::isfinite(o.rate_hz)))
     return wrong(fmt::format("a rate of {:g} Hz can't hold a band up to {:g} Hz", o.rate_hz, o.band.high_hz),
                  fmt::format("take a --rate above {:g}Hz", 2 * o.band.high_hz));
-  if (!(o.gain_m_per_n > 0 && std::isfinite(o.gain_m_per_n)))
-    return wrong("the gain is not above 0", "a fingertip asks for about 1mm/N");
+  if (!(o.gain_m_per_n > 0 && o.gain_m_per_n <= kLargestGain))
+    return wrong("the gain is not between 0 and 1 m/N", "a fingertip asks for about 1mm/N");
   if (!std::isfinite(o.at_m)) return wrong("the texture's place is not finite", "give --at a length");
   if (!(o.onset_s >= 0 && std::isfinite(o.onset_s))) return wrong("the onset is below 0", "0s turns it off");
   if (!(o.reconstruction_cutoff_hz > 0))

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -67,9 +68,23 @@ void describe(CLI::App& app) {
   app.option_defaults()->always_capture_default();
 }
 
+// CLI11 would only say that a subcommand is required.
+bool is_unknown_verb(std::span<const Verb* const> verbs, std::string_view word) {
+  const auto named = [&](const Verb* verb) { return verb->name == word; };
+  return !word.starts_with('-') && word != "completion" && std::ranges::none_of(verbs, named);
+}
+
+int refuse_verb(std::span<const Verb* const> verbs, std::string_view word) {
+  std::string names = "completion";
+  for (const Verb* verb : verbs) names += fmt::format(", {}", verb->name);
+  return print_error(
+      {schema::Fault::usage, fmt::format("there is no verb '{}'", word), "", "the verbs are: " + names});
+}
+
 }  // namespace
 
 int run_command(std::span<const Verb* const> verbs, int argc, const char* const* argv) {
+  if (argc > 1 && is_unknown_verb(verbs, argv[1])) return refuse_verb(verbs, argv[1]);
   CLI::App app(
       "Records how a surface pulls on a finger, turns it into force against position, and plays it back.",
       "tactograph");

@@ -2,6 +2,7 @@
 #include "firmware-host/sim/load_cell.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace tacto::firmware_host {
@@ -17,7 +18,7 @@ constexpr double kCutoffHz = 200;       // ours: well under half of the native r
 LoadCell::LoadCell(double range_n, double sample_rate_hz, bool noise, Random random)
     : converter_(kBits, range_n),
       random_(random),
-      every_(std::max(1, static_cast<int>(sample_rate_hz / kNativeRateHz + 0.5))),
+      every_(std::max(1, static_cast<int>(std::lround(sample_rate_hz / kNativeRateHz)))),
       native_rate_hz_(sample_rate_hz / every_),
       follow_(1 / (1 + sample_rate_hz / (2 * std::numbers::pi * kCutoffHz))),
       noise_n_(noise ? kNoiseN : 0) {}

@@ -94,7 +94,7 @@ Colour level_colour(double level_db, const LevelRange& levels) {
 schema::Result<Pixels> heatmap(const Spectrogram& spectrogram, double low_per_m, double high_per_m,
                                const LevelRange& levels, int width, int height) try {
   cv::Mat power = view(spectrogram);
-  const double last = static_cast<double>(spectrogram.bins - 1);
+  const auto last = static_cast<double>(spectrogram.bins - 1);
   power = resized(power, std::min(power.cols, kMostBins), std::min(power.rows, width));
   power = resized(cv::Mat(power.t()), width, power.cols);
   const double shrunk = static_cast<double>(power.rows) / static_cast<double>(spectrogram.bins);

@@ -33,6 +33,12 @@ TEST(Plausibility, LostExponentsAreFound) {
   EXPECT_EQ(lone_samples(values), (std::vector<std::size_t>{1000, 3000}));
 }
 
+TEST(Plausibility, ASineThatBeginsAtZeroPasses) {
+  std::vector<double> values(5000);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(0.05 * static_cast<double>(i));
+  EXPECT_TRUE(lone_samples(values).empty());
+}
+
 TEST(Plausibility, TheFirstAndLastSampleCount) {
   auto values = noisy(5000, 100);
   values.front() = 1e5;

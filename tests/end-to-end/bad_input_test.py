@@ -48,6 +48,8 @@ def import_refuses():
     refused("import", good, "-o", "out", "--rate", "1kHz", "--channel", "position=x*1furlong", code=USAGE, says=["furlong"])
     refused("import", good, "-o", "nowhere/out", *TWO, code=CANNOT_WRITE, says=["nowhere"])
     refused("import", good, "-o", "/proc/out", *TWO, code=CANNOT_WRITE, says=["/proc"])
+    for name in ("", ".", "..", "/tmp"):
+        refused("import", good, "-o", name, *TWO, code=USAGE, says=["name"])
     tacto.run("import", good, "-o", "kept", *TWO)
     refused("import", good, "-o", "kept", *TWO, code=USAGE, says=["kept"])
 
@@ -110,6 +112,9 @@ def the_rest_refuses():
     refused("spectrogram", "oak", "-o", "x.png", "--window", "10m", code=UNSUITABLE, says=["window"])
     refused("spectrogram", "nothing", "-o", "x.png", code=NOT_FOUND, says=["nothing"])
     refused("spectrogram", "oak", "-o", "nowhere/x.png", code=CANNOT_WRITE, says=["nowhere"])
+    refused(*render, "wiertlewski2011", "--path", "path.csv", "--gain", "1e300m/N", code=USAGE, says=["gain"])
+    refused(*render, "wiertlewski2011", "--path", "oak.texture.wav", code=MALFORMED, says=["binary"])
+    refused("carve", code=USAGE, says=["carve", "spatial"])
     refused(*render, "acme", "--path", "path.csv", code=NOT_FOUND, says=["acme", "wiertlewski2011"])
     refused(*render, "wiertlewski2011", "--path", "absent.csv", code=NOT_FOUND, says=["absent.csv"])
     refused(*render, "wiertlewski2011", "--path", "back.csv", code=MALFORMED, says=["back.csv", "4"])
