@@ -46,8 +46,10 @@ double travelling_speed(std::span<const double> speed_mps) {
   std::ranges::sort(speeds);
   const double half_way = std::accumulate(speeds.begin(), speeds.end(), 0.0) / 2;
   double way = 0;
-  for (const double speed : speeds)
-    if ((way += speed) >= half_way) return speed;
+  for (const double speed : speeds) {
+    way += speed;
+    if (way >= half_way) return speed;
+  }
   return 0;
 }
 

@@ -113,7 +113,8 @@ Result<Frames> frames_of(const Texture& texture, const SpectrogramOptions& optio
   // A bin that lies on the limit is kept in spite of rounding.
   const double last =
       options.max_frequency_per_m * static_cast<double>(frames.padded) * pitch_m * (1 + 1e-12);
-  const double nyquist = static_cast<double>(frames.padded / 2);
+  const std::size_t half = frames.padded / 2;
+  const auto nyquist = static_cast<double>(half);
   frames.bins = 1 + static_cast<std::size_t>(std::min(std::floor(last), nyquist));
   return frames;
 }
