@@ -32,7 +32,13 @@ struct TextureSource {
   double low_hz = 0, high_hz = 0;
   bool equalised = false;  ///< divided by the sensor's response
   double mean_speed_mps = 0, min_speed_mps = 0, max_speed_mps = 0;
-  double position_moved_m = 0;  ///< how far the positions were moved, at most, to make them monotone
+  double position_moved_m = 0;    ///< how far the positions were moved, at most, to make them monotone
+  double position_quantum_m = 0;  ///< the step of their grid; 0 where none shows
+  double position_noise_m = 0;    ///< standard deviation of their noise, where it is over a quantum
+  int counter_bits = 0;           ///< of an encoder's counter that ran over in the recording; else 0
+  int counter_wraps = 0;          ///< how often it did in the stretch
+  std::optional<double> normal_force_n = std::nullopt;  ///< its mean in the stretch, where it was recorded
+  bool finger_up = false;                               ///< by that force
 };
 
 struct Texture {

@@ -44,15 +44,32 @@ constexpr SourceNumber kSourceNumbers[] = {
     {"min_speed_mps", &TextureSource::min_speed_mps},
     {"max_speed_mps", &TextureSource::max_speed_mps},
     {"position_moved_m", &TextureSource::position_moved_m},
+    {"position_quantum_m", &TextureSource::position_quantum_m},
+    {"position_noise_m", &TextureSource::position_noise_m},
+};
+
+// Left out where they are 0.
+struct SourceCount {
+  const char* name;
+  int TextureSource::*member;
+};
+
+constexpr SourceCount kSourceCounts[] = {
+    {"stroke", &TextureSource::stroke},
+    {"order", &TextureSource::order},
+    {"counter_bits", &TextureSource::counter_bits},
+    {"counter_wraps", &TextureSource::counter_wraps},
 };
 
 Json source_body(const TextureSource& source) {
   Json body = Json::object();
   for (const auto& [name, member] : kSourceTexts) put_text(body, name, source.*member);
   for (const auto& [name, member] : kSourceNumbers) body[name] = source.*member;
-  if (source.stroke != 0) body["stroke"] = source.stroke;
-  if (source.order != 0) body["order"] = source.order;
+  for (const auto& [name, member] : kSourceCounts)
+    if (source.*member != 0) body[name] = source.*member;
   body["equalised"] = source.equalised;
+  if (source.normal_force_n) body["normal_force_n"] = *source.normal_force_n;
+  if (source.finger_up) body["finger_up"] = true;
   return body;
 }
 
@@ -60,9 +77,11 @@ TextureSource source_from(const Json& body) {
   TextureSource source;
   for (const auto& [name, member] : kSourceTexts) source.*member = text_or(body, name);
   for (const auto& [name, member] : kSourceNumbers) source.*member = number_or(body, name, 0);
-  source.stroke = static_cast<int>(number_or(body, "stroke", 0));
-  source.order = static_cast<int>(number_or(body, "order", 0));
-  source.equalised = body.contains("equalised") && body["equalised"].get<bool>();
+  for (const auto& [name, member] : kSourceCounts)
+    source.*member = static_cast<int>(number_or(body, name, 0));
+  source.equalised = body.value("equalised", false);
+  if (body.contains("normal_force_n")) source.normal_force_n = body["normal_force_n"].get<double>();
+  source.finger_up = body.value("finger_up", false);
   return source;
 }
 

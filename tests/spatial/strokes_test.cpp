@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "spatial/smoothed_speed.hpp"
 #include "tests/spatial/bare_finger.hpp"
+#include "tests/spatial/strokes_of.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -45,7 +45,7 @@ void expect_stroke(const Stroke& stroke, double from_s, double to_s, int directi
 
 TEST(Strokes, FindsBothWaysBetweenPauses) {
   const Path path = Path().rest(1).go(0.04, 1).rest(0.5).go(-0.08, 0.5).rest(1);
-  const auto strokes = find_strokes(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   expect_stroke(strokes[0], 1, 2, 1);
   expect_stroke(strokes[1], 2.5, 3, -1);
@@ -53,7 +53,7 @@ TEST(Strokes, FindsBothWaysBetweenPauses) {
 
 TEST(Strokes, AReversalPartsThem) {
   const Path path = Path().go(0.05, 1).go(-0.05, 1).go(0.05, 1);
-  const auto strokes = find_strokes(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
   ASSERT_EQ(strokes.size(), 3U);
   expect_stroke(strokes[1], 1, 2, -1);
 }
@@ -61,13 +61,13 @@ TEST(Strokes, AReversalPartsThem) {
 TEST(Strokes, APausePartsAndAStickDoesNot) {
   const Path paused = Path().go(0.05, 1).rest(0.3).go(0.05, 1),
              stuck = Path().go(0.05, 1).rest(0.05).go(0.05, 1);
-  EXPECT_EQ(find_strokes(paused.position_m, kRate_hz).size(), 2U);
-  EXPECT_EQ(find_strokes(stuck.position_m, kRate_hz).size(), 1U);
+  EXPECT_EQ(strokes_of(paused.position_m, kRate_hz).size(), 2U);
+  EXPECT_EQ(strokes_of(stuck.position_m, kRate_hz).size(), 1U);
 }
 
 TEST(Strokes, EachIsJudgedByItsOwnSpeed) {
   const Path path = Path().rest(1).go(0.002, 10).rest(1).go(0.2, 0.2).rest(1);
-  const auto strokes = find_strokes(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   expect_stroke(strokes[0], 1, 11, 1);
   expect_stroke(strokes[1], 12, 12.2, 1);
@@ -76,7 +76,7 @@ TEST(Strokes, EachIsJudgedByItsOwnSpeed) {
 TEST(Strokes, ACoarseEncoderMakesNoFalseOnes) {
   for (const double quantum_m : {0.1e-6, 1e-6, 10e-6}) {
     const Path path = Path(quantum_m, quantum_m / 2).rest(2).go(0.001, 5).rest(60).go(-0.005, 1).rest(2);
-    const auto strokes = find_strokes(path.position_m, kRate_hz);
+    const auto strokes = strokes_of(path.position_m, kRate_hz);
     ASSERT_EQ(strokes.size(), 2U) << quantum_m;
     EXPECT_EQ(strokes[0].direction, 1);
     EXPECT_EQ(strokes[1].direction, -1);
@@ -85,8 +85,8 @@ TEST(Strokes, ACoarseEncoderMakesNoFalseOnes) {
 
 TEST(Strokes, ANominalPositionIsOneStroke) {
   const Path path = Path(0).go(0.04, 2);
-  EXPECT_EQ(position_quantum(path.position_m), 0);
-  const auto strokes = find_strokes(path.position_m, kRate_hz);
+  EXPECT_EQ(facts_of(path.position_m, kRate_hz).quantum_m, 0);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
   ASSERT_EQ(strokes.size(), 1U);
   EXPECT_EQ(strokes[0].frames.size(), path.position_m.size());
 }
@@ -94,21 +94,21 @@ TEST(Strokes, ANominalPositionIsOneStroke) {
 TEST(Strokes, AGapPartsThem) {
   const Path path = Path().go(0.05, 2);
   const schema::Gap gap{9000, 9000, 100};
-  const auto strokes = find_strokes(path.position_m, kRate_hz, {&gap, 1});
+  const auto strokes = strokes_of(path.position_m, kRate_hz, {&gap, 1});
   ASSERT_EQ(strokes.size(), 2U);
   EXPECT_EQ(strokes[0].frames.end, 9000U);
   EXPECT_EQ(strokes[1].frames.begin, 9000U);
 }
 
 TEST(Strokes, NoneWhereNothingMoves) {
-  EXPECT_TRUE(find_strokes(Path().rest(1).position_m, kRate_hz).empty());
-  EXPECT_TRUE(find_strokes({}, kRate_hz).empty());
-  EXPECT_TRUE(find_strokes(std::vector<double>{1.0}, kRate_hz).empty());
+  EXPECT_TRUE(strokes_of(Path().rest(1).position_m, kRate_hz).empty());
+  EXPECT_TRUE(strokes_of({}, kRate_hz).empty());
+  EXPECT_TRUE(strokes_of(std::vector<double>{1.0}, kRate_hz).empty());
 }
 
 TEST(Strokes, QuantumIsTheEncodersCount) {
-  EXPECT_NEAR(position_quantum(Path(0.5e-6).go(0.0403, 1).position_m), 0.5e-6, 1e-15);
-  EXPECT_NEAR(position_quantum(Path(1e-6).rest(5).go(0.001, 1).position_m), 1e-6, 1e-15);
+  EXPECT_NEAR(facts_of(Path(0.5e-6).go(0.0403, 1).position_m, kRate_hz).quantum_m, 0.5e-6, 1e-15);
+  EXPECT_NEAR(facts_of(Path(1e-6).rest(5).go(0.001, 1).position_m, kRate_hz).quantum_m, 1e-6, 1e-15);
 }
 
 TEST(Strokes, PiecesLieBetweenGaps) {
@@ -123,8 +123,8 @@ TEST(Strokes, PiecesLieBetweenGaps) {
 TEST(Strokes, FindsTheTwoOfTheBareFinger) {
   const auto finger = bare_finger();
   if (finger.empty()) GTEST_SKIP() << "skipped: no real data";
-  EXPECT_NEAR(position_quantum(finger), 0.5e-6, 1e-15);
-  const auto strokes = find_strokes(finger, kRate_hz);
+  EXPECT_NEAR(facts_of(finger, kRate_hz).quantum_m, 0.5e-6, 1e-15);
+  const auto strokes = strokes_of(finger, kRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   // By the data's own timeline: 0.1 to 2.45 s back, 4.5 to 6.9 s forth; the stage ramps up and down over 0.25
   // s.
