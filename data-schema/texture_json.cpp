@@ -101,6 +101,45 @@ std::vector<BandPoint> band_from(const Json& body) {
   return band;
 }
 
+Json channels_body(const std::string& unit) {
+  return Json::array({{{"name", "mean"}, {"unit", unit}}, {{"name", "standard_deviation"}, {"unit", unit}}});
+}
+
+Json stroke_body(const AveragedStroke& stroke) {
+  Json body = {{"stroke", stroke.stroke},
+               {"from_s", stroke.from_s},
+               {"to_s", stroke.to_s},
+               {"direction", stroke.direction},
+               {"shift_m", stroke.shift_m}};
+  if (stroke.correlation) body["correlation"] = *stroke.correlation;
+  return body;
+}
+
+AveragedStroke stroke_from(const Json& body) {
+  AveragedStroke stroke{static_cast<int>(number_or(body, "stroke", 0)), number_or(body, "from_s", 0),
+                        number_or(body, "to_s", 0), static_cast<int>(number_or(body, "direction", 1)),
+                        number_or(body, "shift_m", 0)};
+  if (body.contains("correlation")) stroke.correlation = body["correlation"].get<double>();
+  return stroke;
+}
+
+Json average_body(const TextureAverage& average) {
+  Json strokes = Json::array(), counts = Json::array();
+  for (const AveragedStroke& stroke : average.strokes) strokes.push_back(stroke_body(stroke));
+  for (const StrokeCount& count : average.counts)
+    counts.push_back({{"position_m", count.position_m}, {"strokes", count.strokes}});
+  return {{"align", average.align}, {"strokes", strokes}, {"counts", counts}};
+}
+
+TextureAverage average_from(const Json& body) {
+  TextureAverage average;
+  average.align = text_or(body, "align");
+  for (const Json& stroke : body["strokes"]) average.strokes.push_back(stroke_from(stroke));
+  for (const Json& count : body["counts"])
+    average.counts.push_back({count["position_m"].get<double>(), count["strokes"].get<int>()});
+  return average;
+}
+
 }  // namespace
 
 Json texture_body(const Texture& texture, const TextureData& data) {
@@ -113,6 +152,10 @@ Json texture_body(const Texture& texture, const TextureData& data) {
   if (!texture.valid_band.empty()) body["valid_band"] = band_body(texture.valid_band);
   // A texture that was drawn or computed, not recorded, names no recording.
   if (!texture.source.recording.empty()) body["source"] = source_body(texture.source);
+  if (texture.average) {
+    body["channels"] = channels_body(texture.unit);
+    body["average"] = average_body(*texture.average);
+  }
   for (const auto& [name, member] : kTexts) put_text(body, name, texture.*member);
   return body;
 }
@@ -126,13 +169,15 @@ Texture texture_from(const Json& body) {
   texture.source_origin_m = number_or(body, "source_origin_m", 0);
   if (body.contains("valid_band")) texture.valid_band = band_from(body["valid_band"]);
   if (body.contains("source")) texture.source = source_from(body["source"]);
+  if (body.contains("average")) texture.average = average_from(body["average"]);
   for (const auto& [name, member] : kTexts) texture.*member = text_or(body, name);
   return texture;
 }
 
 TextureData texture_data_from(const Json& body) {
   const Json& data = body["data"];
-  return {text_or(data, "file"), text_or(data, "sha256"), data["samples"].get<std::uint64_t>()};
+  return {text_or(data, "file"), text_or(data, "sha256"), data["samples"].get<std::uint64_t>(),
+          body.contains("average") ? 2U : 1U};
 }
 
 double header_rate_of(double pitch_m) {

@@ -10,11 +10,15 @@ FilteredTrack::FilteredTrack(TouchSource& source, double sample_rate_hz, const T
                              SpectralGain equaliser)
     : source_(&source), sample_rate_hz_(sample_rate_hz), filter_(filter), equaliser_(std::move(equaliser)) {}
 
-void FilteredTrack::begin(FrameRange piece) {
+schema::Result<void> FilteredTrack::begin(FrameRange piece) {
+  stream_.reset();
+  auto stream = BlockTimeFilter::open(sample_rate_hz_, filter_, equaliser_, piece.size());
+  if (!stream) return schema::forward_error(stream);
+  stream_ = std::move(*stream);
   piece_ = piece;
-  stream_ = stream_filter(filter_, sample_rate_hz_, equaliser_, piece.size());
   next_ = kept_from_ = piece.begin;
   kept_.clear();
+  return {};
 }
 
 void FilteredTrack::forget_before(std::size_t frame) {
@@ -32,7 +36,7 @@ schema::Result<void> FilteredTrack::advance() {
   const std::size_t size = std::min(kChunkFrames, piece_.end - next_);
   chunk_.resize(size);
   if (auto done = source_->read(Track::value, next_, chunk_); !done) return done;
-  stream_->push(chunk_, kept_);
+  if (auto done = stream_->push(chunk_, kept_); !done) return done;
   next_ += size;
   return {};
 }
@@ -40,7 +44,8 @@ schema::Result<void> FilteredTrack::advance() {
 schema::Result<std::span<const double>> FilteredTrack::values(FrameRange piece, FrameRange frames) {
   assert(piece.contains(frames));
   const bool goes_on = stream_ && piece.begin == piece_.begin && frames.begin >= kept_from_;
-  if (!goes_on) begin(piece);
+  if (!goes_on)
+    if (auto begun = begin(piece); !begun) return schema::forward_error(begun);
   forget_before(frames.begin);
   while (kept_from_ + kept_.size() < frames.end) {
     assert(next_ <= piece_.end);

@@ -2,12 +2,12 @@
 // A record's values after the band-pass in time, of the strokes that are asked for only.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "spatial/block_time_filter.hpp"
 #include "spatial/frame_range.hpp"
-#include "spatial/stream_filter.hpp"
 #include "spatial/touch_source.hpp"
 
 namespace tacto::spatial {
@@ -16,15 +16,14 @@ namespace tacto::spatial {
 /// the fast way: one that begins before the last begins its piece again. The source must outlive it.
 class FilteredTrack {
  public:
-  /// Precondition: check(filter, sample_rate_hz).
   FilteredTrack(TouchSource& source, double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser);
 
   /// Filtered values of `frames`, which lie in `piece`, a stretch between two gaps; good until the next call.
-  /// Errors: of reading.
+  /// Errors: of check(filter, sample_rate_hz); of reading.
   schema::Result<std::span<const double>> values(FrameRange piece, FrameRange frames);
 
  private:
-  void begin(FrameRange piece);
+  schema::Result<void> begin(FrameRange piece);
   void forget_before(std::size_t frame);
   schema::Result<void> advance();
 
@@ -33,7 +32,7 @@ class FilteredTrack {
   TimeFilter filter_;
   SpectralGain equaliser_;
   FrameRange piece_;
-  std::unique_ptr<StreamFilter> stream_;
+  std::optional<BlockTimeFilter> stream_;
   std::size_t next_ = 0;       // the frame to feed next
   std::size_t kept_from_ = 0;  // the frame of kept_[0]
   std::vector<double> kept_, chunk_;
