@@ -12,6 +12,9 @@
 namespace tacto::spatial {
 namespace {
 
+// Below it two textures share less than a tenth of their power: they agree by chance.
+constexpr double kLeastCorrelation = 0.3;
+
 using Index = std::ptrdiff_t;
 using Spectrum = std::vector<std::complex<double>>;
 
@@ -76,7 +79,7 @@ Alignment align(const BenchValues& a, const BenchValues& b, double range) {
   for (Index lag = -reach; lag <= reach; ++lag)
     if (correlation.at(apart + lag) > correlation.at(apart + best)) best = lag;
   const double top = correlation.at(apart + best);
-  if (top <= 0 || best == -reach || best == reach) return {0, correlation.at(apart), false};
+  if (top < kLeastCorrelation || best == -reach || best == reach) return {0, correlation.at(apart), false};
   const double before = correlation.at(apart + best - 1), after = correlation.at(apart + best + 1);
   const double bend = before - 2 * top + after, off = bend < 0 ? (before - after) / (2 * bend) : 0;
   return {-(static_cast<double>(best) + off), top - (before - after) * off / 4, true};

@@ -15,7 +15,7 @@ struct BenchValues {
 struct Alignment {
   double shift = 0;        ///< pitches to add to the positions of the second
   double correlation = 0;  ///< of the two, so shifted, -1 ... 1
-  bool found = false;      ///< false where the best lies at the end of the range, or nothing overlaps
+  bool found = false;      ///< false where the best lies at the range's end or below a correlation of 0.3
 };
 
 /// The shift within +- `range` pitches at which sum(a b) / sqrt(sum(a^2) sum(b^2)) over what overlaps (a half

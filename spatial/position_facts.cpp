@@ -41,10 +41,10 @@ double PositionSteps::quantum_m(double furthest_m) const {
   return uneven > kEven * moving ? changes_.smallest_above(rounding) : 0;
 }
 
-double PositionSteps::noise_m(double quantum_m) const {
+double PositionSteps::noise_m(double quantum_m, double furthest_m) const {
   double noise_m = 0;
   for (const LogHistogram& bends : bends_) noise_m = std::max(noise_m, bends.median() * kSigmaOfMedian);
-  return noise_m > quantum_m ? noise_m : 0;
+  return noise_m > std::max(quantum_m, kRounding * furthest_m) ? noise_m : 0;
 }
 
 schema::Result<PositionFacts> position_facts(const ReadFrames& read, std::span<const FrameRange> pieces,
@@ -67,7 +67,7 @@ schema::Result<PositionFacts> position_facts(const ReadFrames& read, std::span<c
   }
   PositionFacts facts;
   facts.quantum_m = steps.quantum_m(furthest_m);
-  facts.noise_m = steps.noise_m(facts.quantum_m);
+  facts.noise_m = steps.noise_m(facts.quantum_m, furthest_m);
   facts.travelling_mps = speeds.median_by_sum();
   return facts;
 }

@@ -39,8 +39,9 @@ class PositionSteps {
   double quantum_m(double furthest_m) const;
   /// From fourth differences, in which the finger's own motion all but cancels (under 10 nm at 3 Hz and 40
   /// mm), over up to 1 ms, so that noise after a low-pass is seen too: median / 0.6745 / sqrt(70), exact for
-  /// white Gaussian noise. 0 where it is not above `quantum_m`, whose rounding looks the same.
-  double noise_m(double quantum_m) const;
+  /// white Gaussian noise. 0 where it is not above `quantum_m`, whose rounding
+  /// looks the same, nor above the rounding of doubles.
+  double noise_m(double quantum_m, double furthest_m) const;
 
  private:
   static constexpr std::array<std::size_t, 4> kLags = {1, 2, 4, 8};
