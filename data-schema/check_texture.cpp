@@ -29,6 +29,19 @@ void add_band(const std::string& path, const Texture& texture, std::vector<Findi
   }
 }
 
+void add_counts(const std::string& path, const Texture& texture, std::vector<Finding>& findings) {
+  if (!texture.average) return;
+  const auto& counts = texture.average->counts;
+  const auto most = static_cast<int>(texture.average->strokes.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const std::string where = fmt::format("{}#/average/counts/{}", path, i);
+    if (counts[i].strokes > most)
+      findings.push_back({where + "/strokes", fmt::format("is more than the {} strokes averaged", most)});
+    if (i > 0 && counts[i].position_m <= counts[i - 1].position_m)
+      findings.push_back({where + "/position_m", "positions must rise"});
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> check_texture(const std::string& path, const Document& document,
@@ -37,16 +50,14 @@ std::vector<Finding> check_texture(const std::string& path, const Document& docu
   std::vector<Finding> findings;
   add_quantity(path, texture, findings);
   add_band(path, texture, findings);
+  add_counts(path, texture, findings);
   const TextureData data = texture_data_from(document.body);
   const std::string wav = (std::filesystem::path(path).parent_path() / data.file).string();
-  Channel channel;
-  channel.name = texture.quantity;
-  const auto more = check_wav({wav,
-                               data.sha256,
-                               SampleFormat::float32,
-                               data.samples,
-                               header_rate_of(texture.signal.pitch_m),
-                               {channel}},
+  std::vector<Channel> channels(data.channels);
+  channels.front().name = texture.quantity;
+  if (texture.average) channels.back().name = "standard_deviation";
+  const auto more = check_wav({wav, data.sha256, SampleFormat::float32, data.samples,
+                               header_rate_of(texture.signal.pitch_m), channels},
                               progress);
   findings.insert(findings.end(), more.begin(), more.end());
   return findings;

@@ -33,19 +33,22 @@ tl::unexpected<Error> absent(const std::string& name) {
               "a texture is NAME.texture.json and NAME.texture.wav");
 }
 
-Result<std::vector<double>> read_samples(const std::string& wav, const TextureData& data, double pitch_m) {
+Result<void> check_layout(const std::string& wav, const TextureData& data, double pitch_m) {
   const auto reader = WavReader::open(wav);
   if (!reader) return forward_error(reader);
   const WavInfo& info = reader->info();
   if (info.frames != data.samples)
     return fail(Fault::malformed,
                 fmt::format("holds {} samples, its sidecar says {}", info.frames, data.samples), wav);
+  if (info.channels != data.channels)
+    return fail(Fault::malformed,
+                fmt::format("has {} channels, its sidecar describes {}", info.channels, data.channels), wav);
   if (info.sample_rate_hz != header_rate_of(pitch_m))
     return fail(
         Fault::malformed,
         fmt::format("has {} samples a metre, its sidecar a pitch of {} m", info.sample_rate_hz, pitch_m),
         wav);
-  return read_wav_channel(wav, 0);
+  return {};
 }
 
 Result<void> check_finite(const std::vector<double>& samples, const std::string& where, Fault fault) {
@@ -54,17 +57,40 @@ Result<void> check_finite(const std::vector<double>& samples, const std::string&
   return fail(fault, fmt::format("sample {} is not a finite number", broken - samples.begin()), where);
 }
 
-Result<void> write_samples(const std::string& path, const SpaceSignal& signal) {
-  auto writer = WavWriter::create(path, header_rate_of(signal.pitch_m), 1, SampleFormat::float32);
-  if (!writer) return forward_error(writer);
-  if (auto written = writer->write(signal.values); !written) return written;
-  return writer->close();
+Result<std::vector<double>> read_samples(const std::string& wav, std::size_t channel) {
+  auto samples = read_wav_channel(wav, channel);
+  if (!samples) return samples;
+  const auto finite = check_finite(*samples, wav, Fault::malformed);
+  return finite ? samples : forward_error(finite);
 }
 
-Result<void> check_writable(const std::string& stem, const SpaceSignal& signal) {
+// Mean and spread of an average, interleaved.
+std::vector<double> frames_of(const Texture& texture) {
+  std::vector<double> frames;
+  frames.reserve(2 * texture.signal.values.size());
+  for (std::size_t i = 0; i < texture.signal.values.size(); ++i)
+    frames.insert(frames.end(), {texture.signal.values[i], texture.average->spread[i]});
+  return frames;
+}
+
+Result<void> write_samples(const std::string& path, const Texture& texture) {
+  const std::size_t channels = texture.average ? 2 : 1;
+  auto writer =
+      WavWriter::create(path, header_rate_of(texture.signal.pitch_m), channels, SampleFormat::float32);
+  if (!writer) return forward_error(writer);
+  auto written = texture.average ? writer->write(frames_of(texture)) : writer->write(texture.signal.values);
+  return written ? writer->close() : written;
+}
+
+Result<void> check_writable(const std::string& stem, const Texture& texture) {
+  const SpaceSignal& signal = texture.signal;
   if (signal.values.empty()) return fail(Fault::unsuitable, "the texture has no samples", stem);
   if (!(signal.pitch_m > 0)) return fail(Fault::unsuitable, "the texture's pitch is not above 0", stem);
-  return check_finite(signal.values, stem, Fault::unsuitable);
+  if (auto finite = check_finite(signal.values, stem, Fault::unsuitable); !finite || !texture.average)
+    return finite;
+  if (texture.average->spread.size() != signal.values.size())
+    return fail(Fault::unsuitable, "the texture's spread has another length than its mean", stem);
+  return check_finite(texture.average->spread, stem, Fault::unsuitable);
 }
 
 }  // namespace
@@ -78,32 +104,51 @@ Result<Texture> read_texture(const std::string& name) {
   Texture texture = texture_from(document->body);
   const TextureData data = texture_data_from(document->body);
   const std::string wav = (fs::path(path).parent_path() / data.file).string();
-  auto samples = read_samples(wav, data, texture.signal.pitch_m);
+  if (const auto fits = check_layout(wav, data, texture.signal.pitch_m); !fits) return forward_error(fits);
+  auto samples = read_samples(wav, 0);
   if (!samples) return forward_error(samples);
-  if (const auto finite = check_finite(*samples, wav, Fault::malformed); !finite)
-    return forward_error(finite);
   texture.signal.values = std::move(*samples);
+  if (texture.average) {
+    auto spread = read_samples(wav, 1);
+    if (!spread) return forward_error(spread);
+    texture.average->spread = std::move(*spread);
+  }
   texture.extra_json = unknown_members(document->body, kKind);
   texture.newer_version = document->newer_version;
   return texture;
 }
 
-Result<void> write_texture(const std::string& name, const Texture& texture) {
+Result<void> add_texture(PendingFiles& pending, const std::string& name, const Texture& texture) {
   const std::string stem = stem_of(name, kSuffix);
   if (auto named = check_stem(stem); !named) return named;
-  if (auto writable = check_writable(stem, texture.signal); !writable) return writable;
+  if (auto writable = check_writable(stem, texture); !writable) return writable;
   const std::string wav = stem + ".texture.wav";
-  PendingFiles pending;
   const auto temporary = pending.add(wav);
   if (!temporary) return forward_error(temporary);
-  if (auto written = write_samples(*temporary, texture.signal); !written) return written;
+  if (auto written = write_samples(*temporary, texture); !written) return written;
   const auto sha256 = sha256_of_file(*temporary);
   if (!sha256) return forward_error(sha256);
-  const TextureData data{fs::path(wav).filename().string(), *sha256, texture.signal.values.size()};
+  const TextureData data{fs::path(wav).filename().string(), *sha256, texture.signal.values.size(),
+                         texture.average ? 2U : 1U};
   const auto text = document_text(kKind, texture_body(texture, data), texture.extra_json);
   if (!text) return forward_error(text);
-  if (auto written = pending.write(stem + ".texture.json", *text); !written) return written;
+  return pending.write(stem + ".texture.json", *text);
+}
+
+Result<void> write_texture(const std::string& name, const Texture& texture) {
+  PendingFiles pending;
+  if (auto added = add_texture(pending, name, texture); !added) return added;
   return pending.commit();
+}
+
+Result<void> check_texture_free(const std::string& name) {
+  const std::string stem = stem_of(name, kSuffix);
+  std::error_code ignored;
+  for (const char* ending : {".texture.json", ".texture.wav"})
+    if (fs::exists(stem + ending, ignored))
+      return fail(Fault::usage, "is there already, and is not overwritten", stem + ending,
+                  "choose another name, or replace it with --force");
+  return {};
 }
 
 }  // namespace tacto::schema

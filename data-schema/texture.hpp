@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data-schema/error.hpp"
+#include "data-schema/files.hpp"
 #include "data-schema/signal.hpp"
 
 namespace tacto::schema {
@@ -32,7 +33,37 @@ struct TextureSource {
   double low_hz = 0, high_hz = 0;
   bool equalised = false;  ///< divided by the sensor's response
   double mean_speed_mps = 0, min_speed_mps = 0, max_speed_mps = 0;
-  double position_moved_m = 0;  ///< how far the positions were moved, at most, to make them monotone
+  double position_moved_m = 0;    ///< how far the positions were moved, at most, to make them monotone
+  double position_quantum_m = 0;  ///< the step of their grid; 0 where none shows
+  double position_noise_m = 0;    ///< standard deviation of their noise, where it is over a quantum
+  int counter_bits = 0;           ///< of an encoder's counter that ran over in the recording; else 0
+  int counter_wraps = 0;          ///< how often it did in the stretch
+  std::optional<double> normal_force_n = std::nullopt;  ///< its mean in the stretch, where it was recorded
+  bool finger_up = false;                               ///< by that force
+};
+
+/// One of the strokes that were averaged.
+struct AveragedStroke {
+  int stroke = 0;  ///< 1-based, in its recording
+  double from_s = 0, to_s = 0;
+  int direction = 1;
+  double shift_m = 0;                                ///< added to its positions on the bench
+  std::optional<double> correlation = std::nullopt;  ///< with the strokes before it, where it was aligned so
+};
+
+/// So many strokes were averaged from a position on, up to the next such point.
+struct StrokeCount {
+  double position_m = 0;
+  int strokes = 0;
+};
+
+/// What a texture that is the mean of several strokes knows more.
+struct TextureAverage {
+  std::string align;  ///< "position", "correlation"
+  std::vector<double>
+      spread;  ///< standard deviation over the strokes, sample by sample, in the texture's unit
+  std::vector<AveragedStroke> strokes;
+  std::vector<StrokeCount> counts;  ///< by growing position, from 0 on
 };
 
 struct Texture {
@@ -43,8 +74,9 @@ struct Texture {
   int direction = 1;  ///< -1: the stroke was made backwards; it is stored by growing position all the same
   double source_origin_m = 0;  ///< where position 0 lay on the bench
   std::vector<BandPoint> valid_band;
-  TextureSource source;
-  std::string simulated;  ///< by what, where it is simulated
+  TextureSource source;                   ///< of an average: from its first stroke to its last
+  std::optional<TextureAverage> average;  ///< of several strokes; the WAV has the spread as 2nd channel
+  std::string simulated;                  ///< by what, where it is simulated
   std::string surface, subject, finger, notes;
   std::string created, creator;
   std::string extra_json;
@@ -56,9 +88,16 @@ struct Texture {
 /// file; malformed, with the sample where one is NaN or infinite; unsupported_version.
 Result<Texture> read_texture(const std::string& name);
 
-/// Writes STEM.texture.wav (32-bit float, header rate = samples per metre, rounded) and STEM.texture.json,
-/// together. Errors: cannot_write; unsuitable, where there are no samples, one is no number, or the schema
-/// doesn't allow it.
+/// Writes STEM.texture.wav (32-bit float, header rate = samples per metre, rounded; one channel, of an
+/// average two) and STEM.texture.json, together. Replaces what is there. Errors: cannot_write; unsuitable,
+/// where there are no samples, one is no number, the spread is of another length, or the schema doesn't allow
+/// it.
 Result<void> write_texture(const std::string& stem, const Texture& texture);
+
+/// The same with other files, at the commit() of `pending`.
+Result<void> add_texture(PendingFiles& pending, const std::string& stem, const Texture& texture);
+
+/// That no texture lies under the name. Errors: usage, naming the file.
+Result<void> check_texture_free(const std::string& stem);
 
 }  // namespace tacto::schema

@@ -44,15 +44,32 @@ constexpr SourceNumber kSourceNumbers[] = {
     {"min_speed_mps", &TextureSource::min_speed_mps},
     {"max_speed_mps", &TextureSource::max_speed_mps},
     {"position_moved_m", &TextureSource::position_moved_m},
+    {"position_quantum_m", &TextureSource::position_quantum_m},
+    {"position_noise_m", &TextureSource::position_noise_m},
+};
+
+// Left out where they are 0.
+struct SourceCount {
+  const char* name;
+  int TextureSource::*member;
+};
+
+constexpr SourceCount kSourceCounts[] = {
+    {"stroke", &TextureSource::stroke},
+    {"order", &TextureSource::order},
+    {"counter_bits", &TextureSource::counter_bits},
+    {"counter_wraps", &TextureSource::counter_wraps},
 };
 
 Json source_body(const TextureSource& source) {
   Json body = Json::object();
   for (const auto& [name, member] : kSourceTexts) put_text(body, name, source.*member);
   for (const auto& [name, member] : kSourceNumbers) body[name] = source.*member;
-  if (source.stroke != 0) body["stroke"] = source.stroke;
-  if (source.order != 0) body["order"] = source.order;
+  for (const auto& [name, member] : kSourceCounts)
+    if (source.*member != 0) body[name] = source.*member;
   body["equalised"] = source.equalised;
+  if (source.normal_force_n) body["normal_force_n"] = *source.normal_force_n;
+  if (source.finger_up) body["finger_up"] = true;
   return body;
 }
 
@@ -60,9 +77,11 @@ TextureSource source_from(const Json& body) {
   TextureSource source;
   for (const auto& [name, member] : kSourceTexts) source.*member = text_or(body, name);
   for (const auto& [name, member] : kSourceNumbers) source.*member = number_or(body, name, 0);
-  source.stroke = static_cast<int>(number_or(body, "stroke", 0));
-  source.order = static_cast<int>(number_or(body, "order", 0));
-  source.equalised = body.contains("equalised") && body["equalised"].get<bool>();
+  for (const auto& [name, member] : kSourceCounts)
+    source.*member = static_cast<int>(number_or(body, name, 0));
+  source.equalised = body.value("equalised", false);
+  if (body.contains("normal_force_n")) source.normal_force_n = body["normal_force_n"].get<double>();
+  source.finger_up = body.value("finger_up", false);
   return source;
 }
 
@@ -82,6 +101,45 @@ std::vector<BandPoint> band_from(const Json& body) {
   return band;
 }
 
+Json channels_body(const std::string& unit) {
+  return Json::array({{{"name", "mean"}, {"unit", unit}}, {{"name", "standard_deviation"}, {"unit", unit}}});
+}
+
+Json stroke_body(const AveragedStroke& stroke) {
+  Json body = {{"stroke", stroke.stroke},
+               {"from_s", stroke.from_s},
+               {"to_s", stroke.to_s},
+               {"direction", stroke.direction},
+               {"shift_m", stroke.shift_m}};
+  if (stroke.correlation) body["correlation"] = *stroke.correlation;
+  return body;
+}
+
+AveragedStroke stroke_from(const Json& body) {
+  AveragedStroke stroke{static_cast<int>(number_or(body, "stroke", 0)), number_or(body, "from_s", 0),
+                        number_or(body, "to_s", 0), static_cast<int>(number_or(body, "direction", 1)),
+                        number_or(body, "shift_m", 0)};
+  if (body.contains("correlation")) stroke.correlation = body["correlation"].get<double>();
+  return stroke;
+}
+
+Json average_body(const TextureAverage& average) {
+  Json strokes = Json::array(), counts = Json::array();
+  for (const AveragedStroke& stroke : average.strokes) strokes.push_back(stroke_body(stroke));
+  for (const StrokeCount& count : average.counts)
+    counts.push_back({{"position_m", count.position_m}, {"strokes", count.strokes}});
+  return {{"align", average.align}, {"strokes", strokes}, {"counts", counts}};
+}
+
+TextureAverage average_from(const Json& body) {
+  TextureAverage average;
+  average.align = text_or(body, "align");
+  for (const Json& stroke : body["strokes"]) average.strokes.push_back(stroke_from(stroke));
+  for (const Json& count : body["counts"])
+    average.counts.push_back({count["position_m"].get<double>(), count["strokes"].get<int>()});
+  return average;
+}
+
 }  // namespace
 
 Json texture_body(const Texture& texture, const TextureData& data) {
@@ -94,6 +152,10 @@ Json texture_body(const Texture& texture, const TextureData& data) {
   if (!texture.valid_band.empty()) body["valid_band"] = band_body(texture.valid_band);
   // A texture that was drawn or computed, not recorded, names no recording.
   if (!texture.source.recording.empty()) body["source"] = source_body(texture.source);
+  if (texture.average) {
+    body["channels"] = channels_body(texture.unit);
+    body["average"] = average_body(*texture.average);
+  }
   for (const auto& [name, member] : kTexts) put_text(body, name, texture.*member);
   return body;
 }
@@ -107,13 +169,15 @@ Texture texture_from(const Json& body) {
   texture.source_origin_m = number_or(body, "source_origin_m", 0);
   if (body.contains("valid_band")) texture.valid_band = band_from(body["valid_band"]);
   if (body.contains("source")) texture.source = source_from(body["source"]);
+  if (body.contains("average")) texture.average = average_from(body["average"]);
   for (const auto& [name, member] : kTexts) texture.*member = text_or(body, name);
   return texture;
 }
 
 TextureData texture_data_from(const Json& body) {
   const Json& data = body["data"];
-  return {text_or(data, "file"), text_or(data, "sha256"), data["samples"].get<std::uint64_t>()};
+  return {text_or(data, "file"), text_or(data, "sha256"), data["samples"].get<std::uint64_t>(),
+          body.contains("average") ? 2U : 1U};
 }
 
 double header_rate_of(double pitch_m) {

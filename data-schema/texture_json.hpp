@@ -15,6 +15,7 @@ struct TextureData {
   std::string file;  ///< no folder
   std::string sha256;
   std::uint64_t samples = 0;
+  std::size_t channels = 1;  ///< 2 of an average: mean and standard deviation
 };
 
 /// Everything but the samples, under the C++ names; without `kind`, `version` and the texture's extra_json.

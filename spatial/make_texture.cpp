@@ -12,10 +12,7 @@
 #include "data-schema/quantity.hpp"
 #include "data-schema/version.hpp"
 #include "spatial/equaliser.hpp"
-#include "spatial/monotone_path.hpp"
-#include "spatial/resample.hpp"
 #include "spatial/smoothed_speed.hpp"
-#include "spatial/valid_band.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -26,13 +23,10 @@ using schema::Fault;
 // each side.
 constexpr std::size_t kMargin = 2;
 
-std::vector<double> resample_piece(const FilteredPiece& piece, const Stroke& stroke, const MonotonePath& path,
-                                   const SpaceGrid& grid) {
-  const std::size_t begin = stroke.frames.begin - piece.frames.begin, size = stroke.frames.size();
-  const std::size_t before = std::min(kMargin, begin);
-  const std::size_t after = std::min(kMargin, piece.values.size() - begin - size);
-  const auto values = std::span(piece.values).subspan(begin - before, before + size + after);
-  return resample(path, stroke.direction, grid, values, before);
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
 }
 
 }  // namespace
@@ -44,7 +38,11 @@ schema::Result<TextureMaker> TextureMaker::open(const schema::Recording& recordi
                                                 const TextureOptions& options) {
   auto record = TouchRecord::open(recording, options.channel);
   if (!record) return schema::forward_error(record);
-  TextureMaker maker(std::move(*record), options);
+  return open(std::move(*record), options);
+}
+
+schema::Result<TextureMaker> TextureMaker::open(TouchRecord record, const TextureOptions& options) {
+  TextureMaker maker(std::move(record), options);
   if (const auto prepared = maker.prepare(); !prepared) return schema::forward_error(prepared);
   return maker;
 }
@@ -56,6 +54,13 @@ schema::Result<void> TextureMaker::prepare() {
     fits.error().where = record_.where();
     return fits;
   }
+  if (const auto equalised = choose_equaliser(); !equalised) return equalised;
+  filtered_.emplace(record_.source(), header.sample_rate_hz, options_.filter, equaliser_);
+  return {};
+}
+
+schema::Result<void> TextureMaker::choose_equaliser() {
+  const schema::RecordingHeader& header = record_.header();
   if (options_.equalise == Equalise::off) return {};
   if (options_.equalise == Equalise::on && !header.transducer)
     return schema::fail(Fault::unsuitable, "names no transducer, so there is no response to divide by",
@@ -76,49 +81,90 @@ schema::Result<void> TextureMaker::check_duration(const Stroke& stroke) const {
                       record_.where(), "raise --low, or turn the band off with --band off");
 }
 
-schema::Result<const FilteredPiece*> TextureMaker::filtered_piece(FrameRange frames) {
-  const auto holds = [&](const FrameRange& p) { return p.begin <= frames.begin && frames.end <= p.end; };
-  if (piece_ && holds(piece_->frames)) return &*piece_;
-  const auto found = std::ranges::find_if(record_.pieces(), holds);
-  if (found == record_.pieces().end())
-    return schema::fail(Fault::unsuitable, "frames are missing inside the stroke", record_.where());
-  auto filtered =
-      filter_in_time(record_.values(*found), record_.header().sample_rate_hz, options_.filter, equaliser_);
-  if (!filtered) return schema::forward_error(filtered);
-  piece_ = FilteredPiece{*found, std::move(*filtered)};
-  return &*piece_;
-}
-
-schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int number) {
-  if (const auto fine = check_duration(stroke); !fine) return schema::forward_error(fine);
-  const auto piece = filtered_piece(stroke.frames);
-  if (!piece) return schema::forward_error(piece);
-  const MonotonePath path =
-      monotone_path(record_.position_m(stroke.frames), stroke.direction, record_.quantum_m());
+schema::Result<MonotonePath> TextureMaker::path_of(const Stroke& stroke, double shift_m) const {
+  const auto positions = record_.position_m(stroke.frames);
+  if (!positions) return schema::forward_error(positions);
+  MonotonePath path = monotone_path(*positions, stroke.direction, record_.position_error());
   if (path.way_m.empty())
     return schema::fail(Fault::unsuitable, "the finger gets nowhere in the stroke", record_.where());
-  auto grid = grid_along(path, stroke.direction, options_.pitch_m);
-  if (!grid) return schema::forward_error(grid);
-
-  schema::Texture texture;
-  texture.signal = {grid->pitch_m, 0, resample_piece(**piece, stroke, path, *grid)};
-  texture.source_origin_m = grid->origin_m();
-  texture.source.position_moved_m = path.moved_m;
-  describe(texture, stroke, number);
-  add_band(texture, path);
-  return texture;
+  if (shift_m != 0)
+    for (double& way_m : path.way_m) way_m += stroke.direction * shift_m;
+  return path;
 }
 
-void TextureMaker::add_band(schema::Texture& texture, const MonotonePath& path) const {
+schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke, const MonotonePath& path,
+                                                            const SpaceGrid& grid) {
+  const auto holds = [&](const FrameRange& piece) { return piece.contains(stroke.frames); };
+  const auto piece = std::ranges::find_if(record_.pieces(), holds);
+  if (piece == record_.pieces().end())
+    return schema::fail(Fault::unsuitable, "frames are missing inside the stroke", record_.where());
+  const std::size_t before = std::min(kMargin, stroke.frames.begin - piece->begin);
+  const FrameRange frames{stroke.frames.begin - before, std::min(stroke.frames.end + kMargin, piece->end)};
+  const auto values = filtered_->values(*piece, frames);
+  if (!values) return schema::forward_error(values);
+  return resample(path, stroke.direction, grid, *values, before);
+}
+
+SpeedProfile TextureMaker::profile_of(const Stroke& stroke, const MonotonePath& path,
+                                      const SpaceGrid& grid) const {
   const double rate_hz = record_.header().sample_rate_hz;
-  const auto window = speed_window(record_.quantum_m(), texture.source.mean_speed_mps, rate_hz);
+  const auto window = speed_window(record_.facts().resolution_m(), record_.mean_speed_mps(stroke), rate_hz);
   const LocalSpeed speed(path, rate_hz, static_cast<double>(window));
-  const SpeedProfile profile =
-      speed_profile(speed, texture.source_origin_m, texture.signal.length_m(), texture.direction);
+  const double length_m = static_cast<double>(grid.count - 1) * grid.pitch_m;
+  return speed_profile(speed, grid.origin_m(), length_m, stroke.direction);
+}
+
+// A finger that all but rests has its band at frequencies that no grid holds: what came out would be noise.
+schema::Result<void> TextureMaker::check_band(const SpeedProfile& profile) const {
+  const Band band = options_.filter.passed(record_.header().sample_rate_hz);
+  const double speed_mps = median(profile.speed_mps), highest_per_m = 1 / (2 * options_.pitch_m);
+  if (band.low_hz <= highest_per_m * speed_mps) return {};
+  const auto text = [](double value, schema::Dimension dimension) {
+    return schema::for_people(value, dimension);
+  };
+  return schema::fail(
+      Fault::unsuitable,
+      fmt::format("the finger all but rests: at {} the band from {:g} Hz on lies above {}, and a grid of {} "
+                  "ends at {}",
+                  text(speed_mps, schema::Dimension::speed), band.low_hz,
+                  text(band.low_hz / speed_mps, schema::Dimension::spatial_frequency),
+                  text(options_.pitch_m, schema::Dimension::length),
+                  text(highest_per_m, schema::Dimension::spatial_frequency)),
+      record_.where(), "ask for a stretch in which it moves; --list shows the strokes");
+}
+
+schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int number, double shift_m) {
+  if (const auto fine = check_duration(stroke); !fine) return schema::forward_error(fine);
+  const auto path = path_of(stroke, shift_m);
+  if (!path) return schema::forward_error(path);
+  const auto grid = grid_along(*path, stroke.direction, options_.pitch_m);
+  if (!grid) return schema::forward_error(grid);
+  const SpeedProfile profile = profile_of(stroke, *path, *grid);
+  if (const auto fine = check_band(profile); !fine) return schema::forward_error(fine);
+  auto values = resampled(stroke, *path, *grid);
+  if (!values) return schema::forward_error(values);
+
+  schema::Texture texture;
+  texture.signal = {grid->pitch_m, 0, std::move(*values)};
+  texture.source_origin_m = grid->origin_m();
+  texture.source.position_moved_m = path->moved_m;
   const auto [slowest, fastest] = std::ranges::minmax(profile.speed_mps);
   texture.source.min_speed_mps = slowest;
   texture.source.max_speed_mps = fastest;
-  texture.valid_band = valid_band(profile, options_.filter.passed(rate_hz));
+  texture.valid_band = valid_band(profile, options_.filter.passed(record_.header().sample_rate_hz));
+  describe(texture, stroke, number);
+  return texture;
+}
+
+void TextureMaker::describe_position(schema::TextureSource& source, const Stroke& stroke) const {
+  source.mean_speed_mps = record_.mean_speed_mps(stroke);
+  source.position_quantum_m = record_.facts().quantum_m;
+  source.position_noise_m = record_.facts().noise_m;
+  source.counter_bits = record_.counter_wraps().bits;
+  source.counter_wraps =
+      static_cast<int>(record_.counter_wraps().count_in(stroke.frames.begin, stroke.frames.end));
+  source.normal_force_n = stroke.force_n;
+  source.finger_up = stroke.finger_up;
 }
 
 void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int number) const {
@@ -141,7 +187,7 @@ void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int 
   source.low_hz = band.low_hz;
   source.high_hz = band.high_hz;
   source.equalised = static_cast<bool>(equaliser_);
-  source.mean_speed_mps = record_.mean_speed_mps(stroke);
+  describe_position(source, stroke);
   texture.simulated = header.simulated;
   texture.surface = header.surface;
   texture.subject = header.subject;

@@ -9,9 +9,12 @@
 #include "data-schema/error.hpp"
 #include "data-schema/recording.hpp"
 #include "data-schema/texture.hpp"
+#include "spatial/filtered_track.hpp"
 #include "spatial/monotone_path.hpp"
+#include "spatial/resample.hpp"
 #include "spatial/time_filter.hpp"
 #include "spatial/touch_record.hpp"
+#include "spatial/valid_band.hpp"
 
 namespace tacto::spatial {
 
@@ -26,39 +29,42 @@ struct TextureOptions {
   double pitch_m = 1e-6;
 };
 
-/// What a channel became by filtering, between two gaps.
-struct FilteredPiece {
-  FrameRange frames;
-  std::vector<double> values;
-};
-
-/// Makes the textures of one recording. Not shared between threads.
+/// Makes the textures of one recording, of any length in little memory: it holds a stroke, not the recording.
+/// Not shared between threads.
 class TextureMaker {
  public:
   /// Errors: of TouchRecord::open; unsuitable (a filter that does not fit the rate, equalising without a
   /// transducer); usage (a pitch that is not above 0).
   static schema::Result<TextureMaker> open(const schema::Recording& recording, const TextureOptions& options);
+  /// Of a record that is open; options.channel is not read.
+  static schema::Result<TextureMaker> open(TouchRecord record, const TextureOptions& options);
 
   const TouchRecord& record() const { return record_; }
 
   /// The texture of a stroke or stretch of record(). All between two gaps is filtered, then the stroke is
-  /// resampled. Its position 0 is a multiple of the pitch on the bench. `number` is kept as the stroke's, 0
-  /// for a stretch. Errors: unsuitable, for a stroke shorter than one period of the lowest frequency, and of
-  /// grid_along().
-  schema::Result<schema::Texture> make(const Stroke& stroke, int number);
+  /// resampled; strokes by time are the fast way. Its position 0 is a multiple of the pitch on the bench.
+  /// `number` is kept as the stroke's, 0 for a stretch. `shift_m` is added to its positions on the bench.
+  /// Errors: unsuitable, for a stroke shorter than one period of the lowest frequency, for one so slow that
+  /// its whole band lies beyond what the grid can hold, and of grid_along(); of reading.
+  schema::Result<schema::Texture> make(const Stroke& stroke, int number, double shift_m = 0);
 
  private:
   TextureMaker(TouchRecord record, TextureOptions options);
   schema::Result<void> prepare();
+  schema::Result<void> choose_equaliser();
   schema::Result<void> check_duration(const Stroke& stroke) const;
-  schema::Result<const FilteredPiece*> filtered_piece(FrameRange frames);
-  void add_band(schema::Texture& texture, const MonotonePath& path) const;
+  schema::Result<void> check_band(const SpeedProfile& profile) const;
+  schema::Result<MonotonePath> path_of(const Stroke& stroke, double shift_m) const;
+  schema::Result<std::vector<double>> resampled(const Stroke& stroke, const MonotonePath& path,
+                                                const SpaceGrid& grid);
+  SpeedProfile profile_of(const Stroke& stroke, const MonotonePath& path, const SpaceGrid& grid) const;
   void describe(schema::Texture& texture, const Stroke& stroke, int number) const;
+  void describe_position(schema::TextureSource& source, const Stroke& stroke) const;
 
   TouchRecord record_;
   TextureOptions options_;
   SpectralGain equaliser_;
-  std::optional<FilteredPiece> piece_;  // the last that was filtered: strokes come by time
+  std::optional<FilteredTrack> filtered_;
 };
 
 /// Root of the mean square of a texture's values, in their unit.

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The finger's speed from positions that are quantised: differences over a window, not from sample to sample.
+// The finger's speed from positions that are quantised or noisy: differences over a window, not from sample
+// to sample.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
+
+#include "spatial/frame_range.hpp"
 
 namespace tacto::spatial {
 
@@ -14,16 +17,29 @@ namespace tacto::spatial {
 std::vector<double> smoothed_speed(std::span<const double> position_m, double sample_rate_hz,
                                    std::size_t window);
 
-/// The window that brings a quantum's error under 10 % of `speed_mps`: 20 ms, or 10 quanta at that speed
-/// where that is longer, 0.5 s at most. In samples, at least 2.
-std::size_t speed_window(double quantum_m, double speed_mps, double sample_rate_hz);
+/// The window that brings an error of `resolution_m` under 10 % of `speed_mps`: 20 ms, or 10 resolutions at
+/// that speed where that is longer, 0.5 s at most. In samples, at least 2.
+std::size_t speed_window(double resolution_m, double speed_mps, double sample_rate_hz);
 
-/// The speed at which half of the whole way was gone: pauses, however long, weigh nothing. 0 where nothing
-/// moves.
-double travelling_speed(std::span<const double> speed_mps);
-
-/// The step of the positions' grid: the smallest change from one step to the next. 0 where nearly all steps
-/// are equal, as of a nominal position, and no grid shows. m.
-double position_quantum(std::span<const double> position_m);
+/// Calls visit(frame, speed_mps, position_m) for the frames `within` a stretch without gaps, in order; the
+/// speeds are those of smoothed_speed() over the whole stretch. Holds a chunk and a window in memory. Errors:
+/// of reading.
+template <class Visit>
+schema::Result<void> visit_speeds(const ReadFrames& read, FrameRange stretch, FrameRange within,
+                                  double sample_rate_hz, std::size_t window, const Visit& visit) {
+  std::vector<double> positions;
+  const std::size_t half = window / 2;
+  return chunk_by_chunk(within, [&](FrameRange part) -> schema::Result<void> {
+    const FrameRange seen{std::max(part.begin, stretch.begin + half) - half,
+                          std::min(part.end + half, stretch.end)};
+    if (seen.size() < 2) return {};
+    positions.resize(seen.size());
+    if (auto done = read(seen.begin, positions); !done) return done;
+    const auto speeds = smoothed_speed(positions, sample_rate_hz, window);
+    for (std::size_t i = part.begin; i < part.end; ++i)
+      visit(i, speeds[i - seen.begin], positions[i - seen.begin]);
+    return {};
+  });
+}
 
 }  // namespace tacto::spatial

@@ -10,73 +10,104 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kPause_s = 0.1;   // a finger that sticks lets go sooner
-constexpr double kSlowest = 0.1;   // of the stroke's own travelling speed: it starts and ends there
-constexpr double kUnderWay = 0.5;  // what a stroke reaches somewhere
-constexpr double kRest = 0.001;    // of the record's travelling speed: creep of a resting stage
-constexpr double kRestQuanta = 3;  // a window: dither of a resting encoder
+constexpr double kPause_s = 0.1;             // a finger that sticks lets go sooner
+constexpr double kSlowest = 0.1;             // of the stroke's own travelling speed: it starts and ends there
+constexpr double kUnderWay = 0.5;            // what a stroke reaches somewhere
+constexpr double kRest = 1e-4;               // of the record's travelling speed: creep of a resting stage
+constexpr double kRestResolutions = 3;       // a window: dither of a resting encoder, 5 sigma of noise
+constexpr double kSlowestFinger_mps = 1e-3;  // the slowest that is looked for by a longer window
 constexpr double kShortestOfLongest = 0.05;
-constexpr double kShortestQuanta = 20;
+constexpr double kShortestResolutions = 20;
+constexpr double kShortestRun = 3;  // resolutions: what a slip between two sticks goes, and dither does not
+constexpr double kWayBack = 0.05;   // of the way before or after: a rebound, not a reversal
 
-// A record's positions and what was learnt of them.
-struct Track {
-  std::span<const double> position_m;
-  std::vector<double> speed_mps;
-  std::size_t pause = 0;  // samples
-  double quantum_m = 0;
-  double rest_mps = 0;  // slower is standing still
+using Strokes = std::vector<Stroke>;
 
-  double advance(const Stroke& run) const {
-    return run.direction * (position_m[run.frames.end - 1] - position_m[run.frames.begin]);
+// A stretch without gaps, searched with one window.
+class Search {
+ public:
+  Search(const ReadFrames& read, FrameRange stretch, double sample_rate_hz, const PositionFacts& facts,
+         std::size_t window)
+      : read_(read), stretch_(stretch), rate_hz_(sample_rate_hz), facts_(facts), window_(window) {}
+
+  double rest_mps() const {
+    const double dither_mps =
+        kRestResolutions * facts_.resolution_m() / static_cast<double>(window_) * rate_hz_;
+    return std::max(dither_mps, kRest * facts_.travelling_mps);
   }
+  schema::Result<Strokes> strokes() const;
+
+ private:
+  std::size_t pause() const { return static_cast<std::size_t>(std::ceil(kPause_s * rate_hz_)); }
+  double shortest_run_m() const { return kShortestRun * facts_.resolution_m(); }
+  schema::Result<Strokes> runs_above(FrameRange range, double threshold_mps, double shortest_m,
+                                     std::vector<double>* fastest_mps) const;
+  Strokes joined(const Strokes& runs) const;
+  bool goes_on(const Strokes& strokes, std::size_t i, const Stroke& run) const;
+  schema::Result<double> own_speed(FrameRange range) const;
+  schema::Result<void> append_strokes(const Stroke& run, Strokes& strokes) const;
+
+  const ReadFrames& read_;
+  FrameRange stretch_;
+  double rate_hz_;
+  const PositionFacts& facts_;
+  std::size_t window_;
 };
 
-std::vector<double> speeds_of(std::span<const double> position_m, double sample_rate_hz, std::size_t window,
-                              std::span<const FrameRange> pieces) {
-  std::vector<double> speeds(position_m.size(), 0.0);
-  for (const FrameRange& piece : pieces) {
-    if (piece.size() < 2) continue;
-    const auto part = smoothed_speed(position_m.subspan(piece.begin, piece.size()), sample_rate_hz, window);
-    std::ranges::copy(part, speeds.begin() + static_cast<std::ptrdiff_t>(piece.begin));
-  }
-  return speeds;
+double longest_of(const Strokes& strokes) {
+  double longest_m = 0;
+  for (const Stroke& stroke : strokes) longest_m = std::max(longest_m, stroke.advance_m());
+  return longest_m;
 }
 
-Track track_of(std::span<const double> position_m, double sample_rate_hz,
-               std::span<const FrameRange> pieces) {
-  Track track{position_m, {}, 0, position_quantum(position_m), 0};
-  std::size_t window = speed_window(0, 0, sample_rate_hz);
-  track.speed_mps = speeds_of(position_m, sample_rate_hz, window, pieces);
-  window = speed_window(track.quantum_m, travelling_speed(track.speed_mps), sample_rate_hz);
-  track.speed_mps = speeds_of(position_m, sample_rate_hz, window, pieces);
-  const double dither_mps = kRestQuanta * track.quantum_m / static_cast<double>(window) * sample_rate_hz;
-  track.rest_mps = std::max(dither_mps, kRest * travelling_speed(track.speed_mps));
-  track.pause = static_cast<std::size_t>(std::ceil(kPause_s * sample_rate_hz));
-  return track;
-}
-
-// Runs within `range` whose speed lies above `threshold_mps`, each in one direction.
-std::vector<Stroke> runs_above(const Track& track, FrameRange range, double threshold_mps) {
-  std::vector<Stroke> runs;
+// Runs in `range` whose speed lies above the threshold, each in one direction and `shortest_m` long, and the
+// largest speed of each.
+schema::Result<Strokes> Search::runs_above(FrameRange range, double threshold_mps, double shortest_m,
+                                           std::vector<double>* fastest_mps) const {
+  Strokes runs;
+  std::vector<double> fastest;
+  const auto end_run = [&] {
+    if (runs.empty() || runs.back().advance_m() >= shortest_m) return;
+    runs.pop_back();
+    fastest.pop_back();
+  };
   int before = 0;
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    const double speed = track.speed_mps[i];
-    const int now = std::abs(speed) > threshold_mps ? (speed > 0 ? 1 : -1) : 0;
-    if (now != 0 && now != before) runs.push_back({{i, i}, now});
-    if (now != 0) runs.back().frames.end = i + 1;
+  const auto visit = [&](std::size_t frame, double speed_mps, double position_m) {
+    const int now = std::abs(speed_mps) > threshold_mps ? (speed_mps > 0 ? 1 : -1) : 0;
+    if (now != before && before != 0) end_run();
+    if (now != 0 && now != before) {
+      runs.push_back({{frame, frame}, now, position_m, position_m, {}, false});
+      fastest.push_back(0);
+    }
     before = now;
-  }
+    if (now == 0) return;
+    runs.back().frames.end = frame + 1;
+    runs.back().to_m = position_m;
+    fastest.back() = std::max(fastest.back(), std::abs(speed_mps));
+  };
+  if (auto done = visit_speeds(read_, stretch_, range, rate_hz_, window_, visit); !done)
+    return schema::forward_error(done);
+  if (before != 0) end_run();
+  if (fastest_mps != nullptr) *fastest_mps = std::move(fastest);
   return runs;
 }
 
-// Joins neighbours in one direction that only a short pause parts.
-std::vector<Stroke> joined(const Track& track, const std::vector<Stroke>& runs) {
-  std::vector<Stroke> result;
+// Whether a run is the same stroke as the i-th, after a pause, or after a short way back behind it.
+bool Search::goes_on(const Strokes& strokes, std::size_t i, const Stroke& run) const {
+  return strokes[i].direction == run.direction && run.frames.begin - strokes[i].frames.end < pause();
+}
+
+Strokes Search::joined(const Strokes& runs) const {
+  Strokes result;
   for (const Stroke& run : runs) {
-    const bool goes_on = !result.empty() && result.back().direction == run.direction &&
-                         run.frames.begin - result.back().frames.end < track.pause;
-    if (goes_on) {
+    const std::size_t n = result.size();
+    const bool back =
+        n >= 2 && goes_on(result, n - 2, run) &&
+        result[n - 1].advance_m() < kWayBack * std::max(result[n - 2].advance_m(), run.advance_m());
+    if (back) result.pop_back();
+    if (back || (n >= 1 && goes_on(result, n - 1, run))) {
       result.back().frames.end = run.frames.end;
+      result.back().to_m = run.to_m;
     } else {
       result.push_back(run);
     }
@@ -84,23 +115,74 @@ std::vector<Stroke> joined(const Track& track, const std::vector<Stroke>& runs) 
   return result;
 }
 
-// The parts of a run that are strokes by the run's own speed.
-void append_strokes(const Track& track, const Stroke& run, std::vector<Stroke>& strokes) {
-  const auto speeds = std::span(track.speed_mps).subspan(run.frames.begin, run.frames.size());
-  const double own_mps = travelling_speed(speeds);
-  for (const Stroke& part : joined(track, runs_above(track, run.frames, kSlowest * own_mps))) {
-    const auto inside = std::span(track.speed_mps).subspan(part.frames.begin, part.frames.size());
-    const auto under_way = [&](double speed) { return part.direction * speed > kUnderWay * own_mps; };
-    if (part.direction == run.direction && std::ranges::any_of(inside, under_way)) strokes.push_back(part);
-  }
+schema::Result<double> Search::own_speed(FrameRange range) const {
+  LogHistogram speeds;
+  const auto count = [&](std::size_t, double speed_mps, double) { speeds.add(std::abs(speed_mps)); };
+  if (auto done = visit_speeds(read_, stretch_, range, rate_hz_, window_, count); !done)
+    return schema::forward_error(done);
+  return speeds.median_by_sum();
 }
 
-// What a finger calls a stroke: not the wobble at rest, nor a settling at an end.
-void drop_short(const Track& track, std::vector<Stroke>& runs) {
-  double longest_m = 0;
-  for (const Stroke& run : runs) longest_m = std::max(longest_m, track.advance(run));
-  const double shortest_m = std::max(kShortestOfLongest * longest_m, kShortestQuanta * track.quantum_m);
-  std::erase_if(runs, [&](const Stroke& run) { return track.advance(run) < shortest_m; });
+// The parts of a run that are strokes by the run's own speed.
+schema::Result<void> Search::append_strokes(const Stroke& run, Strokes& strokes) const {
+  const auto own_mps = own_speed(run.frames);
+  if (!own_mps) return schema::forward_error(own_mps);
+  std::vector<double> fastest_mps;
+  auto parts = runs_above(run.frames, kSlowest * *own_mps, facts_.resolution_m(), &fastest_mps);
+  if (!parts) return schema::forward_error(parts);
+  const Strokes all = joined(*parts);
+  std::size_t p = 0;
+  for (const Stroke& part : all) {
+    double fastest = 0;
+    for (; p < parts->size() && (*parts)[p].frames.end <= part.frames.end; ++p)
+      if ((*parts)[p].direction == part.direction) fastest = std::max(fastest, fastest_mps[p]);
+    if (part.direction == run.direction && fastest > kUnderWay * *own_mps) strokes.push_back(part);
+  }
+  return {};
+}
+
+schema::Result<Strokes> Search::strokes() const {
+  auto runs = runs_above(stretch_, rest_mps(), shortest_run_m(), nullptr);
+  if (!runs) return runs;
+  Strokes strokes = joined(*runs);
+  const double shortest = kShortestOfLongest * longest_of(strokes);
+  std::erase_if(strokes, [&](const Stroke& run) { return run.advance_m() < shortest; });
+  Strokes found;
+  for (const Stroke& run : strokes)
+    if (auto done = append_strokes(run, found); !done) return schema::forward_error(done);
+  return found;
+}
+
+// What of a stretch lies between the strokes that were found in it, a pause away from them.
+std::vector<FrameRange> between(FrameRange stretch, const Strokes& strokes, std::size_t pause) {
+  std::vector<FrameRange> rest;
+  std::size_t begin = stretch.begin;
+  for (const Stroke& stroke : strokes) {
+    if (stroke.frames.begin > begin + 2 * pause) rest.push_back({begin, stroke.frames.begin - pause});
+    begin = stroke.frames.end + pause;
+  }
+  if (stretch.end > begin + pause) rest.push_back({begin, stretch.end});
+  return rest;
+}
+
+// With the window that fits the record's travelling speed, then, where that hides a slow finger, with the
+// window that shows it.
+schema::Result<Strokes> strokes_in(const ReadFrames& read, FrameRange piece, double sample_rate_hz,
+                                   const PositionFacts& facts) {
+  const double resolution_m = facts.resolution_m();
+  const std::size_t window = speed_window(resolution_m, facts.travelling_mps, sample_rate_hz);
+  const std::size_t longer = speed_window(resolution_m, kSlowestFinger_mps, sample_rate_hz);
+  const Search search(read, piece, sample_rate_hz, facts, window);
+  auto strokes = search.strokes();
+  if (!strokes || search.rest_mps() < kSlowestFinger_mps / 2 || longer <= window) return strokes;
+  const auto pause = static_cast<std::size_t>(std::ceil(kPause_s * sample_rate_hz));
+  for (const FrameRange& rest : between(piece, *strokes, pause)) {
+    const auto more = Search(read, rest, sample_rate_hz, facts, longer).strokes();
+    if (!more) return more;
+    strokes->insert(strokes->end(), more->begin(), more->end());
+  }
+  std::ranges::sort(*strokes, {}, [](const Stroke& stroke) { return stroke.frames.begin; });
+  return strokes;
 }
 
 }  // namespace
@@ -117,17 +199,18 @@ std::vector<FrameRange> pieces_between_gaps(std::size_t frames, std::span<const 
   return pieces;
 }
 
-std::vector<Stroke> find_strokes(std::span<const double> position_m, double sample_rate_hz,
-                                 std::span<const schema::Gap> gaps) {
-  const auto pieces = pieces_between_gaps(position_m.size(), gaps);
-  const Track track = track_of(position_m, sample_rate_hz, pieces);
-  std::vector<Stroke> strokes;
+schema::Result<Strokes> find_strokes(const ReadFrames& read, std::span<const FrameRange> pieces,
+                                     double sample_rate_hz, const PositionFacts& facts) {
+  Strokes strokes;
   for (const FrameRange& piece : pieces) {
-    std::vector<Stroke> runs = runs_above(track, piece, track.rest_mps);
-    drop_short(track, runs);
-    for (const Stroke& run : joined(track, runs)) append_strokes(track, run, strokes);
+    if (piece.size() < 2) continue;
+    const auto found = strokes_in(read, piece, sample_rate_hz, facts);
+    if (!found) return found;
+    strokes.insert(strokes.end(), found->begin(), found->end());
   }
-  drop_short(track, strokes);
+  const double shortest_m =
+      std::max(kShortestOfLongest * longest_of(strokes), kShortestResolutions * facts.resolution_m());
+  std::erase_if(strokes, [&](const Stroke& stroke) { return stroke.advance_m() < shortest_m; });
   return strokes;
 }
 

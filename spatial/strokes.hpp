@@ -3,33 +3,40 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "data-schema/error.hpp"
 #include "data-schema/recording.hpp"
+#include "spatial/frame_range.hpp"
+#include "spatial/position_facts.hpp"
 
 namespace tacto::spatial {
-
-/// Frames [begin, end) of a record.
-struct FrameRange {
-  std::size_t begin = 0, end = 0;
-  std::size_t size() const { return end - begin; }
-};
 
 /// One stroke: the finger on its way in one direction.
 struct Stroke {
   FrameRange frames;
-  int direction = 1;  ///< +1 as the encoder counts up
+  int direction = 1;                             ///< +1 as the encoder counts up
+  double from_m = 0, to_m = 0;                   ///< positions of the first and last frame
+  std::optional<double> force_n = std::nullopt;  ///< mean normal force, where it is known
+  bool finger_up = false;                        ///< by that force; see finger_contact.hpp
+
+  double advance_m() const { return direction * (to_m - from_m); }
 };
 
 /// The stretches of a record between its gaps. `gaps` sorted by frame, as recordings keep them.
 std::vector<FrameRange> pieces_between_gaps(std::size_t frames, std::span<const schema::Gap> gaps);
 
 /// Strokes by time. A stroke is a run above a tenth of its own travelling speed that somewhere reaches half
-/// of it. A reversal, a gap or a pause of 0.1 s ends it; shorter pauses stay inside. What is shorter than 5 %
-/// of the longest stroke, or than 20 quanta, is none. Positions in m, one a frame.
-std::vector<Stroke> find_strokes(std::span<const double> position_m, double sample_rate_hz,
-                                 std::span<const schema::Gap> gaps = {});
+/// of it. A reversal, a gap or a pause of 0.1 s ends it; shorter pauses stay inside, so a finger that sticks
+/// and slips makes one stroke, and so do short ways back (5 % of the way before or after) within such a
+/// pause. What is shorter than 5 % of the longest stroke, or than 20 resolutions of the position, is none.
+/// Where the position is so coarse that a speed of 1 mm/s would not show, what lies between strokes is
+/// searched again with a longer window. Memory: a chunk, a window of 0.5 s at most, and the list. Errors: of
+/// reading.
+schema::Result<std::vector<Stroke>> find_strokes(const ReadFrames& read, std::span<const FrameRange> pieces,
+                                                 double sample_rate_hz, const PositionFacts& facts);
 
 /// How far a stretch goes back at most, against its direction: 0 for a monotone one. m.
 double backward_travel(std::span<const double> position_m, int direction);

@@ -9,7 +9,7 @@
 #include <ranges>
 
 #include "data-schema/quantity.hpp"
-#include "spatial/smoothed_speed.hpp"
+#include "spatial/finger_contact.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -19,7 +19,10 @@ using schema::Fault;
 // What a finger may go back within a stretch and still be said to go one way: a few counts, or its elastic
 // rebound.
 constexpr double kBackwardQuanta = 4;
+constexpr double kBackwardSigmas = 10;  // the noise of the furthest forward and the furthest back of 1e6
 constexpr double kBackwardOfWay = 0.002;
+// Less is dither, or the creep of a resting finger.
+constexpr double kShortestResolutions = 20;
 // Half a sample period belongs to its frame: a time that was written with few digits still names it.
 constexpr double kWithinFrame = 0.5;
 
@@ -27,74 +30,68 @@ std::string seconds(double s) {
   return fmt::format("{:.4g} s", s);
 }
 
-std::optional<std::size_t> channel_of(const schema::RecordingHeader& header, std::string_view quantity) {
-  const auto found = std::ranges::find(header.channels, quantity, &schema::Channel::quantity);
-  if (found == header.channels.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - header.channels.begin());
-}
-
-std::string names_of(const schema::RecordingHeader& header) {
-  std::vector<std::string_view> names;
-  for (const schema::Channel& channel : header.channels) names.push_back(channel.name);
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-schema::Result<std::vector<double>> values_of(const schema::Recording& recording, std::size_t channel) {
-  auto signal = schema::read_channel(recording, channel);
-  if (!signal) return schema::forward_error(signal);
-  return std::move(signal->values);
-}
-
-schema::Result<std::size_t> position_channel(const schema::Recording& recording) {
-  if (const auto index = channel_of(recording.header, "position")) return *index;
-  return schema::fail(
-      Fault::unsuitable, fmt::format("has no position channel, only {}", names_of(recording.header)),
-      recording.stem, "import it with --channel position=COLUMN*SCALE, or with --speed for a nominal one");
+std::string millimetres(double m) {
+  return schema::for_people(m, schema::Dimension::length);
 }
 
 }  // namespace
 
 schema::Result<TouchRecord> TouchRecord::open(const schema::Recording& recording,
                                               const std::string& channel) {
-  const auto index = schema::find_channel(recording.header, channel);
-  if (!index) return schema::forward_error(index);
+  auto source = open_touch_source(recording, channel);
+  if (!source) return schema::forward_error(source);
+  return open(std::move(*source), recording.header, recording.stem);
+}
+
+schema::Result<TouchRecord> TouchRecord::open(std::unique_ptr<TouchSource> source,
+                                              schema::RecordingHeader header, std::string where) {
   TouchRecord record;
-  record.header_ = recording.header;
-  record.where_ = recording.stem;
-  record.channel_ = recording.header.channels[*index];
-  auto values = values_of(recording, *index);
-  if (!values) return schema::forward_error(values);
-  record.values_ = std::move(*values);
-  if (const auto read = record.read(recording); !read) return schema::forward_error(read);
+  record.header_ = std::move(header);
+  record.where_ = std::move(where);
+  record.source_ = std::move(source);
+  if (const auto surveyed = record.survey(); !surveyed) return schema::forward_error(surveyed);
   return record;
 }
 
-schema::Result<void> TouchRecord::read(const schema::Recording& recording) {
-  const auto index = position_channel(recording);
-  if (!index) return schema::forward_error(index);
-  auto position = values_of(recording, *index);
-  if (!position) return schema::forward_error(position);
-  position_m_ = std::move(*position);
-  if (std::ranges::all_of(position_m_, [&](double x) { return x == position_m_.front(); }))
+schema::Result<void> TouchRecord::survey() {
+  auto track = PositionTrack::open(*source_, header_.frames, header_.gaps);
+  if (!track) return schema::forward_error(track);
+  track_ = std::move(*track);
+  if (!track_->moves())
     return schema::fail(Fault::unsuitable, "the position never moves", where_,
                         "a texture needs a finger that strokes; is this the right position channel?");
-  if (const auto normal = channel_of(header_, "normal_force")) {
-    auto force = values_of(recording, *normal);
-    if (!force) return schema::forward_error(force);
-    normal_force_n_ = std::move(*force);
-  }
-  quantum_m_ = position_quantum(position_m_);
-  pieces_ = pieces_between_gaps(position_m_.size(), header_.gaps);
-  strokes_ = find_strokes(position_m_, header_.sample_rate_hz, header_.gaps);
+  pieces_ = pieces_between_gaps(header_.frames, header_.gaps);
+  const ReadFrames read = [this](std::size_t first, std::span<double> out) {
+    return track_->read(first, out);
+  };
+  auto facts = spatial::position_facts(read, pieces_, header_.sample_rate_hz, track_->furthest_m());
+  if (!facts) return schema::forward_error(facts);
+  facts_ = *facts;
+  auto strokes = find_strokes(read, pieces_, header_.sample_rate_hz, facts_);
+  if (!strokes) return schema::forward_error(strokes);
+  strokes_ = std::move(*strokes);
+  if (source_->channel(Track::normal_force) == nullptr) return {};
+  for (Stroke& stroke : strokes_)
+    if (auto done = weigh(stroke); !done) return done;
+  up_below_n_ = spatial::finger_up_below_n(strokes_);
+  for (Stroke& stroke : strokes_) stroke.finger_up = stroke.force_n < *up_below_n_;
   return {};
 }
 
-std::span<const double> TouchRecord::values(FrameRange frames) const {
-  return std::span(values_).subspan(frames.begin, frames.size());
-}
-
-std::span<const double> TouchRecord::position_m(FrameRange frames) const {
-  return std::span(position_m_).subspan(frames.begin, frames.size());
+// Sets the stroke's mean normal force.
+schema::Result<void> TouchRecord::weigh(Stroke& stroke) const {
+  if (source_->channel(Track::normal_force) == nullptr) return {};
+  double sum_n = 0;
+  std::vector<double> chunk;
+  const auto add = [&](FrameRange part) -> schema::Result<void> {
+    chunk.resize(part.size());
+    if (auto done = source_->read(Track::normal_force, part.begin, chunk); !done) return done;
+    sum_n = std::accumulate(chunk.begin(), chunk.end(), sum_n);
+    return {};
+  };
+  if (auto done = chunk_by_chunk(stroke.frames, add); !done) return done;
+  stroke.force_n = sum_n / static_cast<double>(stroke.frames.size());
+  return {};
 }
 
 double TouchRecord::from_s(const Stroke& stroke) const {
@@ -106,17 +103,11 @@ double TouchRecord::to_s(const Stroke& stroke) const {
 }
 
 double TouchRecord::length_m(const Stroke& stroke) const {
-  return std::abs(position_m_[stroke.frames.end - 1] - position_m_[stroke.frames.begin]);
+  return std::abs(stroke.to_m - stroke.from_m);
 }
 
 double TouchRecord::mean_speed_mps(const Stroke& stroke) const {
   return length_m(stroke) / (to_s(stroke) - from_s(stroke));
-}
-
-std::optional<double> TouchRecord::mean_normal_force_n(const Stroke& stroke) const {
-  if (normal_force_n_.empty()) return std::nullopt;
-  const auto forces = std::span(normal_force_n_).subspan(stroke.frames.begin, stroke.frames.size());
-  return std::accumulate(forces.begin(), forces.end(), 0.0) / static_cast<double>(forces.size());
 }
 
 std::string TouchRecord::list_of_strokes() const {
@@ -135,7 +126,7 @@ schema::Result<Stroke> TouchRecord::stroke(int number) const {
 }
 
 schema::Result<FrameRange> TouchRecord::frames_between(double from_s, double to_s) const {
-  const std::size_t frames = position_m_.size();
+  const std::size_t frames = header_.frames;
   const double slack_s = kWithinFrame / header_.sample_rate_hz;
   const double first_s = schema::frame_time_s(header_, 0), last_s = schema::frame_time_s(header_, frames - 1);
   if (!(from_s < to_s))
@@ -167,19 +158,30 @@ schema::Result<void> TouchRecord::check_gapless(FrameRange frames) const {
 }
 
 schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
-  const auto positions = position_m(frames);
+  const auto read = position_m(frames);
+  if (!read) return schema::forward_error(read);
+  const std::vector<double>& positions = *read;
   if (positions.size() < 2 || positions.front() == positions.back())
     return schema::fail(Fault::unsuitable, "the finger gets nowhere in the stretch", where_,
                         list_of_strokes());
-  const double advance_m = positions.back() - positions.front();
-  const int direction = advance_m > 0 ? 1 : -1;
+  const double advance_m = std::abs(positions.back() - positions.front());
+  const int direction = positions.back() > positions.front() ? 1 : -1;
   const double backward_m = backward_travel(positions, direction);
-  if (backward_m > std::max(kBackwardQuanta * quantum_m_, kBackwardOfWay * std::abs(advance_m)))
+  const double unseen_m = std::max(kBackwardQuanta * facts_.quantum_m, kBackwardSigmas * facts_.noise_m);
+  if (backward_m > std::max(unseen_m, kBackwardOfWay * advance_m))
     return schema::fail(Fault::unsuitable,
-                        fmt::format("the finger turns round in the stretch, by {}",
-                                    schema::for_people(backward_m, schema::Dimension::length)),
+                        fmt::format("the finger turns round in the stretch, by {}", millimetres(backward_m)),
                         where_, list_of_strokes());
-  return Stroke{frames, direction};
+  if (advance_m < kShortestResolutions * facts_.resolution_m())
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("the finger all but rests in the stretch: it gets {} far, and its "
+                                    "position is known to {}",
+                                    millimetres(advance_m), millimetres(facts_.resolution_m())),
+                        where_, list_of_strokes());
+  Stroke stroke{frames, direction, positions.front(), positions.back(), {}, false};
+  if (auto done = weigh(stroke); !done) return schema::forward_error(done);
+  stroke.finger_up = up_below_n_ && stroke.force_n < *up_below_n_;
+  return stroke;
 }
 
 schema::Result<Stroke> TouchRecord::stretch(double from_s, double to_s) const {

@@ -49,6 +49,25 @@ void add_source(Report& report, const TextureSource& source) {
   report.add("equalised", source.equalised).add("position_moved_m", source.position_moved_m);
 }
 
+void add_position(Report& report, const TextureSource& source) {
+  if (source.recording.empty()) return;
+  report.add("position_quantum_m", source.position_quantum_m);
+  if (source.position_noise_m > 0) report.add("position_noise_m", source.position_noise_m);
+  if (source.counter_bits > 0)
+    report.add("counter_bits", source.counter_bits).add("counter_wraps", source.counter_wraps);
+  if (source.normal_force_n)
+    report.add("normal_force_n", *source.normal_force_n).add("finger", source.finger_up ? "up" : "down");
+}
+
+void add_average(Report& report, const Texture& texture) {
+  if (!texture.average) return;
+  const TextureAverage& average = *texture.average;
+  report.add("averaged_strokes", average.strokes.size()).add("aligned_by", average.align);
+  report.add(key_in("spread_rms", texture.unit), statistics_of(average.spread).rms());
+  const auto [least, most] = std::ranges::minmax(average.counts, {}, &StrokeCount::strokes);
+  report.add("fewest_strokes", least.strokes).add("most_strokes", most.strokes);
+}
+
 }  // namespace
 
 Result<Report> describe_texture(const std::string& path) {
@@ -60,6 +79,8 @@ Result<Report> describe_texture(const std::string& path) {
   add_values(report, *texture);
   add_band(report, texture->valid_band);
   add_source(report, texture->source);
+  add_position(report, texture->source);
+  add_average(report, *texture);
   add_text(report, "surface", texture->surface);
   add_text(report, "finger", texture->finger);
   add_text(report, "subject", texture->subject);

@@ -39,7 +39,7 @@ void hermite_to_space(benchmark::State& state) {
   std::size_t samples = 0;
   for (auto _ : state)
     for (int i = 0; i < kStrokes; ++i) {
-      const MonotonePath path = monotone_path(stroked.position_m, 1, kQuantum_m);
+      const MonotonePath path = monotone_path(stroked.position_m, 1, {kQuantum_m, 0});
       const auto grid = grid_along(path, 1, 1e-6);
       const auto values = resample(path, 1, *grid, stroked.force_n, 0);
       benchmark::DoNotOptimize(values.data());

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "spatial/smoothed_speed.hpp"
 #include "tests/spatial/bare_finger.hpp"
+#include "tests/spatial/strokes_of.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -27,6 +27,12 @@ class Path {
     return *this;
   }
   Path& rest(double duration_s) { return go(0, duration_s); }
+  // Sticks for `stick_s`, then slips `slip_m` in 2 ms and springs back by a twentieth of it.
+  Path& stick_slip(double slip_m, double stick_s, int times) {
+    for (int i = 0; i < times; ++i)
+      rest(stick_s).go(slip_m * 1.05 / 0.002, 0.002).go(-slip_m * 0.05 / 0.001, 0.001);
+    return *this;
+  }
   double seconds() const { return static_cast<double>(position_m.size()) / kRate_hz; }
   std::vector<double> position_m;
 
@@ -45,7 +51,7 @@ void expect_stroke(const Stroke& stroke, double from_s, double to_s, int directi
 
 TEST(Strokes, FindsBothWaysBetweenPauses) {
   const Path path = Path().rest(1).go(0.04, 1).rest(0.5).go(-0.08, 0.5).rest(1);
-  const auto strokes = find_strokes(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   expect_stroke(strokes[0], 1, 2, 1);
   expect_stroke(strokes[1], 2.5, 3, -1);
@@ -53,7 +59,7 @@ TEST(Strokes, FindsBothWaysBetweenPauses) {
 
 TEST(Strokes, AReversalPartsThem) {
   const Path path = Path().go(0.05, 1).go(-0.05, 1).go(0.05, 1);
-  const auto strokes = find_strokes(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
   ASSERT_EQ(strokes.size(), 3U);
   expect_stroke(strokes[1], 1, 2, -1);
 }
@@ -61,13 +67,13 @@ TEST(Strokes, AReversalPartsThem) {
 TEST(Strokes, APausePartsAndAStickDoesNot) {
   const Path paused = Path().go(0.05, 1).rest(0.3).go(0.05, 1),
              stuck = Path().go(0.05, 1).rest(0.05).go(0.05, 1);
-  EXPECT_EQ(find_strokes(paused.position_m, kRate_hz).size(), 2U);
-  EXPECT_EQ(find_strokes(stuck.position_m, kRate_hz).size(), 1U);
+  EXPECT_EQ(strokes_of(paused.position_m, kRate_hz).size(), 2U);
+  EXPECT_EQ(strokes_of(stuck.position_m, kRate_hz).size(), 1U);
 }
 
 TEST(Strokes, EachIsJudgedByItsOwnSpeed) {
   const Path path = Path().rest(1).go(0.002, 10).rest(1).go(0.2, 0.2).rest(1);
-  const auto strokes = find_strokes(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   expect_stroke(strokes[0], 1, 11, 1);
   expect_stroke(strokes[1], 12, 12.2, 1);
@@ -76,7 +82,7 @@ TEST(Strokes, EachIsJudgedByItsOwnSpeed) {
 TEST(Strokes, ACoarseEncoderMakesNoFalseOnes) {
   for (const double quantum_m : {0.1e-6, 1e-6, 10e-6}) {
     const Path path = Path(quantum_m, quantum_m / 2).rest(2).go(0.001, 5).rest(60).go(-0.005, 1).rest(2);
-    const auto strokes = find_strokes(path.position_m, kRate_hz);
+    const auto strokes = strokes_of(path.position_m, kRate_hz);
     ASSERT_EQ(strokes.size(), 2U) << quantum_m;
     EXPECT_EQ(strokes[0].direction, 1);
     EXPECT_EQ(strokes[1].direction, -1);
@@ -85,8 +91,8 @@ TEST(Strokes, ACoarseEncoderMakesNoFalseOnes) {
 
 TEST(Strokes, ANominalPositionIsOneStroke) {
   const Path path = Path(0).go(0.04, 2);
-  EXPECT_EQ(position_quantum(path.position_m), 0);
-  const auto strokes = find_strokes(path.position_m, kRate_hz);
+  EXPECT_EQ(facts_of(path.position_m, kRate_hz).quantum_m, 0);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
   ASSERT_EQ(strokes.size(), 1U);
   EXPECT_EQ(strokes[0].frames.size(), path.position_m.size());
 }
@@ -94,21 +100,105 @@ TEST(Strokes, ANominalPositionIsOneStroke) {
 TEST(Strokes, AGapPartsThem) {
   const Path path = Path().go(0.05, 2);
   const schema::Gap gap{9000, 9000, 100};
-  const auto strokes = find_strokes(path.position_m, kRate_hz, {&gap, 1});
+  const auto strokes = strokes_of(path.position_m, kRate_hz, {&gap, 1});
   ASSERT_EQ(strokes.size(), 2U);
   EXPECT_EQ(strokes[0].frames.end, 9000U);
   EXPECT_EQ(strokes[1].frames.begin, 9000U);
 }
 
+TEST(Strokes, AFingerThatSticksAndSlipsMakesOneStroke) {
+  // 40 mm in slips of 0.5 mm with 50 ms between them, there and back: 9.4 mm/s.
+  for (const double quantum_m : {0.1e-6, 1e-6, 10e-6}) {
+    const Path path =
+        Path(quantum_m).rest(0.5).stick_slip(0.5e-3, 0.05, 80).rest(0.5).stick_slip(-0.5e-3, 0.05, 80);
+    const auto strokes = strokes_of(path.position_m, kRate_hz);
+    ASSERT_EQ(strokes.size(), 2U) << quantum_m;
+    EXPECT_EQ(strokes[0].direction, 1);
+    EXPECT_EQ(strokes[1].direction, -1);
+    EXPECT_NEAR(strokes[0].advance_m(), 0.04, 1e-3);
+    EXPECT_NEAR(strokes[1].advance_m(), 0.04, 1e-3);
+  }
+}
+
+TEST(Strokes, StickAndSlipBesideASmoothStroke) {
+  const Path path = Path().rest(0.5).go(0.1, 1).rest(0.5).stick_slip(0.5e-3, 0.04, 40).rest(0.5);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  ASSERT_EQ(strokes.size(), 2U);
+  EXPECT_NEAR(strokes[1].advance_m(), 0.02, 1e-3);
+}
+
+TEST(Strokes, FromOneToAThousandMillimetresASecondInOneRecord) {
+  for (const double quantum_m : {0.1e-6, 1e-6, 10e-6}) {
+    const Path path = Path(quantum_m, quantum_m / 2)
+                          .rest(1)
+                          .go(0.001, 10)
+                          .rest(1)
+                          .go(-0.01, 1)
+                          .rest(1)
+                          .go(0.1, 1)
+                          .rest(1)
+                          .go(-1, 0.15)
+                          .rest(1);
+    const auto strokes = strokes_of(path.position_m, kRate_hz);
+    ASSERT_EQ(strokes.size(), 4U) << quantum_m;
+    const double way_m[] = {0.01, 0.01, 0.1, 0.15};
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(strokes[i].direction, i % 2 == 0 ? 1 : -1);
+      EXPECT_NEAR(strokes[i].advance_m(), way_m[i], 0.02 * way_m[i] + 20 * quantum_m)
+          << i << " " << quantum_m;
+    }
+  }
+}
+
+TEST(Strokes, ANoisyLvdtShowsTheSameStrokes) {
+  // No grid; noise of 3 um, 30 times what the finger goes in a sample at 1 mm/s.
+  const Path path = Path(0, 3e-6).rest(1).go(0.001, 10).rest(1).go(-0.04, 1).rest(30).go(0.2, 0.2).rest(1);
+  const PositionFacts facts = facts_of(path.position_m, kRate_hz);
+  EXPECT_NEAR(facts.noise_m, 3e-6, 0.05e-6);
+  EXPECT_LT(facts.quantum_m, 1e-8);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  ASSERT_EQ(strokes.size(), 3U);
+  expect_stroke(strokes[1], 12, 13, -1);
+  expect_stroke(strokes[2], 43, 43.2, 1);
+  EXPECT_NEAR(strokes[0].advance_m(), 0.01, 5e-4);
+}
+
+TEST(Strokes, ANominalPositionHasNeitherQuantumNorNoise) {
+  const PositionFacts facts = facts_of(Path(0).rest(1).go(0.04, 2).position_m, kRate_hz);
+  EXPECT_EQ(facts.quantum_m, 0);
+  EXPECT_EQ(facts.noise_m, 0);
+  EXPECT_NEAR(facts.travelling_mps, 0.04, 0.0005);
+}
+
+TEST(Strokes, AnEncodersRoundingAndDitherAreNoNoise) {
+  for (const double dither : {0.0, 0.3, 0.8}) {
+    const Path path = Path(1e-6, dither * 1e-6).rest(1).go(0.0403, 2).rest(1);
+    EXPECT_EQ(facts_of(path.position_m, kRate_hz).noise_m, 0) << dither;
+    EXPECT_NEAR(facts_of(path.position_m, kRate_hz).quantum_m, 1e-6, 1e-15) << dither;
+  }
+}
+
+TEST(Strokes, AreTheSameInChunksOfALongRecord) {
+  // Longer than a chunk by far, with strokes across chunks' edges; each found where it is when searched
+  // alone.
+  Path path;
+  for (int i = 0; i < 30; ++i) path.rest(0.3).go(i % 2 == 0 ? 0.05 : -0.05, 1.7);
+  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  ASSERT_EQ(strokes.size(), 30U);
+  for (std::size_t i = 0; i < strokes.size(); ++i)
+    expect_stroke(strokes[i], 2.0 * static_cast<double>(i) + 0.3, 2.0 * static_cast<double>(i) + 2,
+                  i % 2 == 0 ? 1 : -1);
+}
+
 TEST(Strokes, NoneWhereNothingMoves) {
-  EXPECT_TRUE(find_strokes(Path().rest(1).position_m, kRate_hz).empty());
-  EXPECT_TRUE(find_strokes({}, kRate_hz).empty());
-  EXPECT_TRUE(find_strokes(std::vector<double>{1.0}, kRate_hz).empty());
+  EXPECT_TRUE(strokes_of(Path().rest(1).position_m, kRate_hz).empty());
+  EXPECT_TRUE(strokes_of({}, kRate_hz).empty());
+  EXPECT_TRUE(strokes_of(std::vector<double>{1.0}, kRate_hz).empty());
 }
 
 TEST(Strokes, QuantumIsTheEncodersCount) {
-  EXPECT_NEAR(position_quantum(Path(0.5e-6).go(0.0403, 1).position_m), 0.5e-6, 1e-15);
-  EXPECT_NEAR(position_quantum(Path(1e-6).rest(5).go(0.001, 1).position_m), 1e-6, 1e-15);
+  EXPECT_NEAR(facts_of(Path(0.5e-6).go(0.0403, 1).position_m, kRate_hz).quantum_m, 0.5e-6, 1e-15);
+  EXPECT_NEAR(facts_of(Path(1e-6).rest(5).go(0.001, 1).position_m, kRate_hz).quantum_m, 1e-6, 1e-15);
 }
 
 TEST(Strokes, PiecesLieBetweenGaps) {
@@ -123,8 +213,8 @@ TEST(Strokes, PiecesLieBetweenGaps) {
 TEST(Strokes, FindsTheTwoOfTheBareFinger) {
   const auto finger = bare_finger();
   if (finger.empty()) GTEST_SKIP() << "skipped: no real data";
-  EXPECT_NEAR(position_quantum(finger), 0.5e-6, 1e-15);
-  const auto strokes = find_strokes(finger, kRate_hz);
+  EXPECT_NEAR(facts_of(finger, kRate_hz).quantum_m, 0.5e-6, 1e-15);
+  const auto strokes = strokes_of(finger, kRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   // By the data's own timeline: 0.1 to 2.45 s back, 4.5 to 6.9 s forth; the stage ramps up and down over 0.25
   // s.

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/cli/spatial_average.hpp"
+
+#include <fmt/format.h>
+
+#include "data-schema/quantity.hpp"
+#include "spatial/align_textures.hpp"
+#include "spatial/average_textures.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+// Shifts a texture so that it agrees best with the strokes before it.
+class Aligner {
+ public:
+  Aligner(TextureMaker& maker, const SpatialOptions& options, std::vector<std::string>& warnings)
+      : maker_(maker), options_(options), warnings_(warnings) {}
+
+  Result<schema::Texture> aligned(schema::Texture texture, const StrokeJob& job,
+                                  const TextureAverager& averager, schema::AveragedStroke& stroke) const {
+    if (options_.align == Align::position || averager.strokes() == 0) return texture;
+    const double pitch_m = texture.signal.pitch_m;
+    const auto mean = averager.mean();
+    const Alignment found =
+        align({averager.first(), mean}, {texture.source_origin_m / pitch_m, texture.signal.values},
+              options_.align_range_m / pitch_m);
+    stroke.correlation = found.correlation;
+    if (!found.found) {
+      warnings_.push_back(
+          fmt::format("stroke {} agrees with those before it nowhere within {}: it is averaged as it lies",
+                      job.number, schema::for_people(options_.align_range_m, schema::Dimension::length)));
+      return texture;
+    }
+    stroke.shift_m = found.shift * pitch_m;
+    return maker_.make(job.stroke, job.number, stroke.shift_m);
+  }
+
+ private:
+  TextureMaker& maker_;
+  const SpatialOptions& options_;
+  std::vector<std::string>& warnings_;
+};
+
+Result<void> add_stroke(TextureMaker& maker, const StrokeJob& job, const Aligner& aligner,
+                        TextureAverager& averager) {
+  auto made = maker.make(job.stroke, job.number);
+  if (!made) return schema::forward_error(made);
+  schema::AveragedStroke stroke{job.number, made->source.from_s, made->source.to_s, job.stroke.direction, 0};
+  const auto texture = aligner.aligned(std::move(*made), job, averager, stroke);
+  if (!texture) return schema::forward_error(texture);
+  return averager.add(*texture, stroke);
+}
+
+}  // namespace
+
+std::vector<AverageGroup> average_groups(const std::vector<StrokeJob>& jobs, bool both_ways,
+                                         const std::string& stem) {
+  AverageGroup forward{{}, stem + "-forward"}, backward{{}, stem + "-backward"};
+  for (const StrokeJob& job : jobs)
+    (both_ways || job.stroke.direction > 0 ? forward : backward).jobs.push_back(job);
+  std::vector<AverageGroup> groups;
+  for (AverageGroup& group : {std::ref(forward), std::ref(backward)})
+    if (!group.jobs.empty()) groups.push_back(std::move(group));
+  if (groups.size() == 1) groups.front().stem = stem;
+  return groups;
+}
+
+Result<schema::Texture> averaged(TextureMaker& maker, const AverageGroup& group,
+                                 const SpatialOptions& options, std::vector<std::string>& warnings,
+                                 const std::function<void(double)>& progress) {
+  TextureAverager averager;
+  const Aligner aligner(maker, options, warnings);
+  for (const StrokeJob& job : group.jobs) {
+    const auto added = add_stroke(maker, job, aligner, averager);
+    if (!added && added.error().fault != Fault::unsuitable) return schema::forward_error(added);
+    if (!added)
+      warnings.push_back(
+          fmt::format("stroke {} is not averaged: {}", job.number, schema::message(added.error())));
+    progress(static_cast<double>(&job - group.jobs.data() + 1) / static_cast<double>(group.jobs.size()));
+  }
+  auto texture = averager.finish(options.align == Align::position ? "position" : "correlation");
+  if (!texture) texture.error().where = maker.record().where();
+  return texture;
+}
+
+}  // namespace tacto::spatial

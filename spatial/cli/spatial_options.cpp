@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/cli/spatial_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Dimension;
+using schema::Fault;
+using schema::Result;
+
+std::string where_of_band(const std::string& text) {
+  return "--band " + text;
+}
+
+Result<Band> parse_band(const std::string& text) {
+  const std::size_t dots = text.find("..");
+  if (dots == std::string::npos)
+    return schema::fail(Fault::usage, "is neither 'off' nor two frequencies", where_of_band(text),
+                        "write it like 15Hz..500Hz");
+  const auto low = schema::parse_quantity(text.substr(0, dots), Dimension::frequency);
+  if (!low) return schema::forward_error(low);
+  const auto high = schema::parse_quantity(text.substr(dots + 2), Dimension::frequency);
+  if (!high) return schema::forward_error(high);
+  return Band{*low, *high};
+}
+
+// An option that takes one of some words, shown as "a|b|c".
+template <class Enum>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& value,
+                        const std::vector<std::pair<std::string, Enum>>& choices, const std::string& help) {
+  std::vector<std::string> words;
+  for (const auto& [word, meaning] : choices) words.push_back(word);
+  return app.add_option(name, value, help)
+      ->transform(CLI::CheckedTransformer(choices).description(""))
+      ->type_name(fmt::format("{}", fmt::join(words, "|")))
+      ->default_str(words.front());
+}
+
+void declare_stretch(CLI::App& app, SpatialOptions& options) {
+  auto* stroke = app.add_option("--stroke", options.stroke, "Only this stroke of those found, from 1");
+  auto* from = cli::add_quantity(app, "--from", options.from_s, Dimension::time,
+                                 "Only the stretch from this time on (default: the recording's start)");
+  auto* to = cli::add_quantity(app, "--to", options.to_s, Dimension::time,
+                               "Only the stretch up to this time (default: the recording's end)");
+  stroke->excludes(from)->excludes(to);
+  app.add_flag("--finger-up", options.finger_up,
+               "Textures of strokes with the finger up, too (by the normal force)");
+  app.add_flag("--list", options.list, "Only list the strokes found; write nothing");
+  auto* average = app.add_flag("--average", options.average,
+                               "The mean of all strokes of a direction, and their standard deviation");
+  average->excludes(stroke)->excludes(from)->excludes(to);
+}
+
+void declare_average(CLI::App& app, SpatialOptions& options) {
+  app.add_flag("--both-ways", options.both_ways, "Average strokes of both directions into one")
+      ->needs("--average");
+  add_choice<Align>(
+      app, "--align", options.align, {{"position", Align::position}, {"correlation", Align::correlation}},
+      "Average strokes as they lie on the bench, or each shifted to agree best with those before")
+      ->needs("--average");
+  cli::add_quantity(app, "--align-range", options.align_range_m, Dimension::length,
+                    "The largest shift that --align correlation tries")
+      ->needs("--average");
+}
+
+void declare_filter(CLI::App& app, SpatialOptions& options) {
+  TimeFilter& filter = options.texture.filter;
+  auto* band =
+      app.add_option("--band", options.band, "Frequencies that pass, LOW..HIGH, or off (default 15Hz..500Hz)")
+          ->type_name("LOW..HIGH");
+  band->excludes(cli::add_quantity(app, "--low", options.low_hz, Dimension::frequency,
+                                   "Lowest frequency that passes (default 15Hz)"));
+  band->excludes(cli::add_quantity(app, "--high", options.high_hz, Dimension::frequency,
+                                   "Highest frequency that passes (default 500Hz)"));
+  add_choice<FilterMethod>(app, "--filter", filter.method,
+                           {{"fourier", FilterMethod::fourier},
+                            {"butterworth", FilterMethod::butterworth},
+                            {"none", FilterMethod::none}},
+                           "fourier truncates the spectrum, butterworth runs forwards and backwards");
+  app.add_option("--order", filter.order, "Order of the Butterworth filter, before it is run both ways")
+      ->check(CLI::Range(1, 20));
+  add_choice<Edges>(app, "--edges", filter.edges, {{"treated", Edges::treated}, {"none", Edges::none}},
+                    "treated keeps the record's ends from ringing, none is the plain filter");
+}
+
+}  // namespace
+
+void declare_spatial(CLI::App& app, SpatialOptions& options) {
+  app.add_option("recording", options.recordings, "Recordings, by name or file")->required();
+  app.add_option(
+      "-o,--output", options.output,
+      "Name of the texture; of several strokes, NAME-01 and on (default: the recording's). A folder, "
+      "or a name with {} for the recording's, where there are several recordings");
+  app.add_flag("--force", options.force, "Replace textures of that name");
+  app.add_option("--jobs", options.jobs, "Recordings worked on at a time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--channel", options.texture.channel, "The channel that becomes the texture");
+  declare_stretch(app, options);
+  declare_average(app, options);
+  declare_filter(app, options);
+  cli::add_quantity(app, "--grid", options.texture.pitch_m, Dimension::length,
+                    "Distance of the texture's samples");
+  add_choice<Equalise>(app, "--equalise", options.texture.equalise,
+                       {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
+                       "Divide by the transducer's sensor response; auto: where the recording names one");
+}
+
+// --band, --low and --high, --filter none: all say the same thing, the filter.
+Result<TextureOptions> texture_options(const SpatialOptions& options) {
+  TextureOptions texture = options.texture;
+  if (options.band == "off") {
+    texture.filter.method = FilterMethod::none;
+  } else if (!options.band.empty()) {
+    const auto band = parse_band(options.band);
+    if (!band) return schema::forward_error(band);
+    texture.filter.band = *band;
+  }
+  texture.filter.band.low_hz = options.low_hz.value_or(texture.filter.band.low_hz);
+  texture.filter.band.high_hz = options.high_hz.value_or(texture.filter.band.high_hz);
+  return texture;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `tactograph spatial` is asked for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/cli/verb.hpp"
+#include "spatial/make_texture.hpp"
+
+namespace tacto::spatial {
+
+enum class Align { position, correlation };
+
+struct SpatialOptions {
+  std::vector<std::string> recordings;
+  std::string output;
+  TextureOptions texture;
+  std::string band;
+  std::optional<double> low_hz, high_hz, from_s, to_s;
+  std::optional<int> stroke;
+  bool list = false, finger_up = false, average = false, both_ways = false, force = false;
+  Align align = Align::position;
+  double align_range_m = 0.5e-3;
+  int jobs = 1;
+};
+
+/// Declares the options on the verb's parser; `options` must outlive it.
+void declare_spatial(CLI::App& app, SpatialOptions& options);
+
+/// The options of textures, with --band, --low and --high read. Errors: usage.
+schema::Result<TextureOptions> texture_options(const SpatialOptions& options);
+
+}  // namespace tacto::spatial

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/cli/spatial_recording.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "data-schema/files.hpp"
+#include "data-schema/recording.hpp"
+#include "data-schema/texture.hpp"
+#include "spatial/cli/spatial_average.hpp"
+#include "spatial/cli/spatial_report.hpp"
+#include "spatial/cli/texture_names.hpp"
+#include "spatial/finger_contact.hpp"
+#include "spatial/texture_warnings.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Fault;
+using schema::Result;
+
+// One recording on its way.
+class Run {
+ public:
+  Run(const SpatialOptions& options, std::string stem, const std::function<void(double)>& progress,
+      std::vector<std::string>& warnings)
+      : options_(options), stem_(std::move(stem)), progress_(progress), warnings_(warnings) {}
+
+  Result<Report> on(const std::string& name);
+
+ private:
+  Result<Report> list(const TouchRecord& record) const;
+  Result<std::vector<StrokeJob>> jobs(const TouchRecord& record);
+  Result<std::vector<StrokeJob>> one_job(const Result<Stroke>& stroke, int number) const;
+  Result<std::vector<StrokeJob>> found_strokes(const TouchRecord& record);
+  std::vector<StrokeJob> down_only(const TouchRecord& record, std::vector<StrokeJob> jobs);
+  Result<Report> textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
+  Result<Report> averages(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
+  Result<void> check_names(const std::vector<std::string>& stems);
+  void warn(const std::string& text) { warnings_.push_back(text); }
+  void warn_of(const std::string& what, const schema::Texture& texture);
+
+  const SpatialOptions& options_;
+  std::string stem_;
+  const std::function<void(double)>& progress_;
+  std::vector<std::string>& warnings_;
+};
+
+Result<Report> Run::list(const TouchRecord& record) const {
+  std::vector<Report> rows;
+  for (std::size_t i = 0; i < record.strokes().size(); ++i)
+    rows.push_back(stroke_row(record, {record.strokes()[i], static_cast<int>(i) + 1, ""}));
+  Report report;
+  report.add("recording", record.where());
+  add_position(report, record);
+  report.add("found", rows.size());
+  if (!rows.empty()) report.add("strokes", std::move(rows));
+  return report;
+}
+
+Result<std::vector<StrokeJob>> Run::one_job(const Result<Stroke>& stroke, int number) const {
+  if (!stroke) return schema::forward_error(stroke);
+  return std::vector<StrokeJob>{{*stroke, number, stem_}};
+}
+
+// Leaves out the strokes with the finger up, and says so.
+std::vector<StrokeJob> Run::down_only(const TouchRecord& record, std::vector<StrokeJob> jobs) {
+  std::vector<int> up;
+  for (const StrokeJob& job : jobs)
+    if (job.stroke.finger_up) up.push_back(job.number);
+  if (up.empty() || options_.finger_up) return jobs;
+  warn(
+      fmt::format("{}: finger up in stroke{} {} (normal force below {}): no texture of {}; --finger-up or "
+                  "--stroke N makes it",
+                  record.where(), up.size() == 1 ? "" : "s", fmt::join(up, ", "),
+                  why_finger_up(*record.finger_up_below_n()), up.size() == 1 ? "it" : "them"));
+  std::erase_if(jobs, [](const StrokeJob& job) { return job.stroke.finger_up; });
+  return jobs;
+}
+
+Result<std::vector<StrokeJob>> Run::found_strokes(const TouchRecord& record) {
+  std::vector<StrokeJob> all;
+  for (const Stroke& stroke : record.strokes())
+    all.push_back({stroke, static_cast<int>(all.size()) + 1, stem_});
+  if (all.empty())
+    return schema::fail(Fault::unsuitable, "no stroke was found", record.where(),
+                        "ask for a stretch with --from and --to");
+  std::vector<StrokeJob> jobs = down_only(record, std::move(all));
+  if (jobs.empty())
+    return schema::fail(Fault::unsuitable, "in all strokes the finger was up", record.where(),
+                        "--finger-up makes textures all the same");
+  if (jobs.size() > 1)
+    for (StrokeJob& job : jobs) job.stem = fmt::format("{}-{:02}", stem_, job.number);
+  return jobs;
+}
+
+Result<std::vector<StrokeJob>> Run::jobs(const TouchRecord& record) {
+  if (options_.stroke) return one_job(record.stroke(*options_.stroke), *options_.stroke);
+  if (!options_.from_s && !options_.to_s) return found_strokes(record);
+  const Stroke whole{{0, record.header().frames}, 1};
+  const double from_s = options_.from_s.value_or(record.from_s(whole));
+  return one_job(record.stretch(from_s, options_.to_s.value_or(record.to_s(whole))), 0);
+}
+
+Result<void> Run::check_names(const std::vector<std::string>& stems) {
+  for (const std::string& stem : stems)
+    if (auto free = schema::check_texture_free(stem); !free && !options_.force) return free;
+  const auto others = other_textures(stem_, stems);
+  if (!others.empty())
+    warn(fmt::format("{} {} beside, of another run: {}", others.size() == 1 ? "a texture" : "textures",
+                     others.size() == 1 ? "lies" : "lie", fmt::join(others, ", ")));
+  return {};
+}
+
+void Run::warn_of(const std::string& what, const schema::Texture& texture) {
+  for (const std::string& warning : texture_warnings(texture)) warn(what + ": " + warning);
+}
+
+// Among several strokes found, one that makes no texture is passed over with a warning.
+Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs) {
+  std::vector<std::string> stems;
+  for (const StrokeJob& job : jobs) stems.push_back(job.stem);
+  if (auto free = check_names(stems); !free) return schema::forward_error(free);
+  schema::PendingFiles pending;
+  std::vector<Report> rows;
+  std::optional<Report> head;
+  for (const StrokeJob& job : jobs) {
+    const auto texture = maker.make(job.stroke, job.number);
+    if (!texture && (jobs.size() == 1 || texture.error().fault != Fault::unsuitable))
+      return schema::forward_error(texture);
+    if (!texture) {
+      warn(fmt::format("stroke {} makes no texture: {}", job.number, schema::message(texture.error())));
+      continue;
+    }
+    if (auto added = schema::add_texture(pending, job.stem, *texture); !added)
+      return schema::forward_error(added);
+    if (!head) head = head_of(maker.record(), *texture);
+    warn_of(job.stem, *texture);
+    rows.push_back(texture_row(maker.record(), job, *texture));
+    progress_(static_cast<double>(&job - jobs.data() + 1) / static_cast<double>(jobs.size()));
+  }
+  if (!head)
+    return schema::fail(Fault::unsuitable, "none of the strokes found makes a texture",
+                        maker.record().where(), "the warnings say why");
+  if (auto done = pending.commit(); !done) return schema::forward_error(done);
+  head->add("textures", std::move(rows));
+  return std::move(*head);
+}
+
+Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& jobs) {
+  const auto groups = average_groups(jobs, options_.both_ways, stem_);
+  std::vector<std::string> stems;
+  for (const AverageGroup& group : groups) stems.push_back(group.stem);
+  if (auto free = check_names(stems); !free) return schema::forward_error(free);
+  schema::PendingFiles pending;
+  std::vector<Report> rows;
+  std::optional<Report> head;
+  for (const AverageGroup& group : groups) {
+    const auto texture = averaged(maker, group, options_, warnings_, progress_);
+    if (!texture && (groups.size() == 1 || texture.error().fault != Fault::unsuitable))
+      return schema::forward_error(texture);
+    if (!texture) {
+      warn(fmt::format("{}: no average: {}", group.stem, schema::message(texture.error())));
+      continue;
+    }
+    if (auto added = schema::add_texture(pending, group.stem, *texture); !added)
+      return schema::forward_error(added);
+    if (!head) head = head_of(maker.record(), *texture);
+    warn_of(group.stem, *texture);
+    rows.push_back(average_row(group.stem, *texture));
+  }
+  if (!head)
+    return schema::fail(Fault::unsuitable, "no two strokes can be averaged", maker.record().where(),
+                        "the warnings say why");
+  if (auto done = pending.commit(); !done) return schema::forward_error(done);
+  head->add("averages", std::move(rows));
+  return std::move(*head);
+}
+
+Result<Report> Run::on(const std::string& name) {
+  const auto wanted = texture_options(options_);
+  if (!wanted) return schema::forward_error(wanted);
+  const auto recording = schema::open_recording(name);
+  if (!recording) return schema::forward_error(recording);
+  if (const std::string& version = recording->header.newer_version; !version.empty())
+    warn(fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", name, version));
+  auto record = TouchRecord::open(*recording, wanted->channel);
+  if (!record) return schema::forward_error(record);
+  if (options_.list) return list(*record);
+  auto maker = TextureMaker::open(std::move(*record), *wanted);
+  if (!maker) return schema::forward_error(maker);
+  const auto chosen = jobs(maker->record());
+  if (!chosen) return schema::forward_error(chosen);
+  return options_.average ? averages(*maker, *chosen) : textures(*maker, *chosen);
+}
+
+}  // namespace
+
+SpatialOutcome spatial_recording(const SpatialOptions& options, const std::string& recording,
+                                 const std::string& stem, const std::function<void(double)>& progress) {
+  SpatialOutcome outcome;
+  outcome.report = Run(options, stem, progress, outcome.warnings).on(recording);
+  return outcome;
+}
+
+}  // namespace tacto::spatial

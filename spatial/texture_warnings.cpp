@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/texture_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include "data-schema/quantity.hpp"
+#include "spatial/monotone_path.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+std::string length(double m) {
+  return schema::for_people(m, schema::Dimension::length);
+}
+
+}  // namespace
+
+std::vector<std::string> texture_warnings(const schema::Texture& texture) {
+  const schema::TextureSource& source = texture.source;
+  const PositionError error{source.position_quantum_m, source.position_noise_m};
+  std::vector<std::string> warnings;
+  if (source.position_moved_m > error.explains_m())
+    warnings.push_back(fmt::format(
+        "positions were moved by up to {} to make them grow; their quantum of {} and noise of {} explain {}: "
+        "the finger went back on its way",
+        length(source.position_moved_m), length(error.quantum_m), length(error.noise_m),
+        length(error.explains_m())));
+  const double highest_per_m = 1 / (2 * texture.signal.pitch_m);
+  if (source.mean_speed_mps > 0 && source.filter != "none" &&
+      source.high_hz / source.mean_speed_mps > highest_per_m)
+    warnings.push_back(fmt::format(
+        "{:g} Hz at {} are {}, beyond what a grid of {} holds ({}): choose a finer --grid or a lower --high",
+        source.high_hz, schema::for_people(source.mean_speed_mps, schema::Dimension::speed),
+        schema::for_people(source.high_hz / source.mean_speed_mps, schema::Dimension::spatial_frequency),
+        length(texture.signal.pitch_m),
+        schema::for_people(highest_per_m, schema::Dimension::spatial_frequency)));
+  if (source.counter_wraps > 0)
+    warnings.push_back(fmt::format("the encoder's {}-bit counter ran over {} time{}, and was put right",
+                                   source.counter_bits, source.counter_wraps,
+                                   source.counter_wraps == 1 ? "" : "s"));
+  return warnings;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/touch_source.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/recording_frames.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+using Index = std::optional<std::size_t>;
+
+Index channel_of(const schema::RecordingHeader& header, std::string_view quantity) {
+  const auto found = std::ranges::find(header.channels, quantity, &schema::Channel::quantity);
+  if (found == header.channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - header.channels.begin());
+}
+
+std::string names_of(const schema::RecordingHeader& header) {
+  std::vector<std::string_view> names;
+  for (const schema::Channel& channel : header.channels) names.push_back(channel.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+class RecordingSource : public TouchSource {
+ public:
+  RecordingSource(schema::RecordingFrames frames, std::vector<schema::Channel> channels,
+                  std::array<Index, 3> indices)
+      : frames_(std::move(frames)), channels_(std::move(channels)), indices_(indices) {}
+
+  const schema::Channel* channel(Track track) const override {
+    const Index& index = indices_[static_cast<std::size_t>(track)];
+    return index ? &channels_[*index] : nullptr;
+  }
+  schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) override {
+    return frames_.read_stored(*indices_[static_cast<std::size_t>(track)], first, out);
+  }
+
+ private:
+  schema::RecordingFrames frames_;
+  std::vector<schema::Channel> channels_;
+  std::array<Index, 3> indices_;  // by Track
+};
+
+}  // namespace
+
+schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Recording& recording,
+                                                               const std::string& value) {
+  const auto index = schema::find_channel(recording.header, value);
+  if (!index) return schema::forward_error(index);
+  const Index position = channel_of(recording.header, "position");
+  if (!position)
+    return schema::fail(
+        Fault::unsuitable, fmt::format("has no position channel, only {}", names_of(recording.header)),
+        recording.stem, "import it with --channel position=COLUMN*SCALE, or with --speed for a nominal one");
+  auto frames = schema::RecordingFrames::open(recording);
+  if (!frames) return schema::forward_error(frames);
+  return std::make_unique<RecordingSource>(
+      std::move(*frames), recording.header.channels,
+      std::array{position, Index(*index), channel_of(recording.header, "normal_force")});
+}
+
+}  // namespace tacto::spatial
