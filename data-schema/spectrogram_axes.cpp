@@ -40,7 +40,7 @@ Result<void> check_axes(std::span<const Spectrogram> spectrograms) {
   if (spectrograms.empty()) return fail(Fault::unsuitable, "there is no spectrogram to write");
   for (const Spectrogram& each : spectrograms) {
     if (each.position_m.empty() || each.bins == 0 ||
-        each.density.size() != each.position_m.size() * each.bins)
+        each.cells.size() != each.position_m.size() * each.bins)
       return fail(Fault::unsuitable, "the spectrogram has no cells", each.name);
     if (const char* what = difference(spectrograms.front(), each); what != nullptr)
       return fail(Fault::unsuitable,

@@ -32,9 +32,9 @@ std::vector<double> frequencies_per_mm(const Spectrogram& spectrogram) {
 }
 
 std::vector<float> densities(const Spectrogram& spectrogram) {
-  std::vector<float> values(spectrogram.density.size());
+  std::vector<float> values(spectrogram.cells.size());
   constexpr auto kPer = static_cast<float>(kMillimetres);
-  std::ranges::transform(spectrogram.density, values.begin(), [](float each) { return each * kPer; });
+  std::ranges::transform(spectrogram.cells, values.begin(), [](float each) { return each * kPer; });
   return values;
 }
 
@@ -175,7 +175,7 @@ void read_axes(NetcdfReader& file, Spectrogram& spectrogram) {
 // A stroke shorter than the file's longest ends in NaN.
 void drop_absent_rows(Spectrogram& spectrogram) {
   const auto bins = static_cast<std::ptrdiff_t>(spectrogram.bins);
-  auto& cells = spectrogram.density;
+  auto& cells = spectrogram.cells;
   const auto last_is_absent = [&] {
     return std::all_of(cells.end() - bins, cells.end(), [](float each) { return std::isnan(each); });
   };
@@ -190,9 +190,9 @@ void read_density(NetcdfReader& file, std::size_t stroke, Spectrogram& spectrogr
   std::vector<std::size_t> start = {stroke, 0, 0};
   std::vector<std::size_t> count = {1, spectrogram.position_m.size(), spectrogram.bins};
   if (!several) start.erase(start.begin()), count.erase(count.begin());
-  spectrogram.density = file.cells("density", start, count);
-  for (float& each : spectrogram.density) each /= static_cast<float>(kMillimetres);
-  if (several && !spectrogram.density.empty()) drop_absent_rows(spectrogram);
+  spectrogram.cells = file.cells("density", start, count);
+  for (float& each : spectrogram.cells) each /= static_cast<float>(kMillimetres);
+  if (several && !spectrogram.cells.empty()) drop_absent_rows(spectrogram);
 }
 
 Result<Spectrogram> read_stroke(NetcdfReader& file, std::size_t stroke, const std::string& path) {

@@ -15,6 +15,7 @@
 
 #include "data-schema/quantity.hpp"
 #include "spatial/dsp/fft.hpp"
+#include "spatial/known_band.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -119,6 +120,8 @@ Result<Frames> frames_of(const Texture& texture, const SpectrogramOptions& optio
   return frames;
 }
 
+constexpr double kBlackmanMean = 0.42;
+
 std::vector<double> blackman(std::size_t length) {
   std::vector<double> window(length);
   for (std::size_t n = 0; n < length; ++n) {
@@ -175,6 +178,7 @@ Spectrogram described(const Texture& texture, const Frames& frames, Detrend detr
   result.quantity = texture.quantity;
   result.unit = texture.unit;
   result.window = "blackman";
+  result.coherent_gain = kBlackmanMean;
   result.detrend = detrend == Detrend::constant ? "constant" : "none";
   result.window_m = static_cast<double>(frames.window) * pitch_m;
   result.hop_m = static_cast<double>(frames.hop) * pitch_m;
@@ -196,15 +200,16 @@ Result<Spectrogram> spatial_spectrogram(const Texture& texture, const Spectrogra
   const auto frames = frames_of(texture, options);
   if (!frames) return schema::forward_error(frames);
   Spectrogram result = described(texture, *frames, options.detrend);
-  result.density.resize(frames->count * frames->bins);
+  result.cells.resize(frames->count * frames->bins);
   RowMaker maker(*frames, options.detrend, texture.signal.pitch_m);
   const std::span samples(texture.signal.values);
   for (std::size_t row = 0; row < frames->count; ++row) {
     result.position_m.push_back(centre_m(texture.signal, *frames, row));
     maker.make(samples.subspan(row * frames->hop, frames->window),
-               std::span(result.density).subspan(row * frames->bins, frames->bins));
+               std::span(result.cells).subspan(row * frames->bins, frames->bins));
     if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(frames->count));
   }
+  result.known = known_bands(texture.valid_band, result.position_m, result.window_m);
   return result;
 }
 

@@ -26,7 +26,7 @@ Spectrogram example(std::size_t positions, const char* name) {
   s.unit = "N";
   s.name = name;
   for (std::size_t p = 0; p < positions; ++p) s.position_m.push_back(5e-3 + 1e-3 * static_cast<double>(p));
-  for (std::size_t i = 0; i < positions * s.bins; ++i) s.density.push_back(1e-9F * static_cast<float>(i + 1));
+  for (std::size_t i = 0; i < positions * s.bins; ++i) s.cells.push_back(1e-9F * static_cast<float>(i + 1));
   return s;
 }
 
@@ -43,10 +43,10 @@ void expect_same(const Spectrogram& read, const Spectrogram& wrote) {
   EXPECT_DOUBLE_EQ(read.hop_m, wrote.hop_m);
   EXPECT_DOUBLE_EQ(read.pitch_m, wrote.pitch_m);
   ASSERT_EQ(read.position_m.size(), wrote.position_m.size());
-  ASSERT_EQ(read.density.size(), wrote.density.size());
+  ASSERT_EQ(read.cells.size(), wrote.cells.size());
   for (std::size_t p = 0; p < wrote.position_m.size(); ++p)
     EXPECT_DOUBLE_EQ(read.position_m[p], wrote.position_m[p]);
-  for (std::size_t i = 0; i < wrote.density.size(); ++i) EXPECT_FLOAT_EQ(read.density[i], wrote.density[i]);
+  for (std::size_t i = 0; i < wrote.cells.size(); ++i) EXPECT_FLOAT_EQ(read.cells[i], wrote.cells[i]);
 }
 
 class SpectrogramFile : public testing::Test {
@@ -114,7 +114,7 @@ TEST_F(SpectrogramFile, RefusesForeignAndBrokenFiles) {
 TEST_F(SpectrogramFile, TableSaysItsUnits) {
   Spectrogram s = example(2, "oak");
   s.bins = 3;
-  s.density = {0, 1e-3F, 2.5e-3F, 3e-3F, 4e-3F, 5e-3F};
+  s.cells = {0, 1e-3F, 2.5e-3F, 3e-3F, 4e-3F, 5e-3F};
   ASSERT_TRUE(write_spectrogram_csv(path("one.csv"), std::array{s}));
   EXPECT_EQ(read_file(path("one.csv")).value(),
             "position_mm,N2 mm at 0/mm,N2 mm at 0.25/mm,N2 mm at 0.5/mm\n5,0,1,2.5\n6,3,4,5\n");

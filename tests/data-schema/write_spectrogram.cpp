@@ -27,7 +27,7 @@ Spectrogram sample(std::size_t positions, float factor) {
   for (std::size_t p = 0; p < positions; ++p) {
     s.position_m.push_back(5e-3 + 0.5e-3 * static_cast<double>(p));
     for (std::size_t k = 0; k < s.bins; ++k)
-      s.density.push_back(factor * 1e-6F * static_cast<float>(1 + p + 100 * k));
+      s.cells.push_back(factor * 1e-6F * static_cast<float>(1 + p + 100 * k));
   }
   return s;
 }
