@@ -17,8 +17,8 @@ struct Frame {
   float slope = 0;  ///< a sample
 };
 
-/// packed_n = w_n (a_n - level_a + slope_a n) + i w_n (b_n - level_b + slope_b n) for every n of the window; what
-/// of `packed` lies beyond is left as it is.
+/// packed_n = w_n (a_n - level_a + slope_a n) + i w_n (b_n - level_b + slope_b n) for every n of the window;
+/// what of `packed` lies beyond is left as it is.
 void pack_frames(const Frame& a, const Frame& b, std::span<const float> window,
                  std::span<std::complex<float>> packed);
 

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
+
+#include "spatial/dsp/trend.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -28,30 +29,10 @@ std::vector<float> every_nth(std::span<const double> window, std::size_t n, doub
   return weights;
 }
 
-// The line that fits best in the least squares: its slope a sample.
-double slope_of(std::span<const double> values, double mean) {
-  const double middle = 0.5 * static_cast<double>(values.size() - 1);
-  double moment = 0, position = -middle;
-  for (const double value : values) moment += position++ * (value - mean);
-  return moment / (middle * (middle + 1) * (2 * middle + 1) / 3);
-}
-
-double largest_off(std::span<const double> values, double level, double slope) {
-  double largest = 0, position = 0;
-  for (const double value : values) largest = std::max(largest, std::abs(value - level - slope * position++));
-  return largest;
-}
-
 int exponent_of(double largest) {
   if (largest == 0) return 0;
   const int exponent = std::ilogb(largest);
   return std::abs(exponent) <= kUsualExponent ? 0 : std::max(exponent, kSmallestExponent);
-}
-
-double sum_above(std::span<const double> values, double level) {
-  double sum = 0;
-  for (const double value : values) sum += value - level;
-  return sum;
 }
 
 }  // namespace
@@ -82,13 +63,11 @@ ShortTimeTransform::Block ShortTimeTransform::block_at(std::span<const double> s
   Block block{first_row, std::min(rows_per_block_, rows - first_row), first_row * shape_.hop};
   block.length = (block.rows - 1) * shape_.hop + shape_.window;
   const auto inside = signal.subspan(block.start, block.length);
-  if (detrend_) {
-    const auto length = static_cast<double>(inside.size());
-    block.level = inside[0] + sum_above(inside, inside[0]) / length;
-    if (decimator_) block.slope = slope_of(inside, block.level);
-    block.level -= block.slope * 0.5 * (length - 1);
-  }
-  block.exponent = exponent_of(largest_off(inside, block.level, block.slope));
+  const Trend trend = trend_of(inside);
+  block.exponent = exponent_of(detrend_ ? trend.largest : trend.largest + std::abs(trend.mean));
+  if (!detrend_) return block;
+  if (decimator_) block.slope = trend.slope;
+  block.level = trend.mean - block.slope * 0.5 * static_cast<double>(inside.size() - 1);
   return block;
 }
 
@@ -98,18 +77,15 @@ void ShortTimeTransform::load(std::span<const double> signal, const Block& block
   const std::size_t reach = decimator_ ? decimator_->reach() : 0;
   const std::size_t count = block.length + (decimator_ ? 2 * reach + decimation_.grid : 0);
   const double scale = std::ldexp(1.0, -block.exponent);
-  const auto single = [&](std::size_t i) {
-    const double position = static_cast<double>(i) - static_cast<double>(block.start);
-    return static_cast<float>((signal[i] - block.level - block.slope * position) * scale);
-  };
   const std::size_t before = reach - std::min(reach, block.start);
   const std::size_t begin = block.start + before - reach;
-  const std::size_t end = before + std::min(count - before, signal.size() - begin);
-  for (std::size_t i = before; i < end; ++i) samples_[i] = single(begin + i - before);
-  std::fill_n(samples_.begin(), before, samples_[before]);
-  std::fill(samples_.begin() + static_cast<std::ptrdiff_t>(end),
-            samples_.begin() + static_cast<std::ptrdiff_t>(count), samples_[end - 1]);
-  if (decimator_) decimator_->run(std::span(samples_).first(count), block.length);
+  const std::size_t inside = std::min(count - before, signal.size() - begin);
+  const double at_begin = block.level - block.slope * static_cast<double>(block.start - begin);
+  const auto values = std::span(samples_).first(count);
+  take_off_line(signal.subspan(begin, inside), at_begin, block.slope, scale, values.subspan(before, inside));
+  std::ranges::fill(values.first(before), values[before]);
+  std::ranges::fill(values.subspan(before + inside), values[before + inside - 1]);
+  if (decimator_) decimator_->run(values, block.length);
 }
 
 // Each row's mean over the block's line at the row's start; a row's sum comes from its neighbour's where they

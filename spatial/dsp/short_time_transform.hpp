@@ -26,10 +26,10 @@ struct PackedRows {
 using PackedRowSink = std::function<schema::Result<void>(const PackedRows&)>;
 
 /// X[p, k] = gain sum_n w_n (x[p hop + n] - mean_p) exp(-2 pi i k n / padded), n < window, k < bins.
-/// In single precision, from blocks of a few windows whose level (and, before decimation, whose straight trend,
-/// which the filter would pass anyway) is taken off and whose size is brought near 1 by a power of two first:
-/// |X - X_exact| / max |X| over all cells (of all frequencies) is at most -120 dB, on a coarser grid too. Not
-/// shared between threads; not safe in the tick.
+/// In single precision, from blocks of a few windows whose level (and, before decimation, whose straight
+/// trend, which the filter would pass anyway) is taken off and whose size is brought near 1 by a power of two
+/// first: |X - X_exact| / max |X| over all cells (of all frequencies) is at most -120 dB, on a coarser grid
+/// too. Not shared between threads; not safe in the tick.
 class ShortTimeTransform {
  public:
   /// `window`: the shape's weights; `detrend`: take mean_p off, else 0. `rows` are to come (packed_fft.hpp).
@@ -46,7 +46,7 @@ class ShortTimeTransform {
   struct Block {
     std::size_t first_row = 0, rows = 0;
     std::size_t start = 0, length = 0;  // samples
-    double level = 0, slope = 0;  // of the line that is taken off: at the start, and a sample
+    double level = 0, slope = 0;        // of the line that is taken off: at the start, and a sample
     int exponent = 0;
   };
   Block block_at(std::span<const double> signal, std::size_t first_row, std::size_t rows) const;
