@@ -59,18 +59,22 @@ struct Spectrogram : SpectrogramHeader {
   float at(std::size_t p, std::size_t k) const { return cells[p * bins + k]; }
 };
 
-/// Writes netCDF-4: variables `density` (unit^2 mm), `position` (mm), `spatial_frequency` (1/mm), window and
-/// scaling as attributes; with several, a leading dimension `stroke`, shorter ones ended by NaN. All must
-/// share one frequency axis. Errors: cannot_write; unsuitable, where axes differ.
-Result<void> write_spectrogram_nc(const std::string& path, std::span<const Spectrogram> spectrograms);
+/// Writes netCDF-4: variables `density` (unit^2 mm) or `amplitude` (unit), `position` (mm),
+/// `spatial_frequency` (1/mm), `known` (0 or 1 a cell: what the recording could know; 1 throughout where its
+/// band is not said) and its limits by position `known_from` and `known_to` (1/mm), window and scaling as
+/// attributes; with several, a leading dimension `stroke`, shorter ones ended by NaN. All must share one
+/// frequency axis. Errors: cannot_write; unsuitable, where axes differ.
+Result<void> write_spectrogram_nc(const std::string& path, std::span<const Spectrogram> spectrograms,
+                                  bool compress = false);
 
 /// Reads one spectrogram (0-based) of a file of ours. Errors: not_found, malformed, unsupported_version;
 /// unsuitable, where the file has fewer.
 Result<Spectrogram> read_spectrogram_nc(const std::string& path, std::size_t stroke = 0);
 
-/// A table for other programs: first column position_mm, then one column a frequency, headed with the
-/// density's unit and the frequency ("N2 mm at 0.25/mm"); several spectrograms are told apart by a leading
-/// column `stroke`. Errors: cannot_write; unsuitable, where axes differ.
+/// A table for other programs: first column position_mm; where the texture says what it knows,
+/// known_from_per_mm and known_to_per_mm; then one column a frequency, headed with the cells' unit and the
+/// frequency ("N2 mm at 0.25/mm"); several spectrograms are told apart by a leading column `stroke`. Errors:
+/// cannot_write; unsuitable, where axes differ.
 Result<void> write_spectrogram_csv(const std::string& path, std::span<const Spectrogram> spectrograms);
 
 }  // namespace tacto::schema
