@@ -30,9 +30,9 @@ void add_windowing(const std::string& path, const Spectrogram& spectrogram, std:
 
 void add_cells(const std::string& path, const Spectrogram& spectrogram, std::vector<Finding>& findings) {
   const auto broken = [](float each) { return !(std::isfinite(each) && each >= 0); };
-  const auto found = std::ranges::find_if(spectrogram.density, broken);
-  if (found == spectrogram.density.end()) return;
-  const auto cell = static_cast<std::size_t>(found - spectrogram.density.begin());
+  const auto found = std::ranges::find_if(spectrogram.cells, broken);
+  if (found == spectrogram.cells.end()) return;
+  const auto cell = static_cast<std::size_t>(found - spectrogram.cells.begin());
   findings.push_back(
       {fmt::format("{}, position {}, bin {}", path, cell / spectrogram.bins, cell % spectrogram.bins),
        fmt::format("{} is no density", *found)});

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 namespace tacto::schema {
 namespace {
@@ -24,9 +25,9 @@ NetcdfWriter::~NetcdfWriter() {
   if (file_ >= 0) nc_abort(file_);
 }
 
-int NetcdfWriter::dimension(const char* name, std::size_t length) {
+int NetcdfWriter::dimension(const char* name, std::optional<std::size_t> length) {
   int id = -1;
-  if (sound()) status_ = nc_def_dim(file_, name, length, &id);
+  if (sound()) status_ = nc_def_dim(file_, name, length.value_or(NC_UNLIMITED), &id);
   return id;
 }
 
@@ -44,19 +45,47 @@ int NetcdfWriter::axis(const char* name, int dimension, const std::string& units
   return id;
 }
 
-int NetcdfWriter::density(std::span<const int> dimensions, std::span<const std::size_t> chunk,
-                          const std::string& units, const std::string& long_name) {
-  constexpr float kAbsent = std::numeric_limits<float>::quiet_NaN();
-  constexpr int kShuffle = 1, kDeflate = 1,
-                kLevel = 1;  // higher levels gain little on noise and cost seconds
+// Higher levels of deflation gain little and cost seconds. The library's own cache would take 16 MB a
+// variable; rows come in order, so one block at a time is enough.
+int NetcdfWriter::define(const char* name, int type, const Blocks& blocks, bool deflated) {
+  constexpr int kShuffle = 1, kDeflate = 1, kLevel = 1;
+  constexpr std::size_t kCacheBytes = std::size_t{1} << 20, kCacheSlots = 101;
+  constexpr float kPreemption = 1;  // blocks written whole go first
+  const int count = static_cast<int>(blocks.dimensions.size());
   int id = -1;
   if (sound())
-    status_ =
-        nc_def_var(file_, "density", NC_FLOAT, static_cast<int>(dimensions.size()), dimensions.data(), &id);
-  if (sound()) status_ = nc_def_var_chunking(file_, id, NC_CHUNKED, chunk.data());
-  if (sound()) status_ = nc_def_var_deflate(file_, id, kShuffle, kDeflate, kLevel);
+    status_ = nc_def_var(file_, name, static_cast<nc_type>(type), count, blocks.dimensions.data(), &id);
+  if (sound()) status_ = nc_def_var_chunking(file_, id, NC_CHUNKED, blocks.lengths.data());
+  if (sound() && deflated) status_ = nc_def_var_deflate(file_, id, kShuffle, kDeflate, kLevel);
+  if (sound()) status_ = nc_set_var_chunk_cache(file_, id, kCacheBytes, kCacheSlots, kPreemption);
+  return id;
+}
+
+int NetcdfWriter::values(const char* name, const Blocks& blocks, const std::string& units,
+                         const std::string& long_name) {
+  constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+  const int id = define(name, NC_DOUBLE, blocks, false);
   if (sound()) status_ = nc_def_var_fill(file_, id, NC_FILL, &kAbsent);
   describe(id, units, long_name);
+  return id;
+}
+
+int NetcdfWriter::cells(const char* name, const Blocks& blocks, bool deflated, const std::string& units,
+                        const std::string& long_name) {
+  constexpr float kAbsent = std::numeric_limits<float>::quiet_NaN();
+  const int id = define(name, NC_FLOAT, blocks, deflated);
+  if (sound()) status_ = nc_def_var_fill(file_, id, NC_FILL, &kAbsent);
+  describe(id, units, long_name);
+  return id;
+}
+
+int NetcdfWriter::flags(const char* name, const Blocks& blocks, const std::string& meanings,
+                        const std::string& long_name) {
+  constexpr signed char kValues[] = {0, 1};
+  const int id = define(name, NC_BYTE, blocks, true);
+  describe(id, "", long_name);
+  if (sound()) status_ = nc_put_att_schar(file_, id, "flag_values", NC_BYTE, 2, kValues);
+  if (sound()) status_ = nc_put_att_text(file_, id, "flag_meanings", meanings.size(), meanings.data());
   return id;
 }
 
@@ -73,12 +102,22 @@ void NetcdfWriter::attribute(const char* name, long long value) {
 }
 
 void NetcdfWriter::put(int variable, std::span<const double> values) {
-  if (sound()) status_ = nc_put_var_double(file_, variable, values.data());
+  put(variable, {{0}, {values.size()}}, values);
 }
 
-void NetcdfWriter::put(int variable, std::span<const std::size_t> start, std::span<const std::size_t> count,
-                       std::span<const float> values) {
-  if (sound()) status_ = nc_put_vara_float(file_, variable, start.data(), count.data(), values.data());
+void NetcdfWriter::put(int variable, const Part& part, std::span<const double> values) {
+  if (sound())
+    status_ = nc_put_vara_double(file_, variable, part.start.data(), part.count.data(), values.data());
+}
+
+void NetcdfWriter::put(int variable, const Part& part, std::span<const float> values) {
+  if (sound())
+    status_ = nc_put_vara_float(file_, variable, part.start.data(), part.count.data(), values.data());
+}
+
+void NetcdfWriter::put(int variable, const Part& part, std::span<const signed char> values) {
+  if (sound())
+    status_ = nc_put_vara_schar(file_, variable, part.start.data(), part.count.data(), values.data());
 }
 
 Result<void> NetcdfWriter::close(const std::string& path) {
@@ -141,18 +180,35 @@ std::vector<double> NetcdfReader::axis(const char* name) {
   return values;
 }
 
-std::vector<float> NetcdfReader::cells(const char* name, std::span<const std::size_t> start,
-                                       std::span<const std::size_t> count) {
+bool NetcdfReader::has(const char* name) const {
+  int id = -1;
+  return status_ == NC_NOERR && nc_inq_varid(file_, name, &id) == NC_NOERR;
+}
+
+template <class Number>
+std::vector<Number> NetcdfReader::read(const char* name, const Part& part) {
   const int id = variable(name);
   int dimensions = 0;
   if (status_ == NC_NOERR) status_ = nc_inq_varndims(file_, id, &dimensions);
-  if (status_ == NC_NOERR && dimensions != static_cast<int>(count.size())) status_ = NC_EDIMSIZE;
-  const std::size_t size = std::reduce(count.begin(), count.end(), std::size_t{1}, std::multiplies<>());
+  if (status_ == NC_NOERR && dimensions != static_cast<int>(part.count.size())) status_ = NC_EDIMSIZE;
+  const std::size_t size =
+      std::reduce(part.count.begin(), part.count.end(), std::size_t{1}, std::multiplies<>());
   if (status_ == NC_NOERR && size > kMostCells) status_ = NC_EDIMSIZE;
   if (status_ != NC_NOERR) return {};
-  std::vector<float> values(size);
-  status_ = nc_get_vara_float(file_, id, start.data(), count.data(), values.data());
+  std::vector<Number> values(size);
+  if constexpr (std::is_same_v<Number, float>)
+    status_ = nc_get_vara_float(file_, id, part.start.data(), part.count.data(), values.data());
+  else
+    status_ = nc_get_vara_double(file_, id, part.start.data(), part.count.data(), values.data());
   return values;
+}
+
+std::vector<float> NetcdfReader::cells(const char* name, const Part& part) {
+  return read<float>(name, part);
+}
+
+std::vector<double> NetcdfReader::values(const char* name, const Part& part) {
+  return read<double>(name, part);
 }
 
 Result<void> NetcdfReader::status(const std::string& path) const {

@@ -3,7 +3,7 @@
 // folder.
 #pragma once
 
-#include <span>
+#include <optional>
 #include <string>
 
 #include "data-schema/spectrogram.hpp"
@@ -12,14 +12,15 @@ namespace tacto::schema {
 
 inline constexpr double kMillimetres = 1e3;  ///< in a metre; also unit^2 mm in one unit^2 m
 
-/// The density's unit as UDUNITS reads it: "N2 mm", "(m/s)2 mm", "mm" for the unit "1".
-std::string density_unit(const std::string& unit);
+/// The cells' unit as UDUNITS reads it: densities "N2 mm", "(m/s)2 mm", "mm" for the unit "1"; amplitudes
+/// "N", "m/s", "1".
+std::string cell_unit(const SpectrogramHeader& header);
 
-/// Whether all share frequency axis, quantity, windowing, and (up to the end of the shorter) positions.
-/// Errors: unsuitable, naming what differs; or where there is no spectrogram, or an empty one.
-Result<void> check_axes(std::span<const Spectrogram> spectrograms);
+/// What brings a cell to that unit.
+float cell_factor(Scaling scaling);
 
-/// The one with the most positions. Precondition: there is one.
-const Spectrogram& longest(std::span<const Spectrogram> spectrograms);
+/// Whether a header has cells, and shares frequency axis, quantity, scaling, windowing, and (up to the end of
+/// the shorter) positions with the file's first. Errors: unsuitable, naming what differs.
+Result<void> check_axes(const std::optional<SpectrogramHeader>& first, const SpectrogramHeader& header);
 
 }  // namespace tacto::schema

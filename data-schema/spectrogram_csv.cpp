@@ -4,77 +4,112 @@
 #include <cstdio>
 #include <iterator>
 #include <memory>
+#include <optional>
 
-#include "data-schema/files.hpp"
 #include "data-schema/spectrogram_axes.hpp"
+#include "data-schema/spectrogram_writer.hpp"
 
 namespace tacto::schema {
 namespace {
 
 using Buffer = fmt::memory_buffer;
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
 
 // Nine digits drop the noise of rounding ("0.30000000000000004") and keep picometres on a metre.
 void append_axis(Buffer& row, double value) {
   fmt::format_to(std::back_inserter(row), "{:.9g}", value);
 }
 
-void append_header(Buffer& row, const Spectrogram& spectrogram, bool several) {
-  fmt::format_to(std::back_inserter(row), "{}position_mm", several ? "stroke," : "");
-  for (std::size_t k = 0; k < spectrogram.bins; ++k) {
-    fmt::format_to(std::back_inserter(row), ",{} at ", density_unit(spectrogram.unit));
-    append_axis(row, spectrogram.frequency_per_m(k) / kMillimetres);
-    fmt::format_to(std::back_inserter(row), "/mm");
+class CsvWriter : public SpectrogramWriter {
+ public:
+  CsvWriter(File file, std::string path, bool several)
+      : file_(std::move(file)), path_(std::move(path)), several_(several) {}
+
+  Result<void> begin(const SpectrogramHeader& header) override {
+    if (auto fitting = check_axes(first_, header); !fitting) return fitting;
+    ++strokes_;
+    header_ = header;
+    if (first_) return {};
+    first_ = header;
+    append_names();
+    return flush();
   }
-  row.push_back('\n');
-}
 
-void append_row(Buffer& row, const Spectrogram& spectrogram, std::size_t p) {
-  append_axis(row, spectrogram.position_m[p] * kMillimetres);
-  for (std::size_t k = 0; k < spectrogram.bins; ++k)
-    fmt::format_to(std::back_inserter(row), ",{}", spectrogram.at(p, k) * static_cast<float>(kMillimetres));
-  row.push_back('\n');
-}
-
-bool flush(Buffer& row, std::FILE* file) {
-  const bool written = std::fwrite(row.data(), 1, row.size(), file) == row.size();
-  row.clear();
-  return written;
-}
-
-bool write_rows(std::FILE* file, const Spectrogram& spectrogram, std::size_t stroke) {
-  Buffer row;
-  for (std::size_t p = 0; p < spectrogram.position_m.size(); ++p) {
-    if (stroke != 0) fmt::format_to(std::back_inserter(row), "{},", stroke);
-    append_row(row, spectrogram, p);
-    if (!flush(row, file)) return false;
+  Result<void> rows(std::size_t first, std::span<const float> cells) override {
+    for (std::size_t row = 0; row * header_.bins < cells.size(); ++row) {
+      append_row(first + row, cells.subspan(row * header_.bins, header_.bins));
+      if (auto written = flush(); !written) return written;
+    }
+    return {};
   }
-  return true;
-}
 
-bool write_table(std::FILE* file, std::span<const Spectrogram> spectrograms) {
-  const bool several = spectrograms.size() > 1;
-  Buffer row;
-  append_header(row, spectrograms.front(), several);
-  bool written = flush(row, file);
-  for (std::size_t i = 0; written && i < spectrograms.size(); ++i)
-    written = write_rows(file, spectrograms[i], several ? i + 1 : 0);
-  return written;
-}
+  Result<void> close() override {
+    if (strokes_ == 0) return fail(Fault::unsuitable, "there is no spectrogram to write", path_);
+    return std::fclose(file_.release()) == 0 ? Result<void>{} : stopped();
+  }
+
+ private:
+  bool knows() const { return !first_->known.empty(); }
+
+  void append_names() {
+    const auto out = std::back_inserter(row_);
+    fmt::format_to(out, "{}position_mm", several_ ? "stroke," : "");
+    if (knows()) fmt::format_to(out, ",known_from_per_mm,known_to_per_mm");
+    for (std::size_t k = 0; k < header_.bins; ++k) {
+      fmt::format_to(out, ",{} at ", cell_unit(header_));
+      append_axis(row_, header_.frequency_per_m(k) / kMillimetres);
+      fmt::format_to(out, "/mm");
+    }
+    row_.push_back('\n');
+  }
+
+  void append_known(std::size_t p) {
+    for (const auto limit : {&KnownBand::low_per_m, &KnownBand::high_per_m}) {
+      row_.push_back(',');
+      if (!header_.known.empty()) append_axis(row_, header_.known[p].*limit / kMillimetres);
+    }
+  }
+
+  void append_row(std::size_t p, std::span<const float> cells) {
+    if (several_) fmt::format_to(std::back_inserter(row_), "{},", strokes_);
+    append_axis(row_, header_.position_m[p] * kMillimetres);
+    if (knows()) append_known(p);
+    const float factor = cell_factor(header_.scaling);
+    for (const float cell : cells) fmt::format_to(std::back_inserter(row_), ",{}", cell * factor);
+    row_.push_back('\n');
+  }
+
+  Result<void> flush() {
+    const bool written = std::fwrite(row_.data(), 1, row_.size(), file_.get()) == row_.size();
+    row_.clear();
+    return written ? Result<void>{} : stopped();
+  }
+
+  Result<void> stopped() const {
+    return fail(Fault::cannot_write, "writing stopped half-way", path_, "is the disk full?");
+  }
+
+  File file_;
+  std::string path_;
+  bool several_;
+  std::size_t strokes_ = 0;
+  std::optional<SpectrogramHeader> first_;
+  SpectrogramHeader header_;  // of the spectrogram being written
+  Buffer row_;
+};
 
 }  // namespace
 
-Result<void> write_spectrogram_csv(const std::string& path, std::span<const Spectrogram> spectrograms) {
-  if (auto fitting = check_axes(spectrograms); !fitting) return fitting;
-  PendingFiles pending;
-  const auto temporary = pending.add(path);
-  if (!temporary) return forward_error(temporary);
-  File file(std::fopen(temporary->c_str(), "wb"), &std::fclose);
-  if (!file) return fail(Fault::cannot_write, "the file can't be made", path);
-  const bool written = write_table(file.get(), spectrograms);
-  if (std::fclose(file.release()) != 0 || !written)
-    return fail(Fault::cannot_write, "writing stopped half-way", path, "is the disk full?");
-  return pending.commit();
+Result<std::unique_ptr<SpectrogramWriter>> open_spectrogram_csv(const std::string& path,
+                                                                const SpectrogramFileOptions& options) {
+  File file(std::fopen(path.c_str(), "wbe"));
+  const std::string& named = options.named.empty() ? path : options.named;
+  if (!file) return fail(Fault::cannot_write, "the file can't be made", named);
+  return std::make_unique<CsvWriter>(std::move(file), named, options.several);
 }
 
 }  // namespace tacto::schema

@@ -6,13 +6,21 @@
 
 namespace tacto::spatial {
 
+using schema::Scaling;
 using schema::Spectrogram;
+using schema::SpectrogramHeader;
 
 namespace {
 
 std::size_t first_bin(const Spectrogram& spectrogram, double min_frequency_per_m) {
   const double bin = std::ceil(min_frequency_per_m / spectrogram.frequency_step_per_m * (1 - 1e-12));
   return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(spectrogram.bins - 1)));
+}
+
+LevelReference amplitude_reference(const std::string& unit) {
+  if (unit == "m") return {"1 um", 1e6, 20};
+  if (unit == "1") return {"1", 1, 20};
+  return {"1 " + unit, 1, 20};
 }
 
 }  // namespace
@@ -31,10 +39,9 @@ SpectralPeak strongest_peak(const Spectrogram& spectrogram, double min_frequency
   std::size_t best = first;
   for (std::size_t p = 0; p < spectrogram.position_m.size(); ++p)
     for (std::size_t k = first; k < spectrogram.bins; ++k)
-      if (spectrogram.at(p, k) > spectrogram.density[best]) best = p * spectrogram.bins + k;
+      if (spectrogram.at(p, k) > spectrogram.cells[best]) best = p * spectrogram.bins + k;
   return {spectrogram.position_m[best / spectrogram.bins],
-          spectrogram.frequency_per_m(best % spectrogram.bins),
-          static_cast<double>(spectrogram.density[best])};
+          spectrogram.frequency_per_m(best % spectrogram.bins), static_cast<double>(spectrogram.cells[best])};
 }
 
 double band_rms(const Spectrogram& spectrogram, double min_frequency_per_m) {
@@ -44,11 +51,12 @@ double band_rms(const Spectrogram& spectrogram, double min_frequency_per_m) {
   return std::sqrt(sum * spectrogram.frequency_step_per_m);
 }
 
-double resolution_per_m(const Spectrogram& spectrogram) {
+double resolution_per_m(const SpectrogramHeader& spectrogram) {
   return 1.7268 / spectrogram.window_m;
 }
 
-LevelReference level_reference(const Spectrogram& spectrogram) {
+LevelReference level_reference(const SpectrogramHeader& spectrogram) {
+  if (spectrogram.scaling == Scaling::amplitude) return amplitude_reference(spectrogram.unit);
   constexpr double kMillimetresPerMetre = 1e3;
   if (spectrogram.unit == "m") return {"1 um^2 mm", 1e12 * kMillimetresPerMetre};
   if (spectrogram.unit == "1") return {"1 mm", kMillimetresPerMetre};
@@ -57,8 +65,8 @@ LevelReference level_reference(const Spectrogram& spectrogram) {
   return {"1 " + spectrogram.unit + "^2 mm", kMillimetresPerMetre};
 }
 
-double level_db(double density, const LevelReference& reference) {
-  return 10 * std::log10(density * reference.factor);
+double level_db(double cell, const LevelReference& reference) {
+  return reference.decade_db * std::log10(cell * reference.factor);
 }
 
 }  // namespace tacto::spatial

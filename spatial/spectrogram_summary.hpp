@@ -26,16 +26,17 @@ double band_rms(const schema::Spectrogram& spectrogram, double min_frequency_per
 
 /// Width of the rectangle that passes as much noise as one bin of the Blackman window: 1.7268 / window, 1/m
 /// (Harris 1978, table 1). Lines that are closer than this melt into one.
-double resolution_per_m(const schema::Spectrogram& spectrogram);
+double resolution_per_m(const schema::SpectrogramHeader& spectrogram);
 
-/// The unit in which levels are given, with what brings densities in unit^2 m to it.
+/// The unit in which levels are given, with what brings cells (unit^2 m, or unit of amplitudes) to it.
 struct LevelReference {
-  std::string unit;   ///< "1 N^2 mm"; "1 um^2 mm" for heights and positions
-  double factor = 1;  ///< unit^2 m to it
+  std::string unit;       ///< "1 N^2 mm", of amplitudes "1 N"; "1 um^2 mm" for heights and positions
+  double factor = 1;      ///< cells to it
+  double decade_db = 10;  ///< 10 for densities, which are powers; 20 for amplitudes
 };
-LevelReference level_reference(const schema::Spectrogram& spectrogram);
+LevelReference level_reference(const schema::SpectrogramHeader& spectrogram);
 
-/// 10 log10 of a density over the reference; -infinity for no power.
-double level_db(double density, const LevelReference& reference);
+/// A cell over the reference in dB; -infinity for no power.
+double level_db(double cell, const LevelReference& reference);
 
 }  // namespace tacto::spatial

@@ -25,8 +25,8 @@ void add_windowing(Report& report, const Spectrogram& s) {
 }
 
 void add_peak(Report& report, const Spectrogram& s) {
-  if (s.density.empty()) return;
-  const auto peak = static_cast<std::size_t>(std::ranges::max_element(s.density) - s.density.begin());
+  if (s.cells.empty()) return;
+  const auto peak = static_cast<std::size_t>(std::ranges::max_element(s.cells) - s.cells.begin());
   report.add("peak_position_m", s.position_m[peak / s.bins]);
   report.add("peak_frequency_per_m", s.frequency_per_m(peak % s.bins));
 }

@@ -5,18 +5,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdlib>
 #include <mutex>
-#include <new>
+
+#include "spatial/dsp/fftw_parts.hpp"
 
 namespace tacto::spatial {
 namespace {
-
-// FFTW's planner keeps global tables; only execution may run beside itself.
-std::mutex& planner_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 struct PlanDeleter {
   void operator()(fftw_plan plan) const {
@@ -26,24 +20,12 @@ struct PlanDeleter {
 };
 using Plan = std::unique_ptr<std::remove_pointer_t<fftw_plan>, PlanDeleter>;
 
-struct BufferDeleter {
-  void operator()(void* memory) const { std::free(memory); }
-};
-template <class T>
-using Buffer = std::unique_ptr<T[], BufferDeleter>;
-
-// One cache line, and enough for any SIMD unit FFTW uses.
-constexpr std::size_t kAlignment = 64;
-
-template <class T>
-Buffer<T> aligned_buffer(std::size_t count) {
-  const std::size_t bytes = (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
-  void* memory = std::aligned_alloc(kAlignment, bytes);
-  if (memory == nullptr) throw std::bad_alloc();
-  return Buffer<T>(static_cast<T*>(memory));
-}
-
 }  // namespace
+
+std::mutex& planner_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
 
 struct RealFft::State {
   explicit State(std::size_t n)
@@ -68,8 +50,8 @@ struct RealFft::State {
   }
 
   std::size_t length;
-  Buffer<double> time;
-  Buffer<fftw_complex> spectrum;
+  AlignedBuffer<double> time;
+  AlignedBuffer<fftw_complex> spectrum;
   Plan to_spectrum, to_time;  // planned on first use: most owners go one way only
 };
 

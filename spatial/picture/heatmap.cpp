@@ -22,7 +22,7 @@ constexpr int kMostBins = 30000;
 // OpenCV wants a pointer to mutable data even where it only reads.
 cv::Mat view(const Spectrogram& spectrogram) {
   return {static_cast<int>(spectrogram.position_m.size()), static_cast<int>(spectrogram.bins), CV_32F,
-          const_cast<float*>(spectrogram.density.data())};
+          const_cast<float*>(spectrogram.cells.data())};
 }
 
 cv::Mat resized(const cv::Mat& power, int width, int height) {
@@ -58,8 +58,8 @@ cv::Mat shades(const cv::Mat& power, const LevelReference& reference, const Leve
   cv::Mat level;
   cv::log(cv::max(power, 1e-37F), level);
   const double scale = 255 / (levels.high_db - levels.low_db);
-  const double to_db = 10 / std::log(10.0);
-  const double shift = 10 * std::log10(reference.factor) - levels.low_db;
+  const double to_db = reference.decade_db / std::log(10.0);
+  const double shift = reference.decade_db * std::log10(reference.factor) - levels.low_db;
   cv::Mat shade;
   level.convertTo(shade, CV_8U, to_db * scale, shift * scale);
   return shade;

@@ -150,7 +150,7 @@ TEST_F(Check, FindsCellsThatAreNoDensity) {
   s.position_m = {1, 2};
   s.bins = 2;
   s.frequency_step_per_m = 1;
-  s.density = {1, 1, static_cast<float>(kNan), 1};
+  s.cells = {1, 1, static_cast<float>(kNan), 1};
   s.window_m = s.hop_m = s.pitch_m = 1;
   s.unit = "N";
   ASSERT_TRUE(write_spectrogram_nc(folder_ / "oak.nc", std::span(&s, 1)));

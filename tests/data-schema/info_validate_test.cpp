@@ -114,7 +114,7 @@ TEST_F(InfoValidate, DescribesASpectrogram) {
   s.position_m = {5e-3, 6e-3};
   s.bins = 2;
   s.frequency_step_per_m = 250;
-  s.density = {1, 2, 4, 3};
+  s.cells = {1, 2, 4, 3};
   s.window = "blackman";
   s.window_m = 10e-3;
   s.hop_m = 1e-3;

@@ -27,7 +27,7 @@ def check_axes(data, positions):
 
 
 def check_attributes(attributes):
-    texts = {"Conventions": "CF-1.10", "kind": "spectrogram", "version": "1.0", "window": "blackman",
+    texts = {"Conventions": "CF-1.10", "kind": "spectrogram", "version": "1.1", "window": "blackman",
              "scaling": "density, one-sided", "quantity": "tangential_force", "simulated": "a formula"}
     for name, text in texts.items():
         assert attributes[name] == text, name
@@ -61,8 +61,23 @@ def check_storage(path):
     with netCDF4.Dataset(path) as file:
         assert file.data_model == "NETCDF4"
         density = file["density"]
-        assert density.filters()["zlib"] and density.filters()["complevel"] == 1
+        assert not density.filters()["zlib"] and file["known"].filters()["zlib"]
         assert np.isnan(density.getncattr("_FillValue"))
+
+
+def check_known(path):
+    """The example knows bins 2.5 + p to 20.5 (from position p)."""
+    with xarray.open_dataset(path) as data:
+        known = data.known.values
+        assert known.dtype == np.int8
+        assert list(data.known.attrs["flag_values"]) == [0, 1] and data.known.attrs["flag_meanings"] == "unknown known"
+        p, k = np.arange(30)[:, None], np.arange(40)[None, :]
+        expected_known = (k >= 2.5 + p) & (k <= 20.5)
+        np.testing.assert_array_equal(known[0], expected_known)
+        np.testing.assert_array_equal(known[1, :20], expected_known[:20])
+        assert not known[1, 20:].any()
+        np.testing.assert_allclose(data.known_to[0], 20.5 * 1e3 / 16384, rtol=1e-14)
+        assert data.known_from.attrs["units"] == "1/mm" and np.isnan(data.known_from[1, 20:]).all()
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -71,4 +86,5 @@ with tempfile.TemporaryDirectory() as folder:
     check_one(out + ".nc")
     check_two(out + "-two.nc")
     check_storage(out + ".nc")
+    check_known(out + "-two.nc")
 print("spectrograms open in xarray and netCDF4 with labelled axes")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes OUT.nc, of one spectrogram, and OUT-two.nc, of two, for spectrogram_netcdf_test.py, which knows the
 // same formulas: at position p (from 0) and bin k the density is (1 + p + 100 k) 1e-6 N^2 m, in stroke 2
-// twice that.
+// twice that. Known are the bins from 2.5 + p to 20.5.
 #include <array>
 #include <string>
 
@@ -26,8 +26,10 @@ Spectrogram sample(std::size_t positions, float factor) {
   s.simulated = "a formula";
   for (std::size_t p = 0; p < positions; ++p) {
     s.position_m.push_back(5e-3 + 0.5e-3 * static_cast<double>(p));
+    s.known.push_back(
+        {(2.5 + static_cast<double>(p)) * s.frequency_step_per_m, 20.5 * s.frequency_step_per_m});
     for (std::size_t k = 0; k < s.bins; ++k)
-      s.density.push_back(factor * 1e-6F * static_cast<float>(1 + p + 100 * k));
+      s.cells.push_back(factor * 1e-6F * static_cast<float>(1 + p + 100 * k));
   }
   return s;
 }

@@ -166,7 +166,7 @@ TEST(Heatmap, HoldsTheLevelOfAFlatSpectrum) {
   flat.frequency_step_per_m = 1;
   flat.hop_m = 1e-3;
   flat.position_m = {0, 1e-3, 2e-3};
-  flat.density.assign(3 * flat.bins, 2e-6F);
+  flat.cells.assign(3 * flat.bins, 2e-6F);
   const LevelRange levels{-60, 0};
   const auto pixels = heatmap(flat, 10, 40000, levels, 40, 30);
   ASSERT_TRUE(pixels);

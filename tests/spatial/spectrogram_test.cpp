@@ -121,8 +121,8 @@ TEST(Spectrogram, TakesTheMeanOffOnlyWhereAsked) {
   const auto kept = spatial_spectrogram(texture, options);
   ASSERT_TRUE(plain && lifted && kept);
   // A constant of 100 costs the samples 7 of their 53 bits.
-  for (std::size_t i = 0; i < plain->density.size(); ++i)
-    ASSERT_NEAR(lifted->density[i], plain->density[i], 1e-6F * plain->density[i] + 1e-15F);
+  for (std::size_t i = 0; i < plain->cells.size(); ++i)
+    ASSERT_NEAR(lifted->cells[i], plain->cells[i], 1e-6F * plain->cells[i] + 1e-15F);
   EXPECT_GT(kept->at(0, 0), 1e4F * plain->at(0, 3));
 }
 
@@ -197,7 +197,7 @@ TEST(SpectrogramSummary, MeanIsOverPositions) {
   schema::Spectrogram spectrogram;
   spectrogram.bins = 2;
   spectrogram.position_m = {1, 2};
-  spectrogram.density = {1, 10, 3, 30};
+  spectrogram.cells = {1, 10, 3, 30};
   EXPECT_EQ(mean_spectrum(spectrogram), (std::vector<double>{2, 20}));
 }
 

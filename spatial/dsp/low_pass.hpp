@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Low-pass filters of linear phase for decimation.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace tacto::spatial {
+
+/// A symmetric filter of odd length whose response is 1 from 0 to `pass` and 0 from `stop` on, both to 1e-7
+/// (-140 dB), by Kaiser's window (Kaiser 1974; Oppenheim and Schafer, Discrete-Time Signal
+/// Processing, 7.5.3). Edges in cycles a sample, 0 < pass < stop; its values sum to 1.
+std::vector<double> low_pass(double pass, double stop);
+
+/// How far such a filter reaches to either side, in samples; its length is twice that and one.
+std::size_t low_pass_reach(double pass, double stop);
+
+}  // namespace tacto::spatial

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Complex single-precision Fourier transforms of one length, for two real frames at a time. Offline use.
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <memory>
+#include <span>
+
+namespace tacto::spatial {
+
+/// A planned transform with its buffers; reuse it for many frames. Not shared between threads.
+///   Z_k = sum_n z_n exp(-2 pi i k n / length)
+/// Relative error of the whole spectrum (root of sum of squares) about 2e-7 for lengths to 2^16.
+class PackedFft {
+ public:
+  /// `expected` transforms are to come. Where a measured plan is in the user's cache (fft_wisdom.hpp) it is
+  /// taken; else one is measured and kept there, if that takes no longer than the transforms to come would;
+  /// else FFTW estimates. Plans differ by rounding only. Throws bad_alloc.
+  PackedFft(std::size_t length, std::size_t expected);
+  PackedFft(PackedFft&&) noexcept;
+  PackedFft& operator=(PackedFft&&) noexcept;
+  ~PackedFft();
+
+  std::size_t length() const;
+  /// Zeros at first; transform() leaves it as it is.
+  std::span<std::complex<float>> input();
+  /// Of the last transform().
+  std::span<const std::complex<float>> output() const;
+  void transform();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Whether measuring a plan is worth it for so many transforms: it takes 0.05 s + 16 us a sample on the
+/// machine of spatial/README.md, and the transforms themselves must take longer than that.
+bool measuring_pays(std::size_t length, std::size_t expected);
+
+}  // namespace tacto::spatial

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/dsp/packed_frames.hpp"
+
+#include <cassert>
+
+namespace tacto::spatial {
+namespace {
+
+// Both halves of a complex array as plain floats, which compilers vectorise (std::complex is laid out so).
+const float* floats(PackedSpectrum z) {
+  return reinterpret_cast<const float*>(z.data());
+}
+
+void pack_level(const Frame& a, const Frame& b, std::span<const float> window, float* __restrict out) {
+  const float* __restrict w = window.data();
+  const float* __restrict x = a.samples;
+  const float* __restrict y = b.samples;
+  const float level_x = a.level, level_y = b.level;
+  for (std::size_t n = 0; n < window.size(); ++n) {
+    out[2 * n] = w[n] * (x[n] - level_x);
+    out[2 * n + 1] = w[n] * (y[n] - level_y);
+  }
+}
+
+void pack_sloping(const Frame& a, const Frame& b, std::span<const float> window, float* __restrict out) {
+  const auto count = static_cast<int>(window.size());  // an int becomes a float in one instruction
+  for (int n = 0; n < count; ++n) {
+    const auto at = static_cast<float>(n);
+    out[2 * n] = window[n] * (a.samples[n] - a.level + a.slope * at);
+    out[2 * n + 1] = window[n] * (b.samples[n] - b.level + b.slope * at);
+  }
+}
+
+}  // namespace
+
+void pack_frames(const Frame& a, const Frame& b, std::span<const float> window,
+                 std::span<std::complex<float>> packed) {
+  assert(window.size() <= packed.size());
+  auto* out = reinterpret_cast<float*>(packed.data());
+  if (a.slope == 0 && b.slope == 0)
+    pack_level(a, b, window, out);
+  else
+    pack_sloping(a, b, window, out);
+}
+
+void unpack_powers(PackedSpectrum z, std::span<float> a, std::span<float> b) {
+  assert(a.size() == b.size() && a.size() <= z.size() / 2 + 1);
+  if (a.empty()) return;
+  const float* __restrict up = floats(z);
+  const float* __restrict down = up + 2 * z.size();  // Z_-k = Z_(length - k)
+  float* __restrict power_a = a.data();
+  float* __restrict power_b = b.data();
+  power_a[0] = up[0] * up[0];
+  power_b[0] = up[1] * up[1];
+  const auto bins = static_cast<std::ptrdiff_t>(a.size());
+  for (std::ptrdiff_t k = 1; k < bins; ++k) {
+    const float re = up[2 * k], im = up[2 * k + 1], twin_re = down[-2 * k], twin_im = down[-2 * k + 1];
+    const float a_re = re + twin_re, a_im = im - twin_im, b_re = im + twin_im, b_im = twin_re - re;
+    power_a[k] = 0.25F * (a_re * a_re + a_im * a_im);
+    power_b[k] = 0.25F * (b_re * b_re + b_im * b_im);
+  }
+}
+
+void unpack_spectra(PackedSpectrum z, std::span<std::complex<float>> a, std::span<std::complex<float>> b) {
+  assert(a.size() == b.size() && a.size() <= z.size() / 2 + 1);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const std::complex<float> here = z[k], twin = std::conj(z[k == 0 ? 0 : z.size() - k]);
+    a[k] = 0.5F * (here + twin);
+    b[k] = std::complex<float>(0, -0.5F) * (here - twin);
+  }
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/known_band.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace tacto::spatial {
+
+using schema::BandPoint;
+using schema::KnownBand;
+
+namespace {
+
+KnownBand limits_at(std::span<const BandPoint> band, double position_m) {
+  const auto next = std::ranges::upper_bound(band, position_m, {}, &BandPoint::position_m);
+  const BandPoint& after = next == band.end() ? band.back() : *next;
+  const BandPoint& before = next == band.begin() ? band.front() : *std::prev(next);
+  const double length_m = after.position_m - before.position_m;
+  const double part = length_m > 0 ? (position_m - before.position_m) / length_m : 0;
+  return {std::lerp(before.low_per_m, after.low_per_m, part),
+          std::lerp(before.high_per_m, after.high_per_m, part)};
+}
+
+void narrow(KnownBand& common, const KnownBand& other) {
+  common.low_per_m = std::max(common.low_per_m, other.low_per_m);
+  common.high_per_m = std::min(common.high_per_m, other.high_per_m);
+}
+
+}  // namespace
+
+// Between breakpoints the limits are straight, so their extremes lie at breakpoints or at the stretch's ends.
+KnownBand band_along(std::span<const BandPoint> band, double from_m, double to_m) {
+  KnownBand common = limits_at(band, from_m);
+  narrow(common, limits_at(band, to_m));
+  for (auto point = std::ranges::upper_bound(band, from_m, {}, &BandPoint::position_m);
+       point != band.end() && point->position_m < to_m; ++point)
+    narrow(common, {point->low_per_m, point->high_per_m});
+  return common;
+}
+
+std::vector<KnownBand> known_bands(std::span<const BandPoint> band, std::span<const double> centre_m,
+                                   double window_m) {
+  std::vector<KnownBand> known;
+  if (band.empty()) return known;
+  const double reach_m = kKnownPart * window_m / 2;
+  known.reserve(centre_m.size());
+  for (const double centre : centre_m) known.push_back(band_along(band, centre - reach_m, centre + reach_m));
+  return known;
+}
+
+}  // namespace tacto::spatial
