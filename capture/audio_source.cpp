@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "data-schema/wav.hpp"
@@ -14,23 +15,25 @@ using schema::fail;
 using schema::Fault;
 using schema::Result;
 
-constexpr std::size_t kPieceFrames = 65536;
+constexpr std::size_t kPieceSamples = 65536;
 
-tl::unexpected<schema::Error> not_finite(const Source& source, std::size_t frame, std::size_t column,
+tl::unexpected<schema::Error> not_finite(const Source& source, std::uint64_t frame, std::size_t column,
                                          double value) {
   return fail(Fault::malformed, std::isnan(value) ? "is NaN" : "is infinite",
               fmt::format("{}: sample {}, {}", source.file, frame, column_in_words(source.columns, column)),
               "import the part without it: a value that isn't known is never filled in");
 }
 
-Result<void> keep(const Source& source, std::span<const std::size_t> columns, std::span<const double> piece,
-                  SourceData& data) {
+// The chosen columns of a piece whose first frame is `first`.
+Result<void> choose(const Source& source, std::span<const std::size_t> columns, std::uint64_t first,
+                    std::span<const double> piece, std::vector<double>& rows) {
   const std::size_t channels = source.columns.size();
+  rows.clear();
   for (std::size_t i = 0; i < piece.size(); i += channels)
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      const double value = piece[i + columns[k]];
-      if (!std::isfinite(value)) return not_finite(source, data.columns[k].size(), columns[k], value);
-      data.columns[k].push_back(value);
+    for (const std::size_t column : columns) {
+      const double value = piece[i + column];
+      if (!std::isfinite(value)) return not_finite(source, first + i / channels, column, value);
+      rows.push_back(value);
     }
   return {};
 }
@@ -52,24 +55,23 @@ Result<Source> open_audio(const std::string& file) {
   return source;
 }
 
-Result<SourceData> read_audio(const Source& source, std::span<const std::size_t> columns,
-                              const std::function<void(double)>& progress) {
+Result<void> read_audio(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
+                        const std::function<void(double)>& progress) {
   auto reader = schema::WavReader::open(source.file);
   if (!reader) return schema::forward_error(reader);
   const std::size_t channels = source.columns.size();
-  SourceData data{std::vector<std::vector<double>>(columns.size()), {}};
-  std::vector<double> piece(kPieceFrames * channels);
+  std::vector<double> piece(std::max<std::size_t>(kPieceSamples / channels, 1) * channels), rows;
   for (std::uint64_t done = 0;;) {
     const auto got = reader->read(std::span(piece));
     if (!got) return schema::forward_error(got);
-    if (*got == 0) break;
-    const auto kept = keep(source, columns, std::span(piece).first(*got * channels), data);
-    if (!kept) return schema::forward_error(kept);
+    if (*got == 0 && done == 0) return fail(Fault::malformed, "holds no samples", source.file);
+    if (*got == 0) return {};
+    const auto chosen = choose(source, columns, done, std::span(piece).first(*got * channels), rows);
+    if (!chosen) return chosen;
+    if (const auto taken = take({rows, columns.size(), done}); !taken) return taken;
     done += *got;
     progress(static_cast<double>(done) / static_cast<double>(std::max(reader->info().frames, done)));
   }
-  if (data.columns[0].empty()) return fail(Fault::malformed, "holds no samples", source.file);
-  return data;
 }
 
 }  // namespace tacto::capture

@@ -15,9 +15,9 @@ namespace tacto::capture {
 /// libsndfile doesn't know the file; as WavReader::open().
 schema::Result<Source> open_audio(const std::string& file);
 
-/// Integer samples as codes of their own width, others as they are. Errors: malformed, with the sample, for
-/// NaN and Inf, or a file without samples.
-schema::Result<SourceData> read_audio(const Source& source, std::span<const std::size_t> columns,
-                                      const std::function<void(double)>& progress);
+/// Block by block: integer samples as codes of their own width, others as they are. Errors: those of `take`;
+/// malformed, with the sample, for NaN and Inf, or a file without samples.
+schema::Result<void> read_audio(const Source& source, std::span<const std::size_t> columns,
+                                const TakeRows& take, const std::function<void(double)>& progress);
 
 }  // namespace tacto::capture

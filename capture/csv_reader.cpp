@@ -10,6 +10,7 @@
 
 #include "capture/csv_fields.hpp"
 #include "capture/plain_decimal.hpp"
+#include "capture/plain_rows.hpp"
 #include "capture/text_encoding.hpp"
 
 namespace tacto::capture {
@@ -55,7 +56,7 @@ std::string column_in_words(const std::vector<std::string>& names, std::size_t c
   return fmt::format("column {} ('{}')", column + 1, names[column]);
 }
 
-std::size_t line_of_row(const std::vector<CsvReader::Landmark>& landmarks, std::size_t row) {
+std::size_t line_of_row(const std::deque<CsvReader::Landmark>& landmarks, std::size_t row) {
   const auto after = std::ranges::upper_bound(landmarks, row, {}, &CsvReader::Landmark::row);
   assert(after != landmarks.begin());
   const auto& last = *(after - 1);
@@ -65,10 +66,10 @@ std::size_t line_of_row(const std::vector<CsvReader::Landmark>& landmarks, std::
 CsvReader::CsvReader(CsvLayout layout, const std::vector<std::size_t>& columns, std::string file)
     : layout_(std::move(layout)),
       file_(std::move(file)),
-      target_(layout_.columns.size(), kSkipped),
-      values_(columns.size()),
+      places_(layout_.columns.size(), RowForm::kSkipped),
+      kept_(columns.size()),
       line_(layout_.data_line) {
-  for (std::size_t k = 0; k < columns.size(); ++k) target_[columns[k]] = k;
+  for (std::size_t k = 0; k < columns.size(); ++k) places_[columns[k]] = k;
 }
 
 Result<void> CsvReader::feed(std::string_view piece) {
@@ -94,14 +95,35 @@ Result<void> CsvReader::finish() {
   return {};
 }
 
+void CsvReader::drop_rows() {
+  count_ = 0;
+  dropped_ = rows_;
+  const std::size_t oldest = rows_ - std::min(rows_, kRowsRemembered);
+  while (landmarks_.size() > 1 && landmarks_[1].row <= oldest) landmarks_.pop_front();
+}
+
 // Takes all whole lines and leaves what comes after them.
 bool CsvReader::take_lines(std::string_view& bytes) {
-  for (auto end = bytes.find(layout_.line_end); end != std::string_view::npos;
-       end = bytes.find(layout_.line_end)) {
+  for (;;) {
+    take_plain_rows(bytes);
+    const auto end = bytes.find(layout_.line_end);
+    if (end == std::string_view::npos) return true;
     if (!take_line(bytes.substr(0, end))) return false;
     bytes.remove_prefix(end + 1);
   }
-  return true;
+}
+
+void CsvReader::take_plain_rows(std::string_view& bytes) {
+  const RowForm form{layout_.delimiter, layout_.line_end, decimal_mark_ == 0 ? '.' : decimal_mark_, places_,
+                     kept_};
+  if (blank_line_ != 0 || form.mark == form.delimiter) return;
+  make_room(bytes.size() / 2 + kept_);
+  const PlainRows read = read_plain_rows(bytes, form, numbers_.get() + count_);
+  if (read.rows == 0) return;
+  if (read.marked) decimal_mark_ = form.mark;
+  note_rows(read.rows);
+  line_ += read.rows;
+  bytes.remove_prefix(read.bytes);
 }
 
 bool CsvReader::take_line(std::string_view line) {
@@ -119,10 +141,11 @@ bool CsvReader::take_line(std::string_view line) {
 
 bool CsvReader::take_row(std::string_view line) {
   if (blank_line_ != 0 && rows_ > 0) return refuse_blank();
+  make_room(kept_);
   std::size_t at = 0;
-  for (std::size_t column = 0; column < target_.size(); ++column) {
+  for (std::size_t column = 0; column < places_.size(); ++column) {
     if (at > line.size()) return refuse_ragged(line);
-    if (target_[column] == kSkipped) {
+    if (places_[column] == RowForm::kSkipped) {
       at = field_end(line, at, layout_.delimiter);
     } else if (!take_number(line, at, column)) {
       return false;
@@ -130,25 +153,23 @@ bool CsvReader::take_row(std::string_view line) {
     ++at;  // over the delimiter
   }
   if (at <= line.size()) return refuse_ragged(line);
-  note_line();
+  note_rows(1);
   return true;
 }
 
 bool CsvReader::take_number(std::string_view line, std::size_t& at, std::size_t column) {
-  auto& values = values_[target_[column]];
-  if (decimal_mark_ != ',' && take_plain_number(line, at, values)) return true;
+  double& value = numbers_[count_ + places_[column]];
+  if (decimal_mark_ != ',' && take_plain_number(line, at, value)) return true;
   const std::size_t end = field_end(line, at, layout_.delimiter);
   const std::string field = unquoted(line.substr(at, end - at));
-  double value = 0;
   const NumberFault fault = read_number(field, decimal_mark_, value);
   if (fault != NumberFault::none) return refuse_number(fault, line, field, column);
-  values.push_back(value);
   at = end;
   return true;
 }
 
 // The common case, quickly: a bare number right up to its delimiter.
-bool CsvReader::take_plain_number(std::string_view line, std::size_t& at, std::vector<double>& values) {
+bool CsvReader::take_plain_number(std::string_view line, std::size_t& at, double& value) {
   const char* const begin = line.data() + at;
   const char* const end = line.data() + line.size();
   PlainDecimal number = read_plain_decimal(begin, end);
@@ -160,21 +181,21 @@ bool CsvReader::take_plain_number(std::string_view line, std::size_t& at, std::v
   }
   if (number.stop != end && *number.stop != layout_.delimiter) return false;
   if (number.point) decimal_mark_ = '.';
-  values.push_back(number.value);
+  value = number.value;
   at = static_cast<std::size_t>(number.stop - line.data());
   return true;
 }
 
 bool CsvReader::refuse_number(NumberFault fault, std::string_view line, std::string_view field,
                               std::size_t column) {
-  if (field_count(line, layout_.delimiter) != target_.size()) return refuse_ragged(line);
+  if (field_count(line, layout_.delimiter) != places_.size()) return refuse_ragged(line);
   return refuse(words_for(fault, field), remedy_for(fault), column);
 }
 
 bool CsvReader::refuse_ragged(std::string_view line) {
   const std::size_t fields = field_count(line, layout_.delimiter);
   return refuse(
-      fmt::format("has {} field{} where {} are due", fields, fields == 1 ? "" : "s", target_.size()),
+      fmt::format("has {} field{} where {} are due", fields, fields == 1 ? "" : "s", places_.size()),
       fmt::format("the delimiter was taken to be {}",
                   layout_.delimiter == '\t' ? std::string("a tab") : fmt::format("'{}'", layout_.delimiter)));
 }
@@ -192,12 +213,24 @@ bool CsvReader::refuse(std::string what, std::string remedy, std::optional<std::
   return false;
 }
 
-void CsvReader::note_line() {
+// Not a vector: it would set to zero what is about to be written.
+void CsvReader::make_room(std::size_t numbers) {
+  if (room_ - count_ >= numbers) return;
+  const std::size_t room = std::max(2 * room_, count_ + numbers);
+  auto larger = std::make_unique_for_overwrite<double[]>(room);
+  std::copy_n(numbers_.get(), count_, larger.get());
+  numbers_ = std::move(larger);
+  room_ = room;
+}
+
+// Rows on lines that follow each other, the first on the next line.
+void CsvReader::note_rows(std::size_t rows) {
   const bool follows =
       !landmarks_.empty() && landmarks_.back().line + (rows_ - landmarks_.back().row) == line_;
   if (!follows) landmarks_.push_back({rows_, line_});
   blank_line_ = 0;
-  ++rows_;
+  rows_ += rows;
+  count_ += rows * kept_;
 }
 
 }  // namespace tacto::capture

@@ -3,57 +3,42 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstddef>
+#include <utility>
 
 #include "data-schema/quantity.hpp"
 
 namespace tacto::capture {
-namespace {
 
-schema::Channel position_channel(std::string derivation) {
-  schema::Channel channel;
-  channel.name = channel.quantity = "position";
-  channel.unit = "m";
-  channel.derivation = std::move(derivation);
-  return channel;
+DerivedPosition::DerivedPosition(std::string derivation) {
+  channel_.name = channel_.quantity = "position";
+  channel_.unit = "m";
+  channel_.derivation = std::move(derivation);
 }
 
-// Each frame's number in the clock's count, missing ones included: exact, where a sum of periods would drift.
-std::vector<double> ticks_of(const schema::RecordingHeader& header) {
-  std::vector<double> ticks(header.frames);
-  auto gap = header.gaps.begin();
-  std::uint64_t missing = 0;
-  for (std::uint64_t frame = 0; frame < header.frames; ++frame) {
-    for (; gap != header.gaps.end() && gap->frame <= frame; ++gap) missing += gap->count;
-    ticks[frame] = static_cast<double>(frame + missing);
-  }
-  return ticks;
+DerivedPosition DerivedPosition::nominal(double speed_mps) {
+  DerivedPosition made("nominal: " + schema::for_people(speed_mps, schema::Dimension::speed));
+  made.nominal_mps_ = speed_mps;
+  return made;
 }
 
-}  // namespace
-
-DerivedChannel nominal_position(const schema::RecordingHeader& header, double speed_mps) {
-  const std::string speed = schema::for_people(speed_mps, schema::Dimension::speed);
-  DerivedChannel derived{position_channel("nominal: " + speed), ticks_of(header)};
-  for (double& value : derived.values) value = value / header.sample_rate_hz * speed_mps;
-  return derived;
+DerivedPosition DerivedPosition::integrated(const schema::Channel& speed) {
+  DerivedPosition made(fmt::format("integrated from {} (trapezoid rule)", speed.name));
+  made.scale_ = speed.scale;
+  made.offset_ = speed.offset;
+  return made;
 }
 
-DerivedChannel integrated_position(const schema::RecordingHeader& header, const schema::Channel& speed,
-                                   std::span<const double> stored) {
-  DerivedChannel derived{position_channel(fmt::format("integrated from {} (trapezoid rule)", speed.name)),
-                         ticks_of(header)};
-  const auto speed_mps = [&](std::size_t i) { return stored[i] * speed.scale + speed.offset; };
-  double position_m = 0;
-  double last_tick = 0;
-  for (std::size_t i = 0; i < stored.size(); ++i) {
-    const double step_s = (derived.values[i] - last_tick) / header.sample_rate_hz;
-    if (i > 0) position_m += (speed_mps(i - 1) + speed_mps(i)) / 2 * step_s;
-    last_tick = derived.values[i];
-    derived.values[i] = position_m;
-  }
-  return derived;
+double DerivedPosition::next(const schema::RecordingHeader& header, double stored) {
+  for (; gaps_passed_ < header.gaps.size() && header.gaps[gaps_passed_].frame <= frame_; ++gaps_passed_)
+    missing_ += header.gaps[gaps_passed_].count;
+  const bool first = frame_ == 0;
+  const auto tick = static_cast<double>(frame_++ + missing_);
+  if (nominal_mps_) return tick / header.sample_rate_hz * *nominal_mps_;
+  const double speed_mps = stored * scale_ + offset_;
+  const double step_s = (tick - std::exchange(last_tick_, tick)) / header.sample_rate_hz;
+  const double before_mps = std::exchange(last_mps_, speed_mps);
+  if (!first) position_m_ += (before_mps + speed_mps) / 2 * step_s;
+  return position_m_;
 }
 
 }  // namespace tacto::capture

@@ -4,16 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <numeric>
+#include <deque>
+#include <iterator>
+#include <memory>
 #include <span>
 
 #include "capture/derived_position.hpp"
+#include "capture/import_header.hpp"
 #include "capture/import_plan.hpp"
 #include "capture/plausibility.hpp"
 #include "capture/uniform_clock.hpp"
-#include "data-schema/files.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -21,174 +21,255 @@ namespace {
 using schema::forward_error;
 using schema::RecordingHeader;
 using schema::Result;
+using Progress = std::function<void(double)>;
 
-constexpr std::size_t kBlockFrames = 65536;
-constexpr double kReadingShare = 0.7;  // of the progress that people see
+void gather(const RowBlock& block, std::size_t column, std::vector<double>& values) {
+  values.resize(block.rows());
+  const double* const numbers = block.numbers.data() + column;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = numbers[i * block.columns];
+}
 
-// An import under way: what was read, and the header that grows with it.
-struct Import {
-  const ImportRequest& request;
-  ImportPlan plan;
-  SourceData data;
-  RecordingHeader header;
-  std::vector<std::span<const double>> stored;  // of each channel
-  std::vector<double> derived;                  // the position that was made, where there is one
-
-  std::span<const double> column(std::size_t number) const {
-    const auto columns = columns_of(plan);
-    return data.columns[static_cast<std::size_t>(std::ranges::find(columns, number) - columns.begin())];
-  }
-  std::string name_of(std::size_t sample) const {
-    return fmt::format("{}, {:.6g} s", data.place_of(sample), schema::frame_time_s(header, sample));
-  }
+// One channel on its way from the source to the file.
+struct Measured {
+  std::size_t column = 0;  // in the blocks
+  std::unique_ptr<Plausibility> judged;
+  std::vector<double> stored;  // of the block at hand
 };
 
-schema::Channel described(const ChannelSpec& spec, const Source& source, const std::string& calibrated) {
-  schema::Channel channel;
-  channel.name = spec.name;
-  channel.quantity = spec.quantity;
-  channel.unit = schema::si_symbol(spec.dimension);
-  channel.scale = spec.source.scale;
-  channel.offset = spec.source.offset;
-  channel.source = source.columns[spec.source.column];
-  if (channel.source.empty()) channel.source = column_in_words(source.columns, spec.source.column);
-  channel.calibrated = calibrated;
-  return channel;
+struct Derived {
+  DerivedPosition position;
+  std::size_t speed = 0;  // which measured channel it is integrated from
+  std::vector<double> stored;
+  double smallest = 0, largest = 0;
+};
+
+// An import under way, block by block.
+class Import {
+ public:
+  Import(const ImportRequest& request, ImportPlan plan, Progress progress);
+  Result<Imported> run();
+
+ private:
+  void choose_derived();
+  Result<void> first_clock();
+  Result<void> write_all();
+  Result<void> take(const RowBlock& block);
+  void take_times(const RowBlock& block);
+  void derive(std::size_t rows);
+  Result<void> write_block(std::size_t rows);
+  bool second_pass_needed() const;
+  Result<void> second_pass();
+  Result<void> name(const RowBlock& block, bool clock);
+  void add_warnings(RecordingHeader& header) const;
+  Result<Imported> close();
+  Progress share(double from, double to) const;
+  Result<void> read(const TakeRows& take_rows, const Progress& progress, schema::Sha256* sum = nullptr);
+
+  const ImportRequest& request_;
+  ImportPlan plan_;
+  Progress progress_;
+  std::vector<std::size_t> columns_;
+  RecordingHeader header_;  // until the writer has it: its channels are what `judged` looks at
+  std::vector<Measured> measured_;
+  std::optional<Derived> derived_;
+  ClockFinder clock_;
+  bool clock_known_ = true;
+  std::vector<double> times_s_, interleaved_;
+  std::optional<schema::RecordingWriter> writer_;
+  schema::Sha256 sum_;
+  std::deque<CsvReader::Landmark> last_landmarks_;
+};
+
+Import::Import(const ImportRequest& request, ImportPlan plan, Progress progress)
+    : request_(request),
+      plan_(std::move(plan)),
+      progress_(std::move(progress)),
+      columns_(columns_of(plan_)),
+      header_(import_header(request, plan_)),
+      clock_known_(!plan_.time) {
+  const auto place = [&](std::size_t column) {
+    return static_cast<std::size_t>(std::ranges::find(columns_, column) - columns_.begin());
+  };
+  for (std::size_t k = 0; k < plan_.channels.size(); ++k)
+    measured_.push_back(
+        {place(plan_.channels[k].source.column), std::make_unique<Plausibility>(header_.channels[k]), {}});
+  choose_derived();
 }
 
-// Integer codes end where their width does: 16 bits at -32768 and 32767.
-void describe_range(schema::Channel& channel, int code_bits) {
-  if (code_bits == 0) return;
-  const double full = std::ldexp(1.0, code_bits - 1);
-  const auto [low, high] =
-      std::minmax({-full * channel.scale + channel.offset, (full - 1) * channel.scale + channel.offset});
-  channel.range_min = low;
-  channel.range_max = high;
+void Import::choose_derived() {
+  const auto channel_of = [&](std::string_view quantity) {
+    return std::ranges::find(plan_.channels, quantity, &ChannelSpec::quantity);
+  };
+  if (channel_of("position") != plan_.channels.end()) return;
+  if (request_.speed_mps) derived_ = {DerivedPosition::nominal(*request_.speed_mps), 0, {}, 0, 0};
+  const auto speed = channel_of("speed");
+  if (derived_ || speed == plan_.channels.end() || !request_.integrate_speed) return;
+  const auto index = static_cast<std::size_t>(speed - plan_.channels.begin());
+  derived_ = {DerivedPosition::integrated(header_.channels[index]), index, {}, 0, 0};
 }
 
-void describe_channels(Import& import) {
-  for (const ChannelSpec& spec : import.plan.channels) {
-    import.header.channels.push_back(described(spec, import.plan.source, import.request.calibrated));
-    describe_range(import.header.channels.back(), import.plan.source.code_bits);
-    import.stored.push_back(import.column(spec.source.column));
+Progress Import::share(double from, double to) const {
+  return [this, from, to](double fraction) { progress_(from + (to - from) * fraction); };
+}
+
+Result<void> Import::read(const TakeRows& take_rows, const Progress& progress, schema::Sha256* sum) {
+  return read_source(plan_.source, columns_, take_rows, progress, sum);
+}
+
+void Import::take_times(const RowBlock& block) {
+  const ScaledColumn& time = *plan_.time;
+  const auto place = std::ranges::find(columns_, time.column) - columns_.begin();
+  gather(block, static_cast<std::size_t>(place), times_s_);
+  for (double& value : times_s_) value = value * time.scale + time.offset;
+}
+
+// Positions need the clock before the first of them can be written.
+Result<void> Import::first_clock() {
+  const auto survey = [this](const RowBlock& block) -> Result<void> {
+    take_times(block);
+    clock_.survey(times_s_);
+    return {};
+  };
+  if (const auto surveyed = read(survey, share(0, 0.2)); !surveyed) return surveyed;
+  if (const auto ended = clock_.end_survey(request_.file); !ended) return ended;
+  const auto locate = [this](const RowBlock& block) { return name(block, true); };
+  if (clock_.second_pass_needed())
+    if (const auto located = read(locate, share(0.2, 0.3)); !located) return located;
+  clock_known_ = true;
+  header_.sample_rate_hz = clock_.clock().rate_hz;
+  header_.gaps = clock_.clock().gaps;
+  return {};
+}
+
+void Import::derive(std::size_t rows) {
+  const auto& speeds = measured_[derived_->speed].stored;
+  derived_->stored.resize(rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double position_m = derived_->position.next(header_, speeds[i]);
+    derived_->stored[i] = position_m;
+    derived_->smallest = std::min(derived_->smallest, position_m);
+    derived_->largest = std::max(derived_->largest, position_m);
   }
-  import.header.frames = import.stored[0].size();
 }
 
-void describe_circumstances(Import& import) {
-  const ImportRequest& request = import.request;
-  RecordingHeader& header = import.header;
-  header.source_file = std::filesystem::path(request.file).filename().string();
-  header.recorded = request.recorded;
-  header.subject = request.subject;
-  header.finger = request.finger;
-  header.surface = request.surface;
-  header.notes = request.notes;
-  header.humidity_percent = request.humidity_percent;
+Result<void> Import::write_block(std::size_t rows) {
+  const std::size_t channels = measured_.size() + (derived_ ? 1 : 0);
+  interleaved_.resize(rows * channels);
+  for (std::size_t k = 0; k < channels; ++k) {
+    const double* const stored = (k < measured_.size() ? measured_[k].stored : derived_->stored).data();
+    for (std::size_t i = 0; i < rows; ++i) interleaved_[i * channels + k] = stored[i];
+  }
+  return writer_->write(std::span<const double>(interleaved_));
 }
 
-Result<void> take_time_column(Import& import) {
-  const ScaledColumn& time = *import.plan.time;
-  std::vector<double> time_s;
-  for (const double number : import.column(time.column)) time_s.push_back(number * time.scale + time.offset);
-  const auto place_of = [&](std::size_t row) { return import.data.place_of(row); };
-  const auto clock = find_uniform_clock(time_s, place_of, import.request.file);
-  if (!clock) return forward_error(clock);
-  import.header.sample_rate_hz = clock->rate_hz;
-  import.header.gaps = clock->gaps;
-  import.header.clock = "times of the source, " + column_in_words(import.plan.source.columns, time.column);
-  return {};
+Result<void> Import::take(const RowBlock& block) {
+  const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
+  if (!clock_known_) {
+    take_times(block);
+    clock_.survey(times_s_);
+  }
+  for (Measured& channel : measured_) {
+    gather(block, channel.column, channel.stored);
+    channel.judged->survey(channel.stored, block.first_row, place_of);
+  }
+  if (derived_) derive(block.rows());
+  return write_block(block.rows());
 }
 
-Result<void> set_clock(Import& import) {
-  if (import.plan.time) return take_time_column(import);
-  const auto& given = import.request.rate_hz;
-  import.header.sample_rate_hz = given ? *given : *import.plan.source.rate_hz;
-  import.header.clock = given ? "nominal rate given at import" : "rate of the sound file";
-  if (given && import.plan.source.rate_hz)
-    import.header.clock += fmt::format(" (its file says {:g} Hz)", *import.plan.source.rate_hz);
-  return {};
-}
-
-const schema::Channel* channel_of(const RecordingHeader& header, std::string_view quantity) {
-  const auto found = std::ranges::find(header.channels, quantity, &schema::Channel::quantity);
-  return found == header.channels.end() ? nullptr : &*found;
-}
-
-void add_derived(Import& import, DerivedChannel derived) {
-  import.derived = std::move(derived.values);
-  import.header.warnings.push_back("no position was measured: it is " + derived.channel.derivation);
-  import.header.channels.push_back(std::move(derived.channel));
-  import.stored.emplace_back(import.derived);
-}
-
-void derive_position(Import& import) {
-  if (channel_of(import.header, "position") != nullptr) return;
-  if (import.request.speed_mps)
-    return add_derived(import, nominal_position(import.header, *import.request.speed_mps));
-  const schema::Channel* const speed = channel_of(import.header, "speed");
-  if (speed == nullptr || !import.request.integrate_speed) return;
-  const auto index = static_cast<std::size_t>(speed - import.header.channels.data());
-  add_derived(import, integrated_position(import.header, *speed, import.stored[index]));
-}
-
-void warn_of_gaps(RecordingHeader& header) {
-  if (header.gaps.empty()) return;
-  const auto missing =
-      std::accumulate(header.gaps.begin(), header.gaps.end(), std::uint64_t{0},
-                      [](std::uint64_t sum, const schema::Gap& gap) { return sum + gap.count; });
-  header.warnings.push_back(fmt::format("{} gap{} in the times, {} frames missing (not filled in)",
-                                        header.gaps.size(), header.gaps.size() == 1 ? "" : "s", missing));
-}
-
-// Of what was measured only: a derived position is what the numbers before it make it.
-void warn_of_implausible(Import& import) {
-  const auto name_of = [&](std::size_t sample) { return import.name_of(sample); };
-  for (std::size_t k = 0; k < import.plan.channels.size(); ++k)
-    for (std::string& text : implausible(import.header.channels[k], import.stored[k], name_of))
-      import.header.warnings.push_back(std::move(text));
-}
-
-Result<void> complete(Import& import) {
-  describe_channels(import);
-  describe_circumstances(import);
-  if (const auto clock = set_clock(import); !clock) return clock;
-  derive_position(import);
-  warn_of_gaps(import.header);
-  warn_of_implausible(import);
-  const auto sum = schema::sha256_of_file(import.request.file);
-  if (!sum) return forward_error(sum);
-  import.header.source_sha256 = *sum;
-  return {};
-}
-
-std::vector<double> interleaved(const Import& import, std::size_t first, std::size_t frames) {
-  const std::size_t channels = import.stored.size();
-  std::vector<double> block(frames * channels);
-  for (std::size_t k = 0; k < channels; ++k)
-    for (std::size_t i = 0; i < frames; ++i) block[i * channels + k] = import.stored[k][first + i];
-  return block;
-}
-
-Result<schema::Recording> write(const Import& import, const std::function<void(double)>& progress) {
-  auto writer = schema::RecordingWriter::create(import.request.name, import.header, import.request.replace);
+Result<void> Import::write_all() {
+  RecordingHeader written = header_;
+  if (!clock_known_) written.sample_rate_hz = 1;  // until it is known
+  if (derived_) written.channels.push_back(derived_->position.channel());
+  auto writer = schema::RecordingWriter::create(request_.name, std::move(written), request_.replace);
   if (!writer) return forward_error(writer);
-  const std::size_t all = import.header.frames;
-  for (std::size_t first = 0; first < all; first += kBlockFrames) {
-    const std::size_t frames = std::min(kBlockFrames, all - first);
-    const auto written = writer->write(std::span<const double>(interleaved(import, first, frames)));
-    if (!written) return forward_error(written);
-    progress(kReadingShare +
-             (1 - kReadingShare) * static_cast<double>(first + frames) / static_cast<double>(all));
-  }
-  return writer->close();
+  writer_ = std::move(*writer);
+  const auto done = read([this](const RowBlock& block) { return take(block); }, share(0.3, 0.8), &sum_);
+  if (!done) return done;
+  for (Measured& channel : measured_) channel.judged->end_survey();
+  return clock_known_ ? Result<void>{} : clock_.end_survey(request_.file);
 }
 
-ChannelRange range_of(const schema::Channel& channel, std::span<const double> stored) {
-  const auto [low, high] = std::ranges::minmax(stored);
+bool Import::second_pass_needed() const {
+  const auto needs = [](const Measured& channel) { return channel.judged->second_pass_needed(); };
+  return (!clock_known_ && clock_.second_pass_needed()) || std::ranges::any_of(measured_, needs);
+}
+
+// What has to be named by its line: gaps and faults of the clock, or samples that stand alone.
+Result<void> Import::name(const RowBlock& block, bool clock) {
+  const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
+  if (clock) {
+    take_times(block);
+    return clock_.locate(times_s_, place_of, request_.file);
+  }
+  for (Measured& channel : measured_) {
+    if (!channel.judged->second_pass_needed()) continue;
+    gather(block, channel.column, channel.stored);
+    channel.judged->find(channel.stored, place_of);
+  }
+  return {};
+}
+
+Result<void> Import::second_pass() {
+  const bool clock = !clock_known_ && clock_.second_pass_needed();
+  const auto name_both = [&](const RowBlock& block) -> Result<void> {
+    if (block.landmarks != nullptr) last_landmarks_ = *block.landmarks;
+    if (clock)
+      if (const auto located = name(block, true); !located) return located;
+    return name(block, false);
+  };
+  if (const auto done = read(name_both, share(0.8, 0.9)); !done) return done;
+  RowBlock after{{}, columns_.size(), 0, plan_.source.csv ? &last_landmarks_ : nullptr};
+  for (Measured& channel : measured_)
+    if (channel.judged->second_pass_needed())
+      channel.judged->end_find([&](std::uint64_t row) { return after.place_of(row); });
+  return {};
+}
+
+void Import::add_warnings(RecordingHeader& header) const {
+  const auto time_of = [&](std::uint64_t sample) {
+    return fmt::format("{:.6g} s", schema::frame_time_s(header, sample));
+  };
+  if (derived_)
+    header.warnings.push_back("no position was measured: it is " + derived_->position.channel().derivation);
+  std::ranges::move(gap_warnings(header.gaps), std::back_inserter(header.warnings));
+  for (const Measured& channel : measured_)
+    std::ranges::move(channel.judged->warnings(time_of), std::back_inserter(header.warnings));
+}
+
+ChannelRange range_of(const schema::Channel& channel, double low, double high) {
   const auto [smallest, largest] =
       std::minmax({low * channel.scale + channel.offset, high * channel.scale + channel.offset});
   return {smallest, largest};
+}
+
+Result<Imported> Import::close() {
+  RecordingHeader& header = writer_->header();
+  if (plan_.time) {
+    header.sample_rate_hz = clock_.clock().rate_hz;
+    header.gaps = clock_.clock().gaps;
+  }
+  header.source_sha256 = sum_.hexadecimal();
+  add_warnings(header);
+  auto recording = writer_->close();
+  if (!recording) return forward_error(recording);
+  Imported imported{std::move(*recording), {}, plan_.source.format};
+  for (std::size_t k = 0; k < measured_.size(); ++k) {
+    const Plausibility& judged = *measured_[k].judged;
+    imported.ranges.push_back(
+        range_of(header_.channels[k], judged.smallest_stored(), judged.largest_stored()));
+  }
+  if (derived_) imported.ranges.push_back({derived_->smallest, derived_->largest});
+  progress_(1);
+  return imported;
+}
+
+Result<Imported> Import::run() {
+  if (plan_.time && derived_)
+    if (const auto known = first_clock(); !known) return forward_error(known);
+  if (const auto written = write_all(); !written) return forward_error(written);
+  if (second_pass_needed())
+    if (const auto named = second_pass(); !named) return forward_error(named);
+  return close();
 }
 
 }  // namespace
@@ -196,17 +277,7 @@ ChannelRange range_of(const schema::Channel& channel, std::span<const double> st
 Result<Imported> import_file(const ImportRequest& request, const std::function<void(double)>& progress) {
   auto plan = plan_import(request);
   if (!plan) return forward_error(plan);
-  const auto reading = [&](double fraction) { progress(kReadingShare * fraction); };
-  auto data = read_source(plan->source, columns_of(*plan), reading);
-  if (!data) return forward_error(data);
-  Import import{request, std::move(*plan), std::move(*data), {}, {}, {}};
-  if (const auto completed = complete(import); !completed) return forward_error(completed);
-  auto recording = write(import, progress);
-  if (!recording) return forward_error(recording);
-  Imported imported{std::move(*recording), {}, import.plan.source.format};
-  for (std::size_t k = 0; k < import.stored.size(); ++k)
-    imported.ranges.push_back(range_of(import.header.channels[k], import.stored[k]));
-  return imported;
+  return Import(request, std::move(*plan), progress).run();
 }
 
 }  // namespace tacto::capture

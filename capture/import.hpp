@@ -42,8 +42,9 @@ struct Imported {
 /// are exactly the source's (float64), scale and offset go to the sidecar; a derived position is stored in
 /// metres, after them. `progress` takes 0 to 1. Errors: usage (options that don't fit the file or each other,
 /// a recording there already), not_found, malformed (with line and column), unsuitable (files of our own),
-/// cannot_write. Nothing is left behind after one. Memory: 8 bytes for each number of the channels. Not safe
-/// in the tick.
+/// cannot_write. Nothing is left behind after one. The file is read once, or twice where something in it has
+/// to be named by its line (gaps, lone samples) or where a position is made of a speed and a time column.
+/// Memory: some blocks and 256 KB a channel, whatever the file's length. Not safe in the tick.
 schema::Result<Imported> import_file(const ImportRequest& request,
                                      const std::function<void(double)>& progress);
 

@@ -8,6 +8,10 @@
 
 namespace tacto::capture {
 
+/// Powers of ten that are doubles without error, and whose use as divisors rounds once.
+inline constexpr std::array<double, 16> kPowersOfTen = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                        1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+
 /// A number and where it stopped; `stop` is null where the text is another kind of number, or none.
 struct PlainDecimal {
   const char* stop = nullptr;
@@ -19,8 +23,6 @@ struct PlainDecimal {
 /// looked at. Exact as strtod is: digits below 10^15 and powers of ten to 10^15 are doubles without error,
 /// and their quotient is rounded once (Clinger, How to read floating point numbers accurately, 1990).
 inline PlainDecimal read_plain_decimal(const char* begin, const char* end) {
-  constexpr std::array<double, 16> kPowers = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                              1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
   const bool negative = begin != end && *begin == '-';
   const char* const first = begin + (negative ? 1 : 0);
   const char* at = first;
@@ -40,7 +42,7 @@ inline PlainDecimal read_plain_decimal(const char* begin, const char* end) {
   const auto count = at - first - (point != nullptr ? 1 : 0);
   if (count < 1 || count > 15 || (at != end && (*at == 'e' || *at == 'E'))) return {};
   const auto decimals = static_cast<std::size_t>(point != nullptr ? at - point - 1 : 0);
-  const double value = static_cast<double>(digits) / kPowers[decimals];
+  const double value = static_cast<double>(digits) / kPowersOfTen[decimals];
   return {at, negative ? -value : value, point != nullptr};
 }
 

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples that no touch can have given: reported, never changed.
+// What no touch can have given: reported, never changed.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "capture/lone_samples.hpp"
+#include "capture/place_of.hpp"
 #include "data-schema/recording.hpp"
 
 namespace tacto::capture {
@@ -17,19 +21,52 @@ namespace tacto::capture {
 /// there is none. Wide on purpose: beyond it the unit or the scale is wrong.
 double largest_plausible(std::string_view quantity);
 
-/// Samples that stand alone: far from both neighbours, on the same side of both, and five times larger or
-/// smaller than the median of the five samples around (a digit or an exponent lost on the way). Far is ten
-/// times what 99 % of the channel's samples are from their own median of five, and ten times its finest step.
-/// Real transients, steps and noise have neighbours that follow, and pass. Values as stored or physical,
-/// 0-based results, in order.
-std::vector<std::size_t> lone_samples(std::span<const double> values);
+/// Says of a sample when it was: "4.227 s".
+using TimeOf = std::function<std::string(std::uint64_t sample)>;
 
-/// Says of a sample where it is: "line 4229, 4.227 s".
-using SampleName = std::function<std::string(std::size_t sample)>;
+/// One channel looked at for values beyond largest_plausible(), lone samples, and no change at all. Twice
+/// through its samples, as LoneSamples: survey, and where second_pass_needed() once more. Memory as there.
+class Plausibility {
+ public:
+  /// Precondition: `channel` outlives this.
+  explicit Plausibility(const schema::Channel& channel);
 
-/// One line for each thing to warn of: values beyond largest_plausible(), lone samples (the first few by
-/// name, and how many there are), a channel that never changes. `stored` as in the file.
-std::vector<std::string> implausible(const schema::Channel& channel, std::span<const double> stored,
-                                     const SampleName& name_of);
+  /// `first` is the number of the first of `stored`, as in the file.
+  void survey(std::span<const double> stored, std::uint64_t first, const PlaceOf& place_of);
+  void end_survey();
+  bool second_pass_needed() const { return smallest_ < largest_ && lone_.any(); }
+  /// `place_of` is also asked for the two samples before `stored`: a lone sample is known by its followers.
+  void find(std::span<const double> stored, const PlaceOf& place_of);
+  void end_find(const PlaceOf& place_of);
+
+  /// One line for each thing to warn of, with the first few samples by name, and how many there are.
+  std::vector<std::string> warnings(const TimeOf& time_of) const;
+  double smallest_stored() const { return smallest_; }
+  double largest_stored() const { return largest_; }
+
+ private:
+  struct Sighting {
+    std::uint64_t sample = 0;
+    double value = 0;
+    std::string place;
+  };
+  struct Sightings {
+    std::uint64_t count = 0;
+    std::vector<Sighting> first;
+    void add(std::uint64_t sample, double value, const PlaceOf& place_of);
+  };
+  double physical(double stored) const { return stored * channel_.scale + channel_.offset; }
+  bool is_beyond(double stored) const;
+  std::string people(double si_value) const;
+  std::string listed(const Sightings& sightings, const TimeOf& time_of) const;
+
+  const schema::Channel& channel_;
+  double bound_;
+  double smallest_ = std::numeric_limits<double>::infinity();
+  double largest_ = -std::numeric_limits<double>::infinity();
+  std::uint64_t count_ = 0;
+  Sightings beyond_, alone_;
+  LoneSamples lone_;
+};
 
 }  // namespace tacto::capture

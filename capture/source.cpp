@@ -14,7 +14,7 @@ using schema::fail;
 using schema::Fault;
 using schema::Result;
 
-constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+constexpr std::size_t kPieceBytes = std::size_t{1} << 17;  // with its numbers it stays in the cache
 
 std::string table_format(const CsvLayout& layout) {
   const char* const delimiter = layout.delimiter == '\t'  ? "tab"
@@ -54,9 +54,9 @@ Result<void> refuse_own(const std::string& file, std::string_view head) {
 
 }  // namespace
 
-std::string SourceData::place_of(std::size_t row) const {
-  if (landmarks.empty()) return fmt::format("sample {}", row);
-  return fmt::format("line {}", line_of_row(landmarks, row));
+std::string RowBlock::place_of(std::uint64_t row) const {
+  if (landmarks == nullptr) return fmt::format("sample {}", row);
+  return fmt::format("line {}", line_of_row(*landmarks, row));
 }
 
 std::string columns_in_words(const std::vector<std::string>& columns) {
@@ -80,8 +80,17 @@ Result<Source> open_source(const std::string& file) {
   return is_binary(head) ? open_audio(file) : open_table(file, head, whole);
 }
 
-Result<SourceData> read_table(const Source& source, std::span<const std::size_t> columns,
-                              const std::function<void(double)>& progress) {
+namespace {
+
+Result<void> hand_over(CsvReader& reader, std::size_t columns, const TakeRows& take) {
+  if (reader.rows().empty()) return {};
+  const auto taken = take({reader.rows(), columns, reader.first_row(), &reader.landmarks()});
+  reader.drop_rows();
+  return taken;
+}
+
+Result<void> read_table(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
+                        const std::function<void(double)>& progress, schema::Sha256* sum) {
   auto input = InputFile::open(source.file);
   if (!input) return schema::forward_error(input);
   CsvReader reader(*source.csv, {columns.begin(), columns.end()}, source.file);
@@ -92,19 +101,37 @@ Result<SourceData> read_table(const Source& source, std::span<const std::size_t>
     if (!got) return schema::forward_error(got);
     if (*got == 0) break;
     const std::string_view bytes = std::string_view(piece).substr(0, *got);
-    const auto fed = reader.feed(bytes.substr(std::min(skipped, bytes.size())));
-    if (!fed) return schema::forward_error(fed);
+    if (sum != nullptr) sum->add(bytes);
+    if (const auto fed = reader.feed(bytes.substr(std::min(skipped, bytes.size()))); !fed) return fed;
+    if (const auto taken = hand_over(reader, columns.size(), take); !taken) return taken;
     skipped -= std::min(skipped, bytes.size());
     done += *got;
     progress(static_cast<double>(done) / static_cast<double>(std::max(input->size(), done)));
   }
-  if (const auto ended = reader.finish(); !ended) return schema::forward_error(ended);
-  return SourceData{reader.take_values(), reader.landmarks()};
+  if (const auto ended = reader.finish(); !ended) return ended;
+  return hand_over(reader, columns.size(), take);
 }
 
-Result<SourceData> read_source(const Source& source, std::span<const std::size_t> columns,
-                               const std::function<void(double)>& progress) {
-  return source.csv ? read_table(source, columns, progress) : read_audio(source, columns, progress);
+// libsndfile reads the file itself, so its bytes are read once more for the sum.
+Result<void> add_file(const std::string& file, schema::Sha256& sum) {
+  auto input = InputFile::open(file);
+  if (!input) return schema::forward_error(input);
+  std::string piece(kPieceBytes, '\0');
+  for (;;) {
+    const auto got = input->read(piece);
+    if (!got) return schema::forward_error(got);
+    if (*got == 0) return {};
+    sum.add(std::string_view(piece).substr(0, *got));
+  }
+}
+
+}  // namespace
+
+Result<void> read_source(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
+                         const std::function<void(double)>& progress, schema::Sha256* sum) {
+  if (source.csv) return read_table(source, columns, take, progress, sum);
+  const auto read = read_audio(source, columns, take, progress);
+  return read && sum != nullptr ? add_file(source.file, *sum) : read;
 }
 
 }  // namespace tacto::capture

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
@@ -12,6 +14,7 @@
 #include "capture/csv_layout.hpp"
 #include "capture/csv_reader.hpp"
 #include "data-schema/error.hpp"
+#include "data-schema/sha256.hpp"
 
 namespace tacto::capture {
 
@@ -25,23 +28,32 @@ struct Source {
   std::string format;                ///< for people: "table, comma", "WAV (Microsoft), Signed 16 bit PCM"
 };
 
-/// The numbers of the columns that were asked for, exactly as the file has them (integer audio: its codes).
-struct SourceData {
-  std::vector<std::vector<double>> columns;
-  std::vector<CsvReader::Landmark> landmarks;  ///< of a table
+/// A stretch of a source's rows: the numbers of the columns that were asked for, exactly as the file has them
+/// (integer audio: its codes), row by row.
+struct RowBlock {
+  std::span<const double> numbers;
+  std::size_t columns = 0;
+  std::uint64_t first_row = 0;
+  const std::deque<CsvReader::Landmark>* landmarks = nullptr;  ///< of a table
 
-  /// "line 4229" of a table, "sample 4228" of audio, for messages.
-  std::string place_of(std::size_t row) const;
+  std::size_t rows() const { return numbers.size() / columns; }
+  /// "line 4229" of a table, "sample 4228" of audio, for messages. `row` counts from the file's first; it is
+  /// one of these or of the CsvReader::kRowsRemembered before.
+  std::string place_of(std::uint64_t row) const;
 };
+
+using TakeRows = std::function<schema::Result<void>(const RowBlock&)>;
 
 /// Looks into a file: audio where libsndfile reads it, else a table. Errors: not_found; malformed, for what
 /// is neither; unsuitable, for files of tactograph's own.
 schema::Result<Source> open_source(const std::string& file);
 
-/// Reads columns (0-based, each once). `progress` takes 0 to 1. Errors: not_found; malformed, with line and
-/// column or sample, at the first number that can't be kept. Memory: 8 bytes a number.
-schema::Result<SourceData> read_source(const Source& source, std::span<const std::size_t> columns,
-                                       const std::function<void(double)>& progress);
+/// Reads columns (0-based, each once) block by block; `sum`, where given, is fed the file's bytes on the way.
+/// `progress` takes 0 to 1. Errors: those of `take`; not_found; malformed, with line and column or sample, at
+/// the first number that can't be kept. Memory: one block, whatever the file's length.
+schema::Result<void> read_source(const Source& source, std::span<const std::size_t> columns,
+                                 const TakeRows& take, const std::function<void(double)>& progress,
+                                 schema::Sha256* sum = nullptr);
 
 /// "1 'lateral_V', 2 'normal_V'", for messages.
 std::string columns_in_words(const std::vector<std::string>& columns);

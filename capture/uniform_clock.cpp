@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstdint>
+#include <utility>
 
 namespace tacto::capture {
 namespace {
@@ -14,37 +15,8 @@ using schema::fail;
 using schema::Fault;
 using schema::Result;
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-Result<std::vector<double>> steps_between(std::span<const double> time_s, const PlaceOf& place_of,
-                                          const std::string& file) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < time_s.size(); ++i) {
-    steps.push_back(time_s[i] - time_s[i - 1]);
-    if (!(steps.back() > 0))
-      return fail(Fault::malformed,
-                  fmt::format("time goes from {} s to {} s: it must grow", time_s[i - 1], time_s[i]),
-                  fmt::format("{}: {}", file, place_of(i)));
-  }
-  return steps;
-}
-
-// Not the median itself: printed times of 3 kHz step by 0.3, 0.3, 0.4 ms, and only their mean is the period.
-double period_of(const std::vector<double>& steps) {
-  const double median = median_of(steps);
-  double sum = 0;
-  std::size_t count = 0;
-  for (const double step : steps) {
-    if (std::abs(step - median) > median / 2) continue;
-    sum += step;
-    ++count;
-  }
-  return sum / static_cast<double>(count);
-}
+// Leading bits of a step: the exponent and six bits of the mantissa, so a bin is 1/64 wide.
+constexpr int kDropped = 46;
 
 double whole_where_close(double rate_hz) {
   const double whole = std::round(rate_hz);
@@ -60,26 +32,97 @@ tl::unexpected<schema::Error> uneven(double step, double period, const std::stri
 
 }  // namespace
 
-Result<UniformClock> find_uniform_clock(std::span<const double> time_s, const PlaceOf& place_of,
-                                        const std::string& file) {
-  if (time_s.size() < 3)
-    return fail(Fault::malformed, "has too few rows to find a rate from their times", file);
-  const auto steps = steps_between(time_s, place_of, file);
-  if (!steps) return schema::forward_error(steps);
-  const double period = period_of(*steps);
-  UniformClock clock;
-  std::uint64_t sequence = 0;
-  for (std::size_t i = 0; i < steps->size(); ++i) {
-    const double ticks = std::max(1.0, std::round((*steps)[i] / period));
-    if (std::abs((*steps)[i] / period - ticks) > kMostJitter)
-      return uneven((*steps)[i], period, fmt::format("{}: {}", file, place_of(i + 1)));
-    ++sequence;
-    const auto missing = static_cast<std::uint64_t>(ticks) - 1;
-    if (missing > 0) clock.gaps.push_back({i + 1, sequence, missing});
-    sequence += missing;
+void ClockFinder::Bin::add(double step) {
+  smallest = count == 0 ? step : std::min(smallest, step);
+  largest = count == 0 ? step : std::max(largest, step);
+  sum += step;
+  ++count;
+}
+
+void ClockFinder::add_step(double step) {
+  const std::uint64_t key = std::bit_cast<std::uint64_t>(step) >> kDropped;
+  if (latest_ == nullptr || key != latest_key_) {
+    latest_ = &bins_[key];
+    latest_key_ = key;
   }
-  clock.rate_hz = whole_where_close(static_cast<double>(sequence) / (time_s.back() - time_s.front()));
-  return clock;
+  latest_->add(step);
+}
+
+void ClockFinder::survey(std::span<const double> time_s) {
+  for (const double time : time_s) {
+    if (count_++ == 0) {
+      first_s_ = time;
+    } else if (time > last_s_) {
+      add_step(time - last_s_);
+    } else {
+      stands_or_falls_ = true;
+    }
+    last_s_ = time;
+  }
+}
+
+double ClockFinder::median_step() const {
+  std::uint64_t below = 0;
+  for (const auto& [key, bin] : bins_)
+    if ((below += bin.count) > (count_ - 1) / 2) return bin.sum / static_cast<double>(bin.count);
+  return 0;
+}
+
+// Not the median itself: printed times of 3 kHz step by 0.3, 0.3, 0.4 ms, and only their mean is the period.
+double ClockFinder::find_period() const {
+  const double median = median_step();
+  double sum = 0;
+  std::uint64_t count = 0;
+  for (const auto& [key, bin] : bins_) {
+    if (std::abs(bin.sum / static_cast<double>(bin.count) - median) > median / 2) continue;
+    sum += bin.sum;
+    count += bin.count;
+  }
+  return sum / static_cast<double>(count);
+}
+
+bool ClockFinder::is_one_tick(double step) const {
+  return std::abs(step / period_s_ - 1) <= kMostJitter;
+}
+
+Result<void> ClockFinder::end_survey(const std::string& file) {
+  if (count_ < 3) return fail(Fault::malformed, "has too few rows to find a rate from their times", file);
+  if (stands_or_falls_) return {};
+  period_s_ = find_period();
+  for (const auto& [key, bin] : bins_)
+    uneven_ = uneven_ || !is_one_tick(bin.smallest) || !is_one_tick(bin.largest);
+  return {};
+}
+
+Result<void> ClockFinder::locate_step(double step, std::uint64_t row, const PlaceOf& place_of,
+                                      const std::string& file) {
+  const double ticks = std::max(1.0, std::round(step / period_s_));
+  if (std::abs(step / period_s_ - ticks) > kMostJitter)
+    return uneven(step, period_s_, fmt::format("{}: {}", file, place_of(row)));
+  const auto missing = static_cast<std::uint64_t>(ticks) - 1;
+  if (missing > 0) gaps_.push_back({row, row + missing_, missing});
+  missing_ += missing;
+  return {};
+}
+
+Result<void> ClockFinder::locate(std::span<const double> time_s, const PlaceOf& place_of,
+                                 const std::string& file) {
+  for (const double time : time_s) {
+    const std::uint64_t row = located_++;
+    const double before = std::exchange(previous_s_, time);
+    if (row == 0) continue;
+    if (!(time > before))
+      return fail(Fault::malformed, fmt::format("time goes from {} s to {} s: it must grow", before, time),
+                  fmt::format("{}: {}", file, place_of(row)));
+    if (stands_or_falls_) continue;
+    if (const auto fits = locate_step(time - before, row, place_of, file); !fits) return fits;
+  }
+  return {};
+}
+
+UniformClock ClockFinder::clock() const {
+  const double ticks = static_cast<double>(count_ - 1 + missing_);
+  return {whole_where_close(ticks / (last_s_ - first_s_)), gaps_};
 }
 
 }  // namespace tacto::capture

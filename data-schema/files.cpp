@@ -3,18 +3,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <nettle/sha2.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
+#include <vector>
+
+#include "data-schema/sha256.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -49,7 +49,7 @@ template <class Take>
 Result<void> for_each_piece(const std::string& path, Take take) {
   const auto file = opened(path);
   if (!file) return forward_error(file);
-  std::vector<char> piece(std::size_t{1} << 20);
+  std::vector<char> piece(std::size_t{1} << 17);  // stays in the cache
   for (std::size_t got = 1; got > 0;) {
     got = std::fread(piece.data(), 1, piece.size(), file->get());
     take(std::string_view(piece.data(), got));
@@ -57,22 +57,6 @@ Result<void> for_each_piece(const std::string& path, Take take) {
   if (std::ferror(file->get()) != 0) return unreadable(path, errno);
   return {};
 }
-
-class Sha256 {
- public:
-  Sha256() { sha256_init(&state_); }
-  void add(std::string_view bytes) {
-    sha256_update(&state_, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
-  }
-  std::string hexadecimal() {
-    std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
-    sha256_digest(&state_, digest.size(), digest.data());
-    return fmt::format("{:02x}", fmt::join(digest, ""));
-  }
-
- private:
-  sha256_ctx state_{};
-};
 
 tl::unexpected<Error> unwritable(const std::string& path, int error_number) {
   return fail(Fault::cannot_write, "can't be written: " + reason(error_number), path);

@@ -127,7 +127,7 @@ class RecordingWriter {
   /// cannot_write.
   Result<void> write(std::span<const double> interleaved);
   Result<void> write(std::span<const std::int32_t> interleaved);
-  /// For what becomes known while writing: gaps, marks, warnings.
+  /// For what becomes known while writing: gaps, marks, warnings, the rate.
   RecordingHeader& header();
   /// Completes frames, checksum, date and creator, and gives both files their names. Once only.
   /// Errors: cannot_write; unsuitable, as of create().

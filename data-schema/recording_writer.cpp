@@ -98,7 +98,7 @@ Result<void> RecordingWriter::State::describe() {
 
 Result<Recording> RecordingWriter::close() {
   assert(state_->wav);
-  const auto closed = state_->wav->close();
+  const auto closed = state_->wav->close_at(state_->header.sample_rate_hz);
   state_->wav.reset();
   if (!closed) return forward_error(closed);
   if (const auto described = state_->describe(); !described) return forward_error(described);

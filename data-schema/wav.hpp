@@ -71,6 +71,8 @@ class WavWriter {
   Result<void> write(std::span<const std::int32_t> interleaved);
   /// Ends the file. Errors: cannot_write. Without it the destructor closes, and nobody learns of a failure.
   Result<void> close();
+  /// The same, with another rate in the header than it had until now. Errors: also usage, as create().
+  Result<void> close_at(double sample_rate_hz);
 
  private:
   struct State;

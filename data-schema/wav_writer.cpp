@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "data-schema/riff_repair.hpp"
 #include "data-schema/wav.hpp"
 
 namespace tacto::schema {
@@ -18,6 +19,11 @@ int subformat(SampleFormat format) {
   return format == SampleFormat::float32 ? SF_FORMAT_FLOAT : SF_FORMAT_DOUBLE;
 }
 
+Result<void> check_rate(double sample_rate_hz, const std::string& path) {
+  if (std::round(sample_rate_hz) >= 1 && std::round(sample_rate_hz) <= kLargestRate) return {};
+  return fail(Fault::usage, fmt::format("a WAV can't hold the rate {} per second", sample_rate_hz), path);
+}
+
 tl::unexpected<Error> unwritten(const std::string& path, SNDFILE* file) {
   return fail(Fault::cannot_write, fmt::format("can't be written: {}", sf_strerror(file)), path);
 }
@@ -28,6 +34,7 @@ struct WavWriter::State {
   SNDFILE* file = nullptr;
   std::string path;
   std::size_t channels = 0;
+  int header_rate = 0;
   SampleFormat format = SampleFormat::float64;
 
   State() = default;
@@ -53,8 +60,7 @@ WavWriter::~WavWriter() = default;
 
 Result<WavWriter> WavWriter::create(const std::string& path, double sample_rate_hz, std::size_t channels,
                                     SampleFormat format) {
-  if (!(std::round(sample_rate_hz) >= 1 && std::round(sample_rate_hz) <= kLargestRate))
-    return fail(Fault::usage, fmt::format("a WAV can't hold the rate {} per second", sample_rate_hz), path);
+  if (const auto fits = check_rate(sample_rate_hz, path); !fits) return forward_error(fits);
   SF_INFO header{};
   header.samplerate = static_cast<int>(std::round(sample_rate_hz));
   header.channels = static_cast<int>(channels);
@@ -64,6 +70,7 @@ Result<WavWriter> WavWriter::create(const std::string& path, double sample_rate_
   if (state->file == nullptr) return unwritten(path, nullptr);
   state->path = path;
   state->channels = channels;
+  state->header_rate = header.samplerate;
   state->format = format;
   // Before the first sample: afterwards libsndfile ignores it. RF64 has no PEAK chunk to begin with, and in
   // libsndfile 1.2.0 SFC_SET_ADD_PEAK_CHUNK adds one even when told not to, so that command is not given.
@@ -89,6 +96,15 @@ Result<void> WavWriter::close() {
   if (failed == 0) return {};
   return fail(Fault::cannot_write, fmt::format("can't be completed: {}", sf_error_number(failed)),
               state_->path);
+}
+
+Result<void> WavWriter::close_at(double sample_rate_hz) {
+  const std::string path = state_->path;
+  if (const auto fits = check_rate(sample_rate_hz, path); !fits) return fits;
+  const auto rate = static_cast<std::uint32_t>(std::round(sample_rate_hz));
+  const bool same = rate == static_cast<std::uint32_t>(state_->header_rate);
+  if (const auto closed = close(); !closed || same) return closed;
+  return set_riff_rate(path, rate);
 }
 
 }  // namespace tacto::schema

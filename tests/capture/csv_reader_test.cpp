@@ -94,5 +94,47 @@ TEST(CsvReader, NumbersAreExact) {
   EXPECT_EQ(read(text, {}, 4093).values, wanted);
 }
 
+// Plain rows of every length and sign, between others that only the slower way can read.
+TEST(CsvReader, TheQuickWayAndTheSlowOneAgree) {
+  std::mt19937_64 random(11);
+  for (const char* mark : {".", ","}) {
+    std::string text = "a;b;c\n";
+    Columns wanted(3);
+    for (int row = 0; row < 3000; ++row) {
+      for (auto& column : wanted) {
+        std::string digits = std::to_string(random() >> random() % 64);
+        if (random() % 4 != 0) digits.insert(random() % (digits.size() + 1), ".");
+        if (random() % 3 == 0) digits.insert(0, "-");
+        if (random() % 50 == 0) digits += "e-7";
+        column.push_back(std::strtod(digits.c_str(), nullptr));
+        if (const auto point = digits.find('.'); point != std::string::npos) digits.replace(point, 1, mark);
+        const char* const quote = random() % 40 == 0 ? "\"" : "";
+        text += quote + digits + quote + (&column == &wanted[2] ? "" : ";");
+      }
+      text += random() % 2 == 0 ? "\r\n" : "\n";
+      if (random() % 100 == 0) text += "# a comment\n";
+    }
+    for (const std::size_t piece : {1 << 20, 4093, 100})
+      EXPECT_EQ(read(text, {}, piece).values, wanted) << mark;
+    EXPECT_EQ(read(text, {2}, 777).values, Columns{wanted[2]}) << mark;
+  }
+}
+
+TEST(CsvReader, RowsCanBeDroppedOnTheWay) {
+  const std::string text = "f\n1\n2\n# c\n3\n4\n5\n6\n7\n8\n";
+  const auto layout = find_csv_layout(text, true, "t.csv");
+  CsvReader reader(*layout, {0}, "t.csv");
+  ASSERT_TRUE(reader.feed(std::string_view(text).substr(layout->data_offset, 10)));
+  EXPECT_EQ(reader.first_row(), 0U);
+  EXPECT_EQ(reader.rows().size(), 3U);
+  reader.drop_rows();
+  ASSERT_TRUE(reader.feed(std::string_view(text).substr(layout->data_offset + 10)));
+  EXPECT_EQ(reader.first_row(), 3U);
+  EXPECT_EQ(std::vector<double>(reader.rows().begin(), reader.rows().end()),
+            (std::vector<double>{4, 5, 6, 7, 8}));
+  EXPECT_EQ(line_of_row(reader.landmarks(), 3), 6U);
+  EXPECT_EQ(line_of_row(reader.landmarks(), 1), 3U);  // some rows back
+}
+
 }  // namespace
 }  // namespace tacto::capture

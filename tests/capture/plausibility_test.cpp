@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -18,19 +19,58 @@ std::vector<double> noisy(std::size_t count, double level) {
   return values;
 }
 
+// In pieces, as import has them: what is found must not depend on where they are cut.
+template <class Take>
+void in_pieces(const std::vector<double>& values, std::size_t piece, Take take) {
+  for (std::size_t at = 0; at < values.size(); at += piece)
+    take(std::span(values).subspan(at, std::min(piece, values.size() - at)), at);
+}
+
+std::vector<std::uint64_t> lone_samples(const std::vector<double>& values, std::size_t piece = 1000) {
+  std::vector<std::uint64_t> found;
+  const auto note = [&](std::uint64_t sample, double value) {
+    EXPECT_EQ(value, values[sample]);
+    found.push_back(sample);
+  };
+  LoneSamples lone;
+  in_pieces(values, piece, [&](auto part, std::size_t) { lone.survey(part); });
+  lone.end_survey();
+  in_pieces(values, piece, [&](auto part, std::size_t) { lone.find(part, note); });
+  lone.end_find(note);
+  EXPECT_EQ(lone.any(), !found.empty());
+  return found;
+}
+
 std::vector<std::string> warnings_of(const char* quantity, const std::vector<double>& values,
                                      double scale = 1) {
   schema::Channel channel;
   channel.name = channel.quantity = quantity;
   channel.scale = scale;
-  return implausible(channel, values, [](std::size_t i) { return fmt::format("line {}", i + 2); });
+  const auto place_of = [](std::uint64_t i) { return fmt::format("line {}", i + 2); };
+  Plausibility judged(channel);
+  in_pieces(values, 70, [&](auto part, std::size_t first) { judged.survey(part, first, place_of); });
+  judged.end_survey();
+  if (judged.second_pass_needed()) {
+    in_pieces(values, 70, [&](auto part, std::size_t) { judged.find(part, place_of); });
+    judged.end_find(place_of);
+  }
+  return judged.warnings([](std::uint64_t i) { return fmt::format("{} ms", i); });
 }
 
 TEST(Plausibility, LostExponentsAreFound) {
   auto values = noisy(5000, 100);
   values[1000] = 4581.47818;
   values[3000] = 6.99807232;
-  EXPECT_EQ(lone_samples(values), (std::vector<std::size_t>{1000, 3000}));
+  EXPECT_EQ(lone_samples(values), (std::vector<std::uint64_t>{1000, 3000}));
+}
+
+// Wherever the pieces are cut, down to single samples.
+TEST(Plausibility, ThePiecesDoNotMatter) {
+  auto values = noisy(3000, 100);
+  for (const std::size_t i : {0, 1, 5, 150, 2996, 2999}) values[i] = 9999;
+  const auto whole = lone_samples(values, values.size());
+  EXPECT_EQ(whole, (std::vector<std::uint64_t>{5, 150, 2996, 2999}));  // 0 and 1 stand side by side
+  for (std::size_t piece = 1; piece < 12; ++piece) EXPECT_EQ(lone_samples(values, piece), whole) << piece;
 }
 
 TEST(Plausibility, ASineThatBeginsAtZeroPasses) {
@@ -43,7 +83,7 @@ TEST(Plausibility, TheFirstAndLastSampleCount) {
   auto values = noisy(5000, 100);
   values.front() = 1e5;
   values.back() = 1e-5;
-  EXPECT_EQ(lone_samples(values), (std::vector<std::size_t>{0, 4999}));
+  EXPECT_EQ(lone_samples(values), (std::vector<std::uint64_t>{0, 4999}));
 }
 
 TEST(Plausibility, NoiseStepsAndTransientsPass) {
@@ -61,7 +101,7 @@ TEST(Plausibility, OneFlickeringCountOfAnEncoderPasses) {
   for (const std::size_t i : {100, 300, 310, 900}) counts[i] = 1;
   EXPECT_TRUE(lone_samples(counts).empty());
   counts[500] = 65536;
-  EXPECT_EQ(lone_samples(counts), (std::vector<std::size_t>{500}));
+  EXPECT_EQ(lone_samples(counts), (std::vector<std::uint64_t>{500}));
 }
 
 TEST(Plausibility, ShortChannelsAreNotJudged) {
@@ -74,8 +114,8 @@ TEST(Plausibility, AWarningNamesTheFirstSamplesAndCountsAll) {
   const auto warnings = warnings_of("signal", values);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("7 of 5000 samples"), std::string::npos) << warnings[0];
-  EXPECT_NE(warnings[0].find("9999 (9999) at line 102, "), std::string::npos) << warnings[0];
-  EXPECT_NE(warnings[0].find("at line 502, ..."), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("9999 (9999) at line 102, 100 ms, "), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("at line 502, 500 ms, ..."), std::string::npos) << warnings[0];
   EXPECT_EQ(warnings[0].find("line 602"), std::string::npos) << warnings[0];
 }
 

@@ -16,7 +16,7 @@ namespace tacto::capture {
 struct ReadText {
   CsvLayout layout;
   std::vector<std::vector<double>> values;
-  std::vector<CsvReader::Landmark> landmarks;
+  std::deque<CsvReader::Landmark> landmarks;
 };
 
 /// All columns, or those given, the bytes fed in pieces of `piece` bytes.
@@ -32,7 +32,10 @@ inline schema::Result<ReadText> read_text(std::string_view text, std::vector<std
   for (std::size_t at = layout->data_offset; at < text.size(); at += piece)
     if (const auto fed = reader.feed(text.substr(at, piece)); !fed) return schema::forward_error(fed);
   if (const auto ended = reader.finish(); !ended) return schema::forward_error(ended);
-  return ReadText{*layout, reader.values(), reader.landmarks()};
+  ReadText read{*layout, std::vector<std::vector<double>>(columns.size()), reader.landmarks()};
+  for (std::size_t i = 0; i < reader.rows().size(); ++i)
+    read.values[i % columns.size()].push_back(reader.rows()[i]);
+  return read;
 }
 
 }  // namespace tacto::capture

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// SHA-256 of bytes that come piece by piece.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace tacto::schema {
+
+class Sha256 {
+ public:
+  Sha256();
+  Sha256(Sha256&&) noexcept;
+  Sha256& operator=(Sha256&&) noexcept;
+  ~Sha256();
+
+  void add(std::string_view bytes);
+  /// Of all bytes since the beginning, in lower-case hexadecimal; then it begins anew.
+  std::string hexadecimal();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tacto::schema

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The workload as another program's table: what import and NumPy's loadtxt read.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
+
+#include "tests/bench/workload.hpp"
+
+namespace tacto::bench {
+
+/// "time_s,force_V,count", 60 s: 600,000 rows, 17 MB. Four digits of time, ten of force, whole counts.
+inline std::string workload_csv() {
+  const Workload made = workload(60);
+  std::string text = "time_s,force_V,count\n";
+  for (std::size_t i = 0; i < made.force_n.size(); ++i)
+    fmt::format_to(std::back_inserter(text), "{:.4f},{:.10f},{}\n", static_cast<double>(i) / kRate_hz,
+                   made.force_n[i] / 0.444444, std::lround(made.position_m[i] / kQuantum_m));
+  return text;
+}
+
+/// The table on disk, written once: tacto-bench-60s.csv in the folder for temporary files, where
+/// scipy_columns.py finds it too.
+inline std::string workload_csv_file() {
+  namespace fs = std::filesystem;
+  const fs::path path = fs::temp_directory_path() / "tacto-bench-60s.csv";
+  const std::string text = workload_csv();
+  std::error_code unknown;
+  if (fs::file_size(path, unknown) != text.size()) std::ofstream(path, std::ios::binary) << text;
+  return path.string();
+}
+
+}  // namespace tacto::bench
