@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "spatial/band_at.hpp"
+
 namespace tacto::spatial {
 
 using schema::BandPoint;
@@ -24,16 +26,6 @@ void draw_side(Canvas& canvas, std::vector<Point> limit, double edge) {
 }
 
 }  // namespace
-
-BandPoint band_at(std::span<const BandPoint> band, double position_m) {
-  const auto next = std::ranges::upper_bound(band, position_m, {}, &BandPoint::position_m);
-  if (next == band.begin()) return band.front();
-  if (next == band.end()) return band.back();
-  const BandPoint& last = *std::prev(next);
-  const double part = (position_m - last.position_m) / (next->position_m - last.position_m);
-  return {position_m, std::lerp(last.low_per_m, next->low_per_m, part),
-          std::lerp(last.high_per_m, next->high_per_m, part)};
-}
 
 void draw_valid_band(Canvas& canvas, const Box& area, std::span<const BandPoint> band, const Axis& position,
                      const Axis& frequency) {
