@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/certificate.hpp"
 #include "data-schema/error.hpp"
 #include "data-schema/signal.hpp"
 
@@ -44,7 +45,8 @@ struct Texture {
   double source_origin_m = 0;  ///< where position 0 lay on the bench
   std::vector<BandPoint> valid_band;
   TextureSource source;
-  std::string simulated;  ///< by what, where it is simulated
+  std::optional<Certificate> certificate;  ///< which of its peaks are the surface's
+  std::string simulated;                   ///< by what, where it is simulated
   std::string surface, subject, finger, notes;
   std::string created, creator;
   std::string extra_json;

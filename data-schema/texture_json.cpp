@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "data-schema/certificate_json.hpp"
 #include "data-schema/json_document.hpp"
 
 namespace tacto::schema {
@@ -95,6 +96,7 @@ Json texture_body(const Texture& texture, const TextureData& data) {
   // A texture that was drawn or computed, not recorded, names no recording.
   if (!texture.source.recording.empty()) body["source"] = source_body(texture.source);
   for (const auto& [name, member] : kTexts) put_text(body, name, texture.*member);
+  if (texture.certificate) body["certificate"] = certificate_body(*texture.certificate);
   return body;
 }
 
@@ -107,6 +109,7 @@ Texture texture_from(const Json& body) {
   texture.source_origin_m = number_or(body, "source_origin_m", 0);
   if (body.contains("valid_band")) texture.valid_band = band_from(body["valid_band"]);
   if (body.contains("source")) texture.source = source_from(body["source"]);
+  if (body.contains("certificate")) texture.certificate = certificate_from(body["certificate"]);
   for (const auto& [name, member] : kTexts) texture.*member = text_or(body, name);
   return texture;
 }

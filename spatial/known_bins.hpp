@@ -16,8 +16,9 @@ struct BinRange {
   bool holds(std::size_t bin) const { return first <= bin && bin < end; }
 };
 
-/// For each row the bins whose frequency is valid wherever its window lies, from 2 / window on: under that a
-/// window holds too little of a wave to tell it from a drift. All bins above that without breakpoints.
+/// For each row the bins whose frequency is valid throughout the middle of its window (90 % of its power),
+/// from 2 / window on: under that a window holds too little of a wave to tell it from a drift. All bins above
+/// that without breakpoints.
 std::vector<BinRange> known_bins(const schema::Spectrogram& spectrogram,
                                  std::span<const schema::BandPoint> valid_band);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "spatial/band_at.hpp"
+#include "spatial/picture/hatch.hpp"
 
 namespace tacto::spatial {
 
@@ -18,11 +19,12 @@ double place_of(const Axis& frequency, double per_m) {
   return frequency.place(std::clamp(1e-3 * per_m, frequency.low, frequency.high));
 }
 
-void draw_side(Canvas& canvas, std::vector<Point> limit, double edge) {
+void draw_side(Canvas& canvas, const std::vector<Point>& limit, double edge) {
+  std::vector<Point> outside = limit;
+  outside.insert(outside.begin(), {limit.front().x, edge});
+  outside.push_back({limit.back().x, edge});
+  draw_hatch(canvas, outside);
   canvas.polyline(limit, kBandPen);
-  limit.insert(limit.begin(), {limit.front().x, edge});
-  limit.push_back({limit.back().x, edge});
-  canvas.polygon(limit, kOutsideBand);
 }
 
 }  // namespace
