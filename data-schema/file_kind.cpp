@@ -13,7 +13,8 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 4> kNames = {"recording", "texture", "transducer", "spectrogram"};
+constexpr std::array<std::string_view, 6> kNames = {"recording",   "texture",  "transducer",
+                                                    "spectrogram", "formants", "descriptions"};
 
 struct Ending {
   FileKind kind;
@@ -25,6 +26,8 @@ constexpr Ending kEndings[] = {
     {FileKind::texture, ".texture.json"},
     {FileKind::transducer, ".transducer.json"},
     {FileKind::spectrogram, ".nc"},
+    {FileKind::formants, ".formants.json"},
+    {FileKind::descriptions, ".descriptions.json"},
 };
 
 bool is_file(const std::string& path) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/certificate.hpp"
 #include "data-schema/error.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/signal.hpp"
@@ -74,9 +75,10 @@ struct Texture {
   int direction = 1;  ///< -1: the stroke was made backwards; it is stored by growing position all the same
   double source_origin_m = 0;  ///< where position 0 lay on the bench
   std::vector<BandPoint> valid_band;
-  TextureSource source;                   ///< of an average: from its first stroke to its last
+  TextureSource source;                    ///< of an average: from its first stroke to its last
   std::optional<TextureAverage> average;  ///< of several strokes; the WAV has the spread as 2nd channel
-  std::string simulated;                  ///< by what, where it is simulated
+  std::optional<Certificate> certificate;  ///< which of its peaks are the surface's
+  std::string simulated;                   ///< by what, where it is simulated
   std::string surface, subject, finger, notes;
   std::string created, creator;
   std::string extra_json;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "data-schema/certificate_json.hpp"
 #include "data-schema/json_document.hpp"
 
 namespace tacto::schema {
@@ -157,6 +158,7 @@ Json texture_body(const Texture& texture, const TextureData& data) {
     body["average"] = average_body(*texture.average);
   }
   for (const auto& [name, member] : kTexts) put_text(body, name, texture.*member);
+  if (texture.certificate) body["certificate"] = certificate_body(*texture.certificate);
   return body;
 }
 
@@ -170,6 +172,7 @@ Texture texture_from(const Json& body) {
   if (body.contains("valid_band")) texture.valid_band = band_from(body["valid_band"]);
   if (body.contains("source")) texture.source = source_from(body["source"]);
   if (body.contains("average")) texture.average = average_from(body["average"]);
+  if (body.contains("certificate")) texture.certificate = certificate_from(body["certificate"]);
   for (const auto& [name, member] : kTexts) texture.*member = text_or(body, name);
   return texture;
 }

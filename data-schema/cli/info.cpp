@@ -19,6 +19,10 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_transducer(file.path);
     case FileKind::spectrogram:
       return describe_spectrogram(file.path);
+    case FileKind::formants:
+      return describe_formants(file.path);
+    case FileKind::descriptions:
+      return describe_descriptions(file.path);
   }
   return fail(Fault::internal, "a kind of file that nobody describes", file.path);
 }

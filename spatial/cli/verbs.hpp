@@ -8,5 +8,9 @@ namespace tacto::spatial {
 
 extern const cli::Verb kSpatialVerb;
 extern const cli::Verb kSpectrogramVerb;
+extern const cli::Verb kSheetVerb;
+extern const cli::Verb kFormantsVerb;
+extern const cli::Verb kDescribeVerb;
+extern const cli::Verb kCertifyVerb;
 
 }  // namespace tacto::spatial

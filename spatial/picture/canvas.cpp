@@ -184,6 +184,12 @@ void Canvas::clip(const Box& box) {
   cairo_clip(state_->cairo.get());
 }
 
+void Canvas::clip(std::span<const Point> polygon) {
+  cairo_save(state_->cairo.get());
+  state_->path(polygon);
+  cairo_clip(state_->cairo.get());
+}
+
 void Canvas::release() {
   cairo_restore(state_->cairo.get());
 }

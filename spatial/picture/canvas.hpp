@@ -50,8 +50,9 @@ class Canvas {
   void image(const Box& box, const Pixels& pixels);
   void text(Point at, const std::string& text, const TextStyle& style);
   Size text_size(const std::string& text, const TextStyle& style);
-  /// Only what lies in the box is drawn, until release().
+  /// Only what lies in it is drawn, until release().
   void clip(const Box& box);
+  void clip(std::span<const Point> polygon);
   void release();
 
   /// The finished file. In an SVG, letters are outlines, so that they look the same everywhere, under a

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "spatial/picture/heading.hpp"
 
+#include "spatial/picture/fitted_text.hpp"
+
 namespace tacto::spatial {
 namespace {
 
@@ -8,16 +10,6 @@ const TextStyle kTitle{.size = 15, .bold = true, .align_y = 0};
 const TextStyle kSubtitle{.size = 10, .colour = kGreyInk, .align_y = 0};
 const TextStyle kBadge{.size = 10.5, .colour = kAlarm, .bold = true, .align_x = 1, .align_y = 0};
 constexpr double kBadgePadding = 4;
-
-// Cuts whole UTF-8 letters until the text and its ellipsis fit.
-std::string fitted(Canvas& canvas, std::string text, const TextStyle& style, double width) {
-  if (canvas.text_size(text, style).width <= width) return text;
-  while (!text.empty() && canvas.text_size(text + "\u2026", style).width > width) {
-    while (!text.empty() && (text.back() & 0xC0) == 0x80) text.pop_back();
-    if (!text.empty()) text.pop_back();
-  }
-  return text + "\u2026";
-}
 
 // Gives the width that is left to its left.
 double draw_badge(Canvas& canvas, const Box& box, const std::string& simulated) {

@@ -101,7 +101,7 @@ Result<void> SpectrogramFigure::draw(Canvas& canvas) const {
   for (std::size_t i = 0; i < panels_.size(); ++i) {
     PanelPainter painter{canvas,    *panels_[i].texture, *panels_[i].spectrogram,
                          layout(i), positions(i),        frequencies(i),
-                         shared};
+                         shared,    panels_[i].formants};
     if (auto drawn = painter.paint(); !drawn) return drawn;
   }
   return {};

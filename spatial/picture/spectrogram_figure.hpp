@@ -4,9 +4,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "data-schema/formants.hpp"
 #include "data-schema/spectrogram.hpp"
 #include "data-schema/texture.hpp"
 #include "spatial/picture/axis.hpp"
@@ -16,10 +18,12 @@
 
 namespace tacto::spatial {
 
-/// One texture and its spectrogram; both must outlive the figure. The spectrogram's name is the title.
+/// One texture, its spectrogram, and formants to draw on it, if any; all must outlive the figure. The
+/// spectrogram's name is the title.
 struct SpectrogramPanel {
   const schema::Texture* texture = nullptr;
   const schema::Spectrogram* spectrogram = nullptr;
+  std::span<const schema::Formant> formants = {};
 };
 
 struct SpectrogramPictureOptions {
@@ -43,14 +47,14 @@ class SpectrogramFigure : public Figure {
   Axis positions(std::size_t panel) const;
   Axis frequencies(std::size_t panel) const;
   LevelRange levels() const;
-  /// Lower end of the frequency axis.
+  /// Ends of the frequency axis.
   double lowest_per_m() const;
+  double highest_per_m() const;
+  /// Whether it can be drawn; errors as of draw().
+  schema::Result<void> check() const;
   PanelLayout layout(std::size_t panel) const { return panel_layout(panel, panels_.size()); }
 
  private:
-  schema::Result<void> check() const;
-  double highest_per_m() const;
-
   std::vector<SpectrogramPanel> panels_;
   SpectrogramPictureOptions options_;
 };

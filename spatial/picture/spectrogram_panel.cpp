@@ -8,7 +8,10 @@
 
 #include "spatial/picture/axes.hpp"
 #include "spatial/picture/display_unit.hpp"
+#include "spatial/picture/formant_ridges.hpp"
+#include "spatial/picture/hatch.hpp"
 #include "spatial/picture/heading.hpp"
+#include "spatial/picture/level_bar.hpp"
 #include "spatial/picture/trace.hpp"
 #include "spatial/picture/valid_band.hpp"
 #include "spatial/spectrogram_summary.hpp"
@@ -19,6 +22,7 @@ namespace {
 constexpr Colour kTrace{0.16, 0.28, 0.45};
 constexpr Colour kNoWindow{0.93, 0.93, 0.94};
 constexpr double kCaptionGap = 50;
+constexpr std::size_t kLabels = 12;
 
 double largest_of(const std::vector<double>& values) {
   double largest = 0;
@@ -92,6 +96,7 @@ schema::Result<void> PanelPainter::paint_heat() {
   canvas.fill({start, layout.heat.y, end - start, layout.heat.height}, kNoWindow);
   canvas.image(area, *pixels);
   if (!texture.valid_band.empty()) draw_valid_band(canvas, area, texture.valid_band, position, frequency);
+  draw_formants(canvas, area, formants, position, frequency, kLabels);
   canvas.frame(layout.heat, {});
   draw_axis(canvas, layout.heat, Side::bottom, position, ticks_of(position, 10));
   draw_axis(canvas, layout.heat, Side::left, frequency, ticks_of(frequency, 6));
@@ -131,18 +136,8 @@ void PanelPainter::paint_mean() {
 }
 
 void PanelPainter::paint_bar() {
-  constexpr int kShades = 256;
-  const Axis level{AxisScale::linear, levels.low_db, levels.high_db, layout.bar.bottom(), layout.bar.y};
-  Pixels shades{1, kShades, {}};
-  for (int i = 0; i < kShades; ++i) {
-    const double part = 1 - (i + 0.5) / kShades;
-    shades.rgb.push_back(level_pixel(std::lerp(levels.low_db, levels.high_db, part), levels));
-  }
-  canvas.image(layout.bar, shades);
-  canvas.frame(layout.bar, {});
-  draw_axis(canvas, layout.bar, Side::right, level, ticks_of(level, 6));
   const std::string unit = typeset(level_reference(spectrogram).unit);
-  draw_caption(canvas, layout.bar, Side::right, fmt::format("power spectral density (dB re {})", unit), 42);
+  draw_level_bar(canvas, layout.bar, levels, fmt::format("power spectral density (dB re {})", unit));
 }
 
 // The key to lines and greys, in the corner that the plots leave free.
@@ -170,11 +165,17 @@ void PanelPainter::paint_notes() {
     swatch({0, 0, 0, 0});
     canvas.line({box.x, y}, {box.x + 18, y}, kBandPen);
     note("limits of the valid band");
-    swatch(kOutsideBand);
+    swatch({0, 0, 0, 0});
+    draw_hatch(canvas, {box.x, y - 4.5, 18, 9});
     note("outside it: not measured");
   }
   swatch(kNoWindow);
   note("no whole window");
+  if (formants.empty()) return;
+  swatch({0, 0, 0, 0});
+  const Point ridge[] = {{box.x + 2, y}, {box.x + 16, y}};
+  draw_ridge(canvas, ridge);
+  note("formants");
 }
 
 std::string method_facts(const schema::Texture& texture, const schema::Spectrogram& spectrogram) {

@@ -2,6 +2,9 @@
 // Paints one texture's panel of a spectrogram figure.
 #pragma once
 
+#include <span>
+
+#include "data-schema/formants.hpp"
 #include "data-schema/spectrogram.hpp"
 #include "data-schema/texture.hpp"
 #include "spatial/picture/axis.hpp"
@@ -20,6 +23,7 @@ struct PanelPainter {
   Axis position;
   Axis frequency;
   LevelRange levels;
+  std::span<const schema::Formant> formants;
 
   /// Errors: those of heatmap().
   schema::Result<void> paint();

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "spatial/band_at.hpp"
+#include "spatial/picture/hatch.hpp"
+
 namespace tacto::spatial {
 
 using schema::BandPoint;
@@ -16,24 +19,15 @@ double place_of(const Axis& frequency, double per_m) {
   return frequency.place(std::clamp(1e-3 * per_m, frequency.low, frequency.high));
 }
 
-void draw_side(Canvas& canvas, std::vector<Point> limit, double edge) {
+void draw_side(Canvas& canvas, const std::vector<Point>& limit, double edge) {
+  std::vector<Point> outside = limit;
+  outside.insert(outside.begin(), {limit.front().x, edge});
+  outside.push_back({limit.back().x, edge});
+  draw_hatch(canvas, outside);
   canvas.polyline(limit, kBandPen);
-  limit.insert(limit.begin(), {limit.front().x, edge});
-  limit.push_back({limit.back().x, edge});
-  canvas.polygon(limit, kOutsideBand);
 }
 
 }  // namespace
-
-BandPoint band_at(std::span<const BandPoint> band, double position_m) {
-  const auto next = std::ranges::upper_bound(band, position_m, {}, &BandPoint::position_m);
-  if (next == band.begin()) return band.front();
-  if (next == band.end()) return band.back();
-  const BandPoint& last = *std::prev(next);
-  const double part = (position_m - last.position_m) / (next->position_m - last.position_m);
-  return {position_m, std::lerp(last.low_per_m, next->low_per_m, part),
-          std::lerp(last.high_per_m, next->high_per_m, part)};
-}
 
 void draw_valid_band(Canvas& canvas, const Box& area, std::span<const BandPoint> band, const Axis& position,
                      const Axis& frequency) {

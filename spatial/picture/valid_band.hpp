@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows on a spectrogram what the recording could know: its band's limits, and grey over what lies outside.
+// Shows on a spectrogram what the recording could know: its band's limits, and hatching over what lies
+// outside.
 #pragma once
 
 #include <span>
@@ -11,11 +12,6 @@
 namespace tacto::spatial {
 
 inline const Pen kBandPen{{1, 1, 1, 0.9}, 0.75, true};
-inline constexpr Colour kOutsideBand{0.92, 0.92, 0.94, 0.5};
-
-/// The band at a position, straight between its breakpoints and level beyond them. Precondition: a
-/// breakpoint.
-schema::BandPoint band_at(std::span<const schema::BandPoint> band, double position_m);
 
 /// Draws over `area`, a part of the spectrogram's box. Axes in mm and 1/mm.
 void draw_valid_band(Canvas& canvas, const Box& area, std::span<const schema::BandPoint> band,

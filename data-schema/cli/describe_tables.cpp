@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables of formants and of descriptions.
+#include <vector>
+
+#include "data-schema/cli/describe.hpp"
+#include "data-schema/description.hpp"
+#include "data-schema/formants.hpp"
+
+namespace tacto::schema {
+
+Result<cli::Report> describe_formants(const std::string& path) {
+  const auto file = read_formants(path);
+  if (!file) return forward_error(file);
+  warn_of_version(path, file->newer_version);
+  cli::Report report = report_of(FileKind::formants, path, "");
+  std::vector<cli::Report> rows;
+  for (const FormantTable& table : file->tables)
+    rows.push_back(cli::Report()
+                       .add("texture", table.texture)
+                       .add("formants", table.formants.size())
+                       .add("window_m", table.window_m)
+                       .add("resolution_per_m", table.resolution_per_m)
+                       .add("level_reference", table.level_reference)
+                       .add("simulated", table.simulated));
+  report.add("textures", std::move(rows));
+  add_text(report, "created", file->created);
+  add_text(report, "creator", file->creator);
+  return report;
+}
+
+Result<cli::Report> describe_descriptions(const std::string& path) {
+  const auto file = read_descriptions(path);
+  if (!file) return forward_error(file);
+  warn_of_version(path, file->newer_version);
+  cli::Report report = report_of(FileKind::descriptions, path, "");
+  std::vector<cli::Report> rows;
+  for (const Description& each : file->textures)
+    rows.push_back(cli::Report()
+                       .add("texture", each.texture)
+                       .add(key_in("rms", each.unit), each.rms)
+                       .add("low_per_m", each.low_per_m)
+                       .add("high_per_m", each.high_per_m)
+                       .add("bands", each.bands.size())
+                       .add("simulated", each.simulated));
+  report.add("textures", std::move(rows));
+  add_text(report, "created", file->created);
+  add_text(report, "creator", file->creator);
+  return report;
+}
+
+}  // namespace tacto::schema

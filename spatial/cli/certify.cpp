@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tactograph certify: which peaks of textures made at different speeds are the surface's.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data-schema/creation_time.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/version.hpp"
+#include "spatial/certificate.hpp"
+#include "spatial/cli/texture_files.hpp"
+#include "spatial/cli/verbs.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Certificate;
+using schema::CertifiedPeak;
+using schema::PeakVerdict;
+using schema::Result;
+
+struct Options {
+  std::vector<std::string> names;
+  CertificateOptions certificate;
+  bool dry = false;
+};
+
+Result<std::vector<Certificate>> certificates_of(const std::vector<TextureFile>& files,
+                                                 const CertificateOptions& options) {
+  std::vector<TextureAtSpeed> textures;
+  for (const TextureFile& file : files) textures.push_back({file.name, &file.texture});
+  auto certificates = certify(textures, options);
+  if (!certificates) return certificates;
+  for (Certificate& certificate : *certificates) {
+    certificate.created = schema::creation_time();
+    certificate.creator = kCreator;
+  }
+  return certificates;
+}
+
+Result<void> store(std::vector<TextureFile>& files, const std::vector<Certificate>& certificates) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    files[i].texture.certificate = certificates[i];
+    const auto written = schema::write_texture(schema::stem_of(files[i].path, ".texture"), files[i].texture);
+    if (!written) return written;
+  }
+  return {};
+}
+
+Report row_of(const CertifiedPeak& peak) {
+  Report row;
+  row.add("verdict", schema::verdict_name(peak.verdict));
+  row.add("frequency_per_m", peak.frequency_per_m).add("frequency_hz", peak.frequency_hz);
+  row.add("confidence", peak.confidence).add("snr_db", peak.snr_db).add("snr_needed_db", peak.snr_needed_db);
+  row.add("speed_ratio", peak.speed_ratio).add("speed_ratio_needed", peak.speed_ratio_needed);
+  row.add("found_in", peak.found_in.size()).add("reason", peak.reason);
+  return row;
+}
+
+std::size_t count(const Certificate& certificate, PeakVerdict verdict) {
+  return static_cast<std::size_t>(std::ranges::count(certificate.peaks, verdict, &CertifiedPeak::verdict));
+}
+
+Report report_of(const std::vector<TextureFile>& files, const std::vector<Certificate>& certificates,
+                 bool stored) {
+  const Certificate& first = certificates.front();
+  std::vector<Report> textures, peaks;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    textures.push_back(Report().add("texture", first.textures[i]).add("mean_speed_mps", first.speeds_mps[i]));
+  for (const CertifiedPeak& peak : first.peaks) peaks.push_back(row_of(peak));
+  Report report;
+  report.add("textures", std::move(textures)).add("speed_ratio", first.speed_ratio);
+  report.add("spatial", count(first, PeakVerdict::spatial))
+      .add("temporal", count(first, PeakVerdict::temporal));
+  report.add("undecided", count(first, PeakVerdict::undecided)).add("seen_from", first.textures.front());
+  if (!peaks.empty()) report.add("peaks", std::move(peaks));
+  report.add("stored", stored);
+  return report;
+}
+
+Result<Report> run(const Options& options) {
+  auto files = open_textures(options.names);
+  if (!files) return schema::forward_error(files);
+  const auto certificates = certificates_of(*files, options.certificate);
+  if (!certificates) return schema::forward_error(certificates);
+  if (!options.dry)
+    if (const auto stored = store(*files, *certificates); !stored) return schema::forward_error(stored);
+  return report_of(*files, *certificates, !options.dry);
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("TEXTURE", options->names, "Two textures or more of one surface, made at different speeds")
+      ->required();
+  app.add_option("--confidence", options->certificate.confidence,
+                 "Probability from which on a peak is called")
+      ->check(CLI::Range(0.5, 1.0))
+      ->capture_default_str();
+  app.add_flag("--dry-run", options->dry, "Only say; store nothing in the textures");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kCertifyVerb{
+    "certify",
+    "Tell the surface's peaks from those of time (mains, resonances), by strokes at different speeds",
+    "tactograph certify oak-slow oak-fast", declare};
+
+}  // namespace tacto::spatial

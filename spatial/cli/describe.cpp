@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tactograph describe: textures in a few numbers each, as a table.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data-schema/creation_time.hpp"
+#include "data-schema/description.hpp"
+#include "data-schema/version.hpp"
+#include "spatial/cli/table_output.hpp"
+#include "spatial/cli/texture_files.hpp"
+#include "spatial/cli/verbs.hpp"
+#include "spatial/description.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Description;
+using schema::Result;
+
+struct Options {
+  std::vector<std::string> names;
+  std::string output;
+  DescriptionOptions description;
+};
+
+Result<schema::DescriptionFile> described(const std::vector<TextureFile>& files,
+                                          const DescriptionOptions& options) {
+  schema::DescriptionFile all;
+  for (const TextureFile& file : files) {
+    auto description = describe(file.texture, options);
+    if (!description) return said_of(file, description);
+    description->texture = file.name;
+    all.textures.push_back(std::move(*description));
+  }
+  all.created = schema::creation_time();
+  all.creator = kCreator;
+  return all;
+}
+
+std::string in_unit(const char* key, const std::string& unit) {
+  if (unit == "N") return std::string(key) + "_n";
+  if (unit == "m") return std::string(key) + "_m";
+  if (unit == "V") return std::string(key) + "_v";
+  return key;
+}
+
+Report row_of(const Description& each) {
+  Report row;
+  row.add("texture", each.texture).add("length_m", each.length_m);
+  if (each.mean_speed_mps > 0) row.add("mean_speed_mps", each.mean_speed_mps);
+  row.add("low_per_m", each.low_per_m).add("high_per_m", each.high_per_m);
+  row.add(in_unit("rms", each.unit), each.rms).add(in_unit("total_rms", each.unit), each.total_rms);
+  if (std::isfinite(each.centroid_per_m)) row.add("centroid_per_m", each.centroid_per_m);
+  if (std::isfinite(each.slope_db_per_octave)) row.add("slope_db_per_octave", each.slope_db_per_octave);
+  return row;
+}
+
+// One row a band, one column a texture would grow too wide for people; files have that form.
+std::vector<Report> band_rows(const schema::DescriptionFile& file) {
+  std::vector<Report> rows;
+  for (const Description& each : file.textures)
+    for (const auto& band : each.bands) {
+      Report row;
+      row.add("texture", each.texture).add("centre_per_m", band.centre_per_m);
+      row.add(in_unit("rms", each.unit), band.rms).add("partial", band.partial);
+      rows.push_back(std::move(row));
+    }
+  return rows;
+}
+
+Report report_of(const schema::DescriptionFile& file, const std::string& path) {
+  std::vector<Report> rows;
+  for (const Description& each : file.textures) rows.push_back(row_of(each));
+  Report report;
+  report.add("textures", std::move(rows)).add("third_octaves", band_rows(file));
+  if (!path.empty()) report.add("file", path);
+  return report;
+}
+
+Result<Report> run(const Options& options) {
+  const auto files = open_textures(options.names);
+  if (!files) return schema::forward_error(files);
+  const auto all = described(*files, options.description);
+  if (!all) return schema::forward_error(all);
+  if (options.output.empty()) return report_of(*all, {});
+  const TablePath where = table_path(options.output, "descriptions");
+  const auto written = write_table(
+      where, [&] { return schema::descriptions_json(*all); }, [&] { return schema::descriptions_csv(*all); });
+  if (!written) return schema::forward_error(written);
+  return report_of(*all, where.path);
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("TEXTURE", options->names, "Textures, by stem or file")->required();
+  app.add_option("-o,--output", options->output,
+                 "What to write, one row a texture: .csv, .json, or NAME (NAME.descriptions.json)");
+  cli::add_quantity(app, "--window", options->description.window_m, schema::Dimension::length,
+                    "Window of the spectrum [a quarter of the texture, or 8 of its longest wavelengths]");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kDescribeVerb{
+    "describe", "Describe textures in numbers: RMS, one-third-octave bands, spectral centroid and slope",
+    "tactograph describe oak pine -o woods.csv", declare};
+
+}  // namespace tacto::spatial

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tactograph formants: the ridges of textures' spatial spectrograms, as a table.
+#include "spatial/formants.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/creation_time.hpp"
+#include "data-schema/formants.hpp"
+#include "data-schema/version.hpp"
+#include "spatial/cli/spectrogram_options.hpp"
+#include "spatial/cli/table_output.hpp"
+#include "spatial/cli/texture_files.hpp"
+#include "spatial/cli/verbs.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Dimension;
+using schema::Result;
+
+struct Options {
+  std::vector<std::string> names;
+  std::string output;
+  SpectrogramOptions spectrogram;
+  FormantOptions formants;
+};
+
+Result<schema::FormantTable> table_of(const TextureFile& file, const Options& options) {
+  auto spectrogram = spatial_spectrogram(file.texture, options.spectrogram);
+  if (!spectrogram) return said_of(file, spectrogram);
+  spectrogram->name = file.name;
+  return formant_table(*spectrogram, file.texture.valid_band, options.formants);
+}
+
+Result<schema::FormantFile> found(const std::vector<TextureFile>& files, const Options& options) {
+  schema::FormantFile all;
+  cli::Progress progress("formants");
+  for (const TextureFile& file : files) {
+    auto table = table_of(file, options);
+    if (!table) return schema::forward_error(table);
+    all.tables.push_back(std::move(*table));
+    progress.update(static_cast<double>(all.tables.size()) / static_cast<double>(files.size()));
+  }
+  all.created = schema::creation_time();
+  all.creator = kCreator;
+  return all;
+}
+
+Report row_of(const schema::FormantTable& table, const schema::Formant& formant) {
+  Report row;
+  row.add("texture", table.texture).add("from_m", formant.from_m).add("to_m", formant.to_m);
+  row.add("frequency_per_m", formant.frequency_per_m).add("width_per_m", formant.width_per_m);
+  row.add("lowest_per_m", formant.lowest_per_m).add("highest_per_m", formant.highest_per_m);
+  row.add("level_db", formant.level_db).add("prominence_db", formant.prominence_db);
+  row.add("goes_on",
+          formant.open_from ? (formant.open_to ? "both ends" : "before") : (formant.open_to ? "after" : ""));
+  return row;
+}
+
+Report report_of(const schema::FormantFile& file, const std::string& path) {
+  std::vector<Report> rows;
+  for (const auto& table : file.tables)
+    for (const auto& formant : table.formants) rows.push_back(row_of(table, formant));
+  const auto& first = file.tables.front();
+  Report report;
+  report.add("textures", file.tables.size()).add("found", rows.size());
+  if (!rows.empty()) report.add("formants", std::move(rows));
+  report.add("level_reference", first.level_reference).add("window_m", first.window_m);
+  report.add("resolution_per_m", first.resolution_per_m);
+  if (!path.empty()) report.add("file", path);
+  return report;
+}
+
+Result<Report> run(const Options& options) {
+  const auto files = open_textures(options.names);
+  if (!files) return schema::forward_error(files);
+  const auto formants = found(*files, options);
+  if (!formants) return schema::forward_error(formants);
+  if (options.output.empty()) return report_of(*formants, {});
+  const TablePath where = table_path(options.output, "formants");
+  const auto written = write_table(
+      where, [&] { return schema::formants_json(*formants); },
+      [&] { return schema::formants_csv(*formants); });
+  if (!written) return schema::forward_error(written);
+  return report_of(*formants, where.path);
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("TEXTURE", options->names, "Textures, by stem or file")->required();
+  app.add_option("-o,--output", options->output, "What to write: NAME (NAME.formants.json), .json or .csv");
+  declare_spectrogram(app, options->spectrogram);
+  cli::add_quantity(app, "--prominence", options->formants.start_db, Dimension::level,
+                    "How far a formant stands out of its background, somewhere");
+  cli::add_quantity(app, "--go-on", options->formants.go_on_db, Dimension::level,
+                    "How far each of its points stands out");
+  cli::add_quantity(app, "--shortest", options->formants.shortest_m, Dimension::length,
+                    "Shortest formant [half a window]");
+  cli::add_quantity(app, "--bridge", options->formants.bridge_m, Dimension::length,
+                    "Longest gap in a formant [half a window]");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kFormantsVerb{
+    "formants", "Find a texture's spatial formants: frequency, width, extent and strength",
+    "tactograph formants oak\n  tactograph formants oak pine -o woods --prominence 15dB", declare};
+
+}  // namespace tacto::spatial

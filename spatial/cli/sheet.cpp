@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tactograph sheet: many textures on one page, at one scale.
+#include "spatial/picture/sheet_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/files.hpp"
+#include "spatial/cli/spectrogram_options.hpp"
+#include "spatial/cli/texture_files.hpp"
+#include "spatial/cli/verbs.hpp"
+#include "spatial/formants.hpp"
+#include "spatial/spectrogram_summary.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Dimension;
+using schema::Fault;
+using schema::Result;
+using schema::Spectrogram;
+
+struct Options {
+  std::vector<std::string> names;
+  std::string output, title = "Textures";
+  SpectrogramOptions spectrogram;
+  SpectrogramPictureOptions picture;
+  std::size_t columns = 0;
+  bool formants = false;
+};
+
+struct Drawn {
+  Spectrogram spectrogram;
+  std::vector<schema::Formant> formants;
+};
+
+Result<Drawn> drawn(const TextureFile& file, const Options& options) {
+  auto spectrogram = spatial_spectrogram(file.texture, options.spectrogram);
+  if (!spectrogram) return said_of(file, spectrogram);
+  spectrogram->name = file.name;
+  Drawn made{std::move(*spectrogram), {}};
+  if (!options.formants) return made;
+  auto formants = find_formants(made.spectrogram, file.texture.valid_band, {});
+  if (!formants) return said_of(file, formants);
+  made.formants = std::move(*formants);
+  return made;
+}
+
+Result<std::vector<Drawn>> all_drawn(const std::vector<TextureFile>& files, const Options& options) {
+  std::vector<Drawn> all;
+  cli::Progress progress("spectrograms");
+  for (const TextureFile& file : files) {
+    auto made = drawn(file, options);
+    if (!made) return schema::forward_error(made);
+    all.push_back(std::move(*made));
+    progress.update(static_cast<double>(all.size()) / static_cast<double>(files.size()));
+  }
+  return all;
+}
+
+// "sheet.png", or "sheet-01.png" and so on.
+std::string page_path(const std::string& output, std::size_t page, std::size_t pages) {
+  if (pages == 1) return output;
+  const std::filesystem::path path(output);
+  const std::string name =
+      fmt::format("{}-{:02}{}", path.stem().string(), page + 1, path.extension().string());
+  return (path.parent_path() / name).string();
+}
+
+Result<std::vector<std::string>> write_pages(const std::vector<SpectrogramPanel>& panels,
+                                             const SheetScales& scales, const Options& options) {
+  const std::size_t pages = (panels.size() + kCellsOfAPage - 1) / kCellsOfAPage;
+  std::vector<std::string> paths;
+  schema::PendingFiles files;
+  for (std::size_t page = 0; page < pages; ++page) {
+    const auto from = panels.begin() + static_cast<std::ptrdiff_t>(page * kCellsOfAPage);
+    const auto to =
+        panels.begin() + static_cast<std::ptrdiff_t>(std::min(panels.size(), (page + 1) * kCellsOfAPage));
+    const std::string title =
+        pages == 1 ? options.title : fmt::format("{}, page {} of {}", options.title, page + 1, pages);
+    paths.push_back(page_path(options.output, page, pages));
+    const SheetFigure figure({from, to}, scales, title, options.columns);
+    if (auto added = add_figure(files, paths.back(), figure); !added) return schema::forward_error(added);
+  }
+  if (auto committed = files.commit(); !committed) return schema::forward_error(committed);
+  return paths;
+}
+
+Report report_of(const std::vector<SpectrogramPanel>& panels, const SheetScales& scales,
+                 const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const SpectrogramPanel& panel : panels) names.push_back(panel.spectrogram->name);
+  Report report;
+  report.add("textures", std::move(names)).add("length_m", 1e-3 * scales.length_mm);
+  report.add("low_per_m", 1e3 * scales.low_per_mm).add("high_per_m", 1e3 * scales.high_per_mm);
+  report.add("lowest_level_db", scales.levels.low_db).add("highest_level_db", scales.levels.high_db);
+  report.add("level_reference", level_reference(*panels.front().spectrogram).unit).add("files", paths);
+  return report;
+}
+
+Result<void> check_options(const Options& options) {
+  if (options.output.ends_with(".png") || options.output.ends_with(".svg")) return {};
+  return schema::fail(Fault::usage, "pictures are not written in this format", options.output,
+                      "take .png or .svg");
+}
+
+Result<Report> run(const Options& options) {
+  if (auto checked = check_options(options); !checked) return schema::forward_error(checked);
+  const auto files = open_textures(options.names);
+  if (!files) return schema::forward_error(files);
+  const auto all = all_drawn(*files, options);
+  if (!all) return schema::forward_error(all);
+  std::vector<SpectrogramPanel> panels;
+  for (std::size_t i = 0; i < files->size(); ++i)
+    panels.push_back({&(*files)[i].texture, &(*all)[i].spectrogram, (*all)[i].formants});
+  const auto scales = sheet_scales(panels, options.picture);
+  if (!scales) return schema::forward_error(scales);
+  const auto paths = write_pages(panels, *scales, options);
+  if (!paths) return schema::forward_error(paths);
+  return report_of(panels, *scales, *paths);
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("TEXTURE", options->names, "Textures, by stem or file")->required();
+  app.add_option("-o,--output", options->output,
+                 "The sheet, .png or .svg; over 24 textures make SHEET-01 and on")
+      ->required();
+  app.add_option("--title", options->title, "What stands over it")->capture_default_str();
+  app.add_option("--columns", options->columns, "Textures side by side [chosen, at most 4]")
+      ->check(CLI::Range(1, 12));
+  app.add_flag("--formants", options->formants, "Draw the formants");
+  declare_spectrogram(app, options->spectrogram);
+  cli::add_quantity(app, "--min-frequency", options->picture.min_frequency_per_m,
+                    Dimension::spatial_frequency,
+                    "Lower end of the frequency axis [0.7 of the lowest valid band, else 0.1/mm]");
+  cli::add_quantity(app, "--dynamic-range", options->picture.dynamic_range_db, Dimension::level,
+                    "Levels from the darkest to the brightest colour");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kSheetVerb{"sheet", "Draw many textures on one page at one scale, for comparison",
+                           "tactograph sheet *.texture.json -o sheet.png", declare};
+
+}  // namespace tacto::spatial

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The options of a spectrogram that several verbs share.
+#pragma once
+
+#include "data-schema/cli/verb.hpp"
+#include "spatial/spectrogram.hpp"
+
+namespace tacto::spatial {
+
+/// --window, --hop and --max-frequency.
+inline void declare_spectrogram(CLI::App& app, SpectrogramOptions& options) {
+  using schema::Dimension;
+  cli::add_quantity(app, "--window", options.window_m, Dimension::length, "Length of the Blackman window");
+  cli::add_quantity(app, "--hop", options.hop_m, Dimension::length, "Distance from one window to the next");
+  cli::add_quantity(app, "--max-frequency", options.max_frequency_per_m, Dimension::spatial_frequency,
+                    "Highest spatial frequency that is looked at");
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "data-schema/quantity.hpp"
+#include "spatial/make_texture.hpp"
+#include "spatial/valid_band.hpp"
+#include "spatial/welch.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::BandPoint;
+using schema::Description;
+using schema::Dimension;
+using schema::Fault;
+using schema::Result;
+using schema::Texture;
+using schema::ThirdOctaveBand;
+
+// IEC 61260-1:2014, 5.2 and 5.5: G^(1/6) to each side of the middle, with G = 10^(3/10).
+const double kHalfBand = std::pow(10, 0.05);
+constexpr double kReference_per_m = 1000;
+
+BandPoint valid_band_of(const Texture& texture) {
+  if (texture.valid_band.empty()) return {0, 0, INFINITY};
+  return band_throughout(texture.valid_band);
+}
+
+// Long enough to tell the lowest band from its neighbours, as short as steadies the estimate.
+double usual_window_m(const Texture& texture, double low_per_m) {
+  constexpr double kWavelengths = 8;
+  const double length_m = static_cast<double>(texture.signal.values.size()) * texture.signal.pitch_m;
+  const double wanted_m = low_per_m > 0 ? std::max(kWavelengths / low_per_m, length_m / 4) : length_m / 4;
+  return std::min(wanted_m, length_m);
+}
+
+Result<std::size_t> window_samples(const Texture& texture, const DescriptionOptions& options,
+                                   double low_per_m) {
+  const double pitch_m = texture.signal.pitch_m;
+  const std::size_t have = texture.signal.values.size();
+  if (have < kShortestWelchWindow)
+    return schema::fail(Fault::unsuitable, fmt::format("has {} samples, too few for a spectrum", have),
+                        "texture");
+  const double wanted = options.window_m.value_or(usual_window_m(texture, low_per_m)) / pitch_m;
+  const double samples =
+      options.window_m ? wanted : std::max(wanted, static_cast<double>(kShortestWelchWindow));
+  if (std::isfinite(samples) && samples >= kShortestWelchWindow - 0.5 &&
+      samples < static_cast<double>(have) + 0.5)
+    return static_cast<std::size_t>(std::llround(samples));
+  return schema::fail(
+      Fault::usage,
+      fmt::format("a window of {} can't be used", schema::for_people(wanted * pitch_m, Dimension::length)),
+      "window",
+      fmt::format("take {} to {} (the texture)",
+                  schema::for_people(kShortestWelchWindow * pitch_m, Dimension::length),
+                  schema::for_people(static_cast<double>(have) * pitch_m, Dimension::length)));
+}
+
+ThirdOctaveBand whole_band(int number) {
+  ThirdOctaveBand band;
+  band.number = number;
+  band.centre_per_m = kReference_per_m * std::pow(10, number / 10.0);
+  band.low_per_m = band.centre_per_m / kHalfBand;
+  band.high_per_m = band.centre_per_m * kHalfBand;
+  return band;
+}
+
+// The edge of band n is 10^((n - 0.5) / 10): the band in which a frequency lies.
+int band_of(double frequency_per_m) {
+  return static_cast<int>(std::lround(10 * std::log10(frequency_per_m / kReference_per_m)));
+}
+
+std::vector<ThirdOctaveBand> bands_of(const WelchSpectrum& spectrum, double low_per_m, double high_per_m) {
+  std::vector<ThirdOctaveBand> bands;
+  for (int number = band_of(low_per_m); number <= band_of(high_per_m); ++number) {
+    ThirdOctaveBand band = whole_band(number);
+    const double from = std::max(band.low_per_m, low_per_m), to = std::min(band.high_per_m, high_per_m);
+    if (!(from < to)) continue;
+    constexpr double kRounding = 1e-9;
+    band.partial = from > band.low_per_m * (1 + kRounding) || to < band.high_per_m * (1 - kRounding);
+    const double power = spectrum.power(from, to);
+    band.rms = std::sqrt(power);
+    band.density = power / (to - from);
+    bands.push_back(band);
+  }
+  return bands;
+}
+
+// Weighted least squares; see the header.
+double slope_of(const std::vector<ThirdOctaveBand>& bands, double low_per_m, double high_per_m) {
+  if (!(high_per_m >= 2 * low_per_m)) return NAN;
+  double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
+  for (const ThirdOctaveBand& band : bands) {
+    if (!(band.density > 0)) continue;
+    const double from = std::max(band.low_per_m, low_per_m), to = std::min(band.high_per_m, high_per_m);
+    const double weight = std::log2(to / from);
+    const double x = 0.5 * std::log2(from * to), y = 10 * std::log10(band.density);
+    w += weight;
+    wx += weight * x;
+    wy += weight * y;
+    wxx += weight * x * x;
+    wxy += weight * x * y;
+  }
+  const double spread = w * wxx - wx * wx;
+  return spread > 0 ? (w * wxy - wx * wy) / spread : NAN;
+}
+
+Description header_of(const Texture& texture) {
+  Description description;
+  description.quantity = texture.quantity;
+  description.unit = texture.unit;
+  description.length_m = texture.signal.length_m();
+  description.pitch_m = texture.signal.pitch_m;
+  description.mean_speed_mps = texture.source.mean_speed_mps;
+  description.total_rms = rms_of(texture);
+  description.simulated = texture.simulated;
+  return description;
+}
+
+}  // namespace
+
+Result<Description> describe(const Texture& texture, const DescriptionOptions& options) {
+  const BandPoint valid = valid_band_of(texture);
+  const auto window = window_samples(texture, options, valid.low_per_m);
+  if (!window) return schema::forward_error(window);
+  Description description = header_of(texture);
+  description.window_m = static_cast<double>(*window) * texture.signal.pitch_m;
+  description.low_per_m = std::max(valid.low_per_m, 1.5 / description.window_m);
+  description.high_per_m = std::min(valid.high_per_m, 0.5 / texture.signal.pitch_m);
+  if (!(description.low_per_m < description.high_per_m))
+    return schema::fail(Fault::unsuitable, "no band is valid along the whole texture", "texture",
+                        "make it from a stretch of steadier speed, or take a longer --window");
+  const WelchSpectrum spectrum(texture.signal.values, texture.signal.pitch_m, *window);
+  const double power = spectrum.power(description.low_per_m, description.high_per_m);
+  description.rms = std::sqrt(power);
+  description.centroid_per_m = spectrum.moment(description.low_per_m, description.high_per_m) / power;
+  if (!(power > 0)) description.centroid_per_m = NAN;
+  description.bands = bands_of(spectrum, description.low_per_m, description.high_per_m);
+  description.slope_db_per_octave =
+      slope_of(description.bands, description.low_per_m, description.high_per_m);
+  return description;
+}
+
+}  // namespace tacto::spatial

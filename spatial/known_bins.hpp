@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which bins of a spectrogram's rows the recording knew.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "data-schema/spectrogram.hpp"
+#include "data-schema/texture.hpp"
+
+namespace tacto::spatial {
+
+/// Bins from `first` up to, not including, `end`; none where they are equal.
+struct BinRange {
+  std::size_t first = 0, end = 0;
+  bool holds(std::size_t bin) const { return first <= bin && bin < end; }
+};
+
+/// For each row the bins whose frequency is valid throughout the middle of its window (90 % of its power),
+/// from 2 / window on: under that a window holds too little of a wave to tell it from a drift. All bins above
+/// that without breakpoints.
+std::vector<BinRange> known_bins(const schema::Spectrogram& spectrogram,
+                                 std::span<const schema::BandPoint> valid_band);
+
+}  // namespace tacto::spatial

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/picture/sheet_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "spatial/picture/axes.hpp"
+#include "spatial/picture/display_unit.hpp"
+#include "spatial/picture/fitted_text.hpp"
+#include "spatial/picture/formant_ridges.hpp"
+#include "spatial/picture/heading.hpp"
+#include "spatial/picture/level_bar.hpp"
+#include "spatial/picture/spectrogram_layout.hpp"
+#include "spatial/picture/trace.hpp"
+#include "spatial/picture/valid_band.hpp"
+#include "spatial/spectrogram_summary.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Result;
+
+constexpr Colour kTrace{0.16, 0.28, 0.45};
+constexpr Colour kNoWindow{0.93, 0.93, 0.94};
+constexpr std::size_t kLabels = 4;
+const TextStyle kName{.size = 11, .bold = true, .align_y = 0};
+const TextStyle kFacts{.size = 8.5, .colour = kGreyInk, .align_y = 0};
+const TextStyle kSimulated{.size = 8.5, .colour = kAlarm, .bold = true, .align_x = 1, .align_y = 0};
+
+Axis upwards(double low, double high, const Box& box) {
+  return {AxisScale::linear, low, high, box.bottom(), box.y};
+}
+
+std::vector<Tick> unlabelled(std::vector<Tick> ticks) {
+  for (Tick& tick : ticks) tick.label.clear();
+  return ticks;
+}
+
+std::vector<Tick> ticks_for(const Axis& axis, int wanted, bool labelled) {
+  return labelled ? ticks_of(axis, wanted) : unlabelled(ticks_of(axis, wanted));
+}
+
+std::string facts_of(const schema::Texture& texture) {
+  std::string facts;
+  if (texture.source.mean_speed_mps > 0)
+    facts = fmt::format("{:.3g} mm/s, ", 1e3 * texture.source.mean_speed_mps);
+  facts += texture.direction < 0 ? "backwards" : "forwards";
+  if (!texture.surface.empty()) facts += ", " + texture.surface;
+  return facts;
+}
+
+}  // namespace
+
+Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
+                                 const SpectrogramPictureOptions& options) {
+  const SpectrogramFigure together({panels.begin(), panels.end()}, options);
+  if (auto checked = together.check(); !checked) return schema::forward_error(checked);
+  SheetScales scales;
+  scales.length_mm = 0;
+  double low = INFINITY, high = -INFINITY;
+  for (const SpectrogramPanel& panel : panels) {
+    const auto& signal = panel.texture->signal;
+    scales.length_mm = std::max(scales.length_mm, 1e3 * signal.length_m());
+    const auto [least, most] = std::ranges::minmax(signal.values);
+    low = std::min(low, least);
+    high = std::max(high, most);
+  }
+  const Axis roomy = roomy_axis(low, high);
+  scales.low_value = roomy.low;
+  scales.high_value = roomy.high;
+  scales.low_per_mm = 1e-3 * together.lowest_per_m();
+  scales.high_per_mm = 1e-3 * together.highest_per_m();
+  scales.levels = together.levels();
+  return scales;
+}
+
+SheetFigure::SheetFigure(std::vector<SpectrogramPanel> panels, const SheetScales& scales, std::string title,
+                         std::size_t columns)
+    : panels_(std::move(panels)),
+      scales_(scales),
+      title_(std::move(title)),
+      layout_(panels_.size(), columns) {}
+
+Axis SheetFigure::positions(std::size_t cell) const {
+  return position_axis(0, scales_.length_mm, layout_.cell(cell).heat);
+}
+
+Axis SheetFigure::frequencies(std::size_t cell) const {
+  return frequency_axis(scales_.low_per_mm, scales_.high_per_mm, layout_.cell(cell).heat);
+}
+
+Result<void> SheetFigure::draw(Canvas& canvas) const {
+  const auto& first = *panels_.front().spectrogram;
+  draw_heading(
+      canvas, layout_.heading(), title_,
+      fmt::format(
+          "{} textures at one scale; Blackman window {:.4g} mm, hop {:.4g} mm; hatched: not measured, "
+          "grey: no whole window",
+          panels_.size(), 1e3 * first.window_m, 1e3 * first.hop_m),
+      "");
+  for (std::size_t i = 0; i < panels_.size(); ++i)
+    if (auto drawn = draw_cell(canvas, i); !drawn) return drawn;
+  draw_bar(canvas);
+  return {};
+}
+
+Result<void> SheetFigure::draw_cell(Canvas& canvas, std::size_t index) const {
+  draw_title(canvas, index);
+  draw_trace(canvas, index);
+  return draw_heat(canvas, index);
+}
+
+void SheetFigure::draw_title(Canvas& canvas, std::size_t index) const {
+  const Box box = layout_.cell(index).title;
+  const schema::Texture& texture = *panels_[index].texture;
+  double width = box.width;
+  if (!texture.simulated.empty()) {
+    canvas.text({box.right(), box.y + 2}, "SIMULATED", kSimulated);
+    width -= canvas.text_size("SIMULATED", kSimulated).width + 8;
+  }
+  canvas.text({box.x, box.y}, fitted(canvas, panels_[index].spectrogram->name, kName, width), kName);
+  canvas.text({box.x, box.y + 15}, fitted(canvas, facts_of(texture), kFacts, box.width), kFacts);
+}
+
+void SheetFigure::draw_trace(Canvas& canvas, std::size_t index) const {
+  const SheetCell cell = layout_.cell(index);
+  const auto& signal = panels_[index].texture->signal;
+  const DisplayUnit unit =
+      display_unit(panels_[index].texture->unit, std::max(-scales_.low_value, scales_.high_value));
+  std::vector<double> x(signal.values.size()), y(signal.values.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = 1e3 * static_cast<double>(i) * signal.pitch_m;
+    y[i] = unit.factor * signal.values[i];
+  }
+  const Axis axis = upwards(unit.factor * scales_.low_value, unit.factor * scales_.high_value, cell.trace);
+  canvas.clip(cell.trace);
+  for (const auto& piece : trace(x, y, positions(index), axis)) canvas.polyline(piece, {kTrace, 0.5});
+  canvas.release();
+  canvas.frame(cell.trace, {});
+  draw_axis(canvas, cell.trace, Side::left, axis, ticks_for(axis, 3, cell.leftmost));
+  if (cell.leftmost)
+    draw_caption(canvas, cell.trace, Side::left,
+                 fmt::format("{} ({})", axis_name(panels_[index].texture->quantity), unit.text), 46);
+}
+
+Result<void> SheetFigure::draw_heat(Canvas& canvas, std::size_t index) const {
+  const SheetCell cell = layout_.cell(index);
+  const auto& [texture, spectrogram, formants] = panels_[index];
+  const Axis position = positions(index), frequency = frequencies(index);
+  const Box area = covered(cell.heat, position, *spectrogram);
+  const auto pixels = heatmap(*spectrogram, 1e3 * frequency.low, 1e3 * frequency.high, scales_.levels,
+                              static_cast<int>(std::lround(area.width * kPixelsPerPoint)),
+                              static_cast<int>(std::lround(area.height * kPixelsPerPoint)));
+  if (!pixels) return schema::forward_error(pixels);
+  const double end = position.place(1e3 * texture->signal.length_m());
+  canvas.fill({cell.heat.x, cell.heat.y, end - cell.heat.x, cell.heat.height}, kNoWindow);
+  canvas.image(area, *pixels);
+  if (!texture->valid_band.empty()) draw_valid_band(canvas, area, texture->valid_band, position, frequency);
+  draw_formants(canvas, area, formants, position, frequency, kLabels);
+  canvas.frame(cell.heat, {});
+  draw_axis(canvas, cell.heat, Side::left, frequency, ticks_for(frequency, 5, cell.leftmost));
+  draw_axis(canvas, cell.heat, Side::bottom, position, ticks_for(position, 5, cell.lowest));
+  if (cell.leftmost) draw_caption(canvas, cell.heat, Side::left, "1/mm", 46);
+  if (cell.lowest) draw_caption(canvas, cell.heat, Side::bottom, "position (mm)", 27);
+  return {};
+}
+
+void SheetFigure::draw_bar(Canvas& canvas) const {
+  const Box bar = layout_.bar();
+  const std::string unit = typeset(level_reference(*panels_.front().spectrogram).unit);
+  draw_level_bar(canvas, bar, scales_.levels, fmt::format("density (dB re {})", unit));
+}
+
+}  // namespace tacto::spatial

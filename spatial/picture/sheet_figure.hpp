@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A contact sheet: many textures side by side at one scale of position, value, frequency and colour.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spatial/picture/axis.hpp"
+#include "spatial/picture/figure.hpp"
+#include "spatial/picture/heatmap.hpp"
+#include "spatial/picture/sheet_layout.hpp"
+#include "spatial/picture/spectrogram_figure.hpp"
+
+namespace tacto::spatial {
+
+/// What all cells of all pages share, so that shades and heights can be compared.
+struct SheetScales {
+  double length_mm = 1;                   ///< of the longest texture
+  double low_value = -1, high_value = 1;  ///< in the textures' unit
+  double low_per_mm = 0.1, high_per_mm = 15;
+  LevelRange levels;
+};
+
+/// Errors: unsuitable, where units differ or there is hardly a frequency to show. Precondition: a panel.
+schema::Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
+                                         const SpectrogramPictureOptions& options);
+
+/// One page: value against position over the spectrogram, per texture, with name and speed. What the
+/// recording could not know is hatched; simulated textures say so.
+class SheetFigure : public Figure {
+ public:
+  /// `columns` 0: chosen. Precondition: 1 to kCellsOfAPage panels.
+  SheetFigure(std::vector<SpectrogramPanel> panels, const SheetScales& scales, std::string title,
+              std::size_t columns = 0);
+
+  Size page() const override { return layout_.page(); }
+  schema::Result<void> draw(Canvas& canvas) const override;
+  const SheetLayout& layout() const { return layout_; }
+  /// Axes of one cell, in mm and 1/mm.
+  Axis positions(std::size_t cell) const;
+  Axis frequencies(std::size_t cell) const;
+
+ private:
+  schema::Result<void> draw_cell(Canvas& canvas, std::size_t index) const;
+  void draw_title(Canvas& canvas, std::size_t index) const;
+  void draw_trace(Canvas& canvas, std::size_t index) const;
+  schema::Result<void> draw_heat(Canvas& canvas, std::size_t index) const;
+  void draw_bar(Canvas& canvas) const;
+
+  std::vector<SpectrogramPanel> panels_;
+  SheetScales scales_;
+  std::string title_;
+  SheetLayout layout_;
+};
+
+}  // namespace tacto::spatial

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/picture/sheet_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spatial/picture/heading.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+constexpr double kMargin = 14;
+constexpr double kLeft = 58, kRight = 82, kBottom = 46;  // room for axes and the bar
+constexpr double kTitle = 30, kTrace = 46, kGap = 5, kHeat = 120;
+constexpr double kBetweenColumns = 14, kBetweenRows = 12;
+constexpr double kRow = kTitle + kTrace + kGap + kHeat;
+
+// One column of a lone texture is wide; four fit side by side on a page.
+double cell_width(std::size_t columns) {
+  return columns == 1 ? 440 : columns == 2 ? 300 : 226;
+}
+
+std::size_t usual_columns(std::size_t cells) {
+  return std::clamp<std::size_t>(
+      static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(cells) * 0.8))), 1, 4);
+}
+
+}  // namespace
+
+SheetLayout::SheetLayout(std::size_t cell_count, std::size_t wanted_columns)
+    : cells(cell_count),
+      columns(std::min(wanted_columns == 0 ? usual_columns(cell_count) : wanted_columns, cell_count)) {
+  rows = (cells + columns - 1) / columns;
+}
+
+Size SheetLayout::page() const {
+  const auto across = static_cast<double>(columns), down = static_cast<double>(rows);
+  return {kLeft + across * cell_width(columns) + (across - 1) * kBetweenColumns + kRight,
+          kMargin + kHeadingHeight + down * kRow + (down - 1) * kBetweenRows + kBottom};
+}
+
+Box SheetLayout::heading() const {
+  return {kMargin, kMargin, page().width - 2 * kMargin, kHeadingHeight};
+}
+
+SheetCell SheetLayout::cell(std::size_t index) const {
+  const auto column = static_cast<double>(index % columns), row = static_cast<double>(index / columns);
+  const double width = cell_width(columns);
+  const double x = kLeft + column * (width + kBetweenColumns);
+  const double y = kMargin + kHeadingHeight + row * (kRow + kBetweenRows);
+  SheetCell cell;
+  cell.title = {x, y, width, kTitle};
+  cell.trace = {x, y + kTitle, width, kTrace};
+  cell.heat = {x, y + kTitle + kTrace + kGap, width, kHeat};
+  cell.leftmost = index % columns == 0;
+  cell.lowest = index + columns >= cells;
+  return cell;
+}
+
+Box SheetLayout::bar() const {
+  const double top = cell(0).trace.y;
+  const double height = std::min(rows == 1 ? kTrace + kGap + kHeat : 220.0, page().height - top - kBottom);
+  return {page().width - kRight + 14, top, 12, height};
+}
+
+}  // namespace tacto::spatial
