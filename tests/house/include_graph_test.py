@@ -38,6 +38,9 @@ WALLS = {
 # JSON and netCDF readers must not leak into the verbs: only the report printer shares the JSON wall.
 CLI_JSON_EXCEPTION = "data-schema/cli/report.cpp"
 
+# What runs on a device has no hosted library behind it.
+C_HEADERS = {"firmware-host/core": ["stdint.h", "stddef.h"]}
+
 FOLDERS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spatial", "tests", "cmake", "LICENSES", ".ci"]
 FILES = ["CMakeLists.txt", "README.md", "tactograph.cpp", "LICENSE", "CONTRIBUTING.md", "CHANGELOG.md", "bootstrap",
          "packages.txt", "CMakePresets.json", ".gitignore", ".clang-format", ".clang-tidy"]
@@ -72,6 +75,13 @@ def wall_faults(name, text):
             yield f"{name}: <{target}> does not belong in a verb"
 
 
+def freestanding_faults(name, text):
+    allowed = C_HEADERS.get(room_of(name))
+    for quote, target in INCLUDE.findall(text):
+        if allowed and quote == "<" and target not in allowed:
+            yield f"{name}: <{target}> is not among {', '.join(allowed)}: the core is freestanding"
+
+
 def form_faults(name, text):
     licence = next((l for room, l in SPDX.items() if name.startswith(room + "/")), "GPL-3.0-or-later")
     if f"SPDX-License-Identifier: {licence}" not in "\n".join(text.split("\n")[:2]):
@@ -85,6 +95,7 @@ def faults_of(name, text):
     if not name.startswith("tests/") and name != "tactograph.cpp":
         faults += arrow_faults(name, text)
         faults += wall_faults(name, text)
+        faults += freestanding_faults(name, text)
     return faults
 
 
@@ -109,6 +120,8 @@ def prove_it_can_fail():
     bad = {
         "spatial/a.cpp": spdx + '#include "playback/render.hpp"\n',
         "firmware-host/core/a.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include \"data-schema/error.hpp\"\n",
+        "firmware-host/core/b.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include <vector>\n",
+        "firmware-host/core/wire/c.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include <cstdint>\n",
         "capture/a.cpp": spdx + "#include <fftw3.h>\n",
         "spatial/dsp/a.cpp": spdx + "#include <opencv2/core.hpp>\n",
         "data-schema/cli/a.cpp": spdx + "#include <nlohmann/json.hpp>\n",

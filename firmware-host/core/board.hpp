@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a board says of itself, and the memory that it gives.
+#pragma once
+
+#include "firmware-host/core/wire/device_messages.hpp"
+
+namespace tacto::core {
+
+/// All of it outlives the firmware. In `about`, the board fills name, serial, firmware, features, clock_hz,
+/// the three rates and the two limits; the core knows the rest.
+struct Board {
+  wire::Welcome about;
+  const wire::Channel* channels = nullptr;
+  uint8_t channel_count = 0;  ///< at most wire::kMaxChannels
+  const wire::Note* notes = nullptr;
+  uint8_t note_count = 0;
+  float* profile_memory = nullptr;
+  uint32_t profile_samples = 0;
+};
+
+}  // namespace tacto::core

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The transducer's limits, which no drive passes.
+#pragma once
+
+#include <stdint.h>
+
+#include "firmware-host/core/wire/message_types.hpp"
+
+namespace tacto::core {
+
+/// Holds the drive within +-drive_v, then each step within step_v of the last. Safe in the tick.
+class DriveLimiter {
+ public:
+  void set(float drive_v, float step_v) noexcept { drive_v_ = drive_v, step_v_ = step_v, last_v_ = 0; }
+
+  /// `wanted_v` is finite. Adds to `flags` what had to be taken away.
+  float limit(float wanted_v, uint32_t& flags) noexcept {
+    const float tall_v = wanted_v > drive_v_ ? drive_v_ : wanted_v < -drive_v_ ? -drive_v_ : wanted_v;
+    if (tall_v != wanted_v) flags |= wire::kTickAmplitudeLimited;
+    const float most_v = last_v_ + step_v_, least_v = last_v_ - step_v_;
+    last_v_ = tall_v > most_v ? most_v : tall_v < least_v ? least_v : tall_v;
+    if (last_v_ != tall_v) flags |= wire::kTickSlewLimited;
+    return last_v_;
+  }
+  float last_v() const noexcept { return last_v_; }
+
+ private:
+  float drive_v_ = 0, step_v_ = 0, last_v_ = 0;
+};
+
+}  // namespace tacto::core

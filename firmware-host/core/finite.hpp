@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is a number.
+#pragma once
+
+namespace tacto::core {
+
+inline constexpr float kLargestFloat = 3.4028235e38F;
+
+/// False for NaN and the infinities. Safe in the tick.
+constexpr bool is_finite(float value) noexcept {
+  return value >= -kLargestFloat && value <= kLargestFloat;
+}
+
+/// True where `value` is a number in [least, most].
+constexpr bool within(float value, float least, float most) noexcept {
+  return value >= least && value <= most;
+}
+
+}  // namespace tacto::core

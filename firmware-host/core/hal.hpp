@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hardware layer: all that the core asks of a board.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace tacto::core {
+
+/// Nine functions; `board` is handed to each. None waits, allocates or throws. Those marked (tick) are called
+/// in the tick's interrupt.
+struct Hal {
+  void* board = nullptr;
+  /// (tick) The encoder's count.
+  int32_t (*read_encoder)(void* board) noexcept = nullptr;
+  /// (tick) One code of each channel, in the order of the board's channels: left-justified in 32 bits, of an
+  /// encoder its plain count. False where a converter failed.
+  bool (*read_channels)(void* board, int32_t* codes) noexcept = nullptr;
+  /// (tick) Volts at the amplifier's input, held until the next tick.
+  void (*write_drive)(void* board, float drive_v) noexcept = nullptr;
+  /// (tick) True while the hardware enable input is closed; always true on a board that has none.
+  bool (*enable_closed)(void* board) noexcept = nullptr;
+  /// (tick) The device's clock; it never runs over.
+  uint64_t (*clock)(void* board) noexcept = nullptr;
+  /// Ticks at this rate from now on, from the first sample period on; 0: none. The converters begin anew.
+  void (*set_rate)(void* board, uint32_t rate_millihertz) noexcept = nullptr;
+  /// Bytes from the host, as many as there are, at most `capacity`.
+  size_t (*receive)(void* board, uint8_t* bytes, size_t capacity) noexcept = nullptr;
+  /// Bytes to the host; gives how many were taken.
+  size_t (*send)(void* board, const uint8_t* bytes, size_t size) noexcept = nullptr;
+  /// Begins again as after power-on; need not return.
+  void (*restart)(void* board) noexcept = nullptr;
+};
+
+}  // namespace tacto::core

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// A profile on its way in, chunk by chunk.
+#pragma once
+
+#include "firmware-host/core/profile.hpp"
+
+namespace tacto::core {
+
+inline constexpr uint32_t kLeastProfile = 6;  ///< samples: what one interpolation reads
+
+/// An answer to a command, with its detail.
+struct Reply {
+  wire::AnswerCode code = wire::AnswerCode::ok;
+  uint32_t detail = 0;
+};
+
+/// Keeps the samples in memory that the board gives. Chunks come in order; one that comes again is written
+/// again. Only a profile whose check is right can be armed. For the main loop.
+class ProfileUpload {
+ public:
+  ProfileUpload(float* memory, uint32_t capacity) noexcept : memory_(memory), capacity_(capacity) {}
+
+  Reply begin(const wire::ProfileBegin& message) noexcept;
+  Reply chunk(const wire::ProfileChunk& message) noexcept;
+  Reply end(const wire::ProfileEnd& message) noexcept;
+  void forget() noexcept { complete_ = false, scale_ = {}, here_ = 0; }
+
+  bool complete() const noexcept { return complete_; }
+  uint32_t here() const noexcept { return here_; }
+  uint32_t capacity() const noexcept { return capacity_; }
+  Profile profile() const noexcept { return {memory_, scale_}; }
+
+ private:
+  uint32_t check() const noexcept;
+
+  float* memory_;
+  uint32_t capacity_;
+  ProfileScale scale_;
+  uint32_t here_ = 0;
+  bool complete_ = false;
+};
+
+}  // namespace tacto::core

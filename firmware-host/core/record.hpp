@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one tick leaves for the stream.
+#pragma once
+
+#include "firmware-host/core/wire/message_types.hpp"
+
+namespace tacto::core {
+
+inline constexpr uint32_t kRingRecords = 256;  ///< 12.8 ms at 20 kHz
+inline constexpr uint32_t kDriveQueue = 1024;  ///< samples
+
+struct Record {
+  uint64_t clock = 0, frame = 0, tick = 0;
+  int32_t encoder = 0;
+  float drive_v = 0;
+  uint32_t flags = 0;  ///< wire::TickFlag
+  uint8_t run = 0;     ///< which start of the stream it belongs to
+  bool sampled = false, driven = false;
+  int32_t codes[wire::kMaxChannels] = {};
+};
+
+}  // namespace tacto::core

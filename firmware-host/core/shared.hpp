@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// One word between the tick, which may interrupt anything, and the main loop, which interrupts nothing.
+#pragma once
+
+#include <stdint.h>
+
+namespace tacto::core {
+
+/// Load acquires, store releases: what was written before a store is seen after its load. At most 32 bits:
+/// one instruction on a Cortex-M, never a lock. Safe in the tick.
+template <class T>
+class Shared {
+  static_assert(sizeof(T) <= 4);
+
+ public:
+  explicit Shared(T value = T{}) noexcept : value_(value) {}
+  Shared(const Shared&) = delete;
+  Shared& operator=(const Shared&) = delete;
+
+  T load() const noexcept {
+    T value;
+    __atomic_load(&value_, &value, __ATOMIC_ACQUIRE);
+    return value;
+  }
+  void store(T value) noexcept { __atomic_store(&value_, &value, __ATOMIC_RELEASE); }
+
+ private:
+  T value_;
+};
+
+}  // namespace tacto::core

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/ticker.hpp"
+
+namespace tacto::core {
+
+using wire::DriveSource;
+using wire::DriveState;
+using wire::FaultCode;
+
+uint8_t Ticker::start_stream() noexcept {
+  stream_.store(Stream::off);
+  run_.store(static_cast<uint8_t>(run_.load() + 1));
+  records_.clear();
+  stream_fault_.store(FaultCode::none);
+  stream_.store(Stream::starting);
+  return run_.load();
+}
+
+void Ticker::arm(DriveSource source, const wire::Limits& limits, uint32_t rate_millihertz) noexcept {
+  source_ = source;
+  tick_ = 0;
+  drive_queue_.clear();
+  kernel_.set(limits, 1e-3F * static_cast<float>(rate_millihertz));
+  supervisor_.arm(limits, rate_millihertz, hal_.read_encoder(hal_.board));
+}
+
+FaultCode Ticker::take_stream_fault() noexcept {
+  const FaultCode code = stream_fault_.load();
+  if (code != FaultCode::none) stream_fault_.store(FaultCode::none);
+  return code;
+}
+
+void Ticker::look(Record& record) noexcept {
+  record.clock = hal_.clock(hal_.board);
+  record.encoder = hal_.read_encoder(hal_.board);
+  record.flags = hal_.enable_closed(hal_.board) ? wire::kTickEnabled : 0U;
+  if (ticked_ && record.clock - last_clock_ > late_clocks_) record.flags |= wire::kTickLate;
+  last_clock_ = record.clock;
+  ticked_ = true;
+}
+
+void Ticker::sample(Record& record) noexcept {
+  record.sampled = stream_.load() != Stream::off;
+  if (!record.sampled) return;
+  if (stream_.load() == Stream::starting) frame_ = 0;
+  stream_.store(Stream::on);
+  record.run = run_.load();
+  record.frame = frame_++;
+  record.sampled = hal_.read_channels(hal_.board, record.codes);
+  if (record.sampled) return;
+  stream_.store(Stream::off);
+  tell(FaultCode::converter);
+}
+
+// The host's drive is for this tick or for none: what was not played in its time is not played later.
+float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
+  if (source_ == DriveSource::profile) return kernel_.wanted(encoder, gain_.load());
+  if (source_ == DriveSource::sweep) return supervisor_.state() == DriveState::playing ? sweep_.next() : 0;
+  const float* next = drive_queue_.front();
+  lacks = next == nullptr;
+  if (lacks) return kernel_.last_v();
+  const float drive_v = *next;
+  drive_queue_.pop();
+  return drive_v;
+}
+
+void Ticker::drive(Record& record) noexcept {
+  record.driven = supervisor_.state() != DriveState::idle;
+  record.drive_v = 0;
+  if (!record.driven) return hal_.write_drive(hal_.board, 0);
+  const FaultCode before = supervisor_.fault();
+  TickSights sights{record.encoder, (record.flags & wire::kTickEnabled) != 0, false};
+  const float wanted_v = wanted(record.encoder, sights.drive_lacks);
+  const bool raise = supervisor_.observe(sights);
+  bool sound = true;
+  record.drive_v = kernel_.tick(wanted_v, raise, record.flags, sound);
+  hal_.write_drive(hal_.board, record.drive_v);
+  supervisor_.settle(sound, kernel_.at_rest());
+  record.tick = tick_++;
+  if (supervisor_.state() == DriveState::playing) record.flags |= wire::kTickPlaying;
+  if (supervisor_.state() == DriveState::fault) record.flags |= wire::kTickFault;
+  if (supervisor_.fault() != before) fault_clock_ = record.clock;
+  counts_.underruns += sights.drive_lacks && supervisor_.aim() == Aim::play;
+}
+
+void Ticker::count(uint32_t flags) noexcept {
+  counts_.late += (flags & wire::kTickLate) != 0;
+  counts_.amplitude_limited += (flags & wire::kTickAmplitudeLimited) != 0;
+  counts_.slew_limited += (flags & wire::kTickSlewLimited) != 0;
+}
+
+void Ticker::keep(bool there, const Record& record) noexcept {
+  if (!record.sampled && !record.driven) return;
+  if (there) records_.push();
+  if (!there) ++counts_.lost_records;
+  if (!there && !losing_) tell(FaultCode::ring_full);
+  losing_ = !there;
+}
+
+void Ticker::tick() noexcept {
+  Record* place = records_.place();
+  Record& record = place != nullptr ? *place : spare_;
+  look(record);
+  sample(record);
+  drive(record);
+  count(record.flags);
+  keep(place != nullptr, record);
+}
+
+}  // namespace tacto::core

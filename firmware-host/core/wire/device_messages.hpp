@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the device says. Fields stand in the order of their bytes; core/WIRE.md says what each means.
+#pragma once
+
+#include "firmware-host/core/wire/frame.hpp"
+#include "firmware-host/core/wire/message_types.hpp"
+
+namespace tacto::wire {
+
+/// Bits of Welcome::features.
+enum Feature : uint32_t {
+  kFeatureSimulated = 1,    ///< nothing of it is real
+  kFeatureDrive = 2,        ///< it has an output
+  kFeatureEnableInput = 4,  ///< it has a hardware enable input
+};
+
+/// Everything to `nonce` stays as it is in every version.
+struct Welcome {
+  static constexpr MessageType kType = MessageType::welcome;
+  uint8_t major = kProtocolMajor;
+  uint8_t minor = kProtocolMinor;
+  uint16_t reserved = 0;
+  uint32_t nonce = 0;
+  char name[32] = {}, serial[32] = {}, firmware[24] = {};
+  uint8_t channels = 0;
+  uint8_t notes = 0;
+  uint16_t most_sections = 0;
+  uint32_t features = 0;
+  uint32_t clock_hz = 0;  ///< of device_ticks
+  uint32_t default_rate_millihertz = 0, least_rate_millihertz = 0, most_rate_millihertz = 0;
+  uint32_t ring_records = 0;     ///< frames or ticks that it keeps while the host is away
+  uint32_t profile_samples = 0;  ///< that a profile may have
+  uint32_t drive_queue = 0;      ///< drive samples that it holds
+  float drive_limit_v = 0, slew_limit_v_per_s = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.major, self.minor, self.reserved, self.nonce, self.name, self.serial, self.firmware,
+          self.channels, self.notes, self.most_sections, self.features, self.clock_hz,
+          self.default_rate_millihertz, self.least_rate_millihertz, self.most_rate_millihertz,
+          self.ring_records, self.profile_samples, self.drive_queue, self.drive_limit_v,
+          self.slew_limit_v_per_s);
+  }
+};
+
+/// One channel: physical = code x scale + offset, in `unit`. Range and rate may be NaN: not known, not
+/// slower.
+struct Channel {
+  static constexpr MessageType kType = MessageType::channel;
+  uint8_t index = 0;
+  char name[24] = {}, quantity[24] = {}, unit[8] = {}, source[40] = {};
+  double scale = 1, offset = 0, range_min = 0, range_max = 0, native_rate_hz = 0;
+  char calibrated[12] = {};  ///< ISO date, or empty
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.index, self.name, self.quantity, self.unit, self.source, self.scale, self.offset,
+          self.range_min, self.range_max, self.native_rate_hz, self.calibrated);
+  }
+};
+
+enum class NoteKind : uint8_t { simulated_by = 0, transducer = 1, surface = 2 };
+
+/// Words about the device, for people and files.
+struct Note {
+  static constexpr MessageType kType = MessageType::note;
+  uint8_t index = 0;
+  NoteKind kind = NoteKind::simulated_by;
+  char text[256] = {};
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.index, self.kind, self.text);
+  }
+};
+
+/// To each command, in the order in which they came.
+struct Answer {
+  static constexpr MessageType kType = MessageType::answer;
+  MessageType of = MessageType::hello;
+  AnswerCode code = AnswerCode::ok;
+  uint16_t reserved = 0;
+  uint32_t of_sequence = 0;
+  uint32_t detail = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.of, self.code, self.reserved, self.of_sequence, self.detail);
+  }
+};
+
+/// Frames first_frame ... first_frame + count - 1 of the stream, none missing between them. A frame that is
+/// missing between two messages was lost, on the device or on the way.
+struct Samples {
+  static constexpr MessageType kType = MessageType::samples;
+  uint64_t first_frame = 0;
+  uint64_t device_ticks = 0;  ///< the device's clock at first_frame
+  uint32_t enabled = 0;       ///< bit i: the enable input was closed at frame first_frame + i
+  uint8_t channels = 0;
+  uint8_t count = 0;
+  uint16_t reserved = 0;
+  int32_t codes[kMaxBlockCodes];  ///< frame by frame; left-justified, of an encoder plain counts
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.first_frame, self.device_ticks, self.enabled);
+    codec.count(self.channels, kMaxChannels);
+    codec.count(self.count, kMaxBlockFrames);
+    codec(self.reserved);
+    codec.array(self.codes, size_t{self.channels} * self.count);
+  }
+};
+
+/// One tick of the drive.
+struct Tick {
+  int32_t encoder = 0;
+  float drive_v = 0;
+  uint32_t flags = 0;
+};
+
+/// While armed: every tick, as samples are.
+struct Ticks {
+  static constexpr MessageType kType = MessageType::ticks;
+  uint64_t first_tick = 0;
+  uint64_t device_ticks = 0;
+  uint8_t count = 0;
+  uint8_t reserved[3] = {};
+  Tick ticks[kMaxBlockTicks];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.first_tick, self.device_ticks);
+    codec.count(self.count, kMaxBlockTicks);
+    codec.array(self.reserved, sizeof self.reserved);
+    for (uint8_t i = 0; i < self.count; ++i) {
+      auto& t = self.ticks[i];
+      codec(t.encoder, t.drive_v, t.flags);
+    }
+  }
+};
+
+/// How the device is. Counters begin at hello and run over at 2^32.
+struct Pulse {
+  static constexpr MessageType kType = MessageType::pulse;
+  uint32_t token = 0;
+  uint64_t device_ticks = 0;
+  DriveState state = DriveState::idle;
+  FaultCode fault = FaultCode::none;  ///< the one that the drive is in
+  uint8_t streaming = 0;
+  uint8_t enabled = 0;
+  int32_t encoder = 0;
+  float drive_v = 0;
+  uint32_t drive_queued = 0;
+  uint32_t late_ticks = 0, lost_records = 0, underruns = 0, amplitude_limited = 0, slew_limited = 0;
+  uint32_t damaged_frames = 0, missing_frames = 0;  ///< of what the host sent
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.token, self.device_ticks, self.state, self.fault, self.streaming, self.enabled, self.encoder,
+          self.drive_v, self.drive_queued, self.late_ticks, self.lost_records, self.underruns,
+          self.amplitude_limited, self.slew_limited, self.damaged_frames, self.missing_frames);
+  }
+};
+
+/// Unasked, once for each time that something goes wrong.
+struct Fault {
+  static constexpr MessageType kType = MessageType::fault;
+  FaultCode code = FaultCode::none;
+  uint8_t reserved[3] = {};
+  uint32_t detail = 0;
+  uint64_t device_ticks = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.code);
+    codec.array(self.reserved, sizeof self.reserved);
+    codec(self.detail, self.device_ticks);
+  }
+};
+
+}  // namespace tacto::wire

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fields to bytes and bytes to fields, little-endian on every machine. A message names its fields once, and
+// both directions follow.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace tacto::wire {
+
+/// How a payload was understood.
+enum class Parse : uint8_t {
+  ok,
+  truncated,     ///< shorter than its message
+  out_of_range,  ///< it counts more than its message may hold
+};
+
+template <size_t kSize>
+struct UnsignedOf;
+template <>
+struct UnsignedOf<1> {
+  using Type = uint8_t;
+};
+template <>
+struct UnsignedOf<2> {
+  using Type = uint16_t;
+};
+template <>
+struct UnsignedOf<4> {
+  using Type = uint32_t;
+};
+template <>
+struct UnsignedOf<8> {
+  using Type = uint64_t;
+};
+
+/// Appends fields to a buffer. What does not fit is left out, and ok() is false. Floats go as their IEEE-754
+/// bits.
+class FieldWriter {
+ public:
+  FieldWriter(uint8_t* bytes, size_t capacity) noexcept : bytes_(bytes), capacity_(capacity) {}
+
+  template <class... Fields>
+  void operator()(const Fields&... fields) noexcept {
+    (put(fields), ...);
+  }
+  template <class T>
+  void array(const T* values, size_t count) noexcept {
+    for (size_t i = 0; i < count; ++i) put(values[i]);
+  }
+  template <class T>
+  void count(const T& value, size_t most) noexcept {
+    ok_ = ok_ && value <= most;
+    put(value);
+  }
+  bool ok() const noexcept { return ok_; }
+  size_t size() const noexcept { return size_; }
+
+ private:
+  template <class T>
+  void put(const T& value) noexcept {
+    typename UnsignedOf<sizeof(T)>::Type bits;
+    __builtin_memcpy(&bits, &value, sizeof bits);
+    ok_ = ok_ && capacity_ - size_ >= sizeof bits;
+    if (!ok_) return;
+    for (size_t i = 0; i < sizeof bits; ++i) bytes_[size_++] = static_cast<uint8_t>(bits >> (8 * i));
+  }
+  template <size_t kSize>
+  void put(const char (&text)[kSize]) noexcept {
+    array(text, kSize);
+  }
+
+  uint8_t* bytes_;
+  size_t capacity_, size_ = 0;
+  bool ok_ = true;
+};
+
+/// Takes fields from a payload. Where it ends too early the fields are zero. Bytes after the last field are a
+/// newer minor version's, and are passed over.
+class FieldReader {
+ public:
+  FieldReader(const uint8_t* bytes, size_t size) noexcept : bytes_(bytes), left_(size) {}
+
+  template <class... Fields>
+  void operator()(Fields&... fields) noexcept {
+    (get(fields), ...);
+  }
+  /// `count` is what count() let through.
+  template <class T>
+  void array(T* values, size_t count) noexcept {
+    for (size_t i = 0; i < count; ++i) get(values[i]);
+  }
+  template <class T>
+  void count(T& value, size_t most) noexcept {
+    get(value);
+    if (value <= most) return;
+    if (parse_ == Parse::ok) parse_ = Parse::out_of_range;
+    value = 0;
+  }
+  Parse parse() const noexcept { return parse_; }
+
+ private:
+  template <class T>
+  void get(T& value) noexcept {
+    typename UnsignedOf<sizeof(T)>::Type bits = 0;
+    if (left_ < sizeof bits) return fall_short(value);
+    for (size_t i = 0; i < sizeof bits; ++i)
+      bits = static_cast<decltype(bits)>(bits | (static_cast<decltype(bits)>(bytes_[i]) << (8 * i)));
+    bytes_ += sizeof bits;
+    left_ -= sizeof bits;
+    __builtin_memcpy(&value, &bits, sizeof bits);
+  }
+  // A text always ends: its last byte is zero whatever came.
+  template <size_t kSize>
+  void get(char (&text)[kSize]) noexcept {
+    array(text, kSize);
+    text[kSize - 1] = 0;
+  }
+  template <class T>
+  void fall_short(T& value) noexcept {
+    value = {};
+    left_ = 0;
+    if (parse_ == Parse::ok) parse_ = Parse::truncated;
+  }
+
+  const uint8_t* bytes_;
+  size_t left_;
+  Parse parse_ = Parse::ok;
+};
+
+/// A message from its payload.
+template <class Message>
+Parse parse(const uint8_t* payload, size_t size, Message& message) noexcept {
+  FieldReader reader(payload, size);
+  Message::fields(reader, message);
+  return reader.parse();
+}
+
+}  // namespace tacto::wire

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The envelope of every message: 12 bytes before it, 4 behind it (core/WIRE.md).
+#pragma once
+
+#include "firmware-host/core/wire/field_codec.hpp"
+
+namespace tacto::wire {
+
+inline constexpr uint8_t kProtocolMajor = 1;
+inline constexpr uint8_t kProtocolMinor = 0;
+inline constexpr uint8_t kOldestMajor = 1;  ///< the oldest that this side still speaks
+
+inline constexpr uint8_t kSync0 = 0xA5, kSync1 = 0x54;
+inline constexpr size_t kHeaderSize = 12, kCheckSize = 4;
+inline constexpr size_t kMaxPayload = 2112;
+inline constexpr size_t kMaxFrame = kHeaderSize + kMaxPayload + kCheckSize;
+
+struct FrameHeader {
+  uint8_t major = kProtocolMajor;
+  uint8_t type = 0;
+  uint16_t length = 0;  ///< of the payload, bytes
+  uint32_t sequence = 0;
+};
+
+/// A frame that arrived whole. The payload is the decoder's, until its next call.
+struct Frame {
+  FrameHeader header;
+  const uint8_t* payload = nullptr;
+};
+
+/// Envelops a payload that stands at frame + kHeaderSize already. Gives the frame's size.
+size_t seal_frame(const FrameHeader& header, uint8_t* frame) noexcept;
+
+/// True where a header begins at `bytes` (kHeaderSize of them): marks and check are right.
+bool read_header(const uint8_t* bytes, FrameHeader& header) noexcept;
+
+/// Writes a message as a frame. Gives its size, or 0 where it does not fit in `capacity` or kMaxPayload.
+template <class Message>
+size_t encode_frame(const Message& message, uint32_t sequence, uint8_t* frame, size_t capacity) noexcept {
+  if (capacity < kHeaderSize + kCheckSize) return 0;
+  const size_t room = capacity - kHeaderSize - kCheckSize;
+  FieldWriter writer(frame + kHeaderSize, room < kMaxPayload ? room : kMaxPayload);
+  Message::fields(writer, message);
+  if (!writer.ok()) return 0;
+  return seal_frame(
+      {kProtocolMajor, static_cast<uint8_t>(Message::kType), static_cast<uint16_t>(writer.size()), sequence},
+      frame);
+}
+
+}  // namespace tacto::wire

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the host says. Fields stand in the order of their bytes; core/WIRE.md says what each means.
+#pragma once
+
+#include "firmware-host/core/wire/frame.hpp"
+#include "firmware-host/core/wire/message_types.hpp"
+
+namespace tacto::wire {
+
+/// A message without fields.
+template <MessageType kOf>
+struct Bare {
+  static constexpr MessageType kType = kOf;
+  template <class Codec, class Self>
+  static void fields(Codec&, Self&) noexcept {}
+};
+
+/// Ends whatever ran, and asks for welcome, channels and notes.
+struct Hello {
+  static constexpr MessageType kType = MessageType::hello;
+  uint8_t major = kProtocolMajor;
+  uint8_t minor = kProtocolMinor;
+  uint16_t reserved = 0;
+  uint32_t nonce = 0;  ///< comes back: tells this connection's welcome from an older one's
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.major, self.minor, self.reserved, self.nonce);
+  }
+};
+
+struct StreamStart {
+  static constexpr MessageType kType = MessageType::stream_start;
+  uint32_t rate_millihertz = 0;
+  uint8_t block_frames = 0;  ///< frames of a samples message, 1 to kMaxBlockFrames
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.rate_millihertz, self.block_frames);
+  }
+};
+
+using StreamStop = Bare<MessageType::stream_stop>;
+
+/// Obligatory before arming; never wider than the device's own.
+struct Limits {
+  static constexpr MessageType kType = MessageType::limits;
+  float drive_v = 0;
+  float slew_v_per_s = 0;
+  float onset_s = 0;
+  float release_s = 0;  ///< release_s + drive_v / slew_v_per_s is at most kLongestReleaseS
+  uint16_t watchdog_ms = 0;
+  uint16_t counts_per_tick = 0;  ///< more is an encoder jump
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.drive_v, self.slew_v_per_s, self.onset_s, self.release_s, self.watchdog_ms,
+          self.counts_per_tick);
+  }
+};
+
+/// The texture as wanted drive (before gain and filters) at even places along the encoder.
+struct ProfileBegin {
+  static constexpr MessageType kType = MessageType::profile_begin;
+  uint32_t samples = 0;
+  int32_t origin_count = 0;            ///< encoder count at which the sample at_origin lies
+  int64_t at_origin_q32 = 0;           ///< sample under origin_count, times 2^32
+  uint64_t samples_per_count_q32 = 0;  ///< encoder step over pitch, times 2^32
+  ProfileEnds ends = ProfileEnds::stop;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.samples, self.origin_count, self.at_origin_q32, self.samples_per_count_q32, self.ends);
+  }
+};
+
+struct ProfileChunk {
+  static constexpr MessageType kType = MessageType::profile_chunk;
+  uint32_t first = 0;
+  uint16_t count = 0;
+  float values[kMaxChunk];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.first);
+    codec.count(self.count, kMaxChunk);
+    codec.array(self.values, self.count);
+  }
+};
+
+struct ProfileEnd {
+  static constexpr MessageType kType = MessageType::profile_end;
+  uint32_t check = 0;  ///< CRC-32C of all samples' bytes
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.check);
+  }
+};
+
+/// H(z) = (b0 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2).
+struct Section {
+  float b0 = 1, b1 = 0, b2 = 0, a1 = 0, a2 = 0;
+};
+
+struct Filters {
+  static constexpr MessageType kType = MessageType::filters;
+  uint8_t count = 0;
+  Section sections[kMaxSections];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec.count(self.count, kMaxSections);
+    for (uint8_t i = 0; i < self.count; ++i) {
+      auto& s = self.sections[i];
+      codec(s.b0, s.b1, s.b2, s.a1, s.a2);
+    }
+  }
+};
+
+/// Of the profile; may change while playing.
+struct Gain {
+  static constexpr MessageType kType = MessageType::gain;
+  float gain = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.gain);
+  }
+};
+
+/// A sine whose frequency grows exponentially, for identification.
+struct Sweep {
+  static constexpr MessageType kType = MessageType::sweep;
+  float amplitude_v = 0;
+  uint32_t from_millihertz = 0, to_millihertz = 0;
+  uint32_t growth_q32 = 0;  ///< of the frequency in a tick, times 2^32: 2^32 ((to / from)^(1 / ticks) - 1)
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.amplitude_v, self.from_millihertz, self.to_millihertz, self.growth_q32);
+  }
+};
+
+struct Arm {
+  static constexpr MessageType kType = MessageType::arm;
+  DriveSource source = DriveSource::profile;
+  uint32_t rate_millihertz = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.source, self.rate_millihertz);
+  }
+};
+
+using Play = Bare<MessageType::play>;
+using Stop = Bare<MessageType::stop>;
+using Disarm = Bare<MessageType::disarm>;
+
+/// The next ticks' drive, where the host closes the loop. Not answered.
+struct Drive {
+  static constexpr MessageType kType = MessageType::drive;
+  uint16_t count = 0;
+  float drive_v[kMaxChunk];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec.count(self.count, kMaxChunk);
+    codec.array(self.drive_v, self.count);
+  }
+};
+
+/// Answered by a pulse. Any sound frame feeds the watchdog; this one is for when there is nothing to say.
+struct Heartbeat {
+  static constexpr MessageType kType = MessageType::heartbeat;
+  uint32_t token = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.token);
+  }
+};
+
+using Reset = Bare<MessageType::reset>;
+
+}  // namespace tacto::wire

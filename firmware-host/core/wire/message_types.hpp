@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers of the protocol: types, states, answers and faults. A number once given is never given again.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace tacto::wire {
+
+/// Below 0x80 from the host, above from the device. hello and welcome begin alike in every version.
+enum class MessageType : uint8_t {
+  hello = 0x01,
+  stream_start = 0x02,
+  stream_stop = 0x03,
+  limits = 0x04,
+  profile_begin = 0x05,
+  profile_chunk = 0x06,
+  profile_end = 0x07,
+  filters = 0x08,
+  gain = 0x09,
+  sweep = 0x0A,
+  arm = 0x0B,
+  play = 0x0C,
+  stop = 0x0D,
+  disarm = 0x0E,
+  drive = 0x0F,
+  heartbeat = 0x10,
+  reset = 0x11,
+  welcome = 0x81,
+  channel = 0x82,
+  note = 0x83,
+  answer = 0x84,
+  samples = 0x85,
+  ticks = 0x86,
+  pulse = 0x87,
+  fault = 0x88,
+};
+
+/// What the drive is doing.
+enum class DriveState : uint8_t {
+  idle = 0,   ///< no output
+  armed = 1,  ///< ticking, drive at zero
+  playing = 2,
+  fault = 3,  ///< ramping to zero, or there; disarm ends it
+};
+
+/// Where the drive comes from.
+enum class DriveSource : uint8_t { profile = 0, host = 1, sweep = 2 };
+
+/// What lies beyond a profile's ends.
+enum class ProfileEnds : uint8_t { stop = 0, loop = 1, mirror = 2 };
+
+/// A device's answer to a command.
+enum class AnswerCode : uint8_t {
+  ok = 0,
+  unknown_type = 1,
+  bad_payload = 2,    ///< too short, or it counts more than it may
+  bad_value = 3,      ///< a value out of range, or no number; detail: which field, from 0
+  wrong_state = 4,    ///< not in this state; detail: the DriveState
+  too_large = 5,      ///< more than the device can hold; detail: how much it can
+  check_failed = 6,   ///< the profile is not what was sent; detail: the check of what is here
+  incomplete = 7,     ///< no profile, or with holes; detail: samples that are here
+  no_limits = 8,      ///< limits come first
+  enable_open = 9,    ///< the hardware enable input is open
+  wrong_version = 10  ///< a major version that this device does not speak
+};
+
+/// Why a device ramped its drive to zero, or what went wrong in its stream.
+enum class FaultCode : uint8_t {
+  none = 0,
+  host_silent = 1,     ///< nothing from the host for watchdog_ms; detail: ticks of silence
+  enable_open = 2,     ///< the hardware enable input opened
+  encoder_jump = 3,    ///< more counts in a tick than a finger goes; detail: counts
+  drive_underrun = 4,  ///< the host's drive did not come; detail: ticks without
+  not_a_number = 5,    ///< the filtered drive was no finite number
+  converter = 6,       ///< a converter gave no sample
+  ring_full = 7,       ///< the host did not take the stream; detail: records lost so far
+};
+inline constexpr uint8_t kFaultCodes = 8;
+
+/// Bits of a tick's flags.
+enum TickFlag : uint32_t {
+  kTickEnabled = 1,           ///< the enable input is closed
+  kTickPlaying = 2,           ///< state is playing
+  kTickFault = 4,             ///< state is fault
+  kTickAmplitudeLimited = 8,  ///< the drive was held to its limit
+  kTickSlewLimited = 16,
+  kTickLate = 32,  ///< it began more than half a period late
+};
+
+inline constexpr size_t kMaxChannels = 16;
+inline constexpr size_t kMaxBlockFrames = 32;
+inline constexpr size_t kMaxBlockCodes = kMaxChannels * kMaxBlockFrames;
+inline constexpr size_t kMaxBlockTicks = 64;
+inline constexpr size_t kMaxChunk = 512;  ///< floats of a profile's or drive's chunk
+inline constexpr size_t kMaxSections = 16;
+
+}  // namespace tacto::wire

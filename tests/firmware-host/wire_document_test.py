@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The example frames of core/WIRE.md, made again from its tables with struct and a bitwise CRC: a second codec.
+
+wire_golden_test.cpp holds the C++ codec against the same lines. --print gives the lines to paste.
+"""
+import pathlib
+import re
+import struct
+import sys
+
+WIRE = pathlib.Path(__file__).resolve().parents[2] / "firmware-host/core/WIRE.md"
+
+
+def crc32c(data):
+    check = 0xFFFFFFFF
+    for byte in data:
+        check ^= byte
+        for _ in range(8):
+            check = check >> 1 ^ (0x82F63B78 if check & 1 else 0)
+    return check ^ 0xFFFFFFFF
+
+
+def frame(kind, sequence, payload):
+    head = struct.pack("<BBBBHI", 0xA5, 0x54, 1, kind, len(payload), sequence)
+    head += struct.pack("<H", crc32c(head) & 0xFFFF)
+    return head + payload + struct.pack("<I", crc32c(head + payload))
+
+
+# name: (type, sequence, struct format, values)
+EXAMPLES = {
+    "hello": (0x01, 0, "<BBHI", (1, 0, 0, 0x12345678)),
+    "stream_start": (0x02, 1, "<IB", (10_000_000, 32)),
+    "stream_stop": (0x03, 2, "<", ()),
+    "limits": (0x04, 3, "<ffffHH", (5.0, 15708.0, 0.05, 0.01, 100, 200)),
+    "profile_begin": (0x05, 4, "<IiqQB", (4000, -250, 1 << 31, 1 << 28, 1)),
+    "profile_chunk": (0x06, 5, "<IHfff", (512, 3, 0.5, -0.25, 1e-6)),
+    "profile_end": (0x07, 6, "<I", (0xDEADBEEF,)),
+    "filters": (0x08, 7, "<Bfffff", (1, 1.0, -1.5, 0.75, -1.25, 0.5)),
+    "gain": (0x09, 8, "<f", (-2.5,)),
+    "sweep": (0x0A, 9, "<fIII", (0.5, 10_000, 800_000, 188_000)),
+    "arm": (0x0B, 10, "<BI", (0, 20_000_000)),
+    "play": (0x0C, 11, "<", ()),
+    "stop": (0x0D, 12, "<", ()),
+    "disarm": (0x0E, 13, "<", ()),
+    "drive": (0x0F, 14, "<Hff", (2, 0.125, -0.125)),
+    "heartbeat": (0x10, 15, "<I", (42,)),
+    "reset": (0x11, 16, "<", ()),
+    "welcome": (0x81, 0, "<BBHI32s32s24sBBHIIIIIIIIff",
+                (1, 0, 0, 0x12345678, b"bench 1", b"0007", b"1.2.3", 4, 1, 16, 7, 168_000_000, 10_000_000, 1_000_000,
+                 20_000_000, 256, 16384, 1024, 5.0, 15708.0)),
+    "channel": (0x82, 1, "<B24s24s8s40sddddd12s",
+                (1, b"position", b"position", b"m", b"encoder", 1e-6, 0.0, float("nan"), float("nan"), float("nan"),
+                 b"2011-05-01")),
+    "note": (0x83, 2, "<BB256s", (0, 2, b"oak, planed")),
+    "answer": (0x84, 3, "<BBHII", (0x0B, 4, 0, 10, 3)),
+    "samples": (0x85, 4, "<QQIBBHiiii", (1 << 33, 0x0102030405060708, 3, 2, 2, 0, -65536, 1234, 0x7FFF0000, -1)),
+    "ticks": (0x86, 5, "<QQB3sifI", (7, 99, 1, b"", -5, 0.0625, 3)),
+    "pulse": (0x87, 6, "<IQBBBBifIIIIIIII", (42, 1 << 40, 2, 0, 1, 1, -77, 1.5, 10, 1, 2, 3, 4, 5, 6, 7)),
+    "fault": (0x88, 7, "<B3sIQ", (3, b"", 10_000, 123_456_789)),
+}
+
+
+def lines():
+    for name, (kind, sequence, layout, values) in EXAMPLES.items():
+        yield f"{name} {frame(kind, sequence, struct.pack(layout, *values)).hex()}"
+
+
+def main():
+    assert crc32c(b"123456789") == 0xE3069283
+    if "--print" in sys.argv:
+        print("\n".join(lines()))
+        return 0
+    written = re.findall(r"^([a-z_]+ a554[0-9a-f]+)$", WIRE.read_text(), re.M)
+    assert written == list(lines()), "WIRE.md's examples are not what its tables say"
+    tables = set(re.findall(r"^### `0x[0-9a-f]{2}` ([a-z_]+)", WIRE.read_text(), re.M))
+    assert tables == set(EXAMPLES), f"sections and examples differ: {tables ^ set(EXAMPLES)}"
+    print(f"{len(written)} examples")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes the seeds of the corpora: WIRE.md's example frames, and conversations that get as far as a drive."""
+import math
+import pathlib
+import re
+import struct
+
+HERE = pathlib.Path(__file__).resolve().parent
+WIRE = HERE.parents[1] / "firmware-host/core/WIRE.md"
+
+
+def action_frame(kind, payload=b""):
+    """firmware_fuzz's action 0."""
+    return bytes([0, kind, len(payload)]) + payload
+
+
+TICKS = bytes([2, 250])
+HELLO = action_frame(1, struct.pack("<BBHI", 1, 0, 0, 1))
+LIMITS = action_frame(4, struct.pack("<ffffHH", 5.0, 15708.0, 0.002, 0.005, 50, 100))
+PLAY, STOP, DISARM = (action_frame(kind) for kind in (0x0C, 0x0D, 0x0E))
+
+
+def arm(source):
+    return action_frame(0x0B, struct.pack("<BI", source, 10_000_000))
+
+
+def profile():
+    values = [3 * math.sin(i) for i in range(32)]
+    begin = action_frame(5, struct.pack("<IiqQB", 32, 0, 16 << 32, 1 << 32, 1))
+    chunk = action_frame(6, struct.pack("<IH32f", 0, 32, *values))
+    return begin + chunk + action_frame(7, struct.pack("<I", crc32c(struct.pack("<32f", *values))))
+
+
+def crc32c(data):
+    check = 0xFFFFFFFF
+    for byte in data:
+        check ^= byte
+        for _ in range(8):
+            check = check >> 1 ^ (0x82F63B78 if check & 1 else 0)
+    return check ^ 0xFFFFFFFF
+
+
+CONVERSATIONS = {
+    "stream": HELLO + action_frame(2, struct.pack("<IB", 10_000_000, 32)) + TICKS + action_frame(3),
+    "profile": HELLO + LIMITS + profile() + action_frame(8, struct.pack("<Bfffff", 1, 1, 0.5, 0, -0.3, 0.1)) + arm(0) +
+               PLAY + TICKS + bytes([4, 5]) + TICKS + STOP + TICKS + DISARM + TICKS,
+    "host_drive": HELLO + LIMITS + arm(1) + PLAY + action_frame(0x0F, struct.pack("<H50f", 50, *[2.0] * 50)) + TICKS +
+                  bytes([3]) + TICKS + DISARM + TICKS,
+    "sweep": HELLO + LIMITS + action_frame(0x0A, struct.pack("<fIII", 1, 10_000, 500_000, 4_000_000)) + arm(2) + PLAY +
+             TICKS * 3 + action_frame(0x10, struct.pack("<I", 1)) + DISARM,
+}
+
+
+def main():
+    frames = dict(re.findall(r"^([a-z_]+) (a554[0-9a-f]+)$", WIRE.read_text(), re.M))
+    for name, text in frames.items():
+        (HERE / "corpus/wire" / name).write_bytes(b"\x3f" + bytes.fromhex(text))
+    for name, actions in CONVERSATIONS.items():
+        (HERE / "corpus/firmware" / name).write_bytes(actions)
+
+
+if __name__ == "__main__":
+    main()
