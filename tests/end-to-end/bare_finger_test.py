@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The real finger: import, texture and spectrogram against SciPy on the same numbers."""
+import json
+
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.signal import spectrogram
@@ -58,7 +60,7 @@ def default_edges_do_not_ring():
 
 
 def drift_felt(edges):
-    stretch = ["--from", "4.55s", "--to", "6.85s", "--edges", edges]
+    stretch = ["--from", "4.55s", "--to", "6.85s", "--edges", edges, "--force"]
     tacto.run("spatial", "finger", "-o", "still", *stretch)
     tacto.run("spatial", "drifting", "-o", "moved", *stretch)
     x, still, _ = tacto.texture("still")
@@ -75,6 +77,35 @@ def finger_up_is_weaker():
     print(f"1-10 /mm: finger down {level['down']:.1f} dB, up {level['up']:.1f} dB")
     assert level["down"] - level["up"] > 10
     assert tacto.texture("up")[2]["direction"] == -1
+
+
+def strokes_are_found_and_the_finger_up_told():
+    tacto.run(*tacto.IMPORT_BARE_FINGER)
+    listed = tacto.run_json("spatial", "finger", "--list")
+    assert [(stroke["direction"], stroke["finger"]) for stroke in listed["strokes"]] == [(-1, "up"), (1, "down")]
+    assert 0.04 < listed["finger_up_below_n"] < 0.06, "a tenth of what the finger pressed with, 0.53 N"
+    out, said = tacto.run("spatial", "finger", "-o", "found", "--json")
+    assert "finger up in stroke 1" in said and "--finger-up" in said, said
+    (made,) = json.loads(out)["textures"]
+    assert made["stroke"] == 2 and made["file"] == "found.texture.json"
+    # 15 to 500 Hz at the stage's 40 mm/s (0.375 and 12.5 /mm) where it goes evenly; over the whole stroke, whose ends are
+    # slow, from 15 Hz / 4 mm/s on.
+    side = tacto.texture("found")[2]
+    even = [point for point in side["valid_band"] if 0.01 < point["position_m"] < 0.08]
+    assert all(abs(point["low_per_m"] / 375 - 1) < 0.02 and abs(point["high_per_m"] / 12500 - 1) < 0.02 for point in even)
+    assert made["valid_low_per_m"] < 4000 and abs(made["valid_high_per_m"] / 12500 - 1) < 0.02
+    assert abs(side["source"]["position_quantum_m"] - 5e-7) < 1e-13 and side["source"]["position_moved_m"] < 5.1e-7
+    tacto.run("spatial", "finger", "-o", "each", "--finger-up")
+    assert tacto.texture("each-01")[2]["source"]["finger_up"] is True
+    tacto.run("spatial", "finger", "-o", "asked", "--stroke", "1")
+    assert tacto.texture("asked")[2]["direction"] == -1
+
+
+def a_finger_that_all_but_rests_makes_no_texture():
+    tacto.run(*tacto.IMPORT_BARE_FINGER)
+    for more in ([], ["--grid", "10nm"]):
+        _, said = tacto.run("spatial", "finger", "-o", "rest", "--from", "7.6s", "--to", "8.4s", *more, code=5)
+        assert "all but rests" in said and "4 um" in said, said
 
 
 def band_level_db(name):
@@ -107,5 +138,6 @@ def spectrogram_agrees_with_scipy():
 
 if __name__ == "__main__":
     tacto.need_real_data()
-    for test in (texture_agrees_with_scipy, default_edges_do_not_ring, finger_up_is_weaker, spectrogram_agrees_with_scipy):
+    for test in (texture_agrees_with_scipy, default_edges_do_not_ring, finger_up_is_weaker,
+                 strokes_are_found_and_the_finger_up_told, a_finger_that_all_but_rests_makes_no_texture, spectrogram_agrees_with_scipy):
         tacto.in_folder(test)

@@ -134,7 +134,7 @@ def check_strokes(folder):
     listed = json.loads(run("spatial", folder / "finger", "--list", "--json").stdout)["strokes"]
     assert [stroke["direction"] for stroke in listed] == [-1, 1]
     assert listed[0]["normal_force_n"] < 0.05 < 0.4 < listed[1]["normal_force_n"]
-    report = json.loads(run("spatial", folder / "finger", "-o", folder / "all", "--json").stdout)
+    report = json.loads(run("spatial", folder / "finger", "-o", folder / "all", "--finger-up", "--json").stdout)
     assert [pathlib.Path(t["file"]).name for t in report["textures"]] == ["all-01.texture.json", "all-02.texture.json"]
     second, _, values = texture(folder, "all-02")
     assert second["source"]["stroke"] == 2 and abs(values.size - 91000) < 1000
