@@ -157,7 +157,7 @@ void SpectrogramMaker::finish(std::span<float> row, int exponent) const {
 }
 
 void SpectrogramMaker::unpack(const PackedRows& rows, std::span<float> a, std::span<float> b) const {
-  unpack_powers(rows.spectrum, a, b);
+  rows.powers(a, b);
   finish(a, rows.exponent);
   finish(b, rows.exponent);
 }

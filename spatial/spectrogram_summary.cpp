@@ -12,11 +12,6 @@ using schema::SpectrogramHeader;
 
 namespace {
 
-std::size_t first_bin(const Spectrogram& spectrogram, double min_frequency_per_m) {
-  const double bin = std::ceil(min_frequency_per_m / spectrogram.frequency_step_per_m * (1 - 1e-12));
-  return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(spectrogram.bins - 1)));
-}
-
 LevelReference amplitude_reference(const std::string& unit) {
   if (unit == "m") return {"1 um", 1e6, 20};
   if (unit == "1") return {"1", 1, 20};
@@ -25,12 +20,30 @@ LevelReference amplitude_reference(const std::string& unit) {
 
 }  // namespace
 
+std::size_t first_bin(const SpectrogramHeader& spectrogram, double min_frequency_per_m) {
+  const double bin = std::ceil(min_frequency_per_m / spectrogram.frequency_step_per_m * (1 - 1e-12));
+  return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(spectrogram.bins - 1)));
+}
+
+// (sum w)^2 pitch / sum w^2 is 1 over the window's noise bandwidth.
+double power_of(const SpectrogramHeader& spectrogram, std::size_t bin, double cell) {
+  if (spectrogram.scaling == Scaling::density) return cell;
+  const bool alone = bin == 0 || 2 * bin == spectrogram.padded_samples;
+  return cell * cell * (alone ? 1 : 0.5) / resolution_per_m(spectrogram);
+}
+
 std::vector<double> mean_spectrum(const Spectrogram& spectrogram) {
+  const bool amplitudes = spectrogram.scaling == Scaling::amplitude;
   std::vector<double> mean(spectrogram.bins, 0.0);
   const std::size_t positions = spectrogram.position_m.size();
   for (std::size_t p = 0; p < positions; ++p)
-    for (std::size_t k = 0; k < spectrogram.bins; ++k) mean[k] += static_cast<double>(spectrogram.at(p, k));
+    for (std::size_t k = 0; k < spectrogram.bins; ++k) {
+      const auto cell = static_cast<double>(spectrogram.at(p, k));
+      mean[k] += amplitudes ? cell * cell : cell;
+    }
   for (double& value : mean) value /= static_cast<double>(positions);
+  if (amplitudes)
+    for (double& value : mean) value = std::sqrt(value);
   return mean;
 }
 
@@ -47,8 +60,21 @@ SpectralPeak strongest_peak(const Spectrogram& spectrogram, double min_frequency
 double band_rms(const Spectrogram& spectrogram, double min_frequency_per_m) {
   const auto mean = mean_spectrum(spectrogram);
   double sum = 0;
-  for (std::size_t k = first_bin(spectrogram, min_frequency_per_m); k < mean.size(); ++k) sum += mean[k];
+  for (std::size_t k = first_bin(spectrogram, min_frequency_per_m); k < mean.size(); ++k)
+    sum += power_of(spectrogram, k, mean[k]);
   return std::sqrt(sum * spectrogram.frequency_step_per_m);
+}
+
+double lowest_of_interest_per_m(const schema::Texture& texture) {
+  constexpr double kUsualLowest = 100, kRoom = 0.7;
+  if (texture.valid_band.empty()) return kUsualLowest;
+  return kRoom * std::ranges::min(texture.valid_band, {}, &schema::BandPoint::low_per_m).low_per_m;
+}
+
+double lowest_shown_per_m(double lowest_of_interest_per_m, const SpectrogramHeader& spectrogram) {
+  const double first = spectrogram.frequency_step_per_m;
+  const double last = spectrogram.frequency_per_m(spectrogram.bins - 1);
+  return std::clamp(lowest_of_interest_per_m, first, std::max(first, last / 10));
 }
 
 double resolution_per_m(const SpectrogramHeader& spectrogram) {

@@ -2,19 +2,18 @@
 // tactograph spectrogram: textures to pictures and tables of their spatial spectrum.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/file_kind.hpp"
-#include "data-schema/texture.hpp"
+#include "spatial/cli/spectrogram_files.hpp"
+#include "spatial/cli/spectrogram_run.hpp"
+#include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
+#include "spatial/picture/spectrogram_figure.hpp"
 #include "spatial/picture/spectrogram_output.hpp"
-#include "spatial/spectrogram.hpp"
 #include "spatial/spectrogram_summary.hpp"
 
 namespace tacto::spatial {
@@ -24,134 +23,19 @@ using cli::Report;
 using schema::Dimension;
 using schema::Fault;
 using schema::Result;
-using schema::Spectrogram;
-using schema::Texture;
+using schema::SpectrogramHeader;
 
 struct Options {
   std::vector<std::string> names, outputs;
   SpectrogramOptions spectrogram;
   SpectrogramPictureOptions picture;
+  bool compress = false;
 };
 
-struct Named {
-  std::string path, name;
-  Texture texture;
-};
-
-std::string length(double metres) {
-  return schema::for_people(metres, Dimension::length);
-}
-
-// The textures among the files that a name stands for. Where many are named, other kinds are passed over.
-Result<std::vector<std::string>> texture_paths(const std::string& name, bool alone) {
-  const auto files = schema::stored_files(name);
-  if (!files) return schema::forward_error(files);
-  std::vector<std::string> paths;
-  for (const auto& file : *files)
-    if (file.kind == schema::FileKind::texture) paths.push_back(file.path);
-  if (!paths.empty()) return paths;
-  const std::string what = fmt::format("is a {}, not a texture", schema::kind_name(files->front().kind));
-  if (alone)
-    return schema::fail(Fault::unsuitable, what, name, "'tactograph spatial' makes textures from recordings");
-  cli::warn(fmt::format("{}: {}; skipped", name, what));
-  return paths;
-}
-
-std::string name_of(const std::string& path) {
-  return std::filesystem::path(schema::stem_of(path, ".texture")).filename().string();
-}
-
-Result<Named> open_texture(const std::string& path) {
-  auto texture = schema::read_texture(path);
-  if (!texture) return schema::forward_error(texture);
-  if (!texture->newer_version.empty())
-    cli::warn(fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", path,
-                          texture->newer_version));
-  return Named{path, name_of(path), std::move(*texture)};
-}
-
-Result<void> check_alike(const Named& first, const Named& other) {
-  const double pitch_m = first.texture.signal.pitch_m;
-  if (std::abs(other.texture.signal.pitch_m - pitch_m) > 1e-9 * pitch_m)
-    return schema::fail(Fault::unsuitable,
-                        fmt::format("has a grid of {}, but {} has {}", length(other.texture.signal.pitch_m),
-                                    first.path, length(pitch_m)),
-                        other.path,
-                        "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
-  if (other.texture.quantity != first.texture.quantity || other.texture.unit != first.texture.unit)
-    return schema::fail(
-        Fault::unsuitable,
-        fmt::format("holds {}, but {} holds {}", other.texture.quantity, first.path, first.texture.quantity),
-        other.path, "make a spectrogram of each alone");
-  return {};
-}
-
-Result<std::vector<Named>> open_textures(const std::vector<std::string>& names) {
-  std::vector<std::string> paths;
-  for (const std::string& name : names) {
-    const auto found = texture_paths(name, names.size() == 1);
-    if (!found) return schema::forward_error(found);
-    for (const std::string& path : *found)
-      if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
-  }
-  if (paths.empty()) return schema::fail(Fault::unsuitable, "there is no texture among the files named");
-  std::vector<Named> textures;
-  for (const std::string& path : paths) {
-    auto texture = open_texture(path);
-    if (!texture) return schema::forward_error(texture);
-    textures.push_back(std::move(*texture));
-    if (auto alike = check_alike(textures.front(), textures.back()); !alike)
-      return schema::forward_error(alike);
-  }
-  return textures;
-}
-
-void warn_of_odd_options(const Options& options, double pitch_m) {
-  if (options.spectrogram.hop_m > options.spectrogram.window_m)
-    cli::warn(
-        fmt::format("the hop of {} is longer than the window of {}: what lies between windows is not seen",
-                    length(options.spectrogram.hop_m), length(options.spectrogram.window_m)));
-  if (options.spectrogram.max_frequency_per_m > 0.5 / pitch_m)
-    cli::warn(fmt::format("a grid of {} holds no frequencies above {}", length(pitch_m),
-                          schema::for_people(0.5 / pitch_m, Dimension::spatial_frequency)));
-}
-
-void warn_if_little_is_seen(const Named& texture, const Spectrogram& spectrogram) {
-  const double length_m = texture.texture.signal.length_m();
-  const double seen_m = spectrogram.position_m.back() - spectrogram.position_m.front();
-  if (seen_m < 0.25 * length_m)
-    cli::warn(fmt::format(
-        "{}: is hardly longer than the window, so the spectrogram covers only {} of {}; a shorter "
-        "--window shows more",
-        texture.path, length(seen_m), length(length_m)));
-}
-
-Result<std::vector<Spectrogram>> transform(const std::vector<Named>& textures,
-                                           const SpectrogramOptions& options) {
-  cli::Progress progress("spectrogram");
-  std::vector<Spectrogram> spectrograms;
-  const auto count = static_cast<double>(textures.size());
-  for (const Named& texture : textures) {
-    const auto done = static_cast<double>(spectrograms.size());
-    auto spectrogram = spatial_spectrogram(texture.texture, options,
-                                           [&](double part) { progress.update((done + part) / count); });
-    if (!spectrogram) {
-      schema::Error error = spectrogram.error();
-      if (error.fault == Fault::unsuitable) error.where = texture.path + ": " + error.where;
-      return tl::unexpected(error);
-    }
-    spectrogram->name = texture.name;
-    warn_if_little_is_seen(texture, *spectrogram);
-    spectrograms.push_back(std::move(*spectrogram));
-  }
-  return spectrograms;
-}
-
-SpectrogramFigure figure_of(const std::vector<Named>& textures, const std::vector<Spectrogram>& spectrograms,
-                            const SpectrogramPictureOptions& options) {
+SpectrogramFigure figure_of(const SpectrogramRun& run, const SpectrogramPictureOptions& options) {
   std::vector<SpectrogramPanel> panels;
-  for (std::size_t i = 0; i < textures.size(); ++i)
-    panels.push_back({&textures[i].texture, &spectrograms[i]});
+  for (std::size_t i = 0; i < run.textures().size(); ++i)
+    panels.push_back({&run.textures()[i].texture, &run.spectrograms()[i]});
   return SpectrogramFigure(panels, options);
 }
 
@@ -162,22 +46,29 @@ std::string rms_key(const std::string& unit) {
   return "band_rms";
 }
 
-Report row_of(const Spectrogram& spectrogram, double lowest_per_m) {
-  const SpectralPeak peak = strongest_peak(spectrogram, lowest_per_m);
+Report row_of(const SpectrogramRun::Line& line, const SpectrogramHeader& header, double lowest_per_m) {
+  const SpectralPeak peak = line.tally.strongest_peak(lowest_per_m);
   Report row;
-  row.add("texture", spectrogram.name)
-      .add("positions", spectrogram.position_m.size())
+  row.add("texture", line.name)
+      .add("positions", line.positions)
       .add("peak_position_m", peak.position_m)
       .add("peak_frequency_per_m", peak.frequency_per_m)
-      .add("peak_level_db", level_db(peak.density, level_reference(spectrogram)))
-      .add(rms_key(spectrogram.unit), band_rms(spectrogram, lowest_per_m));
+      .add("peak_level_db", level_db(peak.cell, level_reference(header)))
+      .add(rms_key(header.unit), line.tally.band_rms(lowest_per_m));
   return row;
 }
 
-Report report_of(const std::vector<Spectrogram>& spectrograms, double lowest_per_m, const Options& options) {
-  const Spectrogram& first = spectrograms.front();
+void add_grid(Report& report, const SpectrogramRun& run) {
+  const Decimation& decimation = run.decimation();
+  report.add("resolution", decimation.factor == 1 ? std::string("whole")
+                                                  : fmt::format("every {}th sample", decimation.factor));
+  if (!decimation.whole_because.empty()) report.add("whole_because", decimation.whole_because);
+}
+
+Report report_of(const SpectrogramRun& run, double lowest_per_m, const Options& options) {
+  const SpectrogramHeader& first = run.first();
   std::vector<Report> rows;
-  for (const Spectrogram& each : spectrograms) rows.push_back(row_of(each, lowest_per_m));
+  for (const auto& line : run.lines()) rows.push_back(row_of(line, first, lowest_per_m));
   Report report;
   report.add("textures", std::move(rows))
       .add("window_m", first.window_m)
@@ -186,7 +77,10 @@ Report report_of(const std::vector<Spectrogram>& spectrograms, double lowest_per
       .add("detrend", first.detrend)
       .add("bins", first.bins)
       .add("bin_spacing_per_m", first.frequency_step_per_m)
-      .add("resolution_per_m", resolution_per_m(first))
+      .add("resolution_per_m", resolution_per_m(first));
+  add_grid(report, run);
+  report.add("scaling", first.scaling == schema::Scaling::density ? "density" : "amplitude")
+      .add("window_coherent_gain", first.coherent_gain)
       .add("band_from_per_m", lowest_per_m)
       .add("band_to_per_m", first.frequency_per_m(first.bins - 1))
       .add("level_reference", level_reference(first).unit)
@@ -207,44 +101,69 @@ Result<void> check_options(const Options& options) {
 
 Result<Report> run(const Options& options) {
   if (auto checked = check_options(options); !checked) return schema::forward_error(checked);
-  const auto textures = open_textures(options.names);
-  if (!textures) return schema::forward_error(textures);
-  const auto spectrograms = transform(*textures, options.spectrogram);
-  if (!spectrograms) return schema::forward_error(spectrograms);
-  warn_of_odd_options(options, textures->front().texture.signal.pitch_m);
-  const SpectrogramFigure figure = figure_of(*textures, *spectrograms, options.picture);
-  if (auto written = write_outputs(options.outputs, figure, *spectrograms); !written)
+  auto inputs = TextureInputs::find(options.names, {});
+  if (!inputs) return schema::forward_error(inputs);
+  SpectrogramFiles files;
+  if (auto opened = files.open(options.outputs, inputs->several(), options.compress); !opened)
+    return schema::forward_error(opened);
+  SpectrogramRun run(options.spectrogram, options.picture.min_frequency_per_m, files, files.has_pictures());
+  if (auto done = run.transform(*inputs); !done) return schema::forward_error(done);
+  std::optional<SpectrogramFigure> figure;
+  if (files.has_pictures()) figure = figure_of(run, options.picture);
+  if (auto written = files.finish(figure ? &*figure : nullptr); !written)
     return schema::forward_error(written);
-  return report_of(*spectrograms, figure.lowest_per_m(), options);
+  return report_of(run, run.lowest_per_m(), options);
+}
+
+template <class Choice>
+void add_choice(CLI::App& app, const std::string& name, Choice& choice,
+                const std::map<std::string, Choice>& choices, const std::string& usual,
+                const std::string& help) {
+  std::vector<std::string> words;
+  for (const auto& [word, meaning] : choices) words.push_back(word);
+  app.add_option(name, choice, help)
+      ->transform(CLI::CheckedTransformer(choices).description(fmt::format("{{{}}}", fmt::join(words, ","))))
+      ->default_str(usual);
+}
+
+void declare_windows(CLI::App& app, SpectrogramOptions& options) {
+  cli::add_quantity(app, "--window", options.window_m, Dimension::length, "Length of the Blackman window");
+  cli::add_quantity(app, "--hop", options.hop_m, Dimension::length, "Distance from one window to the next");
+  cli::add_quantity(app, "--padding", options.padded_m, Dimension::length,
+                    "Length of a window with the zeros after it [the next power of two in samples]");
+  add_choice<Detrend>(app, "--detrend", options.detrend,
+                      {{"none", Detrend::none}, {"constant", Detrend::constant}}, "constant",
+                      "Take each window's mean off first (constant), or not (none)");
+  add_choice<schema::Scaling>(
+      app, "--scaling", options.scaling,
+      {{"density", schema::Scaling::density}, {"amplitude", schema::Scaling::amplitude}}, "density",
+      "Power spectral density (unit^2 mm), or the amplitude (unit) that a sine would have");
+  add_choice<Resolution>(
+      app, "--resolution", options.resolution,
+      {{"auto", Resolution::automatic}, {"whole", Resolution::whole}}, "auto",
+      "Transform on the coarsest grid that keeps the bins (auto), or on the texture's (whole)");
 }
 
 void declare_options(CLI::App& app, Options& options) {
-  auto& spectrogram = options.spectrogram;
-  app.add_option("TEXTURE", options.names, "Textures, by stem or file; several share one picture")
+  app.add_option(
+         "TEXTURE", options.names,
+         "Textures, or recordings of which each stroke becomes one, by stem or file; several share one "
+         "output. NAME stands for NAME-01, NAME-02 ... where there is no texture NAME")
       ->required();
   app.add_option("-o,--output", options.outputs,
                  "What to write: .png, .svg, .nc (netCDF-4) or .csv; may be repeated")
       ->required()
       ->allow_extra_args(false);
-  cli::add_quantity(app, "--window", spectrogram.window_m, Dimension::length,
-                    "Length of the Blackman window");
-  cli::add_quantity(app, "--hop", spectrogram.hop_m, Dimension::length,
-                    "Distance from one window to the next");
-  cli::add_quantity(app, "--padding", spectrogram.padded_m, Dimension::length,
-                    "Length of a window with the zeros after it [the next power of two in samples]");
-  cli::add_quantity(app, "--max-frequency", spectrogram.max_frequency_per_m, Dimension::spatial_frequency,
-                    "Highest spatial frequency that is kept");
+  declare_windows(app, options.spectrogram);
+  cli::add_quantity(app, "--max-frequency", options.spectrogram.max_frequency_per_m,
+                    Dimension::spatial_frequency, "Highest spatial frequency that is kept");
   cli::add_quantity(
       app, "--min-frequency", options.picture.min_frequency_per_m, Dimension::spatial_frequency,
       "Lower end of the picture's axis and of the band that is summed up [0.7 of the texture's valid "
       "band, else 0.1/mm]");
   cli::add_quantity(app, "--dynamic-range", options.picture.dynamic_range_db, Dimension::level,
                     "Levels from the darkest to the brightest colour");
-  const std::map<std::string, Detrend> detrends = {{"none", Detrend::none}, {"constant", Detrend::constant}};
-  app.add_option("--detrend", spectrogram.detrend,
-                 "Take each window's mean off first (constant), or not (none)")
-      ->transform(CLI::CheckedTransformer(detrends).description("{constant,none}"))
-      ->default_str("constant");
+  app.add_flag("--compress", options.compress, "Deflate the cells of a .nc: slower, and hardly smaller");
 }
 
 cli::Action declare(CLI::App& app) {
@@ -257,6 +176,8 @@ cli::Action declare(CLI::App& app) {
 
 const cli::Verb kSpectrogramVerb{
     "spectrogram", "Show a texture's spatial spectrum along its length, as a picture or a file",
-    "tactograph spectrogram oak -o oak.png -o oak.nc --window 10mm --max-frequency 15/mm", declare};
+    "tactograph spectrogram oak -o oak.png -o oak.nc --window 10mm --max-frequency 15/mm\n"
+    "  tactograph spectrogram oak.json -o oak.nc        (a recording: its strokes, one after the other)",
+    declare};
 
 }  // namespace tacto::spatial

@@ -1,17 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every door to FFTW needs: aligned buffers, and the lock around its planner. Internal to this folder.
+// What every door to FFTW needs: its two precisions under one name, aligned buffers, and the lock around its
+// planner. Internal to this folder.
 #pragma once
+
+#include <fftw3.h>
 
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <string>
 
 namespace tacto::spatial {
 
 /// FFTW's planners (of all precisions) keep global tables; only execution may run beside itself.
 std::mutex& planner_mutex();
+
+template <class Real>
+struct Fftw;
+
+template <>
+struct Fftw<double> {
+  using Plan = fftw_plan;
+  using Complex = fftw_complex;
+  static constexpr const char* kName = "fftw";
+  static Plan plan_complex(int n, Complex* in, Complex* out, unsigned flags) {
+    return fftw_plan_dft_1d(n, in, out, FFTW_FORWARD, flags);
+  }
+  static void execute(Plan plan) { fftw_execute(plan); }
+  static void destroy(Plan plan) { fftw_destroy_plan(plan); }
+  static void limit_planning(double seconds) { fftw_set_timelimit(seconds); }
+  static bool learn(const char* wisdom) { return fftw_import_wisdom_from_string(wisdom) != 0; }
+  static char* wisdom() { return fftw_export_wisdom_to_string(); }
+  static void free(void* memory) { fftw_free(memory); }
+};
+
+template <>
+struct Fftw<float> {
+  using Plan = fftwf_plan;
+  using Complex = fftwf_complex;
+  static constexpr const char* kName = "fftwf";
+  static Plan plan_complex(int n, Complex* in, Complex* out, unsigned flags) {
+    return fftwf_plan_dft_1d(n, in, out, FFTW_FORWARD, flags);
+  }
+  static void execute(Plan plan) { fftwf_execute(plan); }
+  static void destroy(Plan plan) { fftwf_destroy_plan(plan); }
+  static void limit_planning(double seconds) { fftwf_set_timelimit(seconds); }
+  static bool learn(const char* wisdom) { return fftwf_import_wisdom_from_string(wisdom) != 0; }
+  static char* wisdom() { return fftwf_export_wisdom_to_string(); }
+  static void free(void* memory) { fftwf_free(memory); }
+};
 
 struct FreeBuffer {
   void operator()(void* memory) const { std::free(memory); }

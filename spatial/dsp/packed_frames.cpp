@@ -2,16 +2,19 @@
 #include "spatial/dsp/packed_frames.hpp"
 
 #include <cassert>
+#include <cstddef>
 
 namespace tacto::spatial {
 namespace {
 
-// Both halves of a complex array as plain floats, which compilers vectorise (std::complex is laid out so).
-const float* floats(PackedSpectrum z) {
-  return reinterpret_cast<const float*>(z.data());
+// A complex array as plain numbers, which compilers vectorise; std::complex is laid out so.
+template <class Real>
+const Real* numbers(PackedSpectrum<Real> z) {
+  return reinterpret_cast<const Real*>(z.data());
 }
 
-void pack_level(const Frame& a, const Frame& b, std::span<const float> window, float* __restrict out) {
+template <class Real>
+void pack_level(const Frame& a, const Frame& b, std::span<const float> window, Real* __restrict out) {
   const float* __restrict w = window.data();
   const float* __restrict x = a.samples;
   const float* __restrict y = b.samples;
@@ -22,7 +25,8 @@ void pack_level(const Frame& a, const Frame& b, std::span<const float> window, f
   }
 }
 
-void pack_sloping(const Frame& a, const Frame& b, std::span<const float> window, float* __restrict out) {
+template <class Real>
+void pack_sloping(const Frame& a, const Frame& b, std::span<const float> window, Real* __restrict out) {
   const auto count = static_cast<int>(window.size());  // an int becomes a float in one instruction
   for (int n = 0; n < count; ++n) {
     const auto at = static_cast<float>(n);
@@ -33,41 +37,56 @@ void pack_sloping(const Frame& a, const Frame& b, std::span<const float> window,
 
 }  // namespace
 
+template <class Real>
 void pack_frames(const Frame& a, const Frame& b, std::span<const float> window,
-                 std::span<std::complex<float>> packed) {
+                 std::span<std::complex<Real>> packed) {
   assert(window.size() <= packed.size());
-  auto* out = reinterpret_cast<float*>(packed.data());
+  auto* out = reinterpret_cast<Real*>(packed.data());
   if (a.slope == 0 && b.slope == 0)
     pack_level(a, b, window, out);
   else
     pack_sloping(a, b, window, out);
 }
 
-void unpack_powers(PackedSpectrum z, std::span<float> a, std::span<float> b) {
+template <class Real>
+void unpack_powers(PackedSpectrum<Real> z, std::span<float> a, std::span<float> b) {
   assert(a.size() == b.size() && a.size() <= z.size() / 2 + 1);
   if (a.empty()) return;
-  const float* __restrict up = floats(z);
-  const float* __restrict down = up + 2 * z.size();  // Z_-k = Z_(length - k)
+  const Real* __restrict up = numbers(z);
+  const Real* __restrict down = up + 2 * z.size();  // Z_-k = Z_(length - k)
   float* __restrict power_a = a.data();
   float* __restrict power_b = b.data();
-  power_a[0] = up[0] * up[0];
-  power_b[0] = up[1] * up[1];
+  power_a[0] = static_cast<float>(up[0] * up[0]);
+  power_b[0] = static_cast<float>(up[1] * up[1]);
   const auto bins = static_cast<std::ptrdiff_t>(a.size());
   for (std::ptrdiff_t k = 1; k < bins; ++k) {
-    const float re = up[2 * k], im = up[2 * k + 1], twin_re = down[-2 * k], twin_im = down[-2 * k + 1];
-    const float a_re = re + twin_re, a_im = im - twin_im, b_re = im + twin_im, b_im = twin_re - re;
-    power_a[k] = 0.25F * (a_re * a_re + a_im * a_im);
-    power_b[k] = 0.25F * (b_re * b_re + b_im * b_im);
+    const Real re = up[2 * k], im = up[2 * k + 1], twin_re = down[-2 * k], twin_im = down[-2 * k + 1];
+    const Real a_re = re + twin_re, a_im = im - twin_im, b_re = im + twin_im, b_im = twin_re - re;
+    power_a[k] = static_cast<float>(Real{0.25} * (a_re * a_re + a_im * a_im));
+    power_b[k] = static_cast<float>(Real{0.25} * (b_re * b_re + b_im * b_im));
   }
 }
 
-void unpack_spectra(PackedSpectrum z, std::span<std::complex<float>> a, std::span<std::complex<float>> b) {
+template <class Real>
+void unpack_spectra(PackedSpectrum<Real> z, std::span<std::complex<float>> a,
+                    std::span<std::complex<float>> b) {
   assert(a.size() == b.size() && a.size() <= z.size() / 2 + 1);
   for (std::size_t k = 0; k < a.size(); ++k) {
-    const std::complex<float> here = z[k], twin = std::conj(z[k == 0 ? 0 : z.size() - k]);
-    a[k] = 0.5F * (here + twin);
-    b[k] = std::complex<float>(0, -0.5F) * (here - twin);
+    const std::complex<Real> here = z[k], twin = std::conj(z[k == 0 ? 0 : z.size() - k]);
+    a[k] = std::complex<float>(Real{0.5} * (here + twin));
+    b[k] = std::complex<float>(std::complex<Real>(0, Real{-0.5}) * (here - twin));
   }
 }
+
+template void pack_frames<float>(const Frame&, const Frame&, std::span<const float>,
+                                 std::span<std::complex<float>>);
+template void pack_frames<double>(const Frame&, const Frame&, std::span<const float>,
+                                  std::span<std::complex<double>>);
+template void unpack_powers<float>(PackedSpectrum<float>, std::span<float>, std::span<float>);
+template void unpack_powers<double>(PackedSpectrum<double>, std::span<float>, std::span<float>);
+template void unpack_spectra<float>(PackedSpectrum<float>, std::span<std::complex<float>>,
+                                    std::span<std::complex<float>>);
+template void unpack_spectra<double>(PackedSpectrum<double>, std::span<std::complex<float>>,
+                                     std::span<std::complex<float>>);
 
 }  // namespace tacto::spatial

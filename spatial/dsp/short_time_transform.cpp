@@ -35,7 +35,21 @@ int exponent_of(double largest) {
   return std::abs(exponent) <= kUsualExponent ? 0 : std::max(exponent, kSmallestExponent);
 }
 
+std::variant<PackedFft<float>, PackedFft<double>> fft_for(std::size_t length, std::size_t expected,
+                                                          bool in_double) {
+  if (in_double) return PackedFft<double>(length, expected);
+  return PackedFft<float>(length, expected);
+}
+
 }  // namespace
+
+void PackedRows::powers(std::span<float> a, std::span<float> b) const {
+  std::visit([&](auto spectrum) { unpack_powers(spectrum, a, b); }, spectrum_);
+}
+
+void PackedRows::spectra(std::span<std::complex<float>> a, std::span<std::complex<float>> b) const {
+  std::visit([&](auto spectrum) { unpack_spectra(spectrum, a, b); }, spectrum_);
+}
 
 ShortTimeTransform::ShortTimeTransform(const FrameShape& shape, const Decimation& decimation,
                                        std::span<const double> window, double gain, bool detrend,
@@ -45,7 +59,7 @@ ShortTimeTransform::ShortTimeTransform(const FrameShape& shape, const Decimation
       detrend_(detrend),
       rows_per_block_(rows_per_block(shape)),
       window_(every_nth(window, decimation.factor, gain * static_cast<double>(decimation.factor))),
-      fft_(shape.padded / decimation.factor, (rows + 1) / 2),
+      fft_(fft_for(shape.padded / decimation.factor, (rows + 1) / 2, decimation.factor > 1)),
       means_(rows_per_block_) {
   assert(window.size() == shape.window && shape.padded % decimation.factor == 0);
   const std::size_t longest = (rows_per_block_ - 1) * shape.hop + shape.window;
@@ -114,12 +128,14 @@ Frame ShortTimeTransform::frame(const Block& block, std::size_t row) const {
   return {decimator_->from(offset), level, static_cast<float>(slope)};
 }
 
-schema::Result<void> ShortTimeTransform::transform_block(const Block& block, const PackedRowSink& sink) {
+template <class Real>
+schema::Result<void> ShortTimeTransform::transform_block(PackedFft<Real>& fft, const Block& block,
+                                                         const PackedRowSink& sink) {
   for (std::size_t row = 0; row < block.rows; row += 2) {
     const bool two = row + 1 < block.rows;
-    pack_frames(frame(block, row), frame(block, two ? row + 1 : row), window_, fft_.input());
-    fft_.transform();
-    if (auto taken = sink({block.first_row + row, two, fft_.output(), block.exponent}); !taken) return taken;
+    pack_frames(frame(block, row), frame(block, two ? row + 1 : row), window_, fft.input());
+    fft.transform();
+    if (auto taken = sink({block.first_row + row, two, block.exponent, fft.output()}); !taken) return taken;
   }
   return {};
 }
@@ -131,7 +147,8 @@ schema::Result<void> ShortTimeTransform::transform(std::span<const double> signa
     const Block block = block_at(signal, row, rows);
     load(signal, block);
     if (detrend_) find_means(signal, block);
-    if (auto done = transform_block(block, sink); !done) return done;
+    const auto done = std::visit([&](auto& fft) { return transform_block(fft, block, sink); }, fft_);
+    if (!done) return done;
   }
   return {};
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "data-schema/error.hpp"
@@ -15,21 +16,32 @@
 
 namespace tacto::spatial {
 
-/// Rows `row` and, unless it is the last one left over, `row + 1`, packed (packed_frames.hpp). The spectra
-/// are 2^exponent times what is unpacked.
-struct PackedRows {
-  std::size_t row = 0;
-  bool two = true;
-  PackedSpectrum spectrum;
-  int exponent = 0;
+/// Rows `row` and, unless it is the last one left over, `row + 1`. Spectra are 2^exponent times, powers
+/// 4^exponent times what they hold.
+class PackedRows {
+ public:
+  using Spectrum = std::variant<PackedSpectrum<float>, PackedSpectrum<double>>;
+  PackedRows(std::size_t row_, bool two_, int exponent_, Spectrum spectrum)
+      : row(row_), two(two_), exponent(exponent_), spectrum_(spectrum) {}
+
+  std::size_t row;
+  bool two;
+  int exponent;
+
+  /// As unpack_powers() and unpack_spectra(); the second row's is meaningless where there is none.
+  void powers(std::span<float> a, std::span<float> b) const;
+  void spectra(std::span<std::complex<float>> a, std::span<std::complex<float>> b) const;
+
+ private:
+  Spectrum spectrum_;
 };
 using PackedRowSink = std::function<schema::Result<void>(const PackedRows&)>;
 
 /// X[p, k] = gain sum_n w_n (x[p hop + n] - mean_p) exp(-2 pi i k n / padded), n < window, k < bins.
-/// In single precision, from blocks of a few windows whose level (and, before decimation, whose straight
-/// trend, which the filter would pass anyway) is taken off and whose size is brought near 1 by a power of two
-/// first: |X - X_exact| / max |X| over all cells (of all frequencies) is at most -120 dB, on a coarser grid
-/// too. Not shared between threads; not safe in the tick.
+/// In single precision, on a coarser grid with transforms in double, from blocks of a few windows whose level
+/// (and, before decimation, whose straight trend, which the filter would pass anyway) is taken off and whose
+/// size is brought near 1 by a power of two first: |X - X_exact| / max |X| over all cells (of all
+/// frequencies) is at most -120 dB, on a coarser grid too. Not shared between threads; not safe in the tick.
 class ShortTimeTransform {
  public:
   /// `window`: the shape's weights; `detrend`: take mean_p off, else 0. `rows` are to come (packed_fft.hpp).
@@ -53,7 +65,8 @@ class ShortTimeTransform {
   void load(std::span<const double> signal, const Block& block);
   void find_means(std::span<const double> signal, const Block& block);
   Frame frame(const Block& block, std::size_t row) const;
-  schema::Result<void> transform_block(const Block& block, const PackedRowSink& sink);
+  template <class Real>
+  schema::Result<void> transform_block(PackedFft<Real>& fft, const Block& block, const PackedRowSink& sink);
 
   FrameShape shape_;
   Decimation decimation_;
@@ -61,7 +74,9 @@ class ShortTimeTransform {
   std::size_t rows_per_block_;
   std::vector<float> window_;
   std::optional<Decimator> decimator_;
-  PackedFft fft_;
+  // Whole frames take single precision; short ones can afford double, whose spectra have no rounding of their
+  // own.
+  std::variant<PackedFft<float>, PackedFft<double>> fft_;
   std::vector<float> samples_;  // the block's, with the decimator's reach to both sides
   std::vector<float> means_;    // of the block's rows
 };

@@ -13,19 +13,6 @@ namespace tacto::spatial {
 using schema::Fault;
 using schema::Result;
 
-namespace {
-
-constexpr double kUsualLowest = 100;  // 0.1/mm
-
-// Room under the lowest limit, so that it is seen.
-double lowest_shown_per_m(const schema::Texture& texture) {
-  constexpr double kRoom = 0.7;
-  if (texture.valid_band.empty()) return kUsualLowest;
-  return kRoom * std::ranges::min(texture.valid_band, {}, &schema::BandPoint::low_per_m).low_per_m;
-}
-
-}  // namespace
-
 SpectrogramFigure::SpectrogramFigure(std::vector<SpectrogramPanel> panels, SpectrogramPictureOptions options)
     : panels_(std::move(panels)), options_(options) {}
 
@@ -40,17 +27,11 @@ double SpectrogramFigure::highest_per_m() const {
   return highest;
 }
 
-// Room under the lowest limit, so that it is seen; never under the first bin, as a logarithmic axis has no
-// zero.
 double SpectrogramFigure::lowest_per_m() const {
   if (options_.min_frequency_per_m) return *options_.min_frequency_per_m;
   double lowest = INFINITY;
-  double first_bin = 0;
-  for (const auto& panel : panels_) {
-    lowest = std::min(lowest, lowest_shown_per_m(*panel.texture));
-    first_bin = std::max(first_bin, panel.spectrogram->frequency_step_per_m);
-  }
-  return std::clamp(lowest, first_bin, std::max(first_bin, highest_per_m() / 10));
+  for (const auto& panel : panels_) lowest = std::min(lowest, lowest_of_interest_per_m(*panel.texture));
+  return lowest_shown_per_m(lowest, *panels_.front().spectrogram);
 }
 
 Result<void> SpectrogramFigure::check() const {
@@ -89,7 +70,7 @@ LevelRange SpectrogramFigure::levels() const {
   double highest = -INFINITY;
   for (const auto& panel : panels_) {
     const auto peak = strongest_peak(*panel.spectrogram, lowest_per_m());
-    highest = std::max(highest, level_db(peak.density, level_reference(*panel.spectrogram)));
+    highest = std::max(highest, level_db(peak.cell, level_reference(*panel.spectrogram)));
   }
   const double top = std::isfinite(highest) ? kStep * std::ceil(highest / kStep) : 0;
   return {top - options_.dynamic_range_db, top};

@@ -13,7 +13,6 @@ namespace tacto::spatial {
 using schema::Fault;
 using schema::PendingFiles;
 using schema::Result;
-using schema::Spectrogram;
 
 namespace {
 
@@ -42,17 +41,13 @@ Result<void> check_output(const std::string& path, std::span<const std::string> 
   return {};
 }
 
-Result<void> add_output(PendingFiles& files, const std::string& path, const SpectrogramFigure& figure,
-                        std::span<const Spectrogram> spectrograms) {
-  const std::string extension = extension_of(path);
-  if (extension == ".png" || extension == ".svg") return add_figure(files, path, figure);
-  const auto temporary = files.add(path);
-  if (!temporary) return schema::forward_error(temporary);
-  if (extension == ".nc") return schema::write_spectrogram_nc(*temporary, spectrograms);
-  return schema::write_spectrogram_csv(*temporary, spectrograms);
-}
-
 }  // namespace
+
+OutputForm form_of(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".nc") return OutputForm::netcdf;
+  return extension == ".csv" ? OutputForm::table : OutputForm::picture;
+}
 
 Result<void> check_outputs(std::span<const std::string> paths) {
   PendingFiles trial;  // never committed: its empty files prove that the folders take them, and vanish
@@ -61,14 +56,6 @@ Result<void> check_outputs(std::span<const std::string> paths) {
     if (const auto added = trial.add(paths[i]); !added) return schema::forward_error(added);
   }
   return {};
-}
-
-Result<void> write_outputs(std::span<const std::string> paths, const SpectrogramFigure& figure,
-                           std::span<const Spectrogram> spectrograms) {
-  PendingFiles files;
-  for (const std::string& path : paths)
-    if (auto added = add_output(files, path, figure, spectrograms); !added) return added;
-  return files.commit();
 }
 
 }  // namespace tacto::spatial

@@ -35,7 +35,7 @@ std::vector<Texture> textures() {
 
 void packed_fftw_float(benchmark::State& state) {
   constexpr std::size_t kTransforms = kStrokes * (kRowsPerStroke + 1) / 2;
-  PackedFft fft(kPadded, kTransforms);
+  PackedFft<float> fft(kPadded, kTransforms);
   for (std::size_t i = 0; i < 10000; ++i) fft.input()[i] = static_cast<float>(bench::hashed(i));
   for (auto _ : state)
     for (std::size_t i = 0; i < kTransforms; ++i) {

@@ -58,7 +58,7 @@ Error error_of(const Signal& x, const FrameShape& shape, const Decimation& decim
   std::size_t rows = 0;
   const auto done = transform.transform(x, [&](const PackedRows& packed) -> schema::Result<void> {
     EXPECT_EQ(packed.row, rows);
-    unpack_spectra(packed.spectrum, a, b);
+    packed.spectra(a, b);
     compare(packed.row, a, packed.exponent);
     if (packed.two) compare(packed.row + 1, b, packed.exponent);
     rows += packed.two ? 2 : 1;

@@ -55,7 +55,7 @@ TEST(Spectrogram, IntegratesASineToHalfItsSquare) {
   EXPECT_NEAR(peak.frequency_per_m, 1000, 1e-6);
   // At its centre: c A^2 / 4 (sum w)^2 pitch / sum w^2, with the window's sums 0.42 W and 0.3046 W.
   const double expected = 2 * kAmplitude * kAmplitude / 4 * 0.42 * 0.42 / 0.3046 * options.window_m;
-  EXPECT_NEAR(peak.density, expected, kFloat * expected);
+  EXPECT_NEAR(peak.cell, expected, kFloat * expected);
 }
 
 // Each row's integral is the power of its weighted samples, with and without zeros after them, even or odd in

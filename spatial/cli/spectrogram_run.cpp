@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/cli/spectrogram_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data-schema/cli/verb.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Dimension;
+using schema::Fault;
+using schema::Result;
+using schema::SpectrogramHeader;
+
+std::string length(double metres) {
+  return schema::for_people(metres, Dimension::length);
+}
+
+void warn_of_odd_options(const SpectrogramOptions& options, double pitch_m) {
+  if (options.hop_m > options.window_m)
+    cli::warn(
+        fmt::format("the hop of {} is longer than the window of {}: what lies between windows is not seen",
+                    length(options.hop_m), length(options.window_m)));
+  if (options.max_frequency_per_m > 0.5 / pitch_m)
+    cli::warn(fmt::format("a grid of {} holds no frequencies above {}", length(pitch_m),
+                          schema::for_people(0.5 / pitch_m, Dimension::spatial_frequency)));
+}
+
+void warn_if_little_is_seen(const NamedTexture& texture, const SpectrogramHeader& header) {
+  const double length_m = texture.texture.signal.length_m();
+  const double seen_m = header.position_m.back() - header.position_m.front();
+  if (seen_m < 0.25 * length_m)
+    cli::warn(fmt::format(
+        "{}: is hardly longer than the window, so the spectrogram covers only {} of {}; a shorter "
+        "--window shows more",
+        texture.path, length(seen_m), length(length_m)));
+}
+
+template <class T>
+tl::unexpected<schema::Error> naming(const NamedTexture& texture, const Result<T>& failed) {
+  schema::Error error = failed.error();
+  if (error.fault == Fault::unsuitable) error.where = texture.path + ": " + error.where;
+  return tl::unexpected(error);
+}
+
+}  // namespace
+
+Result<void> SpectrogramRun::transform(TextureInputs& inputs) {
+  expected_ = inputs.expected();
+  for (;;) {
+    auto texture = inputs.next();
+    if (!texture) return schema::forward_error(texture);
+    if (!*texture) break;
+    if (auto taken = take(std::move(**texture)); !taken) return taken;
+  }
+  if (lines_.empty()) return schema::fail(Fault::unsuitable, "there is no texture among the files named");
+  return {};
+}
+
+Result<void> SpectrogramRun::take(NamedTexture texture) {
+  const auto ready = first_ ? check_alike(texture) : prepare(texture);
+  if (!ready) return ready;
+  auto header = maker_->describe(texture.texture);
+  if (!header) return naming(texture, header);
+  header->name = texture.name;
+  warn_if_little_is_seen(texture, *header);
+  if (!first_) {
+    first_ = *header;
+    lowest_ = INFINITY;
+  }
+  lowest_ = std::min(lowest_, lowest_of_interest_per_m(texture.texture));
+  lines_.push_back({texture.name, header->position_m.size(), {*header, lowest_per_m()}});
+  if (auto made = make(texture, *header); !made) return naming(texture, made);
+  if (keep_) textures_.push_back(std::move(texture));
+  return {};
+}
+
+// Most textures of a run are about as long as the first.
+Result<void> SpectrogramRun::prepare(const NamedTexture& first) {
+  const auto& signal = first.texture.signal;
+  const auto shape = frame_shape(options_, signal.pitch_m);
+  if (!shape) return schema::forward_error(shape);
+  auto maker = SpectrogramMaker::prepare(options_, signal.pitch_m,
+                                         expected_ * (1 + signal.values.size() / shape->hop));
+  if (!maker) return schema::forward_error(maker);
+  maker_.emplace(std::move(*maker));
+  first_path_ = first.path;
+  warn_of_odd_options(options_, signal.pitch_m);
+  return {};
+}
+
+Result<void> SpectrogramRun::check_alike(const NamedTexture& other) const {
+  const double pitch_m = first_->pitch_m;
+  const auto& texture = other.texture;
+  if (std::abs(texture.signal.pitch_m - pitch_m) > 1e-9 * pitch_m)
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("has a grid of {}, but {} has {}", length(texture.signal.pitch_m),
+                                    first_path_, length(pitch_m)),
+                        other.path,
+                        "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
+  if (texture.quantity != first_->quantity || texture.unit != first_->unit)
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("holds {}, but {} holds {}", texture.quantity, first_path_, first_->quantity), other.path,
+        "make a spectrogram of each alone");
+  return {};
+}
+
+Result<void> SpectrogramRun::make(const NamedTexture& texture, const SpectrogramHeader& header) {
+  if (auto begun = files_.begin(header); !begun) return begun;
+  if (keep_) spectrograms_.push_back({header, {}});
+  const auto before = static_cast<double>(lines_.size() - 1),
+             rows = static_cast<double>(header.position_m.size());
+  return maker_->make(texture.texture, [&](std::size_t first, std::span<const float> cells) -> Result<void> {
+    lines_.back().tally.add(first, cells);
+    if (keep_) {
+      auto& kept = spectrograms_.back().cells;
+      kept.insert(kept.end(), cells.begin(), cells.end());
+    }
+    progress_.update(
+        std::min(1.0, (before + static_cast<double>(first) / rows) / static_cast<double>(expected_)));
+    return files_.rows(first, cells);
+  });
+}
+
+}  // namespace tacto::spatial

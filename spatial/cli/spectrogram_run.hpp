@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run of 'tactograph spectrogram': texture after texture through one maker into all files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/error.hpp"
+#include "data-schema/spectrogram.hpp"
+#include "spatial/cli/spectrogram_files.hpp"
+#include "spatial/cli/texture_inputs.hpp"
+#include "spatial/spectrogram_maker.hpp"
+#include "spatial/spectrogram_tally.hpp"
+
+namespace tacto::spatial {
+
+/// Remembers of each spectrogram a few numbers only; all of it, and its texture, where `keep` says so
+/// (pictures).
+class SpectrogramRun {
+ public:
+  struct Line {
+    std::string name;
+    std::size_t positions = 0;
+    SpectrogramTally tally;
+  };
+
+  /// `lowest_per_m`: lower end of the band that the lines are summed up over; unless told, of what is shown.
+  SpectrogramRun(const SpectrogramOptions& options, std::optional<double> lowest_per_m,
+                 SpectrogramFiles& files, bool keep)
+      : options_(options), asked_lowest_per_m_(lowest_per_m), files_(files), keep_(keep) {}
+
+  /// Errors: of the inputs, the maker and the files; unsuitable, naming both, for a texture on another grid
+  /// or of another quantity than the first.
+  schema::Result<void> transform(TextureInputs& inputs);
+
+  /// After transform(): one for each texture, and what they share.
+  const std::vector<Line>& lines() const { return lines_; }
+  const schema::SpectrogramHeader& first() const { return *first_; }
+  const Decimation& decimation() const { return maker_->decimation(); }
+  double lowest_per_m() const { return asked_lowest_per_m_.value_or(lowest_shown_per_m(lowest_, *first_)); }
+  const std::vector<NamedTexture>& textures() const { return textures_; }
+  const std::vector<schema::Spectrogram>& spectrograms() const { return spectrograms_; }
+
+ private:
+  schema::Result<void> take(NamedTexture texture);
+  schema::Result<void> prepare(const NamedTexture& first);
+  schema::Result<void> check_alike(const NamedTexture& other) const;
+  schema::Result<void> make(const NamedTexture& texture, const schema::SpectrogramHeader& header);
+
+  SpectrogramOptions options_;
+  std::optional<double> asked_lowest_per_m_;
+  SpectrogramFiles& files_;
+  bool keep_;
+  cli::Progress progress_{"spectrogram"};
+  std::size_t expected_ = 0;
+  std::optional<SpectrogramMaker> maker_;
+  std::optional<schema::SpectrogramHeader> first_;
+  std::string first_path_;
+  double lowest_ = 0;
+  std::vector<Line> lines_;
+  std::vector<NamedTexture> textures_;
+  std::vector<schema::Spectrogram> spectrograms_;
+};
+
+}  // namespace tacto::spatial

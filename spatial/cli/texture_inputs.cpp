@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/cli/texture_inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
+
+#include "data-schema/cli/verb.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/recording.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+namespace fs = std::filesystem;
+using schema::Fault;
+using schema::FileKind;
+using schema::Result;
+using schema::StoredFile;
+
+std::string name_of(const std::string& path, std::string_view suffix) {
+  return fs::path(schema::stem_of(path, suffix)).filename().string();
+}
+
+void warn_of_version(const std::string& path, const std::string& version) {
+  if (!version.empty())
+    cli::warn(
+        fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", path, version));
+}
+
+// The number N of "STEM-N.texture.json", two digits or more.
+std::optional<int> number_of(const std::string& file, const std::string& stem) {
+  constexpr std::string_view kEnding = ".texture.json";
+  if (!file.starts_with(stem + "-") || !file.ends_with(kEnding)) return std::nullopt;
+  const char* begin = file.data() + stem.size() + 1;
+  const char* end = file.data() + file.size() - kEnding.size();
+  int number = 0;
+  const auto [stop, fault] = std::from_chars(begin, end, number);
+  if (fault != std::errc() || stop != end || end - begin < 2) return std::nullopt;
+  return number;
+}
+
+// What 'tactograph spatial' made of a recording of several strokes, by their numbers.
+std::vector<StoredFile> numbered_textures(const std::string& name) {
+  const fs::path stem(name);
+  std::map<int, std::string> found;
+  std::error_code ignored;
+  for (const auto& entry :
+       fs::directory_iterator(stem.has_parent_path() ? stem.parent_path() : ".", ignored)) {
+    const std::string file = entry.path().filename().string();
+    if (const auto number = number_of(file, stem.filename().string()))
+      found[*number] = (stem.parent_path() / file).string();
+  }
+  std::vector<StoredFile> files;
+  for (auto& [number, path] : found) files.push_back({FileKind::texture, std::move(path)});
+  return files;
+}
+
+std::vector<StoredFile> of_kind(const std::vector<StoredFile>& files, FileKind kind) {
+  std::vector<StoredFile> some;
+  std::ranges::copy_if(files, std::back_inserter(some),
+                       [kind](const auto& file) { return file.kind == kind; });
+  return some;
+}
+
+Result<NamedTexture> read_texture(const std::string& path) {
+  auto texture = schema::read_texture(path);
+  if (!texture) return schema::forward_error(texture);
+  warn_of_version(path, texture->newer_version);
+  return NamedTexture{path, name_of(path, ".texture"), std::move(*texture)};
+}
+
+}  // namespace
+
+Result<TextureInputs> TextureInputs::find(const std::vector<std::string>& names,
+                                          const TextureOptions& options) {
+  TextureInputs inputs(options);
+  for (const std::string& name : names)
+    if (auto added = inputs.add(name, names.size() == 1); !added) return schema::forward_error(added);
+  if (inputs.inputs_.empty())
+    return schema::fail(Fault::unsuitable, "there is no texture among the files named");
+  // Opened now, so that it is known how many textures it makes.
+  if (auto opened = inputs.open_if_recording(); !opened) return schema::forward_error(opened);
+  return inputs;
+}
+
+Result<void> TextureInputs::add(const std::string& name, bool alone) {
+  const auto files = schema::stored_files(name);
+  if (files)
+    if (const auto textures = of_kind(*files, FileKind::texture); !textures.empty()) {
+      for (const StoredFile& file : textures) add(file);
+      return {};
+    }
+  std::error_code ignored;
+  if (!fs::is_regular_file(name, ignored))
+    if (const auto numbered = numbered_textures(name); !numbered.empty()) {
+      for (const StoredFile& file : numbered) add(file);
+      return {};
+    }
+  if (!files) return schema::forward_error(files);
+  if (const auto recordings = of_kind(*files, FileKind::recording); !recordings.empty()) {
+    add(recordings.front());
+    return {};
+  }
+  const std::string what = fmt::format("is a {}, not a texture", schema::kind_name(files->front().kind));
+  if (alone)
+    return schema::fail(Fault::unsuitable, what, name, "'tactograph spatial' makes textures from recordings");
+  cli::warn(fmt::format("{}: {}; skipped", name, what));
+  return {};
+}
+
+void TextureInputs::add(const StoredFile& file) {
+  const auto same = [&](const StoredFile& other) { return other.path == file.path; };
+  if (std::ranges::none_of(inputs_, same)) inputs_.push_back(file);
+}
+
+// Moves a recording whose turn it is from the inputs to its strokes.
+Result<void> TextureInputs::open_if_recording() {
+  if (!strokes_.empty() || inputs_.empty() || inputs_.front().kind != FileKind::recording) return {};
+  const std::string path = inputs_.front().path;
+  inputs_.pop_front();
+  const auto recording = schema::open_recording(path);
+  if (!recording) return schema::forward_error(recording);
+  warn_of_version(path, recording->header.newer_version);
+  auto maker = TextureMaker::open(*recording, options_);
+  if (!maker) return schema::forward_error(maker);
+  maker_.reset();
+  maker_.emplace(std::move(*maker));
+  made_ = false;
+  const auto& strokes = maker_->record().strokes();
+  if (strokes.empty())
+    return schema::fail(Fault::unsuitable, "no stroke was found", path,
+                        "make a texture of a stretch with 'tactograph spatial --from --to'");
+  const std::string name = name_of(path, "");
+  for (const Stroke& stroke : strokes) {
+    const int number = static_cast<int>(strokes_.size()) + 1;
+    strokes_.push_back({stroke, number, strokes.size() == 1 ? name : fmt::format("{}-{:02}", name, number)});
+  }
+  return {};
+}
+
+Result<std::optional<NamedTexture>> TextureInputs::next_stroke() {
+  while (!strokes_.empty()) {
+    const NumberedStroke stroke = strokes_.front();
+    strokes_.pop_front();
+    auto texture = maker_->make(stroke.stroke, stroke.number);
+    if (texture) {
+      made_ = true;
+      return NamedTexture{stroke.name, stroke.name, std::move(*texture)};
+    }
+    const bool last_hope = strokes_.empty() && !made_;
+    if (texture.error().fault != Fault::unsuitable || last_hope) return schema::forward_error(texture);
+    cli::warn(fmt::format("{} makes no texture: {}", stroke.name, schema::message(texture.error())));
+  }
+  return std::nullopt;
+}
+
+Result<std::optional<NamedTexture>> TextureInputs::next() {
+  if (auto opened = open_if_recording(); !opened) return schema::forward_error(opened);
+  if (!strokes_.empty()) {
+    auto texture = next_stroke();
+    if (!texture || *texture) return texture;
+    return next();  // the strokes that were left made none
+  }
+  if (inputs_.empty()) return std::nullopt;
+  auto texture = read_texture(inputs_.front().path);
+  if (!texture) return schema::forward_error(texture);
+  inputs_.pop_front();
+  return std::optional(std::move(*texture));
+}
+
+}  // namespace tacto::spatial
