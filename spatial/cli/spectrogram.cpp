@@ -13,6 +13,7 @@
 #include "data-schema/file_kind.hpp"
 #include "data-schema/texture.hpp"
 #include "spatial/cli/verbs.hpp"
+#include "spatial/formants.hpp"
 #include "spatial/picture/spectrogram_output.hpp"
 #include "spatial/spectrogram.hpp"
 #include "spatial/spectrogram_summary.hpp"
@@ -31,7 +32,10 @@ struct Options {
   std::vector<std::string> names, outputs;
   SpectrogramOptions spectrogram;
   SpectrogramPictureOptions picture;
+  bool formants = false;
 };
+
+using FormantLists = std::vector<std::vector<schema::Formant>>;
 
 struct Named {
   std::string path, name;
@@ -147,11 +151,23 @@ Result<std::vector<Spectrogram>> transform(const std::vector<Named>& textures,
   return spectrograms;
 }
 
+// Empty lists where they are not asked for.
+Result<FormantLists> formants_of(const std::vector<Named>& textures,
+                                 const std::vector<Spectrogram>& spectrograms, bool wanted) {
+  FormantLists lists(textures.size());
+  for (std::size_t i = 0; wanted && i < textures.size(); ++i) {
+    auto found = find_formants(spectrograms[i], textures[i].texture.valid_band);
+    if (!found) return schema::forward_error(found);
+    lists[i] = std::move(*found);
+  }
+  return lists;
+}
+
 SpectrogramFigure figure_of(const std::vector<Named>& textures, const std::vector<Spectrogram>& spectrograms,
-                            const SpectrogramPictureOptions& options) {
+                            const FormantLists& formants, const SpectrogramPictureOptions& options) {
   std::vector<SpectrogramPanel> panels;
   for (std::size_t i = 0; i < textures.size(); ++i)
-    panels.push_back({&textures[i].texture, &spectrograms[i]});
+    panels.push_back({&textures[i].texture, &spectrograms[i], formants[i]});
   return SpectrogramFigure(panels, options);
 }
 
@@ -212,7 +228,9 @@ Result<Report> run(const Options& options) {
   const auto spectrograms = transform(*textures, options.spectrogram);
   if (!spectrograms) return schema::forward_error(spectrograms);
   warn_of_odd_options(options, textures->front().texture.signal.pitch_m);
-  const SpectrogramFigure figure = figure_of(*textures, *spectrograms, options.picture);
+  const auto formants = formants_of(*textures, *spectrograms, options.formants);
+  if (!formants) return schema::forward_error(formants);
+  const SpectrogramFigure figure = figure_of(*textures, *spectrograms, *formants, options.picture);
   if (auto written = write_outputs(options.outputs, figure, *spectrograms); !written)
     return schema::forward_error(written);
   return report_of(*spectrograms, figure.lowest_per_m(), options);
@@ -240,6 +258,7 @@ void declare_options(CLI::App& app, Options& options) {
       "band, else 0.1/mm]");
   cli::add_quantity(app, "--dynamic-range", options.picture.dynamic_range_db, Dimension::level,
                     "Levels from the darkest to the brightest colour");
+  app.add_flag("--formants", options.formants, "Draw the formants ('tactograph formants' lists them)");
   const std::map<std::string, Detrend> detrends = {{"none", Detrend::none}, {"constant", Detrend::constant}};
   app.add_option("--detrend", spectrogram.detrend,
                  "Take each window's mean off first (constant), or not (none)")
