@@ -76,7 +76,8 @@ void add_undecided(SpeedHypotheses& hypotheses, std::vector<Call>& calls) {
 std::string reason_of(const Call& call) {
   constexpr double kUnlikelySeen = 0.5;
   if (call.verdict != PeakVerdict::undecided) return {};
-  if (!call.evidence.known_elsewhere) return "outside_band";
+  const bool spatial = call.evidence.spatial >= call.evidence.temporal;
+  if (!(spatial ? call.evidence.spatial_tested : call.evidence.temporal_tested)) return "outside_band";
   if (!call.evidence.told_apart) return "speed_ratio";
   if (call.evidence.best_detection < kUnlikelySeen) return "signal_to_noise";
   return call.evidence.spatial > kFits && call.evidence.temporal > kFits ? "both_fit" : "neither_fits";
@@ -160,7 +161,7 @@ Result<void> check(std::span<const TextureAtSpeed> textures, const CertificateOp
                         "textures");
   if (!(options.confidence > 0.5 && options.confidence < 1))
     return schema::fail(Fault::usage, "the confidence must lie between 0.5 and 1", "confidence",
-                        "0.97 is usual");
+                        "0.95 is usual");
   for (const TextureAtSpeed& each : textures)
     if (each.texture->unit != textures.front().texture->unit)
       return schema::fail(Fault::unsuitable, fmt::format("its unit is not that of {}", textures.front().name),

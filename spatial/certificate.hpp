@@ -20,7 +20,7 @@ struct TextureAtSpeed {
 
 struct CertificateOptions {
   /// Probability from which on a peak is called.
-  double confidence = 0.97;
+  double confidence = 0.95;
 };
 
 /// Calls each peak that is found in any of the textures' mean spectra (of their parts at steady speed), over

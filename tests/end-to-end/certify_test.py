@@ -44,7 +44,7 @@ def hum_across_three_speeds_is_temporal():
         certificate = json.loads(pathlib.Path(f"{name}.texture.json").read_text())["certificate"]
         assert certificate["textures"] == ["slow", "middle", "fast"]
         hum = peak_at(certificate["peaks"], "frequency_hz", 100)
-        assert hum["verdict"] == "temporal" and hum["confidence"] >= 0.97, hum
+        assert hum["verdict"] == "temporal" and hum["confidence"] >= 0.95, hum
         assert abs(hum["frequency_per_m"] - 100 / speed) < 0.01 * 100 / speed
         for k in (1300, 2600):
             assert peak_at(certificate["peaks"], "frequency_per_m", k)["verdict"] == "spatial"
