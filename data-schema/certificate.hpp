@@ -16,7 +16,8 @@ struct CertifiedPeak {
   PeakVerdict verdict = PeakVerdict::undecided;
   double confidence = 0;  ///< probability of the verdict; of the likelier one where undecided
   /// Why it is undecided: "speed_ratio" (too small for the resolution), "signal_to_noise", "outside_band" (no
-  /// other texture could know), "both_fit", "neither_fits"; else empty.
+  /// other texture knows the place where the likelier hypothesis puts it), "both_fit", "neither_fits"; else
+  /// empty.
   std::string reason;
   double frequency_per_m = 0;     ///< in this texture
   double frequency_hz = 0;        ///< at this texture's mean speed

@@ -24,11 +24,12 @@ struct Description {
   std::string texture;  ///< its name
   std::string quantity, unit;
   double length_m = 0, pitch_m = 0;
+  double from_m = 0, to_m = 0;           ///< what is described: its part at steady speed
   double mean_speed_mps = 0;             ///< of the recording; 0 where unknown
-  double low_per_m = 0, high_per_m = 0;  ///< valid along the whole texture, and seen by the window
+  double low_per_m = 0, high_per_m = 0;  ///< valid all along it, and seen by the window
   double window_m = 0;
   double rms = 0;        ///< in the texture's unit
-  double total_rms = 0;  ///< of the samples, valid or not
+  double total_rms = 0;  ///< of its samples, valid or not
   double centroid_per_m = 0;
   double slope_db_per_octave = 0;  ///< NaN where less than an octave is known
   std::vector<ThirdOctaveBand> bands;

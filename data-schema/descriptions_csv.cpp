@@ -25,7 +25,8 @@ std::map<int, double> all_bands(const DescriptionFile& file) {
 
 std::string header(const std::map<int, double>& bands, const std::string& unit) {
   std::string text = fmt::format(
-      "texture,quantity,length_mm,mean_speed_mm_per_s,low_per_mm,high_per_mm,window_mm,rms ({0}),total rms "
+      "texture,quantity,length_mm,from_mm,to_mm,mean_speed_mm_per_s,low_per_mm,high_per_mm,window_mm,rms "
+      "({0}),total rms "
       "({0}),"
       "centroid_per_mm,slope_db_per_octave",
       unit);
@@ -39,8 +40,9 @@ std::string header(const std::map<int, double>& bands, const std::string& unit) 
 std::string row(const Description& each, const std::map<int, double>& bands) {
   std::string text = fmt::format("{},{}", csv_cell(each.texture), csv_cell(each.quantity));
   for (const double value :
-       {1e3 * each.length_m, 1e3 * each.mean_speed_mps, 1e-3 * each.low_per_m, 1e-3 * each.high_per_m,
-        1e3 * each.window_m, each.rms, each.total_rms, 1e-3 * each.centroid_per_m, each.slope_db_per_octave})
+       {1e3 * each.length_m, 1e3 * each.from_m, 1e3 * each.to_m, 1e3 * each.mean_speed_mps,
+        1e-3 * each.low_per_m, 1e-3 * each.high_per_m, 1e3 * each.window_m, each.rms, each.total_rms,
+        1e-3 * each.centroid_per_m, each.slope_db_per_octave})
     text += "," + number(value);
   std::map<int, const ThirdOctaveBand*> own;
   for (const ThirdOctaveBand& band : each.bands) own[band.number] = &band;

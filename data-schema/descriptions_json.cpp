@@ -18,6 +18,8 @@ struct Number {
 
 constexpr Number kNumbers[] = {
     {"length_m", &Description::length_m},
+    {"from_m", &Description::from_m},
+    {"to_m", &Description::to_m},
     {"pitch_m", &Description::pitch_m},
     {"mean_speed_mps", &Description::mean_speed_mps},
     {"low_per_m", &Description::low_per_m},

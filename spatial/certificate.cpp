@@ -18,6 +18,9 @@ using schema::Fault;
 using schema::PeakVerdict;
 using schema::Result;
 
+// Likelihood ratio to "neither" from which on a hypothesis is said to fit.
+constexpr double kFits = 3;
+
 // A peak that is called or given up, with its vibrations in the textures where it was found.
 struct Call {
   PeakVerdict verdict = PeakVerdict::undecided;
@@ -56,15 +59,25 @@ std::vector<Call> called(SpeedHypotheses& hypotheses, double confidence_needed) 
   }
 }
 
-void add_undecided(const SpeedHypotheses& hypotheses, std::vector<Call>& calls) {
-  for (const Candidate& candidate : open_candidates(hypotheses))
-    calls.push_back({PeakVerdict::undecided, candidate.confidence(), candidate.evidence, {candidate.id}});
+// What is left, the surest first; what is likely to be one peak in several textures is shown as one.
+void add_undecided(SpeedHypotheses& hypotheses, std::vector<Call>& calls) {
+  auto candidates = open_candidates(hypotheses);
+  std::ranges::sort(candidates, std::greater(), &Candidate::confidence);
+  for (const Candidate& candidate : candidates) {
+    if (hypotheses.spoken_for(candidate.id)) continue;
+    std::vector<VibrationId> members{candidate.id};
+    if (std::max(candidate.evidence.spatial, candidate.evidence.temporal) > kFits)
+      members = hypotheses.same(candidate.id, candidate.spatial());
+    calls.push_back({PeakVerdict::undecided, candidate.confidence(), candidate.evidence, members});
+    for (const VibrationId member : members) hypotheses.speak_for(member);
+  }
 }
 
 std::string reason_of(const Call& call) {
-  constexpr double kUnlikelySeen = 0.5, kFits = 3;
+  constexpr double kUnlikelySeen = 0.5;
   if (call.verdict != PeakVerdict::undecided) return {};
-  if (!call.evidence.known_elsewhere) return "outside_band";
+  const bool spatial = call.evidence.spatial >= call.evidence.temporal;
+  if (!(spatial ? call.evidence.spatial_tested : call.evidence.temporal_tested)) return "outside_band";
   if (!call.evidence.told_apart) return "speed_ratio";
   if (call.evidence.best_detection < kUnlikelySeen) return "signal_to_noise";
   return call.evidence.spatial > kFits && call.evidence.temporal > kFits ? "both_fit" : "neither_fits";
@@ -148,7 +161,7 @@ Result<void> check(std::span<const TextureAtSpeed> textures, const CertificateOp
                         "textures");
   if (!(options.confidence > 0.5 && options.confidence < 1))
     return schema::fail(Fault::usage, "the confidence must lie between 0.5 and 1", "confidence",
-                        "0.97 is usual");
+                        "0.95 is usual");
   for (const TextureAtSpeed& each : textures)
     if (each.texture->unit != textures.front().texture->unit)
       return schema::fail(Fault::unsuitable, fmt::format("its unit is not that of {}", textures.front().name),

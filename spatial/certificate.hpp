@@ -20,11 +20,12 @@ struct TextureAtSpeed {
 
 struct CertificateOptions {
   /// Probability from which on a peak is called.
-  double confidence = 0.97;
+  double confidence = 0.95;
 };
 
-/// Calls each peak that is found in any of the textures' mean spectra, over position and over time (x to t by
-/// the speed that the valid band tells, so that unevenness within a stroke counts too).
+/// Calls each peak that is found in any of the textures' mean spectra (of their parts at steady speed), over
+/// position and over time (x to t by the speed that the valid band tells, so that unevenness within a stroke
+/// counts too).
 ///
 /// A peak found in texture i at k and f = k v_i is held against both hypotheses in each other texture j: a
 /// line at k (spatial), a line at f (temporal). The evidence is the likelihood ratio of probabilistic data

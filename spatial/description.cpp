@@ -9,6 +9,7 @@
 
 #include "data-schema/quantity.hpp"
 #include "spatial/make_texture.hpp"
+#include "spatial/steady_part.hpp"
 #include "spatial/valid_band.hpp"
 #include "spatial/welch.hpp"
 
@@ -44,9 +45,6 @@ Result<std::size_t> window_samples(const Texture& texture, const DescriptionOpti
                                    double low_per_m) {
   const double pitch_m = texture.signal.pitch_m;
   const std::size_t have = texture.signal.values.size();
-  if (have < kShortestWelchWindow)
-    return schema::fail(Fault::unsuitable, fmt::format("has {} samples, too few for a spectrum", have),
-                        "texture");
   const double wanted = options.window_m.value_or(usual_window_m(texture, low_per_m)) / pitch_m;
   const double samples =
       options.window_m ? wanted : std::max(wanted, static_cast<double>(kShortestWelchWindow));
@@ -111,39 +109,48 @@ double slope_of(const std::vector<ThirdOctaveBand>& bands, double low_per_m, dou
   return spread > 0 ? (w * wxy - wx * wy) / spread : NAN;
 }
 
-Description header_of(const Texture& texture) {
+Description header_of(const Texture& texture, const SteadyPart& part) {
   Description description;
   description.quantity = texture.quantity;
   description.unit = texture.unit;
   description.length_m = texture.signal.length_m();
+  description.from_m = part.from_m;
+  description.to_m = part.to_m;
   description.pitch_m = texture.signal.pitch_m;
   description.mean_speed_mps = texture.source.mean_speed_mps;
-  description.total_rms = rms_of(texture);
+  description.total_rms = rms_of(part.texture);
   description.simulated = texture.simulated;
   return description;
+}
+
+void add_spectrum(Description& description, const WelchSpectrum& spectrum) {
+  const double low = description.low_per_m, high = description.high_per_m;
+  const double power = spectrum.power(low, high);
+  description.rms = std::sqrt(power);
+  description.centroid_per_m = power > 0 ? spectrum.moment(low, high) / power : NAN;
+  description.bands = bands_of(spectrum, low, high);
+  description.slope_db_per_octave = slope_of(description.bands, low, high);
 }
 
 }  // namespace
 
 Result<Description> describe(const Texture& texture, const DescriptionOptions& options) {
-  const BandPoint valid = valid_band_of(texture);
-  const auto window = window_samples(texture, options, valid.low_per_m);
+  if (texture.signal.values.size() < kShortestWelchWindow)
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("has {} samples, too few for a spectrum", texture.signal.values.size()),
+                        "texture");
+  const SteadyPart part = steady_part(texture);
+  const BandPoint valid = valid_band_of(part.texture);
+  const auto window = window_samples(part.texture, options, valid.low_per_m);
   if (!window) return schema::forward_error(window);
-  Description description = header_of(texture);
+  Description description = header_of(texture, part);
   description.window_m = static_cast<double>(*window) * texture.signal.pitch_m;
   description.low_per_m = std::max(valid.low_per_m, 1.5 / description.window_m);
   description.high_per_m = std::min(valid.high_per_m, 0.5 / texture.signal.pitch_m);
   if (!(description.low_per_m < description.high_per_m))
-    return schema::fail(Fault::unsuitable, "no band is valid along the whole texture", "texture",
+    return schema::fail(Fault::unsuitable, "no band is valid along the steady part of the texture", "texture",
                         "make it from a stretch of steadier speed, or take a longer --window");
-  const WelchSpectrum spectrum(texture.signal.values, texture.signal.pitch_m, *window);
-  const double power = spectrum.power(description.low_per_m, description.high_per_m);
-  description.rms = std::sqrt(power);
-  description.centroid_per_m = spectrum.moment(description.low_per_m, description.high_per_m) / power;
-  if (!(power > 0)) description.centroid_per_m = NAN;
-  description.bands = bands_of(spectrum, description.low_per_m, description.high_per_m);
-  description.slope_db_per_octave =
-      slope_of(description.bands, description.low_per_m, description.high_per_m);
+  add_spectrum(description, WelchSpectrum(part.texture.signal.values, texture.signal.pitch_m, *window));
   return description;
 }
 

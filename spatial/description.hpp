@@ -13,15 +13,15 @@
 namespace tacto::spatial {
 
 struct DescriptionOptions {
-  /// Of Welch's spectrum; unless told, a quarter of the texture, but eight wavelengths of the valid band's
+  /// Of Welch's spectrum; unless told, a quarter of that part, but eight wavelengths of the valid band's
   /// lower end where the texture has them.
   std::optional<double> window_m;
 };
 
 /// Welch's power spectral density S(k) of the whole texture (Welch 1967: Hann windows of length W, half
 /// overlapping, each without its mean; the same as scipy.signal.welch(x, 1 / pitch, 'hann', W)), taken as
-/// constant within half a bin of each bin, between k1 and k2: the band that is valid along the whole texture,
-/// from 1.5 / W (a Hann window's noise bandwidth) to half the sampling frequency. Then
+/// constant within half a bin of each bin, between k1 and k2: the band that is valid all along, from 1.5 / W
+/// (a Hann window's noise bandwidth) to half the sampling frequency. Then
 ///   RMS                 sqrt(int_k1^k2 S dk)
 ///   centroid            int k S dk / int S dk                                             (Peeters
 ///   2004, 6.1.1) band b              sqrt(int S dk) between f_b / G^(1/6) and f_b G^(1/6), f_b = G^(b/3) per
@@ -33,8 +33,8 @@ struct DescriptionOptions {
 ///                       S_b, at the geometric middle of what is known of each, weighted by their known width
 ///                       in octaves: dB per octave, 0 for white noise; needs an octave, else NaN
 /// In the whole band the RMS agrees with the samples' (Parseval) but for what lies under 1.5 / W and for the
-/// first and last half window, which weigh less. Errors: usage (a window under 8 samples or longer than the
-/// texture); unsuitable (no common valid band, fewer than 8 samples).
+/// first and last half window, which weigh less. Errors: usage (a window under 8 samples or longer than that
+/// part); unsuitable (no common valid band, fewer than 8 samples).
 schema::Result<schema::Description> describe(const schema::Texture& texture,
                                              const DescriptionOptions& options = {});
 

@@ -14,6 +14,8 @@ using schema::Spectrogram;
 // A peak stands so much above the lowest cell within so many of the unpadded window's bins on both sides.
 constexpr double kValley_db = 6;
 constexpr double kValleyReach = 4;
+// What lies further under the row's strongest cell may be a side lobe of Blackman's window (-58 dB).
+constexpr double kLeakage_db = 55;
 
 double level(double density) {
   return 10 * std::log10(density);
@@ -41,6 +43,8 @@ class RowPeaks {
     return below && (bin + valley_bins_ >= known_.end || lowest(bin + 1, bin + valley_bins_ + 1) < enough);
   }
 
+  double strongest() const { return known_.first < known_.end ? highest(known_.first, known_.end) : 0; }
+
   double width_per_m(std::size_t bin, double peak_level_db) const {
     const double half = peak_level_db - level(2);
     return (half_power(bin, 1, half) + half_power(bin, -1, half)) * spectrogram_.frequency_step_per_m;
@@ -51,6 +55,12 @@ class RowPeaks {
     double least = density(from);
     for (std::size_t bin = from + 1; bin < end; ++bin) least = std::min(least, density(bin));
     return least;
+  }
+
+  double highest(std::size_t from, std::size_t end) const {
+    double most = 0;
+    for (std::size_t bin = from; bin < end; ++bin) most = std::max(most, density(bin));
+    return most;
   }
 
   // Bins from the peak's bin to where the level crosses; to the spectrum's end where it doesn't.
@@ -78,8 +88,9 @@ std::vector<RidgePoint> ridge_points(const Spectrogram& spectrogram, std::size_t
   const RowPeaks peaks(spectrogram, row, known);
   std::vector<RidgePoint> points;
   const std::size_t end = std::min(known.end, spectrogram.bins - 1);
+  const double least = peaks.strongest() * std::pow(10, -kLeakage_db / 10);
   for (std::size_t bin = std::max<std::size_t>(known.first, 1); bin < end; ++bin) {
-    if (!peaks.is_maximum(bin)) continue;
+    if (!peaks.is_maximum(bin) || peaks.density(bin) < least) continue;
     const auto [offset, level_db] = parabolic_peak(level(peaks.density(bin - 1)), level(peaks.density(bin)),
                                                    level(peaks.density(bin + 1)));
     const double prominence_db = level_db - level(background.at(row, bin));

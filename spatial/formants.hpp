@@ -26,7 +26,8 @@ struct FormantOptions {
 /// texture's breakpoints; all of it where there are none).
 ///   Points: maxima along frequency, placed by a parabola through the levels of three bins; they stand
 ///     go_on_db above the background, and 6 dB above the lowest level within four bins of the unpadded window
-///     (4 / window) on both sides, so that the skirt of a line that begins is none.
+///     (4 / window) on both sides, so that the skirt of a line that begins is none, and at most 55 dB under
+///     the strongest cell of its row, so that no side lobe of the window is one.
 ///   Background: spectrogram_background().
 ///   Ridges: points of neighbouring rows, nearest first, at most half the resolution apart.
 ///   Extent: at each end, a ridge is cut back to where it lies at most 6 dB under its strongest level within

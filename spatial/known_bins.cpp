@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "spatial/band_at.hpp"
+#include "spatial/spectrogram_summary.hpp"
 #include "spatial/valid_band.hpp"
 
 namespace tacto::spatial {
@@ -36,14 +37,15 @@ std::vector<BinRange> known_bins(const schema::Spectrogram& spectrogram,
                                  std::span<const BandPoint> valid_band) {
   const double step = spectrogram.frequency_step_per_m;
   const double least_per_m = 2 / spectrogram.window_m;
+  const double edge_per_m = resolution_per_m(spectrogram);
   const double middle_m = kMiddle * spectrogram.window_m;
   std::vector<BinRange> rows;
   for (const double centre_m : spectrogram.position_m) {
-    BandPoint band{centre_m, 0, INFINITY};
+    BandPoint band{centre_m, -edge_per_m, INFINITY};
     if (!valid_band.empty())
       band = valid_within(valid_band, centre_m - middle_m / 2, centre_m + middle_m / 2);
-    const double low = std::ceil(std::max(band.low_per_m, least_per_m) / step * (1 - 1e-12));
-    const double high = std::floor(band.high_per_m / step * (1 + 1e-12)) + 1;
+    const double low = std::ceil(std::max(band.low_per_m + edge_per_m, least_per_m) / step * (1 - 1e-12));
+    const double high = std::floor((band.high_per_m - edge_per_m) / step * (1 + 1e-12)) + 1;
     const std::size_t first = bin_at(low, spectrogram.bins);
     rows.push_back({first, std::max(first, bin_at(high, spectrogram.bins))});
   }

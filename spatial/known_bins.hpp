@@ -17,8 +17,9 @@ struct BinRange {
 };
 
 /// For each row the bins whose frequency is valid throughout the middle of its window (90 % of its power),
-/// from 2 / window on: under that a window holds too little of a wave to tell it from a drift. All bins above
-/// that without breakpoints.
+/// and at least the resolution away from the limits: where a band-pass ends, every slope has a maximum. From
+/// 2 / window on: under that a window holds too little of a wave to tell it from a drift. All bins above that
+/// without breakpoints.
 std::vector<BinRange> known_bins(const schema::Spectrogram& spectrogram,
                                  std::span<const schema::BandPoint> valid_band);
 

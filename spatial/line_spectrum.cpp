@@ -94,8 +94,8 @@ LineSpectrum::LineSpectrum(std::span<const double> values, double pitch, double 
   resolution_ = kNoiseBandwidth / window_;
   looks_ = 1 + (static_cast<double>(values.size()) * pitch - window_) / (kIndependent * window_);
   needed_db_ = level(gamma_quantile(looks_, kOneIn10000));
-  low_ = std::max(low, 3 / window_);
-  high_ = std::min(high, step_ * static_cast<double>(spectrum.mean_.size() - 3));
+  low_ = std::max(low + resolution_, 3 / window_);
+  high_ = std::min(high - resolution_, step_ * static_cast<double>(spectrum.mean_.size() - 3));
   first_bin_ = static_cast<std::size_t>(std::ceil(low_ / step_));
   if (!(low_ + 8 * resolution_ < high_)) return;
   find_background(spectrum.mean_, step_);

@@ -21,7 +21,8 @@ struct SpectralLine {
 /// brought from median to mean for the number of independent windows (Wilson and Hilferty 1931).
 class LineSpectrum {
  public:
-  /// Between `low` and `high`, in 1/unit of `pitch`. Precondition: at least kFewestValues values, all finite.
+  /// Between `low` and `high`, in 1/unit of `pitch`, but for a resolution at both ends: where a band-pass
+  /// ends, every slope has a maximum. Precondition: at least kFewestValues values, all finite.
   LineSpectrum(std::span<const double> values, double pitch, double low, double high);
 
   static constexpr std::size_t kFewestValues = 64;

@@ -117,7 +117,8 @@ SpeedEvidence SpeedHypotheses::evidence(VibrationId id) const {
     evidence.temporal *= likelihood(j, in_time);
     const bool k_known = other.space.knows(in_space.frequency), f_known = other.time.knows(in_time.frequency);
     if (!k_known && !f_known) continue;
-    evidence.known_elsewhere = true;
+    evidence.spatial_tested |= k_known;
+    evidence.temporal_tested |= f_known;
     const double ratio = other.speed_mps / own.speed_mps;
     evidence.speed_ratio = std::max({evidence.speed_ratio, ratio, 1 / ratio});
     const double apart_per_m = std::abs(in_space.frequency - in_time.frequency / other.speed_mps);

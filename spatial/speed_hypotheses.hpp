@@ -19,7 +19,8 @@ struct SpeedEvidence {
   double spatial = 1, temporal = 1;  ///< likelihood ratios to "neither"
   double best_detection = 0;         ///< highest chance of seeing it elsewhere, were it there
   double speed_ratio = 1;            ///< largest to a stroke that knows the place of one of the predictions
-  bool known_elsewhere = false;
+  /// Whether another stroke knows the place where either hypothesis puts it.
+  bool spatial_tested = false, temporal_tested = false;
   bool told_apart = false;  ///< in some stroke the predictions lie a resolution apart
 
   double confidence_spatial() const { return spatial / (spatial + temporal + 1); }

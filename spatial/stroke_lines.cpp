@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "spatial/band_at.hpp"
+#include "spatial/steady_part.hpp"
 #include "spatial/valid_band.hpp"
 
 namespace tacto::spatial {
@@ -183,7 +184,9 @@ Result<TimeCourse> time_course(const Texture& texture) {
   return course;
 }
 
-Result<StrokeLines> stroke_lines(const std::string& name, const Texture& texture) {
+Result<StrokeLines> stroke_lines(const std::string& name, const Texture& whole) {
+  if (whole.signal.values.empty()) return schema::fail(Fault::unsuitable, "has no samples", name);
+  const Texture texture = steady_part(whole).texture;
   const auto& values = texture.signal.values;
   if (values.size() < 4 * LineSpectrum::kFewestValues)
     return schema::fail(Fault::unsuitable, "is too short for a spectrum", name);

@@ -43,8 +43,8 @@ struct StrokeLines {
   std::vector<Vibration> vibrations;
 };
 
-/// Errors: of time_course(); unsuitable, where the texture is too short or its band too narrow for a
-/// spectrum.
+/// Of the part at steady speed. Errors: of time_course(); unsuitable, where that is too short or its band too
+/// narrow for a spectrum.
 schema::Result<StrokeLines> stroke_lines(const std::string& name, const schema::Texture& texture);
 
 }  // namespace tacto::spatial

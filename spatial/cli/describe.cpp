@@ -51,7 +51,7 @@ std::string in_unit(const char* key, const std::string& unit) {
 
 Report row_of(const Description& each) {
   Report row;
-  row.add("texture", each.texture).add("length_m", each.length_m);
+  row.add("texture", each.texture).add("from_m", each.from_m).add("to_m", each.to_m);
   if (each.mean_speed_mps > 0) row.add("mean_speed_mps", each.mean_speed_mps);
   row.add("low_per_m", each.low_per_m).add("high_per_m", each.high_per_m);
   row.add(in_unit("rms", each.unit), each.rms).add(in_unit("total_rms", each.unit), each.total_rms);

@@ -2,7 +2,6 @@
 // tactograph spectrogram: textures to pictures and tables of their spatial spectrum.
 #include <fmt/format.h>
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "spatial/cli/spectrogram_run.hpp"
 #include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
+#include "spatial/formants.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
 #include "spatial/picture/spectrogram_output.hpp"
 #include "spatial/spectrogram_summary.hpp"
@@ -30,12 +30,27 @@ struct Options {
   SpectrogramOptions spectrogram;
   SpectrogramPictureOptions picture;
   bool compress = false;
+  bool formants = false;
 };
 
-SpectrogramFigure figure_of(const SpectrogramRun& run, const SpectrogramPictureOptions& options) {
+using FormantLists = std::vector<std::vector<schema::Formant>>;
+
+// Empty lists where they are not asked for.
+Result<FormantLists> formants_of(const SpectrogramRun& run, bool wanted) {
+  FormantLists lists(run.spectrograms().size());
+  for (std::size_t i = 0; wanted && i < lists.size(); ++i) {
+    auto found = find_formants(run.spectrograms()[i], run.textures()[i].texture.valid_band);
+    if (!found) return schema::forward_error(found);
+    lists[i] = std::move(*found);
+  }
+  return lists;
+}
+
+SpectrogramFigure figure_of(const SpectrogramRun& run, const FormantLists& formants,
+                            const SpectrogramPictureOptions& options) {
   std::vector<SpectrogramPanel> panels;
   for (std::size_t i = 0; i < run.textures().size(); ++i)
-    panels.push_back({&run.textures()[i].texture, &run.spectrograms()[i]});
+    panels.push_back({&run.textures()[i].texture, &run.spectrograms()[i], formants[i]});
   return SpectrogramFigure(panels, options);
 }
 
@@ -108,22 +123,13 @@ Result<Report> run(const Options& options) {
     return schema::forward_error(opened);
   SpectrogramRun run(options.spectrogram, options.picture.min_frequency_per_m, files, files.has_pictures());
   if (auto done = run.transform(*inputs); !done) return schema::forward_error(done);
+  const auto formants = formants_of(run, options.formants);
+  if (!formants) return schema::forward_error(formants);
   std::optional<SpectrogramFigure> figure;
-  if (files.has_pictures()) figure = figure_of(run, options.picture);
+  if (files.has_pictures()) figure = figure_of(run, *formants, options.picture);
   if (auto written = files.finish(figure ? &*figure : nullptr); !written)
     return schema::forward_error(written);
   return report_of(run, run.lowest_per_m(), options);
-}
-
-template <class Choice>
-void add_choice(CLI::App& app, const std::string& name, Choice& choice,
-                const std::map<std::string, Choice>& choices, const std::string& usual,
-                const std::string& help) {
-  std::vector<std::string> words;
-  for (const auto& [word, meaning] : choices) words.push_back(word);
-  app.add_option(name, choice, help)
-      ->transform(CLI::CheckedTransformer(choices).description(fmt::format("{{{}}}", fmt::join(words, ","))))
-      ->default_str(usual);
 }
 
 void declare_windows(CLI::App& app, SpectrogramOptions& options) {
@@ -131,16 +137,16 @@ void declare_windows(CLI::App& app, SpectrogramOptions& options) {
   cli::add_quantity(app, "--hop", options.hop_m, Dimension::length, "Distance from one window to the next");
   cli::add_quantity(app, "--padding", options.padded_m, Dimension::length,
                     "Length of a window with the zeros after it [the next power of two in samples]");
-  add_choice<Detrend>(app, "--detrend", options.detrend,
-                      {{"none", Detrend::none}, {"constant", Detrend::constant}}, "constant",
-                      "Take each window's mean off first (constant), or not (none)");
-  add_choice<schema::Scaling>(
+  cli::add_choice<Detrend>(app, "--detrend", options.detrend,
+                           {{"constant", Detrend::constant}, {"none", Detrend::none}},
+                           "Take each window's mean off first (constant), or not (none)");
+  cli::add_choice<schema::Scaling>(
       app, "--scaling", options.scaling,
-      {{"density", schema::Scaling::density}, {"amplitude", schema::Scaling::amplitude}}, "density",
+      {{"density", schema::Scaling::density}, {"amplitude", schema::Scaling::amplitude}},
       "Power spectral density (unit^2 mm), or the amplitude (unit) that a sine would have");
-  add_choice<Resolution>(
+  cli::add_choice<Resolution>(
       app, "--resolution", options.resolution,
-      {{"auto", Resolution::automatic}, {"whole", Resolution::whole}}, "auto",
+      {{"auto", Resolution::automatic}, {"whole", Resolution::whole}},
       "Transform on the coarsest grid that keeps the bins (auto), or on the texture's (whole)");
 }
 
@@ -163,6 +169,7 @@ void declare_options(CLI::App& app, Options& options) {
       "band, else 0.1/mm]");
   cli::add_quantity(app, "--dynamic-range", options.picture.dynamic_range_db, Dimension::level,
                     "Levels from the darkest to the brightest colour");
+  app.add_flag("--formants", options.formants, "Draw the formants ('tactograph formants' lists them)");
   app.add_flag("--compress", options.compress, "Deflate the cells of a .nc: slower, and hardly smaller");
 }
 

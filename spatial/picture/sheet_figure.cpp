@@ -162,7 +162,7 @@ Result<void> SheetFigure::draw_heat(Canvas& canvas, std::size_t index) const {
   canvas.frame(cell.heat, {});
   draw_axis(canvas, cell.heat, Side::left, frequency, ticks_for(frequency, 5, cell.leftmost));
   draw_axis(canvas, cell.heat, Side::bottom, position, ticks_for(position, 5, cell.lowest));
-  if (cell.leftmost) draw_caption(canvas, cell.heat, Side::left, "1/mm", 46);
+  if (cell.leftmost) draw_caption(canvas, cell.heat, Side::left, "frequency (1/mm)", 46);
   if (cell.lowest) draw_caption(canvas, cell.heat, Side::bottom, "position (mm)", 27);
   return {};
 }

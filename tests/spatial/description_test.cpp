@@ -113,7 +113,7 @@ TEST(Description, RefusesWhatItCantDescribe) {
     options.window_m = bad;
     EXPECT_EQ(describe(texture, options).error().fault, Fault::usage) << bad;
   }
-  texture.valid_band = {{0, 400, 600}, {0.01, 700, 900}};
+  texture.valid_band = {{0, 400, 410}, {0.01, 405, 415}, {0.02, 412, 420}};
   EXPECT_EQ(describe(texture).error().fault, Fault::unsuitable);
   EXPECT_EQ(describe(samples::noise(5)).error().fault, Fault::unsuitable);
 }

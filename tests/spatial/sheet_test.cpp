@@ -66,8 +66,9 @@ TEST(Sheet, CellsKeepToTheirPlaces) {
       const SheetCell cell = layout.cell(i);
       EXPECT_LE(cell.trace.bottom(), cell.heat.y);
       EXPECT_LT(cell.heat.right(), layout.bar().x);
-      EXPECT_LT(cell.heat.bottom(), layout.page().height);
-      if (i + layout.columns < cells) EXPECT_LT(cell.heat.bottom(), layout.cell(i + layout.columns).title.y);
+      const double under =
+          i + layout.columns < cells ? layout.cell(i + layout.columns).title.y : layout.page().height;
+      EXPECT_LT(cell.heat.bottom(), under);
     }
     EXPECT_LT(layout.bar().bottom(), layout.page().height);
   }
