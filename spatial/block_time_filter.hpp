@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The band-pass of a stretch of any length, fed in chunks: what filter_in_time() gives, in bounded memory.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "data-schema/error.hpp"
+#include "spatial/time_filter.hpp"
+
+namespace tacto::spatial {
+
+/// Values go in in chunks of any size, filtered values come out in order, later, and as many as went in once
+/// finish() was called. The chunks' sizes change nothing, not a bit. One stretch without gaps at a time;
+/// after finish() the next may begin. Lag and memory: the treated Fourier filter lags by some 400 periods of
+/// the lowest frequency and holds a few MB; the Butterworth filter lags by the time in which it forgets (0.8
+/// s for 15 to 500 Hz) and a block; FilterMethod::none without an equaliser does not lag. The plain
+/// truncation (Edges::none with FilterMethod::fourier, or an equaliser) is the transform of the whole
+/// stretch: it holds all of it until finish(). Not shared between threads.
+class BlockTimeFilter {
+ public:
+  /// `longest` is a promise that no stretch has more values: short ones are then filtered in little memory.
+  /// Errors: of check().
+  static schema::Result<BlockTimeFilter> open(double sample_rate_hz, const TimeFilter& filter,
+                                              const SpectralGain& equaliser = {},
+                                              std::size_t longest = static_cast<std::size_t>(-1));
+  BlockTimeFilter(BlockTimeFilter&&) noexcept;
+  BlockTimeFilter& operator=(BlockTimeFilter&&) noexcept;
+  ~BlockTimeFilter();
+
+  /// The stretch goes on with `values`; appends to `out` what is ready. Errors: unsuitable, for a value that
+  /// is not a finite number, by its index in the stretch; the stretch is then dropped.
+  schema::Result<void> push(std::span<const double> values, std::vector<double>& out);
+  /// The stretch ends; appends what is left of it.
+  void finish(std::vector<double>& out);
+
+  class Stage;
+
+ private:
+  explicit BlockTimeFilter(std::vector<std::unique_ptr<Stage>> stages);
+  std::vector<std::unique_ptr<Stage>> stages_;
+  std::size_t taken_ = 0;
+};
+
+}  // namespace tacto::spatial
