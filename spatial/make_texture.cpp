@@ -22,17 +22,15 @@ namespace {
 
 using schema::Fault;
 
-// Beyond the stroke's ends, so that S_f has the slopes of the whole signal there: they reach one sample to
-// each side.
-constexpr std::size_t kMargin = 2;
-
 std::vector<double> resample_piece(const FilteredPiece& piece, const Stroke& stroke, const MonotonePath& path,
-                                   const SpaceGrid& grid) {
+                                   const SpaceGrid& grid, ResampleMethod method) {
+  // Beyond the stroke's ends, so that S_f is there what it is in the whole signal.
+  const std::size_t margin = margin_of(method);
   const std::size_t begin = stroke.frames.begin - piece.frames.begin, size = stroke.frames.size();
-  const std::size_t before = std::min(kMargin, begin);
-  const std::size_t after = std::min(kMargin, piece.values.size() - begin - size);
+  const std::size_t before = std::min(margin, begin);
+  const std::size_t after = std::min(margin, piece.values.size() - begin - size);
   const auto values = std::span(piece.values).subspan(begin - before, before + size + after);
-  return resample(path, stroke.direction, grid, values, before);
+  return resample(path, stroke.direction, grid, values, before, method);
 }
 
 }  // namespace
@@ -101,7 +99,7 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   if (!grid) return schema::forward_error(grid);
 
   schema::Texture texture;
-  texture.signal = {grid->pitch_m, 0, resample_piece(**piece, stroke, path, *grid)};
+  texture.signal = {grid->pitch_m, 0, resample_piece(**piece, stroke, path, *grid, options_.method)};
   texture.source_origin_m = grid->origin_m();
   texture.source.position_moved_m = path.moved_m;
   describe(texture, stroke, number);
@@ -134,7 +132,7 @@ void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int 
   source.from_s = record_.from_s(stroke);
   source.to_s = record_.to_s(stroke);
   source.stroke = number;
-  source.method = "hermite";
+  source.method = name_of(options_.method);
   source.filter = name_of(filter.method);
   source.edges = name_of(filter.edges);
   source.order = filter.method == FilterMethod::butterworth ? filter.order : 0;

@@ -10,6 +10,7 @@
 #include "data-schema/recording.hpp"
 #include "data-schema/texture.hpp"
 #include "spatial/monotone_path.hpp"
+#include "spatial/resample.hpp"
 #include "spatial/time_filter.hpp"
 #include "spatial/touch_record.hpp"
 
@@ -24,6 +25,7 @@ struct TextureOptions {
   TimeFilter filter;
   Equalise equalise = Equalise::automatic;
   double pitch_m = 1e-6;
+  ResampleMethod method = ResampleMethod::hermite;
 };
 
 /// What a channel became by filtering, between two gaps.
