@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kManyFiles = 16;
+
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -95,6 +97,15 @@ Result<void> sync(const std::string& temporary, const std::string& path) {
   return failed == 0 ? Result<void>{} : unwritable(path, failed);
 }
 
+// All of a file system at once: for many files that is far quicker than each by itself.
+Result<void> sync_folder(const std::string& temporary, const std::string& path) {
+  const int file = open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return unwritable(path, errno);
+  const int failed = syncfs(file) == 0 ? 0 : errno;
+  close(file);
+  return failed == 0 ? Result<void>{} : unwritable(path, failed);
+}
+
 }  // namespace
 
 Result<void> check_readable(const std::string& path) {
@@ -137,9 +148,21 @@ Result<void> PendingFiles::write(const std::string& path, std::string_view conte
   return temporary ? write_all(*temporary, path, content) : forward_error(temporary);
 }
 
+Result<void> PendingFiles::sync_all() const {
+  std::string folder_synced;
+  for (const Pending& file : pending_) {
+    const std::string folder = fs::path(file.path).parent_path().string() + "/";
+    if (folder == folder_synced) continue;
+    const bool many = pending_.size() > kManyFiles;
+    auto synced = many ? sync_folder(file.temporary, file.path) : sync(file.temporary, file.path);
+    if (!synced) return synced;
+    if (many) folder_synced = folder;
+  }
+  return {};
+}
+
 Result<void> PendingFiles::commit() {
-  for (const Pending& file : pending_)
-    if (auto synced = sync(file.temporary, file.path); !synced) return synced;
+  if (auto synced = sync_all(); !synced) return synced;
   while (!pending_.empty()) {
     const Pending& file = pending_.front();
     if (std::rename(file.temporary.c_str(), file.path.c_str()) != 0) return unwritable(file.path, errno);

@@ -42,6 +42,7 @@ class PendingFiles {
   struct Pending {
     std::string temporary, path;
   };
+  Result<void> sync_all() const;
   std::vector<Pending> pending_;
 };
 

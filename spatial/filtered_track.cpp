@@ -23,6 +23,7 @@ schema::Result<void> FilteredTrack::begin(FrameRange piece) {
 
 void FilteredTrack::forget_before(std::size_t frame) {
   const std::size_t gone = std::min(frame - kept_from_, kept_.size());
+  if (2 * gone < kept_.size()) return;  // moving what stays costs no more than it took to make
   kept_.erase(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(gone));
   kept_from_ += gone;
 }

@@ -19,10 +19,6 @@ namespace {
 
 using schema::Fault;
 
-// Beyond the stroke's ends, so that S_f has the slopes of the whole signal there: they reach one sample to
-// each side.
-constexpr std::size_t kMargin = 2;
-
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
@@ -32,7 +28,7 @@ double median(std::vector<double> values) {
 }  // namespace
 
 TextureMaker::TextureMaker(TouchRecord record, TextureOptions options)
-    : record_(std::move(record)), options_(std::move(options)) {}
+    : record_(std::move(record)), options_(std::move(options)), resampler_(options_.method) {}
 
 schema::Result<TextureMaker> TextureMaker::open(const schema::Recording& recording,
                                                 const TextureOptions& options) {
@@ -98,11 +94,15 @@ schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke
   const auto piece = std::ranges::find_if(record_.pieces(), holds);
   if (piece == record_.pieces().end())
     return schema::fail(Fault::unsuitable, "frames are missing inside the stroke", record_.where());
-  const std::size_t before = std::min(kMargin, stroke.frames.begin - piece->begin);
-  const FrameRange frames{stroke.frames.begin - before, std::min(stroke.frames.end + kMargin, piece->end)};
-  const auto values = filtered_->values(*piece, frames);
-  if (!values) return schema::forward_error(values);
-  return resample(path, stroke.direction, grid, *values, before);
+  // Beyond the stroke's ends, so that S_f is there what it is in the whole signal.
+  const std::size_t margin = margin_of(options_.method);
+  const std::size_t before = std::min(margin, stroke.frames.begin - piece->begin);
+  const FrameRange frames{stroke.frames.begin - before, std::min(stroke.frames.end + margin, piece->end)};
+  const auto seen = filtered_->values(*piece, frames);
+  if (!seen) return schema::forward_error(seen);
+  std::vector<double> values(grid.count);
+  resampler_(path, stroke.direction, grid, *seen, before, values);
+  return values;
 }
 
 SpeedProfile TextureMaker::profile_of(const Stroke& stroke, const MonotonePath& path,
@@ -180,7 +180,7 @@ void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int 
   source.from_s = record_.from_s(stroke);
   source.to_s = record_.to_s(stroke);
   source.stroke = number;
-  source.method = "hermite";
+  source.method = name_of(options_.method);
   source.filter = name_of(filter.method);
   source.edges = name_of(filter.edges);
   source.order = filter.method == FilterMethod::butterworth ? filter.order : 0;

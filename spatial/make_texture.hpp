@@ -27,6 +27,7 @@ struct TextureOptions {
   TimeFilter filter;
   Equalise equalise = Equalise::automatic;
   double pitch_m = 1e-6;
+  ResampleMethod method = ResampleMethod::hermite;
 };
 
 /// Makes the textures of one recording, of any length in little memory: it holds a stroke, not the recording.
@@ -65,6 +66,7 @@ class TextureMaker {
   TextureOptions options_;
   SpectralGain equaliser_;
   std::optional<FilteredTrack> filtered_;
+  Resampler resampler_;
 };
 
 /// Root of the mean square of a texture's values, in their unit.

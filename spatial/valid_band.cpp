@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tacto::spatial {
 namespace {
@@ -42,13 +43,27 @@ double LocalSpeed::at(double way_m) const {
   return std::max((way_(after) - way_(before)) / (after - before) * sample_rate_hz_, kSlowest_mps);
 }
 
+std::vector<double> LocalSpeed::stops_m() const {
+  std::vector<double> stops;
+  for (std::size_t i = 1; i < path_.sample.size(); ++i)
+    if (path_.sample[i] - path_.sample[i - 1] > 2 * half_window_)
+      stops.push_back(std::midpoint(path_.way_m[i - 1], path_.way_m[i]));
+  return stops;
+}
+
 SpeedProfile speed_profile(const LocalSpeed& speed, double origin_m, double length_m, int direction) {
   const auto steps = static_cast<std::size_t>(std::ceil(length_m / kSpacing_m));
   SpeedProfile profile;
-  for (std::size_t i = 0; i <= steps; ++i) {
+  for (std::size_t i = 0; i <= steps; ++i)
     profile.position_m.push_back(std::min(static_cast<double>(i) * kSpacing_m, length_m));
-    profile.speed_mps.push_back(speed.at(direction * (origin_m + profile.position_m.back())));
-  }
+  for (const double stop_m : speed.stops_m())
+    if (const double at_m = direction * stop_m - origin_m; at_m > 0 && at_m < length_m)
+      profile.position_m.push_back(at_m);
+  std::ranges::sort(profile.position_m);
+  const auto repeated = std::ranges::unique(profile.position_m);
+  profile.position_m.erase(repeated.begin(), repeated.end());
+  for (const double at_m : profile.position_m)
+    profile.speed_mps.push_back(speed.at(direction * (origin_m + at_m)));
   return profile;
 }
 

@@ -21,6 +21,9 @@ class LocalSpeed {
   LocalSpeed(const MonotonePath& path, double sample_rate_hz, double window);
   /// m/s, above 0.
   double at(double way_m) const;
+  /// Where on its way the finger stood still, or crept, for longer than the window: the middle of each step
+  /// from knot to knot that took as long. Growing.
+  std::vector<double> stops_m() const;
 
  private:
   const MonotonePath& path_;
@@ -29,7 +32,7 @@ class LocalSpeed {
   double sample_rate_hz_, half_window_;
 };
 
-/// Speed at positions at most 0.1 mm apart, from 0 to `length_m`.
+/// Speed at positions at most 0.1 mm apart, and at those where the finger stood, from 0 to `length_m`.
 struct SpeedProfile {
   std::vector<double> position_m, speed_mps;
 };

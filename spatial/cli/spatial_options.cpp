@@ -104,6 +104,14 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
   declare_filter(app, options);
   cli::add_quantity(app, "--grid", options.texture.pitch_m, Dimension::length,
                     "Distance of the texture's samples");
+  add_choice<ResampleMethod>(
+      app, "--method", options.texture.method,
+      {{"hermite", ResampleMethod::hermite},
+       {"linear", ResampleMethod::linear},
+       {"swapped", ResampleMethod::swapped},
+       {"sinc", ResampleMethod::sinc}},
+      "How values go to space: monotone cubics and their true inverse, straight lines, cubics with "
+      "the axes swapped, or a windowed sinc at the true inverse (exact to 3e-7, ten times the work)");
   add_choice<Equalise>(app, "--equalise", options.texture.equalise,
                        {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
                        "Divide by the transducer's sensor response; auto: where the recording names one");

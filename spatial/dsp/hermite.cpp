@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "spatial/dsp/simd_clones.hpp"
+
 namespace tacto::spatial {
 namespace {
 
@@ -12,11 +14,30 @@ int sign(double value) {
   return (value > 0) - (value < 0);
 }
 
-// Weighted harmonic mean of the secants on both sides (Fritsch and Butland 1984), 0 at an extremum.
-double inner_slope(double h0, double h1, double secant0, double secant1) {
-  if (secant0 == 0 || sign(secant0) != sign(secant1)) return 0;
-  const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
-  return (w0 + w1) / (w0 / secant0 + w1 / secant1);
+bool same_way(double secant0, double secant1) {
+  return ((secant0 > 0) & (secant1 > 0)) | ((secant0 < 0) & (secant1 < 0));
+}
+
+// Weighted harmonic means of the secants on both sides (Fritsch and Butland 1984), 0 at an extremum:
+// (w0 + w1) / (w0 / s0 + w1 / s1), written with fewer divisions and without overflow of small secants.
+TACTO_SIMD_CLONES
+void inner_slopes(const double* x, const double* y, double* slopes, std::size_t last) {
+  for (std::size_t i = 1; i < last; ++i) {
+    const double h0 = x[i] - x[i - 1], h1 = x[i + 1] - x[i], d0 = y[i] - y[i - 1], d1 = y[i + 1] - y[i];
+    const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
+    const double mean = (w0 + w1) * d1 / (w0 * h0 * (d1 / d0) + w1 * h1);
+    slopes[i] = same_way(d0, d1) ? mean : 0;
+  }
+}
+
+TACTO_SIMD_CLONES
+void inner_slopes_uniform(double step, const double* y, double* slopes, std::size_t last) {
+  const double per_step = 2 / step;
+  for (std::size_t i = 1; i < last; ++i) {
+    const double d0 = y[i] - y[i - 1], d1 = y[i + 1] - y[i];
+    const double mean = per_step * d0 * (d1 / (d0 + d1));
+    slopes[i] = same_way(d0, d1) ? mean : 0;
+  }
 }
 
 // The one-sided three-point slope, limited so that the end segment stays monotone.
@@ -29,29 +50,38 @@ double end_slope(double h0, double h1, double secant0, double secant1) {
 
 }  // namespace
 
-std::vector<double> hermite_slopes(std::span<const double> x, std::span<const double> y) {
-  assert(x.size() == y.size() && x.size() >= 2);
+void hermite_slopes(std::span<const double> x, std::span<const double> y, std::span<double> slopes) {
+  assert(x.size() == y.size() && x.size() >= 2 && slopes.size() == y.size());
   const std::size_t n = x.size();
   const auto width = [&](std::size_t i) { return x[i + 1] - x[i]; };
   const auto secant = [&](std::size_t i) { return (y[i + 1] - y[i]) / width(i); };
-  std::vector<double> slopes(n, secant(0));
-  if (n == 2) return slopes;
-  for (std::size_t i = 1; i + 1 < n; ++i)
-    slopes[i] = inner_slope(width(i - 1), width(i), secant(i - 1), secant(i));
+  slopes.front() = slopes.back() = secant(0);
+  if (n == 2) return;
+  inner_slopes(x.data(), y.data(), slopes.data(), n - 1);
   slopes.front() = end_slope(width(0), width(1), secant(0), secant(1));
   slopes.back() = end_slope(width(n - 2), width(n - 3), secant(n - 2), secant(n - 3));
+}
+
+void hermite_slopes_uniform(double step, std::span<const double> y, std::span<double> slopes) {
+  assert(y.size() >= 2 && slopes.size() == y.size());
+  const std::size_t n = y.size();
+  const auto secant = [&](std::size_t i) { return (y[i + 1] - y[i]) / step; };
+  slopes.front() = slopes.back() = secant(0);
+  if (n == 2) return;
+  inner_slopes_uniform(step, y.data(), slopes.data(), n - 1);
+  slopes.front() = end_slope(step, step, secant(0), secant(1));
+  slopes.back() = end_slope(step, step, secant(n - 2), secant(n - 3));
+}
+
+std::vector<double> hermite_slopes(std::span<const double> x, std::span<const double> y) {
+  std::vector<double> slopes(y.size());
+  hermite_slopes(x, y, slopes);
   return slopes;
 }
 
 std::vector<double> hermite_slopes_uniform(double step, std::span<const double> y) {
-  assert(y.size() >= 2);
-  const std::size_t n = y.size();
-  const auto secant = [&](std::size_t i) { return (y[i + 1] - y[i]) / step; };
-  std::vector<double> slopes(n, secant(0));
-  if (n == 2) return slopes;
-  for (std::size_t i = 1; i + 1 < n; ++i) slopes[i] = inner_slope(step, step, secant(i - 1), secant(i));
-  slopes.front() = end_slope(step, step, secant(0), secant(1));
-  slopes.back() = end_slope(step, step, secant(n - 2), secant(n - 3));
+  std::vector<double> slopes(y.size());
+  hermite_slopes_uniform(step, y, slopes);
   return slopes;
 }
 

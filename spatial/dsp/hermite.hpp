@@ -16,6 +16,10 @@ std::vector<double> hermite_slopes(std::span<const double> x, std::span<const do
 /// The same for knots `step` > 0 apart; at least 2 values.
 std::vector<double> hermite_slopes_uniform(double step, std::span<const double> y);
 
+/// Both, written where the caller has room for y.size() slopes.
+void hermite_slopes(std::span<const double> x, std::span<const double> y, std::span<double> slopes);
+void hermite_slopes_uniform(double step, std::span<const double> y, std::span<double> slopes);
+
 /// One segment between two knots in its local variable u = (x - x0) / h in [0, 1].
 struct HermiteSegment {
   double y0, y1;  ///< values at the ends

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace tacto::spatial {
 namespace {
@@ -57,21 +58,46 @@ EndTreatment EndTreatment::for_lowest(double low_hz, double sample_rate_hz, std:
           std::max<std::size_t>(2, samples_of(kBaselinePeriods, low_hz, sample_rate_hz, size))};
 }
 
-std::vector<double> extend_ends(std::span<const double> values, EndTreatment treatment, std::size_t length) {
-  const std::size_t n = values.size(), padding = treatment.padding;
-  assert(n >= 2 && padding < n && treatment.baseline >= 2 && treatment.baseline <= n &&
-         length >= n + 2 * padding);
-  const auto from_start = [&](std::size_t k) { return values[k]; };
-  const auto from_end = [&](std::size_t k) { return values[n - 1 - k]; };
-  const Line start = fit_line(from_start, treatment.baseline), end = fit_line(from_end, treatment.baseline);
-  const double level = (start.level + end.level) / 2;
-  std::vector<double> extended(length, level);
-  std::ranges::copy(values, extended.begin() + static_cast<std::ptrdiff_t>(padding));
-  for (std::size_t k = 1; k <= padding; ++k) {
-    extended[padding - k] = beyond(from_start, start, level, k, padding);
-    extended[padding + n - 1 + k] = beyond(from_end, end, level, k, padding);
-  }
-  return extended;
+ExtendedRecord::ExtendedRecord(double low_hz, double sample_rate_hz)
+    : low_hz_(low_hz),
+      sample_rate_hz_(sample_rate_hz),
+      most_(EndTreatment::for_lowest(low_hz, sample_rate_hz, std::numeric_limits<std::size_t>::max())) {}
+
+void ExtendedRecord::reset() {
+  held_.clear();
+  begun_ = false;
+}
+
+void ExtendedRecord::begin(EndTreatment treatment, std::vector<double>& extended) {
+  treatment_ = treatment;
+  const auto value = [&](std::size_t k) { return held_[k]; };
+  const Line line = fit_line(value, treatment.baseline);
+  start_level_ = line.level;
+  for (std::size_t k = treatment.padding; k >= 1; --k)
+    extended.push_back(beyond(value, line, line.level, k, treatment.padding) - start_level_);
+  for (const double held : held_) extended.push_back(held - start_level_);
+  begun_ = true;
+}
+
+void ExtendedRecord::push(std::span<const double> values, std::vector<double>& extended) {
+  held_.insert(held_.end(), values.begin(), values.end());
+  const std::size_t needed = std::max(most_.padding + 1, most_.baseline);
+  if (begun_)
+    for (const double value : values) extended.push_back(value - start_level_);
+  else if (held_.size() >= needed)
+    begin(most_, extended);
+  if (begun_ && held_.size() > 2 * needed)
+    held_.erase(held_.begin(), held_.end() - static_cast<std::ptrdiff_t>(needed));
+}
+
+void ExtendedRecord::finish(std::vector<double>& extended) {
+  assert(held_.size() >= 2);
+  if (!begun_) begin(EndTreatment::for_lowest(low_hz_, sample_rate_hz_, held_.size()), extended);
+  const auto value = [&](std::size_t k) { return held_[held_.size() - 1 - k]; };
+  const Line line = fit_line(value, treatment_.baseline);
+  for (std::size_t k = 1; k <= treatment_.padding; ++k)
+    extended.push_back(beyond(value, line, line.level, k, treatment_.padding) - start_level_);
+  final_value_ = line.level - start_level_;
 }
 
 std::vector<double> extend_odd(std::span<const double> values, std::size_t padding) {

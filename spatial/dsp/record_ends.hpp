@@ -22,11 +22,37 @@ struct EndTreatment {
   static EndTreatment for_lowest(double low_hz, double sample_rate_hz, std::size_t size);
 };
 
-/// The record in the middle of `length` >= size + 2 padding samples, sample 0 at index `padding`. Beyond each
-/// end the straight baseline of that end goes on and what the record has above it is mirrored, both tapered
-/// smoothly to one level that both ends share: no jump, no kink of the drift, and periodic. At least 2
-/// values.
-std::vector<double> extend_ends(std::span<const double> values, EndTreatment treatment, std::size_t length);
+/// A record that goes on beyond its ends, fed in chunks. Beyond each end the straight baseline of that end
+/// goes on and what the record has above it is mirrored, both tapered smoothly to the end's own level, which
+/// then stays for ever: no jump, and no kink of the drift. All of it less the level before the first value.
+/// Holds twice what an end's treatment looks at.
+class ExtendedRecord {
+ public:
+  /// As EndTreatment::for_lowest.
+  ExtendedRecord(double low_hz, double sample_rate_hz);
+  /// The record goes on; appends to `extended` what is known of it.
+  void push(std::span<const double> values, std::vector<double>& extended);
+  /// The record, of 2 values at least, has ended; appends the rest.
+  void finish(std::vector<double>& extended);
+  /// Ready for the next record.
+  void reset();
+
+  /// Once something was appended: samples before the record's first, and the level there.
+  std::size_t padding() const { return treatment_.padding; }
+  double start_level() const { return start_level_; }
+  /// After finish(): what all later values are.
+  double final_value() const { return final_value_; }
+
+ private:
+  void begin(EndTreatment treatment, std::vector<double>& extended);
+
+  double low_hz_, sample_rate_hz_;
+  EndTreatment most_;  // of a record that is long enough
+  EndTreatment treatment_;
+  std::vector<double> held_;  // the record's last values; from its first, until it has begun
+  bool begun_ = false;
+  double start_level_ = 0, final_value_ = 0;
+};
 
 /// Point-mirrored about its first and last sample, `padding` < size samples at each end, as
 /// scipy.signal.sosfiltfilt does (padtype "odd").

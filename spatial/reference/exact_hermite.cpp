@@ -17,7 +17,7 @@ ExactHermite::ExactHermite(std::span<const double> t, std::span<const double> x)
   assert(t.size() == x.size() && t.size() >= 2);
 }
 
-// The rules of Fritsch and Butland 1984 for increasing data, where every secant is above 0.
+// The rules of Fritsch and Butland 1984, with SciPy's at the ends.
 long double ExactHermite::slope(std::size_t i) const {
   const auto width = [&](std::size_t k) { return t_[k + 1] - t_[k]; };
   const auto secant = [&](std::size_t k) { return (x_[k + 1] - x_[k]) / width(k); };
@@ -27,8 +27,11 @@ long double ExactHermite::slope(std::size_t i) const {
     const std::size_t near = i == 0 ? 0 : last - 1, far = i == 0 ? 1 : last - 2;
     const long double parabola = ((2 * width(near) + width(far)) * secant(near) - width(near) * secant(far)) /
                                  (width(near) + width(far));
-    return std::max(parabola, 0.0L);
+    if (parabola * secant(near) <= 0) return 0;
+    const bool turns = secant(near) * secant(far) <= 0;
+    return turns && std::abs(parabola) > std::abs(3 * secant(near)) ? 3 * secant(near) : parabola;
   }
+  if (secant(i - 1) * secant(i) <= 0) return 0;
   const long double before = 2 * width(i) + width(i - 1), after = width(i) + 2 * width(i - 1);
   return (before + after) / (before / secant(i - 1) + after / secant(i));
 }

@@ -10,7 +10,7 @@ namespace tacto::spatial::reference {
 /// The monotone cubic through knots (t, x), in long double, with its inverse by bisection alone.
 class ExactHermite {
  public:
-  /// As HermiteInverse asks: t and x strictly increasing, at least 2.
+  /// t strictly increasing, at least 2 knots; x too where the inverse is asked for.
   ExactHermite(std::span<const double> t, std::span<const double> x);
   long double value(long double t) const;
   /// Halves its bracket 120 times: to the last bit of t.

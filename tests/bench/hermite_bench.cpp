@@ -1,53 +1,88 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force to space: 60 s at 10 kHz, one 40 mm stroke a second at 50 mm/s, an encoder of 1 um, a grid of 1 um.
+// 60 s of strokes to space: 60 strokes of 40 mm on a grid of 1 um, 2.4 million values.
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "spatial/monotone_path.hpp"
 #include "spatial/resample.hpp"
+#include "tests/bench/workload.hpp"
 
 namespace tacto::spatial {
 namespace {
 
-constexpr double kRate_hz = 10000;
-constexpr double kQuantum_m = 1e-6;
-constexpr int kStrokes = 60;
-constexpr std::size_t kStrokeFrames = 8000;  // 40 mm at 50 mm/s
+constexpr std::size_t kStrokes = 60;
 
 struct Stroked {
-  std::vector<double> position_m, force_n;
+  MonotonePath path;
+  int direction;
+  SpaceGrid grid;
+  std::span<const double> force_n;
 };
 
-// A finger whose speed wavers by a tenth; forces of 100 to 400 Hz.
-Stroked stroke() {
-  Stroked made;
-  for (std::size_t i = 0; i < kStrokeFrames; ++i) {
-    const double t_s = static_cast<double>(i) / kRate_hz;
-    const double turn = 2 * std::numbers::pi * t_s;
-    const double exact_m = 0.05 * (t_s + 0.1 * std::sin(5 * turn) / (10 * std::numbers::pi));
-    made.position_m.push_back(std::round(exact_m / kQuantum_m) * kQuantum_m);
-    made.force_n.push_back(std::sin(100 * turn) + 0.3 * std::sin(400 * turn));
-  }
-  return made;
+int direction_of(std::size_t stroke) {
+  return stroke % 2 == 0 ? 1 : -1;
 }
 
-void hermite_to_space(benchmark::State& state) {
-  const Stroked stroked = stroke();
+MonotonePath path_of(const bench::Workload& work, std::size_t stroke) {
+  const auto frames =
+      std::span(work.position_m).subspan(stroke * bench::kFramesPerSecond, bench::kStrokeFrames);
+  return monotone_path(frames, direction_of(stroke), {bench::kQuantum_m, 0});
+}
+
+std::vector<Stroked> strokes_of(const bench::Workload& work) {
+  std::vector<Stroked> strokes;
+  for (std::size_t i = 0; i < kStrokes; ++i) {
+    MonotonePath path = path_of(work, i);
+    const SpaceGrid grid = *grid_along(path, direction_of(i), bench::kPitch_m);
+    const auto force = std::span(work.force_n).subspan(i * bench::kFramesPerSecond, bench::kStrokeFrames);
+    strokes.push_back({std::move(path), direction_of(i), grid, force});
+  }
+  return strokes;
+}
+
+void take_to_space(benchmark::State& state, ResampleMethod method) {
+  const auto work = bench::workload(kStrokes);
+  const auto strokes = strokes_of(work);
+  Resampler resampler(method);
+  std::vector<double> values;
   std::size_t samples = 0;
   for (auto _ : state)
-    for (int i = 0; i < kStrokes; ++i) {
-      const MonotonePath path = monotone_path(stroked.position_m, 1, {kQuantum_m, 0});
-      const auto grid = grid_along(path, 1, 1e-6);
-      const auto values = resample(path, 1, *grid, stroked.force_n, 0);
+    for (const auto& [path, direction, grid, force_n] : strokes) {
+      values.resize(grid.count);
+      resampler(path, direction, grid, force_n, 0, values);
       benchmark::DoNotOptimize(values.data());
       samples += values.size();
     }
   state.counters["samples"] = benchmark::Counter(static_cast<double>(samples), benchmark::Counter::kIsRate);
 }
-BENCHMARK(hermite_to_space)->Unit(benchmark::kMillisecond);
+
+void pchip_true_inverse(benchmark::State& state) {
+  take_to_space(state, ResampleMethod::hermite);
+}
+BENCHMARK(pchip_true_inverse)->Unit(benchmark::kMillisecond);
+
+void resample_linear(benchmark::State& state) {
+  take_to_space(state, ResampleMethod::linear);
+}
+BENCHMARK(resample_linear)->Unit(benchmark::kMillisecond);
+
+void resample_swapped(benchmark::State& state) {
+  take_to_space(state, ResampleMethod::swapped);
+}
+BENCHMARK(resample_swapped)->Unit(benchmark::kMillisecond);
+
+void resample_sinc(benchmark::State& state) {
+  take_to_space(state, ResampleMethod::sinc);
+}
+BENCHMARK(resample_sinc)->Unit(benchmark::kMillisecond);
+
+void monotone_paths(benchmark::State& state) {
+  const auto work = bench::workload(kStrokes);
+  for (auto _ : state)
+    for (std::size_t i = 0; i < kStrokes; ++i) benchmark::DoNotOptimize(path_of(work, i).way_m.data());
+}
+BENCHMARK(monotone_paths)->Name("monotone_path")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tacto::spatial

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -111,6 +112,62 @@ TEST_F(MakeTexture, AChirpInSpaceComesBackFromAnUnevenFinger) {
   TextureOptions whole;
   whole.filter.method = FilterMethod::none;
   EXPECT_LT(error_of(texture_of(recording, whole), chirp, 0), 0.004);
+}
+
+// A surface that fades in and out over 15 mm: where the finger starts and stops there is no jolt, whose band
+// reaches over everything.
+double fading(double x_m, double from_m, double to_m) {
+  const double inside = std::clamp(std::min(x_m - from_m, to_m - x_m) / 0.015, 0.0, 1.0);
+  return std::pow(std::sin(kTurn / 4 * inside), 2);
+}
+
+// Largest part of the band that a texture knows throughout, from 20 % above its lower end to 20 % below its
+// upper one: at the edges the band-pass halves what lies on them.
+schema::BandPoint well_within(const schema::Texture& texture, double from_m, double to_m) {
+  std::vector<schema::BandPoint> along;
+  for (const auto& point : texture.valid_band)
+    if (point.position_m >= from_m && point.position_m <= to_m) along.push_back(point);
+  const auto band = band_throughout(along);
+  return {0, 1.2 * band.low_per_m, band.high_per_m / 1.2};
+}
+
+TEST_F(MakeTexture, AChirpInItsValidBandComesBackToATenthOfAPercent) {
+  // 1 to 5 /mm under 30 to 70 mm/s: 30 to 350 Hz. A texture knows 0.5 /mm (15 Hz / 30 mm/s) to 7.1 /mm (500
+  // Hz / 70 mm/s) of it. By the windowed sinc; the monotone cubic flattens the peaks of what has 29 samples a
+  // period, by what resample.hpp states.
+  const Surface slow_chirp = [](double x_m) {
+    return fading(x_m, 0, 0.08) * 0.1 * std::sin(kTurn * (1000 * x_m + 0.5 * 4000 / 0.08 * x_m * x_m));
+  };
+  const auto recording = record(stroke_path(0, 0.08, 0.05, 0.4), slow_chirp, 0);
+  TextureOptions options;
+  options.method = ResampleMethod::sinc;
+  const auto texture = texture_of(recording, options);
+  const auto known = well_within(texture, 0.01, 0.07);
+  EXPECT_LT(known.low_per_m, 1000);
+  EXPECT_GT(known.high_per_m, 5000);
+  EXPECT_LT(error_of(texture, slow_chirp, 0), 0.001);
+  EXPECT_LT(error_of(texture_of(recording, {}), slow_chirp, 0), 0.003);
+}
+
+TEST_F(MakeTexture, TwoSpeedsGiveOneSurface) {
+  // Ridges of 2 and 3.3 /mm at 25 and at 70 mm/s: 50 and 83 Hz, 140 and 231 Hz.
+  auto path = stroke_path(0.01, 0.06, 0.025, 0.1);
+  append(path, stroke_path(path.back(), -0.06, 0.07, 0.1));
+  const auto recording = record(
+      path, [](double x_m) { return fading(x_m, 0.01, 0.07) * ridges(x_m); }, 0);
+  TextureOptions options;
+  options.method = ResampleMethod::sinc;
+  const auto slow = texture_of(recording, options, 1), fast = texture_of(recording, options, 2);
+  const auto offset = static_cast<std::ptrdiff_t>(
+      std::lround((fast.source_origin_m - slow.source_origin_m) / slow.signal.pitch_m));
+  double apart = 0, size = 0;
+  for (std::ptrdiff_t i = 10000; i < 50000; ++i) {
+    const double a = slow.signal.values[static_cast<std::size_t>(i)],
+                 b = fast.signal.values[static_cast<std::size_t>(i - offset)];
+    apart += (a - b) * (a - b);
+    size += a * a;
+  }
+  EXPECT_LT(std::sqrt(apart / size), 0.001);
 }
 
 TEST_F(MakeTexture, AnEncodersMicrometreCostsWhatItsPhaseIsWorth) {
@@ -317,6 +374,43 @@ TEST_F(MakeTexture, AGapPartsStrokesAndFilters) {
   }
   const Stroke across{{14000, 16000}, 1};
   EXPECT_FALSE(maker->make(across, 0));
+}
+
+TEST_F(MakeTexture, AFingerThatAllButRestsIsRefused) {
+  // 0.1 um/s for 30 s: 15 Hz lie at 150,000 /mm.
+  auto path = stroke_path(0, 0.05, 0.05, 0);
+  append(path, stroke_path(path.back(), 3e-6, 1e-7, 0));
+  const auto recording = record(path, ridges, 1e-9);
+  const auto touch = TouchRecord::open(recording, "tangential_force");
+  const auto stretch = touch->stretch(3, 31);
+  ASSERT_TRUE(stretch) << schema::message(stretch.error());
+  auto maker = TextureMaker::open(recording, {});
+  const auto made = maker->make(*stretch, 0);
+  ASSERT_FALSE(made);
+  EXPECT_NE(schema::message(made.error()).find("all but rests: at 0.1 um/s"), std::string::npos)
+      << schema::message(made.error());
+}
+
+TEST_F(MakeTexture, StrokesOutOfOrderAreTheSame) {
+  auto path = stroke_path(0.01, 0.06, 0.05, 0.2);
+  append(path, stroke_path(path.back(), -0.06, 0.03, 0.2));
+  const auto recording = record(path, ridges, 1e-6);
+  auto maker = TextureMaker::open(recording, {});
+  const auto& strokes = maker->record().strokes();
+  const auto first = maker->make(strokes[0], 1), second = maker->make(strokes[1], 2),
+             again = maker->make(strokes[0], 1);
+  EXPECT_EQ(first->signal.values, again->signal.values);
+  EXPECT_EQ(TextureMaker::open(recording, {})->make(strokes[1], 2)->signal.values, second->signal.values);
+}
+
+TEST_F(MakeTexture, AShiftMovesItOnTheBench) {
+  const auto recording = record(stroke_path(0.01, 0.06, 0.05, 0.2), ridges, 0);
+  auto maker = TextureMaker::open(recording, {});
+  const auto& stroke = maker->record().strokes()[0];
+  const auto shifted = maker->make(stroke, 1, 12.3e-6);
+  EXPECT_LT(error_of(
+                *shifted, [](double x) { return ridges(x - 12.3e-6); }, 0.005),
+            0.01);
 }
 
 TEST_F(MakeTexture, TheMeanNormalForceIsReported) {

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// f(x_i) = S_f(S_x^-1(x_i)) at evenly spaced x_i, with the true inverse of S_x (Wiertlewski 2011): both
+// monotone cubics in one walk along the knots.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace tacto::spatial {
+
+/// Places (first + i) pitch, i = 0 ... count - 1; pitch > 0.
+struct EvenPlaces {
+  double first = 0, pitch = 1;
+  std::size_t count = 0;
+  double at(std::size_t i) const { return (first + static_cast<double>(i)) * pitch; }
+};
+
+/// Places [begin, end) of a segment, to be solved one by one.
+struct HardPlaces {
+  std::size_t begin, end, segment;
+};
+
+/// Keeps its scratch between strokes; not shared between threads.
+///
+/// Segments of S_x whose ends are steeper or flatter than their secant by a factor of 3/2 at most are solved
+/// by two of Halley's steps from the secant, many places at once: error below 2e-12 of the segment. All
+/// others, above all where dx/dt nears 0, are solved one by one inside a bracket (solve_segment: below
+/// 1e-10). Against bisection in long double: hermite_resampler_test.
+class HermiteResampler {
+ public:
+  /// S_x goes through (t, x), both strictly increasing, at least 2 knots; t counts samples. S_f goes through
+  /// values[i] at time i - margin, at least 2 values. out.size() = places.count. Places outside the knots
+  /// take the time of the first or last knot. Scratch: 8 bytes a knot and a value.
+  void operator()(std::span<const double> t, std::span<const double> x, std::span<const double> values,
+                  std::size_t margin, const EvenPlaces& places, std::span<double> out);
+
+ private:
+  std::vector<double> x_slopes_, value_slopes_;
+  std::vector<HardPlaces> hard_;
+};
+
+}  // namespace tacto::spatial
