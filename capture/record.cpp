@@ -4,9 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
 
+#include "capture/disk_writer.hpp"
 #include "capture/record_header.hpp"
+#include "data-schema/files.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -14,87 +20,178 @@ namespace {
 using firmware_host::Device;
 using schema::Fault;
 using schema::Result;
+using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kBlockFrames = 1024;  // 0.1 s at 10 kHz
+constexpr double kBlock_s = 0.02;
+constexpr auto kViewEvery = std::chrono::milliseconds(100);
+constexpr double kSpare_bytes = 1 << 20;  // left on the disk for the sidecar
 
-// The stream of one recording: block by block from device to file, measured on the way.
-struct Stream {
-  Device& device;
-  schema::RecordingWriter& writer;
-  std::vector<schema::Statistics> statistics;
-  std::vector<std::int32_t> block;
-
-  Result<std::size_t> next(std::uint64_t frames_left);
-  void measure(std::span<const std::int32_t> codes);
-};
-
-void Stream::measure(std::span<const std::int32_t> codes) {
-  const auto& channels = writer.header().channels;
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    const schema::Channel& channel = channels[i % channels.size()];
-    statistics[i % channels.size()].add(codes[i] * channel.scale + channel.offset);
-  }
+std::string folder_of(const std::string& name) {
+  const auto folder = std::filesystem::path(schema::stem_of(name, "")).parent_path();
+  return folder.empty() ? "." : folder.string();
 }
 
-Result<std::size_t> Stream::next(std::uint64_t frames_left) {
-  const std::size_t channels = statistics.size();
-  const std::size_t asked = std::min<std::uint64_t>(frames_left, kBlockFrames) * channels;
-  const auto frames = device.read(std::span(block).first(asked));
-  if (!frames) return frames;
-  const auto codes = std::span<const std::int32_t>(block).first(*frames * channels);
-  measure(codes);
-  const auto written = writer.write(codes);
-  return written ? frames : schema::forward_error(written);
+double disk_left_bytes(const std::string& name) {
+  std::error_code unknown;
+  const auto space = std::filesystem::space(folder_of(name), unknown);
+  return unknown ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
-Result<std::uint64_t> frames_in(double time_s, double rate_hz) {
-  const double frames = std::floor(time_s * rate_hz + 0.5);
+// The frames to take; as many as can be counted where no time was given.
+Result<std::uint64_t> frames_wanted(const RecordRequest& request, double rate_hz) {
+  if (!request.time_s) return std::numeric_limits<std::uint64_t>::max();
+  const double frames = std::floor(*request.time_s * rate_hz + 0.5);
   if (!(frames >= 1 && frames < 0x1p53))
-    return schema::fail(Fault::usage, fmt::format("{:g} s is no time to record for", time_s), "time",
+    return schema::fail(Fault::usage, fmt::format("{:g} s is no time to record for", *request.time_s), "time",
                         "give a time above zero, as 2s");
   return static_cast<std::uint64_t>(frames);
 }
 
-Result<void> pump(Stream& stream, std::uint64_t frames, const std::function<void(double)>& progress) {
-  for (std::uint64_t done = 0; done < frames;) {
-    const auto read = stream.next(frames - done);
-    if (!read) return schema::forward_error(read);
-    if (*read == 0) break;
-    done += *read;
-    if (progress) progress(static_cast<double>(done) / static_cast<double>(frames));
-  }
-  if (stream.device.counts().frames > 0) return {};
-  return schema::fail(Fault::device, "the device gave no frames", stream.device.capabilities().uri);
+Result<void> check_room(const RecordRequest& request, const schema::RecordingHeader& header) {
+  const double needed = request.time_s.value_or(0) * header.sample_rate_hz *
+                            static_cast<double>(header.channels.size()) * sizeof(std::int32_t) +
+                        kSpare_bytes;
+  const double left = disk_left_bytes(request.name);
+  if (needed <= left) return {};
+  return schema::fail(Fault::cannot_write,
+                      fmt::format("{:g} s need {:.0f} MB, and the disk has {:.0f} MB left",
+                                  request.time_s.value_or(0), needed / 1e6, left / 1e6),
+                      folder_of(request.name), "record for less, or to another disk");
 }
 
-Result<Recorded> finish(Stream& stream, std::uint64_t frames) {
-  const auto counts = stream.device.counts();
-  for (std::string& warning : stream_warnings(counts, frames))
-    stream.writer.header().warnings.push_back(std::move(warning));
-  const auto recording = stream.writer.close();
+// One recording: from the device to the writer, looked at on the way.
+class Capture {
+ public:
+  Capture(Device& device, const RecordRequest& request, const RecordHooks& hooks, schema::LiveRecording& live,
+          std::uint64_t frames);
+  void run();
+  Result<Recorded> finish(schema::LiveRecording& live);
+
+ private:
+  bool goes_on() const;
+  void take_block();
+  void take_events(FrameBlock& block);
+  void tell();
+
+  Device& device_;
+  const RecordRequest& request_;
+  const RecordHooks& hooks_;
+  const std::size_t channels_, block_frames_;
+  const std::uint64_t wanted_;
+  LiveFigures figures_;
+  DiskWriter writer_;
+  std::uint64_t frames_ = 0, lost_noted_ = 0;
+  bool stream_ended_ = false;
+  std::optional<schema::Error> failure_;
+  Clock::time_point next_view_ = Clock::now();
+};
+
+std::size_t frames_of_block(double rate_hz) {
+  return std::max<std::size_t>(1, static_cast<std::size_t>(rate_hz * kBlock_s));
+}
+
+Capture::Capture(Device& device, const RecordRequest& request, const RecordHooks& hooks,
+                 schema::LiveRecording& live, std::uint64_t frames)
+    : device_(device),
+      request_(request),
+      hooks_(hooks),
+      channels_(live.header().channels.size()),
+      block_frames_(frames_of_block(live.header().sample_rate_hz)),
+      wanted_(frames),
+      figures_(live.header()),
+      writer_(live, block_frames_ * channels_) {}
+
+bool Capture::goes_on() const {
+  if (stream_ended_ || failure_ || frames_ == wanted_ || writer_.failed()) return false;
+  if (request_.strokes > 0 && figures_.strokes().size() >= request_.strokes) return false;
+  return !hooks_.stop || !hooks_.stop();
+}
+
+// A device that only counts its losses lost them before the block.
+void Capture::take_events(FrameBlock& block) {
+  block.events = device_.take_events();
+  std::uint64_t told = 0;
+  for (const schema::Gap& gap : block.events.gaps) told += gap.count;
+  const std::uint64_t lost = device_.counts().lost_frames;
+  if (told == 0 && lost > lost_noted_)
+    block.events.gaps.push_back({frames_, frames_ + lost_noted_, lost - lost_noted_});
+  lost_noted_ = std::max(lost, lost_noted_ + told);
+}
+
+void Capture::take_block() {
+  FrameBlock& block = writer_.to_fill();
+  const std::size_t frames = std::min<std::uint64_t>(block_frames_, wanted_ - frames_);
+  const auto got = device_.read(std::span(block.codes).first(frames * channels_));
+  if (!got) failure_ = got.error();
+  stream_ended_ = got && *got == 0;
+  take_events(block);
+  block.used = got.value_or(0) * channels_;
+  figures_.add(std::span<const std::int32_t>(block.codes).first(block.used));
+  frames_ += got.value_or(0);
+  if (hooks_.new_marks)
+    for (std::size_t mark = hooks_.new_marks(); mark > 0; --mark) block.marks.push_back({frames_, "mark"});
+  writer_.filled();
+}
+
+void Capture::tell() {
+  if (hooks_.progress && request_.time_s)
+    hooks_.progress(static_cast<double>(frames_) / static_cast<double>(wanted_));
+  if (!hooks_.view || Clock::now() < next_view_) return;
+  next_view_ = Clock::now() + kViewEvery;
+  LiveView view = figures_.take_view();
+  view.lost_frames = lost_noted_;
+  view.time_s = static_cast<double>(frames_ + lost_noted_) / device_.capabilities().sample_rate_hz;
+  view.disk_left_bytes = static_cast<std::uint64_t>(std::min(disk_left_bytes(request_.name), 0x1p63));
+  hooks_.view(view);
+}
+
+void Capture::run() {
+  while (goes_on()) {
+    take_block();
+    tell();
+  }
+  writer_.end();
+}
+
+Result<Recorded> Capture::finish(schema::LiveRecording& live) {
+  if (writer_.failed()) failure_ = writer_.error();
+  const auto counts = device_.counts();
+  const bool nothing = live.frames() == 0;
+  if (nothing) {
+    if (const auto gone = live.discard(); !gone) return schema::forward_error(gone);
+    if (failure_) return tl::unexpected(*failure_);
+    return schema::fail(Fault::device, "the device gave no frames", device_.capabilities().uri);
+  }
+  schema::RecordingHeader& header = live.header();
+  if (failure_) header.ended = failure_->what;
+  const std::uint64_t due = stream_ended_ && request_.time_s ? wanted_ : 0;
+  for (std::string& warning : stream_warnings(counts, due)) header.warnings.push_back(std::move(warning));
+  if (failure_) header.warnings.push_back("it ended early: " + schema::message(*failure_));
+  auto recording = live.close();
   if (!recording) return schema::forward_error(recording);
-  return Recorded{*recording, std::move(stream.statistics), counts};
+  return Recorded{std::move(*recording), figures_.statistics(), counts, figures_.strokes(), failure_};
 }
 
 }  // namespace
 
-Result<Recorded> record(Device& device, const RecordRequest& request,
-                        const std::function<void(double)>& progress) {
-  const auto frames = frames_in(request.time_s, device.capabilities().sample_rate_hz);
+Result<Recorded> record(Device& device, const RecordRequest& request, const RecordHooks& hooks) {
+  const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
   if (!frames) return schema::forward_error(frames);
   auto header = header_for(device.capabilities(), request);
   if (!header) return schema::forward_error(header);
-  const std::size_t channels = header->channels.size();
-  auto writer = schema::RecordingWriter::create(request.name, std::move(*header));
-  if (!writer) return schema::forward_error(writer);
-  if (const auto started = device.start(); !started) return schema::forward_error(started);
-  Stream stream{device, *writer, std::vector<schema::Statistics>(channels),
-                std::vector<std::int32_t>(kBlockFrames * channels)};
-  const auto pumped = pump(stream, *frames, progress);
+  if (const auto room = check_room(request, *header); !room) return schema::forward_error(room);
+  auto live = schema::LiveRecording::create(request.name, std::move(*header));
+  if (!live) return schema::forward_error(live);
+  if (const auto started = device.start(); !started) {
+    if (const auto gone = live->discard(); !gone) return schema::forward_error(gone);
+    return schema::forward_error(started);
+  }
+  Capture capture(device, request, hooks, *live, *frames);
+  capture.run();
   const auto stopped = device.stop();
-  if (!pumped) return schema::forward_error(pumped);
-  if (!stopped) return schema::forward_error(stopped);
-  return finish(stream, *frames);
+  auto recorded = capture.finish(*live);
+  if (recorded && !stopped && !recorded->ended_by) recorded->ended_by = stopped.error();
+  return recorded;
 }
 
 }  // namespace tacto::capture

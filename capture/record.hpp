@@ -3,9 +3,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "capture/live_view.hpp"
+#include "capture/stroke_counter.hpp"
 #include "data-schema/error.hpp"
 #include "data-schema/recording.hpp"
 #include "data-schema/statistics.hpp"
@@ -14,24 +17,40 @@
 namespace tacto::capture {
 
 struct RecordRequest {
-  std::string name;   ///< NAME.wav and NAME.json, never over files that are there
-  double time_s = 0;  ///< how long
+  std::string name;              ///< NAME.wav and NAME.json, never over files that are there
+  std::optional<double> time_s;  ///< how long; without it until strokes are made, or stop() says so
+  std::size_t strokes = 0;       ///< ends after so many strokes; 0 for any number
   std::string subject, finger, notes;
   std::string surface;  ///< empty: what the device says lies on its tray
+};
+
+/// What a recording under way is told, and tells. All are called on the thread that calls record(), between
+/// blocks of 20 ms; all may be empty.
+struct RecordHooks {
+  std::function<void(double)> progress;       ///< fractions from 0 to 1, where a time is given
+  std::function<void(const LiveView&)> view;  ///< ten times a second at most
+  std::function<bool()> stop;                 ///< true ends the recording
+  std::function<std::size_t()> new_marks;     ///< how many marks were asked for since the last call
 };
 
 struct Recorded {
   schema::Recording recording;
   std::vector<schema::Statistics> statistics;  ///< of each channel, in its unit
   firmware_host::StreamCounts counts;
+  std::vector<CountedStroke> strokes;  ///< where a position is recorded
+  /// Why it ended, where it could not go on: the device failed, the disk is full. What came before is kept,
+  /// and header.ended says the same.
+  std::optional<schema::Error> ended_by;
 };
 
-/// Starts the device, streams `time_s` of frames to NAME.wav as 32-bit codes, stops it, and closes the
-/// recording. The transducer's volts are scaled to newtons by its nominal gain (see sensor_in_newtons). A
-/// stream that ends early gives a shorter recording with a warning in it. `progress`, where given, hears
-/// fractions from 0 to 1. Errors: usage: a time that is not positive, or a recording of that name; device: it
-/// failed, or has no transducer; cannot_write. After an error there is no recording.
+/// Starts the device, streams its frames to NAME.wav as 32-bit codes, stops it, and closes the recording. One
+/// thread reads the device, another writes and syncs: see LiveRecording for what survives what. The
+/// transducer's volts are scaled to newtons by its nominal gain (see sensor_in_newtons). A stream that ends
+/// early gives a shorter recording that says so. Memory: 16 MB of blocks at most, whatever the length.
+/// Errors: usage: a time that is not positive, or something of that name; device: it failed before the first
+/// frame, or has no transducer; cannot_write: also where the disk has no room for the time. After an error
+/// there is no recording, but where it could not be closed: then it can be recovered.
 schema::Result<Recorded> record(firmware_host::Device& device, const RecordRequest& request,
-                                const std::function<void(double)>& progress = {});
+                                const RecordHooks& hooks = {});
 
 }  // namespace tacto::capture

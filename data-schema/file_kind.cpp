@@ -83,6 +83,9 @@ Result<std::vector<StoredFile>> stored_files(const std::string& name) {
   const auto presets = preset_names();
   if (std::ranges::find(presets, name) != presets.end())
     return std::vector{StoredFile{FileKind::transducer, name}};
+  if (is_file(name + ".events.jsonl"))
+    return fail(Fault::unsuitable, "was never closed, or is still being recorded", name,
+                fmt::format("'tactograph recover {}' makes a recording of what is there", name));
   return fail(Fault::not_found, "there is no such file", name, "name a file in full, or by its stem");
 }
 

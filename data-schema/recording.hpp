@@ -46,6 +46,18 @@ struct Mark {
   std::string label;
 };
 
+/// When a frame was taken by the device's clock, and when it was here by the host's.
+struct ClockPair {
+  std::uint64_t device_sequence = 0;  ///< the frame's number, lost ones counted
+  double device_s = 0, host_s = 0;
+};
+
+/// Something went wrong, known when `frame` frames were there.
+struct FaultNote {
+  std::uint64_t frame = 0;
+  std::string what;
+};
+
 /// The sidecar: everything about a recording but its samples.
 struct RecordingHeader {
   std::string wav_file;  ///< beside the sidecar, no folder
@@ -66,6 +78,10 @@ struct RecordingHeader {
   std::optional<double> humidity_percent;
   std::vector<Gap> gaps;
   std::vector<Mark> marks;
+  std::vector<ClockPair> clock_pairs;
+  std::optional<double> clock_drift_ppm;  ///< how much the device's clock is fast against the host's
+  std::vector<FaultNote> faults;
+  std::string ended;                  ///< why it ended, where not as it was asked: "disk full", "unplugged"
   std::vector<std::string> warnings;  ///< said when it was made, kept for who reads it later
   std::string extra_json;             ///< members of a newer minor version, kept as they were
   std::string newer_version;          ///< set by the reader where the file's minor version is newer than ours

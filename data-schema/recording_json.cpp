@@ -8,6 +8,35 @@
 #include "data-schema/transducer_json.hpp"
 
 namespace tacto::schema {
+
+Json body_of(const Gap& gap) {
+  return {{"frame", gap.frame}, {"device_sequence", gap.device_sequence}, {"count", gap.count}};
+}
+Gap gap_from(const Json& body) {
+  return {body["frame"], body["device_sequence"], body["count"]};
+}
+
+Json body_of(const Mark& mark) {
+  return {{"frame", mark.frame}, {"label", mark.label}};
+}
+Mark mark_from(const Json& body) {
+  return {body["frame"], body["label"]};
+}
+
+Json body_of(const ClockPair& pair) {
+  return {{"device_sequence", pair.device_sequence}, {"device_s", pair.device_s}, {"host_s", pair.host_s}};
+}
+ClockPair clock_pair_from(const Json& body) {
+  return {body["device_sequence"], body["device_s"], body["host_s"]};
+}
+
+Json body_of(const FaultNote& fault) {
+  return {{"frame", fault.frame}, {"what", fault.what}};
+}
+FaultNote fault_from(const Json& body) {
+  return {body["frame"], body["what"]};
+}
+
 namespace {
 
 struct TextMember {
@@ -28,6 +57,7 @@ constexpr TextMember kTexts[] = {
     {"finger", &RecordingHeader::finger},
     {"surface", &RecordingHeader::surface},
     {"notes", &RecordingHeader::notes},
+    {"ended", &RecordingHeader::ended},
 };
 
 struct FormatName {
@@ -97,20 +127,6 @@ Channel channel_from(const Json& body) {
   return channel;
 }
 
-Json gap_body(const Gap& gap) {
-  return {{"frame", gap.frame}, {"device_sequence", gap.device_sequence}, {"count", gap.count}};
-}
-Gap gap_from(const Json& body) {
-  return {body["frame"], body["device_sequence"], body["count"]};
-}
-
-Json mark_body(const Mark& mark) {
-  return {{"frame", mark.frame}, {"label", mark.label}};
-}
-Mark mark_from(const Json& body) {
-  return {body["frame"], body["label"]};
-}
-
 // A document of its own inside the sidecar: it says its version, and can be taken out as a file.
 Json embedded_transducer(const Transducer& transducer) {
   Json body = {{"kind", "transducer"}, {"version", kVersion}};
@@ -132,8 +148,11 @@ Json recording_body(const RecordingHeader& header) {
   for (const auto& [name, member] : kTexts) put_text(body, name, header.*member);
   put_number(body, "humidity_percent", header.humidity_percent);
   if (header.transducer) body["transducer"] = embedded_transducer(*header.transducer);
-  put_list(body, "gaps", header.gaps, gap_body);
-  put_list(body, "marks", header.marks, mark_body);
+  put_list(body, "gaps", header.gaps, [](const Gap& each) { return body_of(each); });
+  put_list(body, "marks", header.marks, [](const Mark& each) { return body_of(each); });
+  put_list(body, "clock_pairs", header.clock_pairs, [](const ClockPair& each) { return body_of(each); });
+  put_number(body, "clock_drift_ppm", header.clock_drift_ppm);
+  put_list(body, "faults", header.faults, [](const FaultNote& each) { return body_of(each); });
   put_list(body, "warnings", header.warnings, [](const std::string& text) { return Json(text); });
   return body;
 }
@@ -152,6 +171,9 @@ RecordingHeader header_from(const Json& body) {
   if (body.contains("transducer")) header.transducer = transducer_from(body["transducer"]);
   header.gaps = list_from(body, "gaps", gap_from);
   header.marks = list_from(body, "marks", mark_from);
+  header.clock_pairs = list_from(body, "clock_pairs", clock_pair_from);
+  header.clock_drift_ppm = optional_number(body, "clock_drift_ppm");
+  header.faults = list_from(body, "faults", fault_from);
   header.warnings = list_from(body, "warnings", [](const Json& text) { return text.get<std::string>(); });
   return header;
 }

@@ -22,4 +22,14 @@ std::vector<Violation> recording_breaches(const RecordingHeader& header);
 /// Errors: malformed, by JSON pointer, for what no schema can say.
 Result<RecordingHeader> recording_header_from(const Document& document, const std::string& path);
 
+/// The small things of a sidecar, which are also lines of NAME.events.jsonl. From documents that fit only.
+Json body_of(const Gap& gap);
+Json body_of(const Mark& mark);
+Json body_of(const ClockPair& pair);
+Json body_of(const FaultNote& fault);
+Gap gap_from(const Json& body);
+Mark mark_from(const Json& body);
+ClockPair clock_pair_from(const Json& body);
+FaultNote fault_from(const Json& body);
+
 }  // namespace tacto::schema

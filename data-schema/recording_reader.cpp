@@ -21,6 +21,9 @@ bool is_file(const std::string& path) {
 
 // There is no sidecar: perhaps there are samples that could become a recording.
 tl::unexpected<Error> absent(const std::string& name, const std::string& stem) {
+  if (is_file(stem + ".events.jsonl"))
+    return fail(Fault::unsuitable, "was never closed, or is still being recorded", name,
+                fmt::format("'tactograph recover {}' makes a recording of what is there", stem));
   const std::string samples = is_file(name) ? name : stem + ".wav";
   if (!is_file(samples))
     return fail(Fault::not_found, "there is no such recording", name,

@@ -1,38 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
 #include <cassert>
 #include <filesystem>
 
-#include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/recording.hpp"
-#include "data-schema/recording_json.hpp"
-#include "data-schema/version.hpp"
+#include "data-schema/recording_place.hpp"
 
 namespace tacto::schema {
-namespace {
-
 namespace fs = std::filesystem;
-
-Result<void> check_free(const std::string& stem) {
-  std::error_code ignored;
-  for (const std::string& path : {stem + ".json", stem + ".wav"})
-    if (fs::exists(path, ignored))
-      return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
-  return {};
-}
-
-// That the header can be stored is known before the first sample, not after the last.
-Result<void> check_header(const RecordingHeader& header) {
-  RecordingHeader complete = header;
-  complete.sha256 = std::string(64, '0');
-  complete.gaps.clear();  // they are measured against the frames to come
-  const auto text = recording_text(complete);
-  return text ? Result<void>{} : forward_error(text);
-}
-
-}  // namespace
 
 struct RecordingWriter::State {
   std::string stem;
@@ -63,7 +38,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& name, Recordi
   const std::string wav = state->stem + ".wav";
   header.wav_file = fs::path(wav).filename().string();
   header.frames = 0;
-  if (const auto fits = check_header(header); !fits) return forward_error(fits);
+  if (const auto fits = check_storable(header); !fits) return forward_error(fits);
   const auto temporary = state->pending.add(wav);
   if (!temporary) return forward_error(temporary);
   auto writer = WavWriter::create(*temporary, header.sample_rate_hz, header.channels.size(), header.format);
@@ -87,12 +62,7 @@ RecordingHeader& RecordingWriter::header() {
 }
 
 Result<void> RecordingWriter::State::describe() {
-  const auto sum = sha256_of_file(temporary_wav);
-  if (!sum) return forward_error(sum);
-  header.sha256 = *sum;
-  header.created = creation_time();
-  header.creator = kCreator;
-  const auto text = recording_text(header);
+  const auto text = completed_sidecar(header, temporary_wav);
   return text ? pending.write(stem + ".json", *text) : forward_error(text);
 }
 

@@ -61,6 +61,10 @@ class WavWriter {
   /// Errors: cannot_write; usage, for a rate that no header can hold (it must round to 1 ... 2^31-1).
   static Result<WavWriter> create(const std::string& path, double sample_rate_hz, std::size_t channels,
                                   SampleFormat format);
+  /// The same, never over a file that is there, and with the header on disk from the start. Errors: also
+  /// usage, where there is one.
+  static Result<WavWriter> create_new(const std::string& path, double sample_rate_hz, std::size_t channels,
+                                      SampleFormat format);
   WavWriter(WavWriter&&) noexcept;
   WavWriter& operator=(WavWriter&&) noexcept;
   ~WavWriter();
@@ -69,6 +73,8 @@ class WavWriter {
   /// full ...).
   Result<void> write(std::span<const double> interleaved);
   Result<void> write(std::span<const std::int32_t> interleaved);
+  /// Returns when all that was written is on the disk. Errors: cannot_write.
+  Result<void> sync();
   /// Ends the file. Errors: cannot_write. Without it the destructor closes, and nobody learns of a failure.
   Result<void> close();
   /// The same, with another rate in the header than it had until now. Errors: also usage, as create().
@@ -76,6 +82,8 @@ class WavWriter {
 
  private:
   struct State;
+  static Result<WavWriter> create(const std::string& path, int flags, double sample_rate_hz,
+                                  std::size_t channels, SampleFormat format);
   explicit WavWriter(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

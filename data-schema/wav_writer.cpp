@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sndfile.h>
+#include <unistd.h>
 
 #include <cassert>
+#include <cerrno>
 #include <cmath>
 #include <limits>
+#include <system_error>
+#include <utility>
 
 #include "data-schema/riff_repair.hpp"
 #include "data-schema/wav.hpp"
@@ -28,6 +33,13 @@ tl::unexpected<Error> unwritten(const std::string& path, SNDFILE* file) {
   return fail(Fault::cannot_write, fmt::format("can't be written: {}", sf_strerror(file)), path);
 }
 
+tl::unexpected<Error> not_opened(const std::string& path, int error_number) {
+  if (error_number == EEXIST)
+    return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
+  return fail(Fault::cannot_write, "can't be written: " + std::generic_category().message(error_number),
+              path);
+}
+
 }  // namespace
 
 struct WavWriter::State {
@@ -35,6 +47,7 @@ struct WavWriter::State {
   std::string path;
   std::size_t channels = 0;
   int header_rate = 0;
+  int descriptor = -1;  // belongs to `file`
   SampleFormat format = SampleFormat::float64;
 
   State() = default;
@@ -60,14 +73,32 @@ WavWriter::~WavWriter() = default;
 
 Result<WavWriter> WavWriter::create(const std::string& path, double sample_rate_hz, std::size_t channels,
                                     SampleFormat format) {
+  return create(path, O_TRUNC, sample_rate_hz, channels, format);
+}
+
+Result<WavWriter> WavWriter::create_new(const std::string& path, double sample_rate_hz, std::size_t channels,
+                                        SampleFormat format) {
+  auto writer = create(path, O_EXCL, sample_rate_hz, channels, format);
+  if (writer) sf_command(writer->state_->file, SFC_UPDATE_HEADER_NOW, nullptr, 0);
+  return writer;
+}
+
+Result<WavWriter> WavWriter::create(const std::string& path, int flags, double sample_rate_hz,
+                                    std::size_t channels, SampleFormat format) {
   if (const auto fits = check_rate(sample_rate_hz, path); !fits) return forward_error(fits);
   SF_INFO header{};
   header.samplerate = static_cast<int>(std::round(sample_rate_hz));
   header.channels = static_cast<int>(channels);
   header.format = SF_FORMAT_RF64 | subformat(format);
+  const int opened = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | flags, 0666);
+  if (opened < 0) return not_opened(path, errno);
   auto state = std::make_unique<State>();
-  state->file = sf_open(path.c_str(), SFM_WRITE, &header);
-  if (state->file == nullptr) return unwritten(path, nullptr);
+  state->file = sf_open_fd(opened, SFM_WRITE, &header, SF_TRUE);
+  if (state->file == nullptr) {
+    ::close(opened);
+    return unwritten(path, nullptr);
+  }
+  state->descriptor = opened;
   state->path = path;
   state->channels = channels;
   state->header_rate = header.samplerate;
@@ -89,6 +120,12 @@ Result<void> WavWriter::write(std::span<const std::int32_t> interleaved) {
   assert(state_->format == SampleFormat::pcm32);
   const sf_count_t wanted = state_->frames(interleaved.size());
   return state_->written(sf_writef_int(state_->file, interleaved.data(), wanted), wanted);
+}
+
+Result<void> WavWriter::sync() {
+  if (fdatasync(state_->descriptor) == 0) return {};
+  return fail(Fault::cannot_write, "can't be brought to the disk: " + std::generic_category().message(errno),
+              state_->path);
 }
 
 Result<void> WavWriter::close() {

@@ -72,6 +72,7 @@ SimDevice::SimDevice(std::string uri, const SimParameters& parameters, const sch
 schema::Result<void> SimDevice::start() {
   run_ = std::make_unique<SimRun>(parameters_, transducer_, profile_);
   counts_ = {};
+  pacer_ = Pacer();
   return {};
 }
 
@@ -84,6 +85,7 @@ schema::Result<std::size_t> SimDevice::read(std::span<std::int32_t> interleaved)
     ++counts_.frames;
   }
   counts_.clipped = run_->clipped();
+  if (parameters_.paced) pacer_.wait_until(static_cast<double>(counts_.frames) / parameters_.sample_rate_hz);
   return frames;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "firmware-host/device.hpp"
+#include "firmware-host/sim/pacer.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
 #include "firmware-host/sim/sim_run.hpp"
 
@@ -31,6 +32,7 @@ class SimDevice final : public Device {
   Capabilities capabilities_;
   std::unique_ptr<SimRun> run_;
   StreamCounts counts_;
+  Pacer pacer_;  // begins with start()
 };
 
 /// `parameters` is what follows "sim:". Errors: as parse_sim_parameters, make_surface, read_transducer.

@@ -36,6 +36,10 @@ class CountingDevice final : public firmware_host::Device {
   }
 
   Capabilities& can() { return capabilities_; }
+  void lose_after(std::uint64_t frames, std::uint64_t lost) {
+    lose_at_ = frames;
+    lose_ = lost;
+  }
   const Capabilities& capabilities() const override { return capabilities_; }
   schema::Result<void> start() override {
     counts_ = {};
@@ -45,6 +49,7 @@ class CountingDevice final : public firmware_host::Device {
     if (fails_ && counts_.frames == length_)
       return schema::fail(Fault::device, "unplugged", capabilities_.uri);
     const std::size_t frames = std::min<std::size_t>({interleaved.size() / 2, length_ - counts_.frames, 300});
+    if (counts_.frames == lose_at_) counts_.lost_frames = lose_;
     for (std::size_t i = 0; i < frames; ++i, ++counts_.frames) {
       interleaved[2 * i] = static_cast<std::int32_t>(counts_.frames) << 16;
       interleaved[2 * i + 1] = -static_cast<std::int32_t>(counts_.frames);
@@ -63,6 +68,7 @@ class CountingDevice final : public firmware_host::Device {
   Capabilities capabilities_;
   std::uint64_t length_;
   bool fails_;
+  std::uint64_t lose_at_ = std::numeric_limits<std::uint64_t>::max(), lose_ = 0;
   StreamCounts counts_;
 };
 
@@ -159,14 +165,100 @@ TEST(Record, RefusesATimeThatIsNone) {
   EXPECT_EQ(folder.files(), 0U);
 }
 
-TEST(Record, ADeviceThatFailsLeavesNothingAndIsStopped) {
+TEST(Record, ADeviceThatFailsClosesTheRecordingWithTheReason) {
   const TemporaryFolder folder;
   CountingDevice device(500, true);
-  const auto failed = record(device, request(folder / "oak", 1));
-  ASSERT_FALSE(failed);
-  EXPECT_EQ(failed.error().what, "unplugged");
+  const auto recorded = record(device, request(folder / "oak", 1));
+  ASSERT_TRUE(recorded) << message(recorded.error());
+  ASSERT_TRUE(recorded->ended_by);
+  EXPECT_EQ(recorded->ended_by->what, "unplugged");
   EXPECT_EQ(device.stops, 1);
+  const auto opened = schema::open_recording(folder / "oak");
+  ASSERT_TRUE(opened) << message(opened.error());
+  EXPECT_EQ(opened->header.frames, 500U);
+  EXPECT_EQ(opened->header.ended, "unplugged");
+  EXPECT_EQ(folder.files(), 2U);
+}
+
+TEST(Record, ADeviceThatFailsBeforeItsFirstFrameLeavesNothing) {
+  const TemporaryFolder folder;
+  CountingDevice device(0, true);
+  EXPECT_EQ(record(device, request(folder / "oak", 1)).error().what, "unplugged");
   EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Record, LostFramesAreAGapWhereTheyWereLost) {
+  const TemporaryFolder folder;
+  CountingDevice device(2000);
+  device.lose_after(300, 25);
+  const auto recorded = record(device, request(folder / "oak", 1));
+  ASSERT_TRUE(recorded);
+  const auto& gaps = recorded->recording.header.gaps;
+  ASSERT_EQ(gaps.size(), 1U);
+  EXPECT_EQ(gaps[0].frame, 300U);
+  EXPECT_EQ(gaps[0].device_sequence, 300U);
+  EXPECT_EQ(gaps[0].count, 25U);
+  EXPECT_NE(recorded->recording.header.warnings.at(0).find("25 frames were lost"), std::string::npos);
+}
+
+TEST(Record, StopsAndMarksWhenAsked) {
+  const TemporaryFolder folder;
+  CountingDevice device(1U << 30);
+  RecordRequest asked = request(folder / "oak", 1);
+  asked.time_s.reset();
+  int blocks = 0;
+  RecordHooks hooks;
+  hooks.stop = [&] { return blocks == 10; };
+  hooks.new_marks = [&] { return ++blocks == 4 ? 2U : 0U; };
+  const auto recorded = record(device, asked, hooks);
+  ASSERT_TRUE(recorded);
+  EXPECT_EQ(recorded->recording.header.frames, 200U);  // ten blocks of 20 ms at 1 kHz
+  ASSERT_EQ(recorded->recording.header.marks.size(), 2U);
+  EXPECT_EQ(recorded->recording.header.marks[1].frame, 80U);
+  EXPECT_EQ(recorded->recording.header.ended, "");
+}
+
+TEST(Record, EndsAfterTheStrokesThatWereAskedFor) {
+  const TemporaryFolder folder;
+  const auto device = firmware_host::open_device("sim:surface=flat,strokes=6");
+  RecordRequest asked = request(folder / "oak", 20);
+  asked.strokes = 3;
+  const auto recorded = record(**device, asked);
+  ASSERT_TRUE(recorded);
+  ASSERT_EQ(recorded->strokes.size(), 3U);
+  EXPECT_LT(recorded->recording.header.frames, 40000U);  // 0.9 s a stroke
+  for (const CountedStroke& stroke : recorded->strokes) {
+    EXPECT_NEAR(stroke.mean_speed_mps, 0.05, 0.015);
+    EXPECT_NEAR(stroke.mean_normal_n, 0.5, 0.25);
+    EXPECT_GT(stroke.length_m, 0.025);
+  }
+  EXPECT_EQ(recorded->strokes[0].direction, -recorded->strokes[1].direction);
+}
+
+TEST(Record, ATimeThatTheDiskHasNoRoomForIsRefused) {
+  const TemporaryFolder folder;
+  CountingDevice device(1000);
+  const auto refused = record(device, request(folder / "oak", 1e11));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, Fault::cannot_write);
+  EXPECT_NE(refused.error().what.find("the disk has"), std::string::npos);
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Record, TheViewShowsLevelsAndClipping) {
+  const TemporaryFolder folder;
+  CountingDevice device(1000);
+  device.can().channels[1].range_min = -30e-6;
+  std::vector<LiveView> views;
+  RecordHooks hooks;
+  hooks.view = [&](const LiveView& view) { views.push_back(view); };
+  ASSERT_TRUE(record(device, request(folder / "oak", 1), hooks));
+  ASSERT_FALSE(views.empty());
+  EXPECT_EQ(views[0].levels.size(), 2U);
+  EXPECT_DOUBLE_EQ(views[0].levels[1].smallest, -19e-6);
+  EXPECT_FALSE(views[0].levels[1].clipped);
+  EXPECT_DOUBLE_EQ(*views[0].speed_mps, 19e-6 / 20 * 1000);
+  EXPECT_GT(views[0].disk_left_bytes, 0U);
 }
 
 TEST(Record, AStreamThatEndsEarlyIsKeptWithAWarning) {
@@ -206,7 +298,8 @@ TEST(Record, ProgressRunsToOne) {
   const TemporaryFolder folder;
   CountingDevice device(2000);
   std::vector<double> heard;
-  ASSERT_TRUE(record(device, request(folder / "oak", 2), [&](double part) { heard.push_back(part); }));
+  ASSERT_TRUE(
+      record(device, request(folder / "oak", 2), {[&](double part) { heard.push_back(part); }, {}, {}, {}}));
   EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
   EXPECT_EQ(heard.back(), 1);
 }

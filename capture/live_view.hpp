@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an experimenter wants to see while a finger is recorded.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "capture/stroke_counter.hpp"
+#include "data-schema/recording.hpp"
+#include "data-schema/statistics.hpp"
+
+namespace tacto::capture {
+
+/// The band that a finger is asked to keep to (Wiertlewski 2011, section IV-A5: 50 mm/s, 0.5 N).
+struct TargetBand {
+  double middle = 0, width = 0;  ///< middle +- width
+
+  bool holds(double value) const { return value >= middle - width && value <= middle + width; }
+};
+inline constexpr TargetBand kTargetSpeed_mps = {50e-3, 15e-3};
+inline constexpr TargetBand kTargetLoad_n = {0.5, 0.25};
+
+/// One channel since the view before.
+struct ChannelLevel {
+  double smallest = 0, largest = 0;  ///< in its unit
+  bool clipped = false;              ///< it came to an end of its converter's range
+};
+
+struct LiveView {
+  double time_s = 0;                 ///< lost frames counted
+  std::vector<ChannelLevel> levels;  ///< of each channel
+  std::optional<double> speed_mps;   ///< of the finger, mean of the last 0.1 s; none without a position
+  std::optional<double> normal_n;    ///< likewise
+  std::size_t strokes = 0;
+  std::uint64_t lost_frames = 0;
+  std::uint64_t disk_left_bytes = 0;
+};
+
+/// Takes the blocks of a stream and knows what to show of them. One thread.
+class LiveFigures {
+ public:
+  /// `header` outlives this.
+  explicit LiveFigures(const schema::RecordingHeader& header);
+
+  /// Whole frames, as stored.
+  void add(std::span<const std::int32_t> codes);
+  const std::vector<schema::Statistics>& statistics() const { return statistics_; }
+  const std::vector<CountedStroke>& strokes() const { return counter_.strokes(); }
+  /// Of all since the last call; time, losses and disk are the caller's to add.
+  LiveView take_view();
+
+ private:
+  void add_motion(std::span<const std::int32_t> codes);
+  double physical(std::span<const std::int32_t> codes, std::size_t frame, std::size_t channel) const;
+
+  const schema::RecordingHeader& header_;
+  std::optional<std::size_t> position_, normal_;
+  std::vector<schema::Statistics> statistics_, recent_;
+  StrokeCounter counter_;
+  std::uint64_t recent_frames_ = 0;
+  double last_position_m_ = 0, moved_m_ = 0, load_sum_n_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace tacto::capture

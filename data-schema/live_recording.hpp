@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A recording while it is made: whatever happens, what was written stays.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "data-schema/error.hpp"
+#include "data-schema/recording.hpp"
+
+namespace tacto::schema {
+
+/// How long what was written may be on its way to the disk. With blocks of 20 ms and a disk that takes as
+/// long again, a power cut loses less than 100 ms; a killed process loses only what was not yet written.
+inline constexpr double kSyncEvery_s = 0.05;
+
+/// Writes NAME.wav (32-bit codes, header kept true) and NAME.events.jsonl (what the sidecar will say, then
+/// gaps, marks, clock pairs and faults, a line each) as they come, both synced to disk at least every
+/// kSyncEvery_s. close() folds the events into NAME.json. Dropped without close(), or killed, it leaves both
+/// files, from which recover_recording() makes the recording. The events' file keeps room for the sidecar on
+/// file systems that can, so that a full disk does not prevent closing. One thread at a time.
+class LiveRecording {
+ public:
+  /// `name` as RecordingWriter::create(); the header's format must be pcm32. Errors: usage, where anything of
+  /// that name is there; cannot_write; unsuitable, as RecordingWriter::create().
+  static Result<LiveRecording> create(const std::string& name, RecordingHeader header);
+  LiveRecording(LiveRecording&&) noexcept;
+  LiveRecording& operator=(LiveRecording&&) noexcept;
+  ~LiveRecording();
+
+  /// Appends whole frames. Errors: cannot_write (disk full ...): then close() keeps all whole frames that
+  /// were written.
+  Result<void> write(std::span<const std::int32_t> interleaved);
+  /// Append to the events, and to the header. Errors: cannot_write.
+  Result<void> add(const Gap& gap);
+  Result<void> add(const Mark& mark);
+  Result<void> add(const ClockPair& pair);
+  Result<void> add(const FaultNote& fault);
+
+  /// For warnings and the reason of an early end.
+  RecordingHeader& header();
+  /// Frames written.
+  std::uint64_t frames() const;
+
+  /// Puts the WAV's header right, folds the events into the sidecar and removes their file. Once only.
+  /// Errors: cannot_write; unsuitable. After one the recording can still be recovered.
+  Result<Recording> close();
+  /// Instead of close(), where there is nothing to keep: removes both files. Errors: cannot_write.
+  Result<void> discard();
+
+ private:
+  struct State;
+  explicit LiveRecording(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// What was made of a recording that was never closed.
+struct Recovered {
+  Recording recording;
+  std::vector<std::string> notes;  ///< what was lost, and what was put right; also its warnings
+};
+
+/// Makes a recording of what a LiveRecording left: cuts off an unfinished frame, puts the WAV's header right,
+/// writes the sidecar with the events, removes their file. `name` as open_recording(). Errors: not_found;
+/// unsuitable, where the recording was closed, or is still being made; malformed; cannot_write.
+Result<Recovered> recover_recording(const std::string& name);
+
+}  // namespace tacto::schema

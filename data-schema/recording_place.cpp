@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/recording_place.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include "data-schema/creation_time.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/recording_json.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::schema {
+
+std::string events_path(const std::string& stem) {
+  return stem + ".events.jsonl";
+}
+
+Result<void> check_free(const std::string& stem) {
+  std::error_code ignored;
+  for (const std::string& path : {stem + ".json", stem + ".wav", events_path(stem)})
+    if (std::filesystem::exists(path, ignored))
+      return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
+  return {};
+}
+
+Result<void> check_storable(const RecordingHeader& header) {
+  RecordingHeader complete = header;
+  complete.sha256 = std::string(64, '0');
+  complete.gaps.clear();  // they are measured against the frames to come
+  const auto text = recording_text(complete);
+  return text ? Result<void>{} : forward_error(text);
+}
+
+Result<std::string> completed_sidecar(RecordingHeader& header, const std::string& wav) {
+  const auto sum = sha256_of_file(wav);
+  if (!sum) return forward_error(sum);
+  header.sha256 = *sum;
+  header.created = creation_time();
+  header.creator = kCreator;
+  return recording_text(header);
+}
+
+}  // namespace tacto::schema

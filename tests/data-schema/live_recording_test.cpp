@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Recordings that were broken off in every way, and what recovering gives back.
+#include "data-schema/live_recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "data-schema/check.hpp"
+#include "data-schema/files.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::schema {
+namespace {
+
+using tests::TemporaryFolder;
+namespace fs = std::filesystem;
+
+RecordingHeader header() {
+  RecordingHeader made;
+  made.format = SampleFormat::pcm32;
+  made.sample_rate_hz = 10000;
+  for (const char* name : {"a", "b", "c"}) {
+    Channel channel;
+    channel.name = name;
+    channel.quantity = "signal";
+    channel.unit = "1";
+    made.channels.push_back(channel);
+  }
+  made.surface = "oak";
+  return made;
+}
+
+std::vector<std::int32_t> counted(std::int32_t first, std::int32_t frames) {
+  std::vector<std::int32_t> codes;
+  for (std::int32_t i = 3 * first; i < 3 * (first + frames); ++i) codes.push_back(i);
+  return codes;
+}
+
+// 1000 frames with a gap, a mark, a fault and clock pairs of a device that is 40 ppm fast.
+LiveRecording begun(const std::string& name) {
+  auto live = LiveRecording::create(name, header());
+  EXPECT_TRUE(live) << message(live.error());
+  EXPECT_TRUE(live->write(counted(0, 600)));
+  EXPECT_TRUE(live->add(Gap{600, 600, 7}) && live->add(Mark{600, "lift"}));
+  EXPECT_TRUE(live->write(counted(600, 400)));
+  for (int i = 0; i < 20; ++i)
+    EXPECT_TRUE(live->add(ClockPair{static_cast<std::uint64_t>(i), i * (1 + 40e-6), 100.0 + i}));
+  EXPECT_TRUE(live->add(FaultNote{1000, "the enable input opened"}));
+  return std::move(*live);
+}
+
+void expect_whole(const std::string& name, std::uint64_t frames) {
+  const auto recording = open_recording(name);
+  ASSERT_TRUE(recording) << message(recording.error());
+  const RecordingHeader& told = recording->header;
+  EXPECT_EQ(told.frames, frames);
+  EXPECT_EQ(told.gaps.size(), 1U);
+  EXPECT_EQ(told.marks.at(0).label, "lift");
+  EXPECT_EQ(told.faults.at(0).what, "the enable input opened");
+  EXPECT_EQ(told.clock_pairs.size(), 20U);
+  EXPECT_NEAR(told.clock_drift_ppm.value_or(0), 40, 1e-6);
+  const auto stored = read_stored(*recording, 1);
+  for (std::size_t i = 0; i < stored->size(); ++i) ASSERT_EQ((*stored)[i], static_cast<double>(3 * i + 1));
+  const auto checked = check_file({FileKind::recording, name + ".json"});
+  ASSERT_TRUE(checked);
+  for (const Finding& finding : checked->findings) ADD_FAILURE() << finding.where << ": " << finding.what;
+}
+
+TEST(LiveRecording, FoldsItsEventsIntoTheSidecar) {
+  const TemporaryFolder folder;
+  auto live = begun(folder / "oak");
+  EXPECT_TRUE(fs::exists(folder / "oak.events.jsonl") && !fs::exists(folder / "oak.json"));
+  ASSERT_TRUE(live.close());
+  EXPECT_FALSE(fs::exists(folder / "oak.events.jsonl"));
+  expect_whole(folder / "oak", 1000);
+  EXPECT_EQ(open_recording(folder / "oak")->header.ended, "");
+}
+
+TEST(LiveRecording, DroppedOnesAreRecovered) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  EXPECT_EQ(open_recording(folder / "oak").error().fault, Fault::unsuitable);
+  EXPECT_NE(open_recording(folder / "oak").error().remedy.find("tactograph recover"), std::string::npos);
+  const auto recovered = recover_recording(folder / "oak.wav");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  expect_whole(folder / "oak", 1000);
+  EXPECT_EQ(recovered->recording.header.ended, "broken off");
+  EXPECT_EQ(recover_recording(folder / "oak").error().what, "was closed: there is nothing to recover");
+}
+
+// What a crash leaves: a header that promises other than there is, half a frame, half a line.
+TEST(LiveRecording, BrokenFramesAndLinesAreCutOff) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  std::ofstream(folder / "oak.wav", std::ios::app | std::ios::binary) << std::string(12 * 5 + 7, '\1');
+  std::ofstream(folder / "oak.events.jsonl", std::ios::app) << "{\"event\":\"mark\",\"fra";
+  const auto recovered = recover_recording(folder / "oak.events.jsonl");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_EQ(recovered->recording.header.frames, 1005U);
+  EXPECT_EQ(recovered->notes.size(), 3U);
+  EXPECT_TRUE(check_file({FileKind::recording, folder / "oak.json"})->findings.empty());
+}
+
+TEST(LiveRecording, AHeaderFromTheVeryBeginningIsPutRight) {
+  const TemporaryFolder folder;
+  std::string header_alone;
+  {
+    const auto live = LiveRecording::create(folder / "oak", header());
+    header_alone = *read_file(folder / "oak.wav");
+    EXPECT_GT(header_alone.size(), 40U);
+  }
+  std::ofstream(folder / "oak.wav", std::ios::binary) << header_alone << std::string(12 * 50, '\2');
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_EQ(recovered->recording.header.frames, 50U);
+  EXPECT_TRUE(check_file({FileKind::recording, folder / "oak.json"})->findings.empty());
+}
+
+TEST(LiveRecording, WithoutASampleThereIsAnEmptyRecording) {
+  const TemporaryFolder folder;
+  { const auto live = LiveRecording::create(folder / "oak", header()); }
+  fs::resize_file(folder / "oak.wav", 0);  // power was cut before its header was on the disk
+  ASSERT_TRUE(recover_recording(folder / "oak"));
+  EXPECT_TRUE(check_file({FileKind::recording, folder / "oak.json"})->findings.empty());
+}
+
+TEST(LiveRecording, ClosedBetweenItsLastTwoStepsIsWhole) {
+  const TemporaryFolder folder;
+  auto live = begun(folder / "oak");
+  const std::string events = *read_file(folder / "oak.events.jsonl");
+  ASSERT_TRUE(live.close());
+  std::ofstream(folder / "oak.events.jsonl") << events;
+  ASSERT_TRUE(recover_recording(folder / "oak"));
+  EXPECT_EQ(open_recording(folder / "oak")->header.ended, "");
+  EXPECT_FALSE(fs::exists(folder / "oak.events.jsonl"));
+}
+
+TEST(LiveRecording, OneUnderWayIsLeftAlone) {
+  const TemporaryFolder folder;
+  auto live = begun(folder / "oak");
+  EXPECT_EQ(recover_recording(folder / "oak").error().what, "is still being recorded");
+  ASSERT_TRUE(live.close());
+  expect_whole(folder / "oak", 1000);
+}
+
+TEST(LiveRecording, NothingIsOverwritten) {
+  const TemporaryFolder folder;
+  for (const char* taken : {"oak.wav", "oak.json", "oak.events.jsonl"}) {
+    std::ofstream(folder / taken) << "mine";
+    EXPECT_EQ(LiveRecording::create(folder / "oak", header()).error().fault, Fault::usage) << taken;
+    EXPECT_EQ(*read_file(folder / taken), "mine");
+    fs::remove(folder / taken);
+  }
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(LiveRecording, DiscardedItLeavesNothing) {
+  const TemporaryFolder folder;
+  auto live = LiveRecording::create(folder / "oak", header());
+  ASSERT_TRUE(live->discard());
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(LiveRecording, NothingToRecoverIsSaid) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::not_found);
+  std::ofstream(folder / "oak.events.jsonl") << "{\"event\":\"beg";
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::unsuitable);
+  std::ofstream(folder / "oak.events.jsonl") << "{\"event\":\"begin\"}\n";
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::malformed);
+}
+
+}  // namespace
+}  // namespace tacto::schema
