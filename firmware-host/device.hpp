@@ -14,6 +14,7 @@
 #include "data-schema/error.hpp"
 #include "data-schema/recording.hpp"
 #include "data-schema/transducer.hpp"
+#include "firmware-host/core/wire/message_types.hpp"
 
 namespace tacto::firmware_host {
 
@@ -22,6 +23,7 @@ struct Capabilities {
   std::string uri;  ///< as it was asked for
   std::string name;
   std::string serial;
+  std::string firmware;   ///< its version
   std::string simulated;  ///< by what; empty for a real device
   std::string clock;      ///< what gives the time: "device"
   double sample_rate_hz = 0;
@@ -40,6 +42,26 @@ struct StreamCounts {
   std::uint64_t clipped = 0;  ///< samples at either end of a converter's range, over all channels
 };
 
+/// When a frame was taken by the device's clock, and when its message was here by the host's steady clock.
+struct ClockPair {
+  std::uint64_t device_sequence = 0;  ///< the frame's number, lost ones counted
+  double device_s = 0, host_s = 0;
+};
+
+/// Something went wrong on the device; words_of() says it to people.
+struct DeviceFault {
+  std::uint64_t frame = 0;  ///< frames given before it was known
+  wire::FaultCode code = wire::FaultCode::none;
+  std::uint32_t detail = 0;
+};
+
+/// What a stream brought beside its frames.
+struct StreamEvents {
+  std::vector<schema::Gap> gaps;  ///< `frame` counts the frames given since start()
+  std::vector<ClockPair> clock_pairs;
+  std::vector<DeviceFault> faults;
+};
+
 /// A device that is open. Not safe to share between threads.
 class Device {
  public:
@@ -49,12 +71,15 @@ class Device {
   /// Begins the stream. Errors: device.
   virtual schema::Result<void> start() = 0;
   /// Fills whole frames, at most as many as fit; a sample is a converter code left-justified in 32 bits, of
-  /// an encoder its plain count. Gives the number of frames; 0 where the stream has ended. Errors: device:
-  /// not started, gone, or failed, with the time at which.
+  /// an encoder its plain count. Gives the number of frames; 0 where the stream has ended. It stops short at
+  /// a gap: missing frames are never within what it gives, and take_events() has them before the frames that
+  /// follow are given. Errors: device: not started, gone, or failed, after all frames that came before.
   virtual schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) = 0;
   /// Ends the stream. Errors: device.
   virtual schema::Result<void> stop() = 0;
   virtual StreamCounts counts() const = 0;
+  /// What has happened since the last call, or start().
+  virtual StreamEvents take_events() { return {}; }
 };
 
 /// Opens by URI; there is `sim:`, with every parameter by key=value (see sim/sim_parameters.hpp).

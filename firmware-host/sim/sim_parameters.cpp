@@ -78,6 +78,10 @@ const std::vector<Word>& words() {
        "preset or file; wiertlewski2011",
        {},
        [](P& p, std::string_view v) { p.transducer = v; }},
+      {"paced",
+       "1: no faster than real time; 0",
+       {"0", "1"},
+       [](P& p, std::string_view v) { p.paced = v == "1"; }},
   };
   return kWords;
 }
