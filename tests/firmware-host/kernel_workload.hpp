@@ -10,6 +10,8 @@ namespace tacto::tests {
 inline constexpr uint32_t kWorkloadSamples = 2000;
 inline constexpr uint32_t kWorkloadTicks = 20000;
 inline constexpr uint32_t kWorkloadSections = 8;
+/// Of all its drives: what every machine must give. It changes only with the kernel or the workload.
+inline constexpr uint32_t kWorkloadFingerprint = 1475156588;
 
 class KernelWorkload {
  public:
