@@ -8,26 +8,25 @@
 namespace tacto::firmware_host {
 namespace {
 
-struct Transport {
-  std::string_view scheme;
+struct Scheme {
+  std::string_view name;
   schema::Result<std::unique_ptr<Device>> (*open)(const std::string& uri, std::string_view parameters);
 };
 
-constexpr Transport kTransports[] = {{"sim:", open_sim_device}};
+constexpr Scheme kSchemes[] = {{"sim:", open_sim_device}};
 
 std::string schemes() {
   std::string list;
-  for (const Transport& transport : kTransports)
-    list += (list.empty() ? "" : ", ") + std::string(transport.scheme);
+  for (const Scheme& scheme : kSchemes) list += (list.empty() ? "" : ", ") + std::string(scheme.name);
   return list;
 }
 
 }  // namespace
 
 schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri) {
-  for (const Transport& transport : kTransports)
-    if (uri.starts_with(transport.scheme))
-      return transport.open(uri, std::string_view(uri).substr(transport.scheme.size()));
+  for (const Scheme& scheme : kSchemes)
+    if (uri.starts_with(scheme.name))
+      return scheme.open(uri, std::string_view(uri).substr(scheme.name.size()));
   return schema::fail(
       schema::Fault::usage, fmt::format("'{}' is not a device that can be opened", uri), "device",
       fmt::format("the transports are: {} (for example sim:surface=C,speed=50mm/s)", schemes()));

@@ -14,6 +14,7 @@
 #include "data-schema/error.hpp"
 #include "data-schema/recording.hpp"
 #include "data-schema/transducer.hpp"
+#include "firmware-host/core/wire/message_types.hpp"
 
 namespace tacto::firmware_host {
 
@@ -22,6 +23,7 @@ struct Capabilities {
   std::string uri;  ///< as it was asked for
   std::string name;
   std::string serial;
+  std::string firmware;   ///< its version
   std::string simulated;  ///< by what; empty for a real device
   std::string clock;      ///< what gives the time: "device"
   double sample_rate_hz = 0;
@@ -46,10 +48,18 @@ struct ClockPair {
   double device_s = 0, host_s = 0;
 };
 
+/// Something went wrong on the device; words_of() says it to people.
+struct DeviceFault {
+  std::uint64_t frame = 0;  ///< frames given before it was known
+  wire::FaultCode code = wire::FaultCode::none;
+  std::uint32_t detail = 0;
+};
+
 /// What a stream brought beside its frames.
 struct StreamEvents {
   std::vector<schema::Gap> gaps;  ///< `frame` counts the frames given since start()
   std::vector<ClockPair> clock_pairs;
+  std::vector<DeviceFault> faults;
 };
 
 /// A device that is open. Not safe to share between threads.

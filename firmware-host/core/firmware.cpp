@@ -41,7 +41,7 @@ bool Firmware::receive() noexcept {
       decoder_.take(received_ + received_used_, received_size_ - received_used_, used, frame);
   received_used_ += used;
   if (arrival == wire::Arrival::frame) accept(frame);
-  return arrival != wire::Arrival::nothing;
+  return arrival != wire::Arrival::nothing || received_size_ > 0;
 }
 
 void Firmware::accept(const wire::Frame& frame) noexcept {

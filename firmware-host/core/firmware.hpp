@@ -31,13 +31,14 @@ class Firmware {
   // Sending (firmware_sending.cpp).
   bool flush() noexcept;
   bool compose() noexcept;
+  bool compose_prompt() noexcept;
   bool compose_owed() noexcept;
   bool compose_description() noexcept;
   bool compose_fault() noexcept;
   bool compose_data() noexcept;
   bool compose_full_blocks() noexcept;
   bool gather() noexcept;
-  bool has_data() noexcept;
+  bool streams_data() noexcept;
   wire::Pulse pulse() noexcept;
   template <class Message>
   bool put(const Message& message) noexcept;

@@ -32,13 +32,18 @@ bool Firmware::put_block(Block& block) noexcept {
   return true;
 }
 
+// Once more after the data: some of it waits until all data is gone.
 bool Firmware::compose() noexcept {
-  return compose_owed() || compose_description() || compose_fault() || compose_data();
+  return compose_prompt() || compose_data() || compose_prompt();
+}
+
+bool Firmware::compose_prompt() noexcept {
+  return compose_owed() || compose_description() || compose_fault();
 }
 
 bool Firmware::compose_owed() noexcept {
   const Owed owed = owed_;
-  if (owed == Owed::nothing || (owed == Owed::answer_after_data && has_data())) return false;
+  if (owed == Owed::nothing || (owed == Owed::answer_after_data && streams_data())) return false;
   owed_ = Owed::nothing;
   return owed == Owed::pulse ? put(pulse()) : put(answer_);
 }
@@ -67,7 +72,8 @@ bool Firmware::compose_fault() noexcept {
     return drive != FaultCode::none && put(fault);
   }
   if (stream_fault_ == FaultCode::none) stream_fault_ = ticker_.take_stream_fault();
-  if (stream_fault_ == FaultCode::none || (stream_fault_ == FaultCode::converter && has_data())) return false;
+  if (stream_fault_ == FaultCode::none || (stream_fault_ == FaultCode::converter && streams_data()))
+    return false;
   fault.code = stream_fault_;
   fault.detail = stream_fault_ == FaultCode::ring_full ? ticker_.counts().lost_records : 0;
   fault.device_ticks = hal_.clock(hal_.board);
@@ -75,8 +81,9 @@ bool Firmware::compose_fault() noexcept {
   return put(fault);
 }
 
-bool Firmware::has_data() noexcept {
-  return ticker_.records().front() != nullptr || !samples_.empty() || !ticks_.empty();
+// Frames that are not sent yet.
+bool Firmware::streams_data() noexcept {
+  return ticker_.records().front() != nullptr || !samples_.empty();
 }
 
 bool Firmware::compose_full_blocks() noexcept {

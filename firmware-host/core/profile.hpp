@@ -21,7 +21,7 @@ int32_t reach_counts(const ProfileScale& scale) noexcept;
 
 /// Cubic Hermite interpolation with slopes from central differences of fourth order, m_i = (8 (y_i+1 - y_i-1)
 /// - (y_i+2 - y_i-2)) / 12. Error for a sinusoid of spatial frequency k: at most 0.0026 w^4 + 0.0032 w^5 of
-/// its amplitude, w = 2 pi k pitch, and 2e-7 of the largest sample for single precision.
+/// its amplitude for w = 2 pi k pitch up to 0.63 (ten samples a period), and 4e-7 for single precision.
 /// Ends: stop: samples outside are zero; loop: sample n is sample 0; mirror: about the first and last sample.
 class Profile {
  public:

@@ -7,8 +7,8 @@
 namespace tacto::core {
 
 /// Transposed direct form II, in single precision: y = b0 x + s1, s1 = b1 x - a1 y + s2, s2 = b2 x - a2 y.
-/// The error against double precision grows as the poles near the unit circle: about 6e-8 / (1 - r)^2 of the
-/// output for poles of radius r. Safe in the tick.
+/// The error against double precision grows as the poles come near the unit circle; TickKernel says its size.
+/// Safe in the tick.
 class SectionChain {
  public:
   void set(const wire::Section* sections, uint8_t count) noexcept {

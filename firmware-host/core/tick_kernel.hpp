@@ -12,8 +12,10 @@ namespace tacto::core {
 
 /// drive = limits(envelope x sections(wanted)), where wanted = gain x profile(encoder count), or comes from
 /// elsewhere. Single precision, no contraction, no libm: the same bits on host and device (a test holds the
-/// two against each other). Against double precision it is off by what Profile and SectionChain say; a test
-/// holds it to -100 dB of the drive with eight sections. tick() neither allocates, locks, throws nor calls.
+/// two against each other). Against double precision, eight sections, 20 kHz: -100 dB of the drive for an
+/// actuator's inverse (poles of radius 0.99 at most), -65 dB where three of them are high-passes of 15 Hz
+/// (0.9967): such belong into the texture. A drive that is cut at its limits has the error that it has uncut.
+/// tick() neither allocates, locks, throws nor calls.
 class TickKernel {
  public:
   /// Comes to rest at zero. A rate in Hz, above zero; limits as wire::Limits.

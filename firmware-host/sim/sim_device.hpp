@@ -1,41 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated device: physics, instruments and converters behind the interface of a real one.
+// The emulated device: physics, instruments and converters behind the firmware's own core, spoken to over the
+// wire.
 #pragma once
 
-#include "firmware-host/device.hpp"
-#include "firmware-host/sim/pacer.hpp"
-#include "firmware-host/sim/sim_parameters.hpp"
-#include "firmware-host/sim/sim_run.hpp"
+#include "firmware-host/sim/sim_board.hpp"
+#include "firmware-host/wire_device.hpp"
 
 namespace tacto::firmware_host {
 
 /// Channels: tangential_force (the transducer's output, V), position (encoder on the finger, counts),
-/// normal_force and net_force (load cell, N). Runs as fast as it can; read() computes what it gives. start()
-/// begins the same recording anew: equal parameters give equal frames, to the bit, on every machine.
+/// normal_force and net_force (load cell, N). Runs as fast as it can, or paced; read() computes what it
+/// gives. start() begins the same recording anew: equal parameters give equal frames, to the bit, on every
+/// machine.
 class SimDevice final : public Device {
  public:
-  SimDevice(std::string uri, const SimParameters& parameters, const schema::Transducer& transducer,
-            Surface surface);
+  /// Errors: as WireDevice::open().
+  static schema::Result<std::unique_ptr<SimDevice>> open(std::string uri, const SimParameters& parameters,
+                                                         const schema::Transducer& transducer,
+                                                         Surface surface);
 
-  const Capabilities& capabilities() const override { return capabilities_; }
-  schema::Result<void> start() override;
+  const Capabilities& capabilities() const override { return wire_->capabilities(); }
+  schema::Result<void> start() override { return wire_->start(); }
   schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) override;
-  schema::Result<void> stop() override;
-  StreamCounts counts() const override;
+  schema::Result<void> stop() override { return wire_->stop(); }
+  StreamCounts counts() const override { return wire_->counts(); }
+  StreamEvents take_events() override { return wire_->take_events(); }
+
+  Client& client() { return wire_->client(); }
+  SimBoard& board() { return *board_; }
 
  private:
-  tl::unexpected<schema::Error> diverged() const;
+  SimDevice(std::unique_ptr<SimBoard> board, std::unique_ptr<WireDevice> wire)
+      : board_(std::move(board)), wire_(std::move(wire)) {}
 
-  SimParameters parameters_;
-  schema::Transducer transducer_;
-  HeightProfile profile_;
-  Capabilities capabilities_;
-  std::unique_ptr<SimRun> run_;
-  StreamCounts counts_;
-  Pacer pacer_;  // begins with start()
+  std::unique_ptr<SimBoard> board_;
+  std::unique_ptr<WireDevice> wire_;
 };
 
 /// `parameters` is what follows "sim:". Errors: as parse_sim_parameters, make_surface, read_transducer.
 schema::Result<std::unique_ptr<Device>> open_sim_device(const std::string& uri, std::string_view parameters);
+schema::Result<std::unique_ptr<SimDevice>> make_sim_device(const std::string& uri,
+                                                           std::string_view parameters);
 
 }  // namespace tacto::firmware_host

@@ -27,7 +27,7 @@ struct SimParameters {
   double sample_rate_hz = 10e3;     ///< the paper's
   double encoder_quantum_m = 1e-6;  ///< the paper's
   std::string transducer = "wiertlewski2011";
-  bool paced = false;  ///< no faster than real time
+  bool paced = false;  ///< by the clock on the wall, as a real device is
 };
 
 /// Reads key=value pairs between commas; a quantity has its unit. Keys that are absent keep their defaults.

@@ -53,20 +53,24 @@ double SimRun::load_n(const FingerPlace& place) {
   return parameters_.finger_down ? parameters_.load_n * place.press * factor : 0;
 }
 
+std::int32_t SimRun::count_at(double position_m) const {
+  return static_cast<std::int32_t>(std::floor(position_m / parameters_.encoder_quantum_m));
+}
+
+std::int32_t SimRun::encoder_count() const {
+  return count_at(path_.place().position_m);
+}
+
 bool SimRun::next(std::span<std::int32_t, kSimChannels> frame) {
   const FingerPlace place = path_.step();
   if (!bench_.step(place, load_n(place))) return false;
   ++frames_;
   const BenchReading reading = bench_.reading();
   frame[0] = converter_.convert(reading.sensor_v + noise_v_ * noise_.normal());
-  frame[1] = static_cast<std::int32_t>(std::floor(reading.position_m / parameters_.encoder_quantum_m));
+  frame[1] = count_at(reading.position_m);
   frame[2] = normal_cell_.step(reading.normal_n);
   frame[3] = net_cell_.step(reading.tangential_n);
   return true;
-}
-
-std::uint64_t SimRun::clipped() const {
-  return converter_.clipped() + normal_cell_.converter().clipped() + net_cell_.converter().clipped();
 }
 
 }  // namespace tacto::firmware_host

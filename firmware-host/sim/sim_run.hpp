@@ -25,13 +25,15 @@ class SimRun {
 
   /// One sample period on, and the frame at its end. False where the simulated motion has diverged.
   bool next(std::span<std::int32_t, kSimChannels> frame);
-  std::uint64_t clipped() const;
+  /// The encoder's, where the finger is now.
+  std::int32_t encoder_count() const;
   const LoadCell& normal_cell() const { return normal_cell_; }
   const LoadCell& net_cell() const { return net_cell_; }
   const Converter& converter() const { return converter_; }
 
  private:
   double load_n(const FingerPlace& place);
+  std::int32_t count_at(double position_m) const;
 
   SimParameters parameters_;
   FingerPath path_;

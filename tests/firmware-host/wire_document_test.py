@@ -52,7 +52,7 @@ EXAMPLES = {
     "channel": (0x82, 1, "<B24s24s8s40sddddd12s",
                 (1, b"position", b"position", b"m", b"encoder", 1e-6, 0.0, float("nan"), float("nan"), float("nan"),
                  b"2011-05-01")),
-    "note": (0x83, 2, "<BB256s", (0, 2, b"oak, planed")),
+    "note": (0x83, 2, "<BB512s", (0, 2, b"oak, planed")),
     "answer": (0x84, 3, "<BBHII", (0x0B, 4, 0, 10, 3)),
     "samples": (0x85, 4, "<QQIBBHiiii", (1 << 33, 0x0102030405060708, 3, 2, 2, 0, -65536, 1234, 0x7FFF0000, -1)),
     "ticks": (0x86, 5, "<QQB3sifI", (7, 99, 1, b"", -5, 0.0625, 3)),

@@ -64,7 +64,7 @@ struct Note {
   static constexpr MessageType kType = MessageType::note;
   uint8_t index = 0;
   NoteKind kind = NoteKind::simulated_by;
-  char text[256] = {};
+  char text[512] = {};
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.index, self.kind, self.text);

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/sim/sim_board.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "firmware-host/sim/sim_description.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+constexpr std::uint32_t kClockHz = 1'000'000;
+constexpr std::uint32_t kTextureSamples = 65536;  // 256 KB: what a larger board would have
+
+std::uint32_t millihertz(double rate_hz) {
+  return static_cast<std::uint32_t>(std::llround(rate_hz * 1e3));
+}
+
+}  // namespace
+
+SimBoard::SimBoard(const SimParameters& parameters, schema::Transducer transducer, Surface surface)
+    : parameters_(parameters),
+      transducer_(std::move(transducer)),
+      profile_(std::move(surface.profile)),
+      texture_(kTextureSamples),
+      surface_words_(std::move(surface.description)) {
+  describe();
+  firmware_ = std::make_unique<core::Firmware>(about(), hal());
+}
+
+void SimBoard::describe() {
+  const SimRun run(parameters_, transducer_, profile_);
+  channels_ = sim_channels(run, parameters_);
+  notes_ = sim_notes(parameters_, surface_words_);
+}
+
+core::Board SimBoard::about() {
+  core::Board board;
+  board.about = sim_welcome(parameters_, transducer_);
+  board.about.clock_hz = kClockHz;
+  const std::uint32_t rate = millihertz(parameters_.sample_rate_hz);
+  board.about.default_rate_millihertz = rate;
+  board.about.least_rate_millihertz = std::min(rate, millihertz(1e3));
+  board.about.most_rate_millihertz = std::max(rate, millihertz(20e3));
+  board.channels = channels_.data();
+  board.channel_count = static_cast<std::uint8_t>(channels_.size());
+  board.notes = notes_.data();
+  board.note_count = static_cast<std::uint8_t>(notes_.size());
+  board.profile_memory = texture_.data();
+  board.profile_samples = kTextureSamples;
+  return board;
+}
+
+core::Hal SimBoard::hal() {
+  core::Hal hal;
+  hal.board = this;
+  hal.read_encoder = [](void* b) noexcept { return of(b).frame_[1]; };
+  hal.read_channels = [](void* b, std::int32_t* codes) noexcept {
+    std::copy_n(of(b).frame_, kSimChannels, codes);
+    return of(b).diverged_s_ < 0;
+  };
+  hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
+  hal.enable_closed = [](void* b) noexcept { return of(b).enabled_; };
+  hal.clock = [](void* b) noexcept { return of(b).clock(); };
+  hal.set_rate = [](void* b, std::uint32_t rate) noexcept { of(b).set_rate(rate); };
+  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
+    return of(b).receive({bytes, size});
+  };
+  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
+    of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
+    return size;
+  };
+  hal.restart = [](void* b) noexcept { of(b).set_rate(0); };
+  return hal;
+}
+
+std::size_t SimBoard::receive(std::span<std::uint8_t> bytes) {
+  const std::size_t size = std::min(bytes.size(), from_host_.size());
+  std::copy_n(from_host_.begin(), size, bytes.begin());
+  from_host_.erase(from_host_.begin(), from_host_.begin() + size);
+  return size;
+}
+
+std::uint64_t SimBoard::clock() const {
+  if (!ticking()) return clock_before_;
+  return clock_before_ + steps_ * kClockHz * 1000 / rate_millihertz_;
+}
+
+SimParameters SimBoard::parameters_at(std::uint32_t rate) const {
+  SimParameters parameters = parameters_;
+  if (rate != millihertz(parameters.sample_rate_hz)) parameters.sample_rate_hz = 1e-3 * rate;
+  return parameters;
+}
+
+void SimBoard::set_rate(std::uint32_t rate_millihertz) {
+  clock_before_ = clock();
+  steps_ = 0;
+  rate_millihertz_ = rate_millihertz;
+  if (!ticking()) return;
+  diverged_s_ = -1;
+  run_ = std::make_unique<SimRun>(parameters_at(rate_millihertz), transducer_, profile_);
+  tray_.reset();
+  frame_[1] = run_->encoder_count();
+}
+
+void SimBoard::step() {
+  if (diverged_s_ < 0 && !run_->next(frame_)) diverged_s_ = static_cast<double>(steps_) * period_s();
+  ++steps_;
+  if (!tray_ && drive_v_ != 0) tray_ = std::make_unique<ActuatedTray>(transducer_, 1 / period_s());
+  if (tray_) tray_->tick(drive_v_);
+  firmware_->tick();
+}
+
+}  // namespace tacto::firmware_host

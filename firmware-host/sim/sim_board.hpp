@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The emulated device's board: the firmware's own core, with physics behind its hardware layer.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "firmware-host/core/firmware.hpp"
+#include "firmware-host/sim/actuated_tray.hpp"
+#include "firmware-host/sim/sim_run.hpp"
+#include "firmware-host/sim/surface.hpp"
+
+namespace tacto::firmware_host {
+
+/// One thread calls step() and poll(). Each time the rate is set, the finger begins anew: equal parameters
+/// give equal frames. While there is a drive, the tray answers it beside the sensor, without the finger's
+/// load.
+class SimBoard {
+ public:
+  SimBoard(const SimParameters& parameters, schema::Transducer transducer, Surface surface);
+  SimBoard(const SimBoard&) = delete;
+  SimBoard& operator=(const SimBoard&) = delete;
+
+  bool ticking() const { return rate_millihertz_ > 0; }
+  double period_s() const { return 1e3 / rate_millihertz_; }
+  /// One sample period of physics, then the firmware's tick. Precondition: ticking().
+  void step();
+  void poll() { firmware_->poll(); }
+
+  std::vector<std::uint8_t>& from_host() { return from_host_; }
+  std::vector<std::uint8_t>& to_host() { return to_host_; }
+  void set_enabled(bool enabled) { enabled_ = enabled; }
+
+  /// Where the motion has diverged: when, in seconds since the rate was set. Negative while it has not.
+  double diverged_s() const { return diverged_s_; }
+  double drive_v() const { return drive_v_; }
+  double displacement_m() const { return tray_ ? tray_->displacement_m() : 0; }
+  wire::DriveState drive_state() const { return firmware_->drive_state(); }
+
+ private:
+  static SimBoard& of(void* board) noexcept { return *static_cast<SimBoard*>(board); }
+  core::Hal hal();
+  core::Board about();
+  void set_rate(std::uint32_t rate_millihertz);
+  std::size_t receive(std::span<std::uint8_t> bytes);
+  std::uint64_t clock() const;
+  SimParameters parameters_at(std::uint32_t rate_millihertz) const;
+  void describe();
+
+  SimParameters parameters_;
+  schema::Transducer transducer_;
+  HeightProfile profile_;
+  std::vector<wire::Channel> channels_;
+  std::vector<wire::Note> notes_;
+  std::vector<float> texture_;
+  std::vector<std::uint8_t> from_host_, to_host_;
+  std::unique_ptr<SimRun> run_;
+  std::unique_ptr<ActuatedTray> tray_;
+  std::int32_t frame_[kSimChannels] = {};
+  std::uint32_t rate_millihertz_ = 0;
+  std::uint64_t steps_ = 0, clock_before_ = 0;
+  bool enabled_ = true;
+  double drive_v_ = 0, diverged_s_ = -1;
+  std::string surface_words_;
+  std::unique_ptr<core::Firmware> firmware_;
+};
+
+}  // namespace tacto::firmware_host

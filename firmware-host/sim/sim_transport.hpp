@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cable to the emulated device: bytes through memory, and time that goes on while somebody waits.
+#pragma once
+
+#include <optional>
+
+#include "firmware-host/sim/pacer.hpp"
+#include "firmware-host/sim/sim_board.hpp"
+#include "firmware-host/transport.hpp"
+
+namespace tacto::firmware_host {
+
+/// Emulated time passes in read(), until there is something to read: as fast as it can, or paced by the
+/// clock. now_s() is emulated time, so timeouts are exact and cost nothing. The board outlives it.
+class SimTransport final : public Transport {
+ public:
+  SimTransport(SimBoard& board, bool paced);
+
+  schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override;
+  schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override;
+  double now_s() override { return now_s_; }
+
+ private:
+  void pass_time(double until_s);
+
+  SimBoard& board_;
+  std::optional<Pacer> pacer_;
+  double now_s_ = 0;
+};
+
+}  // namespace tacto::firmware_host

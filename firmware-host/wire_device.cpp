@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/wire_device.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+constexpr double kBlockS = 5e-3;  // of frames in a message: small against what people see
+constexpr double kClockPairEveryS = 1;
+
+std::uint8_t block_frames(double rate_hz) {
+  return static_cast<std::uint8_t>(std::clamp(rate_hz * kBlockS, 1.0, double{wire::kMaxBlockFrames}));
+}
+
+std::int32_t code_of(double code) {
+  constexpr double kLeast = std::numeric_limits<std::int32_t>::min(),
+                   kMost = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::int32_t>(std::clamp(std::round(code), kLeast, kMost));
+}
+
+}  // namespace
+
+WireDevice::WireDevice(std::unique_ptr<Client> client, Capabilities capabilities)
+    : client_(std::move(client)), capabilities_(std::move(capabilities)) {
+  for (const schema::Channel& channel : capabilities_.channels) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const double low = channel.range_min.value_or(-kInfinity), high = channel.range_max.value_or(kInfinity);
+    const double one = (low - channel.offset) / channel.scale,
+                 other = (high - channel.offset) / channel.scale;
+    ranges_.push_back({code_of(std::min(one, other)), code_of(std::max(one, other))});
+  }
+}
+
+Result<std::unique_ptr<WireDevice>> WireDevice::open(std::string uri, std::unique_ptr<Transport> transport) {
+  auto client = Client::connect(std::move(transport), uri);
+  if (!client) return schema::forward_error(client);
+  auto capabilities = capabilities_of((*client)->description(), std::move(uri));
+  if (!capabilities) return schema::forward_error(capabilities);
+  return std::unique_ptr<WireDevice>(new WireDevice(std::move(*client), std::move(*capabilities)));
+}
+
+Result<void> WireDevice::start() {
+  counts_ = {};
+  events_ = {};
+  ended_.reset();
+  next_pair_s_ = -std::numeric_limits<double>::infinity();
+  const std::uint32_t rate = client_->description().welcome.default_rate_millihertz;
+  const auto started = client_->start_stream(rate, block_frames(capabilities_.sample_rate_hz));
+  started_ = started.has_value();
+  return started;
+}
+
+void WireDevice::take_gaps() {
+  while (client_->samples().at_gap()) events_.gaps.push_back(client_->samples().take_gap());
+  counts_.lost_frames = client_->samples().lost();
+}
+
+void WireDevice::count(std::span<const std::int32_t> codes) {
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const Range& range = ranges_[i % ranges_.size()];
+    counts_.clipped += codes[i] <= range.least || codes[i] >= range.most;
+  }
+  counts_.frames += codes.size() / ranges_.size();
+}
+
+void WireDevice::note_clock() {
+  const auto& arrival = client_->last_arrival();
+  if (!arrival || arrival->host_s < next_pair_s_) return;
+  next_pair_s_ = arrival->host_s + kClockPairEveryS;
+  events_.clock_pairs.push_back({arrival->frame, arrival->device_s, arrival->host_s});
+}
+
+// Frames that came before an error are given before the error is.
+Result<std::size_t> WireDevice::read(std::span<std::int32_t> interleaved) {
+  if (!started_) return schema::fail(Fault::device, "the device is not started", capabilities_.uri);
+  const std::size_t wanted = interleaved.size() / ranges_.size();
+  for (;;) {
+    take_gaps();
+    if (!ended_)
+      if (const auto here = client_->await_samples(wanted); !here) ended_ = here.error();
+    take_gaps();
+    const std::size_t taken = client_->samples().take(interleaved);
+    count(interleaved.first(taken * ranges_.size()));
+    note_clock();
+    if (taken > 0 || wanted == 0) return taken;
+    if (ended_) return tl::unexpected(*ended_);
+  }
+}
+
+Result<void> WireDevice::stop() {
+  started_ = false;
+  return client_->stop_stream();
+}
+
+StreamEvents WireDevice::take_events() {
+  StreamEvents events = std::exchange(events_, {});
+  for (const wire::Fault& fault : client_->take_faults())
+    events.faults.push_back({counts_.frames, fault.code, fault.detail});
+  return events;
+}
+
+}  // namespace tacto::firmware_host

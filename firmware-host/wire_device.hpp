@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A device that speaks the wire, as a Device: whatever the transport.
+#pragma once
+
+#include "firmware-host/client.hpp"
+#include "firmware-host/device.hpp"
+
+namespace tacto::firmware_host {
+
+/// Streams at the device's default rate. What the device says of itself becomes its capabilities; its
+/// transducer, named by a note, is read as read_transducer() does.
+class WireDevice final : public Device {
+ public:
+  /// Connects. Errors: as Client::connect(); device: a description that cannot be used; as read_transducer().
+  static schema::Result<std::unique_ptr<WireDevice>> open(std::string uri,
+                                                          std::unique_ptr<Transport> transport);
+
+  const Capabilities& capabilities() const override { return capabilities_; }
+  schema::Result<void> start() override;
+  schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) override;
+  schema::Result<void> stop() override;
+  StreamCounts counts() const override { return counts_; }
+  StreamEvents take_events() override;
+
+  /// For what is not a stream: drive, heartbeat.
+  Client& client() { return *client_; }
+
+ private:
+  struct Range {
+    std::int32_t least, most;
+  };
+  WireDevice(std::unique_ptr<Client> client, Capabilities capabilities);
+  void take_gaps();
+  void count(std::span<const std::int32_t> codes);
+  void note_clock();
+
+  std::unique_ptr<Client> client_;
+  Capabilities capabilities_;
+  std::vector<Range> ranges_;  // codes at the ends of a converter
+  bool started_ = false;
+  std::optional<schema::Error> ended_;
+  StreamCounts counts_;
+  StreamEvents events_;
+  double next_pair_s_ = 0;
+};
+
+/// Capabilities from a description. Errors: device: no rate, no channel, a channel of an unknown quantity or
+/// with a scale that is no number; as read_transducer().
+schema::Result<Capabilities> capabilities_of(const Description& description, std::string uri);
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The protocol's numbers in words for people.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "firmware-host/core/wire/message_types.hpp"
+
+namespace tacto::firmware_host {
+
+/// What happened, and what to do about it.
+struct FaultWords {
+  std::string what, remedy;
+};
+
+/// "nothing was heard from the host for 1000 ticks". Codes of newer versions are named by their number.
+FaultWords words_of(wire::FaultCode code, std::uint32_t detail);
+/// Why a command was refused.
+FaultWords words_of(wire::AnswerCode code, std::uint32_t detail);
+std::string_view word_of(wire::DriveState state);
+std::string_view word_of(wire::MessageType type);
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The core on a Cortex-M4F (QEMU, counting instructions): the same bits as here, within a board's flash, RAM, stack
+and time. Takes the program that CMake linked; that it linked, with no library at all, is the first half of the test.
+
+QEMU counts instructions, not cycles: on this core most take one cycle, loads two, taken branches three, a VFP
+division fourteen. The budget therefore counts each as three.
+"""
+import subprocess
+import sys
+
+CYCLES = 168_000_000 // 20_000  # 20 kHz at 168 MHz
+CYCLES_PER_INSTRUCTION = 3      # above what this core's mix takes
+
+
+def figures_of(output):
+    words = (line.split() for line in output.splitlines())
+    return {w[0]: int(w[1]) for w in words if len(w) == 2 and w[1].isdigit()}
+
+
+def main():
+    program = sys.argv[1]
+    size = subprocess.run(["size", program], capture_output=True, text=True, check=True).stdout.splitlines()[1].split()
+    run = subprocess.run(["qemu-system-arm", "-M", "netduinoplus2", "-nographic", "-monitor", "none", "-serial", "none",
+                          "-icount", "shift=0", "-semihosting-config", "enable=on,target=native", "-kernel", program],
+                         capture_output=True, text=True, timeout=120)
+    output = run.stdout + run.stderr
+    figures = figures_of(output)
+    assert run.returncode == 0 and "same bits" in output and "played" in output, output
+
+    def instructions(counts):
+        return counts * 10_000 / figures["counts_of_10000_instructions"]
+
+    kernel = instructions(figures["kernel_counts"] / figures["kernel_ticks"])
+    tick = instructions(figures["firmware_tick_counts"] / figures["firmware_ticks"])
+    poll = instructions(figures["firmware_poll_counts"] / figures["firmware_ticks"])
+    flash, ram = int(size[0]) + int(size[1]), int(size[1]) + int(size[2])
+    print(f"kernel {kernel:.0f}, whole tick {tick:.0f}, poll {poll:.0f} instructions a tick, of {CYCLES} cycles; "
+          f"flash {flash} B, RAM {ram} B with this program's buffers, of which the firmware "
+          f"{figures['firmware_bytes']} B, stack {figures['deepest_stack_bytes']} B")
+    assert 1600 < figures["counts_of_10000_instructions"] < 1760, "a nanosecond an instruction at 168 MHz"
+    assert (tick + poll) * CYCLES_PER_INSTRUCTION < CYCLES
+    assert instructions(figures["firmware_tick_most_counts"]) * CYCLES_PER_INSTRUCTION < CYCLES / 2
+    assert flash < 64 * 1024 and figures["firmware_bytes"] < 48 * 1024 and figures["deepest_stack_bytes"] < 2048
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The core's promise, held by a hook on every allocation: neither tick() nor poll() takes from the heap,
+// playing, streaming, being spoken to and in fault.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/firmware-host/firmware_bench.hpp"
+#include "tests/firmware-host/kernel_workload.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace tacto::core {
+namespace {
+
+static_assert(noexcept(std::declval<Firmware&>().tick()));
+static_assert(noexcept(std::declval<Firmware&>().poll()));
+static_assert(noexcept(std::declval<TickKernel&>().tick(0, true, std::declval<uint32_t&>(),
+                                                        std::declval<bool&>())));
+
+TEST(Allocation, TheHookSeesAllocations) {
+  const long before = allocations;
+  ::operator delete(::operator new(8));
+  EXPECT_EQ(allocations, before + 1);
+}
+
+TEST(Allocation, NeitherTickNorPollAllocates) {
+  tests::FirmwareBench bench;
+  bench.play_profile(2);
+  bench.expect_ok(bench.code(wire::StreamStart{tests::kTenKilohertz, 32}));
+  bench.board.to_host.reserve(10'000'000);
+  const auto beat = tests::framed(wire::Heartbeat{1}, bench.sequence_);
+  bench.board.from_host.insert(bench.board.from_host.end(), beat.begin(), beat.end());
+  const long before = allocations;
+  for (int i = 0; i < 5000; ++i) {
+    bench.board.clock += tests::kTestClockHz / 10000;
+    bench.board.encoder += 1;
+    bench.board.enabled = i < 4000;
+    bench.firmware->tick();
+    bench.firmware->poll();
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(bench.board.to_host.size(), 100'000U);
+}
+
+TEST(Allocation, TheKernelDoesNotAllocate) {
+  static tests::KernelWorkload workload;
+  const long before = allocations;
+  for (int i = 0; i < 1000; ++i) workload.tick();
+  EXPECT_EQ(allocations, before);
+}
+
+}  // namespace
+}  // namespace tacto::core

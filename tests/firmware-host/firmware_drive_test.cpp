@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The drive: its states, its sources, and that every fault brings it to zero in the stated time.
+#include <gtest/gtest.h>
+
+#include "tests/firmware-host/firmware_bench.hpp"
+
+namespace tacto::core {
+namespace {
+
+using tests::FirmwareBench;
+using tests::kTenKilohertz;
+using tests::kTestLimits;
+using wire::AnswerCode;
+using wire::DriveState;
+using wire::FaultCode;
+
+// release_s + drive_v / slew_v_per_s + 2 ticks of the test's limits: 5 ms + 0.32 ms + 0.2 ms.
+constexpr int kTicksToZero = 55;
+
+wire::Drive constant_drive(std::uint16_t count, float drive_v) {
+  wire::Drive drive{};
+  drive.count = count;
+  std::fill(drive.drive_v, drive.drive_v + count, drive_v);
+  return drive;
+}
+
+void expect_ramp_to_zero(FirmwareBench& bench, float from_v) {
+  const float step_v = kTestLimits.slew_v_per_s / 10000 * 1.0001F;
+  float before_v = from_v;
+  for (const float drive_v : bench.drives) {
+    EXPECT_LE(std::abs(drive_v), std::abs(before_v)) << "never up again";
+    EXPECT_LE(std::abs(drive_v - before_v), step_v) << "never with a step";
+    before_v = drive_v;
+  }
+  for (std::size_t i = kTicksToZero; i < bench.drives.size(); ++i) EXPECT_EQ(bench.drives[i], 0);
+  EXPECT_EQ(bench.board.drive_v, 0);
+}
+
+TEST(FirmwareDrive, GoesFromIdleToPlayingAndBack) {
+  FirmwareBench bench;
+  bench.arm_profile(2);
+  EXPECT_EQ(bench.pulse().state, DriveState::armed);
+  bench.run(50);
+  EXPECT_EQ(bench.board.drive_v, 0) << "armed is silent";
+  bench.expect_ok(bench.code(wire::Play{}));
+  bench.run(10);
+  EXPECT_GT(bench.board.drive_v, 0);
+  EXPECT_LT(bench.board.drive_v, 1.9F) << "soft onset";
+  bench.run(30);
+  EXPECT_EQ(bench.board.drive_v, 2);
+  EXPECT_EQ(bench.pulse().state, DriveState::playing);
+  bench.expect_ok(bench.code(wire::Stop{}));
+  bench.run(kTicksToZero);
+  EXPECT_EQ(bench.board.drive_v, 0);
+  EXPECT_EQ(bench.pulse().state, DriveState::armed);
+  bench.expect_ok(bench.code(wire::Disarm{}));
+  bench.run(2);
+  EXPECT_EQ(bench.pulse().state, DriveState::idle);
+  EXPECT_EQ(bench.board.rate_millihertz, 0U);
+}
+
+TEST(FirmwareDrive, GainIsLive) {
+  FirmwareBench bench;
+  bench.play_profile(1);
+  bench.expect_ok(bench.code(wire::Gain{-1.5F}));
+  bench.run(20);
+  EXPECT_EQ(bench.board.drive_v, -1.5F);
+}
+
+TEST(FirmwareDrive, StreamsEveryTick) {
+  FirmwareBench bench;
+  bench.play_profile(1);
+  bench.run(1000);
+  bench.expect_ok(bench.code(wire::Disarm{}));
+  bench.run(100);
+  ASSERT_EQ(bench.ticks.size(), bench.first_ticks.back() + (bench.ticks.size() - bench.first_ticks.back()));
+  std::uint64_t tick = 0;
+  for (std::size_t i = 0; i < bench.ticks.size(); ++i, ++tick)
+    ASSERT_EQ(bench.ticks[i].drive_v, bench.drives[i]) << i;
+  EXPECT_NE(bench.ticks[500].flags & wire::kTickPlaying, 0U);
+  EXPECT_NE(bench.ticks[500].flags & wire::kTickEnabled, 0U);
+}
+
+TEST(FirmwareDrive, NothingChangesUnderARunningDrive) {
+  FirmwareBench bench;
+  bench.play_profile(1);
+  EXPECT_EQ(bench.code(kTestLimits), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.code(wire::ProfileBegin{64, 0, 0, 1, wire::ProfileEnds::stop}), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.code(wire::Filters{}), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.code(wire::Arm{wire::DriveSource::profile, kTenKilohertz}), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.code(wire::StreamStart{5'000'000, 32}), AnswerCode::wrong_state) << "another rate";
+  EXPECT_EQ(bench.code(wire::Reset{}), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.board.restarts, 0U);
+}
+
+TEST(FirmwareDrive, RecordsWhileItPlays) {
+  FirmwareBench bench;
+  bench.play_profile(1);
+  bench.expect_ok(bench.code(wire::StreamStart{kTenKilohertz, 32}));
+  bench.run(320);
+  bench.expect_ok(bench.code(wire::StreamStop{}));
+  std::size_t frames = 0;
+  for (const wire::Samples& block : bench.samples) frames += block.count;
+  EXPECT_EQ(frames, 320U);
+  EXPECT_EQ(bench.pulse().state, DriveState::playing);
+  EXPECT_EQ(bench.board.rates_set, 1U) << "the drive's ticks were not interrupted";
+}
+
+TEST(FirmwareDrive, ASilentHostIsAFaultAndZero) {
+  FirmwareBench bench;
+  bench.play_profile(5);
+  bench.drives.clear();
+  bench.run(430, false);
+  EXPECT_EQ(bench.board.drive_v, 5) << "the watchdog's 50 ms are not over";
+  bench.drives.clear();
+  bench.run(200, false);
+  bench.drives.erase(bench.drives.begin(),
+                     std::find_if(bench.drives.begin(), bench.drives.end(), [](float v) { return v < 5; }));
+  EXPECT_NEAR(200 - static_cast<double>(bench.drives.size()), 500 - 59 - 430 + 1, 1);
+  expect_ramp_to_zero(bench, 5);
+  ASSERT_EQ(bench.faults.size(), 1U);
+  EXPECT_EQ(bench.faults[0].code, FaultCode::host_silent);
+  EXPECT_EQ(bench.pulse().state, DriveState::fault);
+}
+
+TEST(FirmwareDrive, AnOpenEnableInputIsAFaultAndZeroEvenIfItClosesAgain) {
+  FirmwareBench bench;
+  bench.play_profile(-4);
+  bench.drives.clear();
+  bench.board.enabled = false;
+  bench.run(1);
+  bench.board.enabled = true;
+  bench.run(100);
+  expect_ramp_to_zero(bench, -4);
+  EXPECT_EQ(bench.faults.at(0).code, FaultCode::enable_open);
+  EXPECT_EQ(bench.code(wire::Play{}), AnswerCode::wrong_state);
+  bench.expect_ok(bench.code(wire::Disarm{}));
+  bench.run(2);
+  EXPECT_EQ(bench.pulse().state, DriveState::idle);
+  bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::profile, kTenKilohertz}));
+}
+
+TEST(FirmwareDrive, AnEncodersJumpIsAFaultAndZero) {
+  for (const std::int32_t jump : {101, -101, std::numeric_limits<std::int32_t>::min()}) {
+    FirmwareBench bench;
+    bench.play_profile(3);
+    bench.board.encoder = 100;
+    bench.run(1);
+    EXPECT_TRUE(bench.faults.empty());
+    bench.board.encoder += jump;
+    bench.drives.clear();
+    bench.run(100);
+    expect_ramp_to_zero(bench, 3);
+    EXPECT_EQ(bench.faults.at(0).code, FaultCode::encoder_jump);
+  }
+}
+
+// 1e38 is a number; ten times that is none.
+TEST(FirmwareDrive, AFilteredDriveThatIsNoNumberIsAFaultAndZero) {
+  FirmwareBench bench;
+  bench.play_profile(2);
+  bench.expect_ok(bench.code(wire::Gain{2e38F}));
+  bench.drives.clear();
+  bench.run(100);
+  EXPECT_EQ(bench.faults.at(0).code, FaultCode::not_a_number);
+  expect_ramp_to_zero(bench, 2);
+}
+
+TEST(FirmwareDrive, AFaultIsToldOnceAndEndsWithDisarm) {
+  FirmwareBench bench;
+  bench.play_profile(2);
+  bench.board.enabled = false;
+  bench.run(1000);
+  EXPECT_EQ(bench.faults.size(), 1U);
+  bench.board.enabled = true;
+  bench.expect_ok(bench.code(wire::Disarm{}));
+  bench.run(2);
+  bench.play_profile(2);
+  EXPECT_EQ(bench.board.drive_v, 2);
+  EXPECT_EQ(bench.faults.size(), 1U);
+}
+
+TEST(FirmwareDrive, HelloEndsWhateverRan) {
+  FirmwareBench bench;
+  bench.play_profile(2);
+  bench.drives.clear();
+  bench.greet();
+  bench.run(60, false);
+  expect_ramp_to_zero(bench, 2);
+  EXPECT_EQ(bench.firmware->drive_state(), DriveState::idle);
+}
+
+TEST(FirmwareDrive, PlaysTheHostsDriveInItsTime) {
+  FirmwareBench bench;
+  bench.expect_ok(bench.code(kTestLimits));
+  bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::host, kTenKilohertz}));
+  bench.expect_ok(bench.code(wire::Play{}));
+  for (int i = 0; i < 10; ++i) {
+    bench.send(constant_drive(100, 1));
+    bench.run(100);
+  }
+  EXPECT_EQ(bench.board.drive_v, 1);
+  EXPECT_TRUE(bench.answers.back().of != wire::MessageType::drive);
+  bench.drives.clear();
+  bench.run(60);
+  EXPECT_EQ(bench.board.drive_v, 0) << "no drive, no output";
+  EXPECT_TRUE(bench.faults.empty());
+  EXPECT_GE(bench.pulse().underruns, 60U);
+  bench.run(500);
+  EXPECT_EQ(bench.faults.at(0).code, FaultCode::drive_underrun);
+}
+
+TEST(FirmwareDrive, AStaleDriveIsNeverPlayed) {
+  FirmwareBench bench;
+  bench.expect_ok(bench.code(kTestLimits));
+  bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::host, kTenKilohertz}));
+  bench.send(constant_drive(300, 4));
+  bench.run(300);
+  bench.expect_ok(bench.code(wire::Play{}));
+  bench.run(100);
+  EXPECT_EQ(*std::max_element(bench.drives.begin(), bench.drives.end()), 0);
+}
+
+TEST(FirmwareDrive, MoreDriveThanItHoldsIsRefusedWhole) {
+  FirmwareBench bench;
+  bench.expect_ok(bench.code(kTestLimits));
+  EXPECT_EQ(bench.code(constant_drive(10, 1)), AnswerCode::wrong_state);
+  bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::host, kTenKilohertz}));
+  bench.send(constant_drive(512, 1));
+  bench.send(constant_drive(511, 1));
+  EXPECT_EQ(bench.command(constant_drive(2, 1)).detail, 1U);
+  EXPECT_EQ(bench.pulse().drive_queued, 1023U);
+}
+
+TEST(FirmwareDrive, SweepsWithinItsLimitsAndEnds) {
+  FirmwareBench bench;
+  bench.expect_ok(bench.code(kTestLimits));
+  bench.expect_ok(bench.code(wire::Sweep{1, 10'000, 800'000, 1'880'000}));
+  bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::sweep, kTenKilohertz}));
+  bench.expect_ok(bench.code(wire::Play{}));
+  bench.run(9000);
+  EXPECT_NEAR(*std::max_element(bench.drives.begin(), bench.drives.end()), 1, 1e-3);
+  bench.run(2000);
+  EXPECT_EQ(bench.board.drive_v, 0);
+}
+
+TEST(FirmwareDrive, LateTicksAreCountedAndMarked) {
+  FirmwareBench bench;
+  bench.play_profile(1);
+  bench.board.clock += tests::kTestClockHz / 10000;
+  bench.run(50);
+  EXPECT_EQ(bench.pulse().late_ticks, 1U);
+}
+
+TEST(FirmwareDrive, ABoardWithoutOutputIsNeverArmed) {
+  tests::TestBoard board;
+  core::Board about = board.about();
+  about.about.features = 0;
+  FirmwareBench bench;
+  bench.firmware = std::make_unique<Firmware>(about, bench.board.hal());
+  bench.greet();
+  bench.expect_ok(bench.code(kTestLimits));
+  EXPECT_EQ(bench.code(wire::Arm{wire::DriveSource::host, kTenKilohertz}), AnswerCode::bad_value);
+}
+
+}  // namespace
+}  // namespace tacto::core

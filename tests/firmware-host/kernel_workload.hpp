@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the kernel is given where its bits and its ticks are counted: on this machine, and on a Cortex-M4F in
+// QEMU. Freestanding, and no arithmetic whose result a compiler or processor may choose.
+#pragma once
+
+#include "firmware-host/core/tick_kernel.hpp"
+
+namespace tacto::tests {
+
+inline constexpr uint32_t kWorkloadSamples = 2000;
+inline constexpr uint32_t kWorkloadTicks = 20000;
+inline constexpr uint32_t kWorkloadSections = 8;
+/// Of all its drives: what every machine must give. It changes only with the kernel or the workload.
+inline constexpr uint32_t kWorkloadFingerprint = 1475156588;
+
+class KernelWorkload {
+ public:
+  /// A profile of smoothed noise, 10 um apart, read by an encoder of 1 um; eight sections of an actuator's
+  /// inverse between 15 and 500 Hz at 20 kHz; a drive that reaches both limits now and then.
+  KernelWorkload() noexcept {
+    float smooth = 0;
+    for (float& value : profile_)
+      value = smooth = 0.6F * smooth + static_cast<float>(next()) * (1.0F / 32768);
+    kernel_.set_profile(
+        {profile_, {kWorkloadSamples, -500, INT64_C(1) << 30, 429496730, wire::ProfileEnds::mirror}});
+    kernel_.set({5, 15708, 0.05F, 0.01F, 100, 200}, 20000);
+    constexpr wire::Section kPeak{1.05F, -1.92F, 0.95F, -1.9F, 0.98F},
+        kHigh{0.9967F, -1.9934F, 0.9967F, -1.9933F, 0.9934F};
+    constexpr wire::Section kLow{0.0055F, 0.0111F, 0.0055F, -1.7786F, 0.8008F};
+    const wire::Section sections[kWorkloadSections] = {kPeak, kHigh, kLow,  kPeak,
+                                                       kHigh, kPeak, kHigh, {1.3F, -0.4F, 0, -0.1F, 0}};
+    kernel_.sections().set(sections, kWorkloadSections);
+  }
+
+  /// One tick: the finger goes on by 0 to 3 counts, and turns now and then.
+  float tick() noexcept {
+    const int32_t draw = next();
+    if (draw % 500 == 0) way_ = -way_;
+    count_ += way_ * (draw & 3);
+    bool sound = true;
+    return kernel_.tick(kernel_.wanted(count_, 40.0F), ++ticks_ < kWorkloadTicks - 400, flags_, sound);
+  }
+  uint32_t flags() const noexcept { return flags_; }
+
+ private:
+  int32_t next() noexcept {
+    random_ = random_ * 1664525U + 1013904223U;
+    return static_cast<int32_t>(random_ >> 16) - 32768;
+  }
+
+  uint32_t random_ = 1, flags_ = 0, ticks_ = 0;
+  int32_t count_ = 0, way_ = 1;
+  core::TickKernel kernel_;
+  float profile_[kWorkloadSamples];
+};
+
+/// FNV-1a over the bits of what was driven.
+class DriveFingerprint {
+ public:
+  void add(float drive_v) noexcept {
+    uint32_t bits;
+    __builtin_memcpy(&bits, &drive_v, sizeof bits);
+    for (int shift = 0; shift < 32; shift += 8) hash_ = (hash_ ^ ((bits >> shift) & 0xFFU)) * 16777619U;
+  }
+  uint32_t value() const noexcept { return hash_; }
+
+ private:
+  uint32_t hash_ = 2166136261U;
+};
+
+}  // namespace tacto::tests

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Host client, wire, firmware core and physics together, over a sound cable and over bad ones. Whatever the
+// cable does, it ends in the stated gap or error: never a hang, a crash or a silent hole.
+#include "firmware-host/wire_device.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware-host/sim/sim_device.hpp"
+#include "firmware-host/sim/sim_transport.hpp"
+#include "tests/firmware-host/faulty_transport.hpp"
+#include "tests/firmware-host/sim_stream.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using tests::FaultyTransport;
+using tests::Harm;
+using wire::MessageType;
+
+constexpr const char* kParameters = "surface=sine,seed=3";
+constexpr std::size_t kChannels = 4;
+
+struct Bench {
+  std::unique_ptr<SimBoard> board;
+  schema::Result<std::unique_ptr<WireDevice>> device;
+};
+
+Bench bench_with(FaultyTransport::Choice choice) {
+  const auto parameters = parse_sim_parameters(kParameters);
+  auto board = std::make_unique<SimBoard>(*parameters, *schema::read_transducer("wiertlewski2011"),
+                                          *make_surface(parameters->surface));
+  auto transport = std::make_unique<FaultyTransport>(std::make_unique<SimTransport>(*board, false), choice);
+  auto device = WireDevice::open("test:", std::move(transport));
+  return {std::move(board), std::move(device)};
+}
+
+// The n-th frame of a type is harmed.
+FaultyTransport::Choice harm_the(int n, MessageType type, Harm harm) {
+  return [=, count = 0](MessageType of) mutable { return of == type && ++count == n ? harm : Harm::none; };
+}
+
+FaultyTransport::Choice harm_all(MessageType type, Harm harm) {
+  return [=](MessageType of) { return of == type ? harm : Harm::none; };
+}
+
+struct Streamed {
+  std::vector<std::int32_t> codes;
+  StreamEvents events;
+  std::optional<schema::Error> error;
+};
+
+void append(StreamEvents& all, const StreamEvents& more) {
+  all.gaps.insert(all.gaps.end(), more.gaps.begin(), more.gaps.end());
+  all.faults.insert(all.faults.end(), more.faults.begin(), more.faults.end());
+  all.clock_pairs.insert(all.clock_pairs.end(), more.clock_pairs.begin(), more.clock_pairs.end());
+}
+
+// Reads until so many frames are here, or an error.
+Streamed stream_from(Device& device, std::size_t frames) {
+  Streamed streamed;
+  if (const auto started = device.start(); !started) streamed.error = started.error();
+  std::vector<std::int32_t> block(777 * kChannels);
+  while (!streamed.error && streamed.codes.size() < frames * kChannels) {
+    const auto read = device.read(block);
+    append(streamed.events, device.take_events());
+    if (!read) streamed.error = read.error();
+    if (read) streamed.codes.insert(streamed.codes.end(), block.begin(), block.begin() + *read * kChannels);
+  }
+  return streamed;
+}
+
+const std::vector<std::int32_t>& truth() {
+  static const auto kCodes = tests::stream_of(std::string("sim:") + kParameters, 1.5).codes;
+  return kCodes;
+}
+
+// Every frame is the device's frame of its number, where the gaps say it is.
+void expect_no_silent_hole(const Streamed& streamed) {
+  std::size_t next_gap = 0, missing = 0;
+  for (std::size_t i = 0; i < streamed.codes.size() / kChannels; ++i) {
+    const auto& gaps = streamed.events.gaps;
+    for (; next_gap < gaps.size() && gaps[next_gap].frame == i; ++next_gap) {
+      missing += gaps[next_gap].count;
+      ASSERT_EQ(gaps[next_gap].device_sequence, i + missing);
+    }
+    for (std::size_t k = 0; k < kChannels; ++k)
+      ASSERT_EQ(streamed.codes[i * kChannels + k], truth()[(i + missing) * kChannels + k]) << "frame " << i;
+  }
+}
+
+TEST(WireDevice, ASoundCableGivesEveryFrame) {
+  Bench bench = bench_with([](MessageType) { return Harm::none; });
+  ASSERT_TRUE(bench.device) << message(bench.device.error());
+  const Streamed streamed = stream_from(**bench.device, 10000);
+  EXPECT_FALSE(streamed.error);
+  EXPECT_TRUE(streamed.events.gaps.empty());
+  EXPECT_TRUE(streamed.events.faults.empty());
+  expect_no_silent_hole(streamed);
+  EXPECT_TRUE((*bench.device)->stop());
+  const LinkCounts counts = (*bench.device)->client().counts();
+  EXPECT_EQ(counts.lost + counts.stale + counts.frames.dropped_bytes, 0U);
+}
+
+TEST(WireDevice, ClocksComeInPairsEachSecond) {
+  Bench bench = bench_with([](MessageType) { return Harm::none; });
+  const auto pairs = stream_from(**bench.device, 10500).events.clock_pairs;
+  ASSERT_EQ(pairs.size(), 2U);
+  EXPECT_NEAR(pairs[1].device_s - pairs[0].device_s, 1, 0.09);
+  EXPECT_NEAR(static_cast<double>(pairs[1].device_sequence - pairs[0].device_sequence) * 1e-4,
+              pairs[1].device_s - pairs[0].device_s, 1e-9);
+}
+
+struct LostBlock {
+  const char* name;
+  Harm harm;
+};
+class OneBlockHarmed : public testing::TestWithParam<LostBlock> {};
+
+TEST_P(OneBlockHarmed, IsAGapOfThatBlock) {
+  Bench bench = bench_with(harm_the(100, MessageType::samples, GetParam().harm));
+  const Streamed streamed = stream_from(**bench.device, 10000);
+  EXPECT_FALSE(streamed.error);
+  ASSERT_EQ(streamed.events.gaps.size(), 1U);
+  EXPECT_EQ(streamed.events.gaps[0].frame, 99 * 32U);
+  EXPECT_EQ(streamed.events.gaps[0].count, 32U);
+  EXPECT_EQ(streamed.events.gaps[0].device_sequence, 100 * 32U);
+  EXPECT_EQ((*bench.device)->counts().lost_frames, 32U);
+  expect_no_silent_hole(streamed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Harms, OneBlockHarmed,
+                         testing::Values(LostBlock{"dropped", Harm::drop},
+                                         LostBlock{"corrupt", Harm::corrupt},
+                                         LostBlock{"truncated", Harm::truncate},
+                                         LostBlock{"delayed", Harm::delay}),
+                         [](const auto& harm) { return harm.param.name; });
+
+TEST(WireDevice, DoubledFramesAndGarbageDoNoHarm) {
+  for (const Harm harm : {Harm::duplicate, Harm::garbage_before}) {
+    Bench bench = bench_with(harm_all(MessageType::samples, harm));
+    const Streamed streamed = stream_from(**bench.device, 5000);
+    EXPECT_FALSE(streamed.error);
+    EXPECT_TRUE(streamed.events.gaps.empty());
+    expect_no_silent_hole(streamed);
+  }
+}
+
+TEST(WireDevice, RandomHarmToEverythingLeavesNoSilentHole) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    Bench bench = bench_with(
+        [&](MessageType) { return random() % 20 == 0 ? static_cast<Harm>(1 + random() % 6) : Harm::none; });
+    if (!bench.device) {
+      EXPECT_EQ(bench.device.error().fault, schema::Fault::device);
+      continue;
+    }
+    const Streamed streamed = stream_from(**bench.device, 8000);
+    EXPECT_TRUE(!streamed.error || streamed.error->fault == schema::Fault::device);
+    expect_no_silent_hole(streamed);
+    EXPECT_GT(streamed.events.gaps.size(), 0U) << seed;
+  }
+}
+
+TEST(WireDevice, WhatWasLostOfAConversationIsAskedAgain) {
+  for (const auto type : {MessageType::welcome, MessageType::channel, MessageType::note, MessageType::answer})
+    for (const Harm harm : {Harm::drop, Harm::corrupt, Harm::truncate, Harm::duplicate}) {
+      Bench bench = bench_with(harm_the(1, type, harm));
+      ASSERT_TRUE(bench.device) << message(bench.device.error());
+      const Streamed streamed = stream_from(**bench.device, 1000);
+      ASSERT_FALSE(streamed.error) << message(*streamed.error);
+      expect_no_silent_hole(streamed);
+      EXPECT_TRUE((*bench.device)->stop());
+    }
+}
+
+TEST(WireDevice, ADeviceThatNeverAnswersIsAnError) {
+  for (const auto type : {MessageType::welcome, MessageType::channel}) {
+    Bench bench = bench_with(harm_all(type, Harm::drop));
+    ASSERT_FALSE(bench.device);
+    EXPECT_EQ(bench.device.error().fault, schema::Fault::device);
+    EXPECT_NE(bench.device.error().what.find("did not answer hello, asked 3 times in 1.5 s"),
+              std::string::npos)
+        << message(bench.device.error());
+  }
+  Bench bench = bench_with(harm_all(MessageType::answer, Harm::drop));
+  const auto started = (*bench.device)->start();
+  ASSERT_FALSE(started);
+  EXPECT_NE(started.error().what.find("did not answer stream_start"), std::string::npos);
+}
+
+TEST(WireDevice, AStreamThatStallsIsAnErrorAfterItsFrames) {
+  int blocks = 0;
+  Bench bench = bench_with([&](MessageType type) {
+    return type == MessageType::samples && ++blocks > 50 ? Harm::drop : Harm::none;
+  });
+  const Streamed streamed = stream_from(**bench.device, 10000);
+  EXPECT_EQ(streamed.codes.size(), 50 * 32 * kChannels);
+  ASSERT_TRUE(streamed.error);
+  EXPECT_NE(streamed.error->what.find("no frames have come for 1 s"), std::string::npos);
+  expect_no_silent_hole(streamed);
+}
+
+TEST(WireDevice, UnpluggedItGivesItsFramesAndThenTheReason) {
+  Bench bench = bench_with(harm_the(60, MessageType::samples, Harm::unplug));
+  const Streamed streamed = stream_from(**bench.device, 10000);
+  EXPECT_EQ(streamed.codes.size(), 59 * 32 * kChannels);
+  ASSERT_TRUE(streamed.error);
+  EXPECT_EQ(streamed.error->what, "the device was unplugged");
+  expect_no_silent_hole(streamed);
+  EXPECT_FALSE((*bench.device)->stop());
+}
+
+// A device of any version, that knows no more than to welcome.
+class OtherVersion final : public Transport {
+ public:
+  explicit OtherVersion(std::uint8_t major) : major_(major) {}
+  schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override {
+    now_s_ += timeout_s;
+    std::copy(reply_.begin(), reply_.end(), bytes.begin());
+    return std::exchange(reply_, {}).size();
+  }
+  schema::Result<void> write(std::span<const std::uint8_t> bytes, double) override {
+    wire::Hello hello;
+    wire::parse(bytes.data() + wire::kHeaderSize, bytes.size() - wire::kHeaderSize, hello);
+    std::uint8_t frame[wire::kMaxFrame];
+    wire::FieldWriter writer(frame + wire::kHeaderSize, wire::kMaxPayload);
+    const char name[32] = "far future", serial[32] = "X9", firmware[24] = "9.0";
+    writer(major_, std::uint8_t{4}, std::uint16_t{0}, hello.nonce, name, serial, firmware);
+    const wire::FrameHeader header{major_, static_cast<std::uint8_t>(MessageType::welcome),
+                                   static_cast<std::uint16_t>(writer.size()), 0};
+    reply_.assign(frame, frame + wire::seal_frame(header, frame));
+    return {};
+  }
+  double now_s() override { return now_s_; }
+
+ private:
+  std::uint8_t major_;
+  std::vector<std::uint8_t> reply_;
+  double now_s_ = 0;
+};
+
+TEST(WireDevice, ANewerVersionIsRefusedByName) {
+  const auto device = WireDevice::open("test:", std::make_unique<OtherVersion>(std::uint8_t{2}));
+  ASSERT_FALSE(device);
+  EXPECT_EQ(device.error().fault, schema::Fault::unsupported_version);
+  EXPECT_NE(device.error().what.find("'far future' (serial X9, firmware 9.0) speaks version 2.4"),
+            std::string::npos)
+      << message(device.error());
+  EXPECT_EQ(device.error().remedy, "update tactograph");
+}
+
+TEST(WireDevice, ADeviceThatWelcomesWithNoVersionIsNoDevice) {
+  const auto device = WireDevice::open("test:", std::make_unique<OtherVersion>(std::uint8_t{0}));
+  ASSERT_FALSE(device);
+  EXPECT_EQ(device.error().fault, schema::Fault::device);
+}
+
+}  // namespace
+}  // namespace tacto::firmware_host
