@@ -3,28 +3,13 @@
 
 #include <fmt/format.h>
 
+#include "spatial/block_time_filter.hpp"
 #include "spatial/dsp/butterworth.hpp"
 
 namespace tacto::spatial {
 namespace {
 
 using schema::Fault;
-
-std::vector<double> copy_of(std::span<const double> values) {
-  return {values.begin(), values.end()};
-}
-
-schema::Result<std::vector<double>> butterworth(std::span<const double> values, double sample_rate_hz,
-                                                const TimeFilter& filter) {
-  const auto sections = butterworth_band_pass(filter.order, filter.band, sample_rate_hz);
-  if (!sections) return schema::forward_error(sections);
-  if (values.size() < 2) return copy_of(values);
-  const std::size_t padding =
-      filter.edges == Edges::none
-          ? default_padding(*sections)
-          : EndTreatment::for_lowest(filter.band.low_hz, sample_rate_hz, values.size()).padding;
-  return filter_zero_phase(*sections, values, padding);
-}
 
 }  // namespace
 
@@ -66,14 +51,13 @@ schema::Result<void> check(const TimeFilter& filter, double sample_rate_hz) {
 
 schema::Result<std::vector<double>> filter_in_time(std::span<const double> values, double sample_rate_hz,
                                                    const TimeFilter& filter, const SpectralGain& equaliser) {
-  if (const auto fine = check(filter, sample_rate_hz); !fine) return schema::forward_error(fine);
-  if (filter.method == FilterMethod::fourier)
-    return fourier_filter(values, sample_rate_hz, filter.band, filter.edges, equaliser);
-  auto filtered = filter.method == FilterMethod::butterworth
-                      ? butterworth(values, sample_rate_hz, filter)
-                      : schema::Result<std::vector<double>>(copy_of(values));
-  if (!filtered || !equaliser) return filtered;
-  return fourier_filter(*filtered, sample_rate_hz, {0, sample_rate_hz / 2}, filter.edges, equaliser);
+  auto fed = BlockTimeFilter::open(sample_rate_hz, filter, equaliser, values.size());
+  if (!fed) return schema::forward_error(fed);
+  std::vector<double> filtered;
+  filtered.reserve(values.size());
+  if (const auto taken = fed->push(values, filtered); !taken) return schema::forward_error(taken);
+  fed->finish(filtered);
+  return filtered;
 }
 
 }  // namespace tacto::spatial

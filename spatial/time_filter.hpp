@@ -36,7 +36,8 @@ std::string_view name_of(Edges edges);
 schema::Result<void> check(const TimeFilter& filter, double sample_rate_hz);
 
 /// Filters a stretch without gaps, and equalises it where there is an equaliser (inside the band; in one
-/// transform with FilterMethod::fourier). As many values as there were, in their unit. Errors: of check().
+/// transform with FilterMethod::fourier). As many values as there were, in their unit. Errors: of check();
+/// unsuitable, for a value that is not a finite number, by its index.
 schema::Result<std::vector<double>> filter_in_time(std::span<const double> values, double sample_rate_hz,
                                                    const TimeFilter& filter,
                                                    const SpectralGain& equaliser = {});

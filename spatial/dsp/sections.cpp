@@ -2,6 +2,8 @@
 #include "spatial/dsp/sections.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
 
 #include "spatial/dsp/record_ends.hpp"
@@ -9,34 +11,50 @@
 namespace tacto::spatial {
 namespace {
 
-// Transposed direct form II: the two delays of one section.
-struct Delays {
-  double z1 = 0, z2 = 0;
-};
+// What runs at once: four sections are enough to keep the processor busy, and few enough for its registers.
+constexpr std::size_t kAtOnce = 4;
+// Longer chains pass over so many values at a time, which stay in the cache.
+constexpr std::size_t kBlock = 2048;
 
-double tick(const Section& s, Delays& d, double input) {
-  const double output = s.b0 * input + d.z1;
-  d.z1 = s.b1 * input - s.a1 * output + d.z2;
-  d.z2 = s.b2 * input - s.a2 * output;
-  return output;
+double slowest_pole(const Section& s) {
+  const double square = s.a1 * s.a1 / 4 - s.a2;
+  return square < 0 ? std::sqrt(s.a2) : std::abs(s.a1) / 2 + std::sqrt(square);
 }
 
-// Each section as if `value` had been coming in for ever.
-std::vector<Delays> steady_state(std::span<const Section> sections, double value) {
-  std::vector<Delays> delays;
-  for (const Section& s : sections) {
-    const double output = value * (s.b0 + s.b1 + s.b2) / (1 + s.a1 + s.a2);
-    delays.push_back({output - s.b0 * value, s.b2 * value - s.a2 * output});
-    value = output;
+// `count` sections over values first, first + step ... ; the delays stay in registers.
+template <std::size_t count, std::ptrdiff_t step, class Delays>
+void run_sections(const Section* sections, Delays* delays, double* first, std::size_t size) {
+  std::array<Section, count> s;
+  std::array<Delays, count> d;
+  std::copy_n(sections, count, s.begin());
+  std::copy_n(delays, count, d.begin());
+  for (std::size_t i = 0; i < size; ++i, first += step) {
+    double value = *first;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double output = s[k].b0 * value + d[k].z1;
+      d[k].z1 = (s[k].b1 * value + d[k].z2) - s[k].a1 * output;
+      d[k].z2 = s[k].b2 * value - s[k].a2 * output;
+      value = output;
+    }
+    *first = value;
   }
-  return delays;
+  std::ranges::copy(d, delays);
 }
 
-template <class Iterator>
-void run(std::span<const Section> sections, Iterator first, Iterator last) {
-  std::vector<Delays> delays = steady_state(sections, *first);
-  for (; first != last; ++first)
-    for (std::size_t s = 0; s < sections.size(); ++s) *first = tick(sections[s], delays[s], *first);
+template <std::ptrdiff_t step, class Delays>
+void run_chain(std::span<const Section> sections, Delays* delays, double* first, std::size_t size) {
+  const Section* section = sections.data();
+  for (std::size_t left = sections.size(); left > 0;) {
+    const std::size_t count = std::min(left, kAtOnce);
+    const auto run = count == 4   ? run_sections<4, step, Delays>
+                     : count == 3 ? run_sections<3, step, Delays>
+                     : count == 2 ? run_sections<2, step, Delays>
+                                  : run_sections<1, step, Delays>;
+    run(section, delays, first, size);
+    section += count;
+    delays += count;
+    left -= count;
+  }
 }
 
 }  // namespace
@@ -60,15 +78,50 @@ std::size_t default_padding(std::span<const Section> sections) {
   return 3 * (2 * sections.size() + 1 - fewer);
 }
 
+SectionChain::SectionChain(std::span<const Section> sections)
+    : sections_(sections.begin(), sections.end()), delays_(sections.size()) {}
+
+void SectionChain::settle(double value) {
+  for (std::size_t k = 0; k < sections_.size(); ++k) {
+    const Section& s = sections_[k];
+    const double output = value * (s.b0 + s.b1 + s.b2) / (1 + s.a1 + s.a2);
+    delays_[k] = {output - s.b0 * value, s.b2 * value - s.a2 * output};
+    value = output;
+  }
+}
+
+void SectionChain::run(std::span<double> values) {
+  for (; !values.empty(); values = values.subspan(std::min(kBlock, values.size())))
+    run_chain<1>(sections_, delays_.data(), values.data(), std::min(kBlock, values.size()));
+}
+
+void SectionChain::run_backwards(std::span<double> values) {
+  for (; !values.empty(); values = values.first(values.size() - std::min(kBlock, values.size())))
+    run_chain<-1>(sections_, delays_.data(), &values.back(), std::min(kBlock, values.size()));
+}
+
+std::size_t SectionChain::memory(double share) const {
+  double slowest = 0;
+  for (const Section& s : sections_) slowest = std::max(slowest, slowest_pole(s));
+  if (slowest <= 0) return 2 * sections_.size();
+  // Poles of several sections that lie close together fall off later than one of them.
+  const double samples = std::log(share) / std::log(std::min(slowest, 1 - 1e-12));
+  return static_cast<std::size_t>(1.5 * samples) + 2 * sections_.size();
+}
+
 std::vector<double> filter_zero_phase(std::span<const Section> sections, std::span<const double> values,
                                       std::size_t padding) {
   if (values.empty()) return {};
   padding = std::min(padding, values.size() - 1);
   std::vector<double> extended = extend_odd(values, padding);
-  run(sections, extended.begin(), extended.end());
-  run(sections, extended.rbegin(), extended.rend());
-  const auto first = extended.begin() + static_cast<std::ptrdiff_t>(padding);
-  return {first, first + static_cast<std::ptrdiff_t>(values.size())};
+  SectionChain chain(sections);
+  chain.settle(extended.front());
+  chain.run(extended);
+  chain.settle(extended.back());
+  chain.run_backwards(extended);
+  extended.erase(extended.begin(), extended.begin() + static_cast<std::ptrdiff_t>(padding));
+  extended.resize(values.size());
+  return extended;
 }
 
 }  // namespace tacto::spatial
