@@ -40,8 +40,10 @@ std::size_t CounterWraps::count_in(std::size_t begin, std::size_t end) const {
 }
 
 std::uint64_t CounterWrapFinder::missing_before(std::size_t frame) const {
-  const auto gap = std::ranges::lower_bound(gaps_, frame, {}, &schema::Gap::frame);
-  return gap != gaps_.end() && gap->frame == frame ? gap->count : 0;
+  std::uint64_t missing = 0;
+  for (const schema::Gap& gap : std::ranges::equal_range(gaps_, frame, {}, &schema::Gap::frame))
+    missing += gap.count;
+  return missing;
 }
 
 void CounterWrapFinder::judge(double before, double step, double after, std::size_t frame) {

@@ -72,6 +72,21 @@ class Check : public testing::Test {
   tests::TemporaryFolder folder_;
 };
 
+TEST_F(Check, CountsOfAnAverageThatCannotBe) {
+  Texture texture;
+  texture.signal.pitch_m = 1e-6;
+  texture.signal.values = {1, 2, 3, 4};
+  texture.average = TextureAverage{"position", {0, 0, 0, 0}, {{1}, {2}}, {{0, 2}, {1e-6, 1}}};
+  ASSERT_TRUE(write_texture(folder_ / "mean", texture));
+  EXPECT_TRUE(findings(FileKind::texture, "mean.texture.json").empty());
+  texture.average->counts = {{1e-6, 3}, {0, 2}};
+  ASSERT_TRUE(write_texture(folder_ / "mean", texture));
+  const auto found = findings(FileKind::texture, "mean.texture.json");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NE(found[0].what.find("more than the 2 strokes averaged"), std::string::npos);
+  EXPECT_NE(found[1].what.find("must rise"), std::string::npos);
+}
+
 TEST_F(Check, SoundFilesHaveNoFindings) {
   EXPECT_TRUE(findings(FileKind::recording, "oak.json").empty());
   EXPECT_TRUE(findings(FileKind::texture, "oak.texture.json").empty());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recordings: what is written is what is read, and what is broken is named.
 #include "data-schema/recording.hpp"
+#include "data-schema/recording_frames.hpp"
 
 #include <gtest/gtest.h>
 
@@ -166,6 +167,43 @@ TEST(Recording, IsLongerThanOnePieceOfReading) {
   const auto position = read_stored(recording, 1).value();
   ASSERT_EQ(position.size(), 200001U);
   for (std::size_t i = 0; i < position.size(); ++i) ASSERT_EQ(position[i], static_cast<double>(2 * i + 1));
+}
+
+TEST(Recording, IsReadFromAnyPlace) {
+  const TemporaryFolder folder;
+  std::vector<double> samples(2 * 100001);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<double>(i);
+  const Recording recording = write(folder / "oak", full_header(SampleFormat::float64), samples);
+  auto frames = RecordingFrames::open(recording);
+  ASSERT_TRUE(frames) << message(frames.error());
+  const Channel& force = recording.header.channels[0];
+  for (const std::size_t first : {std::size_t{0}, std::size_t{99000}, std::size_t{5}, std::size_t{1005}}) {
+    std::vector<double> stored(1000), physical(1000);
+    ASSERT_TRUE(frames->read_stored(1, first, stored));
+    ASSERT_TRUE(frames->read(0, first, physical));
+    for (std::size_t i = 0; i < 1000; ++i) {
+      ASSERT_EQ(stored[i], static_cast<double>(2 * (first + i) + 1));
+      ASSERT_EQ(physical[i], static_cast<double>(2 * (first + i)) * force.scale + force.offset);
+    }
+  }
+  std::vector<double> all(100001);
+  ASSERT_TRUE(frames->read_stored(0, 0, all));  // longer than a piece of reading
+  EXPECT_EQ(all, read_stored(recording, 0).value());
+}
+
+TEST(Recording, ReadFromAnyPlaceNamesTheSampleThatIsNotFinite) {
+  const TemporaryFolder folder;
+  auto samples = kSamples;
+  samples[5] = std::numeric_limits<double>::quiet_NaN();
+  const Recording recording = write(folder / "oak", full_header(SampleFormat::float64), samples, true);
+  auto frames = RecordingFrames::open(recording);
+  ASSERT_TRUE(frames);
+  std::vector<double> out(3);
+  ASSERT_TRUE(frames->read_stored(0, 1, out));
+  const auto broken = frames->read_stored(1, 1, out);
+  ASSERT_FALSE(broken);
+  EXPECT_NE(message(broken.error()).find("channel 'position', sample 2"), std::string::npos);
+  ASSERT_TRUE(frames->read_stored(1, 0, std::span(out).first(2)));  // and what lies before it is read
 }
 
 TEST(Recording, NamesTheSampleThatIsNotFinite) {

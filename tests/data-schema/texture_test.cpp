@@ -33,7 +33,10 @@ Texture example() {
                     4,          15,
                     500,        true,
                     0.04,       0.03,
-                    0.05,       2e-7};
+                    0.05,       2e-7,
+                    1e-6,       3e-6,
+                    16,         2,
+                    0.4,        true};
   texture.surface = "oak";
   texture.created = "2024-05-01T12:00:00Z";
   texture.creator = "a test";
@@ -77,6 +80,12 @@ TEST_F(TextureFile, ReadsBack) {
     EXPECT_EQ(read->source.stroke, 2);
     EXPECT_EQ(read->source.order, 4);
     EXPECT_EQ(read->source.position_moved_m, 2e-7);
+    EXPECT_EQ(read->source.position_quantum_m, 1e-6);
+    EXPECT_EQ(read->source.position_noise_m, 3e-6);
+    EXPECT_EQ(read->source.counter_bits, 16);
+    EXPECT_EQ(read->source.counter_wraps, 2);
+    EXPECT_EQ(read->source.normal_force_n, 0.4);
+    EXPECT_TRUE(read->source.finger_up);
     EXPECT_EQ(read->source.max_speed_mps, 0.05);
     EXPECT_TRUE(read->source.equalised);
     EXPECT_EQ(read->surface, "oak");
@@ -91,6 +100,70 @@ TEST_F(TextureFile, HeaderRateIsSamplesPerMetre) {
   EXPECT_EQ(wav->info().sample_rate_hz, 1e6);
   EXPECT_EQ(wav->info().frames, 5000u);
   EXPECT_EQ(wav->info().channels, 1u);
+}
+
+Texture average_example() {
+  Texture texture = example();
+  texture.average = TextureAverage{"correlation",
+                                   std::vector<double>(texture.signal.values.size(), 0.02),
+                                   {{1, 0.5, 1, 1, 0}, {3, 2.5, 3, 1, -1.25e-5, 0.93}},
+                                   {{0, 1}, {0.001, 2}}};
+  return texture;
+}
+
+TEST_F(TextureFile, AnAverageKeepsItsSpreadAndStrokes) {
+  ASSERT_TRUE(write_texture(folder_ / "oak", average_example()));
+  const auto read = read_texture(folder_ / "oak");
+  ASSERT_TRUE(read) << message(read.error());
+  ASSERT_TRUE(read->average);
+  EXPECT_EQ(read->signal.values[7], static_cast<float>(example().signal.values[7]));
+  EXPECT_EQ(read->average->spread, std::vector<double>(5000, static_cast<double>(0.02F)));
+  EXPECT_EQ(read->average->align, "correlation");
+  ASSERT_EQ(read->average->strokes.size(), 2U);
+  EXPECT_EQ(read->average->strokes[1].stroke, 3);
+  EXPECT_EQ(read->average->strokes[1].shift_m, -1.25e-5);
+  EXPECT_EQ(read->average->strokes[1].correlation, 0.93);
+  EXPECT_FALSE(read->average->strokes[0].correlation);
+  ASSERT_EQ(read->average->counts.size(), 2U);
+  EXPECT_EQ(read->average->counts[1].strokes, 2);
+  EXPECT_NE(sidecar().find("standard_deviation"), std::string::npos);
+  EXPECT_EQ(WavReader::open(folder_ / "oak.texture.wav")->info().channels, 2U);
+}
+
+TEST_F(TextureFile, AnAverageWithoutItsSpreadIsBroken) {
+  Texture broken = average_example();
+  broken.average->spread.pop_back();
+  EXPECT_FALSE(write_texture(folder_ / "oak", broken));
+  ASSERT_TRUE(write_texture(folder_ / "oak", average_example()));
+  const std::string sound = sidecar();
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  write("oak.texture.json", sound);
+  EXPECT_NE(message(error_of("oak")).find("has 1 channels, its sidecar describes 2"), std::string::npos);
+}
+
+TEST_F(TextureFile, SaysWhetherItsNameIsFree) {
+  EXPECT_TRUE(check_texture_free(folder_ / "oak"));
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  for (const char* name : {"oak", "oak.texture.json", "oak.texture.wav"}) {
+    const auto taken = check_texture_free(folder_ / name);
+    ASSERT_FALSE(taken);
+    EXPECT_EQ(taken.error().fault, Fault::usage);
+    EXPECT_NE(message(taken.error()).find("oak.texture.json"), std::string::npos);
+  }
+}
+
+TEST_F(TextureFile, ManyAppearTogetherOrNotAtAll) {
+  {
+    PendingFiles pending;
+    for (int i = 0; i < 30; ++i) ASSERT_TRUE(add_texture(pending, folder_ / std::to_string(i), example()));
+    EXPECT_FALSE(read_texture(folder_ / "0"));
+  }
+  EXPECT_EQ(folder_.files(), 0U);
+  PendingFiles pending;
+  for (int i = 0; i < 30; ++i) ASSERT_TRUE(add_texture(pending, folder_ / std::to_string(i), example()));
+  ASSERT_TRUE(pending.commit());
+  EXPECT_EQ(folder_.files(), 60U);
+  EXPECT_TRUE(read_texture(folder_ / "29"));
 }
 
 TEST_F(TextureFile, EqualTexturesGiveEqualFiles) {
