@@ -78,7 +78,7 @@ double lowest_shown_per_m(double lowest_of_interest_per_m, const SpectrogramHead
 }
 
 double resolution_per_m(const SpectrogramHeader& spectrogram) {
-  return 1.7268 / spectrogram.window_m;
+  return 0.3046 / (0.42 * 0.42) / spectrogram.window_m;
 }
 
 LevelReference level_reference(const SpectrogramHeader& spectrogram) {

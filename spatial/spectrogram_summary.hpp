@@ -34,7 +34,8 @@ std::size_t first_bin(const schema::SpectrogramHeader& spectrogram, double min_f
 double power_of(const schema::SpectrogramHeader& spectrogram, std::size_t bin, double cell);
 
 /// Width of the rectangle that passes as much noise as one bin of the Blackman window: 1.7268 / window, 1/m
-/// (Harris 1978, table 1). Lines that are closer than this melt into one.
+/// (Harris 1978, table 1; mean of w^2 over the square of the mean of w). Lines that are closer than this melt
+/// into one.
 double resolution_per_m(const schema::SpectrogramHeader& spectrogram);
 
 /// Lower end of what is worth showing of a texture: 0.7 of its lowest valid frequency, so that the limit is

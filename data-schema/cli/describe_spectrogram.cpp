@@ -22,6 +22,9 @@ void add_windowing(Report& report, const Spectrogram& s) {
       .add("hop_m", s.hop_m)
       .add("pitch_m", s.pitch_m);
   report.add("padded_samples", s.padded_samples);
+  report.add("scaling", s.scaling == Scaling::amplitude ? "amplitude" : "density");
+  if (s.coherent_gain > 0) report.add("window_coherent_gain", s.coherent_gain);
+  report.add("decimation", s.decimation);
 }
 
 void add_peak(Report& report, const Spectrogram& s) {

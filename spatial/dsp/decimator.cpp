@@ -40,8 +40,25 @@ void order(std::vector<Tap>& taps) {
   std::ranges::sort(taps, {}, [](const Tap& tap) { return std::abs(tap.weight); });
 }
 
+// The usual case, in a form that compilers vectorise.
+void deal_to_four(std::span<const float> values, std::vector<std::vector<float>>& hands) {
+  const std::size_t rounds = values.size() / 4;
+  const float* __restrict from = values.data();
+  float* __restrict first = hands[0].data();
+  float* __restrict second = hands[1].data();
+  float* __restrict third = hands[2].data();
+  float* __restrict fourth = hands[3].data();
+  for (std::size_t i = 0; i < rounds; ++i) {
+    first[i] = from[4 * i];
+    second[i] = from[4 * i + 1];
+    third[i] = from[4 * i + 2];
+    fourth[i] = from[4 * i + 3];
+  }
+}
+
 void deal(std::span<const float> values, std::vector<std::vector<float>>& hands) {
   const std::size_t players = hands.size(), rounds = values.size() / players;
+  if (players == 4) return deal_to_four(values, hands);
   for (std::size_t player = 0; player < players; ++player)
     for (std::size_t i = 0; i < rounds; ++i) hands[player][i] = values[i * players + player];
 }

@@ -7,8 +7,8 @@
 
 namespace tacto::spatial {
 
-/// A symmetric filter of odd length whose response is 1 from 0 to `pass` and 0 from `stop` on, both to 1e-7
-/// (-140 dB), by Kaiser's window (Kaiser 1974; Oppenheim and Schafer, Discrete-Time Signal
+/// A symmetric filter of odd length whose response is 1 from 0 to `pass` and 0 from `stop` on, both to 2.5e-7
+/// (-132 dB), by Kaiser's window (Kaiser 1974; Oppenheim and Schafer, Discrete-Time Signal
 /// Processing, 7.5.3). Edges in cycles a sample, 0 < pass < stop; its values sum to 1.
 std::vector<double> low_pass(double pass, double stop);
 

@@ -94,10 +94,8 @@ std::vector<Case> cases() {
 
 TEST(ShortTimeTransform, IsExactTo120DbAtWholeResolution) {
   for (const auto& [name, signal] : cases()) {
-    const double db = error_of(signal, kUsual, {}, 29).db();
+    const double db = error_of(signal, kUsual, {}, 61).db();
     EXPECT_LT(db, -120) << name;
-    RecordProperty(name, std::to_string(db));
-    std::printf("%s: %.1f dB\n", name, db);
   }
 }
 
@@ -108,9 +106,8 @@ TEST(ShortTimeTransform, IsExactTo120DbOnACoarserGrid) {
   EXPECT_EQ(decimation.factor, 16U);
   EXPECT_EQ(decimation.grid, 4U);
   for (const auto& [name, signal] : cases()) {
-    const double db = error_of(signal, shape, decimation, 29).db();
+    const double db = error_of(signal, shape, decimation, 61).db();
     EXPECT_LT(db, -120) << name;
-    std::printf("%s: %.1f dB\n", name, db);
   }
 }
 
@@ -121,13 +118,11 @@ TEST(ShortTimeTransform, KeepsItsBinsForAnyHop) {
     for (const std::size_t padded : {16384U, 10000U, 12000U}) {
       const FrameShape shape{10000, hop, padded, padded * 15 / 1000 + 1};
       const Decimation decimation = decimation_for(shape);
-      EXPECT_LT(error_of(signal, shape, decimation, 1 + 6000 / hop).db(), -120) << hop << " " << padded;
-      std::printf("%zu %zu: %zu/%zu %.1f\n", hop, padded, decimation.factor, decimation.grid, error_of(signal, shape, decimation, 1 + 6000 / hop).db());
+      EXPECT_LT(error_of(signal, shape, decimation, 1 + 12000 / hop).db(), -120) << hop << " " << padded;
     }
   for (const std::size_t window : {1000U, 1037U, 3001U}) {
     const FrameShape shape{window, 50, 4096, 62};
     EXPECT_LT(error_of(signal, shape, decimation_for(shape), 97).db(), -120) << window;
-      std::printf("%zu: %zu/%zu %.1f\n", window, decimation_for(shape).factor, decimation_for(shape).grid, error_of(signal, shape, decimation_for(shape), 97).db());
   }
 }
 

@@ -7,7 +7,9 @@
 #include <limits>
 #include <numbers>
 
+#include "spatial/spectrogram_maker.hpp"
 #include "spatial/spectrogram_summary.hpp"
+#include "spatial/spectrogram_tally.hpp"
 #include "tests/spatial/texture_samples.hpp"
 
 namespace tacto::spatial {
@@ -126,6 +128,146 @@ TEST(Spectrogram, TakesTheMeanOffOnlyWhereAsked) {
   EXPECT_GT(kept->at(0, 0), 1e4F * plain->at(0, 3));
 }
 
+TEST(Spectrogram, AmplitudesOfASineAreItsOwn) {
+  constexpr double kAmplitude = 0.02;
+  for (const double highest : {15e3, 1e9})
+    for (const double size : {1e-30, 1.0, 1e30}) {
+      SpectrogramOptions options;
+      options.padded_m = options.window_m;  // the sine meets a bin
+      options.scaling = schema::Scaling::amplitude;
+      options.max_frequency_per_m = highest;
+      const auto result = spatial_spectrogram(samples::sine(kAmplitude * size, 2000, 12000), options);
+      ASSERT_TRUE(result);
+      const SpectralPeak peak = strongest_peak(*result, 0);
+      EXPECT_NEAR(peak.frequency_per_m, 2000, 1e-6);
+      EXPECT_NEAR(peak.cell, kAmplitude * size, kFloat * kAmplitude * size);
+      EXPECT_NEAR(band_rms(*result, 0), kAmplitude * size / std::sqrt(2), kFloat * kAmplitude * size);
+    }
+}
+
+// One is the other: A^2 / 2 over the window's noise bandwidth.
+TEST(Spectrogram, DensitiesAndAmplitudesAgree) {
+  const auto texture = samples::noise(1500);
+  SpectrogramOptions options = everything();
+  options.window_m = 1e-3;
+  options.hop_m = 0.1e-3;
+  options.padded_m = 1e-3;
+  const auto density = spatial_spectrogram(texture, options);
+  options.scaling = schema::Scaling::amplitude;
+  const auto amplitude = spatial_spectrogram(texture, options);
+  ASSERT_TRUE(density && amplitude);
+  EXPECT_EQ(amplitude->coherent_gain, 0.42);
+  const double largest = strongest_peak(*density, 0).cell;
+  for (std::size_t p = 0; p < density->position_m.size(); ++p)
+    for (std::size_t k = 0; k < density->bins; ++k) {
+      const double expected = density->at(p, k), got = power_of(*amplitude, k, amplitude->at(p, k));
+      ASSERT_NEAR(std::sqrt(got), std::sqrt(expected), kFloat * std::sqrt(largest));  // -120 dB
+    }
+  EXPECT_NEAR(band_rms(*amplitude, 1000), band_rms(*density, 1000), kFloat * band_rms(*density, 1000));
+}
+
+TEST(Spectrogram, DensitiesBeyondSinglePrecisionAreRefused) {
+  const auto refused = spatial_spectrogram(samples::sine(1e30, 2000, 12000), {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, Fault::unsuitable);
+  EXPECT_EQ(refused.error().remedy, "take amplitudes ('--scaling amplitude')");
+}
+
+TEST(Spectrogram, ACoarserGridGivesTheSameCells) {
+  auto texture = samples::sine(0.02, 2345, 45000);
+  const auto noise = samples::noise(45000);
+  for (std::size_t i = 0; i < 45000; ++i) texture.signal.values[i] += 1e-3 * noise.signal.values[i];
+  SpectrogramOptions options;
+  const auto coarse = spatial_spectrogram(texture, options);
+  options.resolution = Resolution::whole;
+  const auto whole = spatial_spectrogram(texture, options);
+  ASSERT_TRUE(coarse && whole);
+  EXPECT_EQ(coarse->decimation, 16U);
+  EXPECT_EQ(whole->decimation, 1U);
+  ASSERT_EQ(coarse->cells.size(), whole->cells.size());
+  const double largest = std::sqrt(strongest_peak(*whole, 0).cell);
+  // Both are right to -120 dB of the largest.
+  for (std::size_t i = 0; i < whole->cells.size(); ++i)
+    ASSERT_NEAR(std::sqrt(coarse->cells[i]), std::sqrt(whole->cells[i]), 2e-6 * largest);
+}
+
+TEST(Spectrogram, RowsComeInOrderAndOnce) {
+  for (const double highest : {15e3, 1e9}) {
+    SpectrogramOptions options;
+    options.max_frequency_per_m = highest;
+    auto maker = SpectrogramMaker::prepare(options, 1e-6, 1);
+    ASSERT_TRUE(maker);
+    for (const std::size_t samples : {10000U, 10099U, 10100U, 45000U, 80000U}) {
+      const auto texture = samples::noise(samples);
+      const auto header = maker->describe(texture);
+      ASSERT_TRUE(header);
+      std::size_t rows = 0;
+      const auto made = maker->make(texture, [&](std::size_t first, std::span<const float> cells) {
+        EXPECT_EQ(first, rows);
+        EXPECT_EQ(cells.size() % header->bins, 0U);
+        EXPECT_LE(cells.size(), std::size_t{1} << 17);  // half a megabyte, however long the texture
+        rows += cells.size() / header->bins;
+        return schema::Result<void>{};
+      });
+      ASSERT_TRUE(made);
+      EXPECT_EQ(rows, header->position_m.size());
+    }
+  }
+}
+
+TEST(Spectrogram, KnowsWhatTheTextureKnew) {
+  auto texture = samples::noise(40000);
+  texture.valid_band = {{0, 300, 9000}, {40e-3, 300, 12000}};
+  const auto result = spatial_spectrogram(texture, {});
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->known.size(), result->position_m.size());
+  EXPECT_NEAR(result->known[0].high_per_m, 9000 + 3000 * (5 - 1.96) / 40, 1e-6);
+  EXPECT_FALSE(result->knows(0, 4));
+  EXPECT_TRUE(result->knows(0, 5));  // 305/m
+}
+
+TEST(Spectrogram, TakesHeightsOnAGridOfAQuarterMicrometre) {
+  auto texture = samples::sine(3e-6, 40e3, 22401, 0.25e-6);
+  texture.quantity = "height";
+  texture.unit = "m";
+  SpectrogramOptions options;
+  options.window_m = 1e-3;
+  options.hop_m = 10e-6;
+  options.max_frequency_per_m = 100e3;
+  options.scaling = schema::Scaling::amplitude;
+  const auto result = spatial_spectrogram(texture, options);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->position_m.size(), 461U);
+  EXPECT_EQ(result->padded_samples, 4096U);
+  EXPECT_GT(result->decimation, 1U);
+  const SpectralPeak peak = strongest_peak(*result, 1e3);
+  EXPECT_NEAR(peak.frequency_per_m, 40e3, result->frequency_step_per_m / 2);
+  EXPECT_NEAR(peak.cell, 3e-6, 0.02 * 3e-6);  // between two bins of a padded window: at most 1.5 % lower
+  EXPECT_EQ(level_reference(*result).unit, "1 um");
+}
+
+TEST(SpectrogramTally, SaysWhatTheWholeSpectrogramSays) {
+  auto texture = samples::noise(20000);
+  for (const auto scaling : {schema::Scaling::density, schema::Scaling::amplitude}) {
+    SpectrogramOptions options;
+    options.scaling = scaling;
+    const auto whole = spatial_spectrogram(texture, options);
+    ASSERT_TRUE(whole);
+    SpectrogramTally tally(*whole, 1000);
+    for (std::size_t p = 0; p < whole->position_m.size(); p += 7) {
+      const std::size_t rows = std::min<std::size_t>(7, whole->position_m.size() - p);
+      tally.add(p, std::span(whole->cells).subspan(p * whole->bins, rows * whole->bins));
+    }
+    for (const double lowest : {0.0, 61.0, 500.0, 1000.0}) {
+      const SpectralPeak expected = strongest_peak(*whole, lowest), got = tally.strongest_peak(lowest);
+      EXPECT_EQ(got.position_m, expected.position_m);
+      EXPECT_EQ(got.frequency_per_m, expected.frequency_per_m);
+      EXPECT_EQ(got.cell, expected.cell);
+      EXPECT_NEAR(tally.band_rms(lowest), band_rms(*whole, lowest), 1e-12 * band_rms(*whole, lowest));
+    }
+  }
+}
+
 TEST(Spectrogram, PositionsStartAtTheTexturesOrigin) {
   auto texture = samples::noise(20000);
   texture.signal.origin_m = 0.5;
@@ -162,6 +304,10 @@ TEST(Spectrogram, RefusesImpossibleOptions) {
     EXPECT_EQ(fault_of([&](auto& o) { o.hop_m = bad; }), Fault::usage) << bad;
   for (const double bad : {0.0, 9e-3, 1e300, kNan})
     EXPECT_EQ(fault_of([&](auto& o) { o.padded_m = bad; }), Fault::usage) << bad;
+  SpectrogramOptions far;
+  far.padded_m = 100;
+  EXPECT_EQ(spatial_spectrogram(texture, far).error().remedy,
+            "take 10 mm (the window) to 16.78 m (2^24 samples)");
   for (const double bad : {0.0, -1.0, kNan})
     EXPECT_EQ(fault_of([&](auto& o) { o.max_frequency_per_m = bad; }), Fault::usage) << bad;
 }

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole way: a minute's recording on disk, opened, filtered, its 60 strokes made textures in memory,
+// their spectrograms up to 15 /mm written as netCDF. Beside it, the last step alone.
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data-schema/files.hpp"
+#include "data-schema/recording.hpp"
+#include "data-schema/spectrogram_writer.hpp"
+#include "spatial/make_texture.hpp"
+#include "spatial/spectrogram_maker.hpp"
+#include "tests/bench/workload.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Result;
+
+constexpr std::size_t kSeconds = 60, kRows = 60 * 301;
+
+schema::Channel channel(const char* name, const char* unit) {
+  schema::Channel made;
+  made.name = made.quantity = name;
+  made.unit = unit;
+  return made;
+}
+
+Result<schema::Recording> written(const std::string& stem) {
+  schema::RecordingHeader header;
+  header.sample_rate_hz = bench::kRate_hz;
+  header.clock = "nominal rate of the workload";
+  header.channels = {channel("tangential_force", "N"), channel("position", "m")};
+  const auto [position_m, force_n] = bench::workload(kSeconds);
+  std::vector<double> frames;
+  for (std::size_t i = 0; i < position_m.size(); ++i) {
+    frames.push_back(force_n[i]);
+    frames.push_back(position_m[i]);
+  }
+  auto writer = schema::RecordingWriter::create(stem, header);
+  if (!writer) return schema::forward_error(writer);
+  if (auto done = writer->write(std::span<const double>(frames)); !done) return schema::forward_error(done);
+  return writer->close();
+}
+
+// What the verb does, without its report.
+Result<void> to_spectrogram(const std::string& stem, const std::string& path) {
+  const auto recording = schema::open_recording(stem);
+  if (!recording) return schema::forward_error(recording);
+  auto textures = TextureMaker::open(*recording, {});
+  if (!textures) return schema::forward_error(textures);
+  auto maker = SpectrogramMaker::prepare({}, bench::kPitch_m, kRows);
+  if (!maker) return schema::forward_error(maker);
+  schema::PendingFiles files;
+  const auto temporary = files.add(path);
+  auto writer = schema::open_spectrogram_nc(*temporary, {.several = true, .named = path});
+  int number = 0;
+  for (const Stroke& stroke : textures->record().strokes()) {
+    const auto texture = textures->make(stroke, ++number);
+    if (!texture) return schema::forward_error(texture);
+    const auto header = maker->describe(*texture);
+    if (!header) return schema::forward_error(header);
+    if (auto begun = (*writer)->begin(*header); !begun) return begun;
+    const auto made = maker->make(*texture, [&](std::size_t first, std::span<const float> cells) {
+      return (*writer)->rows(first, cells);
+    });
+    if (!made) return made;
+  }
+  if (auto closed = (*writer)->close(); !closed) return closed;
+  return files.commit();
+}
+
+void recording_to_spectrogram(benchmark::State& state) {
+  const tests::TemporaryFolder folder;
+  const std::string stem = folder / "minute", path = folder / "minute.nc";
+  if (!written(stem)) return state.SkipWithError("no recording");
+  for (auto _ : state)
+    if (const auto done = to_spectrogram(stem, path); !done)
+      return state.SkipWithError(schema::message(done.error()).c_str());
+}
+
+// 60 strokes of 301 rows and 246 bins.
+void spectrogram_written(benchmark::State& state) {
+  const tests::TemporaryFolder folder;
+  schema::Spectrogram one;
+  one.bins = 246;
+  one.unit = "N";
+  one.frequency_step_per_m = 1e6 / 16384;
+  for (int p = 0; p < 301; ++p) {
+    one.position_m.push_back(5e-3 + 1e-4 * p);
+    one.known.push_back({300, 10000});
+    for (std::size_t k = 0; k < one.bins; ++k)
+      one.cells.push_back(static_cast<float>(bench::hashed(one.cells.size())));
+  }
+  const std::vector<schema::Spectrogram> all(60, one);
+  for (auto _ : state)
+    if (!schema::write_spectrogram_nc(folder / "all.nc", all)) return state.SkipWithError("not written");
+}
+
+BENCHMARK(recording_to_spectrogram)->Unit(benchmark::kMillisecond);
+BENCHMARK(spectrogram_written)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tacto::spatial
