@@ -47,6 +47,7 @@ class LiveFigures {
 
   /// Whole frames, as stored.
   void add(std::span<const std::int32_t> codes);
+  const schema::RecordingHeader& header() const { return header_; }
   const std::vector<schema::Statistics>& statistics() const { return statistics_; }
   const std::vector<CountedStroke>& strokes() const { return counter_.strokes(); }
   /// Of all since the last call; time, losses and disk are the caller's to add.

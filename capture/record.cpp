@@ -142,7 +142,7 @@ void Capture::tell() {
   view.lost_frames = lost_noted_;
   view.time_s = static_cast<double>(frames_ + lost_noted_) / device_.capabilities().sample_rate_hz;
   view.disk_left_bytes = static_cast<std::uint64_t>(std::min(disk_left_bytes(request_.name), 0x1p63));
-  hooks_.view(view);
+  hooks_.view(view, figures_.header());
 }
 
 void Capture::run() {

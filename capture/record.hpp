@@ -27,10 +27,11 @@ struct RecordRequest {
 /// What a recording under way is told, and tells. All are called on the thread that calls record(), between
 /// blocks of 20 ms; all may be empty.
 struct RecordHooks {
-  std::function<void(double)> progress;       ///< fractions from 0 to 1, where a time is given
-  std::function<void(const LiveView&)> view;  ///< ten times a second at most
-  std::function<bool()> stop;                 ///< true ends the recording
-  std::function<std::size_t()> new_marks;     ///< how many marks were asked for since the last call
+  std::function<void(double)> progress;  ///< fractions from 0 to 1, where a time is given
+  /// Ten times a second at most.
+  std::function<void(const LiveView&, const schema::RecordingHeader&)> view;
+  std::function<bool()> stop;              ///< true ends the recording
+  std::function<std::size_t()> new_marks;  ///< how many marks were asked for since the last call
 };
 
 struct Recorded {

@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capture/record.hpp"
 
-#include <memory>
-#include <optional>
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "capture/cli/live_line.hpp"
+#include "capture/cli/stop_signals.hpp"
+#include "capture/cli/terminal_keys.hpp"
 #include "capture/cli/verbs.hpp"
+#include "capture/take_name.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/report.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
@@ -16,9 +25,9 @@ using schema::Dimension;
 using schema::Result;
 
 struct Options {
-  std::string device;
+  std::string device, pattern;
   RecordRequest request;
-  std::optional<double> time_s;
+  bool allow_gaps = false;
 };
 
 void declare_options(CLI::App& app, Options& options) {
@@ -26,10 +35,16 @@ void declare_options(CLI::App& app, Options& options) {
   app.add_option("-d,--device", options.device,
                  "The device, as sim:surface=C,speed=50mm/s,seed=1 (keys below)")
       ->required();
-  app.add_option("-o,--output", request.name,
-                 "The recording's name: NAME.wav and NAME.json; never overwrites")
-      ->required();
-  cli::add_quantity(app, "--time", options.time_s, Dimension::time, "How long to record")->required();
+  CLI::Option* const name = app.add_option("-o,--output", request.name,
+                                           "The recording's name: NAME.wav and NAME.json; never overwrites");
+  app.add_option("--template", options.pattern,
+                 "Instead of a name: {subject}_{surface}_{take}, where takes count up; {finger} too")
+      ->excludes(name);
+  cli::add_quantity(app, "--time", request.time_s, Dimension::time,
+                    "How long to record; without it until the strokes are made, or Ctrl-C");
+  app.add_option("--strokes", request.strokes, "End after so many strokes of 5 mm or more")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--allow-gaps", options.allow_gaps, "Lost frames are no failure");
   app.add_option("--subject", request.subject, "A code for the person, never a name");
   app.add_option("--finger", request.finger, "Which finger, or what slides instead of one");
   app.add_option("--surface", request.surface, "What is touched; what the device says, unless told");
@@ -42,7 +57,11 @@ std::string footer_text() {
          firmware_host::sim_parameters_help() +
          "Its finger rests 0.1 s, goes to the end of the surface and back (strokes=2), and then stays; at "
          "its rests and\n"
-         "turns it eases the load. 40 mm there and back at 50 mm/s take 1.8 s.";
+         "turns it eases the load. 40 mm there and back at 50 mm/s take 1.8 s.\n"
+         "While it records: Ctrl-C or q stops and keeps, m or SIGUSR1 marks. A crash or a power cut loses "
+         "the last "
+         "100 ms:\n"
+         "'tactograph recover NAME' makes a recording of the rest.";
 }
 
 cli::Report row_of(const schema::Channel& channel, const schema::Statistics& statistics) {
@@ -59,6 +78,18 @@ std::vector<cli::Report> rows_of(const Recorded& recorded) {
   return rows;
 }
 
+std::vector<cli::Report> rows_of(const std::vector<CountedStroke>& strokes) {
+  std::vector<cli::Report> rows;
+  for (const CountedStroke& stroke : strokes) {
+    cli::Report row;
+    row.add("stroke", rows.size() + 1).add("direction", stroke.direction).add("length_m", stroke.length_m);
+    row.add("mean_speed_mps", stroke.mean_speed_mps).add("mean_normal_n", stroke.mean_normal_n);
+    row.add("speed_in_band", kTargetSpeed_mps.holds(stroke.mean_speed_mps));
+    rows.push_back(row.add("load_in_band", kTargetLoad_n.holds(stroke.mean_normal_n)));
+  }
+  return rows;
+}
+
 cli::Report report_on(const Recorded& recorded) {
   const schema::RecordingHeader& header = recorded.recording.header;
   const std::string& stem = recorded.recording.stem;
@@ -67,24 +98,84 @@ cli::Report report_on(const Recorded& recorded) {
   report.add("frames", header.frames).add("sample_rate_hz", header.sample_rate_hz);
   report.add("duration_s", static_cast<double>(header.frames) / header.sample_rate_hz);
   report.add("clipped_samples", recorded.counts.clipped).add("lost_frames", recorded.counts.lost_frames);
+  report.add("gaps", header.gaps.size()).add("marks", header.marks.size());
   report.add("channels", rows_of(recorded));
+  if (!recorded.strokes.empty()) report.add("strokes", rows_of(recorded.strokes));
+  if (!header.ended.empty()) report.add("ended", header.ended);
   if (!header.warnings.empty()) report.add("warnings", header.warnings);
   report.add("files", std::vector{stem + ".wav", stem + ".json"});
   return report.add("next", "tactograph spatial " + stem + " -o " + stem);
 }
 
+Result<std::string> chosen_name(const Options& options) {
+  if (options.pattern.empty() && options.request.name.empty())
+    return schema::fail(schema::Fault::usage, "the recording has no name", {},
+                        "give -o NAME, or --template '{subject}_{surface}_{take}'");
+  if (options.pattern.empty()) return options.request.name;
+  const RecordRequest& request = options.request;
+  return name_of_take(
+      options.pattern,
+      {{"subject", request.subject}, {"surface", request.surface}, {"finger", request.finger}});
+}
+
+std::size_t terminal_columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79;
+}
+
+// The experimenter's side of a recording: signals and keys in, a line of figures out.
+class Console {
+ public:
+  RecordHooks hooks() {
+    RecordHooks hooks;
+    hooks.stop = [this] { return look_at_keys(), stopped_ || signals_.stop_asked(); };
+    hooks.new_marks = [this] { return signals_.take_marks() + std::exchange(marks_, 0); };
+    if (isatty(STDERR_FILENO) == 1)
+      hooks.view = [](const LiveView& view, const schema::RecordingHeader& header) {
+        fmt::print(stderr, "\r\033[K{}", live_line(view, header, terminal_columns()));
+        std::fflush(stderr);
+      };
+    else
+      hooks.progress = [this](double fraction) { progress_.update(fraction); };
+    return hooks;
+  }
+  ~Console() {
+    if (isatty(STDERR_FILENO) == 1) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  void look_at_keys() {
+    for (char key = keys_.next(); key != 0; key = keys_.next()) {
+      stopped_ = stopped_ || key == 'q';
+      marks_ += key == 'm' ? 1 : 0;
+    }
+  }
+
+  StopSignals signals_;
+  TerminalKeys keys_;
+  cli::Progress progress_{"recording"};
+  bool stopped_ = false;
+  std::size_t marks_ = 0;
+};
+
 Result<cli::Report> run(const Options& options) {
   RecordRequest request = options.request;
-  request.time_s = options.time_s.value_or(0);
+  auto name = chosen_name(options);
+  if (!name) return schema::forward_error(name);
+  request.name = std::move(*name);
   const auto device = firmware_host::open_device(options.device);
   if (!device) return schema::forward_error(device);
   const Result<Recorded> recorded = [&] {
-    cli::Progress progress("recording");
-    return record(**device, request, [&](double fraction) { progress.update(fraction); });
+    Console console;
+    return record(**device, request, console.hooks());
   }();
   if (!recorded) return schema::forward_error(recorded);
   for (const std::string& warning : recorded->recording.header.warnings) cli::warn(warning);
-  return report_on(*recorded);
+  cli::Report report = report_on(*recorded);
+  const bool gaps = !recorded->recording.header.gaps.empty() || recorded->counts.lost_frames > 0;
+  if (gaps && !options.allow_gaps) report.ends_with(schema::Fault::device);
+  if (recorded->ended_by) report.ends_with(recorded->ended_by->fault);
+  return report;
 }
 
 cli::Action declare(CLI::App& app) {
@@ -99,7 +190,9 @@ cli::Action declare(CLI::App& app) {
 const cli::Verb kRecordVerb{"record", "Record from a device",
                             "tactograph record -d sim:surface=C,speed=50mm/s,seed=1 --time 2s -o grating\n"
                             "  tactograph record -d sim:surface=triangle,period=1mm,depth=0.1mm,load=0.6N "
-                            "--time 1s -o figure1 --subject S01",
+                            "--time 1s -o figure1 --subject S01\n"
+                            "  tactograph record -d sim:paced=1,strokes=10 --strokes 5 --template "
+                            "'{subject}_{surface}_{take}' --subject S01 --surface oak",
                             declare};
 
 }  // namespace tacto::capture

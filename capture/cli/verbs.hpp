@@ -8,5 +8,7 @@ namespace tacto::capture {
 
 extern const cli::Verb kImportVerb;
 extern const cli::Verb kRecordVerb;
+extern const cli::Verb kRecoverVerb;
+extern const cli::Verb kListVerb;
 
 }  // namespace tacto::capture

@@ -251,7 +251,7 @@ TEST(Record, TheViewShowsLevelsAndClipping) {
   device.can().channels[1].range_min = -30e-6;
   std::vector<LiveView> views;
   RecordHooks hooks;
-  hooks.view = [&](const LiveView& view) { views.push_back(view); };
+  hooks.view = [&](const LiveView& view, const schema::RecordingHeader&) { views.push_back(view); };
   ASSERT_TRUE(record(device, request(folder / "oak", 1), hooks));
   ASSERT_FALSE(views.empty());
   EXPECT_EQ(views[0].levels.size(), 2U);

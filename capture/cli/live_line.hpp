@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A recording under way as one line of a terminal.
+#pragma once
+
+#include <string>
+
+#include "capture/live_view.hpp"
+#include "data-schema/recording.hpp"
+
+namespace tacto::capture {
+
+/// "12.3 s  finger  48 mm/s ok  load 0.90 N LESS  3 strokes  0 lost  12.4 GB left  normal_force [###-----]
+/// CLIP": levels as parts of their converters' ranges, speed and load against their target bands, with what
+/// to do about them. Without colours, for every terminal; at most one line of `columns` characters.
+std::string live_line(const LiveView& view, const schema::RecordingHeader& header, std::size_t columns);
+
+}  // namespace tacto::capture

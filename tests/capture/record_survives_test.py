@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a recording survives: kill -9 at 50 random moments, a full disk, a stop by signal."""
+import json
+import os
+import pathlib
+import random
+import resource
+import signal
+import subprocess
+import time
+
+import numpy as np
+import soundfile
+
+import tacto
+
+RATE_HZ = 10000
+DEVICE = "sim:surface=flat,noise=off,paced=1,strokes=100"
+
+
+def reference():
+    """The same frames, recorded in peace: equal parameters give equal frames."""
+    tacto.run("record", "-d", DEVICE, "-o", "reference", "--time", "1.5s")
+    return soundfile.read("reference.wav", dtype="int32", always_2d=True)[0]
+
+
+def start(name, *options, **more):
+    process = subprocess.Popen([tacto.COMMAND, "record", "-d", DEVICE, "-o", name, "--time", "10s", *options],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+    while process.poll() is None and not pathlib.Path(f"{name}.wav").exists():
+        time.sleep(0.001)
+    return process
+
+
+def frames_on_disk(name):
+    """Read from outside, as another program would: whole frames beyond the header of 104 bytes at most."""
+    return max(0, os.path.getsize(f"{name}.wav") - 104) // 16
+
+
+def killed_at_random_moments():
+    wanted, moments = reference(), random.Random(1)
+    lost_s = []
+    for k in range(50):
+        name = f"k{k}"
+        process = start(name)
+        begun = time.monotonic()
+        time.sleep(moments.uniform(0.02, 0.5))
+        before, asked = frames_on_disk(name), time.monotonic()
+        os.kill(process.pid, signal.SIGKILL)
+        process.communicate()
+        report = tacto.run_json("recover", name)
+        tacto.run("validate", name)
+        frames = soundfile.read(f"{name}.wav", dtype="int32", always_2d=True)[0]
+        assert report["frames"] == len(frames) >= before, (report, before)
+        assert np.array_equal(frames, wanted[:len(frames)]), f"{name}: other frames than were recorded"
+        assert not pathlib.Path(f"{name}.events.jsonl").exists()
+        lost_s.append(asked - begun - len(frames) / RATE_HZ)
+    # The clock here starts when the WAV is seen, a little before the device does: lateness counts as loss.
+    print(f"50 kills: at most {1e3 * max(lost_s):.0f} ms were not on the disk, median {1e3 * np.median(lost_s):.0f} ms")
+    assert np.median(lost_s) < 0.1, sorted(lost_s)
+
+
+def stopped_by_signal_and_marked():
+    process = start("s")
+    time.sleep(0.3)
+    os.kill(process.pid, signal.SIGUSR1)
+    time.sleep(0.2)
+    os.kill(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    assert process.returncode == 0, (out, err)
+    side = json.loads(pathlib.Path("s.json").read_text())
+    assert len(side["marks"]) == 1 and 0 < side["marks"][0]["frame"] < side["data"]["frames"], side["marks"]
+    tacto.run("validate", "s")
+
+
+def expect_full(name, process, most_bytes):
+    out, err = process.communicate(timeout=120)
+    assert process.returncode == 7, (process.returncode, out, err)
+    tacto.run("validate", name)
+    side = json.loads(pathlib.Path(f"{name}.json").read_text())
+    assert side["ended"], side
+    frames = side["data"]["frames"]
+    size = os.path.getsize(f"{name}.wav")
+    assert frames * 16 > 0.8 * most_bytes and size <= most_bytes, (frames, size)
+    print(f"full: {frames} frames kept, ended: {side['ended']}")
+
+
+def fast(name, **more):
+    """As fast as the physics go: 8 MB are 50 s of recording."""
+    return subprocess.Popen([tacto.COMMAND, "record", "-d", "sim:surface=flat,rate=100kHz", "-o", name],
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+
+
+def on_a_full_file_system():
+    """A file system of 8 MB where this may be mounted; where not, that is said, and the next test stands for it."""
+    folder = pathlib.Path("small")
+    folder.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", str(folder)], capture_output=True,
+                             text=True)
+    if mounted.returncode != 0:
+        print(f"no file system of 8 MB could be mounted ({mounted.stderr.strip()}): a size limit of 8 MB is tested alone")
+        return
+    try:
+        expect_full("small/oak", fast("small/oak"), 8 << 20)
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+def at_a_size_limit():
+    """RLIMIT_FSIZE: writing beyond 8 MB fails as on a full disk."""
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (8 << 20, 8 << 20))
+    expect_full("oak", fast("oak", preexec_fn=limit), 8 << 20)
+
+
+def takes_count_up_and_are_listed():
+    for subject in ("S01", "S01", "S02"):
+        tacto.run("record", "-d", "sim:", "--time", "50ms", "--template", "{subject}_{surface}_{take}", "--subject",
+                  subject, "--surface", "oak")
+    pathlib.Path("other.json").write_text("{}")
+    listed = tacto.run_json("list", ".")["list"]
+    assert [(row["subject"], row["take"], row["name"]) for row in listed] == [
+        ("S01", 1, "S01_oak_1"), ("S01", 2, "S01_oak_2"), ("S02", 1, "S02_oak_1")], listed
+    assert "S01_oak_2" in tacto.run("list")[0]
+
+
+if __name__ == "__main__":
+    for test in (killed_at_random_moments, stopped_by_signal_and_marked, on_a_full_file_system, at_a_size_limit,
+                 takes_count_up_and_are_listed):
+        tacto.in_folder(test)
