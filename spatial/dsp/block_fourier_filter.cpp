@@ -142,7 +142,7 @@ class BlockFourierFilter::State {
     std::size_t begin = 0;
     for (; waiting_.size() - begin >= frame_; begin += frame_)
       convolution_.push(chain_.down(std::span(waiting_).subspan(begin, frame_)), sink_to(out));
-    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(begin));
+    if (begin > 0) waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(begin));
   }
 
   OverlapSave::Sink sink_to(std::vector<double>& out) {
@@ -160,7 +160,9 @@ class BlockFourierFilter::State {
     const std::size_t from = std::clamp(late(), begin, end), to = std::clamp(late() + taken_, begin, end);
     const double level = level_gain_ * extended_.start_level();
     const auto wanted = values.subspan(from - begin, to - from);
-    std::ranges::transform(wanted, std::back_inserter(out), [level](double value) { return value + level; });
+    out.insert(out.end(), wanted.begin(), wanted.end());
+    if (level != 0)
+      for (double& value : std::span(out).last(wanted.size())) value += level;
   }
 
   // After its end the record stays level: once the chain knows nothing else, the lower rate has that level.
