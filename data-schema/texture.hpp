@@ -41,6 +41,8 @@ struct TextureSource {
   int counter_wraps = 0;          ///< how often it did in the stretch
   std::optional<double> normal_force_n = std::nullopt;  ///< its mean in the stretch, where it was recorded
   bool finger_up = false;                               ///< by that force
+  /// Of a band-pass along position, where that is the filter; the band in Hz is then all that was recorded.
+  std::optional<double> low_per_m = std::nullopt, high_per_m = std::nullopt;
 };
 
 /// One of the strokes that were averaged.

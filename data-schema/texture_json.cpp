@@ -62,6 +62,17 @@ constexpr SourceCount kSourceCounts[] = {
     {"counter_wraps", &TextureSource::counter_wraps},
 };
 
+struct SourceOption {
+  const char* name;
+  std::optional<double> TextureSource::*member;
+};
+
+constexpr SourceOption kSourceOptions[] = {
+    {"low_per_m", &TextureSource::low_per_m},
+    {"high_per_m", &TextureSource::high_per_m},
+    {"normal_force_n", &TextureSource::normal_force_n},
+};
+
 Json source_body(const TextureSource& source) {
   Json body = Json::object();
   for (const auto& [name, member] : kSourceTexts) put_text(body, name, source.*member);
@@ -69,7 +80,8 @@ Json source_body(const TextureSource& source) {
   for (const auto& [name, member] : kSourceCounts)
     if (source.*member != 0) body[name] = source.*member;
   body["equalised"] = source.equalised;
-  if (source.normal_force_n) body["normal_force_n"] = *source.normal_force_n;
+  for (const auto& [name, member] : kSourceOptions)
+    if (source.*member) body[name] = *(source.*member);
   if (source.finger_up) body["finger_up"] = true;
   return body;
 }
@@ -81,7 +93,8 @@ TextureSource source_from(const Json& body) {
   for (const auto& [name, member] : kSourceCounts)
     source.*member = static_cast<int>(number_or(body, name, 0));
   source.equalised = body.value("equalised", false);
-  if (body.contains("normal_force_n")) source.normal_force_n = body["normal_force_n"].get<double>();
+  for (const auto& [name, member] : kSourceOptions)
+    if (body.contains(name)) source.*member = body[name].get<double>();
   source.finger_up = body.value("finger_up", false);
   return source;
 }

@@ -50,6 +50,7 @@ schema::Result<void> TextureMaker::prepare() {
     fits.error().where = record_.where();
     return fits;
   }
+  if (options_.space) options_.filter.method = FilterMethod::none;
   if (const auto equalised = choose_equaliser(); !equalised) return equalised;
   filtered_.emplace(record_.source(), header.sample_rate_hz, options_.filter, equaliser_);
   return {};
@@ -142,6 +143,7 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   const SpeedProfile profile = profile_of(stroke, *path, *grid);
   if (const auto fine = check_band(profile); !fine) return schema::forward_error(fine);
   auto values = resampled(stroke, *path, *grid);
+  if (values && options_.space) values = filter_in_space(*values, grid->pitch_m, *options_.space);
   if (!values) return schema::forward_error(values);
 
   schema::Texture texture;
@@ -152,8 +154,25 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   texture.source.min_speed_mps = slowest;
   texture.source.max_speed_mps = fastest;
   texture.valid_band = valid_band(profile, options_.filter.passed(record_.header().sample_rate_hz));
+  if (options_.space) narrow(texture.valid_band, options_.space->low_per_m, options_.space->high_per_m);
   describe(texture, stroke, number);
   return texture;
+}
+
+void TextureMaker::describe_filter(schema::TextureSource& source) const {
+  const TimeFilter& filter = options_.filter;
+  const Band band = filter.passed(record_.header().sample_rate_hz);
+  const FilterMethod method = options_.space ? options_.space->method : filter.method;
+  source.filter = name_of(method);
+  source.edges = name_of(options_.space ? options_.space->edges : filter.edges);
+  source.order = method != FilterMethod::butterworth ? 0
+                 : options_.space                    ? options_.space->order
+                                                     : filter.order;
+  source.low_hz = band.low_hz;
+  source.high_hz = band.high_hz;
+  if (!options_.space) return;
+  source.low_per_m = options_.space->low_per_m;
+  source.high_per_m = options_.space->high_per_m;
 }
 
 void TextureMaker::describe_position(schema::TextureSource& source, const Stroke& stroke) const {
@@ -169,8 +188,6 @@ void TextureMaker::describe_position(schema::TextureSource& source, const Stroke
 
 void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int number) const {
   const schema::RecordingHeader& header = record_.header();
-  const TimeFilter& filter = options_.filter;
-  const Band band = filter.passed(header.sample_rate_hz);
   texture.quantity = record_.channel().quantity;
   texture.unit = record_.channel().unit;
   texture.direction = stroke.direction;
@@ -181,11 +198,7 @@ void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int 
   source.to_s = record_.to_s(stroke);
   source.stroke = number;
   source.method = name_of(options_.method);
-  source.filter = name_of(filter.method);
-  source.edges = name_of(filter.edges);
-  source.order = filter.method == FilterMethod::butterworth ? filter.order : 0;
-  source.low_hz = band.low_hz;
-  source.high_hz = band.high_hz;
+  describe_filter(source);
   source.equalised = static_cast<bool>(equaliser_);
   describe_position(source, stroke);
   texture.simulated = header.simulated;

@@ -12,6 +12,7 @@
 #include "spatial/filtered_track.hpp"
 #include "spatial/monotone_path.hpp"
 #include "spatial/resample.hpp"
+#include "spatial/space_filter.hpp"
 #include "spatial/time_filter.hpp"
 #include "spatial/touch_record.hpp"
 #include "spatial/valid_band.hpp"
@@ -25,6 +26,8 @@ enum class Equalise { automatic, on, off };
 struct TextureOptions {
   std::string channel = "tangential_force";
   TimeFilter filter;
+  /// Where it is set, the band is in space: the filter is run along position on each texture, none in time.
+  std::optional<SpaceFilter> space;
   Equalise equalise = Equalise::automatic;
   double pitch_m = 1e-6;
   ResampleMethod method = ResampleMethod::hermite;
@@ -60,6 +63,7 @@ class TextureMaker {
                                                 const SpaceGrid& grid);
   SpeedProfile profile_of(const Stroke& stroke, const MonotonePath& path, const SpaceGrid& grid) const;
   void describe(schema::Texture& texture, const Stroke& stroke, int number) const;
+  void describe_filter(schema::TextureSource& source) const;
   void describe_position(schema::TextureSource& source, const Stroke& stroke) const;
 
   TouchRecord record_;

@@ -26,7 +26,7 @@ std::vector<std::string> texture_warnings(const schema::Texture& texture) {
         length(source.position_moved_m), length(error.quantum_m), length(error.noise_m),
         length(error.explains_m())));
   const double highest_per_m = 1 / (2 * texture.signal.pitch_m);
-  if (source.mean_speed_mps > 0 && source.filter != "none" &&
+  if (source.mean_speed_mps > 0 && source.filter != "none" && !source.high_per_m &&
       source.high_hz / source.mean_speed_mps > highest_per_m)
     warnings.push_back(fmt::format(
         "{:g} Hz at {} are {}, beyond what a grid of {} holds ({}): choose a finer --grid or a lower --high",

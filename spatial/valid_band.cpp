@@ -83,6 +83,13 @@ std::vector<schema::BandPoint> valid_band(const SpeedProfile& profile, Band band
   return points;
 }
 
+void narrow(std::span<schema::BandPoint> points, double low_per_m, double high_per_m) {
+  for (schema::BandPoint& point : points) {
+    point.low_per_m = std::max(point.low_per_m, low_per_m);
+    point.high_per_m = std::max(point.low_per_m, std::min(point.high_per_m, high_per_m));
+  }
+}
+
 schema::BandPoint band_throughout(std::span<const schema::BandPoint> band) {
   schema::BandPoint common = band.front();
   for (const schema::BandPoint& point : band) {

@@ -44,6 +44,9 @@ SpeedProfile speed_profile(const LocalSpeed& speed, double origin_m, double leng
 /// 1/m.
 std::vector<schema::BandPoint> valid_band(const SpeedProfile& profile, Band band);
 
+/// What of it lies within another band, in 1/m; of no width where nothing does.
+void narrow(std::span<schema::BandPoint> points, double low_per_m, double high_per_m);
+
 /// The band that is valid along the whole texture; low_per_m >= high_per_m where there is none. In 1/m.
 schema::BandPoint band_throughout(std::span<const schema::BandPoint> band);
 

@@ -45,7 +45,10 @@ void add_source(Report& report, const TextureSource& source) {
   add_text(report, "filter", source.filter);
   if (source.order != 0) report.add("order", source.order);
   add_text(report, "edges", source.edges);
-  if (source.high_hz > 0) report.add("low_hz", source.low_hz).add("high_hz", source.high_hz);
+  if (source.high_per_m)
+    report.add("low_per_m", source.low_per_m.value_or(0)).add("high_per_m", *source.high_per_m);
+  else if (source.high_hz > 0)
+    report.add("low_hz", source.low_hz).add("high_hz", source.high_hz);
   report.add("equalised", source.equalised).add("position_moved_m", source.position_moved_m);
 }
 

@@ -15,16 +15,32 @@ std::string where_of_band(const std::string& text) {
   return "--band " + text;
 }
 
-Result<Band> parse_band(const std::string& text) {
+struct Edge {
+  double low, high;
+};
+
+// LOW..HIGH, in Hz or in cycles per length.
+Result<Edge> parse_band(const std::string& text, Dimension dimension) {
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos)
-    return schema::fail(Fault::usage, "is neither 'off' nor two frequencies", where_of_band(text),
-                        "write it like 15Hz..500Hz");
-  const auto low = schema::parse_quantity(text.substr(0, dots), Dimension::frequency);
+    return schema::fail(
+        Fault::usage, "is neither 'off' nor two frequencies", where_of_band(text),
+        dimension == Dimension::frequency ? "write it like 15Hz..500Hz" : "write it like 0.5/mm..10/mm");
+  const auto low = schema::parse_quantity(text.substr(0, dots), dimension);
   if (!low) return schema::forward_error(low);
-  const auto high = schema::parse_quantity(text.substr(dots + 2), Dimension::frequency);
+  const auto high = schema::parse_quantity(text.substr(dots + 2), dimension);
   if (!high) return schema::forward_error(high);
-  return Band{*low, *high};
+  return Edge{*low, *high};
+}
+
+Result<SpaceFilter> space_filter(const SpatialOptions& options) {
+  const TimeFilter& filter = options.texture.filter;
+  if (options.band.empty())
+    return schema::fail(Fault::usage, "--band-in space has no band of its own", {},
+                        "say it with --band, like 0.5/mm..10/mm");
+  const auto band = parse_band(options.band, Dimension::spatial_frequency);
+  if (!band) return schema::forward_error(band);
+  return SpaceFilter{filter.method, band->low, band->high, filter.edges, filter.order};
 }
 
 // An option that takes one of some words, shown as "a|b|c".
@@ -71,10 +87,16 @@ void declare_filter(CLI::App& app, SpatialOptions& options) {
   auto* band =
       app.add_option("--band", options.band, "Frequencies that pass, LOW..HIGH, or off (default 15Hz..500Hz)")
           ->type_name("LOW..HIGH");
-  band->excludes(cli::add_quantity(app, "--low", options.low_hz, Dimension::frequency,
-                                   "Lowest frequency that passes (default 15Hz)"));
-  band->excludes(cli::add_quantity(app, "--high", options.high_hz, Dimension::frequency,
-                                   "Highest frequency that passes (default 500Hz)"));
+  auto* band_in = add_choice<BandIn>(app, "--band-in", options.band_in,
+                                     {{"time", BandIn::time}, {"space", BandIn::space}},
+                                     "Where the band-pass is: over time, before, or along position, after, "
+                                     "with --band in cycles per length");
+  auto* low = cli::add_quantity(app, "--low", options.low_hz, Dimension::frequency,
+                                "Lowest frequency that passes (default 15Hz)");
+  auto* high = cli::add_quantity(app, "--high", options.high_hz, Dimension::frequency,
+                                 "Highest frequency that passes (default 500Hz)");
+  band->excludes(low)->excludes(high);
+  band_in->excludes(low)->excludes(high);
   add_choice<FilterMethod>(app, "--filter", filter.method,
                            {{"fourier", FilterMethod::fourier},
                             {"butterworth", FilterMethod::butterworth},
@@ -122,10 +144,14 @@ Result<TextureOptions> texture_options(const SpatialOptions& options) {
   TextureOptions texture = options.texture;
   if (options.band == "off") {
     texture.filter.method = FilterMethod::none;
+  } else if (options.band_in == BandIn::space) {
+    const auto space = space_filter(options);
+    if (!space) return schema::forward_error(space);
+    texture.space = *space;
   } else if (!options.band.empty()) {
-    const auto band = parse_band(options.band);
+    const auto band = parse_band(options.band, Dimension::frequency);
     if (!band) return schema::forward_error(band);
-    texture.filter.band = *band;
+    texture.filter.band = {band->low, band->high};
   }
   texture.filter.band.low_hz = options.low_hz.value_or(texture.filter.band.low_hz);
   texture.filter.band.high_hz = options.high_hz.value_or(texture.filter.band.high_hz);

@@ -12,12 +12,14 @@
 namespace tacto::spatial {
 
 enum class Align { position, correlation };
+enum class BandIn { time, space };
 
 struct SpatialOptions {
   std::vector<std::string> recordings;
   std::string output;
   TextureOptions texture;
   std::string band;
+  BandIn band_in = BandIn::time;
   std::optional<double> low_hz, high_hz, from_s, to_s;
   std::optional<int> stroke;
   bool list = false, finger_up = false, average = false, both_ways = false, force = false;

@@ -27,8 +27,11 @@ std::string rms_key(const schema::Texture& texture) {
 
 void add_filter(Report& report, const schema::TextureSource& source) {
   report.add("filter", source.filter);
-  if (source.filter != "none")
-    report.add("low_hz", source.low_hz).add("high_hz", source.high_hz).add("edges", source.edges);
+  if (source.high_per_m)
+    report.add("low_per_m", source.low_per_m.value_or(0)).add("high_per_m", *source.high_per_m);
+  else if (source.filter != "none")
+    report.add("low_hz", source.low_hz).add("high_hz", source.high_hz);
+  if (source.filter != "none") report.add("edges", source.edges);
   if (source.order != 0) report.add("order", source.order);
   report.add("equalised", source.equalised);
 }

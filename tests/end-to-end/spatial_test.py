@@ -188,6 +188,26 @@ def both_at(margin_m, *names):
     return [values[begin + margin - first:end - margin - first] for first, (_, values, _) in zip(firsts, textures)], textures[0][2]
 
 
+def bands_and_methods_are_chosen():
+    import_touch("oak", *forth_and_back(1))
+    made = {}
+    for method in ("hermite", "linear", "swapped", "sinc"):
+        tacto.run("spatial", "oak", "-o", method, "--stroke", "1", "--method", method)
+        _, made[method], side = tacto.texture(method)
+        assert side["source"]["method"] == method
+    for method, most in (("linear", 0.05), ("swapped", 0.02), ("hermite", 0.02)):
+        assert 0 < tacto.rms(made[method] - made["sinc"]) < most * tacto.rms(made["sinc"]), method
+    tacto.run("spatial", "oak", "-o", "space", "--stroke", "1", "--band-in", "space", "--band", "0.9/mm..2.1/mm")
+    _, values, side = tacto.texture("space")
+    assert side["source"]["low_per_m"] == 900 and all(point["high_per_m"] <= 2100 for point in side["valid_band"])
+    power = np.abs(np.fft.rfft(values * np.hanning(len(values)))) ** 2
+    k = np.fft.rfftfreq(len(values), 1e-3)
+    assert power[(k < 0.8) | (k > 2.2)].sum() < 1e-3 * power.sum()
+    tacto.run("validate", "space.texture.json")
+    tacto.run("spatial", "oak", "-o", "no", "--band-in", "space", code=USAGE)
+    tacto.run("spatial", "oak", "-o", "no", "--band-in", "space", "--band", "15Hz..500Hz", code=USAGE)
+
+
 def a_way_back_is_warned_of():
     x, _ = forth_and_back(1)
     x = x[: len(stroke(0.01, 0.03, 0.05)) + RATE_HZ // 2]
@@ -245,6 +265,6 @@ def long_recordings_need_little_memory():
 if __name__ == "__main__":
     for test in (nothing_is_replaced_in_silence, many_recordings_go_on_past_one_that_fails, averages_keep_the_spread,
                  strokes_that_slipped_are_aligned_by_correlation, a_counter_that_ran_over_is_put_right,
-                 a_noisy_lvdt_gives_the_same_texture, a_way_back_is_warned_of, fingers_up_are_told_by_the_normal_force,
+                 a_noisy_lvdt_gives_the_same_texture, bands_and_methods_are_chosen, a_way_back_is_warned_of, fingers_up_are_told_by_the_normal_force,
                  long_recordings_need_little_memory):
         tacto.in_folder(test)

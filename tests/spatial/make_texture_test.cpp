@@ -391,6 +391,29 @@ TEST_F(MakeTexture, AFingerThatAllButRestsIsRefused) {
       << schema::message(made.error());
 }
 
+TEST_F(MakeTexture, ABandInSpacePassesTheSameLinesAtAnySpeed) {
+  // Of 2 and 3.3 /mm only the first passes 1 to 2.5 /mm; at 25 mm/s they are 50 and 83 Hz, at 70 140 and 231.
+  auto path = stroke_path(0.01, 0.06, 0.025, 0.1);
+  append(path, stroke_path(path.back(), -0.06, 0.07, 0.1));
+  const auto recording = record(
+      path, [](double x_m) { return fading(x_m, 0.01, 0.07) * ridges(x_m); }, 0);
+  const Surface low = [](double x_m) { return fading(x_m, 0.01, 0.07) * 0.2 * std::sin(kTurn * 2000 * x_m); };
+  TextureOptions options;
+  options.space = SpaceFilter{FilterMethod::fourier, 1000, 2500, Edges::treated, 4};
+  options.method = ResampleMethod::sinc;
+  for (const int number : {1, 2}) {
+    const auto texture = texture_of(recording, options, number);
+    EXPECT_LT(error_of(texture, low, 0.002), 0.002) << number;
+    EXPECT_EQ(texture.source.low_per_m, 1000);
+    EXPECT_EQ(texture.source.filter, "fourier");
+    EXPECT_EQ(texture.source.low_hz, 0);
+    for (const auto& point : texture.valid_band) {
+      EXPECT_EQ(point.low_per_m, 1000);
+      EXPECT_EQ(point.high_per_m, 2500);
+    }
+  }
+}
+
 TEST_F(MakeTexture, StrokesOutOfOrderAreTheSame) {
   auto path = stroke_path(0.01, 0.06, 0.05, 0.2);
   append(path, stroke_path(path.back(), -0.06, 0.03, 0.2));
