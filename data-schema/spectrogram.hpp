@@ -24,6 +24,13 @@ struct KnownBand {
   }
 };
 
+/// How many rows to make and write at once: an even number, of 65,536 cells together or the next below it (or
+/// two rows). The blocks of a netCDF file have about as many.
+inline std::size_t rows_at_once(std::size_t bins) {
+  constexpr std::size_t kCells = std::size_t{1} << 16;
+  return kCells / bins < 2 ? 2 : kCells / bins / 2 * 2;
+}
+
 /// What is said of a spectrogram beside its cells. Row p belongs to position_m[p], bin k to the spatial
 /// frequency k * frequency_step_per_m.
 struct SpectrogramHeader {

@@ -15,8 +15,7 @@
 namespace tacto::schema {
 namespace {
 
-constexpr const char* kVersion = "1.1";                    // 1.1: amplitudes, what is known
-constexpr std::size_t kBlockCells = std::size_t{1} << 18;  // 1 MB of floats
+constexpr const char* kVersion = "1.1";  // 1.1: amplitudes, what is known
 
 std::vector<double> in_millimetres(const std::vector<double>& position_m) {
   std::vector<double> values(position_m.size());
@@ -35,6 +34,12 @@ std::vector<double> limits_per_mm(const std::vector<KnownBand>& known, double Kn
   std::ranges::transform(known, values.begin(),
                          [limit](const KnownBand& band) { return band.*limit / kMillimetres; });
   return values;
+}
+
+// As few blocks as may be, about equally long: the last one's unused end lies in the file too.
+std::size_t block_rows(std::size_t positions, std::size_t bins) {
+  const std::size_t blocks = (positions - 1) / rows_at_once(bins) + 1;
+  return (positions - 1) / blocks + 1;
 }
 
 class NcWriter : public SpectrogramWriter {
@@ -108,7 +113,7 @@ class NcWriter : public SpectrogramWriter {
     limits.dimensions.push_back(position);
     blocks = limits;
     limits.lengths.push_back(positions);
-    blocks.lengths.push_back(std::clamp(kBlockCells / header.bins, std::size_t{1}, positions));
+    blocks.lengths.push_back(block_rows(positions, header.bins));
     blocks.dimensions.push_back(file_.dimension("spatial_frequency", header.bins));
     blocks.lengths.push_back(header.bins);
     define_variables(limits, blocks);
@@ -148,7 +153,7 @@ class NcWriter : public SpectrogramWriter {
 
   // What a shorter stroke does not have is not known.
   void flag_absent_rows() {
-    const std::size_t most = std::max<std::size_t>(1, kBlockCells / first_->bins);
+    const std::size_t most = rows_at_once(first_->bins);
     flags_.assign(most * first_->bins, 0);
     for (std::size_t each = 0; each < rows_.size(); ++each)
       for (std::size_t row = rows_[each]; row < position_m_.size(); row += most) {

@@ -21,9 +21,6 @@ using schema::Scaling;
 using schema::SpectrogramHeader;
 using schema::Texture;
 
-// Cells that go to a sink at once, about: what a processor's second cache holds.
-constexpr std::size_t kCellsAtOnce = std::size_t{1} << 16;
-
 // Files hold unit^2 mm: a thousand times the number.
 constexpr float kLargestCell = 3e35F;
 
@@ -52,10 +49,6 @@ ShortTimeTransform transform_for(const SpectrogramOptions& options, const FrameS
           gain_of(options.scaling, window, pitch_m),
           options.detrend == Detrend::constant,
           rows};
-}
-
-std::size_t rows_at_once(std::size_t bins) {
-  return std::max<std::size_t>(2, kCellsAtOnce / bins / 2 * 2);
 }
 
 Result<void> check_length(const Texture& texture, std::size_t window) {
@@ -103,7 +96,7 @@ SpectrogramMaker::SpectrogramMaker(const SpectrogramOptions& options, const Fram
       decimation_(decimation),
       pitch_m_(pitch_m),
       transform_(transform_for(options, shape, decimation, pitch_m, rows)),
-      cells_(rows_at_once(shape.bins) * shape.bins) {}
+      cells_(schema::rows_at_once(shape.bins) * shape.bins) {}
 
 Result<SpectrogramMaker> SpectrogramMaker::prepare(const SpectrogramOptions& options, double pitch_m,
                                                    std::size_t rows) {
