@@ -32,6 +32,7 @@ WALLS = {
     r"nlohmann/|valijson/|netcdf": ["data-schema"],
     r"nettle/": ["data-schema", "analysis"],
     r"opencv2/|cairo|pango": ["spatial/picture"],
+    r"pugixml": ["capture"],
     r"CLI/": ["data-schema/cli"],
 }
 
@@ -110,6 +111,7 @@ def prove_it_can_fail():
         "spatial/a.cpp": spdx + '#include "playback/render.hpp"\n',
         "firmware-host/core/a.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include \"data-schema/error.hpp\"\n",
         "capture/a.cpp": spdx + "#include <fftw3.h>\n",
+        "spatial/b.cpp": spdx + "#include <pugixml.hpp>\n",
         "spatial/dsp/a.cpp": spdx + "#include <opencv2/core.hpp>\n",
         "data-schema/cli/a.cpp": spdx + "#include <nlohmann/json.hpp>\n",
         "analysis/a.cpp": "int x;\n",
