@@ -43,7 +43,7 @@ def its_spectrogram_is_scipys():
     hop = int(round(float(np.diff(made["position"].values[:2])[0]) / 0.25e-3))
     padded = int(round(1 / (0.25e-3 * (frequency[1] - frequency[0]))))
     values = tacto.texture("edm")[1]
-    _, _, wanted = scipy.signal.spectrogram(values, fs=4000, window="hann", nperseg=4000, noverlap=4000 - hop,
+    _, _, wanted = scipy.signal.spectrogram(values, fs=4000, window="blackman", nperseg=4000, noverlap=4000 - hop,
                                             nfft=padded, detrend="constant", scaling="density", mode="psd")
     wanted = wanted[:len(frequency)].T
     got = density.values.reshape(-1, len(frequency))
