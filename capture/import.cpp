@@ -73,7 +73,7 @@ class Import {
   std::vector<Measured> measured_;
   std::optional<Derived> derived_;
   ClockFinder clock_;
-  bool clock_known_ = true;
+  bool clock_known_ = true, decimal_comma_ = false;
   std::vector<double> times_s_, interleaved_;
   std::optional<schema::RecordingWriter> writer_;
   schema::Sha256 sum_;
@@ -164,6 +164,7 @@ Result<void> Import::write_block(std::size_t rows) {
 
 Result<void> Import::take(const RowBlock& block) {
   const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
+  decimal_comma_ = block.decimal_mark == ',';
   if (!clock_known_) {
     take_times(block);
     clock_.survey(times_s_);
@@ -253,6 +254,7 @@ Result<Imported> Import::close() {
   auto recording = writer_->close();
   if (!recording) return forward_error(recording);
   Imported imported{std::move(*recording), {}, plan_.source.format};
+  if (decimal_comma_) imported.format += ", decimal commas";
   for (std::size_t k = 0; k < measured_.size(); ++k) {
     const Plausibility& judged = *measured_[k].judged;
     imported.ranges.push_back(

@@ -20,6 +20,7 @@ struct ImportRequest {
   std::vector<std::string> channels;  ///< may be empty for mono audio: one `signal`
   std::optional<double> rate_hz;      ///< of a table; of audio, where its header is wrong
   std::string time_column;            ///< instead of rate_hz, "time_s*1s"
+  std::optional<double> pitch_m;      ///< of a height profile: see height_profile.hpp
   std::optional<double> speed_mps;    ///< makes a nominal position
   bool integrate_speed = true;        ///< a speed channel gives a position, where none was measured
   std::string recorded, calibrated;   ///< ISO dates, "2026-03-14"

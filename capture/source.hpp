@@ -35,6 +35,7 @@ struct RowBlock {
   std::size_t columns = 0;
   std::uint64_t first_row = 0;
   const std::deque<CsvReader::Landmark>* landmarks = nullptr;  ///< of a table
+  char decimal_mark = 0;  ///< of a table: '.', ',', or 0 where no number had one so far
 
   std::size_t rows() const { return numbers.size() / columns; }
   /// "line 4229" of a table, "sample 4228" of audio, for messages. `row` counts from the file's first; it is

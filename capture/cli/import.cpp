@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
+#include "capture/height_profile.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/report.hpp"
 
@@ -27,7 +28,9 @@ double parsed_percent(const std::string& text) {
 }
 
 void declare_data(CLI::App& app, ImportRequest& request) {
-  app.add_option("FILE", request.file, "CSV table, or sound file that libsndfile reads (WAV, FLAC, OGG ...)")
+  app.add_option(
+         "FILE", request.file,
+         "CSV table, sound file that libsndfile reads (WAV, FLAC, OGG ...), or a measured profile (XML)")
       ->required();
   app.add_option("-o,--output", request.name, "The recording's name: NAME.wav and NAME.json")->required();
   app.add_option(
@@ -40,6 +43,9 @@ void declare_data(CLI::App& app, ImportRequest& request) {
                     "Samples per second of a table (or of audio whose header is wrong)");
   app.add_option("--time-column", request.time_column,
                  "Find the rate from a column of times, COLUMN*SCALE and a unit: t_ms*1ms");
+  cli::add_quantity(
+      app, "--pitch", request.pitch_m, Dimension::length,
+      "Heights in space, this far apart: makes a texture (as a height and a position without a rate do)");
   cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,
                     "Where there is no position: make a nominal one at this speed");
   app.add_flag("!--no-position", request.integrate_speed, "Do not integrate a speed channel to a position");
@@ -101,7 +107,26 @@ cli::Report report_on(const Imported& imported, const ImportRequest& request) {
   return report.add("next", next_command(imported.recording));
 }
 
+schema::Result<cli::Report> run_profile(const ImportRequest& request) {
+  const auto imported = [&] {
+    cli::Progress progress("importing");
+    return import_profile(request, [&](double fraction) { progress.update(fraction); });
+  }();
+  if (!imported) return schema::forward_error(imported);
+  const auto& [profile, stem] = *imported;
+  const auto [lowest, highest] = std::ranges::minmax(profile.height_m);
+  cli::Report report;
+  report.add("source", request.file).add("quantity", "height");
+  report.add("samples", profile.height_m.size()).add("pitch_m", profile.pitch_m);
+  report.add("length_m", static_cast<double>(profile.height_m.size() - 1) * profile.pitch_m);
+  report.add("direction", profile.direction).add("unevenness_m", profile.unevenness_m);
+  report.add("lowest_m", lowest).add("highest_m", highest);
+  report.add("files", std::vector{stem + ".texture.wav", stem + ".texture.json"});
+  return report.add("next", fmt::format("tactograph spectrogram {0} -o {0}.png --window 1mm", stem));
+}
+
 schema::Result<cli::Report> run(const ImportRequest& request) {
+  if (asks_for_profile(request)) return run_profile(request);
   schema::Result<Imported> imported = [&] {
     cli::Progress progress("importing");
     return import_file(request, [&](double fraction) { progress.update(fraction); });
@@ -121,12 +146,14 @@ cli::Action declare(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kImportVerb{
-    "import", "Make a recording of another program's file: CSV table or sound file",
+    "import", "Make a recording of another program's file, or a texture of a height profile",
     "tactograph import trial.csv -o trial --rate 10kHz --channel tangential_force=lateral_V*0.444444N"
     " --channel position=encoder_count*0.5um\n"
     "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "
     "40mm/s\n"
-    "  tactograph import tap.flac -o tap",
+    "  tactograph import tap.flac -o tap\n"
+    "  tactograph import edm.xml -o edm\n"
+    "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um",
     declare};
 
 }  // namespace tacto::capture

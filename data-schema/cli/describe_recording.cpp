@@ -36,6 +36,9 @@ void add_time(Report& report, const RecordingHeader& header) {
   report.add("sample_rate_hz", header.sample_rate_hz).add("duration_s", duration_s(header));
   report.add("frames", header.frames).add("gaps", header.gaps.size()).add("missing_frames", missing);
   report.add("marks", header.marks.size());
+  if (!header.faults.empty()) report.add("faults", header.faults.size());
+  if (header.clock_drift_ppm) report.add("clock_drift_ppm", *header.clock_drift_ppm);
+  add_text(report, "ended", header.ended);
   add_text(report, "clock", header.clock);
 }
 

@@ -112,6 +112,16 @@ TEST_F(ImportTest, RangesArePhysicalWhateverTheSignOfTheScale) {
   EXPECT_EQ(done->ranges[0].largest, -1);
 }
 
+TEST_F(ImportTest, SaysThatItReadDecimalCommas) {
+  const auto commas = import(request(write("c.csv", "f;x\n0,5;1,25\n1;2\n"), {"position=x*1mm"}));
+  ASSERT_TRUE(commas);
+  EXPECT_EQ(commas->format, "table, semicolon, with header, decimal commas");
+  EXPECT_EQ(stored(commas->recording, 0), (std::vector<double>{1.25, 2}));
+  auto points = request(write("p.csv", "f;x\n0.5;1.25\n"), {"position=x*1mm"});
+  points.replace = true;
+  EXPECT_EQ(import(points)->format, "table, semicolon, with header");
+}
+
 TEST_F(ImportTest, ProgressGrowsToTheEnd) {
   double last = 0;
   const auto done = import_file(request(write("t.csv", "f\n1\n2\n"), {"signal=f"}), [&](double fraction) {

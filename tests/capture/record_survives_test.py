@@ -115,6 +115,19 @@ def at_a_size_limit():
     expect_full("oak", fast("oak", preexec_fn=limit), 8 << 20)
 
 
+def memory_does_not_grow():
+    """60 s at 10 kHz against 0.1 s: the same blocks."""
+    def peak_mb(time_s):
+        script = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, capture_output=True); " \
+                 "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)"
+        return float(subprocess.run(["/usr/bin/python3", "-c", script, tacto.COMMAND, "record", "-d", "sim:surface=flat",
+                                     "-o", f"m{time_s}", "--time", f"{time_s}s"], check=True, capture_output=True,
+                                    text=True).stdout)
+    short, long = peak_mb(0.1), peak_mb(60)
+    print(f"peak memory: {short:.1f} MB for 0.1 s, {long:.1f} MB for 60 s")
+    assert long < short + 16, (short, long)
+
+
 def takes_count_up_and_are_listed():
     for subject in ("S01", "S01", "S02"):
         tacto.run("record", "-d", "sim:", "--time", "50ms", "--template", "{subject}_{surface}_{take}", "--subject",
@@ -128,5 +141,5 @@ def takes_count_up_and_are_listed():
 
 if __name__ == "__main__":
     for test in (killed_at_random_moments, stopped_by_signal_and_marked, on_a_full_file_system, at_a_size_limit,
-                 takes_count_up_and_are_listed):
+                 memory_does_not_grow, takes_count_up_and_are_listed):
         tacto.in_folder(test)

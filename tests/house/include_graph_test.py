@@ -32,6 +32,7 @@ WALLS = {
     r"nlohmann/|valijson/|netcdf": ["data-schema"],
     r"nettle/": ["data-schema", "analysis"],
     r"opencv2/|cairo|pango": ["spatial/picture"],
+    r"pugixml": ["capture"],
     r"CLI/": ["data-schema/cli"],
 }
 
@@ -123,6 +124,7 @@ def prove_it_can_fail():
         "firmware-host/core/b.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include <vector>\n",
         "firmware-host/core/wire/c.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include <cstdint>\n",
         "capture/a.cpp": spdx + "#include <fftw3.h>\n",
+        "spatial/b.cpp": spdx + "#include <pugixml.hpp>\n",
         "spatial/dsp/a.cpp": spdx + "#include <opencv2/core.hpp>\n",
         "data-schema/cli/a.cpp": spdx + "#include <nlohmann/json.hpp>\n",
         "analysis/a.cpp": "int x;\n",
