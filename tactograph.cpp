@@ -6,16 +6,17 @@
 #include "capture/cli/verbs.hpp"
 #include "data-schema/cli/command.hpp"
 #include "data-schema/cli/verbs.hpp"
+#include "firmware-host/cli/verbs.hpp"
 #include "playback/cli/verbs.hpp"
 #include "spatial/cli/verbs.hpp"
 
 namespace {
 
 // In the order of the work: get data, look at it, make textures, see them, play them.
-constexpr std::array<const tacto::cli::Verb*, 8> kVerbs = {
-    &tacto::capture::kImportVerb,  &tacto::capture::kRecordVerb,  &tacto::schema::kInfoVerb,
-    &tacto::schema::kValidateVerb, &tacto::spatial::kSpatialVerb, &tacto::spatial::kSpectrogramVerb,
-    &tacto::playback::kRenderVerb, &tacto::analysis::kDemoVerb,
+constexpr std::array<const tacto::cli::Verb*, 9> kVerbs = {
+    &tacto::firmware_host::kScanVerb,  &tacto::capture::kImportVerb,  &tacto::capture::kRecordVerb,
+    &tacto::schema::kInfoVerb,         &tacto::schema::kValidateVerb, &tacto::spatial::kSpatialVerb,
+    &tacto::spatial::kSpectrogramVerb, &tacto::playback::kRenderVerb, &tacto::analysis::kDemoVerb,
 };
 
 }  // namespace
