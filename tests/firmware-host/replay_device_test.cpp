@@ -66,16 +66,16 @@ TEST_F(Replay, GivesTheSameCodesAndGapsAndEnds) {
 
 TEST_F(Replay, PacedItTakesAsLongAsItTook) {
   const auto device = open_device("replay:" + name_ + ",paced=1");
-  ASSERT_TRUE((*device)->start());
   const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE((*device)->start());
   for (int reads = 0; reads < 3; ++reads) tests::read_frames(**device, 0.01);
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(28));
 }
 
 TEST(PacedSim, TakesRealTime) {
+  const auto begin = std::chrono::steady_clock::now();
   const auto device = open_device("sim:paced=1");
   ASSERT_TRUE((*device)->start());
-  const auto begin = std::chrono::steady_clock::now();
   tests::read_frames(**device, 0.1);
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(95));
 }
