@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "firmware-host/replay/replay_device.hpp"
 #include "firmware-host/sim/sim_device.hpp"
 
 namespace tacto::firmware_host {
@@ -13,7 +14,7 @@ struct Scheme {
   schema::Result<std::unique_ptr<Device>> (*open)(const std::string& uri, std::string_view parameters);
 };
 
-constexpr Scheme kSchemes[] = {{"sim:", open_sim_device}};
+constexpr Scheme kSchemes[] = {{"sim:", open_sim_device}, {"replay:", open_replay_device}};
 
 std::string schemes() {
   std::string list;
@@ -29,7 +30,8 @@ schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri) {
       return scheme.open(uri, std::string_view(uri).substr(scheme.name.size()));
   return schema::fail(
       schema::Fault::usage, fmt::format("'{}' is not a device that can be opened", uri), "device",
-      fmt::format("the transports are: {} (for example sim:surface=C,speed=50mm/s)", schemes()));
+      fmt::format("the transports are: {} (for example sim:surface=C,speed=50mm/s, or replay:oak)",
+                  schemes()));
 }
 
 }  // namespace tacto::firmware_host

@@ -82,7 +82,8 @@ class Device {
   virtual StreamEvents take_events() { return {}; }
 };
 
-/// Opens by URI; there is `sim:`, with every parameter by key=value (see sim/sim_parameters.hpp).
+/// Opens by URI; there are `sim:`, with every parameter by key=value (see sim/sim_parameters.hpp), and
+/// `replay:FILE`, a recording as a device.
 /// Errors: usage: a transport, key or value that does not exist, naming what there is; not_found: the
 /// transducer's file.
 schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri);

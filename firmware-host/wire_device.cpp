@@ -2,8 +2,9 @@
 #include "firmware-host/wire_device.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+
+#include "firmware-host/code_range.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -18,24 +19,10 @@ std::uint8_t block_frames(double rate_hz) {
   return static_cast<std::uint8_t>(std::clamp(rate_hz * kBlockS, 1.0, double{wire::kMaxBlockFrames}));
 }
 
-std::int32_t code_of(double code) {
-  constexpr double kLeast = std::numeric_limits<std::int32_t>::min(),
-                   kMost = std::numeric_limits<std::int32_t>::max();
-  return static_cast<std::int32_t>(std::clamp(std::round(code), kLeast, kMost));
-}
-
 }  // namespace
 
 WireDevice::WireDevice(std::unique_ptr<Client> client, Capabilities capabilities)
-    : client_(std::move(client)), capabilities_(std::move(capabilities)) {
-  for (const schema::Channel& channel : capabilities_.channels) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const double low = channel.range_min.value_or(-kInfinity), high = channel.range_max.value_or(kInfinity);
-    const double one = (low - channel.offset) / channel.scale,
-                 other = (high - channel.offset) / channel.scale;
-    ranges_.push_back({code_of(std::min(one, other)), code_of(std::max(one, other))});
-  }
-}
+    : client_(std::move(client)), capabilities_(std::move(capabilities)) {}
 
 Result<std::unique_ptr<WireDevice>> WireDevice::open(std::string uri, std::unique_ptr<Transport> transport) {
   auto client = Client::connect(std::move(transport), uri);
@@ -62,11 +49,8 @@ void WireDevice::take_gaps() {
 }
 
 void WireDevice::count(std::span<const std::int32_t> codes) {
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    const Range& range = ranges_[i % ranges_.size()];
-    counts_.clipped += codes[i] <= range.least || codes[i] >= range.most;
-  }
-  counts_.frames += codes.size() / ranges_.size();
+  counts_.clipped += clipped_codes(codes, capabilities_.channels);
+  counts_.frames += codes.size() / capabilities_.channels.size();
 }
 
 void WireDevice::note_clock() {
@@ -79,14 +63,14 @@ void WireDevice::note_clock() {
 // Frames that came before an error are given before the error is.
 Result<std::size_t> WireDevice::read(std::span<std::int32_t> interleaved) {
   if (!started_) return schema::fail(Fault::device, "the device is not started", capabilities_.uri);
-  const std::size_t wanted = interleaved.size() / ranges_.size();
+  const std::size_t channels = capabilities_.channels.size(), wanted = interleaved.size() / channels;
   for (;;) {
     take_gaps();
     if (!ended_)
       if (const auto here = client_->await_samples(wanted); !here) ended_ = here.error();
     take_gaps();
     const std::size_t taken = client_->samples().take(interleaved);
-    count(interleaved.first(taken * ranges_.size()));
+    count(interleaved.first(taken * channels));
     note_clock();
     if (taken > 0 || wanted == 0) return taken;
     if (ended_) return tl::unexpected(*ended_);

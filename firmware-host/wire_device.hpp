@@ -26,9 +26,6 @@ class WireDevice final : public Device {
   Client& client() { return *client_; }
 
  private:
-  struct Range {
-    std::int32_t least, most;
-  };
   WireDevice(std::unique_ptr<Client> client, Capabilities capabilities);
   void take_gaps();
   void count(std::span<const std::int32_t> codes);
@@ -36,7 +33,6 @@ class WireDevice final : public Device {
 
   std::unique_ptr<Client> client_;
   Capabilities capabilities_;
-  std::vector<Range> ranges_;  // codes at the ends of a converter
   bool started_ = false;
   std::optional<schema::Error> ended_;
   StreamCounts counts_;

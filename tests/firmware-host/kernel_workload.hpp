@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the kernel is given where its bits and its ticks are counted: on this machine, and on a Cortex-M4F in
 // QEMU. Freestanding, and no arithmetic whose result a compiler or processor may choose.
 #pragma once

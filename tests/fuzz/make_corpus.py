@@ -52,12 +52,30 @@ CONVERSATIONS = {
 }
 
 
+def says(kind, payload):
+    """client_fuzz's device: a sealed frame of type 0x81 + kind."""
+    return bytes([72 + kind, len(payload)]) + payload
+
+
+def samples(first):
+    return says(4, struct.pack("<QQIBBH16i", first, first * 100, 0xFF, 2, 8, 0, *range(16)))
+
+
+DEVICES = {
+    "stream": bytes([2, 1, 100]) + says(3, struct.pack("<BBHII", 2, 0, 0, 1, 0)) + samples(0) + samples(8) +
+              samples(24) + says(7, struct.pack("<B3sIQ", 7, b"", 8, 900)) + samples(32),
+    "silence": bytes([1, 0, 1, 0, 0]),
+}
+
+
 def main():
     frames = dict(re.findall(r"^([a-z_]+) (a554[0-9a-f]+)$", WIRE.read_text(), re.M))
     for name, text in frames.items():
         (HERE / "corpus/wire" / name).write_bytes(b"\x3f" + bytes.fromhex(text))
     for name, actions in CONVERSATIONS.items():
         (HERE / "corpus/firmware" / name).write_bytes(actions)
+    for name, sayings in DEVICES.items():
+        (HERE / "corpus/client" / name).write_bytes(sayings)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verbs of this folder, for the table in tactograph.cpp.
+#pragma once
+
+#include "data-schema/cli/verb.hpp"
+
+namespace tacto::firmware_host {
+
+extern const cli::Verb kScanVerb;
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A recording as a device: its frames again, with its gaps.
+#pragma once
+
+#include <optional>
+
+#include "data-schema/wav.hpp"
+#include "firmware-host/device.hpp"
+#include "firmware-host/sim/pacer.hpp"
+
+namespace tacto::firmware_host {
+
+/// Gives the codes that a recording holds, in its channels and at its rate; then the stream has ended. A gap
+/// in the recording is a gap in the stream. Runs as fast as it can, or paced. Reads as it goes: memory does
+/// not grow with the recording.
+class ReplayDevice final : public Device {
+ public:
+  ReplayDevice(std::string uri, schema::Recording recording, bool paced);
+
+  const Capabilities& capabilities() const override { return capabilities_; }
+  schema::Result<void> start() override;
+  schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) override;
+  schema::Result<void> stop() override;
+  StreamCounts counts() const override { return counts_; }
+  StreamEvents take_events() override;
+
+ private:
+  std::size_t until_gap(std::size_t frames);
+  void count(std::span<const std::int32_t> codes);
+
+  schema::Recording recording_;
+  bool paced_;
+  Capabilities capabilities_;
+  std::optional<schema::WavReader> reader_;
+  std::optional<Pacer> pacer_;
+  std::size_t next_gap_ = 0;  // of the recording's
+  StreamCounts counts_;
+  StreamEvents events_;
+};
+
+/// `parameters` is what follows "replay:": a recording's stem or file, and ",paced=1" where wanted. Errors:
+/// as open_recording(); usage: no file; unsuitable: a recording of physical numbers, which no converter gave.
+schema::Result<std::unique_ptr<Device>> open_replay_device(const std::string& uri,
+                                                           std::string_view parameters);
+
+}  // namespace tacto::firmware_host
