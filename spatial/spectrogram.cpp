@@ -12,7 +12,10 @@ using schema::Spectrogram;
 
 Result<Spectrogram> spatial_spectrogram(const schema::Texture& texture, const SpectrogramOptions& options,
                                         const std::function<void(double)>& progress) {
-  auto maker = SpectrogramMaker::prepare(options, texture.signal.pitch_m, 1);
+  const auto shape = frame_shape(options, texture.signal.pitch_m);
+  if (!shape) return schema::forward_error(shape);
+  auto maker = SpectrogramMaker::prepare(options, texture.signal.pitch_m,
+                                         texture.signal.values.size() / shape->hop + 1);
   if (!maker) return schema::forward_error(maker);
   auto header = maker->describe(texture);
   if (!header) return schema::forward_error(header);

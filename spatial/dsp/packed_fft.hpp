@@ -40,4 +40,8 @@ class PackedFft {
 /// machine of spatial/README.md, and the transforms themselves must take longer than that.
 bool measuring_pays(std::size_t length, std::size_t expected);
 
+/// Whether so many transforms take but a moment, about 0.05 s, so that nobody minds that double precision
+/// takes twice as long.
+bool take_a_moment(std::size_t length, std::size_t expected);
+
 }  // namespace tacto::spatial

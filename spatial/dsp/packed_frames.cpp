@@ -18,20 +18,24 @@ void pack_level(const Frame& a, const Frame& b, std::span<const float> window, R
   const float* __restrict w = window.data();
   const float* __restrict x = a.samples;
   const float* __restrict y = b.samples;
-  const float level_x = a.level, level_y = b.level;
+  const auto level_x = static_cast<Real>(a.level), level_y = static_cast<Real>(b.level);
   for (std::size_t n = 0; n < window.size(); ++n) {
-    out[2 * n] = w[n] * (x[n] - level_x);
-    out[2 * n + 1] = w[n] * (y[n] - level_y);
+    const Real weight = w[n];
+    out[2 * n] = weight * (x[n] - level_x);
+    out[2 * n + 1] = weight * (y[n] - level_y);
   }
 }
 
 template <class Real>
 void pack_sloping(const Frame& a, const Frame& b, std::span<const float> window, Real* __restrict out) {
-  const auto count = static_cast<int>(window.size());  // an int becomes a float in one instruction
+  const auto level_a = static_cast<Real>(a.level), level_b = static_cast<Real>(b.level);
+  const auto slope_a = static_cast<Real>(a.slope), slope_b = static_cast<Real>(b.slope);
+  const auto count = static_cast<int>(window.size());  // an int becomes a number in one instruction
   for (int n = 0; n < count; ++n) {
-    const auto at = static_cast<float>(n);
-    out[2 * n] = window[n] * (a.samples[n] - a.level + a.slope * at);
-    out[2 * n + 1] = window[n] * (b.samples[n] - b.level + b.slope * at);
+    const auto at = static_cast<Real>(n);
+    const Real weight = window[n];
+    out[2 * n] = weight * (a.samples[n] - level_a + slope_a * at);
+    out[2 * n + 1] = weight * (b.samples[n] - level_b + slope_b * at);
   }
 }
 

@@ -15,8 +15,8 @@ using PackedSpectrum = std::span<const std::complex<Real>>;
 /// One frame: its samples, the level that is taken off them, and a straight line's slope that is put back.
 struct Frame {
   const float* samples = nullptr;
-  float level = 0;
-  float slope = 0;  ///< a sample
+  double level = 0;
+  double slope = 0;  ///< a sample
 };
 
 /// packed_n = w_n (a_n - level_a + slope_a n) + i w_n (b_n - level_b + slope_b n) for every n of the window,

@@ -35,10 +35,13 @@ int exponent_of(double largest) {
   return std::abs(exponent) <= kUsualExponent ? 0 : std::max(exponent, kSmallestExponent);
 }
 
-std::variant<PackedFft<float>, PackedFft<double>> fft_for(std::size_t length, std::size_t expected,
-                                                          bool in_double) {
-  if (in_double) return PackedFft<double>(length, expected);
-  return PackedFft<float>(length, expected);
+using EitherFft = std::variant<PackedFft<float>, PackedFft<double>>;
+
+EitherFft fft_for(const FrameShape& shape, const Decimation& decimation, std::size_t rows) {
+  const std::size_t length = shape.padded / decimation.factor, transforms = (rows + 1) / 2;
+  if (decimation.factor > 1 || take_a_moment(length, transforms))
+    return PackedFft<double>(length, transforms);
+  return PackedFft<float>(length, transforms);
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ ShortTimeTransform::ShortTimeTransform(const FrameShape& shape, const Decimation
       detrend_(detrend),
       rows_per_block_(rows_per_block(shape)),
       window_(every_nth(window, decimation.factor, gain * static_cast<double>(decimation.factor))),
-      fft_(fft_for(shape.padded / decimation.factor, (rows + 1) / 2, decimation.factor > 1)),
+      fft_(fft_for(shape, decimation, rows)),
       means_(rows_per_block_) {
   assert(window.size() == shape.window && shape.padded % decimation.factor == 0);
   const std::size_t longest = (rows_per_block_ - 1) * shape.hop + shape.window;
@@ -116,16 +119,16 @@ void ShortTimeTransform::find_means(std::span<const double> signal, const Block&
       sum += sum_above(signal.subspan(start + window - hop, hop), block.level) -
              sum_above(signal.subspan(start - hop, hop), block.level);
     const double line = block.slope * static_cast<double>(row * hop);
-    means_[row] = static_cast<float>((sum / static_cast<double>(window) - line) * scale);
+    means_[row] = (sum / static_cast<double>(window) - line) * scale;
   }
 }
 
 Frame ShortTimeTransform::frame(const Block& block, std::size_t row) const {
   const std::size_t offset = row * shape_.hop;
-  const float level = detrend_ ? means_[row] : 0.0F;
+  const double level = detrend_ ? means_[row] : 0;
   if (!decimator_) return {samples_.data() + offset, level, 0};
   const double slope = std::ldexp(block.slope * static_cast<double>(decimation_.factor), -block.exponent);
-  return {decimator_->from(offset), level, static_cast<float>(slope)};
+  return {decimator_->from(offset), level, slope};
 }
 
 template <class Real>

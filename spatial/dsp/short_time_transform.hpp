@@ -38,10 +38,11 @@ class PackedRows {
 using PackedRowSink = std::function<schema::Result<void>(const PackedRows&)>;
 
 /// X[p, k] = gain sum_n w_n (x[p hop + n] - mean_p) exp(-2 pi i k n / padded), n < window, k < bins.
-/// In single precision, on a coarser grid with transforms in double, from blocks of a few windows whose level
-/// (and, before decimation, whose straight trend, which the filter would pass anyway) is taken off and whose
-/// size is brought near 1 by a power of two first: |X - X_exact| / max |X| over all cells (of all
-/// frequencies) is at most -120 dB, on a coarser grid too. Not shared between threads; not safe in the tick.
+/// In single precision; the transforms in double on a coarser grid, where they are short, and where all rows
+/// to come take but a moment. From blocks of a few windows whose level (and, before decimation, whose
+/// straight trend, which the filter would pass anyway) is taken off and whose size is brought near 1 by a
+/// power of two first: |X - X_exact| / max |X| over all cells (of all frequencies) is at most -120 dB. Not
+/// shared between threads; not safe in the tick.
 class ShortTimeTransform {
  public:
   /// `window`: the shape's weights; `detrend`: take mean_p off, else 0. `rows` are to come (packed_fft.hpp).
@@ -74,11 +75,9 @@ class ShortTimeTransform {
   std::size_t rows_per_block_;
   std::vector<float> window_;
   std::optional<Decimator> decimator_;
-  // Whole frames take single precision; short ones can afford double, whose spectra have no rounding of their
-  // own.
   std::variant<PackedFft<float>, PackedFft<double>> fft_;
   std::vector<float> samples_;  // the block's, with the decimator's reach to both sides
-  std::vector<float> means_;    // of the block's rows
+  std::vector<double> means_;   // of the block's rows
 };
 
 }  // namespace tacto::spatial

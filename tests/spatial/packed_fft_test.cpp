@@ -38,7 +38,7 @@ TYPED_TEST(PackedFftOf, TwoFramesComeApartAgain) {
   const std::vector<float> x(noise.begin(), noise.end());
   const std::vector<float> window(kWindow, 0.75F);
   PackedFft<TypeParam> fft(kPadded, 1);
-  pack_frames<TypeParam>({x.data(), 0.25F, 0}, {x.data() + kWindow, -0.5F, 0.01F}, window, fft.input());
+  pack_frames<TypeParam>({x.data(), 0.25, 0}, {x.data() + kWindow, -0.5, 0.01}, window, fft.input());
   fft.transform();
   std::vector<std::complex<float>> a(kPadded / 2 + 1), b(kPadded / 2 + 1);
   std::vector<float> power_a(a.size()), power_b(a.size());
