@@ -84,7 +84,8 @@ namespace {
 
 Result<void> hand_over(CsvReader& reader, std::size_t columns, const TakeRows& take) {
   if (reader.rows().empty()) return {};
-  const auto taken = take({reader.rows(), columns, reader.first_row(), &reader.landmarks(), reader.decimal_mark()});
+  const auto taken =
+      take({reader.rows(), columns, reader.first_row(), &reader.landmarks(), reader.decimal_mark()});
   reader.drop_rows();
   return taken;
 }

@@ -32,33 +32,41 @@ tl::unexpected<schema::Error> uneven(double step, double period, const std::stri
 
 }  // namespace
 
-void ClockFinder::Bin::add(double step) {
+inline void ClockFinder::Bin::add(double step) {
   smallest = count == 0 ? step : std::min(smallest, step);
   largest = count == 0 ? step : std::max(largest, step);
   sum += step;
   ++count;
 }
 
-void ClockFinder::add_step(double step) {
-  const std::uint64_t key = std::bit_cast<std::uint64_t>(step) >> kDropped;
-  if (latest_ == nullptr || key != latest_key_) {
-    latest_ = &bins_[key];
-    latest_key_ = key;
-  }
-  latest_->add(step);
+void ClockFinder::Bin::add(const Bin& other) {
+  if (other.count == 0) return;
+  smallest = count == 0 ? other.smallest : std::min(smallest, other.smallest);
+  largest = count == 0 ? other.largest : std::max(largest, other.largest);
+  sum += other.sum;
+  count += other.count;
 }
 
+// Steps of one bin follow each other in nearly every file: the map is asked where the bin changes.
 void ClockFinder::survey(std::span<const double> time_s) {
+  Bin run;
+  std::uint64_t run_key = 0;
   for (const double time : time_s) {
+    const double step = time - std::exchange(last_s_, time);
     if (count_++ == 0) {
       first_s_ = time;
-    } else if (time > last_s_) {
-      add_step(time - last_s_);
-    } else {
-      stands_or_falls_ = true;
+      continue;
     }
-    last_s_ = time;
+    stands_or_falls_ = stands_or_falls_ || !(step > 0);
+    const std::uint64_t key = std::bit_cast<std::uint64_t>(step) >> kDropped;
+    if (key != run_key) {
+      if (run.count > 0) bins_[run_key].add(run);
+      run = {};
+      run_key = key;
+    }
+    run.add(step);
   }
+  if (run.count > 0) bins_[run_key].add(run);
 }
 
 double ClockFinder::median_step() const {

@@ -49,8 +49,8 @@ class ClockFinder {
     std::uint64_t count = 0;
     double sum = 0, smallest = 0, largest = 0;
     void add(double step);
+    void add(const Bin& other);
   };
-  void add_step(double step);
   double median_step() const;
   double find_period() const;
   bool is_one_tick(double step) const;
@@ -58,8 +58,6 @@ class ClockFinder {
                                    const std::string& file);
 
   std::map<std::uint64_t, Bin> bins_;  // by the leading bits of the step
-  Bin* latest_ = nullptr;
-  std::uint64_t latest_key_ = 0;
   std::uint64_t count_ = 0, located_ = 0;
   double first_s_ = 0, last_s_ = 0, previous_s_ = 0, period_s_ = 0;
   bool stands_or_falls_ = false, uneven_ = false;

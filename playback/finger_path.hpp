@@ -22,9 +22,11 @@ struct FingerPath {
   double duration_s() const { return time_s.back() - time_s.front(); }
 };
 
-/// Reads a comma-separated table whose first line names the columns; `time_s` and `position_m` are taken,
-/// others are left alone. Errors: not_found; malformed, by line and column, for a missing column (with those
-/// that exist), a ragged row, text, NaN, infinity, time that does not grow, fewer than 2 rows.
+/// Reads a table whose first line names the columns; `time_s` and `position_m` are taken,
+/// others are left alone. Columns are parted by
+/// commas, or by semicolons or tabs: then numbers may have decimal commas. Errors: not_found; malformed, by
+/// line and column, for a missing column (with those that exist), a ragged row, text, NaN, infinity, time
+/// that does not grow, fewer than 2 rows.
 schema::Result<FingerPath> read_finger_path(const std::string& file);
 
 /// The same from a text in memory; `name` stands for the file in errors.

@@ -47,9 +47,18 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-std::optional<double> number_in(std::string_view text) {
+// Where columns are not parted by commas, a comma is a decimal mark as well as a point is.
+char separator_of(std::string_view header) {
+  if (header.find('\t') != std::string_view::npos) return '\t';
+  return header.find(';') != std::string_view::npos ? ';' : ',';
+}
+
+std::optional<double> number_in(std::string_view field, char separator) {
   double value = 0;
-  if (text.starts_with('+')) text.remove_prefix(1);
+  if (field.starts_with('+')) field.remove_prefix(1);
+  std::string text(field);
+  if (separator != ',' && std::ranges::count(text, ',') == 1 && text.find('.') == std::string::npos)
+    std::ranges::replace(text, ',', '.');
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
@@ -57,6 +66,7 @@ std::optional<double> number_in(std::string_view text) {
 
 struct Table {
   const std::string& name;
+  char separator;
   std::vector<std::string_view> header;
   std::array<std::size_t, 2> column{};  // where time_s and position_m stand in the header
 
@@ -69,7 +79,8 @@ Result<Table> read_header(std::string_view line, const std::string& name) {
   if (std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
     return fail(Fault::malformed, "this is no table: its first line holds binary data", name,
                 "a path is a CSV with the columns time_s,position_m");
-  Table table{name, split(line, ','), {}};
+  const char separator = separator_of(line);
+  Table table{name, separator, split(line, separator), {}};
   for (std::size_t which = 0; which < kColumns.size(); ++which) {
     const auto found = std::ranges::find(table.header, kColumns[which]);
     if (found == table.header.end())
@@ -85,7 +96,7 @@ Result<Table> read_header(std::string_view line, const std::string& name) {
 Result<double> cell(const Table& table, const std::vector<std::string_view>& fields, std::size_t line,
                     std::size_t which) {
   const std::string_view text = fields[table.column[which]];
-  const auto value = number_in(text);
+  const auto value = number_in(text, table.separator);
   if (!value) return fail(Fault::malformed, fmt::format("'{}' is no number", text), table.place(line, which));
   if (!std::isfinite(*value))
     return fail(Fault::malformed, fmt::format("'{}' is not finite", text), table.place(line, which));
@@ -93,7 +104,7 @@ Result<double> cell(const Table& table, const std::vector<std::string_view>& fie
 }
 
 Result<void> add_row(FingerPath& path, const Table& table, std::string_view text, std::size_t line) {
-  const auto fields = split(text, ',');
+  const auto fields = split(text, table.separator);
   if (fields.size() != table.header.size())
     return fail(Fault::malformed,
                 fmt::format("the row has {} fields, the header {}", fields.size(), table.header.size()),

@@ -16,6 +16,16 @@ TEST(FingerPathCsv, TakesItsColumnsByNameWhereverTheyStand) {
   EXPECT_EQ(path->position_m, (std::vector<double>{0.001, 0.002}));
 }
 
+TEST(FingerPathCsv, DecimalCommasBetweenSemicolonsOrTabs) {
+  for (const char* text :
+       {"time_s;position_m\n0;-0,5\n0,5;+1,25e-3\n", "time_s\tposition_m\n0\t-0.5\n0,5\t1,25e-3\n"}) {
+    const auto path = parse_finger_path(text, "p.csv");
+    ASSERT_TRUE(path) << message(path.error());
+    EXPECT_EQ(path->time_s, (std::vector<double>{0, 0.5}));
+    EXPECT_EQ(path->position_m, (std::vector<double>{-0.5, 1.25e-3}));
+  }
+}
+
 struct Bad {
   const char* text;
   const char* said;
@@ -39,7 +49,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"", "empty"}, Bad{"time_s,position_m\n", "at least 2 rows, here are 0"},
         Bad{"time_s,position_m\n0,0\n", "at least 2 rows, here are 1"},
         Bad{"time,position_m\n0,0\n1,1\n", "no column 'time_s', only time, position_m"},
-        Bad{"time_s;position_m\n0;0\n1;1\n", "only time_s;position_m"},
+        Bad{"time_s;position_m\n0;0\n1;1,2,3\n", "'1,2,3' is no number"},
+        Bad{"time_s,position_m\n0;0\n1;1\n", "line 2: the row has 1 fields"},
         Bad{"0,0\n1,1\n", "no column 'time_s', only 0, 0"},
         Bad{"time_s,position_m\n0,0\n1,abc\n", "line 3, column 2 (position_m): 'abc' is no number"},
         Bad{"time_s,position_m\n0,0\n1,\n", "line 3, column 2 (position_m): '' is no number"},
