@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <span>
 
+#include "firmware-host/wire_words.hpp"
+
 namespace tacto::capture {
 namespace {
 
@@ -47,6 +49,10 @@ schema::Result<void> DiskWriter::write(const FrameBlock& block) {
     if (const auto added = live_.add(gap); !added) return added;
   for (const auto& [sequence, device_s, host_s] : block.events.clock_pairs)
     if (const auto added = live_.add(schema::ClockPair{sequence, device_s, host_s}); !added) return added;
+  for (const firmware_host::DeviceFault& fault : block.events.faults) {
+    const schema::FaultNote note{fault.frame, firmware_host::words_of(fault.code, fault.detail).what};
+    if (const auto added = live_.add(note); !added) return added;
+  }
   for (const schema::Mark& mark : block.marks)
     if (const auto added = live_.add(mark); !added) return added;
   return live_.write(std::span<const std::int32_t>(block.codes).first(block.used));
