@@ -15,9 +15,9 @@ namespace tacto::spatial {
 /// Values go in in chunks of any size, filtered values come out in order, later, and as many as went in once
 /// finish() was called. The chunks' sizes change nothing, not a bit. One stretch without gaps at a time;
 /// after finish() the next may begin. Lag and memory: of BlockFourierFilter and BlockZeroPhase (15 to 500 Hz
-/// at 10 kHz: 39 s or 8 s, 6 MB at most); FilterMethod::none without an equaliser does not lag. The plain
-/// truncation (Edges::none with FilterMethod::fourier, or with an equaliser) is the transform of the whole
-/// stretch: it holds all of it until finish(). Not shared between threads.
+/// at 10 kHz: 39 s and 10 MB, or 8 s and 5 MB); FilterMethod::none without an equaliser does not lag. The
+/// plain truncation (Edges::none with FilterMethod::fourier, or with an equaliser) is the transform of the
+/// whole stretch: it holds all of it until finish(). Not shared between threads.
 class BlockTimeFilter {
  public:
   /// `longest` is a promise that no stretch has more values: short ones are then filtered in little memory.

@@ -25,6 +25,8 @@ constexpr double kLowestTreated = 1.0 / 512;
 constexpr double kRoomForGain = 1.25;
 constexpr std::size_t kFrame = 8192, kFewestPerFrame = 64;
 constexpr double kNothing = 1e-9;
+// More values than any record has.
+constexpr double kEndless = 1e15;
 
 double lowest_treated(Band band, double sample_rate_hz) {
   return std::max(band.low_hz, kLowestTreated * std::min(band.high_hz, sample_rate_hz / 2));
@@ -129,13 +131,11 @@ class BlockFourierFilter::State {
 
   // How many values of the lower rate the longest record takes, with what is beyond its ends.
   std::size_t lower_count(std::size_t longest, Band band, double sample_rate_hz) const {
-    const double beyond =
-        2 *
-        static_cast<double>(
-            EndTreatment::for_lowest(lowest_treated(band, sample_rate_hz), sample_rate_hz, longest).padding);
-    const double all = static_cast<double>(longest) + beyond + 4 * static_cast<double>(chain_.memory());
-    const double lower = all / static_cast<double>(chain_.factor()) + 1;
-    return lower < 1e15 ? static_cast<std::size_t>(lower) : longest;
+    const EndTreatment ends = EndTreatment::for_lowest(lowest_treated(band, sample_rate_hz), sample_rate_hz,
+                                                       std::max<std::size_t>(longest, 2));
+    const double beyond = 2 * static_cast<double>(ends.padding) + 4 * static_cast<double>(chain_.memory());
+    const double lower = (static_cast<double>(longest) + beyond) / factor() + 1;
+    return lower < kEndless ? static_cast<std::size_t>(lower) : longest;
   }
 
   void run_frames(std::vector<double>& out) {

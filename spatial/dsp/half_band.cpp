@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -22,12 +23,15 @@ double kaiser_taps(double attenuation_db, double width) {
   return (attenuation_db - 8) / (2.285 * 2 * std::numbers::pi * width);
 }
 
-// Four values side by side, wherever they lie in memory.
-using Lanes [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+// Four values side by side.
+using Lanes [[gnu::vector_size(32)]] = double;
 constexpr std::size_t kLanes = 4, kTile = 4 * kLanes;
 
-TACTO_SIMD_INLINE const Lanes& lanes(const double* values) {
-  return *reinterpret_cast<const Lanes*>(values);
+TACTO_SIMD_INLINE void add_pair(Lanes& sum, double tap, const double* before, const double* after) {
+  Lanes low, high;
+  std::memcpy(&low, before, sizeof low);
+  std::memcpy(&high, after, sizeof high);
+  sum += tap * (low + high);
 }
 
 // out[j] = sum over k of taps[k] (before[j - k] + after[j + k]), for kTile values. In so many words, since
@@ -35,16 +39,18 @@ TACTO_SIMD_INLINE const Lanes& lanes(const double* values) {
 TACTO_SIMD_INLINE void tile_sum(const double* before, const double* after, const double* taps,
                                 std::size_t count, double* out) {
   Lanes sum0 = {}, sum1 = {}, sum2 = {}, sum3 = {};
-  for (std::size_t k = 0; k < count; ++k, --before, ++after) {
-    sum0 += taps[k] * (lanes(before) + lanes(after));
-    sum1 += taps[k] * (lanes(before + kLanes) + lanes(after + kLanes));
-    sum2 += taps[k] * (lanes(before + 2 * kLanes) + lanes(after + 2 * kLanes));
-    sum3 += taps[k] * (lanes(before + 3 * kLanes) + lanes(after + 3 * kLanes));
+  for (std::size_t k = 0; k < count; ++k) {
+    const double* low = before - k;
+    const double* high = after + k;
+    add_pair(sum0, taps[k], low, high);
+    add_pair(sum1, taps[k], low + kLanes, high + kLanes);
+    add_pair(sum2, taps[k], low + 2 * kLanes, high + 2 * kLanes);
+    add_pair(sum3, taps[k], low + 3 * kLanes, high + 3 * kLanes);
   }
-  for (const auto& sum : {&sum0, &sum1, &sum2, &sum3}) {
-    *reinterpret_cast<Lanes*>(out) = *sum;
-    out += kLanes;
-  }
+  std::memcpy(out, &sum0, sizeof sum0);
+  std::memcpy(out + kLanes, &sum1, sizeof sum1);
+  std::memcpy(out + 2 * kLanes, &sum2, sizeof sum2);
+  std::memcpy(out + 3 * kLanes, &sum3, sizeof sum3);
 }
 
 // The same for n values.
@@ -55,7 +61,7 @@ void symmetric_sum(const double* before, const double* after, const double* taps
   for (; j + kTile <= n; j += kTile) tile_sum(before + j, after + j, taps, count, out + j);
   for (; j < n; ++j) {
     double sum = 0;
-    for (std::size_t k = 0; k < count; ++k) sum += taps[k] * (before[j - k] + after[j + k]);
+    for (std::size_t k = 0; k < count; ++k) sum += taps[k] * (*(before + j - k) + after[j + k]);
     out[j] = sum;
   }
 }
