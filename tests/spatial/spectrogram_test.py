@@ -211,6 +211,27 @@ class Spectrogram(unittest.TestCase):
     def test_agrees_with_scipy_without_detrending(self):
         self.compare(["--detrend", "none"], 10000, 100, 16384, False)
 
+    def test_a_measured_height_profile_agrees_with_scipy(self):
+        profile = Path(os.environ["TACTO_DATA"]) / "profiles" / "edm.xml"
+        if not profile.exists():
+            self.skipTest("skipped: no real data")
+        data = xml.parse(profile).getroot().find("DATAFILE")
+        height_m = 1e-6 * np.array(data.find("DATA_POINT_VALUES").text.split(), float)
+        pitch_m = 1e-6 * float(data.find("SPACING").text)
+        write_texture(self.stem, height_m, pitch_m, quantity="height", unit="m")
+        x = np.asarray(height_m, np.float32).astype(float)
+        for highest in (100, 2000):
+            options = ["--window", "1mm", "--hop", "10um", "--max-frequency", f"{highest}/mm"]
+            report = json.loads(self.made(self.stem, "-o", self.here / "edm.nc", *options, "--json").stdout)
+            self.assertEqual(report["level_reference"], "1 um^2 mm")
+            k, _, expected = signal.spectrogram(
+                x, 1 / pitch_m, "blackman", 4000, 3960, 4096, detrend="constant", scaling="density"
+            )
+            density = read_nc(self.here / "edm.nc")[2]
+            expected = expected[k * 1e-3 <= highest * (1 + 1e-9)].T * 1e3  # m^3 to m^2 mm
+            self.assertEqual(density.shape, expected.shape)
+            self.check_cells(density, expected)
+
     def test_agrees_with_scipy_for_odd_lengths_and_all_bins(self):
         options = ["--window", "3.001mm", "--hop", "0.25mm", "--padding", "4.095mm", "--max-frequency", "500/mm"]
         self.compare(options, 3001, 250, 4095, "constant", 500)
