@@ -25,6 +25,8 @@ constexpr double kLowestTreated = 1.0 / 512;
 constexpr double kRoomForGain = 1.25;
 constexpr std::size_t kFrame = 8192, kFewestPerFrame = 64;
 constexpr double kNothing = 1e-9;
+// More values than any record has.
+constexpr double kEndless = 1e15;
 
 double lowest_treated(Band band, double sample_rate_hz) {
   return std::max(band.low_hz, kLowestTreated * std::min(band.high_hz, sample_rate_hz / 2));
@@ -129,20 +131,18 @@ class BlockFourierFilter::State {
 
   // How many values of the lower rate the longest record takes, with what is beyond its ends.
   std::size_t lower_count(std::size_t longest, Band band, double sample_rate_hz) const {
-    const double beyond =
-        2 *
-        static_cast<double>(
-            EndTreatment::for_lowest(lowest_treated(band, sample_rate_hz), sample_rate_hz, longest).padding);
-    const double all = static_cast<double>(longest) + beyond + 4 * static_cast<double>(chain_.memory());
-    const double lower = all / static_cast<double>(chain_.factor()) + 1;
-    return lower < 1e15 ? static_cast<std::size_t>(lower) : longest;
+    const EndTreatment ends = EndTreatment::for_lowest(lowest_treated(band, sample_rate_hz), sample_rate_hz,
+                                                       std::max<std::size_t>(longest, 2));
+    const double beyond = 2 * static_cast<double>(ends.padding) + 4 * static_cast<double>(chain_.memory());
+    const double lower = (static_cast<double>(longest) + beyond) / factor() + 1;
+    return lower < kEndless ? static_cast<std::size_t>(lower) : longest;
   }
 
   void run_frames(std::vector<double>& out) {
     std::size_t begin = 0;
     for (; waiting_.size() - begin >= frame_; begin += frame_)
       convolution_.push(chain_.down(std::span(waiting_).subspan(begin, frame_)), sink_to(out));
-    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(begin));
+    if (begin > 0) waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(begin));
   }
 
   OverlapSave::Sink sink_to(std::vector<double>& out) {
@@ -160,7 +160,9 @@ class BlockFourierFilter::State {
     const std::size_t from = std::clamp(late(), begin, end), to = std::clamp(late() + taken_, begin, end);
     const double level = level_gain_ * extended_.start_level();
     const auto wanted = values.subspan(from - begin, to - from);
-    std::ranges::transform(wanted, std::back_inserter(out), [level](double value) { return value + level; });
+    out.insert(out.end(), wanted.begin(), wanted.end());
+    if (level != 0)
+      for (double& value : std::span(out).last(wanted.size())) value += level;
   }
 
   // After its end the record stays level: once the chain knows nothing else, the lower rate has that level.

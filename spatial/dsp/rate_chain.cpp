@@ -6,8 +6,8 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kError = 1e-6;
-// The last half-band filter then has a tenth of its higher rate to fall in: 40 multiplications or so.
+constexpr double kError = 1e-8;
+// The last half-band filter then has a tenth of its higher rate to fall in: 27 taps to each side.
 constexpr double kLeastRate = 2.5;
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace tacto::spatial {
 
-/// Each stage passes the band, and folds nothing into it, to 1e-6.
+/// Each stage passes the band, and folds nothing into it, to 1e-8.
 class RateChain {
  public:
   /// Halves the rate while it stays at least 2.5 times `highest_hz`; not at all where it cannot.

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kPaddingPeriods = 8;
 constexpr double kBaselinePeriods = 2;
+// What is no longer needed is left where it is until there is so much of it.
+constexpr std::size_t kLeastErased = 8192;
 
 // A straight line by least squares through values[0 ... count), level at index 0.
 struct Line {
@@ -75,18 +77,24 @@ void ExtendedRecord::begin(EndTreatment treatment, std::vector<double>& extended
   start_level_ = line.level;
   for (std::size_t k = treatment.padding; k >= 1; --k)
     extended.push_back(beyond(value, line, line.level, k, treatment.padding) - start_level_);
-  for (const double held : held_) extended.push_back(held - start_level_);
+  append_record(held_, extended);
   begun_ = true;
+}
+
+void ExtendedRecord::append_record(std::span<const double> values, std::vector<double>& extended) const {
+  const std::size_t before = extended.size();
+  extended.resize(before + values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) extended[before + i] = values[i] - start_level_;
 }
 
 void ExtendedRecord::push(std::span<const double> values, std::vector<double>& extended) {
   held_.insert(held_.end(), values.begin(), values.end());
   const std::size_t needed = std::max(most_.padding + 1, most_.baseline);
   if (begun_)
-    for (const double value : values) extended.push_back(value - start_level_);
+    append_record(values, extended);
   else if (held_.size() >= needed)
     begin(most_, extended);
-  if (begun_ && held_.size() > 2 * needed)
+  if (begun_ && held_.size() > 2 * needed + kLeastErased)
     held_.erase(held_.begin(), held_.end() - static_cast<std::ptrdiff_t>(needed));
 }
 

@@ -45,6 +45,7 @@ class ExtendedRecord {
 
  private:
   void begin(EndTreatment treatment, std::vector<double>& extended);
+  void append_record(std::span<const double> values, std::vector<double>& extended) const;
 
   double low_hz_, sample_rate_hz_;
   EndTreatment most_;  // of a record that is long enough

@@ -28,15 +28,16 @@ void run_sections(const Section* sections, Delays* delays, double* first, std::s
   std::array<Delays, count> d;
   std::copy_n(sections, count, s.begin());
   std::copy_n(delays, count, d.begin());
-  for (std::size_t i = 0; i < size; ++i, first += step) {
-    double value = *first;
+  for (std::size_t i = 0; i < size; ++i) {
+    double& place = first[static_cast<std::ptrdiff_t>(i) * step];
+    double value = place;
     for (std::size_t k = 0; k < count; ++k) {
       const double output = s[k].b0 * value + d[k].z1;
       d[k].z1 = (s[k].b1 * value + d[k].z2) - s[k].a1 * output;
       d[k].z2 = s[k].b2 * value - s[k].a2 * output;
       value = output;
     }
-    *first = value;
+    place = value;
   }
   std::ranges::copy(d, delays);
 }

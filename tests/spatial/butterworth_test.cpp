@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
+#include "spatial/reference/exact_zero_phase.hpp"
 #include "tests/spatial/golden_file.hpp"
 
 namespace tacto::spatial {
@@ -57,6 +59,27 @@ TEST(Butterworth, ZeroPhaseHasNoDelayAndTheSquaredGain) {
   const auto filtered = filter_zero_phase(*sections, tone, 5000);
   // At the band's edge |H|^2 is exactly a half.
   for (std::size_t i = 8000; i < 12000; ++i) ASSERT_NEAR(filtered[i], (tone[i] - 7) / 2, 1e-6);
+}
+
+TEST(Butterworth, ZeroPhaseHoldsToTwelveDigitsInLongDouble) {
+  // 60 s at 10 kHz are 600,000 samples; half of them show the same.
+  const auto sections = butterworth_band_pass(4, {15, 500}, 10000);
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  std::vector<double> brown(300000, 40.0);
+  for (std::size_t i = 1; i < brown.size(); ++i) brown[i] = brown[i - 1] + normal(random);
+  const auto filtered = filter_zero_phase(*sections, brown, 5333);
+  const auto error_of = [&](const std::vector<reference::ExactSection>& exact_sections) {
+    const auto exact = reference::exact_zero_phase(exact_sections, brown, 5333);
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < brown.size(); ++i) {
+      error = std::max(error, std::abs(filtered[i] - exact[i]));
+      size = std::max(size, std::abs(exact[i]));
+    }
+    return error / size;
+  };
+  EXPECT_LT(error_of(reference::widened(*sections)), 1e-12);
+  EXPECT_LT(error_of(reference::exact_butterworth(4, {15, 500}, 10000)), 2e-12);
 }
 
 TEST(Butterworth, RefusesWhatCannotBe) {
