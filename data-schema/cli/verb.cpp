@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace tacto::cli {
@@ -37,6 +38,19 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& name, std::optional<
     value_si = parsed(name, text, dimension);
   };
   return app.add_option_function<std::string>(name, read, help)->type_name(type_name(dimension));
+}
+
+std::string words_of(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, "|"));
+}
+
+std::size_t choose(const std::string& option, const std::string& word,
+                   const std::vector<std::string>& words) {
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end())
+    throw CLI::ValidationError(option,
+                               fmt::format("there is no '{}': take one of {}", word, fmt::join(words, ", ")));
+  return static_cast<std::size_t>(found - words.begin());
 }
 
 void warn(const std::string& text) {

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "data-schema/cli/report.hpp"
 #include "data-schema/error.hpp"
@@ -33,6 +35,34 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value_
                           schema::Dimension dimension, const std::string& help);
 CLI::Option* add_quantity(CLI::App& app, const std::string& name, std::optional<double>& value_si,
                           schema::Dimension dimension, const std::string& help);
+
+/// The words that an option takes and what each means; the first that has the value is the default shown.
+template <class Choice>
+using Choices = std::vector<std::pair<std::string, Choice>>;
+
+/// "a|b|c"
+std::string words_of(const std::vector<std::string>& words);
+/// The word's index. Throws CLI::ValidationError, with the words there are: for use in an option's callback
+/// only.
+std::size_t choose(const std::string& option, const std::string& word, const std::vector<std::string>& words);
+
+/// An option that takes one of some words.
+template <class Choice>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Choice& value, const Choices<Choice>& choices,
+                        const std::string& help) {
+  std::vector<std::string> words;
+  std::string standard;
+  for (const auto& [word, meaning] : choices) {
+    words.push_back(word);
+    if (meaning == value && standard.empty()) standard = word;
+  }
+  auto read = [name, words, choices, &value](const std::string& word) {
+    value = choices[choose(name, word, words)].second;
+  };
+  return app.add_option_function<std::string>(name, read, help)
+      ->type_name(words_of(words))
+      ->default_str(standard);
+}
 
 /// One line to stderr: what the user should know although the job goes on.
 void warn(const std::string& text);

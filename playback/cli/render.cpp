@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 
 #include "data-schema/cli/progress.hpp"
@@ -27,7 +26,9 @@ struct Options {
 void add_files(CLI::App& app, Options& o) {
   app.add_option("texture", o.texture, "Texture: its stem, NAME.texture.json or NAME.texture.wav")
       ->required();
-  app.add_option("--path", o.path, "Finger path: CSV with the columns time_s,position_m")->required();
+  app.add_option("--path", o.path,
+                 "Finger path: CSV with the columns time_s,position_m; between its points by monotone cubics")
+      ->required();
   app.add_option("--transducer", o.transducer, "Transducer: a preset or NAME.transducer.json")->required();
   app.add_option("-o,--output", o.drive, "The drive: float WAV in volts at the amplifier's input")
       ->required();
@@ -51,35 +52,23 @@ void add_quantities(CLI::App& app, RenderOptions& o) {
                     "Fade at either end of the path, for a finger that starts inside the texture");
 }
 
-template <class Choice>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Choice& choice,
-                        const std::map<std::string, Choice>& choices, const std::string& help) {
-  const auto chosen =
-      std::ranges::find_if(choices, [&](const auto& entry) { return entry.second == choice; });
-  const std::string standard = chosen->first;
-  std::string names;
-  for (const auto& [key, value] : choices) names += (names.empty() ? "" : "|") + key;
-  return app.add_option(name, choice, help)
-      ->transform(CLI::CheckedTransformer(choices).description(""))
-      ->type_name(names)
-      ->default_str(standard);
-}
-
 void add_model(CLI::App& app, RenderOptions& o) {
-  add_choice<Inverse>(
+  cli::add_choice<Inverse>(
       app, "--inverse", o.inverse,
       {{"full", Inverse::full}, {"magnitude", Inverse::magnitude}, {"gain", Inverse::gain}},
       "What of the transducer the drive undoes: amplitude and phase, amplitude, or the gain at rest");
-  add_choice<Reconstruction>(app, "--reconstruction", o.reconstruction,
-                             {{"none", Reconstruction::none}, {"butterworth3", Reconstruction::butterworth3}},
-                             "Analog filter behind the converter, undone as well");
+  CLI::Option* reconstruction = cli::add_choice<Reconstruction>(
+      app, "--reconstruction", o.reconstruction,
+      {{"none", Reconstruction::none}, {"butterworth3", Reconstruction::butterworth3}},
+      "Analog filter behind the converter, undone as well");
   cli::add_quantity(app, "--cutoff", o.reconstruction_cutoff_hz, Dimension::frequency,
-                    "Cut-off of butterworth3");
-  add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
-                   "Whether the converter holds each sample until the next, undone as well");
-  add_choice<OverLimit>(app, "--over-limit", o.over_limit,
-                        {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
-                        "What to do with a drive that passes a limit of the transducer");
+                    "Cut-off of butterworth3")
+      ->needs(reconstruction);
+  cli::add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
+                        "Whether the converter holds each sample until the next, undone as well");
+  cli::add_choice<OverLimit>(app, "--over-limit", o.over_limit,
+                             {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
+                             "What to do with a drive that passes a limit of the transducer");
 }
 
 std::vector<SignalFile> files_of(const Options& o, const Rendering& rendering) {

@@ -115,6 +115,8 @@ def the_rest_refuses():
     refused(*render, "wiertlewski2011", "--path", "path.csv", "--gain", "1e300m/N", code=USAGE, says=["gain"])
     refused(*render, "wiertlewski2011", "--path", "oak.texture.wav", code=MALFORMED, says=["binary"])
     refused("carve", code=USAGE, says=["carve", "spatial"])
+    refused(*render, "wiertlewski2011", "--path", "path.csv", "--inverse", "banana", code=USAGE, says=["banana", "magnitude"])
+    refused(*render, "wiertlewski2011", "--path", "path.csv", "--cutoff", "500Hz", code=USAGE, says=["--reconstruction"])
     refused(*render, "acme", "--path", "path.csv", code=NOT_FOUND, says=["acme", "wiertlewski2011"])
     refused(*render, "wiertlewski2011", "--path", "absent.csv", code=NOT_FOUND, says=["absent.csv"])
     refused(*render, "wiertlewski2011", "--path", "back.csv", code=MALFORMED, says=["back.csv", "4"])

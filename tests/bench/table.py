@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The benchmark table: each stage here and in SciPy, measured in this run; and the memory of whole commands.
+
+usage: table.py TACTOGRAPH BENCH_FOLDER [-o table.json]
+
+CPU time of one thread, medians. Machines are shared and noisy: compare the columns of one run, not two runs.
+"""
+import argparse
+import glob
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PYTHON = "/usr/bin/python3"  # Debian's own: SciPy is installed for it
+# stage -> what people call it
+STAGES = {
+    "pchip_true_inverse": "PCHIP with true inverse (SciPy: axes swapped)",
+    "zero_phase_sos": "zero-phase second-order sections, in time",
+    "fourier_band_pass/60": "Fourier band-pass, 60 s",
+    "fourier_band_pass/600": "Fourier band-pass, 600 s, in blocks",
+    "packed_fftw_float": "peer: FFTW alone, float, two frames packed",
+    "spectrogram_all_bins": "spectrogram, all 8,193 bins",
+    "spectrogram_to_15_per_mm": "spectrogram up to 15 /mm (SciPy: decimated by hand)",
+    "import_csv": "import of the recording's CSV (NumPy: loadtxt)",
+    "recording_to_spectrogram": "recording to spectrogram up to 15 /mm, written",
+}
+
+
+def progress(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def medians(folder):
+    """Median CPU time in ms and the counters of every benchmark."""
+    found = {}
+    for bench in sorted(glob.glob(os.path.join(folder, "*_bench"))):
+        progress(f"running {os.path.basename(bench)}")
+        run = subprocess.run([bench, "--benchmark_format=json", "--benchmark_repetitions=5",
+                              "--benchmark_report_aggregates_only=true"], stdout=subprocess.PIPE, check=True)
+        for entry in json.loads(run.stdout)["benchmarks"]:
+            if entry.get("aggregate_name") == "median":
+                scale = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}[entry["time_unit"]]
+                found[entry["run_name"]] = {"ms": entry["cpu_time"] * scale, "error": entry.get("error")}
+    return found
+
+
+def scipy_columns():
+    progress("running SciPy's columns")
+    return json.loads(subprocess.run([PYTHON, os.path.join(HERE, "scipy_columns.py")], stdout=subprocess.PIPE,
+                                     check=True).stdout)
+
+
+def peak_memory_mb(command, folder):
+    """The largest resident size of a run."""
+    child = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    said = child.stderr.read()
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode != 0:
+        raise SystemExit(f"table.py: {' '.join(command)} failed: {said.decode()}")
+    return usage.ru_maxrss / 1024
+
+
+def write_csv(path, seconds):
+    import numpy as np
+    from scipy_columns import RATE, workload
+    with open(path, "w", encoding="ascii") as file:
+        file.write("time_s,force_V,count\n")
+        position, force = workload(seconds)
+        table = np.column_stack([np.arange(len(force)) / RATE, force, np.round(position / 1e-6)])
+        np.savetxt(file, table, delimiter=",", fmt=("%.6f", "%.9f", "%d"))
+
+
+def memory(tactograph):
+    """Peak memory above an idle process in MB, by command and the recording's length."""
+    rows = {}
+    with tempfile.TemporaryDirectory() as folder:
+        idle = peak_memory_mb([tactograph, "--version"], folder)
+        for seconds in (60, 600):
+            progress(f"memory of whole commands on {seconds} s")
+            write_csv(os.path.join(folder, f"r{seconds}.csv"), seconds)
+            name = f"r{seconds}"
+            commands = {
+                "import": ["import", f"{name}.csv", "-o", name, "--rate", "10kHz", "--channel", "tangential_force=2*1N",
+                           "--channel", "position=3*1um"],
+                "spatial": ["spatial", name, "-o", name],
+                "spectrogram": ["spectrogram", name, "-o", f"{name}.nc"],
+            }
+            for verb, command in commands.items():
+                rows[f"{verb}, {seconds} s"] = peak_memory_mb([tactograph, *command], folder) - idle
+    return {"idle_mb": idle, "above_idle_mb": rows}
+
+
+def print_table(ours, theirs, used):
+    print(f"{'stage':56} {'SciPy':>10} {'here':>10} {'ratio':>7}   error")
+    for stage, title in STAGES.items():
+        mine, other = ours[stage], theirs.get(stage)
+        beside = f"{other:8.1f}ms" if other else " " * 10
+        ratio = f"{other / mine['ms']:6.1f}x" if other else " " * 7
+        error = "" if mine["error"] is None else f"   {mine['error']:.2g}"
+        print(f"{title:56} {beside} {mine['ms']:8.1f}ms {ratio}{error}")
+    peer = ours["spectrogram_all_bins"]["ms"] / ours["packed_fftw_float"]["ms"]
+    print(f"\nspectrogram of all bins against FFTW alone: {peer:.2f} times")
+    print(f"\npeak memory above an idle process ({used['idle_mb']:.0f} MB):")
+    for what, mb in used["above_idle_mb"].items():
+        print(f"  {what:24} {mb:6.1f} MB")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("tactograph")
+    parser.add_argument("benches")
+    parser.add_argument("-o", "--output", help="also write the figures as JSON")
+    arguments = parser.parse_args()
+    ours, theirs = medians(arguments.benches), scipy_columns()
+    missing = [stage for stage in STAGES if stage not in ours]
+    if missing:
+        raise SystemExit(f"table.py: no benchmark is named {', '.join(missing)}")
+    used = memory(os.path.abspath(arguments.tactograph))
+    print_table(ours, theirs, used)
+    if arguments.output:
+        with open(arguments.output, "w", encoding="utf-8") as file:
+            json.dump({"here": ours, "scipy_ms": theirs, "memory": used}, file, indent=1)
+
+
+if __name__ == "__main__":
+    main()
