@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "spatial/cli/spatial_options.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 namespace tacto::spatial {
 namespace {
 
@@ -43,18 +40,6 @@ Result<SpaceFilter> space_filter(const SpatialOptions& options) {
   return SpaceFilter{filter.method, band->low, band->high, filter.edges, filter.order};
 }
 
-// An option that takes one of some words, shown as "a|b|c".
-template <class Enum>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& value,
-                        const std::vector<std::pair<std::string, Enum>>& choices, const std::string& help) {
-  std::vector<std::string> words;
-  for (const auto& [word, meaning] : choices) words.push_back(word);
-  return app.add_option(name, value, help)
-      ->transform(CLI::CheckedTransformer(choices).description(""))
-      ->type_name(fmt::format("{}", fmt::join(words, "|")))
-      ->default_str(words.front());
-}
-
 void declare_stretch(CLI::App& app, SpatialOptions& options) {
   auto* stroke = app.add_option("--stroke", options.stroke, "Only this stroke of those found, from 1");
   auto* from = cli::add_quantity(app, "--from", options.from_s, Dimension::time,
@@ -73,7 +58,7 @@ void declare_stretch(CLI::App& app, SpatialOptions& options) {
 void declare_average(CLI::App& app, SpatialOptions& options) {
   app.add_flag("--both-ways", options.both_ways, "Average strokes of both directions into one")
       ->needs("--average");
-  add_choice<Align>(
+  cli::add_choice<Align>(
       app, "--align", options.align, {{"position", Align::position}, {"correlation", Align::correlation}},
       "Average strokes as they lie on the bench, or each shifted to agree best with those before")
       ->needs("--average");
@@ -87,25 +72,25 @@ void declare_filter(CLI::App& app, SpatialOptions& options) {
   auto* band =
       app.add_option("--band", options.band, "Frequencies that pass, LOW..HIGH, or off (default 15Hz..500Hz)")
           ->type_name("LOW..HIGH");
-  auto* band_in = add_choice<BandIn>(app, "--band-in", options.band_in,
-                                     {{"time", BandIn::time}, {"space", BandIn::space}},
-                                     "Where the band-pass is: over time, before, or along position, after, "
-                                     "with --band in cycles per length");
+  auto* band_in = cli::add_choice<BandIn>(
+      app, "--band-in", options.band_in, {{"time", BandIn::time}, {"space", BandIn::space}},
+      "Where the band-pass is: over time, before, or along position, after, "
+      "with --band in cycles per length");
   auto* low = cli::add_quantity(app, "--low", options.low_hz, Dimension::frequency,
                                 "Lowest frequency that passes (default 15Hz)");
   auto* high = cli::add_quantity(app, "--high", options.high_hz, Dimension::frequency,
                                  "Highest frequency that passes (default 500Hz)");
   band->excludes(low)->excludes(high);
   band_in->excludes(low)->excludes(high);
-  add_choice<FilterMethod>(app, "--filter", filter.method,
-                           {{"fourier", FilterMethod::fourier},
-                            {"butterworth", FilterMethod::butterworth},
-                            {"none", FilterMethod::none}},
-                           "fourier truncates the spectrum, butterworth runs forwards and backwards");
+  cli::add_choice<FilterMethod>(app, "--filter", filter.method,
+                                {{"fourier", FilterMethod::fourier},
+                                 {"butterworth", FilterMethod::butterworth},
+                                 {"none", FilterMethod::none}},
+                                "fourier truncates the spectrum, butterworth runs forwards and backwards");
   app.add_option("--order", filter.order, "Order of the Butterworth filter, before it is run both ways")
       ->check(CLI::Range(1, 20));
-  add_choice<Edges>(app, "--edges", filter.edges, {{"treated", Edges::treated}, {"none", Edges::none}},
-                    "treated keeps the record's ends from ringing, none is the plain filter");
+  cli::add_choice<Edges>(app, "--edges", filter.edges, {{"treated", Edges::treated}, {"none", Edges::none}},
+                         "treated keeps the record's ends from ringing, none is the plain filter");
 }
 
 }  // namespace
@@ -126,7 +111,7 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
   declare_filter(app, options);
   cli::add_quantity(app, "--grid", options.texture.pitch_m, Dimension::length,
                     "Distance of the texture's samples");
-  add_choice<ResampleMethod>(
+  cli::add_choice<ResampleMethod>(
       app, "--method", options.texture.method,
       {{"hermite", ResampleMethod::hermite},
        {"linear", ResampleMethod::linear},
@@ -134,9 +119,10 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
        {"sinc", ResampleMethod::sinc}},
       "How values go to space: monotone cubics and their true inverse, straight lines, cubics with "
       "the axes swapped, or a windowed sinc at the true inverse (exact to 3e-7, ten times the work)");
-  add_choice<Equalise>(app, "--equalise", options.texture.equalise,
-                       {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
-                       "Divide by the transducer's sensor response; auto: where the recording names one");
+  cli::add_choice<Equalise>(
+      app, "--equalise", options.texture.equalise,
+      {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
+      "Divide by the transducer's sensor response; auto: where the recording names one");
 }
 
 // --band, --low and --high, --filter none: all say the same thing, the filter.
