@@ -78,7 +78,7 @@ struct Texture {
   double source_origin_m = 0;  ///< where position 0 lay on the bench
   std::vector<BandPoint> valid_band;
   TextureSource source;                    ///< of an average: from its first stroke to its last
-  std::optional<TextureAverage> average;  ///< of several strokes; the WAV has the spread as 2nd channel
+  std::optional<TextureAverage> average;   ///< of several strokes; the WAV has the spread as 2nd channel
   std::optional<Certificate> certificate;  ///< which of its peaks are the surface's
   std::string simulated;                   ///< by what, where it is simulated
   std::string surface, subject, finger, notes;

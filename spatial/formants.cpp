@@ -29,6 +29,9 @@ Result<void> check(const Spectrogram& spectrogram, const FormantOptions& options
   for (const auto& length_m : {options.shortest_m, options.bridge_m})
     if (length_m && !(std::isfinite(*length_m) && *length_m >= 0))
       return schema::fail(Fault::usage, "a length must be 0 or more", "formants");
+  if (spectrogram.scaling != schema::Scaling::density)
+    return schema::fail(Fault::unsuitable, "formants are found in densities, not in amplitudes",
+                        spectrogram.name);
   if (spectrogram.position_m.empty() || spectrogram.bins < 3)
     return schema::fail(Fault::unsuitable, "the spectrogram has nothing to find formants in",
                         spectrogram.name);

@@ -38,7 +38,7 @@ struct FormantOptions {
 /// extent of a line that begins and ends at once within 0.15 of the window. False alarms: white noise gives
 /// at most one ridge in 10 m of texture up to 15 /mm with a window of 10 mm.
 /// Errors: usage (thresholds that are not finite or go_on_db above start_db, negative lengths); unsuitable
-/// (no row).
+/// (no row, amplitudes).
 schema::Result<std::vector<schema::Formant>> find_formants(const schema::Spectrogram& spectrogram,
                                                            std::span<const schema::BandPoint> valid_band,
                                                            const FormantOptions& options = {});

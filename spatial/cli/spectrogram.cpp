@@ -111,6 +111,9 @@ Result<void> check_options(const Options& options) {
   if (!(options.picture.dynamic_range_db > 0))
     return schema::fail(Fault::usage, "the dynamic range must be above 0 dB", "--dynamic-range",
                         "60dB is usual");
+  if (options.formants && options.spectrogram.scaling != schema::Scaling::density)
+    return schema::fail(Fault::usage, "formants are found in densities", "--formants",
+                        "leave --scaling amplitude away, or --formants");
   return check_outputs(options.outputs);
 }
 

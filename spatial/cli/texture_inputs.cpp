@@ -135,10 +135,18 @@ Result<void> TextureInputs::open_if_recording() {
     return schema::fail(Fault::unsuitable, "no stroke was found", path,
                         "make a texture of a stretch with 'tactograph spatial --from --to'");
   const std::string name = name_of(path, "");
+  int number = 0;
   for (const Stroke& stroke : strokes) {
-    const int number = static_cast<int>(strokes_.size()) + 1;
+    ++number;
+    if (stroke.finger_up) continue;
     strokes_.push_back({stroke, number, strokes.size() == 1 ? name : fmt::format("{}-{:02}", name, number)});
   }
+  const std::size_t up = strokes.size() - strokes_.size();
+  if (strokes_.empty())
+    return schema::fail(Fault::unsuitable, "the finger is up in every stroke", path,
+                        "'tactograph spatial --finger-up' makes textures of them all the same");
+  if (up > 0)
+    cli::warn(fmt::format("{}: in {} of {} strokes the finger is up; left out", path, up, strokes.size()));
   return {};
 }
 
