@@ -140,8 +140,10 @@ double LoneSamples::usual_distance() const {
   if (count_ == 0) return std::numeric_limits<double>::infinity();
   const auto rank = static_cast<std::uint64_t>(kUsual * static_cast<double>(count_ - 1));
   std::uint64_t below = 0;
-  for (std::size_t bin = 0; bin < histogram_.size(); ++bin)
-    if ((below += histogram_[bin]) > rank) return upper_edge(bin);
+  for (std::size_t bin = 0; bin < histogram_.size(); ++bin) {
+    below += histogram_[bin];
+    if (below > rank) return upper_edge(bin);
+  }
   return 0;
 }
 

@@ -71,8 +71,10 @@ void ClockFinder::survey(std::span<const double> time_s) {
 
 double ClockFinder::median_step() const {
   std::uint64_t below = 0;
-  for (const auto& [key, bin] : bins_)
-    if ((below += bin.count) > (count_ - 1) / 2) return bin.sum / static_cast<double>(bin.count);
+  for (const auto& [key, bin] : bins_) {
+    below += bin.count;
+    if (below > (count_ - 1) / 2) return bin.sum / static_cast<double>(bin.count);
+  }
   return 0;
 }
 

@@ -14,7 +14,7 @@
 namespace tacto::schema {
 namespace {
 
-constexpr off_t kRoom = 256 * 1024;  // a sidecar with some thousand gaps and clock pairs
+constexpr off_t kRoom = off_t{256} * 1024;  // a sidecar with some thousand gaps and clock pairs
 
 tl::unexpected<Error> unwritable(const std::string& path, int error_number) {
   if (error_number == EEXIST)

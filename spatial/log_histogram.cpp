@@ -44,8 +44,10 @@ double LogHistogram::median() const {
   const std::uint64_t half = (count() + 1) / 2;
   std::uint64_t below = zeros_;
   if (below >= half) return 0;
-  for (const Bin& bin : bins_)
-    if ((below += bin.count) >= half) return bin.mean();
+  for (const Bin& bin : bins_) {
+    below += bin.count;
+    if (below >= half) return bin.mean();
+  }
   return 0;
 }
 
@@ -54,8 +56,10 @@ double LogHistogram::median_by_sum() const {
                                       [](double sum, const Bin& bin) { return sum + bin.sum; }) /
                       2;
   double below = 0;
-  for (const Bin& bin : bins_)
-    if (bin.count > 0 && (below += bin.sum) >= half) return bin.mean();
+  for (const Bin& bin : bins_) {
+    below += bin.sum;
+    if (bin.count > 0 && below >= half) return bin.mean();
+  }
   return 0;
 }
 

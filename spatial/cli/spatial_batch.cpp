@@ -96,7 +96,8 @@ Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<
     fault = fault.value_or(outcome.report.error().fault);
   }
   Report report;
-  report.add("done", made.size()).add("recordings", std::move(made));
+  report.add("done", made.size());
+  report.add("recordings", std::move(made));
   if (!skipped.empty()) report.add("skipped", skipped);
   if (fault) report.add("failed", std::move(failed)).ends_with(*fault);
   return report;

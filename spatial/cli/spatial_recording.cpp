@@ -114,7 +114,7 @@ Result<void> Run::check_names(const std::vector<std::string>& stems) {
 }
 
 void Run::warn_of(const std::string& what, const schema::Texture& texture) {
-  for (const std::string& warning : texture_warnings(texture)) warn(what + ": " + warning);
+  for (const std::string& warning : texture_warnings(texture)) warn(fmt::format("{}: {}", what, warning));
 }
 
 // Among several strokes found, one that makes no texture is passed over with a warning.

@@ -34,8 +34,9 @@ void pack_sloping(const Frame& a, const Frame& b, std::span<const float> window,
   for (int n = 0; n < count; ++n) {
     const auto at = static_cast<Real>(n);
     const Real weight = window[n];
-    out[2 * n] = weight * (a.samples[n] - level_a + slope_a * at);
-    out[2 * n + 1] = weight * (b.samples[n] - level_b + slope_b * at);
+    Real* const pair = out + std::ptrdiff_t{2} * n;
+    pair[0] = weight * (a.samples[n] - level_a + slope_a * at);
+    pair[1] = weight * (b.samples[n] - level_b + slope_b * at);
   }
 }
 
