@@ -3,8 +3,6 @@
 
 namespace tacto::core {
 
-using wire::DriveState;
-
 Firmware::Firmware(const Board& board, const Hal& hal) noexcept
     : board_(board), hal_(hal), ticker_(hal), upload_(board.profile_memory, board.profile_samples) {
   wire::Welcome& about = board_.about;
