@@ -44,7 +44,8 @@ Box SheetLayout::heading() const {
 }
 
 SheetCell SheetLayout::cell(std::size_t index) const {
-  const auto column = static_cast<double>(index % columns), row = static_cast<double>(index / columns);
+  const std::size_t rows_above = index / columns;
+  const auto column = static_cast<double>(index % columns), row = static_cast<double>(rows_above);
   const double width = cell_width(columns);
   const double x = kLeft + column * (width + kBetweenColumns);
   const double y = kMargin + kHeadingHeight + row * (kRow + kBetweenRows);
