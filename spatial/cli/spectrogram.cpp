@@ -46,6 +46,12 @@ Result<FormantLists> formants_of(const SpectrogramRun& run, bool wanted) {
   return lists;
 }
 
+std::size_t count_of(const FormantLists& lists) {
+  std::size_t count = 0;
+  for (const auto& list : lists) count += list.size();
+  return count;
+}
+
 SpectrogramFigure figure_of(const SpectrogramRun& run, const FormantLists& formants,
                             const SpectrogramPictureOptions& options) {
   std::vector<SpectrogramPanel> panels;
@@ -124,6 +130,9 @@ Result<Report> run(const Options& options) {
   SpectrogramFiles files;
   if (auto opened = files.open(options.outputs, inputs->several(), options.compress); !opened)
     return schema::forward_error(opened);
+  if (options.formants && !files.has_pictures())
+    return schema::fail(Fault::usage, "formants are drawn on a picture, and none is asked for", "--formants",
+                        "add -o NAME.png, or list them with 'tactograph formants'");
   SpectrogramRun run(options.spectrogram, options.picture.min_frequency_per_m, files, files.has_pictures());
   if (auto done = run.transform(*inputs); !done) return schema::forward_error(done);
   const auto formants = formants_of(run, options.formants);
@@ -132,7 +141,9 @@ Result<Report> run(const Options& options) {
   if (files.has_pictures()) figure = figure_of(run, *formants, options.picture);
   if (auto written = files.finish(figure ? &*figure : nullptr); !written)
     return schema::forward_error(written);
-  return report_of(run, run.lowest_per_m(), options);
+  Report report = report_of(run, run.lowest_per_m(), options);
+  if (options.formants) report.add("formants_drawn", count_of(*formants));
+  return report;
 }
 
 void declare_windows(CLI::App& app, SpectrogramOptions& options) {

@@ -74,7 +74,11 @@ def formants_are_listed_stored_and_drawn():
     assert "formants" in tacto.run("info", "oak.formants.json")[0]
     tacto.run("formants", "oak", "-o", "oak.csv")
     assert len(pathlib.Path("oak.csv").read_text().splitlines()) == 3
-    tacto.run("spectrogram", "oak", "-o", "oak.svg", "--formants")
+    drawn = tacto.run_json("spectrogram", "oak", "-o", "oak.svg", "--formants")["formants_drawn"]
+    assert drawn == 2, drawn
+    tacto.run("spectrogram", "oak", "-o", "oak.nc", "--formants", code=2)
+    assert not pathlib.Path("oak.nc").exists()
+    tacto.run("spectrogram", "oak", "-o", "amplitude.png", "--formants", "--scaling", "amplitude", code=2)
     assert "1.3/mm" in pathlib.Path("oak.svg").read_text()
 
 
