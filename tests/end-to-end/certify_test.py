@@ -66,10 +66,9 @@ def strokes_and_recordings_are_taken_alike():
     """A recording of two strokes, by its name before there are textures, and by theirs after."""
     for name, speed in (("slow", 0.03), ("fast", 0.09)):
         record(name, speed, seed=int(1000 * speed))
-    table = np.vstack([np.loadtxt(f"{name}.csv", delimiter=",", skiprows=1) for name in ("slow", "fast")])
-    turned = np.where(np.arange(len(table)) < len(np.loadtxt("slow.csv", delimiter=",", skiprows=1)), table[:, 1],
-                      table[-1, 1] - table[:, 1])
-    np.savetxt("both.csv", np.column_stack([table[:, 0], turned]), delimiter=",", fmt="%.6f", header="force_N,count",
+    slow, fast = (np.loadtxt(f"{name}.csv", delimiter=",", skiprows=1) for name in ("slow", "fast"))
+    fast[:, 1] = slow[-1, 1] - fast[:, 1]  # back from where the first one ended
+    np.savetxt("both.csv", np.vstack([slow, fast]), delimiter=",", fmt="%.6f", header="force_N,count",
                comments="")
     tacto.run("import", "both.csv", "-o", "both", "--rate", "10kHz", "--channel", "tangential_force=force_N*1N",
               "--channel", "position=count*1um")
