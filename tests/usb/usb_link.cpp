@@ -22,7 +22,8 @@ using schema::Result;
 
 constexpr float kDriveV = 0.5F;
 constexpr std::uint16_t kMessage = 128;    // values
-constexpr std::uint64_t kQueueFull = 960;  // of 1024: a tenth of a second at 10 kHz
+constexpr std::uint64_t kQueue = 1024;     // the device holds so many
+constexpr std::uint64_t kQueueFull = 960;  // a tenth of a second at 10 kHz
 constexpr int kMessagesAtFirst = 4;
 
 /// A device that is driven while somebody else reads it.
