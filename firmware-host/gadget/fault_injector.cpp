@@ -9,24 +9,22 @@
 namespace tacto::firmware_host {
 namespace {
 
-constexpr std::size_t kTypeAt = 3, kLengthAt = 4, kSequenceAt = 6;  // core/WIRE.md
-
 bool falls_on(const std::optional<std::uint64_t>& every, std::uint64_t count) {
   return every && count % *every == 0;
 }
 
-std::uint32_t little_endian(std::span<const std::uint8_t> bytes) {
-  std::uint32_t value = 0;
-  for (std::size_t i = bytes.size(); i-- > 0;) value = value << 8 | bytes[i];
-  return value;
+wire::FrameHeader header_of(std::span<const std::uint8_t> frame) {
+  wire::FrameHeader header;
+  wire::read_header(frame.data(), header);
+  return header;
 }
 
 std::size_t size_of(std::span<const std::uint8_t> frame) {
-  return wire::kHeaderSize + little_endian(frame.subspan(kLengthAt, 2)) + wire::kCheckSize;
+  return wire::kHeaderSize + header_of(frame).length + wire::kCheckSize;
 }
 
 bool is(std::span<const std::uint8_t> frame, wire::MessageType type) {
-  return frame[kTypeAt] == static_cast<std::uint8_t>(type);
+  return header_of(frame).type == static_cast<std::uint8_t>(type);
 }
 
 // Another place each time, so that header, payload and check all have their turn.
@@ -71,9 +69,9 @@ void FaultInjector::claim_version(std::span<std::uint8_t> frame) const {
     frame[wire::kHeaderSize] = *plan_.major;
     frame[wire::kHeaderSize + 1] = plan_.minor;
   }
-  const auto length = static_cast<std::uint16_t>(little_endian(frame.subspan(kLengthAt, 2)));
-  wire::seal_frame({*plan_.major, frame[kTypeAt], length, little_endian(frame.subspan(kSequenceAt, 4))},
-                   frame.data());
+  wire::FrameHeader header = header_of(frame);
+  header.major = *plan_.major;
+  wire::seal_frame(header, frame.data());
 }
 
 void FaultInjector::emit(std::span<const std::uint8_t> bytes) {

@@ -54,7 +54,8 @@ std::uint64_t GadgetLoop::due() {
   const std::uint64_t ticks = pacer_.due(TickPacer::Clock::now(), slipped_s);
   if (slipped_s > 0 && !std::exchange(told_slow_, true))
     say_(fmt::format(
-        "this machine is too slow for the board: {:.1f} s behind the clock, and going on from there "
+        "the board was held up, or this machine is too slow for it: {:.2f} s behind the clock, and going "
+        "on from there "
         "(said once)",
         slipped_s));
   return ticks;

@@ -14,8 +14,8 @@ namespace tacto::firmware_host {
 class TickPacer {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr double kWakeS = 1e-3;   ///< at most this often
-  static constexpr double kBehindS = 0.5;  ///< farther behind than this, the schedule slips
+  static constexpr double kWakeS = 2e-3;    ///< at most this often
+  static constexpr double kBehindS = 0.05;  ///< farther behind than this, the schedule slips
 
   /// From now on.
   void start(double period_s, Clock::time_point now) {
