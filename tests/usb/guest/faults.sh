@@ -103,6 +103,8 @@ keep after_killed
 
 say "unplugging"
 during unplugged unplug
+gone() { within 30 udc_is "not attached"; }
+gone
 replug
 take replugged --time 1s
 keep replugged
@@ -111,6 +113,7 @@ stop_gadget
 start_gadget --board "$SOURCE" --serial F1
 during powerless kill -9 $GADGET_PID
 wait $GADGET_PID || true
+gone
 
 say "two devices"
 start_gadget --board "$SOURCE" --serial F1
