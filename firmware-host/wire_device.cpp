@@ -49,9 +49,12 @@ Result<void> WireDevice::start() {
   return started;
 }
 
+// A loss is counted when its gap is told, not when it is known: whoever reads compares the two.
 void WireDevice::take_gaps() {
-  while (client_->samples().at_gap()) events_.gaps.push_back(client_->samples().take_gap());
-  counts_.lost_frames = client_->samples().lost();
+  while (client_->samples().at_gap()) {
+    events_.gaps.push_back(client_->samples().take_gap());
+    counts_.lost_frames += events_.gaps.back().count;
+  }
 }
 
 void WireDevice::count(std::span<const std::int32_t> codes) {

@@ -18,17 +18,19 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kLongestDrain = std::chrono::seconds(2);
 constexpr double kDrainStepS = 0.01;
-constexpr auto kPauseAfterError = std::chrono::milliseconds(10);  // for the hub to see that nobody is there
+constexpr auto kFirstPause = std::chrono::milliseconds(10);  // each is twice the one before: 0.3 s in all
 
 std::string_view word_of(libusb_transfer_status status) {
   if (status == LIBUSB_TRANSFER_STALL) return "stalls";
+  if (status == LIBUSB_TRANSFER_NO_DEVICE) return "comes and goes";
   return status == LIBUSB_TRANSFER_OVERFLOW ? "sends longer packets than it announced" : "is not understood";
 }
 
 }  // namespace
 
-UsbInflow::UsbInflow(const UsbConnection& connection) : connection_(connection), slots_(kTransfers) {
-  for (Slot& slot : slots_) {
+UsbInflow::UsbInflow(const UsbConnection& connection)
+    : connection_(connection), slots_(std::make_unique<std::vector<Slot>>(kTransfers)) {
+  for (Slot& slot : *slots_) {
     slot.buffer.resize(kTransferBytes);
     slot.transfer.reset(libusb_alloc_transfer(0));
     libusb_transfer* const transfer = slot.transfer.get();
@@ -45,7 +47,7 @@ UsbInflow::~UsbInflow() {
   const auto latest = Clock::now() + kLongestDrain;
   while (under_way_ > 0 && Clock::now() < latest)
     if (!wait(kDrainStepS)) break;
-  if (under_way_ > 0) new std::vector<Slot>(std::move(slots_));
+  if (under_way_ > 0) (void)slots_.release();
 }
 
 void UsbInflow::arrived(libusb_transfer* transfer) {
@@ -63,8 +65,6 @@ void UsbInflow::sort_in(libusb_transfer* transfer) {
 }
 
 void UsbInflow::note(libusb_transfer_status status) {
-  if (status == LIBUSB_TRANSFER_NO_DEVICE)
-    end(usb_failure(LIBUSB_ERROR_NO_DEVICE, "reading", connection_.uri()));
   const bool good = status == LIBUSB_TRANSFER_COMPLETED || status == LIBUSB_TRANSFER_CANCELLED;
   if (!good && !trouble_) trouble_ = status;
 }
@@ -85,13 +85,16 @@ Result<void> UsbInflow::keep_going() {
   return {};
 }
 
-// Only while no transfer is under way: those that wait behind a stall would fail too.
+// Only while no transfer is under way: those that wait behind a stall would fail too. A device that another
+// program resets looks like one that is gone, until it is asked; one that is pulled out, for a while, like a
+// bad cable: hubs are slow to see it.
 void UsbInflow::recover() {
   const auto trouble = *std::exchange(trouble_, std::nullopt);
   cancelled_ = false;
   ++troubles_;
   if (++troubles_in_a_row_ > kMostTroubles) return give_up(trouble);
-  if (trouble != LIBUSB_TRANSFER_STALL) std::this_thread::sleep_for(kPauseAfterError);
+  if (trouble != LIBUSB_TRANSFER_STALL)
+    std::this_thread::sleep_for(kFirstPause * (1 << (troubles_in_a_row_ - 1)));
   const int cleared = libusb_clear_halt(connection_.handle(), connection_.interface().in);
   if (cleared == LIBUSB_ERROR_NO_DEVICE) end(usb_failure(cleared, "reading", connection_.uri()));
 }
@@ -116,7 +119,7 @@ void UsbInflow::submit_idle() {
 
 void UsbInflow::cancel_all() {
   if (std::exchange(cancelled_, true)) return;
-  for (const Slot& slot : slots_)
+  for (const Slot& slot : *slots_)
     if (slot.transfer) libusb_cancel_transfer(slot.transfer.get());
 }
 

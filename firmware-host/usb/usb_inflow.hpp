@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -56,7 +57,7 @@ class UsbInflow {
   void end(const tl::unexpected<schema::Error>& reason);
 
   const UsbConnection& connection_;
-  std::vector<Slot> slots_;
+  std::unique_ptr<std::vector<Slot>> slots_;
   std::vector<libusb_transfer*> idle_;
   std::deque<libusb_transfer*> full_;
   std::size_t used_ = 0;  // bytes of the first full one

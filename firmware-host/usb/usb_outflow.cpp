@@ -71,8 +71,6 @@ Result<void> UsbOutflow::await_end() {
     if (std::chrono::steady_clock::now() - begun > kLongestDrain)
       return usb_failure(LIBUSB_ERROR_TIMEOUT, "writing", connection_.uri());
   }
-  if (transfer_->status == LIBUSB_TRANSFER_NO_DEVICE)
-    return usb_failure(LIBUSB_ERROR_NO_DEVICE, "writing", connection_.uri());
   return {};
 }
 

@@ -189,6 +189,20 @@ TEST(WireDevice, HalfAFrameOfAnEarlierProgramIsFlushed) {
   }
 }
 
+// Read in pieces, a gap that is known but not reached yet is no loss yet.
+TEST(WireDevice, LossesAreCountedWhenTheirGapIsTold) {
+  Bench bench = bench_with(harm_the(10, MessageType::samples, Harm::drop));
+  ASSERT_TRUE((*bench.device)->start());
+  std::vector<std::int32_t> piece(7 * kChannels);
+  std::uint64_t told = 0;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE((*bench.device)->read(piece));
+    for (const schema::Gap& gap : (*bench.device)->take_events().gaps) told += gap.count;
+    ASSERT_EQ((*bench.device)->counts().lost_frames, told) << "read " << i;
+  }
+  EXPECT_EQ(told, 32U);
+}
+
 TEST(WireDevice, WhatCameDamagedOrNotIsCounted) {
   Bench bench = bench_with(harm_the(1, MessageType::samples, Harm::corrupt));
   (void)stream_from(**bench.device, 3000);

@@ -104,7 +104,7 @@ bool advance(FakeUsbDevice& device, bool in) {
   halted = event.kind == UsbEvent::halt;
   if (event.kind == UsbEvent::unplug) device.plugged = false;
   if (event.kind == UsbEvent::unplug) return complete_all(device, LIBUSB_TRANSFER_NO_DEVICE), true;
-  if (event.kind == UsbEvent::reset) return complete_all(device, LIBUSB_TRANSFER_COMPLETED), true;
+  if (event.kind == UsbEvent::reset) return complete_all(device, LIBUSB_TRANSFER_NO_DEVICE), true;
   complete(device, in, status_of(event.kind), move_bytes(device, in, &event));
   return true;
 }

@@ -20,7 +20,7 @@ struct UsbEvent {
     halt,      ///< it stalls until it is cleared
     error,     ///< a packet that nobody understands
     overflow,  ///< a packet too long
-    reset,     ///< another program resets the device: what is under way ends with no bytes and no error
+    reset,     ///< another program resets the device: what is under way ends as if the device were gone
     unplug,
     silence,  ///< of an OUT endpoint: it takes some bytes, and then none until the timeout
   };

@@ -120,9 +120,13 @@ INSTANTIATE_TEST_SUITE_P(Troubles, Recovered,
                          testing::Values(UsbEvent::halt, UsbEvent::error, UsbEvent::overflow));
 
 TEST_F(UsbTransportTest, AResetByAnotherProgramGoesOn) {
-  add().in = {{UsbEvent::data, counting(9)}, {UsbEvent::reset}, {UsbEvent::data, counting(9, 9)}};
+  FakeUsbDevice& device = add();
+  device.in = {{UsbEvent::data, counting(9)}, {UsbEvent::reset}, {UsbEvent::data, counting(9, 9)}};
+  device.out = {{UsbEvent::reset}};
   const auto cable = transport();
+  EXPECT_TRUE(cable->write(counting(3), kTimeoutS));
   EXPECT_EQ(listen(*cable).bytes, counting(18));
+  EXPECT_EQ(device.taken, counting(3));
 }
 
 TEST_F(UsbTransportTest, TroubleWithoutEndIsAnErrorAfterTheBytes) {

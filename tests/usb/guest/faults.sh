@@ -28,6 +28,7 @@ keep() {
 
 # larger NAME BYTES : a quarter of a second is 40000.
 larger() { [ "$(stat -c %s "$1.wav")" -gt "$2" ]; }
+larger_or_over() { larger "$@" || [ -e "$1.ended" ]; }
 # Its process is the child of timeout, which is the child of the take.
 host() { cat /proc/[0-9]*/stat 2>/dev/null | awk '$2 == "(tactograph)" { print $1; exit }'; }
 
@@ -52,8 +53,8 @@ amid() {
 and_on() {
   local name=$1; shift
   "$@"
-  within 60 larger "$name" $(($(stat -c %s "$name.wav") + 80000))
-  kill -INT "$(host)"
+  within 60 larger_or_over "$name" $(($(stat -c %s "$name.wav") + 80000))
+  kill -INT "$(host)" || true
 }
 
 # faulty NAME FAULT OPTION... : a device that goes wrong by itself.
@@ -102,6 +103,8 @@ keep after_killed
 
 say "unplugging"
 during unplugged unplug
+gone() { within 30 udc_is "not attached"; }
+gone
 replug
 take replugged --time 1s
 keep replugged
@@ -110,6 +113,7 @@ stop_gadget
 start_gadget --board "$SOURCE" --serial F1
 during powerless kill -9 $GADGET_PID
 wait $GADGET_PID || true
+gone
 
 say "two devices"
 start_gadget --board "$SOURCE" --serial F1
