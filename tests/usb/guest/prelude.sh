@@ -32,6 +32,13 @@ stop_gadget() {
 host_sees() { ls -d /sys/devices/platform/dummy_hcd.0/usb*/*-1/*-1:1.0 >/dev/null 2>&1; }
 host_misses() { ! host_sees; }
 
-# What pulling the cable and putting it back does, seen from both sides.
-unplug() { echo disconnect >/sys/class/udc/$UDC/soft_connect; within 30 host_misses; }
-replug() { echo connect >/sys/class/udc/$UDC/soft_connect; within 30 host_sees; }
+# What pulling the cable and putting it back does, seen from both sides. This kernel's soft_connect lets go but does not
+# take the line again (dummy_hcd stays without its callbacks): binding anew does.
+unplug() { echo disconnect >/sys/class/udc/$UDC/soft_connect; gone; }
+gone() { within 30 host_misses; }
+replug() {
+  port=/sys/kernel/config/usb_gadget/tactograph-$UDC/UDC
+  echo >$port
+  echo $UDC >$port
+  within 30 host_sees
+}
