@@ -55,6 +55,10 @@ std::vector<std::string> stream_warnings(const firmware_host::StreamCounts& coun
         fmt::format("{} samples were beyond a converter's range and are clipped", counts.clipped));
   if (counts.lost_frames > 0)
     warnings.push_back(fmt::format("{} frames were lost on the way from the device", counts.lost_frames));
+  if (counts.damaged_messages + counts.missing_messages > 0)
+    warnings.push_back(fmt::format(
+        "of the device's messages {} came damaged and {} are missing; frames that were in them are gaps",
+        counts.damaged_messages, counts.missing_messages));
   if (counts.frames < frames_wanted)
     warnings.push_back(
         fmt::format("the device's stream ended after {} of {} frames", counts.frames, frames_wanted));

@@ -41,6 +41,7 @@ Result<std::unique_ptr<Client>> Client::connect(std::unique_ptr<Transport> trans
 
 Result<void> Client::greet() {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (const auto flushed = attempt > 0 ? flush() : Result<void>(); !flushed) return flushed;
     const auto greeted = greet_once();
     if (!greeted) return schema::forward_error(greeted);
     if (!description_.welcome.major) continue;
@@ -48,6 +49,13 @@ Result<void> Client::greet() {
     if (*greeted) return {};
   }
   return silent(MessageType::hello);
+}
+
+// An earlier program may have left half a frame: a device that waits for its end gets it, and finds the hello
+// behind it.
+Result<void> Client::flush() {
+  constexpr std::array<std::uint8_t, wire::kMaxFrame> kNoFrame{};
+  return transport_->write(kNoFrame, kAnswerTimeoutS);
 }
 
 // True once the whole description is here.

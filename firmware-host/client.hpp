@@ -85,6 +85,7 @@ class Client {
   using Encoder = std::function<std::size_t(std::uint32_t sequence, std::span<std::uint8_t> frame)>;
   Client(std::unique_ptr<Transport> transport, std::string where);
   schema::Result<void> greet();
+  schema::Result<void> flush();
   schema::Result<bool> greet_once();
   void accept_answer(const wire::Frame& frame);
   schema::Result<void> check_version() const;

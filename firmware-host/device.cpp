@@ -5,6 +5,7 @@
 
 #include "firmware-host/replay/replay_device.hpp"
 #include "firmware-host/sim/sim_device.hpp"
+#include "firmware-host/usb/usb_device.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -14,7 +15,8 @@ struct Scheme {
   schema::Result<std::unique_ptr<Device>> (*open)(const std::string& uri, std::string_view parameters);
 };
 
-constexpr Scheme kSchemes[] = {{"sim:", open_sim_device}, {"replay:", open_replay_device}};
+constexpr Scheme kSchemes[] = {
+    {"usb:", open_usb_device}, {"sim:", open_sim_device}, {"replay:", open_replay_device}};
 
 std::string schemes() {
   std::string list;
@@ -30,7 +32,7 @@ schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri) {
       return scheme.open(uri, std::string_view(uri).substr(scheme.name.size()));
   return schema::fail(
       schema::Fault::usage, fmt::format("'{}' is not a device that can be opened", uri), "device",
-      fmt::format("the transports are: {} (for example sim:surface=C,speed=50mm/s, or replay:oak)",
+      fmt::format("the transports are: {} (for example usb: or sim:surface=C,speed=50mm/s or replay:oak)",
                   schemes()));
 }
 

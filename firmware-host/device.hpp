@@ -20,7 +20,7 @@ namespace tacto::firmware_host {
 
 /// What a device says of itself when it is opened.
 struct Capabilities {
-  std::string uri;  ///< as it was asked for
+  std::string uri;  ///< as it was asked for; on USB the one that tells it from others
   std::string name;
   std::string serial;
   std::string firmware;   ///< its version
@@ -39,6 +39,8 @@ struct Capabilities {
 struct StreamCounts {
   std::uint64_t frames = 0;
   std::uint64_t lost_frames = 0;
+  /// Of what the device sent: messages that came damaged, and that never came (the damaged ones among them).
+  std::uint64_t damaged_messages = 0, missing_messages = 0;
   std::uint64_t clipped = 0;  ///< samples at either end of a converter's range, over all channels
 };
 
@@ -82,10 +84,10 @@ class Device {
   virtual StreamEvents take_events() { return {}; }
 };
 
-/// Opens by URI; there are `sim:`, with every parameter by key=value (see sim/sim_parameters.hpp), and
-/// `replay:FILE`, a recording as a device.
-/// Errors: usage: a transport, key or value that does not exist, naming what there is; not_found: the
-/// transducer's file.
+/// Opens by URI; there are `usb:`, the only device on USB, or one by `serial=` or `port=`; `sim:`, with every
+/// parameter by key=value (see sim/sim_parameters.hpp); and `replay:FILE`, a recording as a device.
+/// Errors: usage: a transport, key or value that does not exist, naming what there is, or several devices on
+/// USB; not_found: no such device, or not permitted; the transducer's file; as WireDevice::open().
 schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri);
 
 }  // namespace tacto::firmware_host

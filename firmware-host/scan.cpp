@@ -2,6 +2,7 @@
 #include "firmware-host/scan.hpp"
 
 #include "firmware-host/sim/surface.hpp"
+#include "firmware-host/usb/usb_device.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -12,10 +13,18 @@ schema::Result<Capabilities> asked(const std::string& uri) {
   return (*device)->capabilities();
 }
 
+std::vector<FoundDevice> scan_usb() {
+  const auto uris = usb_uris();
+  if (!uris) return {{"usb:", schema::forward_error(uris)}};
+  std::vector<FoundDevice> found;
+  for (const std::string& uri : *uris) found.push_back({uri, asked(uri)});
+  return found;
+}
+
 }  // namespace
 
 std::vector<FoundDevice> scan_devices() {
-  std::vector<FoundDevice> found;
+  std::vector<FoundDevice> found = scan_usb();
   const std::string names = surface_names() + ", ";
   for (std::size_t at = 0, end; (end = names.find(", ", at)) != std::string::npos; at = end + 2) {
     const std::string uri = "sim:surface=" + names.substr(at, end - at);

@@ -15,7 +15,9 @@ struct FoundDevice {
   schema::Result<Capabilities> said;
 };
 
-/// Emulated ones too: one for each surface. A replay has to be named and is not listed.
+/// Those on USB first; where the bus can't be looked at, "usb:" says why. Emulated ones too: one for each
+/// surface. A replay has to be named and is not listed. Each is greeted, which ends a stream that its device
+/// sends to nobody.
 std::vector<FoundDevice> scan_devices();
 
 }  // namespace tacto::firmware_host

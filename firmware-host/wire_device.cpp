@@ -19,6 +19,11 @@ std::uint8_t block_frames(double rate_hz) {
   return static_cast<std::uint8_t>(std::clamp(rate_hz * kBlockS, 1.0, double{wire::kMaxBlockFrames}));
 }
 
+// The counters run over, as their differences do.
+std::uint32_t damaged(const LinkCounts& link) {
+  return link.frames.oversize + link.frames.bad_check + link.frames.truncated;
+}
+
 }  // namespace
 
 WireDevice::WireDevice(std::unique_ptr<Client> client, Capabilities capabilities)
@@ -34,6 +39,7 @@ Result<std::unique_ptr<WireDevice>> WireDevice::open(std::string uri, std::uniqu
 
 Result<void> WireDevice::start() {
   counts_ = {};
+  link_at_start_ = client_->counts();
   events_ = {};
   ended_.reset();
   next_pair_s_ = -std::numeric_limits<double>::infinity();
@@ -43,9 +49,12 @@ Result<void> WireDevice::start() {
   return started;
 }
 
+// A loss is counted when its gap is told, not when it is known: whoever reads compares the two.
 void WireDevice::take_gaps() {
-  while (client_->samples().at_gap()) events_.gaps.push_back(client_->samples().take_gap());
-  counts_.lost_frames = client_->samples().lost();
+  while (client_->samples().at_gap()) {
+    events_.gaps.push_back(client_->samples().take_gap());
+    counts_.lost_frames += events_.gaps.back().count;
+  }
 }
 
 void WireDevice::count(std::span<const std::int32_t> codes) {
@@ -80,6 +89,14 @@ Result<std::size_t> WireDevice::read(std::span<std::int32_t> interleaved) {
 Result<void> WireDevice::stop() {
   started_ = false;
   return client_->stop_stream();
+}
+
+StreamCounts WireDevice::counts() const {
+  const LinkCounts link = client_->counts();
+  StreamCounts counts = counts_;
+  counts.damaged_messages = damaged(link) - damaged(link_at_start_);
+  counts.missing_messages = link.lost - link_at_start_.lost;
+  return counts;
 }
 
 StreamEvents WireDevice::take_events() {

@@ -19,7 +19,7 @@ class WireDevice final : public Device {
   schema::Result<void> start() override;
   schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) override;
   schema::Result<void> stop() override;
-  StreamCounts counts() const override { return counts_; }
+  StreamCounts counts() const override;
   StreamEvents take_events() override;
 
   /// For what is not a stream: drive, heartbeat.
@@ -36,6 +36,7 @@ class WireDevice final : public Device {
   bool started_ = false;
   std::optional<schema::Error> ended_;
   StreamCounts counts_;
+  LinkCounts link_at_start_;
   StreamEvents events_;
   double next_pair_s_ = 0;
 };

@@ -25,7 +25,7 @@ using schema::Dimension;
 using schema::Result;
 
 struct Options {
-  std::string device, pattern;
+  std::string device = "usb:", pattern;
   RecordRequest request;
   bool allow_gaps = false;
 };
@@ -33,8 +33,8 @@ struct Options {
 void declare_options(CLI::App& app, Options& options) {
   RecordRequest& request = options.request;
   app.add_option("-d,--device", options.device,
-                 "The device, as sim:surface=C,speed=50mm/s,seed=1 (keys below)")
-      ->required();
+                 "The device: usb:, the only one on USB, unless told; usb:serial=XYZ, or "
+                 "sim:surface=C,speed=50mm/s,seed=1 (keys below), or replay:NAME");
   CLI::Option* const name = app.add_option("-o,--output", request.name,
                                            "The recording's name: NAME.wav and NAME.json; never overwrites");
   app.add_option("--template", options.pattern,
@@ -188,7 +188,8 @@ cli::Action declare(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kRecordVerb{"record", "Record from a device",
-                            "tactograph record -d sim:surface=C,speed=50mm/s,seed=1 --time 2s -o grating\n"
+                            "tactograph record -o oak\n"
+                            "  tactograph record -d sim:surface=C,speed=50mm/s,seed=1 --time 2s -o grating\n"
                             "  tactograph record -d sim:surface=triangle,period=1mm,depth=0.1mm,load=0.6N "
                             "--time 1s -o figure1 --subject S01\n"
                             "  tactograph record -d sim:paced=1,strokes=10 --strokes 5 --template "

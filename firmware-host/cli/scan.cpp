@@ -17,18 +17,29 @@ cli::Report row_of(const FoundDevice& found) {
   return row.add("sample_rate_hz", said.sample_rate_hz).add("surface", said.surface);
 }
 
+bool is_real(const FoundDevice& found) {
+  return found.uri.starts_with("usb:") && found.uri != "usb:";
+}
+
 schema::Result<cli::Report> run() {
   std::vector<cli::Report> rows;
-  for (const FoundDevice& found : scan_devices()) rows.push_back(row_of(found));
+  std::size_t real = 0, ready = 0;
+  for (const FoundDevice& found : scan_devices()) {
+    rows.push_back(row_of(found));
+    real += is_real(found) ? 1 : 0;
+    ready += is_real(found) && found.said ? 1 : 0;
+  }
   cli::Report report;
-  report.add("real_devices", 0).add("devices", std::move(rows));
-  return report.add("next", "tactograph record -d sim:surface=C --time 2s -o grating");
+  report.add("real_devices", real).add("devices", std::move(rows));
+  return report.add("next", ready == 0 ? "tactograph record -d sim:surface=C --time 2s -o grating"
+                                       : "tactograph record -o oak");
 }
 
 cli::Action declare(CLI::App& app) {
-  app.footer(app.get_footer() +
-             "\nReal devices are not looked for yet. A recording is a device too: replay:FILE, or "
-             "replay:FILE,paced=1.");
+  app.footer(
+      app.get_footer() +
+      "\nDevices on USB are found by their interface, whoever made them, and named by serial or port. A "
+      "recording is a device too: replay:FILE, or replay:FILE,paced=1.");
   return [] { return run(); };
 }
 

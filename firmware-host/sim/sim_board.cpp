@@ -2,20 +2,16 @@
 #include "firmware-host/sim/sim_board.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "firmware-host/sim/sim_description.hpp"
+#include "firmware-host/wire_fields.hpp"
 
 namespace tacto::firmware_host {
 namespace {
 
 constexpr std::uint32_t kClockHz = 1'000'000;
 constexpr std::uint32_t kTextureSamples = 65536;  // 256 KB: what a larger board would have
-
-std::uint32_t millihertz(double rate_hz) {
-  return static_cast<std::uint32_t>(std::llround(rate_hz * 1e3));
-}
 
 }  // namespace
 

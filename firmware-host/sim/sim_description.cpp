@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "data-schema/quantity.hpp"
 #include "data-schema/version.hpp"
+#include "firmware-host/wire_fields.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -17,15 +16,6 @@ using schema::Dimension;
 using schema::for_people;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-// What is too long is cut before the character that does not fit whole.
-template <std::size_t kSize>
-void put_text(char (&field)[kSize], std::string_view text) {
-  std::size_t size = std::min(text.size(), kSize - 1);
-  const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80; };
-  while (size < text.size() && size > 0 && continues(size)) --size;
-  std::fill(std::copy_n(text.begin(), size, field), field + kSize, '\0');
-}
 
 wire::Channel channel_of(std::string_view name, std::string_view unit, double scale,
                          std::string_view source) {
@@ -71,18 +61,6 @@ std::string simulated_by(const SimParameters& p, std::string_view surface) {
   return fmt::format("by {}'s emulated device: {}, on {}, seed {}", kCreator, finger, surface, p.seed);
 }
 
-// The core's limits are single: never above the transducer's.
-float not_above(double limit) {
-  const auto nearest = static_cast<float>(limit);
-  return static_cast<double>(nearest) > limit ? std::nextafter(nearest, 0.0F) : nearest;
-}
-
-template <class Message>
-std::vector<Message> numbered(std::vector<Message> messages) {
-  for (std::size_t i = 0; i < messages.size(); ++i) messages[i].index = static_cast<std::uint8_t>(i);
-  return messages;
-}
-
 }  // namespace
 
 std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& parameters) {
@@ -101,7 +79,8 @@ std::vector<wire::Note> sim_notes(const SimParameters& parameters, std::string_v
 wire::Welcome sim_welcome(const SimParameters& parameters, const schema::Transducer& transducer) {
   wire::Welcome welcome;
   put_text(welcome.name, "emulated transducer");
-  put_text(welcome.serial, fmt::format("sim-{}", parameters.seed));
+  put_text(welcome.serial,
+           parameters.serial.empty() ? fmt::format("sim-{}", parameters.seed) : parameters.serial);
   put_text(welcome.firmware, kCreator);
   welcome.features = wire::kFeatureSimulated | wire::kFeatureDrive | wire::kFeatureEnableInput;
   welcome.drive_limit_v = not_above(transducer.drive_limit_v);

@@ -28,6 +28,7 @@ struct SimParameters {
   double encoder_quantum_m = 1e-6;  ///< the paper's
   std::string transducer = "wiertlewski2011";
   bool paced = false;  ///< by the clock on the wall, as a real device is
+  std::string serial;  ///< empty: made of the seed. Not a key of the URI
 };
 
 /// Reads key=value pairs between commas; a quantity has its unit. Keys that are absent keep their defaults.

@@ -107,6 +107,8 @@ def the_rest_refuses():
     render = ["render", "oak", "-o", "drive.wav", "--transducer"]
     refused("record", "-d", "sim:surface=C", "--time", "1s", "-o", "oak", code=USAGE, says=["oak"])
     refused("record", "-d", "sim:surfice=C", "--time", "1s", "-o", "new", code=USAGE, says=["surfice", "surface"])
+    refused("record", "-d", "usb:speed=3", "-o", "new", code=USAGE, says=["speed=3", "usb:serial=XYZ"])
+    refused("record", "-d", "usb:serial=none-such", "-o", "new", code=NOT_FOUND, says=["on USB"])
     refused("spectrogram", "oak", "-o", "x.jpg", code=USAGE, says=["jpg", "png"])
     refused("spectrogram", "oak", "-o", "x.png", "--window", "10", code=USAGE, says=["mm"])
     refused("spectrogram", "oak", "-o", "x.png", "--window", "10m", code=UNSUITABLE, says=["window"])

@@ -173,6 +173,47 @@ TEST(WireDevice, WhatWasLostOfAConversationIsAskedAgain) {
     }
 }
 
+// A program that was killed in the middle of a frame: its device waits for the frame's end.
+TEST(WireDevice, HalfAFrameOfAnEarlierProgramIsFlushed) {
+  const auto parameters = parse_sim_parameters(kParameters);
+  SimBoard board(*parameters, *schema::read_transducer("wiertlewski2011"),
+                 *make_surface(parameters->surface));
+  wire::Drive drive;
+  drive.count = wire::kMaxChunk;
+  std::uint8_t frame[wire::kMaxFrame];
+  const std::size_t size = wire::encode_frame(drive, 7, frame, sizeof frame);
+  for (const std::size_t left : {size_t{1}, size_t{13}, size / 2, size - 1}) {
+    board.from_host().assign(frame, frame + left);
+    const auto device = WireDevice::open("test:", std::make_unique<SimTransport>(board, false));
+    ASSERT_TRUE(device) << left << " bytes of " << size << ": " << message(device.error());
+  }
+}
+
+// Read in pieces, a gap that is known but not reached yet is no loss yet.
+TEST(WireDevice, LossesAreCountedWhenTheirGapIsTold) {
+  Bench bench = bench_with(harm_the(10, MessageType::samples, Harm::drop));
+  ASSERT_TRUE((*bench.device)->start());
+  std::vector<std::int32_t> piece(7 * kChannels);
+  std::uint64_t told = 0;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE((*bench.device)->read(piece));
+    for (const schema::Gap& gap : (*bench.device)->take_events().gaps) told += gap.count;
+    ASSERT_EQ((*bench.device)->counts().lost_frames, told) << "read " << i;
+  }
+  EXPECT_EQ(told, 32U);
+}
+
+TEST(WireDevice, WhatCameDamagedOrNotIsCounted) {
+  Bench bench = bench_with(harm_the(1, MessageType::samples, Harm::corrupt));
+  (void)stream_from(**bench.device, 3000);
+  EXPECT_EQ((*bench.device)->counts().missing_messages, 1U);
+  EXPECT_EQ((*bench.device)->counts().damaged_messages, 1U);
+  Bench dropping = bench_with(harm_the(20, MessageType::samples, Harm::drop));
+  (void)stream_from(**dropping.device, 3000);
+  EXPECT_EQ((*dropping.device)->counts().missing_messages, 1U);
+  EXPECT_EQ((*dropping.device)->counts().damaged_messages, 0U);
+}
+
 TEST(WireDevice, ADeviceThatNeverAnswersIsAnError) {
   for (const auto type : {MessageType::welcome, MessageType::channel}) {
     Bench bench = bench_with(harm_all(type, Harm::drop));

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/gadget/fault_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+struct Key {
+  std::string_view name, words;
+  std::optional<std::uint64_t> FaultPlan::*value;
+};
+
+constexpr Key kKeys[] = {
+    {"corrupt-every", "each Nth message of samples has a bit turned over", &FaultPlan::corrupt_every},
+    {"drop-every", "each Nth message of samples is left out", &FaultPlan::drop_every},
+    {"truncate-every", "each Nth message of samples lacks its second half", &FaultPlan::truncate_every},
+    {"repeat-every", "each Nth message of samples is sent twice", &FaultPlan::repeat_every},
+    {"packet", "no transfer is longer than N bytes", &FaultPlan::packet},
+    {"stall-after", "the endpoint to the host stalls once N frames are sent", &FaultPlan::stall_after},
+    {"unplug-after", "unplugs itself in the middle of frame N+1", &FaultPlan::unplug_after},
+    {"silent-after", "says nothing more once N frames are sent", &FaultPlan::silent_after},
+    {"deaf-after", "takes nothing more after N transfers from the host", &FaultPlan::deaf_after}};
+constexpr std::string_view kVersion = "version";
+
+bool read_number(std::string_view text, std::uint64_t& value) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  return read.ec == std::errc() && read.ptr == text.data() + text.size();
+}
+
+tl::unexpected<schema::Error> bad_value(std::string_view key, std::string_view value,
+                                        std::string_view wanted) {
+  return schema::fail(Fault::usage, fmt::format("'{}' is no {} for {}", value, wanted, key), "--fault");
+}
+
+Result<void> read_version(std::string_view text, FaultPlan& plan) {
+  const std::size_t point = text.find('.');
+  std::uint64_t major = 0, minor = 0;
+  const bool good = point != std::string_view::npos && read_number(text.substr(0, point), major) &&
+                    read_number(text.substr(point + 1), minor) && major < 256 && minor < 256;
+  if (!good) return bad_value(kVersion, text, "version (as 2.0)");
+  plan.major = static_cast<std::uint8_t>(major);
+  plan.minor = static_cast<std::uint8_t>(minor);
+  return {};
+}
+
+// Only what happens after a number of frames may happen at once.
+Result<void> read_count(const Key& key, std::string_view text, FaultPlan& plan) {
+  std::uint64_t value = 0;
+  const bool after = key.name.ends_with("-after");
+  if (!read_number(text, value) || (value == 0 && !after)) return bad_value(key.name, text, "number");
+  plan.*key.value = value;
+  return {};
+}
+
+Result<void> read_pair(std::string_view pair, FaultPlan& plan) {
+  const std::size_t equals = std::min(pair.find('='), pair.size());
+  const std::string_view name = pair.substr(0, equals);
+  const std::string_view value = pair.substr(std::min(equals + 1, pair.size()));
+  if (name == kVersion) return read_version(value, plan);
+  for (const Key& key : kKeys)
+    if (key.name == name) return read_count(key, value, plan);
+  return schema::fail(Fault::usage, fmt::format("there is no fault '{}'", name), "--fault",
+                      "tactograph-gadget --help lists them");
+}
+
+}  // namespace
+
+Result<FaultPlan> parse_fault_plan(std::string_view text) {
+  FaultPlan plan;
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    if (const auto read = read_pair(text.substr(0, comma), plan); !read) return schema::forward_error(read);
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return plan;
+}
+
+std::string fault_words() {
+  std::string words =
+      fmt::format("  {:<18}{}\n", "version=2.0", "claims to speak that version of the protocol");
+  for (const Key& key : kKeys) words += fmt::format("  {:<18}{}\n", fmt::format("{}=N", key.name), key.words);
+  return words;
+}
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The kernel's door to a USB interface: three files, one for events, one for each endpoint.
+#pragma once
+
+#include <string>
+
+#include "data-schema/error.hpp"
+#include "firmware-host/gadget/file_descriptor.hpp"
+
+namespace tacto::firmware_host {
+
+struct FunctionFs {
+  FileDescriptor events;  ///< ep0
+  FileDescriptor in;      ///< to the host
+  FileDescriptor out;     ///< from the host
+};
+
+/// Mounts the function `instance` where nobody sees it, describes the interface, opens its files. Nothing is
+/// left of the mount once they are closed, however the process ends. Errors: device: no permission, no such
+/// function, or the kernel refuses the descriptors.
+schema::Result<FunctionFs> open_functionfs(const std::string& instance);
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/gadget/gadget_board.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "firmware-host/gadget/replay_board.hpp"
+#include "firmware-host/sim/sim_board.hpp"
+#include "firmware-host/sim/sim_description.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+constexpr std::string_view kSim = "sim:", kReplay = "replay:", kLoop = ",loop=1";
+
+class SimGadgetBoard final : public GadgetBoard {
+ public:
+  SimGadgetBoard(const SimParameters& parameters, const schema::Transducer& transducer, Surface surface)
+      : serial_(sim_welcome(parameters, transducer).serial),
+        board_(parameters, transducer, std::move(surface)) {}
+
+  std::string serial() const override { return serial_; }
+  bool ticking() const override { return board_.ticking(); }
+  double period_s() const override { return board_.period_s(); }
+  void step() override { board_.step(); }
+  void poll() override { board_.poll(); }
+  std::vector<std::uint8_t>& from_host() override { return board_.from_host(); }
+  std::vector<std::uint8_t>& to_host() override { return board_.to_host(); }
+
+ private:
+  std::string serial_;
+  SimBoard board_;
+};
+
+Result<std::unique_ptr<GadgetBoard>> make_sim(std::string_view words, const std::string& serial) {
+  auto parameters = parse_sim_parameters(words);
+  if (!parameters) return schema::forward_error(parameters);
+  parameters->serial = serial;
+  auto surface = make_surface(parameters->surface);
+  if (!surface) return schema::forward_error(surface);
+  const auto transducer = schema::read_transducer(parameters->transducer);
+  if (!transducer) return schema::forward_error(transducer);
+  return std::make_unique<SimGadgetBoard>(*parameters, *transducer, std::move(*surface));
+}
+
+Result<std::unique_ptr<GadgetBoard>> make_replay(std::string_view words, const std::string& serial) {
+  const bool loop = words.ends_with(kLoop);
+  if (loop) words.remove_suffix(kLoop.size());
+  auto board = ReplayBoard::open(std::string(words), loop, serial);
+  if (!board) return schema::forward_error(board);
+  return std::unique_ptr<GadgetBoard>(std::move(*board));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GadgetBoard>> make_gadget_board(const std::string& uri, const std::string& serial) {
+  const std::string_view words = uri;
+  if (words.starts_with(kSim)) return make_sim(words.substr(kSim.size()), serial);
+  if (words.starts_with(kReplay)) return make_replay(words.substr(kReplay.size()), serial);
+  return schema::fail(Fault::usage, fmt::format("'{}' is no board", uri), "--board",
+                      "there are sim:surface=C and so on, replay:FILE, and replay:FILE,loop=1");
+}
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/gadget/gadget_loop.hpp"
+
+#include <fmt/format.h>
+
+namespace tacto::firmware_host {
+namespace {
+
+constexpr std::size_t kMostWaiting = 1 << 20;     // bytes for the host: some seconds of frames
+constexpr std::uint64_t kTicksBetweenPolls = 32;  // an eighth of the core's ring
+constexpr std::chrono::milliseconds kIdleWake{
+    50};  // nothing ticks: only the host, or a signal, has to be heard
+
+}  // namespace
+
+GadgetLoop::GadgetLoop(GadgetBoard& board, UsbLink& link, const FaultPlan& faults,
+                       std::function<void(const std::string&)> say)
+    : board_(board),
+      link_(link),
+      faults_(faults, [&link](std::span<const std::uint8_t> bytes, BurstEnd end) { link.send(bytes, end); }),
+      say_(std::move(say)) {}
+
+void GadgetLoop::run(const std::function<bool()>& stopped) {
+  while (!stopped()) {
+    exchange();
+    if (board_.ticking()) {
+      tick();
+    } else {
+      pacer_.stop();
+      link_.wait_until(TickPacer::Clock::now() + kIdleWake);
+    }
+  }
+}
+
+void GadgetLoop::exchange() {
+  link_.take_received(board_.from_host());
+  if (link_.waiting() > kMostWaiting) return;
+  board_.poll();
+  faults_.pass(board_.to_host());
+  board_.to_host().clear();
+}
+
+void GadgetLoop::tick() {
+  const auto now = TickPacer::Clock::now();
+  if (!pacer_.running()) pacer_.start(board_.period_s(), now);
+  const std::uint64_t ticks = std::min(due(), kTicksBetweenPolls);
+  if (ticks == 0) return link_.wait_until(pacer_.next_wake(now));
+  for (std::uint64_t i = 0; i < ticks && board_.ticking(); ++i) board_.step();
+  pacer_.did(ticks);
+}
+
+std::uint64_t GadgetLoop::due() {
+  double slipped_s = 0;
+  const std::uint64_t ticks = pacer_.due(TickPacer::Clock::now(), slipped_s);
+  if (slipped_s > 0 && !std::exchange(told_slow_, true))
+    say_(fmt::format(
+        "the board was held up, or this machine is too slow for it: {:.2f} s behind the clock, and going "
+        "on from there "
+        "(said once)",
+        slipped_s));
+  return ticks;
+}
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/gadget/gadget_options.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+bool read_hexadecimal(std::string_view text, std::uint16_t& value) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+  return read.ec == std::errc() && read.ptr == text.data() + text.size();
+}
+
+Result<void> read_id(const std::string& text, GadgetOptions& options) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const std::string_view words = text;
+  const bool good = colon < text.size() && read_hexadecimal(words.substr(0, colon), options.vendor) &&
+                    read_hexadecimal(words.substr(colon + 1), options.product);
+  if (good) return {};
+  return schema::fail(Fault::usage, fmt::format("'{}' is no pair of numbers", text), "--id",
+                      "VENDOR:PRODUCT in hexadecimal, as 1209:0001");
+}
+
+Result<void> read_faults(const std::string& text, GadgetOptions& options) {
+  auto plan = parse_fault_plan(text);
+  if (!plan) return schema::forward_error(plan);
+  options.faults = *plan;
+  return {};
+}
+
+template <std::string GadgetOptions::*kField>
+Result<void> read_text(const std::string& text, GadgetOptions& options) {
+  options.*kField = text;
+  return {};
+}
+
+struct Option {
+  std::string_view name;
+  Result<void> (*read)(const std::string& text, GadgetOptions& options);
+};
+
+constexpr Option kOptions[] = {{"--board", read_text<&GadgetOptions::board>},
+                               {"--serial", read_text<&GadgetOptions::serial>},
+                               {"--udc", read_text<&GadgetOptions::udc>},
+                               {"--id", read_id},
+                               {"--fault", read_faults}};
+
+Result<void> read_option(std::string_view name, const char* value, GadgetOptions& options) {
+  for (const Option& option : kOptions) {
+    if (option.name != name) continue;
+    if (value != nullptr) return option.read(value, options);
+    return schema::fail(Fault::usage, "needs a value", std::string(name), "tactograph-gadget --help");
+  }
+  return schema::fail(Fault::usage, fmt::format("there is no option '{}'", name), {},
+                      "tactograph-gadget --help");
+}
+
+}  // namespace
+
+Result<GadgetOptions> parse_gadget_options(std::span<const char* const> arguments) {
+  GadgetOptions options;
+  for (std::size_t i = 0; i < arguments.size(); i += 2) {
+    const std::string_view name = arguments[i];
+    options.help = name == "--help" || name == "-h";
+    if (options.help) return options;
+    const char* value = i + 1 < arguments.size() ? arguments[i + 1] : nullptr;
+    if (const auto read = read_option(name, value, options); !read) return schema::forward_error(read);
+  }
+  return options;
+}
+
+std::string gadget_help() {
+  return fmt::format(
+      R"(tactograph-gadget: makes this machine, through its USB device port, a device for tactograph
+
+usage: tactograph-gadget [--board BOARD] [--serial TEXT] [--udc PORT] [--id VENDOR:PRODUCT] [--fault FAULTS]
+
+  --board BOARD   where samples come from: sim: (physics; sim:surface=C,speed=50mm/s and so on), or replay:FILE (a
+                  recording's codes, once; replay:FILE,loop=1 again and again). Default: sim:
+  --serial TEXT   its serial number, on USB and in its welcome. Default: the board's own
+  --udc PORT      the device port, one of /sys/class/udc. Default: the first
+  --id V:P        USB vendor and product, hexadecimal. Default: {:04x}:{:04x}, which is for tests and in-house use only
+  --fault FAULTS  goes wrong on purpose, so that a host can be tested. Between commas:
+{}
+Runs until Ctrl-C or SIGTERM; unplugging and plugging in again do not end it. Needs root, libcomposite and usb_f_fs.
+)",
+      usb::kTestVendor, usb::kTestProduct, fault_words());
+}
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the gadget is asked to be on its command line.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "firmware-host/core/usb_identity.hpp"
+#include "firmware-host/gadget/fault_plan.hpp"
+
+namespace tacto::firmware_host {
+
+struct GadgetOptions {
+  bool help = false;
+  std::string board = "sim:";
+  std::string serial;  ///< empty: the board's own
+  std::string udc;     ///< empty: the first
+  std::uint16_t vendor = usb::kTestVendor, product = usb::kTestProduct;
+  FaultPlan faults;
+};
+
+/// Errors: usage: an option that does not exist, one without its value, a value that cannot be read.
+schema::Result<GadgetOptions> parse_gadget_options(std::span<const char* const> arguments);
+std::string gadget_help();
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tactograph-gadget: a Linux board with a USB device port as a device.
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "firmware-host/gadget/configfs_gadget.hpp"
+#include "firmware-host/gadget/gadget_loop.hpp"
+#include "firmware-host/gadget/gadget_options.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::Result;
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+void stop_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { stop_asked = 1; });
+}
+
+void say(const std::string& words) {
+  fmt::print(stderr, "tactograph-gadget: {}\n", words);
+}
+
+// Plugged in from here to the end. The link outlives the plug: nothing blocks in it then.
+Result<void> run_plugged(ConfigfsGadget& gadget, GadgetBoard& board, FunctionFs files,
+                         const GadgetOptions& options, const std::string& port) {
+  UsbLink link(std::move(files), {port, options.faults.deaf_after, say});
+  if (const auto bound = gadget.bind(); !bound) return bound;
+  say(fmt::format("{} with serial {} on {}", options.board, board.serial(), port));
+  GadgetLoop(board, link, options.faults, say).run([] { return stop_asked != 0; });
+  gadget.unbind();
+  return {};
+}
+
+Result<void> run(const GadgetOptions& options) {
+  auto board = make_gadget_board(options.board, options.serial);
+  if (!board) return schema::forward_error(board);
+  const auto port = choose_port(options.udc);
+  if (!port) return schema::forward_error(port);
+  auto gadget = ConfigfsGadget::create(
+      *port, {options.vendor, options.product, (*board)->serial(), "tactograph device"});
+  if (!gadget) return schema::forward_error(gadget);
+  auto files = open_functionfs(gadget->instance());
+  if (!files) return schema::forward_error(files);
+  stop_on_signals();
+  return run_plugged(*gadget, **board, std::move(*files), options, *port);
+}
+
+int run_with(std::span<const char* const> arguments) {
+  const auto options = parse_gadget_options(arguments);
+  if (options && options->help) {
+    fmt::print("{}", gadget_help());
+    return 0;
+  }
+  const Result<void> done = options ? run(*options) : schema::forward_error(options);
+  if (done) return 0;
+  say(schema::message(done.error()));
+  return schema::exit_code(done.error().fault);
+}
+
+}  // namespace
+}  // namespace tacto::firmware_host
+
+int main(int count, char** values) {
+  try {
+    return tacto::firmware_host::run_with({values + 1, values + count});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tactograph-gadget: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/gadget/replay_board.hpp"
+
+#include <algorithm>
+
+#include "firmware-host/gadget/replay_description.hpp"
+#include "firmware-host/wire_fields.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+constexpr std::uint32_t kClockHz = 1'000'000'000;
+constexpr std::uint32_t kTextureSamples = 65536;
+
+Result<void> check(const schema::Recording& recording) {
+  const schema::RecordingHeader& header = recording.header;
+  const auto unsuitable = [&](const char* what, const char* remedy) {
+    return schema::fail(Fault::unsuitable, what, recording.stem, remedy);
+  };
+  if (header.format != schema::SampleFormat::pcm32)
+    return unsuitable("holds numbers of another program, not a converter's codes",
+                      "only what a device recorded can be a device's");
+  if (!header.gaps.empty())
+    return unsuitable("has gaps, and a device's tick leaves none out", "take one without");
+  if (header.channels.size() > wire::kMaxChannels)
+    return unsuitable("has more than the 16 channels that a device may have", "");
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ReplayBoard>> ReplayBoard::open(const std::string& name, bool loop,
+                                                       const std::string& serial) {
+  auto recording = schema::open_recording(name);
+  if (!recording) return schema::forward_error(recording);
+  if (const auto suitable = check(*recording); !suitable) return schema::forward_error(suitable);
+  auto reader = schema::WavReader::open(schema::wav_path(*recording));
+  if (!reader) return schema::forward_error(reader);
+  return std::unique_ptr<ReplayBoard>(
+      new ReplayBoard(std::move(*recording), std::move(*reader), loop, serial));
+}
+
+ReplayBoard::ReplayBoard(schema::Recording recording, schema::WavReader reader, bool loop,
+                         const std::string& serial)
+    : recording_(std::move(recording)),
+      reader_(std::move(reader)),
+      loop_(loop),
+      welcome_(replay_welcome(recording_, serial)),
+      channels_(replay_channels(recording_.header)),
+      notes_(replay_notes(recording_)),
+      texture_(kTextureSamples),
+      frame_(channels_.size()) {
+  if (const auto position = schema::find_channel(recording_.header, "position")) position_ = *position;
+  firmware_ = std::make_unique<core::Firmware>(about(), hal());
+}
+
+core::Board ReplayBoard::about() {
+  core::Board board;
+  board.about = welcome_;
+  board.about.clock_hz = kClockHz;
+  const std::uint32_t rate = millihertz(recording_.header.sample_rate_hz);
+  board.about.default_rate_millihertz = rate;
+  board.about.least_rate_millihertz = board.about.most_rate_millihertz = rate;
+  board.channels = channels_.data();
+  board.channel_count = static_cast<std::uint8_t>(channels_.size());
+  board.notes = notes_.data();
+  board.note_count = static_cast<std::uint8_t>(notes_.size());
+  board.profile_memory = texture_.data();
+  board.profile_samples = kTextureSamples;
+  return board;
+}
+
+core::Hal ReplayBoard::hal() {
+  core::Hal hal;
+  hal.board = this;
+  hal.read_encoder = [](void* b) noexcept {
+    return of(b).position_ ? of(b).frame_[*of(b).position_] : std::int32_t{0};
+  };
+  hal.read_channels = [](void* b, std::int32_t* codes) noexcept {
+    std::copy(of(b).frame_.begin(), of(b).frame_.end(), codes);
+    return !of(b).ended_;
+  };
+  hal.write_drive = [](void*, float) noexcept {};
+  hal.enable_closed = [](void*) noexcept { return true; };
+  hal.clock = [](void* b) noexcept {
+    return static_cast<std::uint64_t>(static_cast<double>(of(b).ticks_) * of(b).period_s() * kClockHz);
+  };
+  hal.set_rate = [](void* b, std::uint32_t rate) noexcept { of(b).set_rate(rate); };
+  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
+    return of(b).receive(bytes, size);
+  };
+  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
+    of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
+    return size;
+  };
+  hal.restart = [](void* b) noexcept { of(b).set_rate(0); };
+  return hal;
+}
+
+void ReplayBoard::set_rate(std::uint32_t rate_millihertz) {
+  ticking_ = rate_millihertz > 0;
+  if (!ticking_) return;
+  ahead_.clear();
+  used_ = 0;
+  ended_ = !reader_.seek(0);
+}
+
+std::size_t ReplayBoard::receive(std::uint8_t* bytes, std::size_t capacity) {
+  const std::size_t size = std::min(capacity, from_host_.size());
+  std::copy_n(from_host_.begin(), size, bytes);
+  from_host_.erase(from_host_.begin(), from_host_.begin() + static_cast<std::ptrdiff_t>(size));
+  return size;
+}
+
+// False at the end, and where the file cannot be read any more: to the core both are converters that fail.
+bool ReplayBoard::refill() {
+  const auto frames = static_cast<std::size_t>(recording_.header.sample_rate_hz) + 1;
+  used_ = 0;
+  for (int attempt = 0; attempt < (loop_ ? 2 : 1); ++attempt) {
+    ahead_.resize(frames * frame_.size());
+    const auto got = reader_.read(ahead_);
+    ahead_.resize(got ? *got * frame_.size() : 0);
+    if (!ahead_.empty()) return true;
+    if (loop_ && !reader_.seek(0)) return false;
+  }
+  return false;
+}
+
+void ReplayBoard::next_frame() {
+  if (used_ == ahead_.size() && !refill()) {
+    ended_ = true;
+    return;
+  }
+  std::copy_n(ahead_.begin() + static_cast<std::ptrdiff_t>(used_), frame_.size(), frame_.begin());
+  used_ += frame_.size();
+}
+
+void ReplayBoard::step() {
+  if (!ended_) next_frame();
+  firmware_->tick();
+  ++ticks_;
+}
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/gadget/usb_link.hpp"
+
+#include <fmt/format.h>
+#include <linux/usb/functionfs.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+
+#include <array>
+
+#include "firmware-host/core/usb_identity.hpp"
+#include "firmware-host/gadget/configfs_gadget.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t kTransfer = 16384;  // most bytes of one
+constexpr milliseconds kNap{20};          // between looks at what no event tells
+
+const char* speed_of(std::size_t packet) {
+  return packet >= usb::kSuperSpeedPacket ? "super" : packet >= usb::kHighSpeedPacket ? "high" : "full";
+}
+
+}  // namespace
+
+UsbLink::UsbLink(FunctionFs files, Settings settings)
+    : files_(std::move(files)),
+      settings_(std::move(settings)),
+      events_thread_([this] { watch_events(); }),
+      send_thread_([this] { send_bursts(); }),
+      receive_thread_([this] { receive_bursts(); }) {}
+
+UsbLink::~UsbLink() {
+  stopping_ = true;
+  for (std::thread* thread : {&events_thread_, &send_thread_, &receive_thread_}) thread->join();
+}
+
+void UsbLink::send(std::span<const std::uint8_t> bytes, BurstEnd end) {
+  if (up_) to_host_.put(bytes, end);
+}
+
+void UsbLink::take_received(std::vector<std::uint8_t>& bytes) {
+  const std::lock_guard lock(mutex_);
+  bytes.insert(bytes.end(), from_host_.begin(), from_host_.end());
+  from_host_.clear();
+}
+
+void UsbLink::wait_until(Clock::time_point time) {
+  std::unique_lock lock(mutex_);
+  came_.wait_until(lock, time, [&] { return !from_host_.empty(); });
+}
+
+void UsbLink::watch_events() {
+  while (!stopping_) {
+    pollfd ready{files_.events.get(), POLLIN, 0};
+    if (::poll(&ready, 1, 5 * static_cast<int>(kNap.count())) > 0) handle_event();
+  }
+}
+
+void UsbLink::handle_event() {
+  usb_functionfs_event event{};
+  if (::read(files_.events.get(), &event, sizeof event) != sizeof event) return;
+  switch (event.type) {
+    case FUNCTIONFS_ENABLE:
+      return come_up();
+    case FUNCTIONFS_DISABLE:
+      return go_down("the host is gone, or begins anew");
+    case FUNCTIONFS_UNBIND:
+      return go_down("the device port is closed");
+    case FUNCTIONFS_SETUP:
+      return refuse_setup((event.u.setup.bRequestType & USB_DIR_IN) != 0);
+    default:  // bind, suspend, resume: transfers go on where they were
+      return;
+  }
+}
+
+void UsbLink::come_up() {
+  usb_endpoint_descriptor endpoint{};
+  const bool told = ::ioctl(files_.in.get(), FUNCTIONFS_ENDPOINT_DESC, &endpoint) == 0;
+  packet_ = told ? endpoint.wMaxPacketSize : usb::kHighSpeedPacket;
+  up_ = true;
+  settings_.say(fmt::format("a host has configured the device, {} speed", speed_of(packet_)));
+}
+
+void UsbLink::go_down(const char* why) {
+  if (!up_.exchange(false)) return;
+  to_host_.clear();
+  settings_.say(why);
+}
+
+// FunctionFS stalls a request that is answered in the wrong direction.
+void UsbLink::refuse_setup(bool in) const {
+  const ssize_t refused =
+      in ? ::read(files_.events.get(), nullptr, 0) : ::write(files_.events.get(), nullptr, 0);
+  if (refused >= 0) settings_.say("a request that the device does not know was not refused");
+}
+
+void UsbLink::send_bursts() {
+  while (!stopping_) {
+    const Burst burst = to_host_.take(kTransfer, kNap);
+    if (!burst.bytes.empty() && !send_burst(burst)) {
+      to_host_.clear();
+      std::this_thread::sleep_for(kNap);
+    } else if (burst.end > BurstEnd::end) {
+      do_end(burst.end);
+    }
+  }
+}
+
+// False where the host is gone. What it has not taken is lost, as on a cable that is pulled.
+bool UsbLink::send_burst(const Burst& burst) {
+  const auto size = static_cast<ssize_t>(burst.bytes.size());
+  if (::write(files_.in.get(), burst.bytes.data(), burst.bytes.size()) != size) return false;
+  const bool whole_packets = burst.bytes.size() % packet_ == 0;
+  const bool ends = burst.end == BurstEnd::end || (burst.end == BurstEnd::none && burst.last);
+  return !whole_packets || !ends || ::write(files_.in.get(), burst.bytes.data(), 0) == 0;
+}
+
+// FunctionFS halts an endpoint that is used in the wrong direction.
+void UsbLink::do_end(BurstEnd end) {
+  std::uint8_t byte = 0;
+  if (end == BurstEnd::stall && ::read(files_.in.get(), &byte, 1) >= 0)
+    settings_.say("the endpoint did not stall");
+  if (end != BurstEnd::unplug) return;
+  if (const auto gone = set_connected(settings_.port, false); !gone)
+    settings_.say(schema::message(gone.error()));
+}
+
+// Where no host has configured the device, the endpoint gives an error at once.
+void UsbLink::receive_bursts() {
+  std::array<std::uint8_t, kTransfer> bytes{};
+  for (std::uint64_t transfers = 0; !stopping_;) {
+    const bool deaf = settings_.deaf_after && transfers >= *settings_.deaf_after;
+    const ssize_t got = deaf ? -1 : ::read(files_.out.get(), bytes.data(), bytes.size());
+    if (got < 0) {
+      std::this_thread::sleep_for(kNap);
+      continue;
+    }
+    ++transfers;
+    const std::lock_guard lock(mutex_);
+    from_host_.insert(from_host_.end(), bytes.begin(), bytes.begin() + got);
+    came_.notify_one();
+  }
+}
+
+}  // namespace tacto::firmware_host

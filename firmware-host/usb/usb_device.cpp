@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/usb/usb_device.hpp"
+
+#include "firmware-host/usb/usb_transport.hpp"
+#include "firmware-host/wire_device.hpp"
+
+namespace tacto::firmware_host {
+
+using schema::Result;
+
+Result<std::unique_ptr<Device>> open_usb_device(const std::string&, std::string_view parameters) {
+  const auto address = parse_usb_address(parameters);
+  if (!address) return schema::forward_error(address);
+  auto connection = UsbConnection::open(*address);
+  if (!connection) return schema::forward_error(connection);
+  std::string uri = connection->uri();
+  auto device = WireDevice::open(std::move(uri), std::make_unique<UsbTransport>(std::move(*connection)));
+  if (!device) return schema::forward_error(device);
+  return std::unique_ptr<Device>(std::move(*device));
+}
+
+Result<std::vector<std::string>> usb_uris() {
+  const auto context = begin_usb();
+  if (!context) return schema::forward_error(context);
+  const auto found = find_usb(context->get());
+  if (!found) return schema::forward_error(found);
+  const std::vector<UsbName> names = names_of(*found);
+  std::vector<std::string> uris;
+  for (std::size_t i = 0; i < names.size(); ++i) uris.push_back(usb_uri(names, i));
+  return uris;
+}
+
+}  // namespace tacto::firmware_host

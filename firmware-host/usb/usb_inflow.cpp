@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/usb/usb_inflow.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "firmware-host/usb/usb_words.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::Result;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kLongestDrain = std::chrono::seconds(2);
+constexpr double kDrainStepS = 0.01;
+constexpr auto kFirstPause = std::chrono::milliseconds(10);  // each is twice the one before: 0.3 s in all
+
+std::string_view word_of(libusb_transfer_status status) {
+  if (status == LIBUSB_TRANSFER_STALL) return "stalls";
+  if (status == LIBUSB_TRANSFER_NO_DEVICE) return "comes and goes";
+  return status == LIBUSB_TRANSFER_OVERFLOW ? "sends longer packets than it announced" : "is not understood";
+}
+
+}  // namespace
+
+UsbInflow::UsbInflow(const UsbConnection& connection)
+    : connection_(connection), slots_(std::make_unique<std::vector<Slot>>(kTransfers)) {
+  for (Slot& slot : *slots_) {
+    slot.buffer.resize(kTransferBytes);
+    slot.transfer.reset(libusb_alloc_transfer(0));
+    libusb_transfer* const transfer = slot.transfer.get();
+    if (!transfer) continue;
+    libusb_fill_bulk_transfer(transfer, connection.handle(), connection.interface().in, slot.buffer.data(),
+                              kTransferBytes, arrived, this, 0);
+    idle_.push_back(transfer);
+  }
+}
+
+// libusb may still write to a transfer that has not come back: then it is left to it.
+UsbInflow::~UsbInflow() {
+  cancel_all();
+  const auto latest = Clock::now() + kLongestDrain;
+  while (under_way_ > 0 && Clock::now() < latest)
+    if (!wait(kDrainStepS)) break;
+  if (under_way_ > 0) (void)slots_.release();
+}
+
+void UsbInflow::arrived(libusb_transfer* transfer) {
+  static_cast<UsbInflow*>(transfer->user_data)->sort_in(transfer);
+}
+
+// A transfer that failed may have brought bytes before it did. One that was cancelled was so by us.
+void UsbInflow::sort_in(libusb_transfer* transfer) {
+  --under_way_;
+  woken_ = 1;
+  note(transfer->status);
+  if (transfer->actual_length == 0) return idle_.push_back(transfer);
+  full_.push_back(transfer);
+  troubles_in_a_row_ = 0;
+}
+
+void UsbInflow::note(libusb_transfer_status status) {
+  const bool good = status == LIBUSB_TRANSFER_COMPLETED || status == LIBUSB_TRANSFER_CANCELLED;
+  if (!good && !trouble_) trouble_ = status;
+}
+
+void UsbInflow::end(const tl::unexpected<schema::Error>& reason) {
+  if (!ended_) ended_ = reason.value();
+}
+
+Result<void> UsbInflow::keep_going() {
+  while (!ended_) {
+    if (!trouble_) submit_idle();
+    if (!trouble_) break;
+    cancel_all();
+    if (under_way_ > 0) break;
+    recover();
+  }
+  if (ended_) return tl::unexpected(*ended_);
+  return {};
+}
+
+// Only while no transfer is under way: those that wait behind a stall would fail too. A device that another
+// program resets looks like one that is gone, until it is asked; one that is pulled out, for a while, like a
+// bad cable: hubs are slow to see it.
+void UsbInflow::recover() {
+  const auto trouble = *std::exchange(trouble_, std::nullopt);
+  cancelled_ = false;
+  ++troubles_;
+  if (++troubles_in_a_row_ > kMostTroubles) return give_up(trouble);
+  if (trouble != LIBUSB_TRANSFER_STALL)
+    std::this_thread::sleep_for(kFirstPause * (1 << (troubles_in_a_row_ - 1)));
+  const int cleared = libusb_clear_halt(connection_.handle(), connection_.interface().in);
+  if (cleared == LIBUSB_ERROR_NO_DEVICE) end(usb_failure(cleared, "reading", connection_.uri()));
+}
+
+void UsbInflow::give_up(libusb_transfer_status trouble) {
+  end(schema::fail(schema::Fault::device,
+                   fmt::format("the device {}, {} times in a row", word_of(trouble), troubles_in_a_row_),
+                   connection_.uri(),
+                   "unplug it and plug it in again; if that does not help, try another cable"));
+}
+
+void UsbInflow::submit_idle() {
+  while (!idle_.empty() && !trouble_ && !ended_) {
+    const int code = libusb_submit_transfer(idle_.back());
+    if (code == LIBUSB_ERROR_IO) trouble_ = LIBUSB_TRANSFER_ERROR;
+    if (code != 0 && code != LIBUSB_ERROR_IO) end(usb_failure(code, "reading", connection_.uri()));
+    if (code != 0) return;
+    idle_.pop_back();
+    ++under_way_;
+  }
+}
+
+void UsbInflow::cancel_all() {
+  if (std::exchange(cancelled_, true)) return;
+  for (const Slot& slot : *slots_)
+    if (slot.transfer) libusb_cancel_transfer(slot.transfer.get());
+}
+
+std::size_t UsbInflow::take(std::span<std::uint8_t> bytes) {
+  if (full_.empty()) return 0;
+  libusb_transfer* const first = full_.front();
+  const auto there = static_cast<std::size_t>(first->actual_length);
+  const std::size_t size = std::min(bytes.size(), there - used_);
+  std::copy_n(first->buffer + used_, size, bytes.begin());
+  used_ += size;
+  if (used_ < there) return size;
+  used_ = 0;
+  full_.pop_front();
+  idle_.push_back(first);
+  return size;
+}
+
+Result<void> UsbInflow::wait(double timeout_s) {
+  woken_ = 0;
+  return connection_.handle_events(timeout_s, woken_);
+}
+
+}  // namespace tacto::firmware_host

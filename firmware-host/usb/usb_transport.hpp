@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cable to a device on USB.
+#pragma once
+
+#include "firmware-host/transport.hpp"
+#include "firmware-host/usb/usb_inflow.hpp"
+#include "firmware-host/usb/usb_outflow.hpp"
+
+namespace tacto::firmware_host {
+
+/// Everything happens in the caller's thread, within read() and write(); between calls the kernel goes on
+/// filling transfers (see UsbInflow for how long that lasts). Bytes that came before an error are given
+/// before the error is.
+class UsbTransport final : public Transport {
+ public:
+  explicit UsbTransport(UsbConnection connection);
+
+  /// Errors, beside Transport's: device: the endpoint fails and does not recover.
+  schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override;
+  schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override;
+  /// The steady clock's.
+  double now_s() override;
+
+  /// The URI that tells the device from others.
+  const std::string& uri() const { return connection_.uri(); }
+
+ private:
+  UsbConnection connection_;
+  UsbInflow inflow_;
+  UsbOutflow outflow_;
+};
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values as the wire's fields hold them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+namespace tacto::firmware_host {
+
+/// UTF-8, filled up with zeros; what is too long is cut before the character that does not fit whole.
+template <std::size_t kSize>
+void put_text(char (&field)[kSize], std::string_view text) {
+  std::size_t size = std::min(text.size(), kSize - 1);
+  const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80; };
+  while (size < text.size() && size > 0 && continues(size)) --size;
+  std::fill(std::copy_n(text.begin(), size, field), field + kSize, '\0');
+}
+
+/// The core's limits are single precision: never above the transducer's.
+inline float not_above(double limit) {
+  const auto nearest = static_cast<float>(limit);
+  return static_cast<double>(nearest) > limit ? std::nextafter(nearest, 0.0F) : nearest;
+}
+
+inline std::uint32_t millihertz(double rate_hz) {
+  return static_cast<std::uint32_t>(std::llround(rate_hz * 1e3));
+}
+
+/// Messages that carry their place in a list.
+template <class Message>
+std::vector<Message> numbered(std::vector<Message> messages) {
+  for (std::size_t i = 0; i < messages.size(); ++i) messages[i].index = static_cast<std::uint8_t>(i);
+  return messages;
+}
+
+}  // namespace tacto::firmware_host

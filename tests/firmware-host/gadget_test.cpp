@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The gadget without a kernel: its ticks, its queue, what it tells FunctionFS, and what it does wrong on
+// purpose.
+#include <gtest/gtest.h>
+#include <linux/usb/functionfs.h>
+
+#include <cstring>
+
+#include "firmware-host/core/wire/device_messages.hpp"
+#include "firmware-host/core/wire/frame_decoder.hpp"
+#include "firmware-host/gadget/fault_injector.hpp"
+#include "firmware-host/gadget/functionfs_descriptors.hpp"
+#include "firmware-host/gadget/gadget_options.hpp"
+#include "firmware-host/gadget/tick_pacer.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+std::uint32_t word(const Bytes& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+TEST(TickPacer, KeepsTheRateHoweverItIsWoken) {
+  TickPacer pacer;
+  const TickPacer::Clock::time_point start{};
+  pacer.start(1e-4, start);
+  std::uint64_t ticks = 0;
+  double slipped_s = 0;
+  for (auto now = start; now <= start + seconds(10); now += microseconds(ticks % 7 == 0 ? 17300 : 730)) {
+    const std::uint64_t due = pacer.due(now, slipped_s);
+    EXPECT_EQ(slipped_s, 0);
+    pacer.did(due);
+    ticks += due;
+    EXPECT_NEAR(static_cast<double>(ticks) * 1e-4, std::chrono::duration<double>(now - start).count(),
+                1.1e-4);
+    EXPECT_GE(pacer.next_wake(now) - now, milliseconds(1));
+  }
+}
+
+TEST(TickPacer, GivesUpWhatAStallCost) {
+  TickPacer pacer;
+  const TickPacer::Clock::time_point start{};
+  pacer.start(1e-4, start);
+  double slipped_s = 0;
+  EXPECT_EQ(pacer.due(start + seconds(3), slipped_s), 0U);
+  EXPECT_NEAR(slipped_s, 3, 1e-9);
+  EXPECT_EQ(pacer.due(start + seconds(3) + microseconds(1050), slipped_s), 10U);
+  EXPECT_EQ(slipped_s, 0);
+}
+
+TEST(BurstQueue, JoinsBytesUpToAnEnd) {
+  BurstQueue queue;
+  queue.put(Bytes{1, 2});
+  queue.put(Bytes{3}, BurstEnd::end);
+  queue.put(Bytes{}, BurstEnd::stall);
+  queue.put(Bytes{4, 5, 6});
+  EXPECT_EQ(queue.waiting(), 6U);
+  const Burst first = queue.take(16, milliseconds(0));
+  EXPECT_EQ(first.bytes, (Bytes{1, 2, 3}));
+  EXPECT_EQ(first.end, BurstEnd::end);
+  EXPECT_FALSE(first.last);
+  const Burst second = queue.take(16, milliseconds(0));
+  EXPECT_TRUE(second.bytes.empty());
+  EXPECT_EQ(second.end, BurstEnd::stall);
+  EXPECT_EQ(queue.take(2, milliseconds(0)).bytes, (Bytes{4, 5}));
+  const Burst rest = queue.take(2, milliseconds(0));
+  EXPECT_EQ(rest.bytes, (Bytes{6}));
+  EXPECT_TRUE(rest.last);
+  queue.put(Bytes{7}, BurstEnd::end);
+  queue.clear();
+  EXPECT_TRUE(queue.take(2, milliseconds(1)).bytes.empty());
+}
+
+// As the kernel reads them: its own magic numbers, the whole's length, three interfaces.
+TEST(FunctionFs, DescriptorsAddUp) {
+  const Bytes bytes = functionfs_descriptors();
+  EXPECT_EQ(word(bytes, 0), std::uint32_t{FUNCTIONFS_DESCRIPTORS_MAGIC_V2});
+  EXPECT_EQ(word(bytes, 4), bytes.size());
+  std::size_t at = 24, descriptors = 0;
+  for (; at < bytes.size() && bytes[at] > 0; at += bytes[at]) ++descriptors;
+  EXPECT_EQ(at, bytes.size());
+  EXPECT_EQ(descriptors, word(bytes, 12) + word(bytes, 16) + word(bytes, 20));
+  const Bytes strings = functionfs_strings("oak");
+  EXPECT_EQ(word(strings, 4), strings.size());
+  EXPECT_EQ(strings.back(), 0);
+}
+
+class Faults : public testing::Test {
+ protected:
+  // What comes of ten messages of samples and a pulse behind each.
+  void pass(const std::string& plan) {
+    FaultInjector injector(*parse_fault_plan(plan),
+                           [this](std::span<const std::uint8_t> bytes, BurstEnd end) {
+                             sent_.insert(sent_.end(), bytes.begin(), bytes.end());
+                             longest_ = std::max(longest_, bytes.size());
+                             ends_.push_back(end);
+                             if (end == BurstEnd::stall || end == BurstEnd::unplug) frames_before_ = frames();
+                           });
+    Bytes frames;
+    for (std::uint32_t i = 0; i < 10; ++i) {
+      wire::Samples samples;
+      samples.first_frame = i * 2;
+      samples.channels = 1;
+      samples.count = 2;
+      add(samples, 2 * i, frames);
+      add(wire::Pulse{}, 2 * i + 1, frames);
+    }
+    injector.pass(frames);
+    whole_ = frames.size();
+  }
+
+  template <class Message>
+  static void add(const Message& message, std::uint32_t sequence, Bytes& frames) {
+    std::uint8_t frame[wire::kMaxFrame];
+    const std::size_t size = wire::encode_frame(message, sequence, frame, sizeof frame);
+    frames.insert(frames.end(), frame, frame + size);
+  }
+
+  // What a host's decoder makes of it.
+  std::size_t frames() {
+    wire::FrameDecoder decoder;
+    majors_.clear();
+    std::size_t count = 0;
+    wire::Arrival arrival = wire::Arrival::frame;
+    for (std::size_t at = 0; at < sent_.size() || arrival != wire::Arrival::nothing;) {
+      wire::Frame frame;
+      std::size_t used = 0;
+      arrival = decoder.take(sent_.data() + at, sent_.size() - at, used, frame);
+      at += used;
+      count += arrival == wire::Arrival::frame;
+      if (arrival == wire::Arrival::frame) majors_.push_back(frame.header.major);
+    }
+    return count;
+  }
+
+  Bytes sent_, majors_;
+  std::vector<BurstEnd> ends_;
+  std::size_t whole_ = 0, longest_ = 0, frames_before_ = 0;
+};
+
+TEST_F(Faults, NoneUnlessAskedFor) {
+  pass("");
+  EXPECT_EQ(frames(), 20U);
+  EXPECT_EQ(sent_.size(), whole_);
+}
+
+TEST_F(Faults, DropCorruptTruncateRepeatOnlySamples) {
+  for (const auto& [plan, left] : {std::pair{"drop-every=3", 17U}, std::pair{"corrupt-every=2", 15U},
+                                   std::pair{"truncate-every=5", 18U}, std::pair{"repeat-every=4", 22U}}) {
+    sent_.clear();
+    pass(plan);
+    EXPECT_EQ(frames(), left) << plan;
+  }
+}
+
+TEST_F(Faults, ClaimAnotherVersionSoundly) {
+  pass("version=2.7");
+  EXPECT_EQ(frames(), 20U);
+  EXPECT_EQ(majors_, Bytes(20, 2));
+}
+
+TEST_F(Faults, StallUnplugAndSilenceComeInTheirPlaces) {
+  pass("stall-after=4");
+  EXPECT_EQ(frames_before_, 4U);
+  EXPECT_EQ(frames(), 20U);
+  sent_.clear();
+  pass("unplug-after=7");
+  EXPECT_EQ(frames_before_, 7U);
+  EXPECT_GT(sent_.size(), whole_) << "half a frame too many";
+  sent_.clear();
+  pass("silent-after=5");
+  EXPECT_EQ(frames(), 5U);
+}
+
+TEST_F(Faults, ShortPacketsHoldTheSameBytes) {
+  pass("packet=13");
+  EXPECT_EQ(frames(), 20U);
+  EXPECT_EQ(longest_, 13U);
+  for (const BurstEnd end : ends_) EXPECT_EQ(end, BurstEnd::end);
+}
+
+TEST(GadgetOptions, AreReadOrRefused) {
+  const char* const good[] = {"--board", "replay:oak", "--id", "1d50:60ab", "--fault", "deaf-after=0"};
+  const auto options = parse_gadget_options(good);
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->board, "replay:oak");
+  EXPECT_EQ(options->vendor, 0x1d50);
+  EXPECT_EQ(options->product, 0x60ab);
+  EXPECT_EQ(options->faults.deaf_after, 0U);
+  for (const auto& [name, value] :
+       {std::pair{"--id", "1d50"}, std::pair{"--id", "x:1"}, std::pair{"--fault", "version=2"},
+        std::pair{"--fault", "packet=0"}, std::pair{"--udc", (const char*)nullptr}}) {
+    const char* const bad[] = {name, value};
+    EXPECT_FALSE(parse_gadget_options(std::span(bad).first(value == nullptr ? 1 : 2))) << name;
+  }
+}
+
+}  // namespace
+}  // namespace tacto::firmware_host

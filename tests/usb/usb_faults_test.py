@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What goes wrong on a real kernel's USB ends in the stated gap or error, in the stated time, and the recording holds
+exactly the device's frames: each is compared with the recording that the device plays, at the place where the gaps
+say that it was.
+"""
+import json
+import os
+import pathlib
+import tempfile
+
+import numpy as np
+import soundfile
+
+import tacto
+import virtual_machine
+
+RATE_HZ = 10000
+SOURCE_S = 12
+BLOCK = 32  # frames in a message at this rate
+SLOW_S = 4  # what an emulated machine may take beyond the stated times
+SILENCE_S = 1  # firmware-host/README.md: a silent stream, and a device that takes nothing
+RESULTS = pathlib.Path(tempfile.mkdtemp(prefix="tacto-usb-faults-"))
+
+
+def text(name):
+    return (RESULTS / name).read_text()
+
+
+def code(name):
+    return int(text(f"{name}.code"))
+
+
+def check_frames(name):
+    """Gives the sidecar, once every frame is the device's, and the gaps account for all others."""
+    assert text(f"{name}.valid").endswith("exit 0\n"), text(f"{name}.valid")
+    header = json.loads(text(f"{name}.json"))
+    frames = soundfile.read(RESULTS / f"{name}.wav", dtype="int32", always_2d=True)[0]
+    source = soundfile.read(RESULTS / "source.wav", dtype="int32", always_2d=True)[0]
+    number, missing = np.arange(len(frames)), 0
+    for gap in header["gaps"]:
+        missing += gap["count"]
+        number[gap["frame"]:] += gap["count"]
+        assert gap["device_sequence"] == gap["frame"] + missing, gap
+    wrong = np.flatnonzero((frames != source[number % len(source)]).any(axis=1))
+    assert len(wrong) == 0, f"{name}: frame {wrong[0]} of {len(frames)} is not the device's, gaps {header['gaps']}"
+    assert len(frames) > 0.2 * RATE_HZ, (name, len(frames))
+    return header
+
+
+def expect(name, wanted, *words):
+    said = text(f"{name}.err")
+    assert code(name) == wanted, f"{name}: exit {code(name)}, wanted {wanted}\n{said}\n{text(f'{name}.out')}"
+    for word in words:
+        assert word in said + text(f"{name}.out"), f"{name}: '{word}' is not in\n{said}"
+    return said
+
+
+def expect_whole(name):
+    expect(name, 0)
+    assert check_frames(name)["gaps"] == [], name
+
+
+def expect_gaps(name, least, most):
+    expect(name, 8, "lost")
+    gaps = check_frames(name)["gaps"]
+    assert least <= len(gaps) <= most, (name, gaps)
+    assert all(gap["count"] % BLOCK == 0 for gap in gaps), gaps
+    return gaps
+
+
+def expect_end(name, why, at_most_s=None):
+    """It closed with the reason, and what came before it is there."""
+    expect(name, 8, why)
+    header = check_frames(name)
+    assert why in header["ended"], header["ended"]
+    if at_most_s is not None:
+        late = float(text(f"{name}.late"))
+        assert late < at_most_s + SLOW_S, f"{name}: ended {late} s after the fault"
+        print(f"  {name}: '{header['ended']}' after {late:.2f} s")
+
+
+def good_devices():
+    scanned = json.loads(text("scan.out"))
+    assert scanned["real_devices"] == 1 and scanned["devices"][0]["uri"] == "usb:serial=F1", scanned
+    assert scanned["devices"][0]["serial"] == "F1" and scanned["devices"][0]["sample_rate_hz"] == RATE_HZ, scanned
+    expect_whole("sound")
+    assert json.loads(text("sound.json"))["device"] == "usb:serial=F1"
+    expect_whole("packets")
+    expect_whole("repeated")
+
+
+def who_may_have_it():
+    expect_whole("first")
+    expect("second", 8, "another program has the device")
+    assert code("denied") == 3 and "60-tactograph.rules" in text("denied.err"), text("denied.err")
+    problem = json.loads(text("denied.out"))["devices"][0]["problem"]
+    assert "this user may not open the device" in problem, problem
+    expect("unnamed", 2, "usb:serial=F1, usb:serial=F2")
+    expect_whole("named")
+    expect("missing", 3, "no device on USB has the serial 'F3'")
+    expect("newer", 6, "speaks version 2.0 of the protocol", "update tactograph")
+    expect("deaf", 8, "took nothing from this computer")
+
+
+def unplugging():
+    for name in ("unplugged", "unbound", "powerless"):
+        expect_end(name, "the device was unplugged", 0)
+    expect_end("let_go", "the device was unplugged")
+    expect_whole("replugged")
+
+
+def damage():
+    blocks = 2 * RATE_HZ // BLOCK
+    for name in ("corrupt", "dropped", "truncated"):
+        gaps = expect_gaps(name, blocks // 40 - 1, blocks // 40 + 1)
+        print(f"  {name}: {len(gaps)} gaps of {blocks} messages, each one message")
+        assert all(gap["count"] == BLOCK for gap in gaps), gaps
+    expect("allowed", 0, "lost")
+    assert check_frames("allowed")["gaps"]
+    expect_end("silent", "no frames have come for 1 s")
+
+
+def recovery():
+    """Here a gap may be, or not: what is asked is that none is silent, and that the recording goes on to its end."""
+    for name in ("stalled", "reset", "held_up"):
+        header = check_frames(name)
+        lost = sum(gap["count"] for gap in header["gaps"])
+        expect(name, 8 if lost else 0)
+        assert not header["ended"] if "ended" in header else True, header
+        print(f"  {name}: {lost} frames lost, in {len(header['gaps'])} gaps")
+    check_frames("killed")
+    expect_whole("after_killed")
+
+
+def main():
+    source = "sim:surface=triangle,period=1mm,depth=0.1mm,strokes=20,seed=5"
+    tacto.run("record", "-d", source, "-o", RESULTS / "source", "--time", f"{SOURCE_S}s")
+    programs = {name: os.environ[name] for name in ("TACTOGRAPH", "GADGET", "USB_RESET")}
+    virtual_machine.run("faults.sh", RESULTS, 600, **programs)
+    for check in (good_devices, who_may_have_it, unplugging, damage, recovery):
+        check()
+        print(f"{check.__name__}: passed")
+
+
+if __name__ == "__main__":
+    main()

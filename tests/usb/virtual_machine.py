@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs a shell script on Debian's stock kernel in QEMU, with the host's files under its root and a folder for what
+comes back. What a guest script may use stands in README.md.
+"""
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import tempfile
+import time
+
+import initramfs
+
+HERE = pathlib.Path(__file__).resolve().parent
+KERNEL = pathlib.Path(os.environ.get("TACTO_KERNEL", HERE.parents[1] / "build" / "kernel"))
+BOOT_S = 120  # without KVM a slow machine needs about ten
+KVM_BOOT_S = 20  # with it, about one
+MEMORY_MB = 1024
+
+
+class GuestFailed(Exception):
+    """The guest did not come up, did not end in time, or its script failed."""
+
+
+def accelerators():
+    """KVM where it may be opened; it may not work for all that, so QEMU's own translation is next."""
+    if "TACTO_QEMU_ACCEL" in os.environ:
+        return [os.environ["TACTO_QEMU_ACCEL"]]
+    return ["kvm", "tcg"] if os.access("/dev/kvm", os.R_OK | os.W_OK) else ["tcg"]
+
+
+def qemu_command(image, results, accel):
+    share = "local,security_model=none,multidevs=remap"
+    return ["qemu-system-x86_64", "-M", "q35", "-accel", accel, "-cpu", "max", "-smp", "1", "-m", str(MEMORY_MB),
+            "-nodefaults", "-display", "none", "-no-reboot", "-serial", "stdio",
+            "-kernel", str(KERNEL / "vmlinuz"), "-initrd", str(image), "-append", "console=ttyS0 quiet panic=-1",
+            "-virtfs", f"{share},path=/,mount_tag=host,readonly=on,id=host",
+            "-virtfs", f"{share},path={results},mount_tag=results,id=results"]
+
+
+def write_environment(results, script, environment):
+    lines = {"GUEST_SCRIPT": str(script), "GUEST": str(HERE / "guest"), "HOME": "/guest", "TMPDIR": "/guest/tmp",
+             "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "LC_ALL": "C.UTF-8", **environment}
+    text = "".join(f"export {name}={shlex.quote(str(value))}\n" for name, value in lines.items())
+    (results / "environment").write_text(text)
+
+
+def require_parts():
+    if not (KERNEL / "modules").exists():
+        raise GuestFailed(f"no kernel in {KERNEL}: run ./bootstrap install (or tests/usb/fetch_kernel.py {KERNEL})")
+    for program, package in (("qemu-system-x86_64", "qemu-system-x86"), ("/bin/busybox", "busybox-static")):
+        if not shutil.which(program):
+            raise GuestFailed(f"{program} is not here: install {package}, or run ./bootstrap install")
+
+
+def wait_for(machine, results, accel, timeout_s):
+    """Until the guest has switched itself off; one that is not up in time, or does not end in time, is ended."""
+    up_by = time.monotonic() + (KVM_BOOT_S if accel == "kvm" else BOOT_S)
+    while machine.poll() is None and not (results / "up").exists() and time.monotonic() < up_by:
+        time.sleep(0.05)
+    try:
+        machine.wait(timeout_s if (results / "up").exists() else 0)
+    except subprocess.TimeoutExpired:
+        machine.kill()
+        machine.wait()
+        return f"\nended from outside: not {'done' if (results / 'up').exists() else 'up'} in time\n"
+    return ""
+
+
+def boot(results, accel, timeout_s):
+    """Gives what the guest said on its serial port, and how it ended where it was not by itself."""
+    with tempfile.TemporaryDirectory(prefix="tacto-guest-") as folder:
+        image, serial = pathlib.Path(folder) / "initramfs", pathlib.Path(folder) / "serial"
+        image.write_bytes(initramfs.for_guest(KERNEL, HERE / "guest" / "init"))
+        with serial.open("wb") as port:
+            machine = subprocess.Popen(qemu_command(image, results, accel), stdin=subprocess.DEVNULL, stdout=port,
+                                       stderr=subprocess.STDOUT)
+            ended = wait_for(machine, results, accel, timeout_s)
+        return serial.read_text(errors="replace").replace("\r", "") + ended
+
+
+def run(script, results, timeout_s, **environment):
+    """Runs guest/SCRIPT; `environment` is set for it. What it leaves in /guest/results is in `results` afterwards.
+
+    Gives what it said. Raises GuestFailed, with all that was said, unless the script ended with 0.
+    """
+    require_parts()
+    results = pathlib.Path(results)
+    write_environment(results, HERE / "guest" / script, environment)
+    said = ""
+    for accel in accelerators():
+        said += boot(results, accel, timeout_s)
+        if (results / "up").exists():
+            break
+    status = results / "status"
+    ended = status.read_text().strip() if status.exists() else "nothing: it did not come to its end"
+    if ended != "0":
+        raise GuestFailed(f"{script} in the guest ({accel}) ended with {ended}\n{said}")
+    return said
