@@ -58,7 +58,7 @@ TEST_P(SimParametersRefused, SaysWhereAndWhatThereIs) {
 INSTANTIATE_TEST_SUITE_P(
     All, SimParametersRefused,
     testing::Values(
-        Refusal{"hysteresis=on", "sim:", "surface, finger, noise"}, Refusal{"speed", "sim:", "key=value"},
+        Refusal{"magic=on", "sim:", "surface, finger, noise"}, Refusal{"speed", "sim:", "key=value"},
         Refusal{"speed=50", "sim:speed", "mm/s"}, Refusal{"speed=50mm", "sim:speed", "mm/s"},
         Refusal{"speed=0mm/s", "sim:speed", "from 1 mm/s"}, Refusal{"speed=nanmm/s", "sim:speed", "finite"},
         Refusal{"speed=1e99m/s", "sim:speed", "out of range"}, Refusal{"seed=-1", "sim:seed", "whole"},
