@@ -97,12 +97,13 @@ Result<void> check_details(const SimParameters& parameters, const std::set<std::
 
 Result<void> check_force(const SimParameters& p) {
   if (!p.known_force) return {};
-  if (p.force.low_hz > p.force.high_hz)
+  const bool sine = p.force.shape == ForceShape::sine;
+  if (!sine && p.force.low_hz > p.force.high_hz)
     return schema::fail(Fault::usage, "the force's band is upside down", where("force_low"),
                         "give a force_high that is not below it");
-  const double highest_hz = p.force.shape == ForceShape::sine ? p.force.low_hz : p.force.high_hz;
-  if (highest_hz < p.sample_rate_hz / 2) return {};
-  return schema::fail(Fault::usage, "the force goes beyond half the rate", where("force_high"),
+  if ((sine ? p.force.low_hz : p.force.high_hz) < p.sample_rate_hz / 2) return {};
+  return schema::fail(Fault::usage, "the force goes beyond half the rate",
+                      where(sine ? "force_low" : "force_high"),
                       fmt::format("below {}", shown(p.sample_rate_hz / 2, Dimension::frequency)));
 }
 

@@ -4,6 +4,11 @@
 #include <algorithm>
 
 namespace tacto::firmware_host {
+namespace {
+
+constexpr double kLongestNapS = 10e-3;  // half of what capture writes at a time
+
+}  // namespace
 
 SimTransport::SimTransport(SimBoard& board, bool paced, std::optional<double> link_buffer_s)
     : board_(board), link_buffer_s_(link_buffer_s) {
@@ -23,14 +28,14 @@ void SimTransport::pass_time(double until_s) {
   if (pacer_) pacer_->wait_until(now_s_);
 }
 
-// All ticks that are due, whether or not somebody reads; then sleep, a tick's time or a little more.
+// All ticks that are due, whether or not somebody reads; then sleep while the link fills by a little.
 void SimTransport::pass_real_time(double until_s) {
-  constexpr double kNapS = 2e-3;
+  const double nap_s = std::min(kLongestNapS, *link_buffer_s_ / 4);
   board_.set_link_bytes(static_cast<std::size_t>(*link_buffer_s_ * board_.stream_bytes_per_s()));
   for (;;) {
     for (double due_s = pacer_->now_s(); now_s_ + board_.period_s() <= due_s;) tick();
     if (!board_.to_host().empty() || now_s_ >= until_s) return;
-    pacer_->sleep_until(now_s_ + std::max(kNapS, board_.period_s()));
+    pacer_->sleep_until(now_s_ + std::max(nap_s, board_.period_s()));
   }
 }
 
