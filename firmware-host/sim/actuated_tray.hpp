@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "data-schema/transducer.hpp"
+#include "firmware-host/sim/bender_hysteresis.hpp"
 #include "firmware-host/sim/runge_kutta.hpp"
+#include "firmware-host/sim/tray_mechanics.hpp"
 
 namespace tacto::firmware_host {
 
@@ -16,14 +18,17 @@ namespace tacto::firmware_host {
 /// an analog Butterworth low-pass of order 3 smooths it (the paper's reconstruction filter, 600 Hz); then
 ///   2 R_a C_p V_p' = G_a V_a - V_p,   m x'' + b_r x' + (k_r + k_p) x = 2 beta k_p V_p x actuator_scale +
 ///   F_d.
-/// Runge-Kutta steps of at most 12.5 us; against the exact response at the resonance the relative error is
-/// below 1e-6. A drive beyond +-drive_limit_v is held to it and counted. Not safe to share between threads;
-/// no allocation after construction.
+/// On request the bender lags V_p by hysteresis (in V_p, between +-v_max), the mass has a second mode, and a
+/// resting finger loads it (TrayPhysics). Runge-Kutta steps of at most 12.5 us; against the exact response at
+/// the resonance the relative error is below 1e-6. A drive beyond +-drive_limit_v is held to it and counted.
+/// Not safe to share between threads; no allocation after construction.
 class ActuatedTray {
  public:
-  /// At rest, at 0. The tick rate in Hz, above 0; the filter's cut-off in Hz.
+  /// At rest, at 0. The tick rate in Hz, above 0; the filter's cut-off in Hz. Preconditions of TrayMechanics
+  /// and BenderHysteresis.
   ActuatedTray(const schema::Transducer& transducer, double tick_rate_hz,
-               std::optional<double> reconstruction_cutoff_hz = std::nullopt);
+               std::optional<double> reconstruction_cutoff_hz = std::nullopt,
+               const TrayPhysics& physics = {});
 
   /// The displacement in metres at the tick's beginning; then holds `drive_v`, and the finger's force on the
   /// tray, to its end.
@@ -34,12 +39,23 @@ class ActuatedTray {
   std::uint64_t limited_ticks() const { return limited_ticks_; }
 
  private:
-  enum : std::size_t { kFirstOrderV, kFilteredV, kFilteredSlope, kPiezoV, kTrayM, kTrayMps, kStates };
+  enum : std::size_t {
+    kFirstOrderV,
+    kFilteredV,
+    kFilteredSlope,
+    kPiezoV,
+    kTrayM,
+    kTrayMps,
+    kInnerM,
+    kInnerMps,
+    kStates
+  };
   using State = OdeState<kStates>;
   State rate(const State& state, double drive_v, double force_n) const;
   double within_limit(double drive_v);
 
-  double mass_kg_, damping_n_s_per_m_, stiffness_n_per_m_;
+  TrayMechanics mechanics_;
+  BenderHysteresis hysteresis_;
   double force_n_per_v_;  // 2 beta k_p, scaled
   double amplifier_gain_, time_constant_s_;
   double filter_rad_per_s_;  // 0: no filter

@@ -12,13 +12,19 @@ namespace tacto::firmware_host {
 class Pacer {
  public:
   void wait_until(double emulated_s) const {
-    const auto due =
-        start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(emulated_s));
-    if (due - Clock::now() > kSlack) std::this_thread::sleep_until(due);
+    if (due(emulated_s) - Clock::now() > kSlack) std::this_thread::sleep_until(due(emulated_s));
   }
+  /// However short the wait.
+  void sleep_until(double emulated_s) const { std::this_thread::sleep_until(due(emulated_s)); }
+
+  /// Real time since this began.
+  double now_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  Clock::time_point due(double emulated_s) const {
+    return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(emulated_s));
+  }
   static constexpr auto kSlack = std::chrono::milliseconds(1);
   Clock::time_point start_ = Clock::now();
 };

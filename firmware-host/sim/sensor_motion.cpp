@@ -3,10 +3,8 @@
 
 namespace tacto::firmware_host {
 
-SensorMotion::SensorMotion(const schema::Transducer& t)
-    : mass_kg_(t.mass_kg),
-      damping_n_s_per_m_(t.damping_n_s_per_m),
-      stiffness_n_per_m_(t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m),
+SensorMotion::SensorMotion(const schema::Transducer& t, const std::optional<SecondMode>& second_mode)
+    : mechanics_(t, {.second_mode = second_mode, .finger_load = {}}),
       bender_n_per_m_(t.bender_stiffness_n_per_m),
       time_constant_s_(2 * t.sensor_resistance_ohm * t.capacitance_f),
       output_v_per_n_(t.sensor_scale * t.sensor_gain * t.deflection_m / (2 * t.max_voltage_v) /

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "firmware-host/sim/counter_run.hpp"
 #include "firmware-host/sim/sim_description.hpp"
 #include "firmware-host/wire_fields.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::uint32_t kClockHz = 1'000'000;
 constexpr std::uint32_t kTextureSamples = 65536;  // 256 KB: what a larger board would have
+constexpr std::size_t kMessageBytes = 40;         // of a samples message, beside its codes: core/WIRE.md
 
 }  // namespace
 
@@ -26,8 +28,8 @@ SimBoard::SimBoard(const SimParameters& parameters, schema::Transducer transduce
 }
 
 void SimBoard::describe() {
-  const SimRun run(parameters_, transducer_, profile_);
-  channels_ = sim_channels(run, parameters_);
+  channels_ = parameters_.counter ? counter_channels(parameters_.channels)
+                                  : sim_channels(SimRun(parameters_, transducer_, profile_), parameters_);
   notes_ = sim_notes(parameters_, surface_words_);
 }
 
@@ -51,9 +53,9 @@ core::Board SimBoard::about() {
 core::Hal SimBoard::hal() {
   core::Hal hal;
   hal.board = this;
-  hal.read_encoder = [](void* b) noexcept { return of(b).frame_[1]; };
+  hal.read_encoder = [](void* b) noexcept { return of(b).source_ ? of(b).source_->encoder_count() : 0; };
   hal.read_channels = [](void* b, std::int32_t* codes) noexcept {
-    std::copy_n(of(b).frame_, kSimChannels, codes);
+    std::copy_n(of(b).frame_, of(b).channels_.size(), codes);
     return of(b).diverged_s_ < 0;
   };
   hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
@@ -64,8 +66,7 @@ core::Hal SimBoard::hal() {
     return of(b).receive({bytes, size});
   };
   hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
-    of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
-    return size;
+    return of(b).send({bytes, size});
   };
   hal.restart = [](void* b) noexcept { of(b).set_rate(0); };
   return hal;
@@ -76,6 +77,23 @@ std::size_t SimBoard::receive(std::span<std::uint8_t> bytes) {
   std::copy_n(from_host_.begin(), size, bytes.begin());
   from_host_.erase(from_host_.begin(), from_host_.begin() + size);
   return size;
+}
+
+std::size_t SimBoard::send(std::span<const std::uint8_t> bytes) {
+  const std::size_t size = std::min(bytes.size(), link_bytes_ - std::min(link_bytes_, to_host_.size()));
+  to_host_.insert(to_host_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+  return size;
+}
+
+// Samples, and what every message of them begins and ends with.
+double SimBoard::stream_bytes_per_s() const {
+  const double frame = static_cast<double>(channels_.size() * sizeof(std::int32_t));
+  return 1e-3 * rate_millihertz_ * (frame + static_cast<double>(kMessageBytes) / wire::kMaxBlockFrames);
+}
+
+std::unique_ptr<FrameSource> SimBoard::source_at(const SimParameters& parameters) const {
+  if (parameters.counter) return std::make_unique<CounterRun>();
+  return std::make_unique<SimRun>(parameters, transducer_, profile_);
 }
 
 std::uint64_t SimBoard::clock() const {
@@ -95,15 +113,16 @@ void SimBoard::set_rate(std::uint32_t rate_millihertz) {
   rate_millihertz_ = rate_millihertz;
   if (!ticking()) return;
   diverged_s_ = -1;
-  run_ = std::make_unique<SimRun>(parameters_at(rate_millihertz), transducer_, profile_);
+  source_ = source_at(parameters_at(rate_millihertz));
   tray_.reset();
-  frame_[1] = run_->encoder_count();
 }
 
 void SimBoard::step() {
-  if (diverged_s_ < 0 && !run_->next(frame_)) diverged_s_ = static_cast<double>(steps_) * period_s();
+  if (diverged_s_ < 0 && !source_->next(std::span(frame_).first(channels_.size())))
+    diverged_s_ = static_cast<double>(steps_) * period_s();
   ++steps_;
-  if (!tray_ && drive_v_ != 0) tray_ = std::make_unique<ActuatedTray>(transducer_, 1 / period_s());
+  if (!tray_ && drive_v_ != 0)
+    tray_ = std::make_unique<ActuatedTray>(transducer_, 1 / period_s(), std::nullopt, parameters_.tray());
   if (tray_) tray_->tick(drive_v_);
   firmware_->tick();
 }

@@ -7,14 +7,15 @@
 
 #include "firmware-host/core/firmware.hpp"
 #include "firmware-host/sim/actuated_tray.hpp"
-#include "firmware-host/sim/sim_run.hpp"
+#include "firmware-host/sim/frame_source.hpp"
+#include "firmware-host/sim/sim_parameters.hpp"
 #include "firmware-host/sim/surface.hpp"
 
 namespace tacto::firmware_host {
 
 /// One thread calls step() and poll(). Each time the rate is set, the finger begins anew: equal parameters
-/// give equal frames. While there is a drive, the tray answers it beside the sensor, without the finger's
-/// load.
+/// give equal frames. While there is a drive, the tray answers it beside the sensor, with hysteresis, second
+/// mode and a finger's load where the parameters say so.
 class SimBoard {
  public:
   SimBoard(const SimParameters& parameters, schema::Transducer transducer, Surface surface);
@@ -30,6 +31,11 @@ class SimBoard {
   std::vector<std::uint8_t>& from_host() { return from_host_; }
   std::vector<std::uint8_t>& to_host() { return to_host_; }
   void set_enabled(bool enabled) { enabled_ = enabled; }
+  /// Bytes to the host that the link holds; what does not fit stays in the firmware's ring, as long as that
+  /// has room.
+  void set_link_bytes(std::size_t bytes) { link_bytes_ = bytes; }
+  /// Of the stream, while ticking: what the link has to carry, in bytes a second.
+  double stream_bytes_per_s() const;
 
   /// Where the motion has diverged: when, in seconds since the rate was set. Negative while it has not.
   double diverged_s() const { return diverged_s_; }
@@ -43,6 +49,8 @@ class SimBoard {
   core::Board about();
   void set_rate(std::uint32_t rate_millihertz);
   std::size_t receive(std::span<std::uint8_t> bytes);
+  std::size_t send(std::span<const std::uint8_t> bytes);
+  std::unique_ptr<FrameSource> source_at(const SimParameters& parameters) const;
   std::uint64_t clock() const;
   SimParameters parameters_at(std::uint32_t rate_millihertz) const;
   void describe();
@@ -54,9 +62,10 @@ class SimBoard {
   std::vector<wire::Note> notes_;
   std::vector<float> texture_;
   std::vector<std::uint8_t> from_host_, to_host_;
-  std::unique_ptr<SimRun> run_;
+  std::size_t link_bytes_ = static_cast<std::size_t>(-1);
+  std::unique_ptr<FrameSource> source_;
   std::unique_ptr<ActuatedTray> tray_;
-  std::int32_t frame_[kSimChannels] = {};
+  std::int32_t frame_[wire::kMaxChannels] = {};
   std::uint32_t rate_millihertz_ = 0;
   std::uint64_t steps_ = 0, clock_before_ = 0;
   bool enabled_ = true;

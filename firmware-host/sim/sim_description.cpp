@@ -50,15 +50,54 @@ wire::Note note_of(wire::NoteKind kind, std::string_view text) {
   return note;
 }
 
+std::string finger_words(const SimParameters& p) {
+  if (!p.finger_down) return "finger up";
+  return fmt::format(
+      "finger of person {} (elastic ridges, LuGre friction, mass-spring-damper pulp) at {} and {}", p.person,
+      for_people(p.strokes.speed_mps, Dimension::speed), for_people(p.load_n, Dimension::force));
+}
+
+std::string force_words(const ForcePlan& force) {
+  const auto hz = [](double value) { return for_people(value, Dimension::frequency); };
+  const std::string size = for_people(force.amplitude_n, Dimension::force);
+  if (force.shape == ForceShape::sine)
+    return fmt::format("known force, a sine of {} at {}", size, hz(force.low_hz));
+  const std::string band = fmt::format("{} to {}", hz(force.low_hz), hz(force.high_hz));
+  if (force.shape == ForceShape::chirp)
+    return fmt::format("known force, a chirp of {}, {} in {}", size, band,
+                       for_people(force.sweep_s, Dimension::time));
+  return fmt::format("known force, {} tones of {}, {}", force.tones, size, band);
+}
+
+std::string extras_words(const SimParameters& p) {
+  std::string words;
+  if (p.has_lvdt)
+    words += fmt::format(", position by an LVDT of {}", for_people(p.lvdt.range_m, Dimension::length));
+  if (p.has_second_mode)
+    words += fmt::format(", second mode at {}", for_people(p.second_mode.frequency_hz, Dimension::frequency));
+  if (p.hysteresis > 0) words += fmt::format(", driven with {:g} % of hysteresis", 100 * p.hysteresis);
+  if (p.has_finger_load) words += ", driven under a resting finger's load";
+  return words;
+}
+
+std::string touched_words(const SimParameters& p, std::string_view surface) {
+  return p.known_force ? force_words(p.force) : fmt::format("{}, on {}", finger_words(p), surface);
+}
+
 std::string simulated_by(const SimParameters& p, std::string_view surface) {
-  const std::string finger =
-      p.finger_down
-          ? fmt::format(
-                "finger of person {} (elastic ridges, LuGre friction, mass-spring-damper pulp) at {} and {}",
-                p.person, for_people(p.strokes.speed_mps, Dimension::speed),
-                for_people(p.load_n, Dimension::force))
-          : std::string("finger up");
-  return fmt::format("by {}'s emulated device: {}, on {}, seed {}", kCreator, finger, surface, p.seed);
+  const std::string what =
+      p.counter ? "frames that count themselves, no physics" : touched_words(p, surface) + extras_words(p);
+  return fmt::format("by {}'s emulated device: {}, seed {}", kCreator, what, p.seed);
+}
+
+wire::Channel position_channel(const SimRun& run, const SimParameters& p) {
+  if (run.lvdt() == nullptr)
+    return channel_of("position", "m", p.encoder_quantum_m, "encoder on the finger, plain counts");
+  wire::Channel channel = converted("position", "m", run.lvdt()->converter(), "LVDT on the finger");
+  channel.offset = run.lvdt()->centre_m();
+  channel.range_min += channel.offset;
+  channel.range_max += channel.offset;
+  return channel;
 }
 
 }  // namespace
@@ -66,14 +105,25 @@ std::string simulated_by(const SimParameters& p, std::string_view surface) {
 std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& parameters) {
   return numbered<wire::Channel>(
       {converted("tangential_force", "V", run.converter(), "transducer, piezo sensor"),
-       channel_of("position", "m", parameters.encoder_quantum_m, "encoder on the finger, plain counts"),
-       load_channel("normal_force", run.normal_cell()), load_channel("net_force", run.net_cell())});
+       position_channel(run, parameters), load_channel("normal_force", run.normal_cell()),
+       load_channel("net_force", run.net_cell())});
+}
+
+std::vector<wire::Channel> counter_channels(int count) {
+  std::vector<wire::Channel> channels;
+  for (int i = 0; i < count; ++i) {
+    channels.push_back(channel_of("signal", "1", 1, "counter: 16 x frame + channel"));
+    put_text(channels.back().name, fmt::format("signal_{}", i));
+  }
+  return numbered(std::move(channels));
 }
 
 std::vector<wire::Note> sim_notes(const SimParameters& parameters, std::string_view surface) {
-  return numbered<wire::Note>({note_of(wire::NoteKind::simulated_by, simulated_by(parameters, surface)),
-                               note_of(wire::NoteKind::transducer, parameters.transducer),
-                               note_of(wire::NoteKind::surface, surface)});
+  const bool touched = !parameters.counter && !parameters.known_force;
+  return numbered<wire::Note>(
+      {note_of(wire::NoteKind::simulated_by, simulated_by(parameters, surface)),
+       note_of(wire::NoteKind::transducer, parameters.counter ? std::string() : parameters.transducer),
+       note_of(wire::NoteKind::surface, touched ? surface : std::string_view())});
 }
 
 wire::Welcome sim_welcome(const SimParameters& parameters, const schema::Transducer& transducer) {

@@ -10,9 +10,11 @@
 
 namespace tacto::firmware_host {
 
-/// tangential_force (the transducer's output, V), position (encoder, counts), normal_force and net_force
-/// (load cell, N).
+/// tangential_force (the transducer's output, V), position (encoder, counts; or LVDT, m), normal_force and
+/// net_force (load cell, N).
 std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& parameters);
+/// Plain numbers of the quantity `signal`.
+std::vector<wire::Channel> counter_channels(int count);
 /// By what it is simulated, its transducer, its surface.
 std::vector<wire::Note> sim_notes(const SimParameters& parameters, std::string_view surface);
 /// Name, serial, firmware, features and limits; clock and rates are the board's.

@@ -13,7 +13,8 @@ using schema::Result;
 Result<std::unique_ptr<SimDevice>> SimDevice::open(std::string uri, const SimParameters& parameters,
                                                    const schema::Transducer& transducer, Surface surface) {
   auto board = std::make_unique<SimBoard>(parameters, transducer, std::move(surface));
-  auto wire = WireDevice::open(std::move(uri), std::make_unique<SimTransport>(*board, parameters.paced));
+  auto wire = WireDevice::open(
+      std::move(uri), std::make_unique<SimTransport>(*board, parameters.paced, parameters.link_buffer_s));
   if (!wire) return schema::forward_error(wire);
   return std::unique_ptr<SimDevice>(new SimDevice(std::move(board), std::move(*wire)));
 }
@@ -34,6 +35,7 @@ Result<std::unique_ptr<SimDevice>> make_sim_device(const std::string& uri, std::
   if (!surface) return schema::forward_error(surface);
   const auto transducer = schema::read_transducer(asked->transducer);
   if (!transducer) return schema::forward_error(transducer);
+  if (const auto fits = check_against(*asked, *transducer); !fits) return schema::forward_error(fits);
   return SimDevice::open(uri, *asked, *transducer, std::move(*surface));
 }
 

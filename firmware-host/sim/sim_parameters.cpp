@@ -5,9 +5,10 @@
 
 #include <cmath>
 #include <set>
-#include <vector>
 
 #include "data-schema/quantity.hpp"
+#include "firmware-host/sim/sim_keys.hpp"
+#include "firmware-host/sim/tray_mechanics.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -16,80 +17,10 @@ using schema::Dimension;
 using schema::Fault;
 using schema::Result;
 
-// A key whose value is a quantity; whole ones are counts and seeds.
-struct Number {
-  std::string_view key, meaning;
-  Dimension dimension;
-  double least, most;
-  bool whole;
-  void (*store)(SimParameters& p, double value);
-};
-
-// A key whose value is a word: one of `choices`, or any where they are empty.
-struct Word {
-  std::string_view key, meaning;
-  std::vector<std::string_view> choices;
-  void (*store)(SimParameters& p, std::string_view value);
-};
-
-constexpr double kLargestSeed = 0x1p53;  // what a double counts without holes
-
-using P = SimParameters;
-constexpr Number kNumbers[] = {
-    {"speed", "of the finger, 50mm/s", Dimension::speed, 1e-3, 0.5, false,
-     [](P& p, double v) { p.strokes.speed_mps = v; }},
-    {"load", "normal force, 0.5N", Dimension::force, 0.01, 3, false, [](P& p, double v) { p.load_n = v; }},
-    {"wander", "of speed and load, RMS as a part, 0.1", Dimension::none, 0, 0.3, false,
-     [](P& p, double v) { p.strokes.wander = v; }},
-    {"strokes", "there, back, there ..., 2", Dimension::none, 0, 1e6, true,
-     [](P& p, double v) { p.strokes.strokes = static_cast<int>(v); }},
-    {"seed", "of everything random but the ridges, 1", Dimension::none, 0, kLargestSeed, true,
-     [](P& p, double v) { p.seed = p.surface.seed = static_cast<std::uint64_t>(v); }},
-    {"person", "seed of the finger's ridges, 1", Dimension::none, 0, kLargestSeed, true,
-     [](P& p, double v) { p.person = static_cast<std::uint64_t>(v); }},
-    {"length", "of the surface, 40mm", Dimension::length, 10e-3, 1, false,
-     [](P& p, double v) { p.surface.length_m = v; }},
-    {"period", "of sine, triangle and square, 1mm", Dimension::length, 50e-6, 20e-3, false,
-     [](P& p, double v) { p.surface.period_m = v; }},
-    {"depth", "of the same, peak to valley, 0.1mm", Dimension::length, 0, 1e-3, false,
-     [](P& p, double v) { p.surface.depth_m = v; }},
-    {"friction", "force over load while sliding, 0.92", Dimension::none, 0.05, 2, false,
-     [](P& p, double v) { p.finger.friction = v; }},
-    {"static_ratio", "sticking over sliding friction, 1.7", Dimension::none, 1, 3, false,
-     [](P& p, double v) { p.finger.static_ratio = v; }},
-    {"rate", "of the frames, 10kHz", Dimension::frequency, 1e3, 200e3, false,
-     [](P& p, double v) { p.sample_rate_hz = v; }},
-    {"encoder_quantum", "length of one count, 1um", Dimension::length, 1e-9, 1e-3, false,
-     [](P& p, double v) { p.encoder_quantum_m = v; }},
-};
-
-const std::vector<Word>& words() {
-  static const std::vector<Word> kWords = {
-      {"surface",
-       "A, B, C, D, E, flat, sine, triangle or square; C",
-       {},
-       [](P& p, std::string_view v) { p.surface.name = v; }},
-      {"finger",
-       "up or down; down",
-       {"up", "down"},
-       [](P& p, std::string_view v) { p.finger_down = v == "down"; }},
-      {"noise", "on or off; on", {"on", "off"}, [](P& p, std::string_view v) { p.noise = v == "on"; }},
-      {"transducer",
-       "preset or file; wiertlewski2011",
-       {},
-       [](P& p, std::string_view v) { p.transducer = v; }},
-      {"paced",
-       "1: no faster than real time; 0",
-       {"0", "1"},
-       [](P& p, std::string_view v) { p.paced = v == "1"; }},
-  };
-  return kWords;
-}
-
 std::string keys() {
   std::string list;
-  for (const Word& word : words()) list += std::string(word.key) + ", ";
-  for (const Number& number : kNumbers) list += std::string(number.key) + ", ";
+  for (const WordKey& word : sim_word_keys()) list += std::string(word.key) + ", ";
+  for (const NumberKey& number : sim_number_keys()) list += std::string(number.key) + ", ";
   return list.substr(0, list.size() - 2);
 }
 
@@ -101,7 +32,7 @@ std::string shown(double value, Dimension dimension) {
   return dimension == Dimension::none ? fmt::format("{:g}", value) : schema::for_people(value, dimension);
 }
 
-Result<void> set(SimParameters& parameters, const Number& number, std::string_view text) {
+Result<void> set(SimParameters& parameters, const NumberKey& number, std::string_view text) {
   const auto value = schema::parse_quantity(text, number.dimension);
   if (!value) return schema::fail(Fault::usage, value.error().what, where(number.key), value.error().remedy);
   const bool fits = *value >= number.least && *value <= number.most;
@@ -114,7 +45,7 @@ Result<void> set(SimParameters& parameters, const Number& number, std::string_vi
   return {};
 }
 
-Result<void> set(SimParameters& parameters, const Word& word, std::string_view text) {
+Result<void> set(SimParameters& parameters, const WordKey& word, std::string_view text) {
   bool fits = word.choices.empty() && !text.empty();
   for (const std::string_view choice : word.choices) fits = fits || choice == text;
   if (!fits)
@@ -131,15 +62,73 @@ Result<void> set_pair(SimParameters& parameters, std::string_view pair, std::set
                         "sim:", "the keys are: " + keys());
   const std::string_view key = pair.substr(0, equals), value = pair.substr(equals + 1);
   if (!seen.insert(key).second) return schema::fail(Fault::usage, "the key comes twice", where(key));
-  for (const Number& number : kNumbers)
+  for (const NumberKey& number : sim_number_keys())
     if (number.key == key) return set(parameters, number, value);
-  for (const Word& word : words())
+  for (const WordKey& word : sim_word_keys())
     if (word.key == key) return set(parameters, word, value);
   return schema::fail(Fault::usage, fmt::format("there is no key '{}'", key),
                       "sim:", "the keys are: " + keys());
 }
 
+// Keys that say more of something which another key asks for.
+struct Detail {
+  std::string_view prefix;
+  bool (*asked)(const SimParameters& p);
+  std::string_view remedy;
+};
+
+constexpr Detail kDetails[] = {
+    {"force_", [](const SimParameters& p) { return p.known_force; }, "add force=multisine, or another"},
+    {"lvdt_", [](const SimParameters& p) { return p.has_lvdt; }, "add position=lvdt"},
+    {"second_mode_", [](const SimParameters& p) { return p.has_second_mode; }, "add second_mode=800Hz"},
+    {"finger_load_", [](const SimParameters& p) { return p.has_finger_load; }, "add finger_load=on"},
+    {"channels", [](const SimParameters& p) { return p.counter; }, "add source=counter"},
+    {"link_buffer", [](const SimParameters& p) { return p.paced; }, "add paced=1"},
+};
+
+Result<void> check_details(const SimParameters& parameters, const std::set<std::string_view>& seen) {
+  for (const std::string_view key : seen)
+    for (const Detail& detail : kDetails)
+      if (key.starts_with(detail.prefix) && !detail.asked(parameters))
+        return schema::fail(Fault::usage, "the key means nothing here", where(key),
+                            std::string(detail.remedy));
+  return {};
+}
+
+Result<void> check_force(const SimParameters& p) {
+  if (!p.known_force) return {};
+  const bool sine = p.force.shape == ForceShape::sine;
+  if (!sine && p.force.low_hz > p.force.high_hz)
+    return schema::fail(Fault::usage, "the force's band is upside down", where("force_low"),
+                        "give a force_high that is not below it");
+  if ((sine ? p.force.low_hz : p.force.high_hz) < p.sample_rate_hz / 2) return {};
+  return schema::fail(Fault::usage, "the force goes beyond half the rate",
+                      where(sine ? "force_low" : "force_high"),
+                      fmt::format("below {}", shown(p.sample_rate_hz / 2, Dimension::frequency)));
+}
+
 }  // namespace
+
+TrayPhysics SimParameters::tray() const {
+  TrayPhysics physics;
+  if (has_second_mode) physics.second_mode = second_mode;
+  if (has_finger_load) physics.finger_load = finger_load;
+  physics.hysteresis = hysteresis;
+  return physics;
+}
+
+Result<void> check_against(const SimParameters& p, const schema::Transducer& transducer) {
+  if (const auto force = check_force(p); !force) return force;
+  const double least_hz = least_second_mode_hz(transducer, p.second_mode);
+  if (p.has_second_mode && p.second_mode.frequency_hz < least_hz)
+    return schema::fail(Fault::usage, "the second mode is not above the tray's resonance",
+                        where("second_mode"),
+                        fmt::format("from {} on", shown(least_hz, Dimension::frequency)));
+  if (p.has_lvdt && p.surface.length_m > p.lvdt.range_m)
+    return schema::fail(Fault::usage, "the LVDT does not reach over the surface", where("lvdt_range"),
+                        fmt::format("from {} on", shown(p.surface.length_m, Dimension::length)));
+  return {};
+}
 
 Result<SimParameters> parse_sim_parameters(std::string_view text) {
   SimParameters parameters;
@@ -149,13 +138,15 @@ Result<SimParameters> parse_sim_parameters(std::string_view text) {
     if (const auto done = set_pair(parameters, pair, seen); !done) return schema::forward_error(done);
     text.remove_prefix(std::min(text.size(), pair.size() + 1));
   }
+  if (const auto details = check_details(parameters, seen); !details) return schema::forward_error(details);
   return parameters;
 }
 
 std::string sim_parameters_help() {
   std::string help;
-  for (const Word& word : words()) help += fmt::format("  {:<16}{}\n", word.key, word.meaning);
-  for (const Number& number : kNumbers) help += fmt::format("  {:<16}{}\n", number.key, number.meaning);
+  for (const WordKey& word : sim_word_keys()) help += fmt::format("  {:<24}{}\n", word.key, word.meaning);
+  for (const NumberKey& number : sim_number_keys())
+    help += fmt::format("  {:<24}{}\n", number.key, number.meaning);
   return help;
 }
 

@@ -3,13 +3,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "data-schema/error.hpp"
+#include "data-schema/transducer.hpp"
 #include "firmware-host/sim/finger_parameters.hpp"
 #include "firmware-host/sim/finger_path.hpp"
+#include "firmware-host/sim/known_force.hpp"
+#include "firmware-host/sim/lvdt.hpp"
 #include "firmware-host/sim/surface.hpp"
+#include "firmware-host/sim/tray_physics.hpp"
 
 namespace tacto::firmware_host {
 
@@ -29,12 +34,34 @@ struct SimParameters {
   std::string transducer = "wiertlewski2011";
   bool paced = false;  ///< by the clock on the wall, as a real device is
   std::string serial;  ///< empty: made of the seed. Not a key of the URI
+  /// Paced: for how long the host's side of the cable takes what nobody reads. Then the device loses frames,
+  /// as a real one does. Without it, emulated time waits for the reader.
+  std::optional<double> link_buffer_s;
+
+  bool counter = false;  ///< frames that count themselves, instead of physics
+  int channels = 4;      ///< of the counter
+
+  bool known_force = false;  ///< pulls on the tray instead of the finger
+  ForcePlan force;
+
+  bool has_lvdt = false;  ///< gives the position instead of the encoder
+  LvdtParameters lvdt;
+
+  bool has_second_mode = false, has_finger_load = false;
+  SecondMode second_mode;
+  FingerLoad finger_load;
+  double hysteresis = 0;
+  TrayPhysics tray() const;
 };
 
 /// Reads key=value pairs between commas; a quantity has its unit. Keys that are absent keep their defaults.
 /// Errors: usage: a key that does not exist (with those that do), one that comes twice, a value that is no
-/// such quantity or out of its range (with the range).
+/// such quantity or out of its range (with the range), one that means nothing without another.
 schema::Result<SimParameters> parse_sim_parameters(std::string_view text);
+
+/// What only the whole shows. Errors: usage: a second mode that is not above the tray's resonance, a force
+/// above half the rate or with its band upside down, a surface beyond the LVDT's range.
+schema::Result<void> check_against(const SimParameters& parameters, const schema::Transducer& transducer);
 
 /// The keys, each with meaning and default, one a line, for help.
 std::string sim_parameters_help();

@@ -4,10 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware-host/sim/force_bench.hpp"
+#include "firmware-host/sim/touch_bench.hpp"
+
 namespace tacto::firmware_host {
 namespace {
 
-enum Stream : std::uint64_t { kSpeedStream = 100, kLoadStream, kSensorStream, kNormalStream, kNetStream };
+enum Stream : std::uint64_t {
+  kSpeedStream = 100,
+  kLoadStream,
+  kSensorStream,
+  kNormalStream,
+  kNetStream,
+  kPositionStream
+};
 
 // ATI Nano17 of Wiertlewski 2011, calibration SI-12-0.12.
 constexpr double kNormalRangeN = 17;
@@ -34,18 +44,31 @@ double noise_rms_v(const SimParameters& parameters, const schema::Transducer& tr
          std::sqrt(parameters.sample_rate_hz / 2);
 }
 
+std::unique_ptr<Bench> bench_for(const SimParameters& p, const schema::Transducer& transducer,
+                                 const HeightProfile& profile, double start_m) {
+  const auto mode = p.tray().second_mode;
+  if (p.known_force) return std::make_unique<ForceBench>(transducer, p.force, p.sample_rate_hz, mode);
+  return std::make_unique<TouchBench>(transducer, p.finger, profile, p.sample_rate_hz, start_m, p.person,
+                                      mode);
+}
+
 }  // namespace
 
 SimRun::SimRun(const SimParameters& p, const schema::Transducer& transducer, const HeightProfile& profile)
     : parameters_(p),
       path_(plan_on(profile, p), 1 / p.sample_rate_hz, Random(p.seed, kSpeedStream)),
       load_wander_(Random(p.seed, kLoadStream), kLoadKnotS),
-      bench_(transducer, p.finger, profile, p.sample_rate_hz, path_.place().position_m, p.person),
+      bench_(bench_for(p, transducer, profile, path_.place().position_m)),
       noise_(p.seed, kSensorStream),
       noise_v_(noise_rms_v(p, transducer)),
       converter_(transducer.converter_bits, transducer.converter_range_v),
       normal_cell_(kNormalRangeN, p.sample_rate_hz, p.noise, Random(p.seed, kNormalStream)),
-      net_cell_(kTangentialRangeN, p.sample_rate_hz, p.noise, Random(p.seed, kNetStream)) {}
+      net_cell_(kTangentialRangeN, p.sample_rate_hz, p.noise, Random(p.seed, kNetStream)),
+      count_(count_at(path_.place().position_m)) {
+  if (p.has_lvdt)
+    lvdt_.emplace(p.lvdt, profile.length_m() / 2, path_.place().position_m, p.sample_rate_hz, p.noise,
+                  Random(p.seed, kPositionStream));
+}
 
 double SimRun::load_n(const FingerPlace& place) {
   const double time_s = static_cast<double>(frames_) / parameters_.sample_rate_hz;
@@ -57,17 +80,14 @@ std::int32_t SimRun::count_at(double position_m) const {
   return static_cast<std::int32_t>(std::floor(position_m / parameters_.encoder_quantum_m));
 }
 
-std::int32_t SimRun::encoder_count() const {
-  return count_at(path_.place().position_m);
-}
-
-bool SimRun::next(std::span<std::int32_t, kSimChannels> frame) {
+bool SimRun::next(std::span<std::int32_t> frame) {
   const FingerPlace place = path_.step();
-  if (!bench_.step(place, load_n(place))) return false;
+  if (!bench_->step(place, load_n(place))) return false;
   ++frames_;
-  const BenchReading reading = bench_.reading();
+  const BenchReading reading = bench_->reading();
   frame[0] = converter_.convert(reading.sensor_v + noise_v_ * noise_.normal());
-  frame[1] = count_at(reading.position_m);
+  count_ = count_at(reading.position_m);
+  frame[1] = lvdt_ ? lvdt_->step(reading.position_m) : count_;
   frame[2] = normal_cell_.step(reading.normal_n);
   frame[3] = net_cell_.step(reading.tangential_n);
   return true;

@@ -2,34 +2,38 @@
 // One run of the emulated device, from its first frame on.
 #pragma once
 
-#include <cstdint>
-#include <span>
+#include <memory>
+#include <optional>
 
 #include "data-schema/transducer.hpp"
+#include "firmware-host/sim/bench.hpp"
 #include "firmware-host/sim/converter.hpp"
 #include "firmware-host/sim/finger_path.hpp"
+#include "firmware-host/sim/frame_source.hpp"
+#include "firmware-host/sim/height_profile.hpp"
 #include "firmware-host/sim/load_cell.hpp"
+#include "firmware-host/sim/lvdt.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
 #include "firmware-host/sim/spline_noise.hpp"
-#include "firmware-host/sim/touch_bench.hpp"
 
 namespace tacto::firmware_host {
 
 inline constexpr std::size_t kSimChannels = 4;  ///< tangential_force, position, normal_force, net_force
 
-/// The bench and what reads it: the piezo's converter with the noise floor before it, the encoder, the load
-/// cell's axes.
-class SimRun {
+/// The bench (a finger on a surface, or a known force) and what reads it: the piezo's converter with the
+/// noise floor before it, the encoder or LVDT, the load cell's axes. Frame i is of (i + 1) / rate seconds.
+class SimRun final : public FrameSource {
  public:
   SimRun(const SimParameters& parameters, const schema::Transducer& transducer, const HeightProfile& profile);
 
-  /// One sample period on, and the frame at its end. False where the simulated motion has diverged.
-  bool next(std::span<std::int32_t, kSimChannels> frame);
-  /// The encoder's, where the finger is now.
-  std::int32_t encoder_count() const;
+  /// kSimChannels codes. False where the simulated motion has diverged.
+  bool next(std::span<std::int32_t> frame) override;
+  std::int32_t encoder_count() const override { return count_; }
   const LoadCell& normal_cell() const { return normal_cell_; }
   const LoadCell& net_cell() const { return net_cell_; }
   const Converter& converter() const { return converter_; }
+  /// Null where the encoder gives the position.
+  const Lvdt* lvdt() const { return lvdt_ ? &*lvdt_ : nullptr; }
 
  private:
   double load_n(const FingerPlace& place);
@@ -38,11 +42,13 @@ class SimRun {
   SimParameters parameters_;
   FingerPath path_;
   SplineNoise load_wander_;
-  TouchBench bench_;
+  std::unique_ptr<Bench> bench_;
   Random noise_;
   double noise_v_;
   Converter converter_;
   LoadCell normal_cell_, net_cell_;
+  std::optional<Lvdt> lvdt_;
+  std::int32_t count_;
   std::uint64_t frames_ = 0;
 };
 

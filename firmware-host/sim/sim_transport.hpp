@@ -11,10 +11,12 @@
 namespace tacto::firmware_host {
 
 /// Emulated time passes in read(), until there is something to read: as fast as it can, or paced by the
-/// clock. now_s() is emulated time, so timeouts are exact and cost nothing. The board outlives it.
+/// clock. now_s() is emulated time, so timeouts are exact and cost nothing. Paced with a link that holds a
+/// limited time of the stream, the device does not wait for a late reader: it ticks as often as it had to,
+/// and loses what neither link nor ring hold. The board outlives it.
 class SimTransport final : public Transport {
  public:
-  SimTransport(SimBoard& board, bool paced);
+  SimTransport(SimBoard& board, bool paced, std::optional<double> link_buffer_s = std::nullopt);
 
   schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override;
   schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override;
@@ -22,9 +24,12 @@ class SimTransport final : public Transport {
 
  private:
   void pass_time(double until_s);
+  void pass_real_time(double until_s);
+  void tick();
 
   SimBoard& board_;
   std::optional<Pacer> pacer_;
+  std::optional<double> link_buffer_s_;
   double now_s_ = 0;
 };
 

@@ -1,30 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "firmware-host/sim/touch_bench.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace tacto::firmware_host {
 namespace {
 
-constexpr double kLongestStepS = 12.5e-6;
+enum : std::size_t { kPulpM, kPulpMps, kBristleM, kTrayM, kTrayMps, kChargeLagN, kInnerM, kInnerMps };
 
-enum : std::size_t { kPulpM, kPulpMps, kBristleM, kTrayM, kTrayMps, kChargeLagN };
-
-SensorState sensor_part(const OdeState<6>& s) {
-  return {s[kTrayM], s[kTrayMps], s[kChargeLagN]};
+SensorState sensor_part(const OdeState<8>& s) {
+  return {s[kTrayM], s[kTrayMps], s[kChargeLagN], s[kInnerM], s[kInnerMps]};
 }
 
 }  // namespace
 
 TouchBench::TouchBench(const schema::Transducer& transducer, const FingerParameters& finger,
                        const HeightProfile& profile, double sample_rate_hz, double start_m,
-                       std::uint64_t seed)
+                       std::uint64_t seed, const std::optional<SecondMode>& second_mode)
     : finger_(finger),
-      sensor_(transducer),
+      sensor_(transducer, second_mode),
       ridges_(finger, profile, seed),
       period_s_(1 / sample_rate_hz),
-      substeps_(std::max(1, static_cast<int>(std::ceil(period_s_ / kLongestStepS - 1e-9)))) {
+      substeps_(substeps_in(period_s_)) {
   state_[kPulpM] = start_m;
 }
 
@@ -42,7 +39,8 @@ TouchBench::State TouchBench::rate(const State& s, const Drag& bone) {
   const SensorState sensor = sensor_.rate(sensor_part(s), force_n);
   return {s[kPulpMps],      (pull_n - force_n) / finger_.mass_kg,
           bristle_rate_mps, sensor.tray_m,
-          sensor.tray_mps,  sensor.charge_lag_n};
+          sensor.tray_mps,  sensor.charge_lag_n,
+          sensor.inner_m,   sensor.inner_mps};
 }
 
 bool TouchBench::sane(const State& s, double bone_m) const {

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "firmware-host/sim/finger_path.hpp"
+#include "firmware-host/sim/bench.hpp"
 #include "firmware-host/sim/lugre_friction.hpp"
 #include "firmware-host/sim/ridge_contact.hpp"
 #include "firmware-host/sim/runge_kutta.hpp"
@@ -13,33 +13,23 @@
 
 namespace tacto::firmware_host {
 
-/// What the bench's instruments see at the end of a step.
-struct BenchReading {
-  double sensor_v = 0;
-  double tangential_n = 0;  ///< f_d: the finger's force on the tray along +x
-  double normal_n = 0;
-  double position_m = 0;  ///< of the finger's bone
-};
-
-/// States: pulp's place and speed, bristles, tray's place and speed, amplifier's input. The bone drags the
+/// States: pulp's place and speed, bristles, and the sensor's (SensorState). The bone drags the
 /// pulp through spring and damper, friction and slopes pull the pulp and, with the opposite sign, the tray:
 ///   m_f x_f'' = k_f (X - x_f) + c_f (X' - x_f') - f_d,   f_d = mu(z, x_f' - x') N + sum p_i h'_i(x_f - x).
 /// Runge-Kutta steps of at most 12.5 us, ten to twenty to the period of the fastest mode there is (a stuck
 /// pulp on its bristles, about 700 Hz).
-class TouchBench {
+class TouchBench final : public Bench {
  public:
   TouchBench(const schema::Transducer& transducer, const FingerParameters& finger,
-             const HeightProfile& profile, double sample_rate_hz, double start_m, std::uint64_t seed);
+             const HeightProfile& profile, double sample_rate_hz, double start_m, std::uint64_t seed,
+             const std::optional<SecondMode>& second_mode = std::nullopt);
 
-  /// One sample period with the bone going evenly from where it was to `bone`, under a load (0: no contact).
-  /// False, and nothing changed, where the motion has diverged: not a number, or a pulp more than its patch
-  /// away from the bone.
-  bool step(const FingerPlace& bone, double load_n);
-  BenchReading reading() const { return reading_; }
-  const SensorMotion& sensor() const { return sensor_; }
+  /// Diverged: not a number, or a pulp more than its patch away from the bone.
+  bool step(const FingerPlace& bone, double load_n) override;
+  BenchReading reading() const override { return reading_; }
 
  private:
-  using State = OdeState<6>;
+  using State = OdeState<8>;
   struct Drag {
     double position_m, speed_mps, load_n;
   };

@@ -18,11 +18,11 @@ schema::Transducer preset() {
   return *schema::read_transducer("wiertlewski2011");
 }
 
-OdeState<3> as_array(const SensorState& s) {
-  return {s.tray_m, s.tray_mps, s.charge_lag_n};
+OdeState<5> as_array(const SensorState& s) {
+  return {s.tray_m, s.tray_mps, s.charge_lag_n, s.inner_m, s.inner_mps};
 }
-SensorState as_state(const OdeState<3>& s) {
-  return {s[0], s[1], s[2]};
+SensorState as_state(const OdeState<5>& s) {
+  return {s[0], s[1], s[2], s[3], s[4]};
 }
 
 // State after every step under force(time).
@@ -30,10 +30,10 @@ template <class Force>
 std::vector<SensorState> integrate(const SensorMotion& sensor, SensorState start, std::size_t steps,
                                    Force&& force) {
   std::vector<SensorState> states;
-  OdeState<3> state = as_array(start);
+  OdeState<5> state = as_array(start);
   for (std::size_t i = 0; i < steps; ++i) {
     states.push_back(as_state(state));
-    state = runge_kutta_step(state, kStepS, [&](const OdeState<3>& s, double part) {
+    state = runge_kutta_step(state, kStepS, [&](const OdeState<5>& s, double part) {
       return as_array(sensor.rate(as_state(s), force((static_cast<double>(i) + part) * kStepS)));
     });
   }

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What capture costs, and that it loses nothing: `tactograph record` of the emulated device's counter, paced.
+
+usage: capture_cost.py TACTOGRAPH [--time 60] [--no-clock] [--link 250ms]
+
+The device ticks by the clock on the wall and loses what neither its ring (256 frames) nor the link takes, as a real one does;
+frames count themselves, so that each one that is lost or doubled is found. --no-clock asserts on losses and memory only: for
+machines that are shared. CPU time is the whole process's, device and start included; memory is the peak above `--version`.
+"""
+import argparse
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import soundfile
+
+MOST_MEMORY_MB, MOST_CPU = 32, 0.03
+
+
+# In a process of its own: a child's peak counts what its parent held when it was forked, and NumPy is large.
+MEASURE = """import os, sys
+pid = os.spawnvp(os.P_NOWAIT, sys.argv[1], sys.argv[1:])
+_, status, usage = os.wait4(pid, 0)
+print(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, os.waitstatus_to_exitcode(status))"""
+
+
+def measured(command):
+    """(CPU seconds, peak MB) of a command that succeeds."""
+    done = subprocess.run([sys.executable, "-S", "-c", MEASURE, *command], capture_output=True, text=True, check=True)
+    cpu_s, peak_mb, code = done.stdout.split("\n")[-2].split()
+    assert code == "0", f"{' '.join(command)}\nexit {code}\n{done.stderr}"
+    return float(cpu_s), float(peak_mb)
+
+
+def check_every_sample(path, frames, channels):
+    """The code of channel c in frame i is 16 i + c."""
+    first = 0
+    with soundfile.SoundFile(path) as wav:
+        for codes in wav.blocks(1 << 18, dtype="int32", always_2d=True):
+            count = np.arange(first, first + len(codes), dtype=np.int64)[:, None] * 16 + np.arange(channels)
+            wrong = np.flatnonzero((codes != count.astype(np.int32)).any(axis=1))
+            assert not len(wrong), f"frame {first + wrong[0]} is {codes[wrong[0]]}"
+            first += len(codes)
+    assert first == frames, f"{first} frames of {frames}"
+
+
+def capture(command, rate_khz, channels, time_s, link):
+    with tempfile.TemporaryDirectory(prefix="tacto-") as folder:
+        device = f"sim:source=counter,channels={channels},rate={rate_khz}kHz,paced=1,link_buffer={link}"
+        cpu_s, peak_mb = measured([command, "record", "-d", device, "-o", f"{folder}/c", "--time", f"{time_s:g}s"])
+        check_every_sample(f"{folder}/c.wav", round(rate_khz * 1000 * time_s), channels)
+        return cpu_s, peak_mb
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("tactograph")
+    parser.add_argument("--time", type=float, default=60)
+    parser.add_argument("--no-clock", action="store_true")
+    parser.add_argument("--link", default="250ms")
+    options = parser.parse_args()
+    start_s, idle_mb = measured([options.tactograph, "--version"])
+    print("simulated, all of it")
+    for rate_khz, channels, most_cpu in ((10, 4, MOST_CPU), (100, 8, None)):
+        cpu_s, peak_mb = capture(options.tactograph, rate_khz, channels, options.time, options.link)
+        share, above_mb = cpu_s / options.time, peak_mb - idle_mb
+        print(f"{rate_khz} kHz x {channels}, {options.time:g} s: no sample lost or doubled, {above_mb:.1f} MB above an idle "
+              f"process, {100 * share:.2f} % of one core (start: {start_s:.2f} s)", flush=True)
+        assert above_mb < MOST_MEMORY_MB, above_mb
+        assert options.no_clock or most_cpu is None or share < most_cpu, share
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
