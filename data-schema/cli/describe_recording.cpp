@@ -54,12 +54,6 @@ Report stroke_row(const StrokeFigures& stroke, std::size_t number) {
   return row.add("clipped_samples", stroke.clipped_samples).add("lost_frames", stroke.lost_frames);
 }
 
-void add_strokes(Report& report, const RecordingHeader& header) {
-  std::vector<Report> rows;
-  for (const StrokeFigures& stroke : header.strokes) rows.push_back(stroke_row(stroke, rows.size() + 1));
-  if (!rows.empty()) report.add("strokes", std::move(rows));
-}
-
 void add_time(Report& report, const RecordingHeader& header) {
   std::uint64_t missing = 0;
   for (const Gap& gap : header.gaps) missing += gap.count;
@@ -89,6 +83,12 @@ void add_origin(Report& report, const RecordingHeader& header) {
 }
 
 }  // namespace
+
+void add_strokes(Report& report, const RecordingHeader& header) {
+  std::vector<Report> rows;
+  for (const StrokeFigures& stroke : header.strokes) rows.push_back(stroke_row(stroke, rows.size() + 1));
+  if (!rows.empty()) report.add("strokes", std::move(rows));
+}
 
 Result<Report> describe_recording(const std::string& path) {
   const auto recording = open_recording(path);

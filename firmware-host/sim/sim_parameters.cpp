@@ -61,6 +61,22 @@ constexpr Number kNumbers[] = {
      [](P& p, double v) { p.sample_rate_hz = v; }},
     {"encoder_quantum", "length of one count, 1um", Dimension::length, 1e-9, 1e-3, false,
      [](P& p, double v) { p.encoder_quantum_m = v; }},
+    {"sensor_gain", "of the piezo, against what the device says, 1", Dimension::none, 0.5, 2, false,
+     [](P& p, double v) { p.errors.sensor_gain = v; }},
+    {"cell_gain", "of the load cell, likewise, 1", Dimension::none, 0.5, 2, false,
+     [](P& p, double v) { p.errors.cell_gain = v; }},
+    {"encoder_gain", "counts, likewise, 1", Dimension::none, 0.5, 2, false,
+     [](P& p, double v) { p.errors.encoder_gain = v; }},
+    {"cell_zero", "what the load cell shows of nothing, 0N", Dimension::force, -1, 1, false,
+     [](P& p, double v) { p.errors.cell_zero_n = v; }},
+    {"weight", "a known load on the tray, 0N", Dimension::force, 0, 15, false,
+     [](P& p, double v) { p.errors.weight_n = v; }},
+    {"pull", "a known constant force along +x, 0N", Dimension::force, -10, 10, false,
+     [](P& p, double v) { p.errors.pull_n = v; }},
+    {"mains", "50 Hz at the piezo's converter, peak, 0V", Dimension::voltage, 0, 5, false,
+     [](P& p, double v) { p.errors.mains_v = v; }},
+    {"clock_ppm", "how much the device's clock is fast, 0", Dimension::none, -1e5, 1e5, false,
+     [](P& p, double v) { p.errors.clock_ppm = v; }},
 };
 
 const std::vector<Word>& words() {

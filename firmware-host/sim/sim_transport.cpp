@@ -12,7 +12,7 @@ SimTransport::SimTransport(SimBoard& board, bool paced) : board_(board) {
 // Where nothing ticks, nothing will come: the rest of the time is over at once.
 void SimTransport::pass_time(double until_s) {
   while (board_.to_host().empty() && now_s_ < until_s && board_.ticking()) {
-    now_s_ += board_.period_s();
+    now_s_ += board_.host_period_s();
     board_.step();
     board_.poll();
   }
