@@ -11,6 +11,7 @@
 #include "capture/doctor.hpp"
 #include "capture/realtime_limits.hpp"
 #include "data-schema/creation_time.hpp"
+#include "data-schema/live_recording.hpp"
 #include "data-schema/quantity.hpp"
 
 namespace tacto::capture {
@@ -23,6 +24,7 @@ constexpr double kSlowAnswer_s = 5e-3;  // ours: a heartbeat is due every 50 ms 
 constexpr double kSlowSync_s = 50e-3;   // with it a power cut may cost more than 100 ms
 constexpr double kLeastRoom_s = 10, kGoodRoom_s = 600, kGoodSpeed = 4;
 constexpr double kLeastLocked_bytes = 64 << 20;
+constexpr double kLargestBlock_bytes = 16 << 20;
 constexpr const char* kRule = "60-tactograph.rules";
 
 Check judged(std::string name, std::string found, const std::string& warning) {
@@ -118,7 +120,8 @@ Check check_real_time(const std::string& root) {
 }
 
 Check check_disk(const std::string& folder, double bytes_per_s) {
-  const auto disk = measure_disk(folder, static_cast<std::size_t>(bytes_per_s / 20));
+  const double block_bytes = std::min(bytes_per_s * schema::kSyncEvery_s, kLargestBlock_bytes);
+  const auto disk = measure_disk(folder, static_cast<std::size_t>(block_bytes));
   if (!disk)
     return {"disk", Health::fails, schema::message({disk.error().fault, disk.error().what, folder, {}}),
             disk.error().remedy, disk.error().fault};

@@ -15,7 +15,7 @@ using schema::Fault;
 using schema::Result;
 
 constexpr double kShortest_s = 0.1, kLongest_s = 600;  // 10 min of four channels at 10 kHz are 190 MB
-constexpr double kSettling_s = 0.1;                 // of filters, when a stream begins
+constexpr double kSettling_s = 0.1;                    // of filters, when a stream begins
 constexpr std::size_t kBlockFrames = 256;
 
 void append(Take& take, std::span<const std::int32_t> codes) {

@@ -69,7 +69,7 @@ tl::unexpected<schema::Error> forgets_static_forces(const Take& take, const std:
                   4e3 / (6.28 * schema::sensor_pole_hz(*take.header.transducer))),
       channel,
       "calibrate net_force by weights (--channel net_force), then this one against it: slide a finger with "
-      "--reference net_force");
+      "--reference net_force; or without a load cell by a weight whose thread is cut: --release 10g");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "capture/cli/calibrate_parts.hpp"
 #include "capture/cli/enter_key.hpp"
 #include "capture/reference_scale.hpp"
+#include "capture/released_weight.hpp"
 #include "capture/weights.hpp"
 #include "data-schema/cli/report.hpp"
 
@@ -21,7 +22,7 @@ using schema::Result;
 struct Options {
   CalibrateOptions common;
   std::string channel = "normal_force", reference, from;
-  std::vector<std::string> masses;
+  std::vector<std::string> masses, releases;
   std::optional<double> time_s, gravity_mps2;
 };
 
@@ -103,15 +104,19 @@ Result<Weighed> weigh(const Options& options, double gravity_mps2) {
   return weighed;
 }
 
+double gravity_uncertainty(const Options& options, const std::vector<std::string>& weights) {
+  const auto is_mass = [](const std::string& text) {
+    return schema::parse_quantity(text.substr(0, text.find('=')), Dimension::mass).has_value();
+  };
+  const bool matters = !options.gravity_mps2 && std::ranges::any_of(weights, is_mass);
+  return matters ? kGravityUncertainty_mps2 / kGravity_mps2 : 0;
+}
+
 Result<cli::Report> by_weights(const Options& options) {
   const double gravity_mps2 = options.gravity_mps2.value_or(kGravity_mps2);
-  const double relative = options.gravity_mps2 ? 0 : kGravityUncertainty_mps2 / kGravity_mps2;
-  const bool by_mass = std::ranges::any_of(options.masses, [](const std::string& text) {
-    return schema::parse_quantity(text.substr(0, text.find('=')), Dimension::mass).has_value();
-  });
   const auto weighed = weigh(options, gravity_mps2);
   if (!weighed) return schema::forward_error(weighed);
-  const auto found = scale_by_weights(weighed->weighings, by_mass ? relative : 0);
+  const auto found = scale_by_weights(weighed->weighings, gravity_uncertainty(options, options.masses));
   if (!found) return schema::forward_error(found);
   const Take& take = *weighed->last;
   const schema::Channel& channel = take.header.channels[*schema::find_channel(take.header, options.channel)];
@@ -136,6 +141,18 @@ Result<Take> pull_for(const Options& options) {
   }
   const auto device = firmware_host::open_device(options.common.device);
   return device ? take_from(**device, options.time_s.value_or(10)) : schema::forward_error(device);
+}
+
+Result<Take> take_of_release(const Mass& mass, const Options& options) {
+  if (mass.recording.empty())
+    if (const auto ready = wait_for_enter(
+            fmt::format("Hang {} by a thread that pulls along +x; cut it within {:g} s after you", mass.words,
+                        options.time_s.value_or(10)));
+        !ready)
+      return schema::forward_error(ready);
+  Options plain = options;
+  plain.from = mass.recording;
+  return pull_for(plain);
 }
 
 // The reference's newest scale; without one the device's own, of which nobody knows how good it is.
@@ -170,14 +187,37 @@ Result<cli::Report> by_reference(const Options& options) {
               {entry_for(channel, "reference " + options.reference, found->scale, found->notes)});
 }
 
-Result<cli::Report> run(Options options) {
-  if (!options.reference.empty() && options.masses.empty()) {
-    if (options.channel == "normal_force") options.channel = "tangential_force";
-    return by_reference(options);
+Result<cli::Report> by_releases(const Options& options) {
+  std::vector<Release> releases;
+  for (const std::string& text : options.releases) {
+    const auto mass = parse_mass(text, options.gravity_mps2.value_or(kGravity_mps2));
+    if (!mass) return schema::forward_error(mass);
+    auto take = take_of_release(*mass, options);
+    if (!take) return schema::forward_error(take);
+    releases.push_back({std::move(*take), mass->force_n});
   }
-  if (!options.masses.empty() && options.reference.empty()) return by_weights(options);
-  return schema::fail(Fault::usage, "needs known weights, or a reference", "force",
-                      "as --mass 0g --mass 100g, or --reference net_force for the piezo");
+  const auto found =
+      scale_by_releases(releases, options.channel, gravity_uncertainty(options, options.releases));
+  if (!found) return schema::forward_error(found);
+  const Take& take = releases.back().take;
+  const schema::Channel& channel = take.header.channels[*schema::find_channel(take.header, options.channel)];
+  cli::Report report = report_on(take);
+  report.add("channel", channel.name).add("releases", releases.size());
+  add_scale(report, found->scale, channel.scale, "N");
+  report.add("notes", found->notes);
+  return kept(std::move(report), options.common, take,
+              {entry_for(channel, "released weight", found->scale, found->notes)});
+}
+
+Result<cli::Report> run(Options options) {
+  const int ways = (options.masses.empty() ? 0 : 1) + (options.releases.empty() ? 0 : 1) +
+                   (options.reference.empty() ? 0 : 1);
+  if (ways != 1)
+    return schema::fail(Fault::usage, "needs weights, or a reference, or releases", "force",
+                        "as --mass 0g --mass 100g; for the piezo --reference net_force, or --release 10g");
+  if (!options.masses.empty()) return by_weights(options);
+  if (options.channel == "normal_force") options.channel = "tangential_force";
+  return options.reference.empty() ? by_releases(options) : by_reference(options);
 }
 
 }  // namespace
@@ -189,14 +229,18 @@ cli::Action declare_force(CLI::App& app) {
                  "A known weight, hung when asked for: 0g, 100g, 0.5N; or one of a recording: "
                  "100g=oak@1s..3s. Two at least");
   app.add_option("--channel", options->channel,
-                 "Which channel the weights pull on; with --reference: tangential_force");
+                 "Which channel the weights pull on; with --reference and --release tangential_force");
   app.add_option(
       "--reference", options->reference,
       "For the piezo, which forgets weights at rest: the load cell's channel of the same pull, while "
       "a finger slides");
+  app.add_option(
+      "--release", options->releases,
+      "For the piezo without a load cell: a weight on a thread that is cut, 10g, or 10g=oak@1s..3s; "
+      "several for their scatter");
   app.add_option("--from", options->from, "With --reference: a recording instead of the device");
   cli::add_quantity(app, "--time", options->time_s, Dimension::time,
-                    "How long to listen: 3s a weight, 10s against a reference");
+                    "How long to listen: 3s a weight, 10s a release or against a reference");
   cli::add_quantity(app, "--gravity", options->gravity_mps2, Dimension::acceleration,
                     "Here; 9.80665m/s^2, and 0.15 % of uncertainty for it, unless told");
   return [options] { return run(*options); };

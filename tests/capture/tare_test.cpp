@@ -57,7 +57,9 @@ TEST(Tare, NamesTheMainsAndOnlyWhereThereIsOne) {
   EXPECT_TRUE(of(*tare, humming, "net_force").mains.empty());
   for (int seed = 1; seed <= 20; ++seed) {
     const Take quiet = sim_take(fmt::format("finger=up,seed={}", seed), 1);
-    for (const ChannelTare& one : tare_of(quiet)->channels) EXPECT_TRUE(one.mains.empty()) << seed;
+    const auto tared = tare_of(quiet);
+    ASSERT_TRUE(tared);
+    for (const ChannelTare& one : tared->channels) EXPECT_TRUE(one.mains.empty()) << seed;
   }
 }
 
