@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace tacto::capture {
@@ -27,7 +28,9 @@ LiveFigures::LiveFigures(const schema::RecordingHeader& header)
       normal_(channel_of(header, "normal_force")),
       statistics_(header.channels.size()),
       recent_(header.channels.size()),
-      counter_(header.sample_rate_hz) {}
+      counter_(header.sample_rate_hz) {
+  std::ranges::transform(header.channels, std::back_inserter(ranges_), firmware_host::code_range);
+}
 
 double LiveFigures::physical(std::span<const std::int32_t> codes, std::size_t frame,
                              std::size_t channel) const {
@@ -46,6 +49,12 @@ void LiveFigures::add(std::span<const std::int32_t> codes) {
   add_motion(codes);
 }
 
+std::uint64_t LiveFigures::clipped_in(std::span<const std::int32_t> frame) const {
+  std::uint64_t clipped = 0;
+  for (std::size_t i = 0; i < frame.size(); ++i) clipped += ranges_[i].clips(frame[i]) ? 1 : 0;
+  return clipped;
+}
+
 void LiveFigures::add_motion(std::span<const std::int32_t> codes) {
   const std::size_t frames = codes.size() / header_.channels.size();
   for (std::size_t frame = 0; frame < frames; ++frame) {
@@ -56,9 +65,28 @@ void LiveFigures::add_motion(std::span<const std::int32_t> codes) {
     if (begun_) moved_m_ += position_m - last_position_m_;
     last_position_m_ = position_m;
     begun_ = true;
-    counter_.add(position_m, normal_n);
+    counter_.add(position_m, normal_n, clipped_in(codes.subspan(frame * ranges_.size(), ranges_.size())));
   }
   recent_frames_ += frames;
+}
+
+schema::StrokeFigures LiveFigures::figures_of(const CountedStroke& stroke) const {
+  std::uint64_t lost = 0;
+  for (const schema::Gap& gap : header_.gaps)
+    if (gap.frame > stroke.first_frame && gap.frame < stroke.first_frame + stroke.frames) lost += gap.count;
+  schema::StrokeFigures figures{
+      stroke.first_frame,     stroke.frames, stroke.length_m, stroke.direction, 0, {},
+      stroke.clipped_samples, lost};
+  figures.mean_speed_mps =
+      stroke.length_m / static_cast<double>(stroke.frames + lost) * header_.sample_rate_hz;
+  if (normal_) figures.mean_normal_n = stroke.mean_normal_n;
+  return figures;
+}
+
+std::vector<schema::StrokeFigures> LiveFigures::stroke_figures() const {
+  std::vector<schema::StrokeFigures> all;
+  for (const CountedStroke& stroke : counter_.strokes()) all.push_back(figures_of(stroke));
+  return all;
 }
 
 LiveView LiveFigures::take_view() {
@@ -68,7 +96,7 @@ LiveView LiveFigures::take_view() {
   const auto frames = static_cast<double>(recent_frames_);
   if (position_ && frames > 0) view.speed_mps = std::abs(moved_m_) / frames * header_.sample_rate_hz;
   if (normal_ && frames > 0) view.normal_n = load_sum_n_ / frames;
-  view.strokes = counter_.strokes().size();
+  view.strokes = strokes();
   std::ranges::fill(recent_, schema::Statistics());
   recent_frames_ = 0;
   moved_m_ = load_sum_n_ = 0;

@@ -11,17 +11,14 @@
 #include "capture/stroke_counter.hpp"
 #include "data-schema/recording.hpp"
 #include "data-schema/statistics.hpp"
+#include "data-schema/stroke_figures.hpp"
+#include "firmware-host/code_range.hpp"
 
 namespace tacto::capture {
 
-/// The band that a finger is asked to keep to (Wiertlewski 2011, section IV-A5: 50 mm/s, 0.5 N).
-struct TargetBand {
-  double middle = 0, width = 0;  ///< middle +- width
-
-  bool holds(double value) const { return value >= middle - width && value <= middle + width; }
-};
-inline constexpr TargetBand kTargetSpeed_mps = {50e-3, 15e-3};
-inline constexpr TargetBand kTargetLoad_n = {0.5, 0.25};
+using schema::kTargetLoad_n;
+using schema::kTargetSpeed_mps;
+using schema::TargetBand;
 
 /// One channel since the view before.
 struct ChannelLevel {
@@ -49,17 +46,22 @@ class LiveFigures {
   void add(std::span<const std::int32_t> codes);
   const schema::RecordingHeader& header() const { return header_; }
   const std::vector<schema::Statistics>& statistics() const { return statistics_; }
-  const std::vector<CountedStroke>& strokes() const { return counter_.strokes(); }
+  std::size_t strokes() const { return counter_.strokes().size(); }
+  /// The strokes so far as the sidecar keeps them, with what is missing in them by the header's gaps.
+  std::vector<schema::StrokeFigures> stroke_figures() const;
   /// Of all since the last call; time, losses and disk are the caller's to add.
   LiveView take_view();
 
  private:
   void add_motion(std::span<const std::int32_t> codes);
+  std::uint64_t clipped_in(std::span<const std::int32_t> frame) const;
+  schema::StrokeFigures figures_of(const CountedStroke& stroke) const;
   double physical(std::span<const std::int32_t> codes, std::size_t frame, std::size_t channel) const;
 
   const schema::RecordingHeader& header_;
   std::optional<std::size_t> position_, normal_;
   std::vector<schema::Statistics> statistics_, recent_;
+  std::vector<firmware_host::CodeRange> ranges_;
   StrokeCounter counter_;
   std::uint64_t recent_frames_ = 0;
   double last_position_m_ = 0, moved_m_ = 0, load_sum_n_ = 0;

@@ -12,6 +12,7 @@
 
 #include "capture/disk_writer.hpp"
 #include "capture/record_header.hpp"
+#include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
 
 namespace tacto::capture {
@@ -103,7 +104,7 @@ Capture::Capture(Device& device, const RecordRequest& request, const RecordHooks
 
 bool Capture::goes_on() const {
   if (stream_ended_ || failure_ || frames_ == wanted_ || writer_.failed()) return false;
-  if (request_.strokes > 0 && figures_.strokes().size() >= request_.strokes) return false;
+  if (request_.strokes > 0 && figures_.strokes() >= request_.strokes) return false;
   return !hooks_.stop || !hooks_.stop();
 }
 
@@ -163,13 +164,25 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
     return schema::fail(Fault::device, "the device gave no frames", device_.capabilities().uri);
   }
   schema::RecordingHeader& header = live.header();
+  header.strokes = figures_.stroke_figures();
   if (failure_) header.ended = failure_->what;
   const std::uint64_t due = stream_ended_ && request_.time_s ? wanted_ : 0;
   for (std::string& warning : stream_warnings(counts, due)) header.warnings.push_back(std::move(warning));
   if (failure_) header.warnings.push_back("it ended early: " + schema::message(*failure_));
   auto recording = live.close();
   if (!recording) return schema::forward_error(recording);
-  return Recorded{std::move(*recording), figures_.statistics(), counts, figures_.strokes(), failure_};
+  return Recorded{std::move(*recording), figures_.statistics(), counts, failure_};
+}
+
+// What is said of a calibration stands in the sidecar too.
+Result<schema::RecordingHeader> calibrated_header(const Device& device, const RecordRequest& request) {
+  auto header = header_for(device.capabilities(), request);
+  if (!header || !request.calibration) return header;
+  auto warnings =
+      apply_calibration(*header, *request.calibration, request.stale_after_s, schema::creation_time());
+  if (!warnings) return schema::forward_error(warnings);
+  header->warnings = std::move(*warnings);
+  return header;
 }
 
 }  // namespace
@@ -177,7 +190,7 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
 Result<Recorded> record(Device& device, const RecordRequest& request, const RecordHooks& hooks) {
   const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
   if (!frames) return schema::forward_error(frames);
-  auto header = header_for(device.capabilities(), request);
+  auto header = calibrated_header(device, request);
   if (!header) return schema::forward_error(header);
   if (const auto room = check_room(request, *header); !room) return schema::forward_error(room);
   auto live = schema::LiveRecording::create(request.name, std::move(*header));

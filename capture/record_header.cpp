@@ -31,6 +31,8 @@ schema::Result<schema::RecordingHeader> header_for(const firmware_host::Capabili
   header.sample_rate_hz = capabilities.sample_rate_hz;
   header.clock = capabilities.clock;
   header.device = capabilities.uri;
+  header.serial = capabilities.serial;
+  header.firmware = capabilities.firmware;
   header.simulated = capabilities.simulated;
   header.transducer = capabilities.transducer;
   header.subject = request.subject;

@@ -14,6 +14,7 @@ struct CountedStroke {
   int direction = 1;  ///< -1: backwards
   double mean_speed_mps = 0;
   double mean_normal_n = 0;  ///< 0 where no normal force is recorded
+  std::uint64_t clipped_samples = 0;
 };
 
 /// Feeds on positions, frame by frame. A stroke goes one way for at least kShortest_m; it ends where the
@@ -25,7 +26,8 @@ class StrokeCounter {
 
   explicit StrokeCounter(double sample_rate_hz) : rate_hz_(sample_rate_hz) {}
 
-  void add(double position_m, double normal_n);
+  /// `clipped` samples of this frame are at an end of their converter's range.
+  void add(double position_m, double normal_n, std::uint64_t clipped = 0);
   const std::vector<CountedStroke>& strokes() const { return strokes_; }
 
  private:
@@ -39,6 +41,7 @@ class StrokeCounter {
   double from_m_ = 0, furthest_m_ = 0;
   std::uint64_t from_frame_ = 0, furthest_frame_ = 0;
   double load_sum_n_ = 0, load_until_furthest_n_ = 0;
+  std::uint64_t clipped_ = 0, clipped_until_furthest_ = 0;
   int direction_ = 0;  // 0 until it has moved by kTurn_m
 };
 

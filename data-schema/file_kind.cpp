@@ -13,8 +13,8 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 6> kNames = {"recording",   "texture",  "transducer",
-                                                    "spectrogram", "formants", "descriptions"};
+constexpr std::array<std::string_view, 7> kNames = {"recording", "texture",      "transducer", "spectrogram",
+                                                    "formants",  "descriptions", "calibration"};
 
 struct Ending {
   FileKind kind;
@@ -28,6 +28,7 @@ constexpr Ending kEndings[] = {
     {FileKind::spectrogram, ".nc"},
     {FileKind::formants, ".formants.json"},
     {FileKind::descriptions, ".descriptions.json"},
+    {FileKind::calibration, ".calibration.json"},
 };
 
 bool is_file(const std::string& path) {

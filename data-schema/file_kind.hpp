@@ -10,7 +10,7 @@
 
 namespace tacto::schema {
 
-enum class FileKind { recording, texture, transducer, spectrogram, formants, descriptions };
+enum class FileKind { recording, texture, transducer, spectrogram, formants, descriptions, calibration };
 
 /// "recording", "texture", ... as in the files' own member `kind`.
 std::string_view kind_name(FileKind kind);

@@ -25,6 +25,7 @@ constexpr Unit kUnits[] = {
     {"s", Dimension::time, 1},
     {"min", Dimension::time, 60},
     {"h", Dimension::time, 3600},
+    {"days", Dimension::time, 86400},
     {"mHz", Dimension::frequency, 1e-3},
     {"Hz", Dimension::frequency, 1},
     {"kHz", Dimension::frequency, 1e3},
@@ -53,12 +54,15 @@ constexpr Unit kUnits[] = {
     {"m/N", Dimension::compliance, 1},
     {"1", Dimension::none, 1},
     {"dB", Dimension::level, 1},
+    {"mg", Dimension::mass, 1e-6},
+    {"g", Dimension::mass, 1e-3},
+    {"kg", Dimension::mass, 1},
 };
 
 // Units that are read but never chosen to write with: "cm" would surprise where "12 mm" is expected.
 bool for_reading_only(std::string_view symbol) {
   return symbol == "cm" || symbol == "cm/s" || symbol == "/cm" || symbol == "/m" || symbol == "min" ||
-         symbol == "h" || symbol == "/um";
+         symbol == "h" || symbol == "days" || symbol == "/um";
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -135,8 +139,8 @@ Result<Unit> parse_unit(std::string_view symbol) {
 }
 
 std::string_view si_symbol(Dimension dimension) {
-  constexpr std::array<std::string_view, 11> kSymbols = {"m", "s", "Hz",  "1/m", "m/s", "m/s^2",
-                                                         "N", "V", "m/N", "1",   "dB"};
+  constexpr std::array<std::string_view, 12> kSymbols = {"m", "s", "Hz",  "1/m", "m/s", "m/s^2",
+                                                         "N", "V", "m/N", "1",   "dB",  "kg"};
   return kSymbols[static_cast<std::size_t>(dimension)];
 }
 

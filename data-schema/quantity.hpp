@@ -22,6 +22,7 @@ enum class Dimension {
   compliance,         ///< m/N
   none,               ///< 1: a plain number, for counts and signals without a unit
   level,              ///< dB
+  mass,               ///< kg
 };
 
 /// A unit and its worth in the SI unit of its dimension: "mm" is {length, 1e-3}.

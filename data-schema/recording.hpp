@@ -13,10 +13,22 @@
 #include "data-schema/error.hpp"
 #include "data-schema/quantity.hpp"
 #include "data-schema/signal.hpp"
+#include "data-schema/stroke_figures.hpp"
 #include "data-schema/transducer.hpp"
 #include "data-schema/wav.hpp"
 
 namespace tacto::schema {
+
+/// What a calibration made of a channel: its scale and offset are the calibrated ones, these the device's
+/// own. Uncertainties are standard ones (k = 1); empty dates and absent uncertainties where that part was not
+/// calibrated.
+struct AppliedCalibration {
+  double nominal_scale = 1, nominal_offset = 0;
+  std::string scale_date, scale_method;     ///< ISO 8601, UTC; "weights", "travel" ...
+  std::optional<double> scale_uncertainty;  ///< in unit per stored number
+  std::string zero_date;
+  std::optional<double> zero_uncertainty;  ///< in the channel's unit
+};
 
 /// One channel. A stored number becomes physical as: stored * scale + offset, in `unit`, which is always the
 /// SI unit.
@@ -32,6 +44,7 @@ struct Channel {
   std::string source;      ///< where it came from: a column's name, a converter's input
   std::string derivation;  ///< empty for what was measured; else how it was made ("nominal, 40 mm/s")
   std::string calibrated;  ///< ISO date of the calibration, or empty
+  std::optional<AppliedCalibration> calibration;  ///< where one of the device's calibration file was applied
 };
 
 /// Missing frames: `count` of them are absent before stored frame `frame`.
@@ -68,6 +81,7 @@ struct RecordingHeader {
   std::vector<Channel> channels;
   std::string clock;                       ///< what gave the time: "device", "nominal rate given at import"
   std::string device;                      ///< device URI or maker's name; empty for an import
+  std::string serial, firmware;            ///< the device's, where it was one
   std::string simulated;                   ///< by what, where it is simulated; empty for real data
   std::string source_file, source_sha256;  ///< of an import
   std::optional<Transducer> transducer;
@@ -79,7 +93,11 @@ struct RecordingHeader {
   std::vector<Gap> gaps;
   std::vector<Mark> marks;
   std::vector<ClockPair> clock_pairs;
+  std::vector<StrokeFigures> strokes;     ///< counted while it was recorded
   std::optional<double> clock_drift_ppm;  ///< how much the device's clock is fast against the host's
+  std::optional<double> clock_drift_uncertainty_ppm;  ///< standard
+  std::optional<double> clock_offset_s;               ///< device's minus host's clock at the first pair
+  std::optional<double> clock_scatter_s;              ///< RMS of the pairs about that line
   std::vector<FaultNote> faults;
   std::string ended;                  ///< why it ended, where not as it was asked: "disk full", "unplugged"
   std::vector<std::string> warnings;  ///< said when it was made, kept for who reads it later

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/recording_close.hpp"
 
-#include <algorithm>
-#include <cmath>
-
+#include "data-schema/clock_fit.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/recording_place.hpp"
 #include "data-schema/riff_repair.hpp"
@@ -12,7 +10,6 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::size_t kMostPairs = 1000;  // enough for a line and its scatter
-constexpr double kShortestFit_s = 10;     // over less the host's own lateness tells more than the clocks
 
 // Every second pair is left out until there are few; the first and the last stay.
 void thin(std::vector<ClockPair>& pairs) {
@@ -24,24 +21,22 @@ void thin(std::vector<ClockPair>& pairs) {
   }
 }
 
-// Least squares of the device's seconds over the host's; none where they span too little.
-std::optional<double> drift_ppm(const std::vector<ClockPair>& pairs) {
-  if (pairs.size() < 3 || pairs.back().host_s - pairs.front().host_s < kShortestFit_s) return std::nullopt;
-  const ClockPair first = pairs.front();
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const ClockPair& pair : pairs) {
-    const double host_s = pair.host_s - first.host_s;
-    const double ahead_s = pair.device_s - first.device_s - host_s;
-    n += 1, x += host_s, y += ahead_s, xx += host_s * host_s, xy += host_s * ahead_s;
-  }
-  const double slope = (n * xy - x * y) / (n * xx - x * x);
-  return std::isfinite(slope) ? std::optional(1e6 * slope) : std::nullopt;
+void note_clocks(RecordingHeader& header) {
+  const auto fit = fit_clock(header.clock_pairs);
+  if (!fit) return;
+  header.clock_drift_ppm = fit->drift_ppm;
+  header.clock_drift_uncertainty_ppm = fit->drift_uncertainty_ppm;
+  header.clock_offset_s = fit->offset_s;
+  header.clock_scatter_s = fit->scatter_s;
 }
 
 // What was noted of frames that did not come to the disk.
 void forget_beyond_end(RecordingHeader& header) {
   std::erase_if(header.gaps, [&](const Gap& gap) { return gap.frame > header.frames; });
   std::erase_if(header.marks, [&](const Mark& mark) { return mark.frame > header.frames; });
+  std::erase_if(header.strokes, [&](const StrokeFigures& stroke) {
+    return stroke.first_frame + stroke.frames > header.frames;
+  });
 }
 
 }  // namespace
@@ -53,7 +48,7 @@ Result<Recording> close_recording(const std::string& stem, RecordingHeader heade
   if (const auto synced = sync_path(wav); !synced) return forward_error(synced);
   header.frames = *frames;
   forget_beyond_end(header);
-  header.clock_drift_ppm = drift_ppm(header.clock_pairs);
+  note_clocks(header);
   thin(header.clock_pairs);
   const auto text = completed_sidecar(header, wav);
   if (!text) return forward_error(text);

@@ -47,6 +47,8 @@ struct TextMember {
 constexpr TextMember kTexts[] = {
     {"clock", &RecordingHeader::clock},
     {"device", &RecordingHeader::device},
+    {"serial", &RecordingHeader::serial},
+    {"firmware", &RecordingHeader::firmware},
     {"simulated", &RecordingHeader::simulated},
     {"source_file", &RecordingHeader::source_file},
     {"source_sha256", &RecordingHeader::source_sha256},
@@ -58,6 +60,19 @@ constexpr TextMember kTexts[] = {
     {"surface", &RecordingHeader::surface},
     {"notes", &RecordingHeader::notes},
     {"ended", &RecordingHeader::ended},
+};
+
+struct NumberMember {
+  const char* name;
+  std::optional<double> RecordingHeader::*member;
+};
+
+constexpr NumberMember kNumbers[] = {
+    {"humidity_percent", &RecordingHeader::humidity_percent},
+    {"clock_drift_ppm", &RecordingHeader::clock_drift_ppm},
+    {"clock_drift_uncertainty_ppm", &RecordingHeader::clock_drift_uncertainty_ppm},
+    {"clock_offset_s", &RecordingHeader::clock_offset_s},
+    {"clock_scatter_s", &RecordingHeader::clock_scatter_s},
 };
 
 struct FormatName {
@@ -96,6 +111,44 @@ auto list_from(const Json& body, const char* key, FromJson from_json) {
   return items;
 }
 
+Json calibration_body(const AppliedCalibration& applied) {
+  Json body = {{"nominal_scale", applied.nominal_scale}, {"nominal_offset", applied.nominal_offset}};
+  put_text(body, "scale_date", applied.scale_date);
+  put_text(body, "scale_method", applied.scale_method);
+  put_number(body, "scale_uncertainty", applied.scale_uncertainty);
+  put_text(body, "zero_date", applied.zero_date);
+  put_number(body, "zero_uncertainty", applied.zero_uncertainty);
+  return body;
+}
+
+AppliedCalibration applied_from(const Json& body) {
+  return {body["nominal_scale"],
+          body["nominal_offset"],
+          text_or(body, "scale_date"),
+          text_or(body, "scale_method"),
+          optional_number(body, "scale_uncertainty"),
+          text_or(body, "zero_date"),
+          optional_number(body, "zero_uncertainty")};
+}
+
+Json stroke_body(const StrokeFigures& stroke) {
+  Json body = {{"first_frame", stroke.first_frame},
+               {"frames", stroke.frames},
+               {"length_m", stroke.length_m},
+               {"direction", stroke.direction},
+               {"mean_speed_mps", stroke.mean_speed_mps}};
+  put_number(body, "mean_normal_n", stroke.mean_normal_n);
+  body["clipped_samples"] = stroke.clipped_samples;
+  body["lost_frames"] = stroke.lost_frames;
+  return body;
+}
+
+StrokeFigures stroke_from(const Json& body) {
+  return {body["first_frame"],     body["frames"],         body["length_m"],
+          body["direction"],       body["mean_speed_mps"], optional_number(body, "mean_normal_n"),
+          body["clipped_samples"], body["lost_frames"]};
+}
+
 Json channel_body(const Channel& channel) {
   Json body = {{"name", channel.name},
                {"quantity", channel.quantity},
@@ -108,6 +161,7 @@ Json channel_body(const Channel& channel) {
   put_text(body, "source", channel.source);
   put_text(body, "derivation", channel.derivation);
   put_text(body, "calibrated", channel.calibrated);
+  if (channel.calibration) body["calibration"] = calibration_body(*channel.calibration);
   return body;
 }
 
@@ -124,6 +178,7 @@ Channel channel_from(const Json& body) {
   channel.source = text_or(body, "source");
   channel.derivation = text_or(body, "derivation");
   channel.calibrated = text_or(body, "calibrated");
+  if (body.contains("calibration")) channel.calibration = applied_from(body["calibration"]);
   return channel;
 }
 
@@ -146,13 +201,13 @@ Json recording_body(const RecordingHeader& header) {
       {"data", data_body(header)}, {"sample_rate_hz", header.sample_rate_hz}, {"channels", Json::array()}};
   put_list(body, "channels", header.channels, channel_body);
   for (const auto& [name, member] : kTexts) put_text(body, name, header.*member);
-  put_number(body, "humidity_percent", header.humidity_percent);
+  for (const auto& [name, member] : kNumbers) put_number(body, name, header.*member);
   if (header.transducer) body["transducer"] = embedded_transducer(*header.transducer);
   put_list(body, "gaps", header.gaps, [](const Gap& each) { return body_of(each); });
   put_list(body, "marks", header.marks, [](const Mark& each) { return body_of(each); });
   put_list(body, "clock_pairs", header.clock_pairs, [](const ClockPair& each) { return body_of(each); });
-  put_number(body, "clock_drift_ppm", header.clock_drift_ppm);
   put_list(body, "faults", header.faults, [](const FaultNote& each) { return body_of(each); });
+  put_list(body, "strokes", header.strokes, stroke_body);
   put_list(body, "warnings", header.warnings, [](const std::string& text) { return Json(text); });
   return body;
 }
@@ -167,13 +222,13 @@ RecordingHeader header_from(const Json& body) {
   header.sample_rate_hz = body["sample_rate_hz"];
   header.channels = list_from(body, "channels", channel_from);
   for (const auto& [name, member] : kTexts) header.*member = text_or(body, name);
-  header.humidity_percent = optional_number(body, "humidity_percent");
+  for (const auto& [name, member] : kNumbers) header.*member = optional_number(body, name);
   if (body.contains("transducer")) header.transducer = transducer_from(body["transducer"]);
   header.gaps = list_from(body, "gaps", gap_from);
   header.marks = list_from(body, "marks", mark_from);
   header.clock_pairs = list_from(body, "clock_pairs", clock_pair_from);
-  header.clock_drift_ppm = optional_number(body, "clock_drift_ppm");
   header.faults = list_from(body, "faults", fault_from);
+  header.strokes = list_from(body, "strokes", stroke_from);
   header.warnings = list_from(body, "warnings", [](const Json& text) { return text.get<std::string>(); });
   return header;
 }

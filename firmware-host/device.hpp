@@ -82,6 +82,11 @@ class Device {
   virtual StreamCounts counts() const = 0;
   /// What has happened since the last call, or start().
   virtual StreamEvents take_events() { return {}; }
+  /// One question and its answer, by the clock on the wall; not while streaming. Errors: device: no answer;
+  /// unsuitable: nobody is there to answer, as in a replay.
+  virtual schema::Result<double> round_trip_s() {
+    return schema::fail(schema::Fault::unsuitable, "answers no questions", capabilities().uri);
+  }
 };
 
 /// Opens by URI; there are `usb:`, the only device on USB, or one by `serial=` or `port=`; `sim:`, with every

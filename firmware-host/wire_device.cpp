@@ -2,6 +2,7 @@
 #include "firmware-host/wire_device.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include "firmware-host/code_range.hpp"
@@ -104,6 +105,14 @@ StreamEvents WireDevice::take_events() {
   for (const wire::Fault& fault : client_->take_faults())
     events.faults.push_back({counts_.frames, fault.code, fault.detail});
   return events;
+}
+
+Result<double> WireDevice::round_trip_s() {
+  using Clock = std::chrono::steady_clock;
+  const auto asked = Clock::now();
+  const auto pulse = client_->heartbeat();
+  if (!pulse) return schema::forward_error(pulse);
+  return std::chrono::duration<double>(Clock::now() - asked).count();
 }
 
 }  // namespace tacto::firmware_host

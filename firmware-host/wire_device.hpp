@@ -21,6 +21,7 @@ class WireDevice final : public Device {
   schema::Result<void> stop() override;
   StreamCounts counts() const override;
   StreamEvents take_events() override;
+  schema::Result<double> round_trip_s() override;
 
   /// For what is not a stream: drive, heartbeat.
   Client& client() { return *client_; }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -15,6 +16,29 @@ std::uint64_t missing_frames(const schema::RecordingHeader& header) {
   return missing;
 }
 
+bool in_both_bands(const schema::StrokeFigures& stroke) {
+  return schema::kTargetSpeed_mps.holds(stroke.mean_speed_mps) &&
+         (!stroke.mean_normal_n || schema::kTargetLoad_n.holds(*stroke.mean_normal_n));
+}
+
+// Of the strokes that were counted while recording; nothing where none were.
+void add_strokes(cli::Report& row, const schema::RecordingHeader& header) {
+  if (header.strokes.empty()) return;
+  const auto count = static_cast<double>(header.strokes.size());
+  double speed_mps = 0, normal_n = 0;
+  std::uint64_t clipped = 0;
+  for (const schema::StrokeFigures& stroke : header.strokes) {
+    speed_mps += stroke.mean_speed_mps / count;
+    normal_n += stroke.mean_normal_n.value_or(0) / count;
+    clipped += stroke.clipped_samples;
+  }
+  row.add("strokes", header.strokes.size());
+  row.add("in_band", std::ranges::count_if(header.strokes, in_both_bands));
+  row.add("mean_speed_mps", speed_mps);
+  if (header.strokes.front().mean_normal_n) row.add("mean_normal_n", normal_n);
+  row.add("clipped_samples", clipped);
+}
+
 cli::Report row_of(const ListedRecording& one) {
   const schema::RecordingHeader& header = one.header;
   const std::uint64_t missing = missing_frames(header);
@@ -22,7 +46,8 @@ cli::Report row_of(const ListedRecording& one) {
   row.add("subject", header.subject).add("surface", header.surface).add("take", one.take);
   row.add("name", std::filesystem::path(one.stem).filename().string()).add("finger", header.finger);
   row.add("duration_s", static_cast<double>(header.frames + missing) / header.sample_rate_hz);
-  row.add("gaps", header.gaps.size()).add("marks", header.marks.size());
+  add_strokes(row, header);
+  row.add("lost_frames", missing).add("gaps", header.gaps.size()).add("marks", header.marks.size());
   return row.add("created", header.created).add("ended", header.ended);
 }
 

@@ -14,6 +14,7 @@
 #include "capture/cli/terminal_keys.hpp"
 #include "capture/cli/verbs.hpp"
 #include "capture/take_name.hpp"
+#include "data-schema/cli/describe.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/report.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
@@ -27,7 +28,9 @@ using schema::Result;
 struct Options {
   std::string device = "usb:", pattern;
   RecordRequest request;
-  bool allow_gaps = false;
+  bool allow_gaps = false, no_calibration = false;
+  std::string calibration;
+  std::optional<double> stale_after_s;
 };
 
 void declare_options(CLI::App& app, Options& options) {
@@ -45,6 +48,11 @@ void declare_options(CLI::App& app, Options& options) {
   app.add_option("--strokes", request.strokes, "End after so many strokes of 5 mm or more")
       ->check(CLI::PositiveNumber);
   app.add_flag("--allow-gaps", options.allow_gaps, "Lost frames are no failure");
+  app.add_option("--calibration", options.calibration,
+                 "The device's calibration, where it is not the one that 'tactograph calibrate' keeps");
+  app.add_flag("--no-calibration", options.no_calibration, "Only what the device says of itself");
+  cli::add_quantity(app, "--stale-after", options.stale_after_s, Dimension::time,
+                    "A calibration older than this is warned of; 30days");
   app.add_option("--subject", request.subject, "A code for the person, never a name");
   app.add_option("--finger", request.finger, "Which finger, or what slides instead of one");
   app.add_option("--surface", request.surface, "What is touched; what the device says, unless told");
@@ -68,6 +76,7 @@ cli::Report row_of(const schema::Channel& channel, const schema::Statistics& sta
   cli::Report row;
   row.add("name", channel.name).add("unit", channel.unit);
   row.add("smallest", statistics.min()).add("largest", statistics.max()).add("rms", statistics.rms());
+  if (!channel.calibrated.empty()) row.add("calibrated", channel.calibrated);
   return row.add("from", channel.source);
 }
 
@@ -75,18 +84,6 @@ std::vector<cli::Report> rows_of(const Recorded& recorded) {
   std::vector<cli::Report> rows;
   for (std::size_t i = 0; i < recorded.statistics.size(); ++i)
     rows.push_back(row_of(recorded.recording.header.channels[i], recorded.statistics[i]));
-  return rows;
-}
-
-std::vector<cli::Report> rows_of(const std::vector<CountedStroke>& strokes) {
-  std::vector<cli::Report> rows;
-  for (const CountedStroke& stroke : strokes) {
-    cli::Report row;
-    row.add("stroke", rows.size() + 1).add("direction", stroke.direction).add("length_m", stroke.length_m);
-    row.add("mean_speed_mps", stroke.mean_speed_mps).add("mean_normal_n", stroke.mean_normal_n);
-    row.add("speed_in_band", kTargetSpeed_mps.holds(stroke.mean_speed_mps));
-    rows.push_back(row.add("load_in_band", kTargetLoad_n.holds(stroke.mean_normal_n)));
-  }
   return rows;
 }
 
@@ -100,7 +97,7 @@ cli::Report report_on(const Recorded& recorded) {
   report.add("clipped_samples", recorded.counts.clipped).add("lost_frames", recorded.counts.lost_frames);
   report.add("gaps", header.gaps.size()).add("marks", header.marks.size());
   report.add("channels", rows_of(recorded));
-  if (!recorded.strokes.empty()) report.add("strokes", rows_of(recorded.strokes));
+  schema::add_strokes(report, header);
   if (!header.ended.empty()) report.add("ended", header.ended);
   if (!header.warnings.empty()) report.add("warnings", header.warnings);
   report.add("files", std::vector{stem + ".wav", stem + ".json"});
@@ -163,8 +160,14 @@ Result<cli::Report> run(const Options& options) {
   auto name = chosen_name(options);
   if (!name) return schema::forward_error(name);
   request.name = std::move(*name);
+  request.stale_after_s = options.stale_after_s.value_or(kStaleAfter_s);
   const auto device = firmware_host::open_device(options.device);
   if (!device) return schema::forward_error(device);
+  if (!options.no_calibration) {
+    auto calibration = calibration_of((*device)->capabilities().serial, options.calibration);
+    if (!calibration) return schema::forward_error(calibration);
+    request.calibration = std::move(*calibration);
+  }
   const Result<Recorded> recorded = [&] {
     Console console;
     return record(**device, request, console.hooks());

@@ -10,5 +10,7 @@ extern const cli::Verb kImportVerb;
 extern const cli::Verb kRecordVerb;
 extern const cli::Verb kRecoverVerb;
 extern const cli::Verb kListVerb;
+extern const cli::Verb kCalibrateVerb;
+extern const cli::Verb kDoctorVerb;
 
 }  // namespace tacto::capture

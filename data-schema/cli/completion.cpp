@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <set>
+#include <string>
+
 #include "data-schema/cli/command.hpp"
 
 namespace tacto::cli {
 namespace {
 
+void add_names(const CLI::App& app, std::set<std::string>& names) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const auto& name : option->get_snames()) names.insert("-" + name);
+    for (const auto& name : option->get_lnames()) names.insert("--" + name);
+  }
+  for (const CLI::App* part : app.get_subcommands({})) add_names(*part, names);
+}
+
+// Those of a verb's parts too (calibrate tare).
 std::string option_names(const Verb& verb) {
   CLI::App app;
   const Action action = verb.declare(app);
-  std::string names = "--json";
-  for (const CLI::Option* option : app.get_options()) {
-    for (const auto& name : option->get_snames()) names += " -" + name;
-    for (const auto& name : option->get_lnames()) names += " --" + name;
-  }
-  return names;
+  std::set<std::string> names = {"--json"};
+  add_names(app, names);
+  return fmt::format("{}", fmt::join(names, " "));
 }
 
 constexpr std::string_view kTail = R"(    *) options="--help --version" ;;

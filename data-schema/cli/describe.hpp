@@ -6,6 +6,7 @@
 
 #include "data-schema/cli/report.hpp"
 #include "data-schema/file_kind.hpp"
+#include "data-schema/recording.hpp"
 
 namespace tacto::schema {
 
@@ -16,9 +17,13 @@ Result<cli::Report> describe_transducer(const std::string& path);
 Result<cli::Report> describe_spectrogram(const std::string& path);
 Result<cli::Report> describe_formants(const std::string& path);
 Result<cli::Report> describe_descriptions(const std::string& path);
+Result<cli::Report> describe_calibration(const std::string& path);
 
 /// The report's first lines: file, kind, and by what it was simulated where it was.
 cli::Report report_of(FileKind kind, const std::string& path, const std::string& simulated);
+
+/// A table of the strokes that were counted while recording, where there are any.
+void add_strokes(cli::Report& report, const RecordingHeader& header);
 
 /// Adds the text where there is one.
 void add_text(cli::Report& report, const char* key, const std::string& text);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/recording.hpp"
@@ -22,12 +24,34 @@ Report channel_row(const Channel& channel, const Statistics& statistics) {
   add_text(row, "source", channel.source);
   add_text(row, "derivation", channel.derivation);
   add_text(row, "calibrated", channel.calibrated);
+  if (channel.calibration && channel.calibration->scale_uncertainty)
+    row.add("scale_uncertainty_percent",
+            100 * std::abs(*channel.calibration->scale_uncertainty / channel.scale));
   return row;
 }
 
 // The frames' own time and what is missing between them.
 double duration_s(const RecordingHeader& header) {
   return header.frames == 0 ? 0 : frame_time_s(header, header.frames - 1) + 1 / header.sample_rate_hz;
+}
+
+void add_clocks(Report& report, const RecordingHeader& header) {
+  if (header.clock_drift_ppm) report.add("clock_drift_ppm", *header.clock_drift_ppm);
+  if (header.clock_drift_uncertainty_ppm)
+    report.add("clock_drift_uncertainty_ppm", *header.clock_drift_uncertainty_ppm);
+  if (header.clock_offset_s) report.add("clock_offset_s", *header.clock_offset_s);
+  if (header.clock_scatter_s) report.add("clock_scatter_s", *header.clock_scatter_s);
+}
+
+Report stroke_row(const StrokeFigures& stroke, std::size_t number) {
+  Report row;
+  row.add("stroke", number).add("direction", stroke.direction).add("length_m", stroke.length_m);
+  row.add("mean_speed_mps", stroke.mean_speed_mps);
+  row.add("speed_in_band", kTargetSpeed_mps.holds(stroke.mean_speed_mps));
+  if (stroke.mean_normal_n)
+    row.add("mean_normal_n", *stroke.mean_normal_n)
+        .add("load_in_band", kTargetLoad_n.holds(*stroke.mean_normal_n));
+  return row.add("clipped_samples", stroke.clipped_samples).add("lost_frames", stroke.lost_frames);
 }
 
 void add_time(Report& report, const RecordingHeader& header) {
@@ -37,13 +61,15 @@ void add_time(Report& report, const RecordingHeader& header) {
   report.add("frames", header.frames).add("gaps", header.gaps.size()).add("missing_frames", missing);
   report.add("marks", header.marks.size());
   if (!header.faults.empty()) report.add("faults", header.faults.size());
-  if (header.clock_drift_ppm) report.add("clock_drift_ppm", *header.clock_drift_ppm);
+  add_clocks(report, header);
   add_text(report, "ended", header.ended);
   add_text(report, "clock", header.clock);
 }
 
 void add_origin(Report& report, const RecordingHeader& header) {
   add_text(report, "device", header.device);
+  add_text(report, "serial", header.serial);
+  add_text(report, "firmware", header.firmware);
   if (header.transducer) report.add("transducer", header.transducer->name);
   add_text(report, "source_file", header.source_file);
   add_text(report, "surface", header.surface);
@@ -57,6 +83,12 @@ void add_origin(Report& report, const RecordingHeader& header) {
 }
 
 }  // namespace
+
+void add_strokes(Report& report, const RecordingHeader& header) {
+  std::vector<Report> rows;
+  for (const StrokeFigures& stroke : header.strokes) rows.push_back(stroke_row(stroke, rows.size() + 1));
+  if (!rows.empty()) report.add("strokes", std::move(rows));
+}
 
 Result<Report> describe_recording(const std::string& path) {
   const auto recording = open_recording(path);
@@ -74,6 +106,7 @@ Result<Report> describe_recording(const std::string& path) {
   for (std::size_t c = 0; c < header.channels.size(); ++c)
     rows.push_back(channel_row(header.channels[c], (*statistics)[c]));
   report.add("channels", std::move(rows));
+  add_strokes(report, header);
   return report;
 }
 

@@ -23,6 +23,8 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_formants(file.path);
     case FileKind::descriptions:
       return describe_descriptions(file.path);
+    case FileKind::calibration:
+      return describe_calibration(file.path);
   }
   return fail(Fault::internal, "a kind of file that nobody describes", file.path);
 }

@@ -34,6 +34,8 @@ constexpr Suffix kSuffixes[] = {
     {"_m_per_v", std::nullopt, "m/V"},
     {"_per_m", Dimension::spatial_frequency, ""},
     {"_percent", std::nullopt, "%"},
+    {"_mb_per_s", std::nullopt, "MB/s"},
+    {"_ppm", std::nullopt, "ppm"},
     {"_mps2", Dimension::acceleration, ""},
     {"_mps", Dimension::speed, ""},
     {"_ohm", std::nullopt, "ohm"},

@@ -24,6 +24,8 @@ class SimBoard {
 
   bool ticking() const { return rate_millihertz_ > 0; }
   double period_s() const { return 1e3 / rate_millihertz_; }
+  /// The same by the host's clock: the device's may be off.
+  double host_period_s() const { return period_s() / (1 + 1e-6 * parameters_.errors.clock_ppm); }
   /// One sample period of physics, then the firmware's tick. Precondition: ticking().
   void step();
   void poll() { firmware_->poll(); }

@@ -25,6 +25,7 @@ class SimDevice final : public Device {
   schema::Result<void> stop() override { return wire_->stop(); }
   StreamCounts counts() const override { return wire_->counts(); }
   StreamEvents take_events() override { return wire_->take_events(); }
+  schema::Result<double> round_trip_s() override { return wire_->round_trip_s(); }
 
   Client& client() { return wire_->client(); }
   SimBoard& board() { return *board_; }

@@ -9,6 +9,7 @@
 
 #include "data-schema/error.hpp"
 #include "data-schema/transducer.hpp"
+#include "firmware-host/sim/bench_errors.hpp"
 #include "firmware-host/sim/finger_parameters.hpp"
 #include "firmware-host/sim/finger_path.hpp"
 #include "firmware-host/sim/known_force.hpp"
@@ -21,6 +22,7 @@ namespace tacto::firmware_host {
 struct SimParameters {
   SurfaceChoice surface;
   FingerParameters finger;
+  BenchErrors errors;
   StrokePlan strokes;   ///< its ends are left to the device, which knows the surface's length
   double load_n = 0.5;  ///< Wiertlewski 2011, section IV-A5: 0.5 N and 50 mm/s
   bool finger_down = true;

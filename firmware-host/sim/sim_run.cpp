@@ -77,7 +77,8 @@ double SimRun::load_n(const FingerPlace& place) {
 }
 
 std::int32_t SimRun::count_at(double position_m) const {
-  return static_cast<std::int32_t>(std::floor(position_m / parameters_.encoder_quantum_m));
+  return static_cast<std::int32_t>(
+      std::floor(parameters_.errors.encoder_gain * position_m / parameters_.encoder_quantum_m));
 }
 
 bool SimRun::next(std::span<std::int32_t> frame) {
@@ -85,11 +86,13 @@ bool SimRun::next(std::span<std::int32_t> frame) {
   if (!bench_->step(place, load_n(place))) return false;
   ++frames_;
   const BenchReading reading = bench_->reading();
-  frame[0] = converter_.convert(reading.sensor_v + noise_v_ * noise_.normal());
+  const BenchErrors& errors = parameters_.errors;
+  const double mains_v = mains_at(errors.mains_v, static_cast<double>(frames_) / parameters_.sample_rate_hz);
+  frame[0] = converter_.convert(errors.sensor_gain * reading.sensor_v + noise_v_ * noise_.normal() + mains_v);
   count_ = count_at(reading.position_m);
   frame[1] = lvdt_ ? lvdt_->step(reading.position_m) : count_;
-  frame[2] = normal_cell_.step(reading.normal_n);
-  frame[3] = net_cell_.step(reading.tangential_n);
+  frame[2] = normal_cell_.step(errors.cell_gain * (reading.normal_n + errors.weight_n) + errors.cell_zero_n);
+  frame[3] = net_cell_.step(errors.cell_gain * (reading.tangential_n + errors.pull_n) + errors.cell_zero_n);
   return true;
 }
 

@@ -16,7 +16,7 @@ SimTransport::SimTransport(SimBoard& board, bool paced, std::optional<double> li
 }
 
 void SimTransport::tick() {
-  now_s_ += board_.period_s();
+  now_s_ += board_.host_period_s();
   board_.step();
   board_.poll();
 }
@@ -33,9 +33,9 @@ void SimTransport::pass_real_time(double until_s) {
   const double nap_s = std::min(kLongestNapS, *link_buffer_s_ / 4);
   board_.set_link_bytes(static_cast<std::size_t>(*link_buffer_s_ * board_.stream_bytes_per_s()));
   for (;;) {
-    for (double due_s = pacer_->now_s(); now_s_ + board_.period_s() <= due_s;) tick();
+    for (double due_s = pacer_->now_s(); now_s_ + board_.host_period_s() <= due_s;) tick();
     if (!board_.to_host().empty() || now_s_ >= until_s) return;
-    pacer_->sleep_until(now_s_ + std::max(nap_s, board_.period_s()));
+    pacer_->sleep_until(now_s_ + std::max(nap_s, board_.host_period_s()));
   }
 }
 

@@ -225,14 +225,15 @@ TEST(Record, EndsAfterTheStrokesThatWereAskedFor) {
   asked.strokes = 3;
   const auto recorded = record(**device, asked);
   ASSERT_TRUE(recorded);
-  ASSERT_EQ(recorded->strokes.size(), 3U);
+  const auto& strokes = recorded->recording.header.strokes;
+  ASSERT_EQ(strokes.size(), 3U);
   EXPECT_LT(recorded->recording.header.frames, 40000U);  // 0.9 s a stroke
-  for (const CountedStroke& stroke : recorded->strokes) {
+  for (const schema::StrokeFigures& stroke : strokes) {
     EXPECT_NEAR(stroke.mean_speed_mps, 0.05, 0.015);
-    EXPECT_NEAR(stroke.mean_normal_n, 0.5, 0.25);
+    EXPECT_NEAR(stroke.mean_normal_n.value_or(0), 0.5, 0.25);
     EXPECT_GT(stroke.length_m, 0.025);
   }
-  EXPECT_EQ(recorded->strokes[0].direction, -recorded->strokes[1].direction);
+  EXPECT_EQ(strokes[0].direction, -strokes[1].direction);
 }
 
 TEST(Record, ATimeThatTheDiskHasNoRoomForIsRefused) {

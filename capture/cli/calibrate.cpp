@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "capture/cli/calibrate_parts.hpp"
+#include "capture/cli/verbs.hpp"
+
+namespace tacto::capture {
+namespace {
+
+struct Way {
+  const char *name, *summary;
+  cli::Action (*declare)(CLI::App& app);
+};
+
+constexpr Way kWays[] = {
+    {"tare", "Nothing touches: offset, noise floor and mains of each force channel", declare_tare},
+    {"force", "Known weights on a load cell; or the piezo against a load cell", declare_force},
+    {"encoder", "A known travel", declare_encoder},
+};
+
+cli::Action declare(CLI::App& app) {
+  auto actions = std::make_shared<std::vector<std::pair<CLI::App*, cli::Action>>>();
+  for (const Way& way : kWays) {
+    CLI::App* const one = app.add_subcommand(way.name, way.summary);
+    actions->emplace_back(one, way.declare(*one));
+  }
+  app.require_subcommand(1);
+  return [actions]() -> schema::Result<cli::Report> {
+    for (const auto& [one, action] : *actions)
+      if (one->parsed()) return action();
+    return schema::fail(schema::Fault::usage, "calibrate what?", "calibrate", "tare, force or encoder");
+  };
+}
+
+}  // namespace
+
+const cli::Verb kCalibrateVerb{
+    "calibrate", "Find a device's offsets, scales and noise, and keep them for its recordings",
+    "tactograph calibrate tare\n"
+    "  tactograph calibrate force --mass 0g --mass 100g --mass 200g\n"
+    "  tactograph calibrate force --reference net_force --time 20s\n"
+    "  tactograph calibrate encoder --travel 50mm --repeats 6\n"
+    "  tactograph calibrate force --channel net_force --mass 0g=empty --mass 100g=loaded@1s..3s",
+    declare};
+
+}  // namespace tacto::capture

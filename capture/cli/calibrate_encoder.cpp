@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "capture/cli/calibrate_parts.hpp"
+#include "capture/cli/enter_key.hpp"
+#include "capture/travel.hpp"
+#include "capture/watch_counts.hpp"
+#include "data-schema/cli/report.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Dimension;
+using schema::Result;
+
+struct Options {
+  CalibrateOptions common;
+  double travel_m = 0, travel_uncertainty_m = 0;
+  std::size_t repeats = 3;
+  std::string channel = "position";
+  std::vector<std::string> from;
+};
+
+struct Travels {
+  std::optional<Take> last;
+  std::vector<double> differences;
+};
+
+Result<Travels> of_recordings(const Options& options) {
+  Travels travels;
+  for (const std::string& text : options.from) {
+    const auto part = parse_recording_part(text);
+    if (!part) return schema::forward_error(part);
+    auto take = take_from(*part);
+    if (!take) return schema::forward_error(take);
+    if (travels.last && travels.last->header.serial != take->header.serial)
+      return schema::fail(schema::Fault::unsuitable, "is of another device than the one before", text);
+    const auto differences = count_differences(*take, options.channel);
+    if (!differences) return schema::forward_error(differences);
+    travels.differences.insert(travels.differences.end(), differences->begin(), differences->end());
+    travels.last = std::move(*take);
+  }
+  return travels;
+}
+
+void ask_for_end(std::size_t ends) {
+  fmt::print(stderr, "Go to the {} mark, then press Enter: ", ends % 2 == 0 ? "first" : "second");
+  std::fflush(stderr);
+}
+
+Result<Travels> of_device(const Options& options) {
+  const auto device = firmware_host::open_device(options.common.device);
+  if (!device) return schema::forward_error(device);
+  std::size_t ends = 0;
+  ask_for_end(ends);
+  const auto marked = [&] {
+    const auto pressed = enter_was_pressed();
+    if (pressed && *pressed && ++ends <= options.repeats) ask_for_end(ends);
+    return pressed;
+  };
+  auto watched = watch_counts(**device, options.channel, options.repeats + 1, marked);
+  if (!watched) return schema::forward_error(watched);
+  Travels travels{std::move(watched->take), {}};
+  for (std::size_t i = 1; i < watched->counts.size(); ++i)
+    travels.differences.push_back(watched->counts[i] - watched->counts[i - 1]);
+  return travels;
+}
+
+Result<cli::Report> run(const Options& options) {
+  const auto travels = options.from.empty() ? of_device(options) : of_recordings(options);
+  if (!travels) return schema::forward_error(travels);
+  const auto found = scale_by_travel(travels->differences, options.travel_m, options.travel_uncertainty_m);
+  if (!found) return schema::forward_error(found);
+  const Take& take = *travels->last;
+  const schema::Channel& channel = take.header.channels[*schema::find_channel(take.header, options.channel)];
+  cli::Report report = report_on(take);
+  report.add("channel", channel.name).add("travels", travels->differences.size());
+  add_scale(report, found->scale, channel.scale, channel.unit);
+  report.add("first_travel", found->direction > 0 ? "counts up" : "counts down").add("notes", found->notes);
+  schema::CalibrationEntry entry;
+  entry.channel = channel.name;
+  entry.unit = channel.unit;
+  entry.method = "travel";
+  entry.nominal_scale = channel.scale;
+  entry.scale = found->scale.value;
+  entry.scale_uncertainty = found->scale.uncertainty;
+  entry.degrees_of_freedom =
+      std::isfinite(found->scale.degrees_of_freedom) ? found->scale.degrees_of_freedom : 0;
+  entry.notes = found->notes;
+  return kept(std::move(report), options.common, take, {entry});
+}
+
+}  // namespace
+
+cli::Action declare_encoder(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  declare_common(app, options->common);
+  cli::add_quantity(app, "--travel", options->travel_m, Dimension::length, "From one mark to the other")
+      ->required();
+  cli::add_quantity(app, "--travel-uncertainty", options->travel_uncertainty_m, Dimension::length,
+                    "Standard uncertainty of that");
+  app.add_option("--repeats", options->repeats, "How many travels, there and back in turn")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--channel", options->channel, "The encoder's");
+  app.add_option("--from", options->from,
+                 "Recordings instead of the device: travels from mark to mark, or from beginning to end");
+  return [options] { return run(*options); };
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "capture/cli/calibrate_parts.hpp"
+#include "data-schema/creation_time.hpp"
+
+namespace tacto::capture {
+
+void declare_common(CLI::App& app, CalibrateOptions& options) {
+  app.add_option("-d,--device", options.device, "The device: usb:, usb:serial=XYZ, sim:...");
+  app.add_option("--calibration", options.calibration,
+                 "The file to keep it in; SERIAL.calibration.json in ~/.config/tactograph/calibrations");
+  app.add_flag("--dry-run", options.dry_run, "Measure and say, keep nothing");
+  app.fallthrough();
+}
+
+cli::Report report_on(const Take& take) {
+  cli::Report report;
+  report.add("device", take.header.device).add("serial", take.header.serial);
+  if (!take.header.simulated.empty()) report.add("simulated", take.header.simulated);
+  return report;
+}
+
+void add_scale(cli::Report& report, const Uncertain& scale, double own_scale, const std::string& unit) {
+  const double relative = std::abs(scale.uncertainty / scale.value);
+  report.add("scale", scale.value).add("scale_unit", unit + " per stored number");
+  report.add("of_the_devices_own", scale.value / own_scale);
+  report.add("standard_uncertainty_percent", 100 * relative);
+  report.add("interval_of_95_percent", 100 * relative * coverage_factor_95(scale.degrees_of_freedom));
+}
+
+schema::Result<cli::Report> kept(cli::Report report, const CalibrateOptions& options, const Take& take,
+                                 std::vector<schema::CalibrationEntry> entries) {
+  if (options.dry_run) return report;
+  const std::string now = schema::creation_time();
+  const auto path =
+      keep_calibration(take.header, take.device_name, std::move(entries), options.calibration, now);
+  if (!path) return schema::forward_error(path);
+  report.add("date", now).add("file", *path);
+  return report.add("next", "tactograph record -d " + take.header.device + " -o oak");
+}
+
+}  // namespace tacto::capture

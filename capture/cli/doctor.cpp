@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/doctor.hpp"
+
+#include <memory>
+
+#include "capture/cli/verbs.hpp"
+#include "data-schema/cli/report.hpp"
+
+namespace tacto::capture {
+namespace {
+
+struct Options {
+  DoctorRequest request;
+  std::optional<double> stale_after_s;
+};
+
+const char* word_of(Health health) {
+  constexpr const char* kWords[] = {"works", "warning", "FAILS", "skipped"};
+  return kWords[static_cast<std::size_t>(health)];
+}
+
+cli::Report row_of(const Check& check) {
+  cli::Report row;
+  row.add("check", check.name).add("state", word_of(check.health)).add("found", check.found);
+  return row.add("what_to_do", check.remedy);
+}
+
+schema::Result<cli::Report> run(const Options& options) {
+  DoctorRequest request = options.request;
+  request.stale_after_s = options.stale_after_s.value_or(kStaleAfter_s);
+  const Diagnosis diagnosis = examine(request);
+  std::vector<cli::Report> rows;
+  for (const Check& check : diagnosis.checks) rows.push_back(row_of(check));
+  const Check* const obstacle = diagnosis.obstacle();
+  cli::Report report;
+  report.add("checks", std::move(rows)).add("can_record", obstacle == nullptr).add("next", diagnosis.next);
+  if (obstacle != nullptr)
+    report.ends_with(obstacle->name == "disk" ? obstacle->fault : schema::Fault::device);
+  return report;
+}
+
+cli::Action declare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  DoctorRequest& request = options->request;
+  app.add_option("-d,--device", request.device, "The device: usb:, usb:serial=XYZ, sim:...");
+  app.add_option("-o,--folder", request.folder, "Where recordings are to go");
+  app.add_option("--calibration", request.calibration,
+                 "The device's calibration, where it is not the one that 'tactograph calibrate' keeps");
+  cli::add_quantity(app, "--stale-after", options->stale_after_s, schema::Dimension::time,
+                    "A calibration older than this is stale; 30days");
+  app.add_option("--questions", request.questions, "How many answers of the device are timed");
+  app.footer(
+      app.get_footer() +
+      "\nExit code 0 where a recording can be made, 7 where the folder or the disk is in the way, else 8.");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kDoctorVerb{"doctor",
+                            "Say what works between you and a recording: device, permission, limits, disk, "
+                            "calibration",
+                            "tactograph doctor\n  tactograph doctor -d sim:surface=C -o /data/study-3 --json",
+                            declare};
+
+}  // namespace tacto::capture

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/cli/enter_key.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace tacto::capture {
+namespace {
+
+// Byte by byte, so that nothing of the next line is taken.
+schema::Result<bool> read_line() {
+  char byte = 0;
+  while (read(STDIN_FILENO, &byte, 1) == 1)
+    if (byte == '\n') return true;
+  return schema::fail(schema::Fault::usage, "nobody presses Enter", "stdin",
+                      "run it in a terminal, or calibrate from recordings (--help)");
+}
+
+}  // namespace
+
+schema::Result<void> wait_for_enter(const std::string& what_to_do) {
+  fmt::print(stderr, "{}, then press Enter: ", what_to_do);
+  std::fflush(stderr);
+  const auto line = read_line();
+  return line ? schema::Result<void>{} : schema::forward_error(line);
+}
+
+schema::Result<bool> enter_was_pressed() {
+  pollfd waiting{STDIN_FILENO, POLLIN, 0};
+  if (poll(&waiting, 1, 0) != 1) return false;
+  return read_line();
+}
+
+}  // namespace tacto::capture

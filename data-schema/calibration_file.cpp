@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <system_error>
+
+#include "data-schema/calibration_json.hpp"
+#include "data-schema/files.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kKind = "calibration";
+
+std::string variable(const char* name) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? "" : text;
+}
+
+bool fits_a_file_name(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+}
+
+std::string file_name_of(std::string serial) {
+  std::ranges::replace_if(
+      serial, [](char c) { return !fits_a_file_name(c); }, '_');
+  return serial + ".calibration.json";
+}
+
+Result<void> make_folder_of(const std::string& path) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  std::error_code failed;
+  if (!folder.empty()) std::filesystem::create_directories(folder, failed);
+  if (failed) return fail(Fault::cannot_write, "can't be made: " + failed.message(), folder.string());
+  return {};
+}
+
+const CalibrationEntry* newest(const CalibrationFile& file, std::string_view channel,
+                               std::optional<double> CalibrationEntry::*part) {
+  const CalibrationEntry* found = nullptr;
+  for (const CalibrationEntry& entry : file.entries)
+    if (entry.channel == channel && (entry.*part).has_value() && (!found || entry.date >= found->date))
+      found = &entry;
+  return found;
+}
+
+std::optional<std::time_t> time_of(const std::string& date) {
+  std::tm parts{};
+  const char* const end =
+      strptime(date.c_str(), date.size() > 10 ? "%Y-%m-%dT%H:%M:%SZ" : "%Y-%m-%d", &parts);
+  if (end == nullptr || *end != '\0') return std::nullopt;
+  return timegm(&parts);
+}
+
+}  // namespace
+
+Result<std::string> calibration_path(const std::string& serial) {
+  if (serial.empty())
+    return fail(Fault::unsuitable, "the device has no serial number to keep a calibration under", {},
+                "name a file with --calibration FILE");
+  const std::string config = variable("XDG_CONFIG_HOME"), home = variable("HOME");
+  if (config.empty() && home.empty())
+    return fail(Fault::not_found, "neither XDG_CONFIG_HOME nor HOME says where calibrations are kept", {},
+                "name a file with --calibration FILE");
+  const std::filesystem::path base =
+      config.empty() ? std::filesystem::path(home) / ".config" : std::filesystem::path(config);
+  return (base / "tactograph" / "calibrations" / file_name_of(serial)).string();
+}
+
+Result<CalibrationFile> read_calibration(const std::string& path) {
+  const auto document = open_document(path, kKind);
+  if (!document) return forward_error(document);
+  CalibrationFile file = calibration_from(document->body);
+  file.extra_json = unknown_members(document->body, kKind);
+  file.newer_version = document->newer_version;
+  return file;
+}
+
+Result<void> write_calibration(const std::string& path, const CalibrationFile& file) {
+  const auto text = document_text(kKind, calibration_body(file), file.extra_json);
+  if (!text) return forward_error(text);
+  if (const auto made = make_folder_of(path); !made) return made;
+  PendingFiles pending;
+  if (const auto written = pending.write(path, *text); !written) return written;
+  return pending.commit();
+}
+
+const CalibrationEntry* newest_scale(const CalibrationFile& file, std::string_view channel) {
+  return newest(file, channel, &CalibrationEntry::scale);
+}
+
+const CalibrationEntry* newest_zero(const CalibrationFile& file, std::string_view channel) {
+  return newest(file, channel, &CalibrationEntry::zero);
+}
+
+std::optional<double> seconds_between(const std::string& from, const std::string& to) {
+  const auto first = time_of(from), last = time_of(to);
+  return first && last ? std::optional(std::difftime(*last, *first)) : std::nullopt;
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "data-schema/calibration.hpp"
+#include "data-schema/cli/describe.hpp"
+
+namespace tacto::schema {
+namespace {
+
+cli::Report row_of(const CalibrationEntry& entry) {
+  cli::Report row;
+  row.add("channel", entry.channel).add("method", entry.method).add("date", entry.date);
+  if (entry.scale) row.add("scale", *entry.scale).add("of_nominal", *entry.scale / entry.nominal_scale);
+  if (entry.scale && entry.scale_uncertainty)
+    row.add("uncertainty_percent", 100 * std::abs(*entry.scale_uncertainty / *entry.scale));
+  if (entry.zero) row.add("zero", *entry.zero);
+  if (entry.zero_uncertainty) row.add("zero_uncertainty", *entry.zero_uncertainty);
+  row.add("unit", entry.unit);
+  if (!entry.notes.empty()) row.add("notes", entry.notes);
+  return row;
+}
+
+}  // namespace
+
+Result<cli::Report> describe_calibration(const std::string& path) {
+  const auto file = read_calibration(path);
+  if (!file) return forward_error(file);
+  warn_of_version(path, file->newer_version);
+  cli::Report report = report_of(FileKind::calibration, path, file->simulated);
+  report.add("serial", file->serial);
+  add_text(report, "device", file->device);
+  std::vector<cli::Report> rows;
+  for (const CalibrationEntry& entry : file->entries) rows.push_back(row_of(entry));
+  return report.add("entries", std::move(rows));
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The live line and its keys on a terminal, and the strokes that stay in the recording."""
+import fcntl
+import json
+import os
+import pathlib
+import pty
+import re
+import select
+import struct
+import termios
+import time
+
+import tacto
+
+COLUMNS = 120
+DEVICE = "sim:surface=flat,paced=1,strokes=20,length=25mm"  # a stroke of 20 mm takes 0.5 s, and 0.1 s of rest
+
+
+def on_a_terminal(arguments, keys):
+    """Runs the command on a terminal of its own, presses keys at their times; (everything shown, exit code)."""
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.execv(tacto.COMMAND, [tacto.COMMAND, *arguments])
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
+    begun, shown = time.monotonic(), b""
+    while True:
+        now = time.monotonic() - begun
+        while keys and keys[0][0] <= now:
+            os.write(terminal, keys.pop(0)[1])
+        assert now < 60, shown
+        if not select.select([terminal], [], [], 0.05)[0]:
+            continue
+        try:
+            piece = os.read(terminal, 65536)
+        except OSError:  # the other side has gone
+            piece = b""
+        if not piece:
+            break
+        shown += piece
+    return shown.decode(), os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+
+
+def redrawn_marked_and_stopped():
+    shown, code = on_a_terminal(["record", "-d", DEVICE, "-o", "oak"], [(1.0, b"m"), (1.5, b"x"), (2.4, b"q")])
+    assert code == 0, shown
+    lines = [line for line in shown.split("\r\x1b[K") if " lost " in line]
+    assert 12 <= len(lines) <= 60, (len(lines), shown)
+    for line in lines:
+        first = line.split("\r\n")[0]
+        assert len(first) < COLUMNS, first
+        assert re.match(r"\d+\.\d s  finger +\d+ mm/s (ok|FASTER|SLOWER)  load \d\.\d\d N (ok|MORE|LESS)  \d+ strokes  0 lost  ", first), first
+    times = [float(line.split(" s ")[0]) for line in lines]
+    assert times == sorted(times) and times[-1] > 1.5, times
+    side = json.loads(pathlib.Path("oak.json").read_text())
+    assert [mark["label"] for mark in side["marks"]] == ["mark"], side["marks"]
+    # The clock here starts before the device's: the mark is where the key was, or a little before.
+    assert 0.3 < side["marks"][0]["frame"] / 1e4 < 1.2, side["marks"]
+    assert side["data"]["frames"] / 1e4 < 3 and "ended" not in side
+    return side
+
+
+def the_terminal_is_left_as_it_was():
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.execv("/bin/sh", ["sh", "-c", f"stty -a; {tacto.COMMAND} record -d {DEVICE} -o twice --time 0.3s > /dev/null; echo; stty -a"])
+    shown = b""
+    try:
+        while piece := os.read(terminal, 65536):
+            shown += piece
+    except OSError:
+        pass
+    os.waitpid(pid, 0)
+    before, after = re.findall(rb"(speed .*?-extproc|speed .*?extproc)", shown, re.S)
+    assert before == after, shown
+
+
+def strokes_are_told_again(side):
+    assert len(side["strokes"]) >= 2, side.get("strokes")
+    told = tacto.run_json("info", "oak")["strokes"]
+    for stored, shown in zip(side["strokes"], told, strict=True):
+        assert shown["length_m"] == stored["length_m"] and shown["mean_speed_mps"] == stored["mean_speed_mps"]
+        assert abs(stored["mean_speed_mps"] - 0.05) < 0.02 and 0.015 < stored["length_m"] < 0.021, stored
+        assert shown["speed_in_band"] == (0.035 <= stored["mean_speed_mps"] <= 0.065)
+        assert shown["load_in_band"] == (0.25 <= stored["mean_normal_n"] <= 0.75)
+        assert stored["clipped_samples"] == 0 and stored["lost_frames"] == 0
+    assert [stroke["direction"] for stroke in told[:2]] == [1, -1]
+    row = next(row for row in tacto.run_json("list", ".")["list"] if row["name"] == "oak")
+    assert row["strokes"] == len(told) and row["clipped_samples"] == 0 and row["lost_frames"] == 0
+    assert abs(row["mean_speed_mps"] - sum(s["mean_speed_mps"] for s in told) / len(told)) < 1e-12
+
+
+def loud_strokes_are_counted_as_clipped():
+    tacto.run("record", "-d", "sim:surface=B,load=3N,strokes=2", "-o", "loud", "--time", "2s")
+    strokes = tacto.run_json("info", "loud")["strokes"]
+    assert strokes and any(stroke["clipped_samples"] > 0 for stroke in strokes), strokes
+    assert not any(stroke["load_in_band"] for stroke in strokes), strokes
+
+
+def clocks_are_fitted():
+    """20 s in emulated time: host and device differ by the asked ppm, and by what a message's place tells."""
+    for ppm in (0, 250, -1200):
+        name = f"clock{ppm}"
+        tacto.run("record", "-d", f"sim:finger=up,clock_ppm={ppm}", "-o", name, "--time", "20s")
+        told = tacto.run_json("info", name)
+        assert abs(told["clock_drift_ppm"] - ppm) <= max(1, 4 * told["clock_drift_uncertainty_ppm"]), told
+        assert told["clock_scatter_s"] < 5e-3, told
+    # By the clock on the wall: 12 s of a device that is 3 % fast pass in 12 / 1.03 s.
+    begun = time.monotonic()
+    tacto.run("record", "-d", "sim:finger=up,clock_ppm=30000,paced=1", "-o", "wall", "--time", "12s")
+    took = time.monotonic() - begun
+    assert 12 / 1.03 - 0.05 < took, took
+    told = tacto.run_json("info", "wall")
+    assert abs(told["clock_drift_ppm"] - 30000) < max(30, 4 * told["clock_drift_uncertainty_ppm"]), told
+    print(f"3 % fast, paced: found {told['clock_drift_ppm']:.1f} +- {told['clock_drift_uncertainty_ppm']:.1f} ppm")
+
+
+def test():
+    strokes_are_told_again(redrawn_marked_and_stopped())
+    the_terminal_is_left_as_it_was()
+    loud_strokes_are_counted_as_clipped()
+
+
+tacto.in_folder(test)
+tacto.in_folder(clocks_are_fitted)

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Frames of the emulated device, for the tests of calibration.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "capture/take.hpp"
+#include "capture/uncertain.hpp"
+
+namespace tacto::capture {
+
+/// `keys` as after "sim:".
+inline Take sim_take(const std::string& keys, double time_s) {
+  const auto device = firmware_host::open_device("sim:" + keys);
+  EXPECT_TRUE(device) << keys;
+  auto take = take_from(**device, time_s);
+  EXPECT_TRUE(take) << keys;
+  return std::move(*take);
+}
+
+/// How errors of known truth relate to what was stated: parts within the stated interval of 95 %, and the
+/// RMS of error over standard uncertainty.
+class Coverage {
+ public:
+  void add(const Uncertain& found, double truth) {
+    const double relative = (found.value - truth) / found.uncertainty;
+    inside_ += std::abs(relative) <= coverage_factor_95(found.degrees_of_freedom) ? 1 : 0;
+    squares_ += relative * relative;
+    ++count_;
+  }
+  double inside() const { return inside_ / count_; }
+  double rms() const { return std::sqrt(squares_ / count_); }
+
+ private:
+  double inside_ = 0, squares_ = 0, count_ = 0;
+};
+
+}  // namespace tacto::capture
