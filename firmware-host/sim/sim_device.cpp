@@ -35,7 +35,8 @@ Result<std::unique_ptr<SimDevice>> make_sim_device(const std::string& uri, std::
   if (!surface) return schema::forward_error(surface);
   const auto transducer = schema::read_transducer(asked->transducer);
   if (!transducer) return schema::forward_error(transducer);
-  if (const auto fits = check_against(*asked, *transducer); !fits) return schema::forward_error(fits);
+  if (const auto fits = check_against(*asked, *transducer, surface->profile.length_m()); !fits)
+    return schema::forward_error(fits);
   return SimDevice::open(uri, *asked, *transducer, std::move(*surface));
 }
 

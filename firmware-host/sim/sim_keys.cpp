@@ -104,7 +104,7 @@ std::span<const NumberKey> sim_number_keys() {
 std::span<const WordKey> sim_word_keys() {
   static const std::vector<WordKey> kWords = {
       {"surface",
-       "A, B, C, D, E, flat, sine, triangle or square; C",
+       "A, B, C, D, E, flat, sine, triangle, square, or profile:NAME, a texture of heights; C",
        {},
        [](P& p, std::string_view v) { p.surface.name = v; }},
       {"finger",

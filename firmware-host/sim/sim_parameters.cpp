@@ -117,16 +117,17 @@ TrayPhysics SimParameters::tray() const {
   return physics;
 }
 
-Result<void> check_against(const SimParameters& p, const schema::Transducer& transducer) {
+Result<void> check_against(const SimParameters& p, const schema::Transducer& transducer,
+                           double surface_length_m) {
   if (const auto force = check_force(p); !force) return force;
   const double least_hz = least_second_mode_hz(transducer, p.second_mode);
   if (p.has_second_mode && p.second_mode.frequency_hz < least_hz)
     return schema::fail(Fault::usage, "the second mode is not above the tray's resonance",
                         where("second_mode"),
                         fmt::format("from {} on", shown(least_hz, Dimension::frequency)));
-  if (p.has_lvdt && p.surface.length_m > p.lvdt.range_m)
+  if (p.has_lvdt && surface_length_m > p.lvdt.range_m)
     return schema::fail(Fault::usage, "the LVDT does not reach over the surface", where("lvdt_range"),
-                        fmt::format("from {} on", shown(p.surface.length_m, Dimension::length)));
+                        fmt::format("from {} on", shown(surface_length_m, Dimension::length)));
   return {};
 }
 

@@ -63,7 +63,8 @@ schema::Result<SimParameters> parse_sim_parameters(std::string_view text);
 
 /// What only the whole shows. Errors: usage: a second mode that is not above the tray's resonance, a force
 /// above half the rate or with its band upside down, a surface beyond the LVDT's range.
-schema::Result<void> check_against(const SimParameters& parameters, const schema::Transducer& transducer);
+schema::Result<void> check_against(const SimParameters& parameters, const schema::Transducer& transducer,
+                                   double surface_length_m);
 
 /// The keys, each with meaning and default, one a line, for help.
 std::string sim_parameters_help();

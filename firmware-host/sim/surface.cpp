@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "data-schema/quantity.hpp"
+#include "data-schema/texture.hpp"
 #include "firmware-host/sim/table_two.hpp"
 
 namespace tacto::firmware_host {
@@ -84,6 +85,33 @@ Surface make_grating(const Grating& grating, const SurfaceChoice& choice) {
                       for_people(period_m, Dimension::length), for_people(depth_m, Dimension::length))};
 }
 
+constexpr std::string_view kProfilePrefix = "profile:";
+constexpr double kCoarsestM = 0.1e-3;  // the width of a skin ridge's contact: FingerParameters
+constexpr double kTallestM = 1e-3;     // as of the gratings
+
+tl::unexpected<schema::Error> no_profile(const std::string& name, std::string what, std::string remedy) {
+  return schema::fail(Fault::unsuitable, std::move(what), name, std::move(remedy));
+}
+
+// A texture of heights is not softened or resampled: it is touched as it was measured.
+schema::Result<Surface> measured_surface(const std::string& name) {
+  const auto texture = schema::read_texture(name);
+  if (!texture) return schema::forward_error(texture);
+  if (texture->quantity != "height")
+    return no_profile(name, fmt::format("is a texture of {}, not of heights", texture->quantity),
+                      "make one with 'tactograph import' of a height profile");
+  const double pitch_m = texture->signal.pitch_m, length_m = texture->signal.length_m();
+  if (!(length_m >= kShortestM && length_m <= kLongestM))
+    return no_profile(name, "is not between 10 mm and 1 m long", "give a longer or shorter profile");
+  const Heights& heights = texture->signal.values;
+  const auto [low, high] = std::ranges::minmax_element(heights);
+  if (!(pitch_m <= kCoarsestM) || *high - *low > kTallestM)
+    return no_profile(name, "its heights are more than 0.1 mm apart, or differ by more than 1 mm",
+                      "a finger does not follow that");
+  const std::string words = texture->surface.empty() ? name : texture->surface;
+  return Surface{HeightProfile(pitch_m, heights), fmt::format("profile of {}", words)};
+}
+
 schema::Result<Surface> make_fixed(const SurfaceChoice& choice) {
   if (choice.period_m || choice.depth_m)
     return schema::fail(Fault::usage, fmt::format("surface {} has its own shape", choice.name),
@@ -92,9 +120,11 @@ schema::Result<Surface> make_fixed(const SurfaceChoice& choice) {
     if (sample.name == choice.name)
       return Surface{HeightProfile(kPitchM, sample.heights(grid_points(choice), kPitchM, choice.seed)),
                      std::string(sample.description)};
+  if (choice.name.starts_with(kProfilePrefix))
+    return measured_surface(choice.name.substr(kProfilePrefix.size()));
   if (choice.name == "flat") return Surface{HeightProfile(kPitchM, Heights(grid_points(choice))), "flat"};
   return schema::fail(Fault::usage, fmt::format("there is no surface '{}'", choice.name), "surface",
-                      "the surfaces are: " + surface_names());
+                      "the surfaces are: " + surface_names() + ", profile:FILE");
 }
 
 }  // namespace

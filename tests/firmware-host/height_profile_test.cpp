@@ -5,8 +5,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
+#include "data-schema/texture.hpp"
 #include "firmware-host/sim/surface.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -102,6 +105,51 @@ TEST(Surface, RefusesWhatItCanNotMake) {
   choice = {};
   choice.length_m = 1e-3;
   EXPECT_EQ(make_surface(choice).error().where, "length");
+}
+
+schema::Texture heights_of(std::size_t count, double pitch_m, double tall_m) {
+  schema::Texture texture;
+  texture.quantity = "height";
+  texture.unit = "m";
+  texture.surface = "a coin";
+  texture.signal.pitch_m = pitch_m;
+  for (std::size_t i = 0; i < count; ++i)
+    texture.signal.values.push_back(tall_m / 2 * std::sin(0.01 * static_cast<double>(i)));
+  return texture;
+}
+
+TEST(Surface, AMeasuredProfileIsTouchedAsItIs) {
+  const tests::TemporaryFolder folder;
+  const schema::Texture texture = heights_of(2001, 10e-6, 80e-6);
+  ASSERT_TRUE(schema::write_texture(folder / "coin", texture));
+  SurfaceChoice choice;
+  choice.name = "profile:" + (folder / "coin");
+  const auto made = make_surface(choice);
+  ASSERT_TRUE(made) << message(made.error());
+  EXPECT_EQ(made->description, "profile of a coin");
+  EXPECT_DOUBLE_EQ(made->profile.length_m(), 20e-3);
+  for (std::size_t i = 0; i < 2001; i += 100)  // stored in 32 bits, and rounded to 1 pm
+    EXPECT_NEAR(made->profile.at(10e-6 * static_cast<double>(i)).height_m, texture.signal.values[i], 4e-12);
+}
+
+TEST(Surface, AProfileThatNoFingerFollowsIsRefused) {
+  const tests::TemporaryFolder folder;
+  const auto refused = [&](const schema::Texture& texture) {
+    if (!schema::write_texture(folder / "p", texture)) throw std::runtime_error("not written");
+    SurfaceChoice choice;
+    choice.name = "profile:" + (folder / "p");
+    return message(make_surface(choice).error());
+  };
+  EXPECT_NE(refused(heights_of(100, 10e-6, 1e-5)).find("10 mm"), std::string::npos);
+  EXPECT_NE(refused(heights_of(1000, 0.2e-3, 1e-5)).find("0.1 mm apart"), std::string::npos);
+  EXPECT_NE(refused(heights_of(2000, 10e-6, 2e-3)).find("1 mm"), std::string::npos);
+  schema::Texture force = heights_of(2000, 10e-6, 0.1);
+  force.quantity = "tangential_force";
+  force.unit = "N";
+  EXPECT_NE(refused(force).find("not of heights"), std::string::npos);
+  SurfaceChoice absent;
+  absent.name = "profile:" + (folder / "absent");
+  EXPECT_EQ(make_surface(absent).error().fault, schema::Fault::not_found);
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ class SimParametersAgainst : public testing::TestWithParam<Refusal> {};
 TEST_P(SimParametersAgainst, IsRefusedWithWhatWouldDo) {
   const auto p = parse_sim_parameters(GetParam().text);
   ASSERT_TRUE(p) << message(p.error());
-  const auto fits = check_against(*p, *schema::read_transducer("wiertlewski2011"));
+  const auto fits = check_against(*p, *schema::read_transducer("wiertlewski2011"), p->surface.length_m);
   ASSERT_FALSE(fits);
   EXPECT_EQ(fits.error().fault, schema::Fault::usage);
   EXPECT_EQ(fits.error().where, GetParam().where);
