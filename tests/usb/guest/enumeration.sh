@@ -19,7 +19,7 @@ at_speed() {
       echo "endpoint $(cat "$endpoint/direction") $(cat "$endpoint/type") $((0x$(cat "$endpoint/wMaxPacketSize")))"
     done
   } >"/guest/results/$name.txt"
-  timeout 60 "$TACTOGRAPH" record -d "usb:serial=at-$name" -o "$name" --time 1s >/dev/null
+  timeout 60 "$TACTOGRAPH" record -d "usb:serial=at-$name" -o "$name" --time 1s >record.txt 2>&1 || { cat record.txt; fail "no recording at $name speed"; }
   cp "$name.wav" /guest/results/
   stop_gadget
   rm "$name".*

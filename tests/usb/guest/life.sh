@@ -5,7 +5,7 @@
 CONFIG=/sys/kernel/config/usb_gadget
 
 records() {
-  timeout 60 "$TACTOGRAPH" record -d usb: -o "$1" --time 300ms >/dev/null || fail "no recording $1"
+  timeout 60 "$TACTOGRAPH" record -d usb: -o "$1" --time 300ms >"$1.txt" 2>&1 || { cat "$1.txt"; fail "no recording $1"; }
   cmp -n 20000 "$1.wav" first.wav
 }
 
@@ -20,17 +20,16 @@ refused() {
 
 say "started"
 start_gadget --board "replay:$SOURCE"
-timeout 60 "$TACTOGRAPH" record -d usb: -o first --time 300ms >/dev/null
+timeout 60 "$TACTOGRAPH" record -d usb: -o first --time 300ms >/dev/null 2>&1
 say "pulled out and plugged in"
 unplug
-within 10 udc_is "not attached"
 replug
 records replugged
 say "its port closed and opened from outside"
 echo >"$CONFIG/tactograph-$UDC/UDC"
-within 10 udc_is "not attached"
+gone
 echo $UDC >"$CONFIG/tactograph-$UDC/UDC"
-within 10 udc_is configured
+within 30 host_sees
 records reopened
 say "a second one on the same port"
 refused "runs on $UDC already" "$GADGET" --board sim: --udc $UDC
@@ -39,15 +38,16 @@ stop_gadget
 [ -z "$(ls $CONFIG)" ] || fail "something is left in configfs: $(ls $CONFIG)"
 [ -z "$(ls /guest/tmp)" ] || fail "something is left in /guest/tmp: $(ls /guest/tmp)"
 say "killed while it streams, and started again"
-start_gadget --board "replay:$SOURCE"
+start_gadget --board "replay:$SOURCE,loop=1"
 timeout 60 "$TACTOGRAPH" record -d usb: -o killed --time 30s >/dev/null 2>killed.txt & RECORD_PID=$!
 within 30 test -s killed.wav
 sleep 1
 kill -9 $GADGET_PID
 if wait $RECORD_PID; then fail "the recording did not notice"; fi
 tail -1 killed.txt
+grep -q 'ended early' killed.txt && ! grep -q converter killed.txt || fail "it ended for another reason"
 timeout 60 "$TACTOGRAPH" validate killed
-within 10 udc_is "not attached"
+gone
 start_gadget --board "replay:$SOURCE"
 records restarted
 stop_gadget
@@ -62,5 +62,6 @@ refused "nothing" "$GADGET" --board replay:nothing
 refused "run as root" setpriv --reuid 65534 --clear-groups "$GADGET" --board sim:
 /bin/busybox rmmod dummy_hcd
 refused "no USB device port" "$GADGET"
+/bin/busybox insmod "$KERNEL/dummy_hcd.ko"
 umount /sys/kernel/config
-refused "no USB gadgets" "$GADGET" --udc ""
+refused "no USB gadgets" "$GADGET"
