@@ -28,13 +28,13 @@ bool meant(const UsbName& name, const UsbAddress& address) {
 
 tl::unexpected<schema::Error> not_there(const std::vector<UsbName>& names, const UsbAddress& address) {
   if (names.empty())
-    return fail(Fault::not_found, "no device is on USB", "usb:",
+    return fail(Fault::not_found, "no device is on USB", "device",
                 "plug it in and switch it on; 'tactograph scan' lists what is there, emulated devices too");
   const bool by_serial = !address.serial.empty();
   return fail(Fault::not_found,
               by_serial ? fmt::format("no device on USB has the serial '{}'", address.serial)
                         : fmt::format("no device is on USB port '{}'", address.port),
-              "usb:", fmt::format("there are: {}", fmt::join(uris_of(names), ", ")));
+              "device", fmt::format("there are: {}", fmt::join(uris_of(names), ", ")));
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ Result<UsbAddress> parse_usb_address(std::string_view parameters) {
   const bool by_serial = parameters.starts_with(kSerialKey), by_port = parameters.starts_with(kPortKey);
   const std::string value(parameters.substr(by_serial ? kSerialKey.size() : by_port ? kPortKey.size() : 0));
   if ((!by_serial && !by_port) || value.empty() || value.find(',') != std::string::npos)
-    return fail(Fault::usage, fmt::format("'{}' names no device on USB", parameters), "usb:",
+    return fail(Fault::usage, fmt::format("'{}' names no device on USB", parameters), "device",
                 "give usb: (the only one), usb:serial=XYZ or usb:port=1-2; 'tactograph scan' lists them");
   (by_serial ? address.serial : address.port) = value;
   return address;
@@ -66,7 +66,7 @@ Result<std::size_t> choose_usb(const std::vector<UsbName>& names, const UsbAddre
   if (found == names.end()) return not_there(names, address);
   if (std::count_if(names.begin(), names.end(), wanted) > 1)
     return fail(Fault::usage, fmt::format("{} devices are on USB", names.size()),
-                "usb:", fmt::format("name one with -d: {}", fmt::join(uris_of(names), ", ")));
+                "device", fmt::format("name one with -d: {}", fmt::join(uris_of(names), ", ")));
   return static_cast<std::size_t>(found - names.begin());
 }
 

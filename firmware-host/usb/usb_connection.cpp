@@ -12,7 +12,7 @@ using schema::Result;
 Result<std::shared_ptr<libusb_context>> begin_usb() {
   libusb_context* context = nullptr;
   if (const int code = libusb_init(&context); code != 0)
-    return usb_failure(code, "beginning with USB", "usb:");
+    return usb_failure(code, "beginning with USB", "device");
   return std::shared_ptr<libusb_context>(context, UsbGiveBack());
 }
 

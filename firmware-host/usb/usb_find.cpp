@@ -58,7 +58,7 @@ std::vector<UsbFound> ours_among(std::span<libusb_device*> devices) {
 schema::Result<std::vector<UsbFound>> find_usb(libusb_context* context) {
   libusb_device** list = nullptr;
   const auto count = libusb_get_device_list(context, &list);
-  if (count < 0) return usb_failure(static_cast<int>(count), "looking for devices on USB", "usb:");
+  if (count < 0) return usb_failure(static_cast<int>(count), "looking for devices on USB", "device");
   std::vector<UsbFound> found = ours_among(std::span(list, static_cast<std::size_t>(count)));
   libusb_free_device_list(list, 1);
   return found;

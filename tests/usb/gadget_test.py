@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The gadget on a kernel: what the host's kernel sees of it at each speed; its life and its refusals."""
+import json
 import os
 import pathlib
 import sys
@@ -30,6 +31,9 @@ def frames_of(name):
 
 def seen_at_each_speed():
     results = run("enumeration.sh", 150)
+    found = [row for row in json.loads((results / "scan.json").read_text())["devices"] if row["uri"].startswith("usb:")]
+    assert len(found) == 1 and found[0]["serial"] == "at-high", found
+    assert found[0]["name"] == "replay of source" and found[0]["channels"] == 4, found
     source = frames_of("source.wav")
     for name, (speed, packet) in SPEEDS.items():
         lines = (results / f"{name}.txt").read_text().splitlines()

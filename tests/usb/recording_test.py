@@ -26,12 +26,10 @@ def recorded_bit_for_bit():
     tacto.run("record", "-d", "sim:surface=E,strokes=40,seed=3", "-o", "source", "--time", f"{TIME_S + 2}s")
     results = pathlib.Path("results")
     results.mkdir()
-    said = virtual_machine.run("recording.sh", results.resolve(), timeout_s=TIME_S + 150, TACTOGRAPH=tacto.COMMAND,
-                               GADGET=os.environ["GADGET"], USB_LINK=os.environ["USB_LINK"],
-                               SOURCE=pathlib.Path("source").resolve(), SECONDS_WANTED=TIME_S)
+    said = virtual_machine.run("recording.sh", results.resolve(), timeout_s=TIME_S + 150, GADGET=os.environ["GADGET"],
+                               USB_LINK=os.environ["USB_LINK"], SOURCE=pathlib.Path("source").resolve(),
+                               SECONDS_WANTED=TIME_S)
     print(said)
-    found = [row for row in json.loads((results / "scan.json").read_text())["devices"] if row["uri"] == "usb:serial=U1"]
-    assert len(found) == 1 and found[0]["name"] == "replay of source" and found[0]["channels"] == 4, found
     source, got = frames_of("source.wav"), frames_of(results / "oak.wav")
     assert got.shape == (TIME_S * 10000, 4), got.shape
     assert np.array_equal(got, source[:len(got)]), "other codes than the device had"

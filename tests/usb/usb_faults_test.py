@@ -7,6 +7,8 @@ say that it was.
 import json
 import os
 import pathlib
+import shutil
+import sys
 import tempfile
 
 import numpy as np
@@ -18,7 +20,7 @@ import virtual_machine
 RATE_HZ = 10000
 SOURCE_S = 12
 BLOCK = 32  # frames in a message at this rate
-SLOW_S = 4  # what an emulated machine may take beyond the stated times
+SLOW_S = 10  # what an emulated machine that shares its processor may take beyond the stated times
 SILENCE_S = 1  # firmware-host/README.md: a silent stream, and a device that takes nothing
 RESULTS = pathlib.Path(tempfile.mkdtemp(prefix="tacto-usb-faults-"))
 
@@ -38,12 +40,12 @@ def check_frames(name):
     frames = soundfile.read(RESULTS / f"{name}.wav", dtype="int32", always_2d=True)[0]
     source = soundfile.read(RESULTS / "source.wav", dtype="int32", always_2d=True)[0]
     number, missing = np.arange(len(frames)), 0
-    for gap in header["gaps"]:
+    for gap in header.get("gaps", []):
         missing += gap["count"]
         number[gap["frame"]:] += gap["count"]
         assert gap["device_sequence"] == gap["frame"] + missing, gap
     wrong = np.flatnonzero((frames != source[number % len(source)]).any(axis=1))
-    assert len(wrong) == 0, f"{name}: frame {wrong[0]} of {len(frames)} is not the device's, gaps {header['gaps']}"
+    assert len(wrong) == 0, f"{name}: frame {wrong[0]} of {len(frames)} is not the device's, gaps {header.get('gaps')}"
     assert len(frames) > 0.2 * RATE_HZ, (name, len(frames))
     return header
 
@@ -58,7 +60,7 @@ def expect(name, wanted, *words):
 
 def expect_whole(name):
     expect(name, 0)
-    assert check_frames(name)["gaps"] == [], name
+    assert "gaps" not in check_frames(name), name
 
 
 def expect_gaps(name, least, most):
@@ -80,14 +82,12 @@ def expect_end(name, why, at_most_s=None):
         print(f"  {name}: '{header['ended']}' after {late:.2f} s")
 
 
-def good_devices():
+def sound_device():
     scanned = json.loads(text("scan.out"))
     assert scanned["real_devices"] == 1 and scanned["devices"][0]["uri"] == "usb:serial=F1", scanned
     assert scanned["devices"][0]["serial"] == "F1" and scanned["devices"][0]["sample_rate_hz"] == RATE_HZ, scanned
     expect_whole("sound")
     assert json.loads(text("sound.json"))["device"] == "usb:serial=F1"
-    expect_whole("packets")
-    expect_whole("repeated")
 
 
 def who_may_have_it():
@@ -99,18 +99,31 @@ def who_may_have_it():
     expect("unnamed", 2, "usb:serial=F1, usb:serial=F2")
     expect_whole("named")
     expect("missing", 3, "no device on USB has the serial 'F3'")
-    expect("newer", 6, "speaks version 2.0 of the protocol", "update tactograph")
-    expect("deaf", 8, "took nothing from this computer")
 
 
 def unplugging():
     for name in ("unplugged", "unbound", "powerless"):
         expect_end(name, "the device was unplugged", 0)
-    expect_end("let_go", "the device was unplugged")
     expect_whole("replugged")
 
 
-def damage():
+def disturbances():
+    """Here a gap may be, or not: what is asked is that none is silent, and that the recording goes on to its end."""
+    for name in ("reset", "held_up"):
+        expect_to_go_on(name)
+    check_frames("killed")
+    expect_whole("after_killed")
+
+
+def expect_to_go_on(name):
+    header = check_frames(name)
+    lost = sum(gap["count"] for gap in header.get("gaps", []))
+    expect(name, 8 if lost else 0)
+    assert "ended" not in header, header
+    print(f"  {name}: {lost} frames lost, in {len(header.get('gaps', []))} gaps")
+
+
+def damaged_frames():
     blocks = 2 * RATE_HZ // BLOCK
     for name in ("corrupt", "dropped", "truncated"):
         gaps = expect_gaps(name, blocks // 40 - 1, blocks // 40 + 1)
@@ -118,29 +131,34 @@ def damage():
         assert all(gap["count"] == BLOCK for gap in gaps), gaps
     expect("allowed", 0, "lost")
     assert check_frames("allowed")["gaps"]
+    expect_whole("repeated")
+
+
+def odd_devices():
+    expect_whole("packets")
+    expect_whole("exact")  # packets full to the brim, with an empty one behind
+    assert "did not stall" not in text("gadget.log")
+    expect_to_go_on("stalled")
+    expect_end("let_go", "the device was unplugged")
     expect_end("silent", "no frames have come for 1 s")
+    expect("deaf", 8, "took nothing from this computer")
+    expect("newer", 6, "speaks version 2.0 of the protocol", "update tactograph")
 
 
-def recovery():
-    """Here a gap may be, or not: what is asked is that none is silent, and that the recording goes on to its end."""
-    for name in ("stalled", "reset", "held_up"):
-        header = check_frames(name)
-        lost = sum(gap["count"] for gap in header["gaps"])
-        expect(name, 8 if lost else 0)
-        assert not header["ended"] if "ended" in header else True, header
-        print(f"  {name}: {lost} frames lost, in {len(header['gaps'])} gaps")
-    check_frames("killed")
-    expect_whole("after_killed")
+CHECKS = {"cable_faults.sh": (sound_device, who_may_have_it, unplugging, disturbances),
+          "device_faults.sh": (damaged_frames, odd_devices)}
 
 
 def main():
+    script = sys.argv[1]
     source = "sim:surface=triangle,period=1mm,depth=0.1mm,strokes=20,seed=5"
     tacto.run("record", "-d", source, "-o", RESULTS / "source", "--time", f"{SOURCE_S}s")
     programs = {name: os.environ[name] for name in ("TACTOGRAPH", "GADGET", "USB_RESET")}
-    virtual_machine.run("faults.sh", RESULTS, 600, **programs)
-    for check in (good_devices, who_may_have_it, unplugging, damage, recovery):
+    virtual_machine.run(script, RESULTS, 800, **programs)
+    for check in CHECKS[script]:
         check()
         print(f"{check.__name__}: passed")
+    shutil.rmtree(RESULTS)
 
 
 if __name__ == "__main__":

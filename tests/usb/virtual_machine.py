@@ -14,6 +14,7 @@ import initramfs
 
 HERE = pathlib.Path(__file__).resolve().parent
 KERNEL = pathlib.Path(os.environ.get("TACTO_KERNEL", HERE.parents[1] / "build" / "kernel"))
+NO_KVM = KERNEL / "no-kvm"  # since when it is known not to work
 BOOT_S = 120  # without KVM a slow machine needs about ten
 KVM_BOOT_S = 20  # with it, about one
 MEMORY_MB = 1024
@@ -23,16 +24,21 @@ class GuestFailed(Exception):
     """The guest did not come up, did not end in time, or its script failed."""
 
 
+def this_boot():
+    return pathlib.Path("/proc/sys/kernel/random/boot_id").read_text()
+
+
 def accelerators():
     """KVM where it may be opened; it may not work for all that, so QEMU's own translation is next."""
     if "TACTO_QEMU_ACCEL" in os.environ:
         return [os.environ["TACTO_QEMU_ACCEL"]]
-    return ["kvm", "tcg"] if os.access("/dev/kvm", os.R_OK | os.W_OK) else ["tcg"]
+    tried = NO_KVM.exists() and NO_KVM.read_text() == this_boot()
+    return ["kvm", "tcg"] if os.access("/dev/kvm", os.R_OK | os.W_OK) and not tried else ["tcg"]
 
 
 def qemu_command(image, results, accel):
     share = "local,security_model=none,multidevs=remap"
-    return ["qemu-system-x86_64", "-M", "q35", "-accel", accel, "-cpu", "max", "-smp", "1", "-m", str(MEMORY_MB),
+    return ["qemu-system-x86_64", "-M", "q35", "-accel", accel, "-cpu", "max" if accel == "kvm" else "qemu64", "-smp", "1", "-m", str(MEMORY_MB),
             "-nodefaults", "-display", "none", "-no-reboot", "-serial", "stdio",
             "-kernel", str(KERNEL / "vmlinuz"), "-initrd", str(image), "-append", "console=ttyS0 quiet panic=-1",
             "-virtfs", f"{share},path=/,mount_tag=host,readonly=on,id=host",
@@ -93,6 +99,8 @@ def run(script, results, timeout_s, **environment):
         said += boot(results, accel, timeout_s)
         if (results / "up").exists():
             break
+        if accel == "kvm":
+            NO_KVM.write_text(this_boot())
     status = results / "status"
     ended = status.read_text().strip() if status.exists() else "nothing: it did not come to its end"
     if ended != "0":

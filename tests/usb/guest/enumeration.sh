@@ -19,6 +19,7 @@ at_speed() {
       echo "endpoint $(cat "$endpoint/direction") $(cat "$endpoint/type") $((0x$(cat "$endpoint/wMaxPacketSize")))"
     done
   } >"/guest/results/$name.txt"
+  [ -e /guest/results/scan.json ] || timeout 60 "$TACTOGRAPH" scan --json >/guest/results/scan.json
   timeout 60 "$TACTOGRAPH" record -d "usb:serial=at-$name" -o "$name" --time 1s >record.txt 2>&1 || { cat record.txt; fail "no recording at $name speed"; }
   cp "$name.wav" /guest/results/
   stop_gadget
