@@ -10,8 +10,6 @@ namespace {
 
 using firmware_host::Capabilities;
 using firmware_host::Device;
-using schema::Fault;
-using schema::Result;
 
 // What a device is taken for that nobody has seen: the paper's rate, four channels of 32 bits.
 constexpr double kUsualBytesPerS = 10e3 * 4 * 4;

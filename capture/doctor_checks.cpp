@@ -78,6 +78,17 @@ std::string advice_on(const DiskSpeed& disk, double bytes_per_s) {
   return {};
 }
 
+// The channel's newest scale and zero, once where they are one.
+std::vector<const schema::CalibrationEntry*> newest_of(const schema::CalibrationFile& file,
+                                                       const std::string& channel) {
+  const auto* const scale = schema::newest_scale(file, channel);
+  const auto* const zero = schema::newest_zero(file, channel);
+  std::vector<const schema::CalibrationEntry*> entries;
+  if (scale != nullptr) entries.push_back(scale);
+  if (zero != nullptr && zero != scale) entries.push_back(zero);
+  return entries;
+}
+
 }  // namespace
 
 Check check_permission(const schema::Error& why, const std::string& root) {
@@ -143,9 +154,7 @@ Check check_calibration(const firmware_host::Capabilities& said, const DoctorReq
             schema::Fault::unsuitable};
   std::vector<std::string> parts, stale;
   for (const schema::Channel& channel : said.channels)
-    for (const auto* entry :
-         {schema::newest_scale(**file, channel.name), schema::newest_zero(**file, channel.name)}) {
-      if (entry == nullptr) continue;
+    for (const auto* entry : newest_of(**file, channel.name)) {
       const auto age_s = schema::seconds_between(entry->date, schema::creation_time());
       parts.push_back(fmt::format("{} {} {}", channel.name, entry->method, entry->date.substr(0, 10)));
       if (!age_s || *age_s > request.stale_after_s) stale.push_back(channel.name);
