@@ -77,6 +77,7 @@ TEST(ReleasedWeight, ItsUncertaintyHoldsTheTruth) {
     EXPECT_LT(std::abs(found->scale.uncertainty / found->scale.value), 0.02);
   }
   EXPECT_GE(coverage.inside(), 0.74);  // of 12: three sigma below 95 %
+  coverage.print("released");
 }
 
 TEST(ReleasedWeight, WrongInputsAreNamed) {

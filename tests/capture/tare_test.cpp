@@ -30,7 +30,7 @@ TEST(Tare, FindsTheLoadCellsZeroWithinItsUncertainty) {
   EXPECT_GE(coverage.inside(), 0.88);  // of 80: three sigma below 95 %
   EXPECT_LT(coverage.rms(), 1.4);
   EXPECT_GT(coverage.rms(), 0.7);
-  RecordProperty("inside_percent", static_cast<int>(100 * coverage.inside()));
+  coverage.print("tare");
 }
 
 // 25 uN/sqrt(Hz) in the middle of the band; in newtons of 100 Hz a little less.

@@ -50,6 +50,7 @@ TEST(Travel, ScatterOfTheHandsIsCovered) {
   }
   EXPECT_GT(coverage.inside(), 0.92);
   EXPECT_LT(coverage.inside(), 0.98);
+  coverage.print("travel");
 }
 
 // The emulated finger goes 35 mm, from 2.5 mm to 37.5 mm, over a scale that is 0.4 % off.
