@@ -91,11 +91,12 @@ std::vector<const schema::CalibrationEntry*> newest_of(const schema::Calibration
 
 }  // namespace
 
+bool is_denied(const schema::Error& why) {
+  return why.what.find("may not open") != std::string::npos || why.remedy.find(kRule) != std::string::npos;
+}
+
 Check check_permission(const schema::Error& why, const std::string& root) {
   const std::string rule = installed_rule(root);
-  // libusb's words for EACCES, and the kernel's.
-  const bool denied =
-      why.what.find("permi") != std::string::npos || why.what.find("denied") != std::string::npos;
   const std::string found = rule.empty() ? fmt::format("{} is not installed", kRule) : rule + " is there";
   const std::string remedy =
       rule.empty() ? fmt::format(
@@ -103,7 +104,7 @@ Check check_permission(const schema::Error& why, const std::string& root) {
                          "--reload && sudo udevadm trigger, then plug the device in anew",
                          kRule)
                    : "be of the group plugdev, or sit at the computer; then plug the device in anew";
-  if (denied) return {"permission", Health::fails, found, remedy, schema::Fault::not_found};
+  if (is_denied(why)) return {"permission", Health::fails, found, remedy, schema::Fault::not_found};
   return rule.empty() ? judged("permission", found, remedy) : judged("permission", found, {});
 }
 
