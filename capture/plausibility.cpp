@@ -78,9 +78,9 @@ void Plausibility::end_find(const PlaceOf& place_of) {
   lone_.end_find([&](std::uint64_t sample, double value) { alone_.add(sample, value, place_of); });
 }
 
-std::string Plausibility::people(double si_value) const {
+std::string Plausibility::people(double in_si) const {
   const auto quantity = schema::quantity_named(channel_.quantity);
-  return schema::for_people(si_value, quantity ? quantity->dimension : schema::Dimension::none);
+  return schema::for_people(in_si, quantity ? quantity->dimension : schema::Dimension::none);
 }
 
 std::string Plausibility::listed(const Sightings& sightings, const TimeOf& time_of) const {

@@ -57,7 +57,7 @@ class Plausibility {
   };
   double physical(double stored) const { return stored * channel_.scale + channel_.offset; }
   bool is_beyond(double stored) const;
-  std::string people(double si_value) const;
+  std::string people(double in_si) const;
   std::string listed(const Sightings& sightings, const TimeOf& time_of) const;
 
   const schema::Channel& channel_;

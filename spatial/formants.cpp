@@ -38,9 +38,8 @@ Result<void> check(const Spectrogram& spectrogram, const FormantOptions& options
   return {};
 }
 
-std::vector<Ridge> all_ridges(const Spectrogram& spectrogram, std::span<const schema::BandPoint> valid_band,
-                              const FormantOptions& options) {
-  const auto known = known_bins(spectrogram, valid_band);
+std::vector<Ridge> all_ridges(const Spectrogram& spectrogram, const FormantOptions& options) {
+  const auto known = known_bins(spectrogram);
   const SpectrogramBackground background(spectrogram, known);
   const double bridge_m = options.bridge_m.value_or(spectrogram.window_m / 2);
   RidgeTracker tracker(resolution_per_m(spectrogram) / 2,
@@ -124,15 +123,13 @@ bool long_enough(const Formant& formant, double shortest_m) {
 
 }  // namespace
 
-Result<std::vector<Formant>> find_formants(const Spectrogram& spectrogram,
-                                           std::span<const schema::BandPoint> valid_band,
-                                           const FormantOptions& options) {
+Result<std::vector<Formant>> find_formants(const Spectrogram& spectrogram, const FormantOptions& options) {
   if (auto checked = check(spectrogram, options); !checked) return schema::forward_error(checked);
   const double whole_m = spectrogram.position_m.back() - spectrogram.position_m.front();
   const double shortest_m = std::min(options.shortest_m.value_or(spectrogram.window_m / 2), whole_m);
   const auto window_rows = static_cast<std::size_t>(std::lround(spectrogram.window_m / spectrogram.hop_m));
   std::vector<Formant> formants;
-  for (Ridge& ridge : all_ridges(spectrogram, valid_band, options)) {
+  for (Ridge& ridge : all_ridges(spectrogram, options)) {
     if (std::ranges::max(ridge, {}, &RidgePoint::prominence_db).prominence_db < options.start_db) continue;
     cut_ends(ridge, window_rows);
     Formant formant = formant_of(spectrogram, ridge);
@@ -142,10 +139,8 @@ Result<std::vector<Formant>> find_formants(const Spectrogram& spectrogram,
   return formants;
 }
 
-Result<schema::FormantTable> formant_table(const Spectrogram& spectrogram,
-                                           std::span<const schema::BandPoint> valid_band,
-                                           const FormantOptions& options) {
-  auto formants = find_formants(spectrogram, valid_band, options);
+Result<schema::FormantTable> formant_table(const Spectrogram& spectrogram, const FormantOptions& options) {
+  auto formants = find_formants(spectrogram, options);
   if (!formants) return schema::forward_error(formants);
   return schema::FormantTable{spectrogram.name,
                               spectrogram.quantity,

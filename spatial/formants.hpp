@@ -22,8 +22,8 @@ struct FormantOptions {
   std::optional<double> shortest_m, bridge_m;
 };
 
-/// The ridges of a spectrogram, strongest first, found within the band that is known at each row (from the
-/// texture's breakpoints; all of it where there are none).
+/// The ridges of a spectrogram, strongest first, found within the band that is known at each row (all of
+/// it where the spectrogram does not say).
 ///   Points: maxima along frequency, placed by a parabola through the levels of three bins; they stand
 ///     go_on_db above the background, and 6 dB above the lowest level within four bins of the unpadded window
 ///     (4 / window) on both sides, so that the skirt of a line that begins is none, and at most 55 dB under
@@ -40,12 +40,10 @@ struct FormantOptions {
 /// Errors: usage (thresholds that are not finite or go_on_db above start_db, negative lengths); unsuitable
 /// (no row, amplitudes).
 schema::Result<std::vector<schema::Formant>> find_formants(const schema::Spectrogram& spectrogram,
-                                                           std::span<const schema::BandPoint> valid_band,
                                                            const FormantOptions& options = {});
 
 /// The same with what they were found with, for storing.
 schema::Result<schema::FormantTable> formant_table(const schema::Spectrogram& spectrogram,
-                                                   std::span<const schema::BandPoint> valid_band,
                                                    const FormantOptions& options = {});
 
 }  // namespace tacto::spatial

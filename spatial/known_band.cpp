@@ -2,8 +2,8 @@
 #include "spatial/known_band.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
+
+#include "spatial/band_at.hpp"
 
 namespace tacto::spatial {
 
@@ -13,13 +13,8 @@ using schema::KnownBand;
 namespace {
 
 KnownBand limits_at(std::span<const BandPoint> band, double position_m) {
-  const auto next = std::ranges::upper_bound(band, position_m, {}, &BandPoint::position_m);
-  const BandPoint& after = next == band.end() ? band.back() : *next;
-  const BandPoint& before = next == band.begin() ? band.front() : *std::prev(next);
-  const double length_m = after.position_m - before.position_m;
-  const double part = length_m > 0 ? (position_m - before.position_m) / length_m : 0;
-  return {std::lerp(before.low_per_m, after.low_per_m, part),
-          std::lerp(before.high_per_m, after.high_per_m, part)};
+  const BandPoint at = band_at(band, position_m);
+  return {at.low_per_m, at.high_per_m};
 }
 
 void narrow(KnownBand& common, const KnownBand& other) {

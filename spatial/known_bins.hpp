@@ -2,11 +2,10 @@
 // Which bins of a spectrogram's rows the recording knew.
 #pragma once
 
-#include <span>
+#include <cstddef>
 #include <vector>
 
 #include "data-schema/spectrogram.hpp"
-#include "data-schema/texture.hpp"
 
 namespace tacto::spatial {
 
@@ -16,11 +15,10 @@ struct BinRange {
   bool holds(std::size_t bin) const { return first <= bin && bin < end; }
 };
 
-/// For each row the bins whose frequency is valid throughout the middle of its window (90 % of its power),
-/// and at least the resolution away from the limits: where a band-pass ends, every slope has a maximum. From
-/// 2 / window on: under that a window holds too little of a wave to tell it from a drift. All bins above that
-/// without breakpoints.
-std::vector<BinRange> known_bins(const schema::Spectrogram& spectrogram,
-                                 std::span<const schema::BandPoint> valid_band);
+/// For each row the bins whose frequency its recording knew (known_band.hpp), and at least the resolution
+/// away from the limits: where a band-pass ends, every slope has a maximum. From 2 / window on: under that a
+/// window holds too little of a wave to tell it from a drift. All bins above that where the spectrogram does
+/// not say what is known.
+std::vector<BinRange> known_bins(const schema::Spectrogram& spectrogram);
 
 }  // namespace tacto::spatial

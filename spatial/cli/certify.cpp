@@ -11,7 +11,7 @@
 #include "data-schema/files.hpp"
 #include "data-schema/version.hpp"
 #include "spatial/certificate.hpp"
-#include "spatial/cli/texture_files.hpp"
+#include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
 
 namespace tacto::spatial {
@@ -29,10 +29,10 @@ struct Options {
   bool dry = false;
 };
 
-Result<std::vector<Certificate>> certificates_of(const std::vector<TextureFile>& files,
+Result<std::vector<Certificate>> certificates_of(const std::vector<NamedTexture>& files,
                                                  const CertificateOptions& options) {
   std::vector<TextureAtSpeed> textures;
-  for (const TextureFile& file : files) textures.push_back({file.name, &file.texture});
+  for (const NamedTexture& file : files) textures.push_back({file.name, &file.texture});
   auto certificates = certify(textures, options);
   if (!certificates) return certificates;
   for (Certificate& certificate : *certificates) {
@@ -42,7 +42,15 @@ Result<std::vector<Certificate>> certificates_of(const std::vector<TextureFile>&
   return certificates;
 }
 
-Result<void> store(std::vector<TextureFile>& files, const std::vector<Certificate>& certificates) {
+Result<void> check_stored(const std::vector<NamedTexture>& files) {
+  const auto made = std::ranges::find(files, false, &NamedTexture::stored);
+  if (made == files.end()) return {};
+  return schema::fail(schema::Fault::unsuitable,
+                      "is a stroke of a recording: there is no texture to store in", made->path,
+                      "make textures with 'tactograph spatial' first, or only look with --dry-run");
+}
+
+Result<void> store(std::vector<NamedTexture>& files, const std::vector<Certificate>& certificates) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     files[i].texture.certificate = certificates[i];
     const auto written = schema::write_texture(schema::stem_of(files[i].path, ".texture"), files[i].texture);
@@ -65,7 +73,7 @@ std::size_t count(const Certificate& certificate, PeakVerdict verdict) {
   return static_cast<std::size_t>(std::ranges::count(certificate.peaks, verdict, &CertifiedPeak::verdict));
 }
 
-Report report_of(const std::vector<TextureFile>& files, const std::vector<Certificate>& certificates,
+Report report_of(const std::vector<NamedTexture>& files, const std::vector<Certificate>& certificates,
                  bool stored) {
   const Certificate& first = certificates.front();
   std::vector<Report> textures, peaks;
@@ -85,6 +93,8 @@ Report report_of(const std::vector<TextureFile>& files, const std::vector<Certif
 Result<Report> run(const Options& options) {
   auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
+  if (!options.dry)
+    if (const auto can = check_stored(*files); !can) return schema::forward_error(can);
   const auto certificates = certificates_of(*files, options.certificate);
   if (!certificates) return schema::forward_error(certificates);
   if (!options.dry)
@@ -94,7 +104,8 @@ Result<Report> run(const Options& options) {
 
 cli::Action declare(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("TEXTURE", options->names, "Two textures or more of one surface, made at different speeds")
+  app.add_option("TEXTURE", options->names,
+                 std::string("Two or more of one surface, made at different speeds. ") + kTextureInputs)
       ->required();
   app.add_option("--confidence", options->certificate.confidence,
                  "Probability from which on a peak is called")

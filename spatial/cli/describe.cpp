@@ -11,7 +11,7 @@
 #include "data-schema/description.hpp"
 #include "data-schema/version.hpp"
 #include "spatial/cli/table_output.hpp"
-#include "spatial/cli/texture_files.hpp"
+#include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
 #include "spatial/description.hpp"
 
@@ -28,10 +28,10 @@ struct Options {
   DescriptionOptions description;
 };
 
-Result<schema::DescriptionFile> described(const std::vector<TextureFile>& files,
+Result<schema::DescriptionFile> described(const std::vector<NamedTexture>& files,
                                           const DescriptionOptions& options) {
   schema::DescriptionFile all;
-  for (const TextureFile& file : files) {
+  for (const NamedTexture& file : files) {
     auto description = describe(file.texture, options);
     if (!description) return said_of(file, description);
     description->texture = file.name;
@@ -97,7 +97,7 @@ Result<Report> run(const Options& options) {
 
 cli::Action declare(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("TEXTURE", options->names, "Textures, by stem or file")->required();
+  app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output,
                  "What to write, one row a texture: .csv, .json, or NAME (NAME.descriptions.json)");
   cli::add_quantity(app, "--window", options->description.window_m, schema::Dimension::length,

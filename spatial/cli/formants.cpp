@@ -14,7 +14,7 @@
 #include "data-schema/version.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
 #include "spatial/cli/table_output.hpp"
-#include "spatial/cli/texture_files.hpp"
+#include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
 
 namespace tacto::spatial {
@@ -31,17 +31,17 @@ struct Options {
   FormantOptions formants;
 };
 
-Result<schema::FormantTable> table_of(const TextureFile& file, const Options& options) {
+Result<schema::FormantTable> table_of(const NamedTexture& file, const Options& options) {
   auto spectrogram = spatial_spectrogram(file.texture, options.spectrogram);
   if (!spectrogram) return said_of(file, spectrogram);
   spectrogram->name = file.name;
-  return formant_table(*spectrogram, file.texture.valid_band, options.formants);
+  return formant_table(*spectrogram, options.formants);
 }
 
-Result<schema::FormantFile> found(const std::vector<TextureFile>& files, const Options& options) {
+Result<schema::FormantFile> found(const std::vector<NamedTexture>& files, const Options& options) {
   schema::FormantFile all;
   cli::Progress progress("formants");
-  for (const TextureFile& file : files) {
+  for (const NamedTexture& file : files) {
     auto table = table_of(file, options);
     if (!table) return schema::forward_error(table);
     all.tables.push_back(std::move(*table));
@@ -93,7 +93,7 @@ Result<Report> run(const Options& options) {
 
 cli::Action declare(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("TEXTURE", options->names, "Textures, by stem or file")->required();
+  app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output, "What to write: NAME (NAME.formants.json), .json or .csv");
   declare_spectrogram(app, options->spectrogram);
   cli::add_quantity(app, "--prominence", options->formants.start_db, Dimension::level,

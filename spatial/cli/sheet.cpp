@@ -13,7 +13,7 @@
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/files.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
-#include "spatial/cli/texture_files.hpp"
+#include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
 #include "spatial/formants.hpp"
 #include "spatial/spectrogram_summary.hpp"
@@ -41,22 +41,22 @@ struct Drawn {
   std::vector<schema::Formant> formants;
 };
 
-Result<Drawn> drawn(const TextureFile& file, const Options& options) {
+Result<Drawn> drawn(const NamedTexture& file, const Options& options) {
   auto spectrogram = spatial_spectrogram(file.texture, options.spectrogram);
   if (!spectrogram) return said_of(file, spectrogram);
   spectrogram->name = file.name;
   Drawn made{std::move(*spectrogram), {}};
   if (!options.formants) return made;
-  auto formants = find_formants(made.spectrogram, file.texture.valid_band, {});
+  auto formants = find_formants(made.spectrogram);
   if (!formants) return said_of(file, formants);
   made.formants = std::move(*formants);
   return made;
 }
 
-Result<std::vector<Drawn>> all_drawn(const std::vector<TextureFile>& files, const Options& options) {
+Result<std::vector<Drawn>> all_drawn(const std::vector<NamedTexture>& files, const Options& options) {
   std::vector<Drawn> all;
   cli::Progress progress("spectrograms");
-  for (const TextureFile& file : files) {
+  for (const NamedTexture& file : files) {
     auto made = drawn(file, options);
     if (!made) return schema::forward_error(made);
     all.push_back(std::move(*made));
@@ -129,7 +129,7 @@ Result<Report> run(const Options& options) {
 
 cli::Action declare(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("TEXTURE", options->names, "Textures, by stem or file")->required();
+  app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output,
                  "The sheet, .png or .svg; over 24 textures make SHEET-01 and on")
       ->required();

@@ -39,7 +39,7 @@ using FormantLists = std::vector<std::vector<schema::Formant>>;
 Result<FormantLists> formants_of(const SpectrogramRun& run, bool wanted) {
   FormantLists lists(run.spectrograms().size());
   for (std::size_t i = 0; wanted && i < lists.size(); ++i) {
-    auto found = find_formants(run.spectrograms()[i], run.textures()[i].texture.valid_band);
+    auto found = find_formants(run.spectrograms()[i]);
     if (!found) return schema::forward_error(found);
     lists[i] = std::move(*found);
   }
@@ -165,10 +165,7 @@ void declare_windows(CLI::App& app, SpectrogramOptions& options) {
 }
 
 void declare_options(CLI::App& app, Options& options) {
-  app.add_option(
-         "TEXTURE", options.names,
-         "Textures, or recordings of which each stroke becomes one, by stem or file; several share one "
-         "output. NAME stands for NAME-01, NAME-02 ... where there is no texture NAME")
+  app.add_option("TEXTURE", options.names, std::string(kTextureInputs) + "; several share one output")
       ->required();
   app.add_option("-o,--output", options.outputs,
                  "What to write: .png, .svg, .nc (netCDF-4) or .csv; may be repeated")

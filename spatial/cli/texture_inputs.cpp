@@ -70,7 +70,7 @@ Result<NamedTexture> read_texture(const std::string& path) {
   auto texture = schema::read_texture(path);
   if (!texture) return schema::forward_error(texture);
   warn_of_version(path, texture->newer_version);
-  return NamedTexture{path, name_of(path, ".texture"), std::move(*texture)};
+  return NamedTexture{path, name_of(path, ".texture"), std::move(*texture), true};
 }
 
 }  // namespace
@@ -178,6 +178,24 @@ Result<std::optional<NamedTexture>> TextureInputs::next() {
   if (!texture) return schema::forward_error(texture);
   inputs_.pop_front();
   return std::optional(std::move(*texture));
+}
+
+Result<std::vector<NamedTexture>> open_textures(const std::vector<std::string>& names) {
+  auto inputs = TextureInputs::find(names, {});
+  if (!inputs) return schema::forward_error(inputs);
+  std::vector<NamedTexture> all;
+  for (;;) {
+    auto next = inputs->next();
+    if (!next) return schema::forward_error(next);
+    if (!*next) return all;
+    const schema::Texture& first = all.empty() ? (*next)->texture : all.front().texture;
+    if ((*next)->texture.quantity != first.quantity || (*next)->texture.unit != first.unit)
+      return schema::fail(Fault::unsuitable,
+                          fmt::format("holds {}, but {} holds {}", (*next)->texture.quantity,
+                                      all.front().path, first.quantity),
+                          (*next)->path, "take textures of one quantity at a time");
+    all.push_back(std::move(**next));
+  }
 }
 
 }  // namespace tacto::spatial

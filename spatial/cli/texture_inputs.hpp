@@ -15,10 +15,17 @@
 
 namespace tacto::spatial {
 
-/// `path` for messages, `name` for titles and reports.
+/// What the names on a command line may stand for, as its help says it.
+inline constexpr const char* kTextureInputs =
+    "Textures, or recordings of which each stroke becomes one, by stem or file. NAME stands for NAME-01, "
+    "NAME-02 ... where there is no texture NAME";
+
+/// `path` for messages, `name` for titles and reports. `stored`: path is that of its sidecar, not a stroke's
+/// name.
 struct NamedTexture {
   std::string path, name;
   schema::Texture texture;
+  bool stored = false;
 };
 
 /// Holds one recording at a time.
@@ -57,5 +64,18 @@ class TextureInputs {
   std::deque<NumberedStroke> strokes_;     // of that recording, still to come
   bool made_ = false;                      // a texture, of that recording
 };
+
+/// All of them at once, of one quantity and unit. Errors: of find() and next(); unsuitable, where they
+/// differ.
+schema::Result<std::vector<NamedTexture>> open_textures(const std::vector<std::string>& names);
+
+/// What a library said of a texture, with its file.
+template <class T>
+tl::unexpected<schema::Error> said_of(const NamedTexture& input, const schema::Result<T>& failed) {
+  schema::Error error = failed.error();
+  if (error.fault == schema::Fault::unsuitable)
+    error.where = error.where.empty() ? input.path : input.path + ": " + error.where;
+  return tl::unexpected(error);
+}
 
 }  // namespace tacto::spatial

@@ -117,15 +117,9 @@ def at_a_size_limit():
 
 def memory_does_not_grow():
     """60 s at 10 kHz against 0.1 s: the same blocks."""
-    def peak_mb(time_s):
-        script = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, capture_output=True); " \
-                 "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)"
-        return float(subprocess.run(["/usr/bin/python3", "-c", script, tacto.COMMAND, "record", "-d", "sim:surface=flat",
-                                     "-o", f"m{time_s}", "--time", f"{time_s}s"], check=True, capture_output=True,
-                                    text=True).stdout)
-    short, long = peak_mb(0.1), peak_mb(60)
-    print(f"peak memory: {short:.1f} MB for 0.1 s, {long:.1f} MB for 60 s")
-    assert long < short + 16, (short, long)
+    short, long = (tacto.peak_mb("record", "-d", "sim:surface=flat", "-o", f"m{time_s}", "--time", f"{time_s}s")
+                   for time_s in (0.1, 60))
+    tacto.expect_little_memory("60 s against 0.1 s", long, short, most=16)
 
 
 def takes_count_up_and_are_listed():

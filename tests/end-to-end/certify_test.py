@@ -62,6 +62,32 @@ def certify_refuses_what_tells_nothing():
     assert "certificate" not in json.loads(pathlib.Path("one.texture.json").read_text())
 
 
+def strokes_and_recordings_are_taken_alike():
+    """A recording of two strokes, by its name before there are textures, and by theirs after."""
+    for name, speed in (("slow", 0.03), ("fast", 0.09)):
+        record(name, speed, seed=int(1000 * speed))
+    slow, fast = (np.loadtxt(f"{name}.csv", delimiter=",", skiprows=1) for name in ("slow", "fast"))
+    fast[:, 1] = slow[-1, 1] - fast[:, 1]  # back from where the first one ended
+    np.savetxt("both.csv", np.vstack([slow, fast]), delimiter=",", fmt="%.6f", header="force_N,count",
+               comments="")
+    tacto.run("import", "both.csv", "-o", "both", "--rate", "10kHz", "--channel", "tangential_force=force_N*1N",
+              "--channel", "position=count*1um")
+    _, said = tacto.run("certify", "both", code=5)
+    assert "both-01: is a stroke of a recording" in said and "--dry-run" in said, said
+    direct = tacto.run_json("certify", "both", "--dry-run")
+    assert len(tacto.run_json("describe", "both")["textures"]) == 2
+    assert len(tacto.run_json("formants", "both")["formants"]) > 2
+    tacto.run("sheet", "both", "-o", "direct.png")
+    tacto.run("spatial", "both", "-o", "both")
+    stored = tacto.run_json("certify", "both")
+    assert stored["stored"] and not direct["stored"]
+    assert [t["texture"] for t in stored["textures"]] == ["both-01", "both-02"] == [t["texture"] for t in direct["textures"]]
+    for report in (direct, stored):
+        assert peak_at(report["peaks"], "frequency_hz", 100)["verdict"] == "temporal"
+        for k in (1300, 2600):
+            assert peak_at(report["peaks"], "frequency_per_m", k)["verdict"] == "spatial"
+
+
 def formants_are_listed_stored_and_drawn():
     record("oak", 0.05, hum_n=0)
     report = tacto.run_json("formants", "oak", "-o", "oak")
@@ -98,6 +124,6 @@ def sheets_are_paged():
 
 
 if __name__ == "__main__":
-    for test in (hum_across_three_speeds_is_temporal, certify_refuses_what_tells_nothing,
+    for test in (hum_across_three_speeds_is_temporal, certify_refuses_what_tells_nothing, strokes_and_recordings_are_taken_alike,
                  formants_are_listed_stored_and_drawn, sheets_are_paged):
         tacto.in_folder(test)

@@ -14,7 +14,6 @@ import tacto
 
 USAGE, UNSUITABLE = 2, 5
 RATE_HZ = 10000
-MOST_MEMORY_KB = 32 * 1024
 
 
 def surface(x_m):
@@ -230,14 +229,6 @@ def fingers_up_are_told_by_the_normal_force():
     assert "--finger-up" in said, said
 
 
-def peak_kb(arguments, folder="."):
-    """Peak resident memory of the command, as the kernel counted it."""
-    measure = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); " \
-              "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
-    return int(subprocess.run(["/usr/bin/env", "python3", "-c", measure, tacto.COMMAND, *arguments], cwd=folder, check=True,
-                              capture_output=True, text=True).stdout)
-
-
 def long_recordings_need_little_memory():
     """600 s at 10 kHz, one 40 mm stroke a second, written as the format says: 144 MB of samples."""
     t = np.arange(RATE_HZ) / RATE_HZ
@@ -254,11 +245,10 @@ def long_recordings_need_little_memory():
     side["data"]["frames"] = len(x)
     side["data"]["sha256"] = subprocess.run(["sha256sum", data], capture_output=True, text=True, check=True).stdout.split()[0]
     pathlib.Path("long.json").write_text(json.dumps(side))
-    idle = peak_kb(["--version"])
+    idle = tacto.peak_mb("--version")
     for more in ([], ["--filter", "butterworth"]):
-        peak = peak_kb(["spatial", "long", "-o", "t", "--force", *more])
-        print(f"600 s at 10 kHz{' '.join([''] + more)}: {(peak - idle) / 1024:.1f} MB above an idle process")
-        assert peak - idle < MOST_MEMORY_KB, (peak, idle)
+        peak = tacto.peak_mb("spatial", "long", "-o", "t", "--force", *more)
+        tacto.expect_little_memory(" ".join(["600 s at 10 kHz", *more]), peak, idle)
     assert len(list(pathlib.Path(".").glob("t-*.texture.wav"))) == 600
 
 

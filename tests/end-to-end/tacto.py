@@ -12,6 +12,8 @@ import soundfile
 
 COMMAND = os.environ["TACTOGRAPH"]
 DATA = pathlib.Path(os.environ.get("TACTO_DATA", "/nonexistent"))
+# AddressSanitizer keeps what was freed (256 MB by default), so peaks of memory say nothing under it.
+SANITIZED = "TACTO_SANITIZED" in os.environ
 BARE_FINGER = DATA / "bare-finger" / "bare_finger_10kHz.csv"
 
 IMPORT_BARE_FINGER = [
@@ -32,6 +34,20 @@ def run(*arguments, code=0, cwd=None):
 
 def run_json(*arguments, cwd=None):
     return json.loads(run(*arguments, "--json", cwd=cwd)[0])
+
+
+def peak_mb(*arguments, cwd=None):
+    """Most memory that the command ever held, in MB, as the kernel counted it for a child of its own."""
+    measure = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); " \
+              "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)"
+    return float(subprocess.run([sys.executable, "-c", measure, COMMAND, *map(str, arguments)], cwd=cwd, check=True,
+                                capture_output=True, text=True).stdout)
+
+
+def expect_little_memory(what, peak, idle, most=32):
+    """`peak` MB at most `most` MB above `idle` MB; printed only where the build is sanitized."""
+    print(f"{what}: {peak - idle:.1f} MB above {idle:.1f} MB" + (" (sanitized, not judged)" if SANITIZED else ""))
+    assert SANITIZED or peak < idle + most, (what, peak, idle)
 
 
 def texture(stem):

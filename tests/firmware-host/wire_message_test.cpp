@@ -106,7 +106,7 @@ TEST(WireMessages, TheLargestFit) {
 
 std::map<std::string, std::string> documented_frames() {
   std::map<std::string, std::string> frames;
-  std::ifstream file(TACTO_WIRE_DOCUMENT);
+  std::ifstream file(TACTO_SOURCE "/firmware-host/core/WIRE.md");
   for (std::string name, hex, line; std::getline(file, line);)
     if (const auto at = line.find(" a554"); at != std::string::npos)
       frames[line.substr(0, at)] = line.substr(at + 1);

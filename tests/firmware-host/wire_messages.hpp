@@ -33,8 +33,8 @@ class RandomFields {
     for (std::size_t i = 0; i < count; ++i) draw(values[i]);
   }
   template <class T>
-  void count(T& value, std::size_t most) {
-    value = static_cast<T>(random_() % (most + 1));
+  std::size_t count(T& value, std::size_t most) {
+    return value = static_cast<T>(random_() % (most + 1));
   }
 
  private:

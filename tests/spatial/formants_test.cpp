@@ -45,7 +45,7 @@ std::vector<Formant> formants_of(std::vector<double> values, const FormantOption
   spectrogram.padded_m = 16.384e-3;
   const auto made = spatial_spectrogram(texture, spectrogram);
   EXPECT_TRUE(made);
-  const auto found = find_formants(*made, {}, options);
+  const auto found = find_formants(*made, options);
   EXPECT_TRUE(found);
   return *found;
 }
@@ -93,7 +93,7 @@ TEST(Formants, MeasureTheLevelOfASine) {
   SpectrogramOptions options;
   options.padded_m = 16.384e-3;
   const auto made = spatial_spectrogram(texture, options);
-  const auto found = find_formants(*made, {}, {});
+  const auto found = find_formants(*made);
   ASSERT_TRUE(found);
   ASSERT_GE(found->size(), 1U);
   const double density = 0.02 * 0.02 / 2 * 0.42 * 0.42 / 0.3046 * kWindow_m;
@@ -193,16 +193,15 @@ TEST(Formants, AreFoundOnlyWhereTheBandIsValid) {
   auto values = white(10000, 5);
   add_line(
       values, [](double) { return amplitude_over_noise(25); }, [](double x) { return turn(3000 * x); });
-  const auto texture = samples::texture_of(std::move(values), kPitch_m);
-  const auto made = spatial_spectrogram(texture, {});
+  auto texture = samples::texture_of(std::move(values), kPitch_m);
   // The finger slows down at 50 mm: from there on 3 /mm lies under the band.
-  const std::vector<schema::BandPoint> band = {
-      {0, 400, 12e3}, {0.05, 400, 12e3}, {0.05, 4000, 120e3}, {0.1, 4000, 120e3}};
-  const auto found = find_formants(*made, band, {});
+  texture.valid_band = {{0, 400, 12e3}, {0.05, 400, 12e3}, {0.05, 4000, 120e3}, {0.1, 4000, 120e3}};
+  const auto found = find_formants(*spatial_spectrogram(texture, {}));
   ASSERT_TRUE(found);
   ASSERT_EQ(found->size(), 1U);
   EXPECT_NEAR(found->front().to_m, 0.048, 0.2e-3);  // the last window whose middle lies in front of it
-  EXPECT_TRUE(find_formants(*made, std::vector<schema::BandPoint>{{0, 4000, 12e3}}, {})->empty());
+  texture.valid_band = {{0, 4000, 12e3}};
+  EXPECT_TRUE(find_formants(*spatial_spectrogram(texture, {}))->empty());
 }
 
 TEST(Formants, SilenceHasNone) {
@@ -213,10 +212,10 @@ TEST(Formants, RefuseOddOptions) {
   const auto made = spatial_spectrogram(samples::noise(20000), {});
   FormantOptions options;
   options.go_on_db = 20;
-  EXPECT_EQ(find_formants(*made, {}, options).error().fault, schema::Fault::usage);
+  EXPECT_EQ(find_formants(*made, options).error().fault, schema::Fault::usage);
   options = {};
   options.bridge_m = -1;
-  EXPECT_EQ(find_formants(*made, {}, options).error().fault, schema::Fault::usage);
+  EXPECT_EQ(find_formants(*made, options).error().fault, schema::Fault::usage);
 }
 
 }  // namespace

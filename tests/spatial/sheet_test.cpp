@@ -122,7 +122,7 @@ TEST(Hatch, CoversWhatTheRecordingCouldNotKnow) {
 TEST(Ridges, LieOnTheirFrequencyAndCarryIt) {
   const double k = 33e6 / 16384;
   const Drawn oak = drawn(samples::sine(0.02, k, 40000), "oak");
-  const auto formants = find_formants(oak.spectrogram, {});
+  const auto formants = find_formants(oak.spectrogram);
   ASSERT_TRUE(formants);
   ASSERT_EQ(formants->size(), 1U);
   const SpectrogramFigure figure({{&oak.texture, &oak.spectrogram, *formants}});

@@ -17,7 +17,9 @@ import numpy as np
 import soundfile
 from scipy import signal
 
-TACTOGRAPH = os.environ["TACTOGRAPH"]
+import tacto
+
+TACTOGRAPH = tacto.COMMAND
 PITCH_M = 1e-6
 
 
@@ -346,18 +348,11 @@ class Spectrogram(unittest.TestCase):
         peaks = []
         for name, length_m, highest in (("short", 0.011, "15/mm"), ("long", 0.4, "500/mm")):
             write_texture(self.here / name, chirp_and_noise(length_m))
-            code = (
-                "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, capture_output=True);"
-                "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
+            peaks.append(
+                tacto.peak_mb("spectrogram", name, "-o", f"{name}.nc", "--max-frequency", highest, cwd=self.here)
             )
-            command = [TACTOGRAPH, "spectrogram", self.here / name, "-o", self.here / f"{name}.nc"]
-            done = subprocess.run(
-                [sys.executable, "-c", code, *map(str, command), "--max-frequency", highest],
-                capture_output=True, text=True, check=True,
-            )  # fmt: skip
-            peaks.append(int(done.stdout))
         # The texture itself is in memory, in double precision and as it is read.
-        self.assertLess(peaks[1] - peaks[0], 32 * 1024)
+        tacto.expect_little_memory("all bins of 0.4 m against 11 mm up to 15 /mm", peaks[1], peaks[0])
 
     def test_a_texture_shorter_than_the_window_says_what_fits(self):
         write_texture(self.stem, chirp_and_noise(0.008))

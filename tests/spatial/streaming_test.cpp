@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <numbers>
 
@@ -112,7 +113,8 @@ TEST(Streaming, ADayFitsInLittleMemory) {
     // A quantum of 1 um at 1 and 1.9 /mm is 0.2 % of phase noise; the rest is the filter at the ends.
     EXPECT_LT(error_of(*texture), 0.02) << n;
   }
-  EXPECT_LT(peak_mb() - before_mb, 32);
+  // AddressSanitizer keeps what was freed.
+  if (std::getenv("TACTO_SANITIZED") == nullptr) EXPECT_LT(peak_mb() - before_mb, 32);
   std::cout << "24 h at 1 kHz: " << peak_mb() - before_mb << " MB\n";
 }
 

@@ -99,10 +99,10 @@ struct Samples {
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.first_frame, self.device_ticks, self.enabled);
-    codec.count(self.channels, kMaxChannels);
-    codec.count(self.count, kMaxBlockFrames);
+    const size_t channels = codec.count(self.channels, kMaxChannels);
+    const size_t frames = codec.count(self.count, kMaxBlockFrames);
     codec(self.reserved);
-    codec.array(self.codes, size_t{self.channels} * self.count);
+    codec.array(self.codes, channels * frames);
   }
 };
 
@@ -124,9 +124,9 @@ struct Ticks {
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.first_tick, self.device_ticks);
-    codec.count(self.count, kMaxBlockTicks);
+    const size_t n = codec.count(self.count, kMaxBlockTicks);
     codec.array(self.reserved, sizeof self.reserved);
-    for (uint8_t i = 0; i < self.count; ++i) {
+    for (size_t i = 0; i < n; ++i) {
       auto& t = self.ticks[i];
       codec(t.encoder, t.drive_v, t.flags);
     }

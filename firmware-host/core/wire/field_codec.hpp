@@ -48,10 +48,12 @@ class FieldWriter {
   void array(const T* values, size_t count) noexcept {
     for (size_t i = 0; i < count; ++i) put(values[i]);
   }
+  /// Gives how many to go through: none where `value` is beyond `most`.
   template <class T>
-  void count(const T& value, size_t most) noexcept {
+  size_t count(const T& value, size_t most) noexcept {
     ok_ = ok_ && value <= most;
     put(value);
+    return ok_ ? value : 0;
   }
   bool ok() const noexcept { return ok_; }
   size_t size() const noexcept { return size_; }
@@ -60,9 +62,9 @@ class FieldWriter {
   template <class T>
   void put(const T& value) noexcept {
     typename UnsignedOf<sizeof(T)>::Type bits;
-    __builtin_memcpy(&bits, &value, sizeof bits);
     ok_ = ok_ && capacity_ - size_ >= sizeof bits;
     if (!ok_) return;
+    __builtin_memcpy(&bits, &value, sizeof bits);
     for (size_t i = 0; i < sizeof bits; ++i) bytes_[size_++] = static_cast<uint8_t>(bits >> (8 * i));
   }
   template <size_t kSize>
@@ -85,17 +87,17 @@ class FieldReader {
   void operator()(Fields&... fields) noexcept {
     (get(fields), ...);
   }
-  /// `count` is what count() let through.
   template <class T>
   void array(T* values, size_t count) noexcept {
     for (size_t i = 0; i < count; ++i) get(values[i]);
   }
+  /// Gives how many to go through; `value` is zero where it was beyond `most`.
   template <class T>
-  void count(T& value, size_t most) noexcept {
+  size_t count(T& value, size_t most) noexcept {
     get(value);
-    if (value <= most) return;
+    if (value <= most) return value;
     if (parse_ == Parse::ok) parse_ = Parse::out_of_range;
-    value = 0;
+    return value = 0;
   }
   Parse parse() const noexcept { return parse_; }
 

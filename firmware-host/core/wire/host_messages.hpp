@@ -78,8 +78,8 @@ struct ProfileChunk {
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.first);
-    codec.count(self.count, kMaxChunk);
-    codec.array(self.values, self.count);
+    const size_t n = codec.count(self.count, kMaxChunk);
+    codec.array(self.values, n);
   }
 };
 
@@ -103,8 +103,8 @@ struct Filters {
   Section sections[kMaxSections];
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
-    codec.count(self.count, kMaxSections);
-    for (uint8_t i = 0; i < self.count; ++i) {
+    const size_t n = codec.count(self.count, kMaxSections);
+    for (size_t i = 0; i < n; ++i) {
       auto& s = self.sections[i];
       codec(s.b0, s.b1, s.b2, s.a1, s.a2);
     }
@@ -154,8 +154,8 @@ struct Drive {
   float drive_v[kMaxChunk];
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
-    codec.count(self.count, kMaxChunk);
-    codec.array(self.drive_v, self.count);
+    const size_t n = codec.count(self.count, kMaxChunk);
+    codec.array(self.drive_v, n);
   }
 };
 

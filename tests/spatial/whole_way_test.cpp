@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a recording to complex cells of its spectrograms, against the same way in extended precision:
+// band-pass by its sum, positions inverted by bisection, monotone cubic, transform by its definition. The
+// bound is the one the project asks of the whole way: |X - X_exact| / max |X_exact| over all cells at most
+// -100 dB.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <iostream>
+#include <map>
+
+#include "spatial/dsp/block_fourier_filter.hpp"
+#include "spatial/dsp/short_time_transform.hpp"
+#include "spatial/dsp/window.hpp"
+#include "spatial/make_texture.hpp"
+#include "spatial/reference/exact_hermite.hpp"
+#include "spatial/reference/exact_short_time.hpp"
+#include "spatial/reference/exact_treated_band_pass.hpp"
+#include "spatial/spectrogram_options.hpp"
+#include "tests/bench/workload.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+// The benchmarks' recording, as a source.
+class WorkloadSource : public TouchSource {
+ public:
+  explicit WorkloadSource(bench::Workload made) : made_(std::move(made)) {
+    position_.name = position_.quantity = "position";
+    force_.name = force_.quantity = "tangential_force";
+    position_.unit = "m";
+    force_.unit = "N";
+  }
+  const schema::Channel* channel(Track track) const override {
+    if (track == Track::normal_force) return nullptr;
+    return track == Track::position ? &position_ : &force_;
+  }
+  schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) override {
+    const auto& values = track == Track::position ? made_.position_m : made_.force_n;
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), out.size(), out.begin());
+    return {};
+  }
+
+ private:
+  bench::Workload made_;
+  schema::Channel position_, force_;
+};
+
+constexpr std::size_t kSeconds = 4;
+
+TextureMaker maker_of(const bench::Workload& made) {
+  schema::RecordingHeader header;
+  header.frames = made.force_n.size();
+  header.sample_rate_hz = bench::kRate_hz;
+  auto record = TouchRecord::open(std::make_unique<WorkloadSource>(made), header, "workload");
+  auto maker = TextureMaker::open(std::move(*record), {});
+  return std::move(*maker);
+}
+
+// The band-pass in extended precision, each sample when it is first asked for.
+class ExactForce {
+ public:
+  explicit ExactForce(const bench::Workload& made)
+      : exact_(made.force_n, bench::kRate_hz, kBand, kBand.low_hz,
+               BlockFourierFilter(bench::kRate_hz, kBand).reach_s()) {}
+  double operator()(std::size_t frame) {
+    const auto [at, fresh] = known_.try_emplace(frame, 0.0);
+    if (fresh) at->second = exact_(frame);
+    return at->second;
+  }
+
+ private:
+  static constexpr Band kBand{15, 500};
+  reference::ExactTreatedBandPass exact_;
+  std::map<std::size_t, double> known_;
+};
+
+// One stroke's texture as it should be, a stretch of grid points at a time.
+class ExactTexture {
+ public:
+  ExactTexture(const TextureMaker& maker, const Stroke& stroke, ExactForce& force)
+      : stroke_(stroke),
+        path_(monotone_path(*maker.record().position_m(stroke.frames), stroke.direction,
+                            maker.record().position_error())),
+        time_(path_.sample, path_.way_m),
+        force_(force) {}
+
+  // `count` values from point `first` of the bench's grid on.
+  std::vector<double> values(double first, std::size_t count) {
+    std::vector<long double> frames;
+    for (std::size_t i = 0; i < count; ++i)
+      frames.push_back(time_.inverse(stroke_.direction * (first + static_cast<double>(i)) * bench::kPitch_m));
+    const auto [low, high] = std::minmax(frames.front(), frames.back());
+    const auto force = around(static_cast<double>(low), static_cast<double>(high));
+    std::vector<double> result;
+    for (const long double frame : frames) result.push_back(static_cast<double>(force.value(frame)));
+    return result;
+  }
+
+ private:
+  // A slope of the monotone cubic reaches one sample beyond the next: three to each side are plenty.
+  reference::ExactHermite around(double low, double high) {
+    std::vector<double> frames, forces;
+    for (double frame = std::floor(low) - 3; frame <= std::ceil(high) + 3; ++frame) {
+      frames.push_back(frame);
+      forces.push_back(force_(stroke_.frames.begin + static_cast<std::size_t>(frame)));
+    }
+    return {frames, forces};
+  }
+
+  Stroke stroke_;
+  MonotonePath path_;
+  reference::ExactHermite time_;
+  ExactForce& force_;
+};
+
+using Row = std::vector<std::complex<double>>;
+
+// The rows of a texture that are named, as the spectrogram's transform gives them.
+std::map<std::size_t, Row> rows_of(const schema::Texture& texture, const FrameShape& shape,
+                                   const std::vector<std::size_t>& named) {
+  ShortTimeTransform transform(shape, decimation_for(shape), blackman(shape.window), 1, true, 18000);
+  std::vector<std::complex<float>> a(shape.bins), b(shape.bins);
+  std::map<std::size_t, Row> rows;
+  const auto keep = [&](std::size_t row, const std::vector<std::complex<float>>& cells, int exponent) {
+    if (std::ranges::find(named, row) == named.end()) return;
+    for (const auto cell : cells)
+      rows[row].emplace_back(std::ldexp(cell.real(), exponent), std::ldexp(cell.imag(), exponent));
+  };
+  const auto done =
+      transform.transform(texture.signal.values, [&](const PackedRows& packed) -> schema::Result<void> {
+        packed.spectra(a, b);
+        keep(packed.row, a, packed.exponent);
+        if (packed.two) keep(packed.row + 1, b, packed.exponent);
+        return {};
+      });
+  EXPECT_TRUE(done);
+  return rows;
+}
+
+// Rows at both ends of a stroke forth and of one back.
+double worst_db(double max_frequency_per_m) {
+  static const bench::Workload made = bench::workload(kSeconds);
+  static ExactForce force(made);  // what it takes a while to know is known to the next test
+  TextureMaker maker = maker_of(made);
+  SpectrogramOptions options;
+  options.max_frequency_per_m = max_frequency_per_m;
+  const FrameShape shape = *frame_shape(options, bench::kPitch_m);
+  double largest = 0, largest_exact = 0;
+  for (const std::size_t number : {std::size_t{0}, std::size_t{3}}) {
+    const Stroke stroke = maker.record().strokes().at(number);
+    const auto texture = maker.make(stroke, static_cast<int>(number) + 1);
+    EXPECT_TRUE(texture);
+    ExactTexture exact(maker, stroke, force);
+    const std::size_t last = (texture->signal.values.size() - shape.window) / shape.hop;
+    for (const auto& [row, cells] : rows_of(*texture, shape, {1, last - 1})) {
+      const double first = std::round(texture->source_origin_m / bench::kPitch_m);
+      const auto values = exact.values(first + static_cast<double>(row * shape.hop), shape.window);
+      const auto wanted = reference::exact_short_time_row(values, shape, 0, true);
+      for (std::size_t k = 0; k < cells.size(); ++k) {
+        const std::complex<long double> got(cells[k].real(), cells[k].imag());
+        largest = std::max(largest, static_cast<double>(std::abs(got - wanted[k])));
+        largest_exact = std::max(largest_exact, static_cast<double>(std::abs(wanted[k])));
+      }
+    }
+  }
+  EXPECT_GT(largest_exact, 1);  // a line of 0.05 N under a window of 10,000 samples
+  return 20 * std::log10(largest / largest_exact);
+}
+
+TEST(WholeWay, IsExactTo100DbUpTo15PerMm) {
+  const double db = worst_db(15e3);
+  std::cout << "recording to complex cells up to 15 /mm: " << db << " dB\n";
+  EXPECT_LT(db, -100);
+}
+
+TEST(WholeWay, IsExactTo100DbAtAllBins) {
+  const double db = worst_db(500e3);
+  std::cout << "recording to complex cells of all bins: " << db << " dB\n";
+  EXPECT_LT(db, -100);
+}
+
+}  // namespace
+}  // namespace tacto::spatial
