@@ -104,6 +104,10 @@ TEST(Travel, WrongInputsAreNamed) {
   EXPECT_EQ(scale_by_travel(good, 0, 0).error().fault, Fault::usage);
   EXPECT_EQ(scale_by_travel(none, 1, 0).error().fault, Fault::unsuitable);
   EXPECT_EQ(scale_by_travel(still, 1, 0).error().fault, Fault::unsuitable);
+  const std::vector<double> coarse = {1000 * 65536.0};  // a converter's codes: its step is what is rounded to
+  EXPECT_NEAR(scale_by_travel(coarse, 1, 0, 65536)->scale.uncertainty * 1000 * 65536,
+              std::sqrt(2.0 / 12) / 1000, 1e-9);
+  EXPECT_EQ(scale_by_travel(coarse, 1, 0, 65536 * 11).error().fault, Fault::unsuitable);
   EXPECT_NE(scale_by_travel(apart, 1, 0).error().what.find("disagree"), std::string::npos);
 }
 
