@@ -46,6 +46,8 @@ Check check_round_trip(firmware_host::Device& device, std::size_t questions);
 Check check_real_time(const std::string& root);
 Check check_disk(const std::string& folder, double bytes_per_s);
 Check check_calibration(const firmware_host::Capabilities& capabilities, const DoctorRequest& request);
+/// Whether a device is there that this user may not open.
+bool is_denied(const schema::Error& why);
 /// Of a device that could not be opened, and why.
 Check check_permission(const schema::Error& why, const std::string& root);
 

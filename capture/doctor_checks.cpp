@@ -78,13 +78,25 @@ std::string advice_on(const DiskSpeed& disk, double bytes_per_s) {
   return {};
 }
 
+// The channel's newest scale and zero, once where they are one.
+std::vector<const schema::CalibrationEntry*> newest_of(const schema::CalibrationFile& file,
+                                                       const std::string& channel) {
+  const auto* const scale = schema::newest_scale(file, channel);
+  const auto* const zero = schema::newest_zero(file, channel);
+  std::vector<const schema::CalibrationEntry*> entries;
+  if (scale != nullptr) entries.push_back(scale);
+  if (zero != nullptr && zero != scale) entries.push_back(zero);
+  return entries;
+}
+
 }  // namespace
+
+bool is_denied(const schema::Error& why) {
+  return why.what.find("may not open") != std::string::npos || why.remedy.find(kRule) != std::string::npos;
+}
 
 Check check_permission(const schema::Error& why, const std::string& root) {
   const std::string rule = installed_rule(root);
-  // libusb's words for EACCES, and the kernel's.
-  const bool denied =
-      why.what.find("permi") != std::string::npos || why.what.find("denied") != std::string::npos;
   const std::string found = rule.empty() ? fmt::format("{} is not installed", kRule) : rule + " is there";
   const std::string remedy =
       rule.empty() ? fmt::format(
@@ -92,7 +104,7 @@ Check check_permission(const schema::Error& why, const std::string& root) {
                          "--reload && sudo udevadm trigger, then plug the device in anew",
                          kRule)
                    : "be of the group plugdev, or sit at the computer; then plug the device in anew";
-  if (denied) return {"permission", Health::fails, found, remedy, schema::Fault::not_found};
+  if (is_denied(why)) return {"permission", Health::fails, found, remedy, schema::Fault::not_found};
   return rule.empty() ? judged("permission", found, remedy) : judged("permission", found, {});
 }
 
@@ -143,9 +155,7 @@ Check check_calibration(const firmware_host::Capabilities& said, const DoctorReq
             schema::Fault::unsuitable};
   std::vector<std::string> parts, stale;
   for (const schema::Channel& channel : said.channels)
-    for (const auto* entry :
-         {schema::newest_scale(**file, channel.name), schema::newest_zero(**file, channel.name)}) {
-      if (entry == nullptr) continue;
+    for (const auto* entry : newest_of(**file, channel.name)) {
       const auto age_s = schema::seconds_between(entry->date, schema::creation_time());
       parts.push_back(fmt::format("{} {} {}", channel.name, entry->method, entry->date.substr(0, 10)));
       if (!age_s || *age_s > request.stale_after_s) stale.push_back(channel.name);

@@ -16,10 +16,6 @@
 
 namespace tacto::capture {
 
-using schema::kTargetLoad_n;
-using schema::kTargetSpeed_mps;
-using schema::TargetBand;
-
 /// One channel since the view before.
 struct ChannelLevel {
   double smallest = 0, largest = 0;  ///< in its unit

@@ -38,8 +38,9 @@ Result<Window> window_of(const Release& release, std::size_t channel) {
         Fault::unsuitable, "the release is too near an end", told.name,
         fmt::format("{:g} s before it and {:g} s after it are needed", kBefore_s, kWindow_s - kBefore_s));
   Window window{{peak - before, peak - before + length}, rate_hz};
-  const double rest = std::accumulate(window.newtons.begin(), window.newtons.begin() + before * 9 / 10, 0.0) /
-                      static_cast<double>(before * 9 / 10);
+  const std::ptrdiff_t quiet = before * 9 / 10;
+  const double rest = std::accumulate(window.newtons.begin(), window.newtons.begin() + quiet, 0.0) /
+                      static_cast<double>(quiet);
   for (double& value : window.newtons) value = (value - rest) * told.scale;
   const double physical = *peak * told.scale + told.offset;
   if ((told.range_max && physical >= *told.range_max) || (told.range_min && physical <= *told.range_min))

@@ -89,7 +89,8 @@ void judge_motion(const Take& take, Tare& all) {
     const auto [least, most] = std::ranges::minmax(take.codes[i]);
     const double moved_m = std::abs((most - least) * told.scale);
     if (moved_m > kMoved_m)
-      all.unstill.push_back(fmt::format("{} moved by {:.3g} mm", told.name, moved_m * 1e3));
+      all.warnings.push_back(
+          fmt::format("{} moved by {:.3g} mm: nothing must touch meanwhile", told.name, moved_m * 1e3));
   }
 }
 
@@ -102,7 +103,8 @@ bool is_clipped(const Take& take, std::size_t channel) {
 
 std::vector<std::string> notes_on(const ChannelTare& tare, const Channel& told) {
   std::vector<std::string> notes = {
-      "uncertainty: scatter of the means of 20 blocks (type A), and the converter's step as a rectangle"};
+      "uncertainty: scatter of the means of 20 blocks (type A), and the converter's step where noise does "
+      "not dither it"};
   for (const MainsLine& line : tare.mains)
     notes.push_back(fmt::format("mains at {:g} Hz: {:.3g} {} peak, {:.0f} dB above its neighbours",
                                 line.frequency_hz, line.amplitude, told.unit, line.above_floor_db));

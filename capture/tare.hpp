@@ -36,11 +36,11 @@ struct Tare {
 
 /// Channels of force: mean by mean_of(), RMS about the mean, Hann-windowed lines over the whole. A mains line
 /// (first six harmonics of 50 and 60 Hz, within 2 / T of each) must have 18 times the mean power of its 20
-/// neighbours: noise alone does so once in some 1e4 channels. Still means: no position moves by more than
-/// 0.1 mm; the means of 20 blocks scatter by less than half of what the samples do; and the transducer's
-/// noise, without its mains, is below 20 times the floor that its parameters state. A load at rest cannot be
-/// told from an offset: above 0.1 N it is warned of. At least 1 s. Errors: unsuitable: too short, no channel
-/// of force, or one that is clipped.
+/// neighbours: noise alone does so once in some 1e4 channels. Still means: the means of 20 blocks scatter by
+/// less than half of what the samples do; and the transducer's noise, without its mains, is below 20 times
+/// the floor that its parameters state. A load at rest cannot be told from an offset: above 0.1 N it is
+/// warned of, and so is a position that moves by more than 0.1 mm, which a finger in the air may do. At least
+/// 1 s. Errors: unsuitable: too short, no channel of force, or one that is clipped.
 schema::Result<Tare> tare_of(const Take& take);
 
 /// As entries of the device's calibration, without date.

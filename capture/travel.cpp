@@ -28,12 +28,12 @@ double scatter(std::span<const double> differences, double mean) {
   return std::sqrt(sum / static_cast<double>(differences.size() - 1));
 }
 
-Result<void> check(std::span<const double> differences, double travel_m) {
+Result<void> check(std::span<const double> differences, double travel_m, double step) {
   if (!(travel_m > 0)) return schema::fail(Fault::usage, "a travel is longer than nothing", "travel");
   if (differences.empty()) return schema::fail(Fault::unsuitable, "there is no travel in it", "travel");
   const double mean = mean_length(differences);
   for (const double difference : differences) {
-    if (std::abs(difference) < kFewestCounts)
+    if (std::abs(difference) < kFewestCounts * step)
       return schema::fail(Fault::unsuitable, fmt::format("{:.0f} counts are no travel", difference), "travel",
                           "go from one mark to the other, and mark both");
     if (std::abs(std::abs(difference) - mean) > kMostApart * mean)
@@ -48,11 +48,11 @@ Result<void> check(std::span<const double> differences, double travel_m) {
 }  // namespace
 
 Result<TravelScale> scale_by_travel(std::span<const double> differences, double travel_m,
-                                    double travel_uncertainty_m) {
-  if (const auto sound = check(differences, travel_m); !sound) return schema::forward_error(sound);
+                                    double travel_uncertainty_m, double step) {
+  if (const auto sound = check(differences, travel_m, step); !sound) return schema::forward_error(sound);
   const auto count = static_cast<double>(differences.size());
   const double mean = mean_length(differences), spread = scatter(differences, mean) / std::sqrt(count);
-  const double ends = std::sqrt(2.0 / 12 / count);
+  const double ends = step * std::sqrt(2.0 / 12 / count);
   TravelScale found;
   const double relative = std::hypot(std::hypot(spread, ends) / mean, travel_uncertainty_m / travel_m);
   // Where the scatter is less than the counts' own ends, it is they that the uncertainty comes from.

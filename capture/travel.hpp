@@ -20,10 +20,12 @@ struct TravelScale {
 /// From the differences in counts of equal travels, there or back. The scale is travel / mean |difference|
 /// and above zero: +x is the way in which the counts grow. Uncertainty: the scatter of the differences (type
 /// A, from two on), the two ends of a count each as rectangles (sqrt(2/12) counts a travel), and the
-/// travel's own. Errors: usage: a travel that is none; unsuitable: no difference, one below 100 counts, or
+/// travel's own. `step` is the
+/// smallest difference that the channel can show: 1 of an encoder, more of a converter's left-justified codes
+/// (step_of()). Errors: usage: a travel that is none; unsuitable: no difference, one below 100 steps, or
 /// ones that disagree by more than 5 %.
 schema::Result<TravelScale> scale_by_travel(std::span<const double> differences, double travel_m,
-                                            double travel_uncertainty_m);
+                                            double travel_uncertainty_m, double step = 1);
 
 /// The differences in a recording's part: between its marks, one after the other; without marks, between its
 /// beginning and its end. Errors: usage: no such channel; unsuitable: one mark only.

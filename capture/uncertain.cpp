@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -34,6 +35,14 @@ double scatter(std::span<const double> values) {
   return std::sqrt(squares_about(values, mean(values)) / static_cast<double>(values.size() - 1));
 }
 
+double scatter_within(std::span<const double> samples, const std::vector<double>& means) {
+  const std::size_t length = samples.size() / kBlocks;
+  double sum = 0;
+  for (std::size_t i = 0; i < kBlocks; ++i)
+    sum += squares_about(samples.subspan(i * length, length), means[i]);
+  return std::sqrt(sum / static_cast<double>(kBlocks * length));
+}
+
 }  // namespace
 
 double coverage_factor_95(double nu) {
@@ -60,16 +69,14 @@ double step_of(std::span<const double> samples) {
 Uncertain mean_of(std::span<const double> samples) {
   const std::vector<double> means = block_means(samples);
   const double step = step_of(samples), noise = scatter(means) / std::sqrt(kBlocks);
-  return {mean(means), std::hypot(noise, step / std::sqrt(12.0)), kBlocks - 1};
+  const double steps = step > 0 ? scatter_within(samples, means) / step : 0;
+  const double rounding = step / std::sqrt(12.0) * std::exp(-2 * std::pow(std::numbers::pi * steps, 2));
+  return {mean(means), std::hypot(noise, rounding), kBlocks - 1};
 }
 
 double drift_ratio(std::span<const double> samples) {
   const std::vector<double> means = block_means(samples);
-  const std::size_t length = samples.size() / kBlocks;
-  double within = 0;
-  for (std::size_t i = 0; i < kBlocks; ++i)
-    within += squares_about(samples.subspan(i * length, length), means[i]);
-  within = std::sqrt(within / static_cast<double>(kBlocks * length));
+  const double within = scatter_within(samples, means);
   return scatter(means) == 0 ? 0 : scatter(means) / within;
 }
 

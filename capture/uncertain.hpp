@@ -18,8 +18,10 @@ struct Uncertain {
 double coverage_factor_95(double degrees_of_freedom);
 
 /// The mean of samples whose noise may be correlated over up to a twentieth of them: from the scatter of the
-/// means of 20 equal blocks (type A, 19 degrees of freedom), and the numbers' own step as a rectangle
-/// (type B: step / sqrt(12)). Samples left over at the end are not used. Precondition: at least 20 samples.
+/// means of 20 equal blocks (type A, 19 degrees of freedom), and the numbers' own step (type B): a
+/// rectangle, step / sqrt(12), where nothing moves, and exp(-2 pi^2 s^2 / step^2) of it under noise of
+/// standard deviation s, which dithers it away (Widrow and Kollar, Quantization Noise, 2008, chapter 4).
+/// Samples left over at the end are not used. Precondition: at least 20 samples.
 Uncertain mean_of(std::span<const double> samples);
 
 /// The largest step that all numbers are whole multiples of from each other: a converter's or counter's.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -28,6 +29,7 @@ struct Options {
 struct Travels {
   std::optional<Take> last;
   std::vector<double> differences;
+  double step = 1;
 };
 
 Result<Travels> of_recordings(const Options& options) {
@@ -42,6 +44,7 @@ Result<Travels> of_recordings(const Options& options) {
     const auto differences = count_differences(*take, options.channel);
     if (!differences) return schema::forward_error(differences);
     travels.differences.insert(travels.differences.end(), differences->begin(), differences->end());
+    travels.step = std::max(1.0, step_of(take->codes[*schema::find_channel(take->header, options.channel)]));
     travels.last = std::move(*take);
   }
   return travels;
@@ -64,7 +67,7 @@ Result<Travels> of_device(const Options& options) {
   };
   auto watched = watch_counts(**device, options.channel, options.repeats + 1, marked);
   if (!watched) return schema::forward_error(watched);
-  Travels travels{std::move(watched->take), {}};
+  Travels travels{std::move(watched->take), {}, 1};
   for (std::size_t i = 1; i < watched->counts.size(); ++i)
     travels.differences.push_back(watched->counts[i] - watched->counts[i - 1]);
   return travels;
@@ -73,7 +76,8 @@ Result<Travels> of_device(const Options& options) {
 Result<cli::Report> run(const Options& options) {
   const auto travels = options.from.empty() ? of_device(options) : of_recordings(options);
   if (!travels) return schema::forward_error(travels);
-  const auto found = scale_by_travel(travels->differences, options.travel_m, options.travel_uncertainty_m);
+  const auto found =
+      scale_by_travel(travels->differences, options.travel_m, options.travel_uncertainty_m, travels->step);
   if (!found) return schema::forward_error(found);
   const Take& take = *travels->last;
   const schema::Channel& channel = take.header.channels[*schema::find_channel(take.header, options.channel)];

@@ -25,7 +25,7 @@ std::string bar(const schema::Channel& channel, const ChannelLevel& level) {
                      level.clipped ? " CLIP" : "");
 }
 
-std::string judged(double value, const TargetBand& band, const char* more, const char* less) {
+std::string judged(double value, const schema::TargetBand& band, const char* more, const char* less) {
   return band.holds(value) ? "ok" : value < band.middle ? more : less;
 }
 
@@ -33,10 +33,10 @@ std::string finger(const LiveView& view) {
   std::string text;
   if (view.speed_mps)
     text += fmt::format("finger {:3.0f} mm/s {}  ", *view.speed_mps * 1e3,
-                        judged(*view.speed_mps, kTargetSpeed_mps, "FASTER", "SLOWER"));
+                        judged(*view.speed_mps, schema::kTargetSpeed_mps, "FASTER", "SLOWER"));
   if (view.normal_n)
     text += fmt::format("load {:.2f} N {}  ", *view.normal_n,
-                        judged(*view.normal_n, kTargetLoad_n, "MORE", "LESS"));
+                        judged(*view.normal_n, schema::kTargetLoad_n, "MORE", "LESS"));
   return text;
 }
 

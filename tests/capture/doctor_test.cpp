@@ -124,7 +124,7 @@ TEST(DiskSpeed, LeavesNothingBehind) {
 
 TEST(Doctor, TheRuleForPermissionIsLookedForWhereUdevDoes) {
   const TemporaryFolder folder;
-  const schema::Error denied{Fault::not_found, "opening the device is not permitted", "usb:", ""};
+  const schema::Error denied{Fault::not_found, "this user may not open the device", "usb:", ""};
   const Check without = check_permission(denied, folder / "");
   EXPECT_EQ(without.health, Health::fails);
   EXPECT_NE(without.remedy.find("60-tactograph.rules"), std::string::npos);
@@ -133,6 +133,7 @@ TEST(Doctor, TheRuleForPermissionIsLookedForWhereUdevDoes) {
   const Check with = check_permission(denied, folder / "");
   EXPECT_EQ(with.health, Health::fails);
   EXPECT_NE(with.remedy.find("plugdev"), std::string::npos);
+  EXPECT_TRUE(is_denied(denied));
   const schema::Error absent{Fault::not_found, "there is no device of ours on USB", "usb:", ""};
   EXPECT_EQ(check_permission(absent, folder / "").health, Health::works);
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "capture/take.hpp"
@@ -33,6 +34,10 @@ class Coverage {
   }
   double inside() const { return inside_ / count_; }
   double rms() const { return std::sqrt(squares_ / count_); }
+  void print(const char* what) const {
+    std::printf("%s: %.0f of %.0f within the stated 95 %%, RMS of error over uncertainty %.2f\n", what,
+                inside_, count_, rms());
+  }
 
  private:
   double inside_ = 0, squares_ = 0, count_ = 0;

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "capture/live_view.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -56,6 +59,30 @@ TEST(StrokeCounter, OneCountOfDitherDoesNotTurnAStroke) {
   EXPECT_TRUE(counter.strokes().empty());  // still going on
   for (int i = 0; i < 200; ++i) counter.add(0.05, 0.5);
   EXPECT_EQ(counter.strokes().size(), 1U);
+}
+
+// 60 mm in 1.2 s, of which 25 frames are missing in the middle and 3 samples are clipped.
+TEST(LiveFigures, TellWhatIsMissingAndClippedInAStroke) {
+  schema::RecordingHeader header;
+  header.sample_rate_hz = kRate_hz;
+  header.channels.resize(2);
+  header.channels[0].quantity = "position";
+  header.channels[0].scale = 1e-6;
+  header.channels[1].quantity = "tangential_force";
+  header.channels[1].range_min = -100;
+  header.channels[1].range_max = 100;
+  LiveFigures figures(header);
+  for (int i = 0; i < 1500; ++i) {
+    const std::int32_t codes[] = {50 * std::min(i, 1200), i >= 500 && i < 503 ? 100 : 0};
+    figures.add(codes);
+  }
+  header.gaps = {{0, 0, 7}, {600, 607, 25}, {1400, 1432, 9}};
+  const auto strokes = figures.stroke_figures();
+  ASSERT_EQ(strokes.size(), 1U);
+  EXPECT_EQ(strokes[0].clipped_samples, 3U);
+  EXPECT_EQ(strokes[0].lost_frames, 25U);
+  EXPECT_NEAR(strokes[0].mean_speed_mps, 0.06 / 1.225, 1e-3);
+  EXPECT_FALSE(strokes[0].mean_normal_n);
 }
 
 }  // namespace

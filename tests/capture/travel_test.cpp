@@ -50,6 +50,7 @@ TEST(Travel, ScatterOfTheHandsIsCovered) {
   }
   EXPECT_GT(coverage.inside(), 0.92);
   EXPECT_LT(coverage.inside(), 0.98);
+  coverage.print("travel");
 }
 
 // The emulated finger goes 35 mm, from 2.5 mm to 37.5 mm, over a scale that is 0.4 % off.
@@ -103,6 +104,10 @@ TEST(Travel, WrongInputsAreNamed) {
   EXPECT_EQ(scale_by_travel(good, 0, 0).error().fault, Fault::usage);
   EXPECT_EQ(scale_by_travel(none, 1, 0).error().fault, Fault::unsuitable);
   EXPECT_EQ(scale_by_travel(still, 1, 0).error().fault, Fault::unsuitable);
+  const std::vector<double> coarse = {1000 * 65536.0};  // a converter's codes: its step is what is rounded to
+  EXPECT_NEAR(scale_by_travel(coarse, 1, 0, 65536)->scale.uncertainty * 1000 * 65536,
+              std::sqrt(2.0 / 12) / 1000, 1e-9);
+  EXPECT_EQ(scale_by_travel(coarse, 1, 0, 65536 * 11).error().fault, Fault::unsuitable);
   EXPECT_NE(scale_by_travel(apart, 1, 0).error().what.find("disagree"), std::string::npos);
 }
 

@@ -39,6 +39,7 @@ TEST(Weights, FindALoadCellsScaleAndZeroWithinTheirUncertainty) {
     EXPECT_NEAR(found->scale.value / scale, 1, 2e-3);
   }
   for (const Coverage& coverage : {scales, zeros}) {
+    coverage.print("weights");
     EXPECT_GE(coverage.inside(), 0.85);  // of 40: three sigma below 95 %
     EXPECT_LT(coverage.rms(), 1.4);
     EXPECT_GT(coverage.rms(), 0.5);
