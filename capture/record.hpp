@@ -40,7 +40,8 @@ struct Recorded {
   firmware_host::StreamCounts counts;
   std::vector<CountedStroke> strokes;  ///< where a position is recorded
   /// Why it ended, where it could not go on: the device failed, the disk is full. What came before is kept,
-  /// and header.ended says the same.
+  /// and header.ended says the same. Where header.ended is empty the recording is whole, and the device did
+  /// not stop.
   std::optional<schema::Error> ended_by;
 };
 

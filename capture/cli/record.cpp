@@ -174,6 +174,8 @@ Result<cli::Report> run(const Options& options) {
   cli::Report report = report_on(*recorded);
   const bool gaps = !recorded->recording.header.gaps.empty() || recorded->counts.lost_frames > 0;
   if (gaps && !options.allow_gaps) report.ends_with(schema::Fault::device);
+  if (recorded->ended_by && recorded->recording.header.ended.empty())
+    cli::warn("the recording is whole, but its device did not stop: " + schema::message(*recorded->ended_by));
   if (recorded->ended_by) report.ends_with(recorded->ended_by->fault);
   return report;
 }

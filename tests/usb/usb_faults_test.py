@@ -136,6 +136,8 @@ def damaged_frames():
 
 def odd_devices():
     expect_whole("packets")
+    expect_whole("exact")  # packets full to the brim, with an empty one behind
+    assert "did not stall" not in text("gadget.log")
     expect_to_go_on("stalled")
     expect_end("let_go", "the device was unplugged")
     expect_end("silent", "no frames have come for 1 s")
