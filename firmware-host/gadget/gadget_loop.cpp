@@ -33,8 +33,8 @@ void GadgetLoop::run(const std::function<bool()>& stopped) {
 }
 
 void GadgetLoop::exchange() {
-  link_.take_received(board_.from_host());
   if (link_.waiting() > kMostWaiting) return;
+  link_.take_received(board_.from_host());
   board_.poll();
   faults_.pass(board_.to_host());
   board_.to_host().clear();
@@ -55,8 +55,7 @@ std::uint64_t GadgetLoop::due() {
   if (slipped_s > 0 && !std::exchange(told_slow_, true))
     say_(fmt::format(
         "the board was held up, or this machine is too slow for it: {:.2f} s behind the clock, and going "
-        "on from there "
-        "(said once)",
+        "on from there (said once)",
         slipped_s));
   return ticks;
 }

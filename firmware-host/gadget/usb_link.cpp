@@ -16,8 +16,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t kTransfer = 16384;  // most bytes of one
-constexpr milliseconds kNap{20};          // between looks at what no event tells
+constexpr std::size_t kTransfer = 16384;        // most bytes of one
+constexpr std::size_t kMostReceived = 1 << 18;  // bytes that the board has not taken
+constexpr milliseconds kNap{20};                // between looks at what no event tells
 
 const char* speed_of(std::size_t packet) {
   return packet >= usb::kSuperSpeedPacket ? "super" : packet >= usb::kHighSpeedPacket ? "high" : "full";
@@ -49,7 +50,8 @@ void UsbLink::take_received(std::vector<std::uint8_t>& bytes) {
 
 void UsbLink::wait_until(Clock::time_point time) {
   std::unique_lock lock(mutex_);
-  came_.wait_until(lock, time, [&] { return !from_host_.empty(); });
+  came_.wait_until(lock, time, [&] { return fresh_; });
+  fresh_ = false;
 }
 
 void UsbLink::watch_events() {
@@ -128,12 +130,18 @@ void UsbLink::do_end(BurstEnd end) {
     settings_.say(schema::message(gone.error()));
 }
 
+// A host that sends faster than the board takes has to wait.
+bool UsbLink::crowded() {
+  const std::lock_guard lock(mutex_);
+  return from_host_.size() > kMostReceived;
+}
+
 // Where no host has configured the device, the endpoint gives an error at once.
 void UsbLink::receive_bursts() {
   std::array<std::uint8_t, kTransfer> bytes{};
   for (std::uint64_t transfers = 0; !stopping_;) {
     const bool deaf = settings_.deaf_after && transfers >= *settings_.deaf_after;
-    const ssize_t got = deaf ? -1 : ::read(files_.out.get(), bytes.data(), bytes.size());
+    const ssize_t got = deaf || crowded() ? -1 : ::read(files_.out.get(), bytes.data(), bytes.size());
     if (got < 0) {
       std::this_thread::sleep_for(kNap);
       continue;
@@ -141,6 +149,7 @@ void UsbLink::receive_bursts() {
     ++transfers;
     const std::lock_guard lock(mutex_);
     from_host_.insert(from_host_.end(), bytes.begin(), bytes.begin() + got);
+    fresh_ = true;
     came_.notify_one();
   }
 }

@@ -37,7 +37,7 @@ class UsbLink {
   std::size_t waiting() const { return to_host_.waiting(); }
   /// Appends what has come.
   void take_received(std::vector<std::uint8_t>& bytes);
-  /// Until something has come, or that time.
+  /// Until something has come since the last call, or that time.
   void wait_until(Clock::time_point time);
 
  private:
@@ -49,6 +49,7 @@ class UsbLink {
   void send_bursts();
   bool send_burst(const Burst& burst);
   void do_end(BurstEnd end);
+  bool crowded();
   void receive_bursts();
 
   FunctionFs files_;
@@ -56,9 +57,10 @@ class UsbLink {
   std::atomic<bool> stopping_ = false, up_ = false;
   std::atomic<std::size_t> packet_ = 0;  // bytes, at the speed of now
   BurstQueue to_host_;
-  std::mutex mutex_;  // of from_host_
+  std::mutex mutex_;  // of from_host_ and fresh_
   std::condition_variable came_;
   std::vector<std::uint8_t> from_host_;
+  bool fresh_ = false;  // some of it has come since somebody waited
   std::thread events_thread_, send_thread_, receive_thread_;
 };
 

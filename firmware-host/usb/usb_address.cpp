@@ -65,8 +65,8 @@ Result<std::size_t> choose_usb(const std::vector<UsbName>& names, const UsbAddre
   const auto found = std::find_if(names.begin(), names.end(), wanted);
   if (found == names.end()) return not_there(names, address);
   if (std::count_if(names.begin(), names.end(), wanted) > 1)
-    return fail(Fault::usage, fmt::format("{} devices are on USB", names.size()),
-                "device", fmt::format("name one with -d: {}", fmt::join(uris_of(names), ", ")));
+    return fail(Fault::usage, fmt::format("{} devices are on USB", names.size()), "device",
+                fmt::format("name one with -d: {}", fmt::join(uris_of(names), ", ")));
   return static_cast<std::size_t>(found - names.begin());
 }
 

@@ -63,20 +63,23 @@ Result<void> UsbOutflow::send(double timeout_s) {
   return await_end();
 }
 
-// libusb ends each transfer at its timeout; the longest wait is for a kernel that does not.
+// libusb ends each transfer at its timeout; the longest wait is for a kernel that does not. A program that
+// was held up itself looks once more before it says so.
 Result<void> UsbOutflow::await_end() {
   const auto begun = std::chrono::steady_clock::now();
   for (done_ = 0; under_way_;) {
+    const bool late = std::chrono::steady_clock::now() - begun > kLongestDrain;
     if (const auto handled = connection_.handle_events(kStepS, done_); !handled) return handled;
-    if (std::chrono::steady_clock::now() - begun > kLongestDrain)
-      return usb_failure(LIBUSB_ERROR_TIMEOUT, "writing", connection_.uri());
+    if (late && under_way_) return usb_failure(LIBUSB_ERROR_TIMEOUT, "writing", connection_.uri());
   }
   return {};
 }
 
+// A transfer that was whole when its time was over was taken, however late this program looked.
 bool UsbOutflow::sent_whole() const {
-  return transfer_->status == LIBUSB_TRANSFER_COMPLETED &&
-         transfer_->actual_length == static_cast<int>(buffer_.size());
+  const bool ended =
+      transfer_->status == LIBUSB_TRANSFER_COMPLETED || transfer_->status == LIBUSB_TRANSFER_TIMED_OUT;
+  return ended && transfer_->actual_length == static_cast<int>(buffer_.size());
 }
 
 Result<void> UsbOutflow::clear() {

@@ -154,7 +154,7 @@ def main():
     source = "sim:surface=triangle,period=1mm,depth=0.1mm,strokes=20,seed=5"
     tacto.run("record", "-d", source, "-o", RESULTS / "source", "--time", f"{SOURCE_S}s")
     programs = {name: os.environ[name] for name in ("TACTOGRAPH", "GADGET", "USB_RESET")}
-    virtual_machine.run(script, RESULTS, 800, **programs)
+    virtual_machine.run(script, RESULTS, 1400, **programs)
     for check in CHECKS[script]:
         check()
         print(f"{check.__name__}: passed")

@@ -196,6 +196,14 @@ TEST_F(UsbTransportTest, ADeviceThatTakesNothingIsAnError) {
   EXPECT_EQ(written.error().what, "the device took nothing from this computer for 0.5 s");
 }
 
+TEST_F(UsbTransportTest, WhatWasTakenWholeAtTheLastMomentIsTaken) {
+  FakeUsbDevice& device = add();
+  device.out = {{UsbEvent::silence, counting(30)}};
+  const auto cable = transport();
+  EXPECT_TRUE(cable->write(counting(30), kTimeoutS));
+  EXPECT_EQ(device.taken, counting(30));
+}
+
 TEST_F(UsbTransportTest, OnlyTheWiresInterfaceIsLookedAt) {
   add("wrong class").interface_class = 3;
   add("wrong subclass").interface_subclass = 0x42;
