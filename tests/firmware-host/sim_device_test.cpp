@@ -38,7 +38,7 @@ TEST(SimDevice, SaysWhatItIs) {
 }
 
 TEST(SimDevice, OtherTransportsAreRefusedByName) {
-  for (const char* uri : {"usb:", "serial:oak", "surface=C", ""}) {
+  for (const char* uri : {"serial:/dev/ttyACM0", "serial:oak", "surface=C", ""}) {
     const auto device = open_device(uri);
     ASSERT_FALSE(device) << uri;
     EXPECT_EQ(device.error().fault, schema::Fault::usage);
