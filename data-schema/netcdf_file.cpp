@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/netcdf_file.hpp"
 
+#include <H5public.h>
 #include <fmt/format.h>
 #include <netcdf.h>
 
@@ -15,9 +16,16 @@ namespace {
 // A damaged header can claim any length; no spectrogram of ours comes near this (2 GB of cells).
 constexpr std::size_t kMostCells = std::size_t{1} << 29;
 
+// HDF5's own clearing up at exit goes through files whose closing failed, and crashes (1.10.8, on a full
+// disk). Whatever was written well is closed by us. Has to be said before HDF5 begins.
+void leave_exit_alone() {
+  [[maybe_unused]] static const herr_t said = H5dont_atexit();
+}
+
 }  // namespace
 
 NetcdfWriter::NetcdfWriter(const std::string& path) {
+  leave_exit_alone();
   status_ = nc_create(path.c_str(), NC_NETCDF4 | NC_CLOBBER, &file_);
 }
 
@@ -131,6 +139,7 @@ Result<void> NetcdfWriter::close(const std::string& path) {
 }
 
 NetcdfReader::NetcdfReader(const std::string& path) {
+  leave_exit_alone();
   status_ = nc_open(path.c_str(), NC_NOWRITE, &file_);
 }
 

@@ -63,7 +63,8 @@ Result<bool> Client::greet_once() {
   description_ = {};
   description_.welcome.major = 0;
   order_.expect_any();
-  nonce_ = nonce_ * 1664525 + 1013904223 + static_cast<std::uint32_t>(transport_->now_s() * 1e6);
+  const auto now_us = static_cast<std::uint64_t>(transport_->now_s() * 1e6);
+  nonce_ = nonce_ * 1664525 + 1013904223 + static_cast<std::uint32_t>(now_us);
   wire::Hello hello;
   hello.nonce = nonce_;
   const auto sent = send([&](std::uint32_t sequence, std::span<std::uint8_t> frame) {

@@ -160,7 +160,7 @@ Result<void> check(std::span<const TextureAtSpeed> textures, const CertificateOp
     return schema::fail(Fault::usage, "a certificate takes two textures or more, made at different speeds",
                         "textures");
   if (!(options.confidence > 0.5 && options.confidence < 1))
-    return schema::fail(Fault::usage, "the confidence must lie between 0.5 and 1", "confidence",
+    return schema::fail(Fault::usage, "the confidence must lie above 0.5 and below 1", "confidence",
                         "0.95 is usual");
   for (const TextureAtSpeed& each : textures)
     if (each.texture->unit != textures.front().texture->unit)

@@ -154,6 +154,7 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   texture.source.min_speed_mps = slowest;
   texture.source.max_speed_mps = fastest;
   texture.valid_band = valid_band(profile, options_.filter.passed(record_.header().sample_rate_hz));
+  narrow(texture.valid_band, 0, 1 / (2 * options_.pitch_m));
   if (options_.space) narrow(texture.valid_band, options_.space->low_per_m, options_.space->high_per_m);
   describe(texture, stroke, number);
   return texture;

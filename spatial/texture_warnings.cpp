@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "data-schema/quantity.hpp"
 #include "spatial/monotone_path.hpp"
 
@@ -13,13 +15,16 @@ std::string length(double m) {
   return schema::for_people(m, schema::Dimension::length);
 }
 
+// A tenth of the finest encoder's count: so much a position that rests between two even motions is moved.
+constexpr double kNothing_m = 1e-8;
+
 }  // namespace
 
 std::vector<std::string> texture_warnings(const schema::Texture& texture) {
   const schema::TextureSource& source = texture.source;
   const PositionError error{source.position_quantum_m, source.position_noise_m};
   std::vector<std::string> warnings;
-  if (source.position_moved_m > error.explains_m())
+  if (source.position_moved_m > std::max(error.explains_m(), kNothing_m))
     warnings.push_back(fmt::format(
         "positions were moved by up to {} to make them grow; their quantum of {} and noise of {} explain {}: "
         "the finger went back on its way",

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -55,8 +56,8 @@ int act(const Entry& entry) {
 
 int print_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version arrive here too
-  fmt::print(stderr, "tactograph: {}; see 'tactograph {} --help'\n", error.what(),
-             app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name());
+  fmt::print(stderr, "tactograph: {}; see 'tactograph {}--help'\n", error.what(),
+             app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
   return schema::exit_code(schema::Fault::usage);
 }
 
@@ -84,6 +85,8 @@ int refuse_verb(std::span<const Verb* const> verbs, std::string_view word) {
 }  // namespace
 
 int run_command(std::span<const Verb* const> verbs, int argc, const char* const* argv) {
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a file beyond the shell's limit is then an error of writing, as a full disk is
   if (argc > 1 && is_unknown_verb(verbs, argv[1])) return refuse_verb(verbs, argv[1]);
   CLI::App app(
       "Records how a surface pulls on a finger, turns it into force against position, and plays it back.",

@@ -71,6 +71,18 @@ void add_average(Report& report, const Texture& texture) {
   report.add("fewest_strokes", least.strokes).add("most_strokes", most.strokes);
 }
 
+void add_certificate(Report& report, const std::optional<Certificate>& certificate) {
+  if (!certificate) return;
+  const auto count = [&](PeakVerdict verdict) {
+    return std::ranges::count(certificate->peaks, verdict, &CertifiedPeak::verdict);
+  };
+  report.add("certified_textures", certificate->textures.size());
+  report.add("certified_speed_ratio", certificate->speed_ratio);
+  report.add("spatial_peaks", count(PeakVerdict::spatial));
+  report.add("temporal_peaks", count(PeakVerdict::temporal));
+  report.add("undecided_peaks", count(PeakVerdict::undecided));
+}
+
 }  // namespace
 
 Result<Report> describe_texture(const std::string& path) {
@@ -84,6 +96,7 @@ Result<Report> describe_texture(const std::string& path) {
   add_source(report, texture->source);
   add_position(report, texture->source);
   add_average(report, *texture);
+  add_certificate(report, texture->certificate);
   add_text(report, "surface", texture->surface);
   add_text(report, "finger", texture->finger);
   add_text(report, "subject", texture->subject);

@@ -108,8 +108,7 @@ cli::Action declare(CLI::App& app) {
                  std::string("Two or more of one surface, made at different speeds. ") + kTextureInputs)
       ->required();
   app.add_option("--confidence", options->certificate.confidence,
-                 "Probability from which on a peak is called")
-      ->check(CLI::Range(0.5, 1.0))
+                 "Probability from which on a peak is called, above 0.5 and below 1")
       ->capture_default_str();
   app.add_flag("--dry-run", options->dry, "Only say; store nothing in the textures");
   return [options] { return run(*options); };

@@ -1,9 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "spatial/cli/table_output.hpp"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "data-schema/file_kind.hpp"
 #include "data-schema/files.hpp"
 
 namespace tacto::spatial {
+
+namespace {
+
+// A table of the same name may be replaced; what was recorded or made may not.
+schema::Result<void> check_replaceable(const std::string& path) {
+  using schema::FileKind;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return {};
+  const auto there = schema::stored_files(path);
+  if (!there) return {};
+  const FileKind kind = there->front().kind;
+  if (kind == FileKind::formants || kind == FileKind::descriptions) return {};
+  return schema::fail(schema::Fault::usage,
+                      fmt::format("is a {}, and would be lost", schema::kind_name(kind)), path,
+                      "choose another name");
+}
+
+}  // namespace
 
 TablePath table_path(const std::string& output, const std::string& kind) {
   if (output.ends_with(".csv")) return {output, true};
@@ -14,6 +37,7 @@ TablePath table_path(const std::string& output, const std::string& kind) {
 schema::Result<void> write_table(const TablePath& where,
                                  const std::function<schema::Result<std::string>()>& json,
                                  const std::function<std::string()>& csv) {
+  if (const auto free = check_replaceable(where.path); !free) return free;
   const auto text = where.csv ? csv() : json();
   if (!text) return schema::forward_error(text);
   schema::PendingFiles files;

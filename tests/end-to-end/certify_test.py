@@ -43,6 +43,7 @@ def hum_across_three_speeds_is_temporal():
     for name, speed in (("slow", 0.03), ("fast", 0.09)):
         certificate = json.loads(pathlib.Path(f"{name}.texture.json").read_text())["certificate"]
         assert certificate["textures"] == ["slow", "middle", "fast"]
+        assert "temporal peaks" in tacto.run("info", f"{name}.texture.json")[0]
         hum = peak_at(certificate["peaks"], "frequency_hz", 100)
         assert hum["verdict"] == "temporal" and hum["confidence"] >= 0.95, hum
         assert abs(hum["frequency_per_m"] - 100 / speed) < 0.01 * 100 / speed
@@ -99,6 +100,11 @@ def formants_are_listed_stored_and_drawn():
     tacto.run("validate", "oak.formants.json")
     assert "formants" in tacto.run("info", "oak.formants.json")[0]
     tacto.run("formants", "oak", "-o", "oak.csv")
+    for verb in ("formants", "describe"):  # nothing that was recorded or made is replaced by a table
+        _, said = tacto.run(verb, "oak", "-o", "oak.json", code=2)
+        assert "is a recording" in said, said
+        _, said = tacto.run(verb, "oak", "-o", "oak.texture.json", code=2)
+        assert "is a texture" in said, said
     assert len(pathlib.Path("oak.csv").read_text().splitlines()) == 3
     drawn = tacto.run_json("spectrogram", "oak", "-o", "oak.svg", "--formants")["formants_drawn"]
     assert drawn == 2, drawn

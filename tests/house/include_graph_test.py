@@ -29,7 +29,7 @@ WALLS = {
     r"libusb": ["firmware-host/usb"],
     r"fftw3": ["spatial/dsp"],
     r"sndfile": ["data-schema"],
-    r"nlohmann/|valijson/|netcdf": ["data-schema"],
+    r"nlohmann/|valijson/|netcdf|H5": ["data-schema"],
     r"nettle/": ["data-schema", "analysis"],
     r"opencv2/|cairo|pango": ["spatial/picture"],
     r"pugixml": ["capture"],

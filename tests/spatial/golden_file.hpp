@@ -11,7 +11,8 @@ namespace tacto::spatial {
 
 class GoldenFile {
  public:
-  explicit GoldenFile(const std::string& name) : file_(std::string(TACTO_SOURCE "/tests/spatial/golden/") + name) {}
+  explicit GoldenFile(const std::string& name)
+      : file_(std::string(TACTO_SOURCE "/tests/spatial/golden/") + name) {}
   bool good() const { return file_.good(); }
   /// The next line; false at the end.
   bool next(std::string& line) { return static_cast<bool>(std::getline(file_, line)); }

@@ -5,6 +5,7 @@ import csv
 import hashlib
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -342,6 +343,21 @@ class Spectrogram(unittest.TestCase):
         # Named in full it is the recording again.
         self.made(f"{self.stem}.json", "-o", self.here / "again.nc")
         np.testing.assert_array_equal(read_nc(self.here / "again.nc")[2], direct)
+
+    def test_a_full_disk_is_told_and_leaves_what_was_there(self):
+        """A limit on files' sizes fails as a full disk does, netCDF's and HDF5's clearing up included."""
+        write_texture(self.stem, chirp_and_noise())
+        for name in ("oak.nc", "oak.csv", "oak.png"):
+            (self.here / name).write_bytes(b"before")
+            done = subprocess.run(
+                [TACTOGRAPH, "spectrogram", self.stem, "-o", self.here / name],
+                capture_output=True, text=True,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)),
+            )  # fmt: skip
+            self.assertEqual(done.returncode, 7, name + done.stderr)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertEqual((self.here / name).read_bytes(), b"before")
+            self.assertEqual([path.name for path in self.here.glob(".*")], [])
 
     def test_memory_does_not_grow_with_textures_or_bins(self):
         """All 8,193 bins of 0.4 m of texture, 128 MB of cells, in a few megabytes more than one short texture."""
