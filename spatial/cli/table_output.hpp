@@ -17,8 +17,8 @@ struct TablePath {
 
 TablePath table_path(const std::string& output, const std::string& kind);
 
-/// Writes it whole or not at all. Errors: usage, where it would replace a recording, a texture or another file
-/// that is no table; cannot_write; those of `json`.
+/// Writes it whole or not at all. Errors: usage, where it would replace a recording, a texture or another
+/// file that is no table; cannot_write; those of `json`.
 schema::Result<void> write_table(const TablePath& where,
                                  const std::function<schema::Result<std::string>()>& json,
                                  const std::function<std::string()>& csv);
