@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware-host/core/wire/device_messages.hpp"
+
 namespace tacto::firmware_host {
 
 /// UTF-8, filled up with zeros; what is too long is cut before the character that does not fit whole.
@@ -19,6 +21,13 @@ void put_text(char (&field)[kSize], std::string_view text) {
   const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80; };
   while (size < text.size() && size > 0 && continues(size)) --size;
   std::fill(std::copy_n(text.begin(), size, field), field + kSize, '\0');
+}
+
+inline wire::Note note_of(wire::NoteKind kind, std::string_view text) {
+  wire::Note note;
+  note.kind = kind;
+  put_text(note.text, text);
+  return note;
 }
 
 /// The core's limits are single precision: never above the transducer's.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "firmware-host/gadget/replay_description.hpp"
+#include "firmware-host/hosted_board.hpp"
 #include "firmware-host/wire_fields.hpp"
 
 namespace tacto::firmware_host {
@@ -13,7 +14,6 @@ using schema::Fault;
 using schema::Result;
 
 constexpr std::uint32_t kClockHz = 1'000'000'000;
-constexpr std::uint32_t kTextureSamples = 65536;
 
 Result<void> check(const schema::Recording& recording) {
   const schema::RecordingHeader& header = recording.header;
@@ -51,25 +51,18 @@ ReplayBoard::ReplayBoard(schema::Recording recording, schema::WavReader reader, 
       welcome_(replay_welcome(recording_, serial)),
       channels_(replay_channels(recording_.header)),
       notes_(replay_notes(recording_)),
-      texture_(kTextureSamples),
+      texture_(kHostedProfileSamples),
       frame_(channels_.size()) {
   if (const auto position = schema::find_channel(recording_.header, "position")) position_ = *position;
   firmware_ = std::make_unique<core::Firmware>(about(), hal());
 }
 
 core::Board ReplayBoard::about() {
-  core::Board board;
-  board.about = welcome_;
+  core::Board board = board_of(welcome_, channels_, notes_, texture_);
   board.about.clock_hz = kClockHz;
   const std::uint32_t rate = millihertz(recording_.header.sample_rate_hz);
   board.about.default_rate_millihertz = rate;
   board.about.least_rate_millihertz = board.about.most_rate_millihertz = rate;
-  board.channels = channels_.data();
-  board.channel_count = static_cast<std::uint8_t>(channels_.size());
-  board.notes = notes_.data();
-  board.note_count = static_cast<std::uint8_t>(notes_.size());
-  board.profile_memory = texture_.data();
-  board.profile_samples = kTextureSamples;
   return board;
 }
 
@@ -90,7 +83,7 @@ core::Hal ReplayBoard::hal() {
   };
   hal.set_rate = [](void* b, std::uint32_t rate) noexcept { of(b).set_rate(rate); };
   hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
-    return of(b).receive(bytes, size);
+    return take_first(of(b).from_host_, {bytes, size});
   };
   hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
     of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
@@ -106,13 +99,6 @@ void ReplayBoard::set_rate(std::uint32_t rate_millihertz) {
   ahead_.clear();
   used_ = 0;
   ended_ = !reader_.seek(0);
-}
-
-std::size_t ReplayBoard::receive(std::uint8_t* bytes, std::size_t capacity) {
-  const std::size_t size = std::min(capacity, from_host_.size());
-  std::copy_n(from_host_.begin(), size, bytes);
-  from_host_.erase(from_host_.begin(), from_host_.begin() + static_cast<std::ptrdiff_t>(size));
-  return size;
 }
 
 // False at the end, and where the file cannot be read any more: to the core both are converters that fail.

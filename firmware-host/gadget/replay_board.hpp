@@ -34,7 +34,6 @@ class ReplayBoard final : public GadgetBoard {
   core::Board about();
   core::Hal hal();
   void set_rate(std::uint32_t rate_millihertz);
-  std::size_t receive(std::uint8_t* bytes, std::size_t capacity);
   bool refill();
   void next_frame();
 

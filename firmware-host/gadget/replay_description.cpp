@@ -31,13 +31,6 @@ wire::Channel channel_of(const schema::Channel& stored) {
   return channel;
 }
 
-wire::Note note_of(wire::NoteKind kind, std::string_view text) {
-  wire::Note note;
-  note.kind = kind;
-  put_text(note.text, text);
-  return note;
-}
-
 std::string name_of(const schema::Recording& recording) {
   return "replay of " + std::filesystem::path(recording.stem).filename().string();
 }

@@ -2,8 +2,7 @@
 // What the emulated bench does otherwise than its device says, so that calibration has something to find.
 #pragma once
 
-#include <cmath>
-#include <numbers>
+#include "firmware-host/sim/known_force.hpp"
 
 namespace tacto::firmware_host {
 
@@ -20,8 +19,8 @@ struct BenchErrors {
 
 /// Mains pick-up, in volts.
 inline double mains_at(double mains_v, double time_s) {
-  const double turn = 2 * std::numbers::pi * 50 * time_s;
-  return mains_v == 0 ? 0 : mains_v * (std::sin(turn) + std::sin(3 * turn) / 3);
+  const double turns = 50 * time_s;
+  return mains_v == 0 ? 0 : mains_v * (sine_of_turns(turns) + sine_of_turns(3 * turns) / 3);
 }
 
 }  // namespace tacto::firmware_host

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "firmware-host/hosted_board.hpp"
 #include "firmware-host/sim/counter_run.hpp"
 #include "firmware-host/sim/sim_description.hpp"
 #include "firmware-host/wire_fields.hpp"
@@ -12,8 +13,7 @@ namespace tacto::firmware_host {
 namespace {
 
 constexpr std::uint32_t kClockHz = 1'000'000;
-constexpr std::uint32_t kTextureSamples = 65536;  // 256 KB: what a larger board would have
-constexpr std::size_t kMessageBytes = 40;         // of a samples message, beside its codes: core/WIRE.md
+constexpr std::size_t kMessageBytes = 40;  // of a samples message, beside its codes: core/WIRE.md
 
 }  // namespace
 
@@ -21,7 +21,7 @@ SimBoard::SimBoard(const SimParameters& parameters, schema::Transducer transduce
     : parameters_(parameters),
       transducer_(std::move(transducer)),
       profile_(std::move(surface.profile)),
-      texture_(kTextureSamples),
+      texture_(kHostedProfileSamples),
       surface_words_(std::move(surface.description)) {
   describe();
   firmware_ = std::make_unique<core::Firmware>(about(), hal());
@@ -34,19 +34,12 @@ void SimBoard::describe() {
 }
 
 core::Board SimBoard::about() {
-  core::Board board;
-  board.about = sim_welcome(parameters_, transducer_);
+  core::Board board = board_of(sim_welcome(parameters_, transducer_), channels_, notes_, texture_);
   board.about.clock_hz = kClockHz;
   const std::uint32_t rate = millihertz(parameters_.sample_rate_hz);
   board.about.default_rate_millihertz = rate;
   board.about.least_rate_millihertz = std::min(rate, millihertz(1e3));
   board.about.most_rate_millihertz = std::max(rate, millihertz(20e3));
-  board.channels = channels_.data();
-  board.channel_count = static_cast<std::uint8_t>(channels_.size());
-  board.notes = notes_.data();
-  board.note_count = static_cast<std::uint8_t>(notes_.size());
-  board.profile_memory = texture_.data();
-  board.profile_samples = kTextureSamples;
   return board;
 }
 
@@ -63,20 +56,13 @@ core::Hal SimBoard::hal() {
   hal.clock = [](void* b) noexcept { return of(b).clock(); };
   hal.set_rate = [](void* b, std::uint32_t rate) noexcept { of(b).set_rate(rate); };
   hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
-    return of(b).receive({bytes, size});
+    return take_first(of(b).from_host_, {bytes, size});
   };
   hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
     return of(b).send({bytes, size});
   };
   hal.restart = [](void* b) noexcept { of(b).set_rate(0); };
   return hal;
-}
-
-std::size_t SimBoard::receive(std::span<std::uint8_t> bytes) {
-  const std::size_t size = std::min(bytes.size(), from_host_.size());
-  std::copy_n(from_host_.begin(), size, bytes.begin());
-  from_host_.erase(from_host_.begin(), from_host_.begin() + size);
-  return size;
 }
 
 std::size_t SimBoard::send(std::span<const std::uint8_t> bytes) {

@@ -50,7 +50,6 @@ class SimBoard {
   core::Hal hal();
   core::Board about();
   void set_rate(std::uint32_t rate_millihertz);
-  std::size_t receive(std::span<std::uint8_t> bytes);
   std::size_t send(std::span<const std::uint8_t> bytes);
   std::unique_ptr<FrameSource> source_at(const SimParameters& parameters) const;
   std::uint64_t clock() const;

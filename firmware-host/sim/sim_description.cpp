@@ -43,13 +43,6 @@ wire::Channel load_channel(std::string_view name, const LoadCell& cell) {
   return channel;
 }
 
-wire::Note note_of(wire::NoteKind kind, std::string_view text) {
-  wire::Note note;
-  note.kind = kind;
-  put_text(note.text, text);
-  return note;
-}
-
 std::string finger_words(const SimParameters& p) {
   if (!p.finger_down) return "finger up";
   return fmt::format(

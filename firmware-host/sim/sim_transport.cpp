@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "firmware-host/hosted_board.hpp"
+
 namespace tacto::firmware_host {
 namespace {
 
@@ -45,11 +47,7 @@ schema::Result<std::size_t> SimTransport::read(std::span<std::uint8_t> bytes, do
     pass_real_time(now_s_ + timeout_s);
   else
     pass_time(now_s_ + timeout_s);
-  std::vector<std::uint8_t>& waiting = board_.to_host();
-  const std::size_t size = std::min(bytes.size(), waiting.size());
-  std::copy_n(waiting.begin(), size, bytes.begin());
-  waiting.erase(waiting.begin(), waiting.begin() + size);
-  return size;
+  return take_first(board_.to_host(), bytes);
 }
 
 schema::Result<void> SimTransport::write(std::span<const std::uint8_t> bytes, double) {

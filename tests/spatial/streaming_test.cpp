@@ -10,6 +10,7 @@
 
 #include "spatial/filtered_track.hpp"
 #include "spatial/make_texture.hpp"
+#include "tests/spatial/force_and_position.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -36,18 +37,10 @@ std::vector<double> ten_seconds() {
 }
 
 // What a surface gives along a path that is repeated for as long as it is asked for, under a slow drift.
-class EndlessSource : public TouchSource {
+class EndlessSource : public samples::ForceAndPosition {
  public:
   explicit EndlessSource(std::vector<double> path) : path_(std::move(path)) {
     for (const double x : path_) force_n_.push_back(surface(x));
-    position_.name = position_.quantity = "position";
-    force_.name = force_.quantity = "tangential_force";
-    position_.unit = "m";
-    force_.unit = "N";
-  }
-  const schema::Channel* channel(Track track) const override {
-    if (track == Track::normal_force) return nullptr;
-    return track == Track::position ? &position_ : &force_;
   }
   schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) override {
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -59,7 +52,6 @@ class EndlessSource : public TouchSource {
 
  private:
   std::vector<double> path_, force_n_;
-  schema::Channel position_, force_;
 };
 
 schema::Result<TouchRecord> record_of(std::vector<double> path, std::uint64_t frames) {

@@ -19,23 +19,15 @@
 #include "spatial/reference/exact_treated_band_pass.hpp"
 #include "spatial/spectrogram_options.hpp"
 #include "tests/bench/workload.hpp"
+#include "tests/spatial/force_and_position.hpp"
 
 namespace tacto::spatial {
 namespace {
 
 // The benchmarks' recording, as a source.
-class WorkloadSource : public TouchSource {
+class WorkloadSource : public samples::ForceAndPosition {
  public:
-  explicit WorkloadSource(bench::Workload made) : made_(std::move(made)) {
-    position_.name = position_.quantity = "position";
-    force_.name = force_.quantity = "tangential_force";
-    position_.unit = "m";
-    force_.unit = "N";
-  }
-  const schema::Channel* channel(Track track) const override {
-    if (track == Track::normal_force) return nullptr;
-    return track == Track::position ? &position_ : &force_;
-  }
+  explicit WorkloadSource(bench::Workload made) : made_(std::move(made)) {}
   schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) override {
     const auto& values = track == Track::position ? made_.position_m : made_.force_n;
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), out.size(), out.begin());
@@ -44,7 +36,6 @@ class WorkloadSource : public TouchSource {
 
  private:
   bench::Workload made_;
-  schema::Channel position_, force_;
 };
 
 constexpr std::size_t kSeconds = 4;

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A touch whose numbers a test makes: tangential force and position, no normal force.
+#pragma once
+
+#include "spatial/touch_source.hpp"
+
+namespace tacto::spatial::samples {
+
+/// What is left to do is read_stored().
+class ForceAndPosition : public TouchSource {
+ public:
+  ForceAndPosition() {
+    position_.name = position_.quantity = "position";
+    force_.name = force_.quantity = "tangential_force";
+    position_.unit = "m";
+    force_.unit = "N";
+  }
+  const schema::Channel* channel(Track track) const override {
+    if (track == Track::normal_force) return nullptr;
+    return track == Track::position ? &position_ : &force_;
+  }
+
+ private:
+  schema::Channel position_, force_;
+};
+
+}  // namespace tacto::spatial::samples
