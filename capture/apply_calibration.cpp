@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <utility>
+
+#include "data-schema/files.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -89,11 +90,6 @@ Result<void> check_serial(const CalibrationFile& file, const std::string& serial
       "calibration", "name the file of this device with --calibration FILE");
 }
 
-bool is_file(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
-
 }  // namespace
 
 Result<std::vector<std::string>> apply_calibration(schema::RecordingHeader& header,
@@ -116,7 +112,7 @@ Result<std::optional<CalibrationFile>> calibration_of(const std::string& serial,
   std::string place = path;
   if (place.empty()) {
     auto usual = schema::calibration_path(serial);
-    if (!usual || !is_file(*usual)) return std::nullopt;
+    if (!usual || !schema::is_file(*usual)) return std::nullopt;
     place = std::move(*usual);
   }
   auto file = schema::read_calibration(place);
@@ -130,7 +126,7 @@ Result<std::string> keep_calibration(const schema::RecordingHeader& device, cons
   const auto place = path.empty() ? schema::calibration_path(device.serial) : Result<std::string>(path);
   if (!place) return place;
   CalibrationFile file;
-  if (is_file(*place)) {
+  if (schema::is_file(*place)) {
     auto before = schema::read_calibration(*place);
     if (!before) return schema::forward_error(before);
     file = std::move(*before);

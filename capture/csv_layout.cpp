@@ -20,15 +20,15 @@ using schema::Result;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kSampledLines = 20;
 
-struct Line {
+struct LayoutLine {
   std::string_view text;
   std::size_t number = 0;  // 1-based, of the file
   std::size_t next = 0;    // offset of the line after it
 };
 
 // The first lines with fields in them. A line that the head cuts off is none.
-std::vector<Line> sample_lines(std::string_view head, bool whole, std::size_t begin, char line_end) {
-  std::vector<Line> lines;
+std::vector<LayoutLine> sample_lines(std::string_view head, bool whole, std::size_t begin, char line_end) {
+  std::vector<LayoutLine> lines;
   for (std::size_t number = 1; begin < head.size() && lines.size() < kSampledLines; ++number) {
     const std::size_t end = head.find(line_end, begin);
     if (end == std::string_view::npos && !whole) break;
@@ -40,9 +40,9 @@ std::vector<Line> sample_lines(std::string_view head, bool whole, std::size_t be
 }
 
 // The largest number of lines that this delimiter cuts into equally many fields; 0 where it cuts none.
-std::size_t agreeing_lines(const std::vector<Line>& lines, char delimiter) {
+std::size_t agreeing_lines(const std::vector<LayoutLine>& lines, char delimiter) {
   std::map<std::size_t, std::size_t> lines_by_fields;
-  for (const Line& line : lines) ++lines_by_fields[field_count(line.text, delimiter)];
+  for (const LayoutLine& line : lines) ++lines_by_fields[field_count(line.text, delimiter)];
   std::size_t most = 0;
   for (const auto& [fields, count] : lines_by_fields)
     if (fields > 1) most = std::max(most, count);
@@ -50,7 +50,7 @@ std::size_t agreeing_lines(const std::vector<Line>& lines, char delimiter) {
 }
 
 // Where two agree alike, the rarer sign decides: in "0,5;1,5" the comma is decimal.
-char find_delimiter(const std::vector<Line>& lines) {
+char find_delimiter(const std::vector<LayoutLine>& lines) {
   char best = ',';
   std::size_t most = 0;
   for (const char delimiter : {'\t', ';', ','}) {
@@ -99,7 +99,7 @@ tl::unexpected<schema::Error> no_lines(std::string_view head, bool whole, const 
   return fail(Fault::malformed, "holds no data, only blank lines and comments", file);
 }
 
-tl::unexpected<schema::Error> mixed_first_line(const Line& line, const std::vector<std::string>& fields,
+tl::unexpected<schema::Error> mixed_first_line(const LayoutLine& line, const std::vector<std::string>& fields,
                                                const std::string& file) {
   const auto at = std::ranges::find_if(fields, is_name) - fields.begin();
   return fail(Fault::malformed,
@@ -108,7 +108,7 @@ tl::unexpected<schema::Error> mixed_first_line(const Line& line, const std::vect
               "name every column in the first line, or none");
 }
 
-void take_header(CsvLayout& layout, const Line& line, const std::vector<std::string>& fields) {
+void take_header(CsvLayout& layout, const LayoutLine& line, const std::vector<std::string>& fields) {
   layout.header = true;
   layout.columns = fields;
   layout.data_offset = line.next;

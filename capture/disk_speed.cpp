@@ -17,7 +17,7 @@ namespace {
 using schema::Fault;
 using schema::Result;
 
-constexpr std::size_t kSyncs = 20, kPieceBytes = 1 << 20, kPieces = 16;
+constexpr std::size_t kSyncs = 20, kTrialBytes = 1 << 20, kPieces = 16;
 
 // Unnamed as soon as it is open.
 class ScratchFile {
@@ -70,7 +70,7 @@ Result<DiskSpeed> measure_disk(const std::string& folder, std::size_t block_byte
   const ScratchFile file(folder);
   if (!file.is_open()) return refused(folder);
   bool written = true;
-  const std::vector<char> block(block_bytes, 'x'), piece(kPieceBytes, 'x');
+  const std::vector<char> block(block_bytes, 'x'), piece(kTrialBytes, 'x');
   std::vector<double> syncs_s;
   for (std::size_t i = 0; i < kSyncs; ++i)
     syncs_s.push_back(seconds_of([&] { written = written && file.write_synced(block); }));
@@ -82,7 +82,7 @@ Result<DiskSpeed> measure_disk(const std::string& folder, std::size_t block_byte
   std::ranges::sort(syncs_s);
   std::error_code unknown;
   const auto space = std::filesystem::space(folder, unknown);
-  return DiskSpeed{unknown ? 0 : static_cast<double>(space.available), kPieces * kPieceBytes / all_s,
+  return DiskSpeed{unknown ? 0 : static_cast<double>(space.available), kPieces * kTrialBytes / all_s,
                    syncs_s[kSyncs / 2], syncs_s.back()};
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <system_error>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "capture/doctor.hpp"
 #include "capture/realtime_limits.hpp"
 #include "data-schema/creation_time.hpp"
+#include "data-schema/files.hpp"
 #include "data-schema/live_recording.hpp"
 #include "data-schema/quantity.hpp"
 
@@ -31,15 +31,10 @@ Check judged(std::string name, std::string found, const std::string& warning) {
   return {std::move(name), warning.empty() ? Health::works : Health::warns, std::move(found), warning};
 }
 
-bool is_file(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
-
 std::string installed_rule(const std::string& root) {
   for (const char* folder : {"etc/udev/rules.d/", "usr/local/lib/udev/rules.d/", "usr/lib/udev/rules.d/",
                              "lib/udev/rules.d/", "run/udev/rules.d/"})
-    if (is_file(root + folder + kRule)) return root + folder + kRule;
+    if (schema::is_file(root + folder + kRule)) return root + folder + kRule;
   return {};
 }
 

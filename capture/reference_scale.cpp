@@ -18,7 +18,7 @@ using schema::Result;
 using Complex = std::complex<double>;
 
 constexpr double kLowest_hz = 15, kHighest_hz = 61, kApart_hz = 2;
-constexpr double kWindow_s = 1, kShortest_s = 5, kLeastCoherence = 0.5;
+constexpr double kWindow_s = 1, kShortestPush_s = 5, kLeastCoherence = 0.5;
 constexpr std::size_t kFewestBins = 6;
 // Windows that overlap by half are not quite independent: Hann's share a sixth of their amplitude.
 constexpr double kIndependent = 1 / (1 + 2.0 / 36);
@@ -115,8 +115,8 @@ Result<void> check(const Take& take, std::size_t channel, std::size_t reference)
   if (take.header.channels[reference].unit != "N" || channel == reference)
     return schema::fail(Fault::usage, "is no force to compare with", take.header.channels[reference].name,
                         "as --reference net_force");
-  if (static_cast<double>(take.frames()) < kShortest_s * take.header.sample_rate_hz)
-    return schema::fail(Fault::unsuitable, fmt::format("needs {:g} s at least", kShortest_s), told.name);
+  if (static_cast<double>(take.frames()) < kShortestPush_s * take.header.sample_rate_hz)
+    return schema::fail(Fault::unsuitable, fmt::format("needs {:g} s at least", kShortestPush_s), told.name);
   for (const std::size_t each : {channel, reference})
     if (clips(take, each))
       return schema::fail(Fault::unsuitable, "is clipped", take.header.channels[each].name, "pull less");

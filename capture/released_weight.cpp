@@ -17,8 +17,8 @@ namespace {
 using schema::Fault;
 using schema::Result;
 
-constexpr double kBefore_s = 0.1, kWindow_s = 0.5, kStandsOut = 20;
-constexpr double kLowest_hz = 10, kHighest_hz = 60, kApart_hz = 1 / kWindow_s;
+constexpr double kBefore_s = 0.1, kRinging_s = 0.5, kRingStandsOut = 20;
+constexpr double kLowestRing_hz = 10, kHighestRing_hz = 60, kRingsApart_hz = 1 / kRinging_s;
 
 struct Window {
   std::vector<double> newtons;  // by the device's own scale, about what they were before
@@ -32,11 +32,11 @@ Result<Window> window_of(const Release& release, std::size_t channel) {
   const double middle = std::accumulate(codes.begin(), codes.end(), 0.0) / static_cast<double>(codes.size());
   const auto peak = std::ranges::max_element(codes, {}, [&](double code) { return std::abs(code - middle); });
   const auto before = static_cast<std::ptrdiff_t>(kBefore_s * rate_hz);
-  const auto length = static_cast<std::ptrdiff_t>(kWindow_s * rate_hz);
+  const auto length = static_cast<std::ptrdiff_t>(kRinging_s * rate_hz);
   if (peak - codes.begin() < before || codes.end() - (peak - before) < length)
     return schema::fail(
         Fault::unsuitable, "the release is too near an end", told.name,
-        fmt::format("{:g} s before it and {:g} s after it are needed", kBefore_s, kWindow_s - kBefore_s));
+        fmt::format("{:g} s before it and {:g} s after it are needed", kBefore_s, kRinging_s - kBefore_s));
   Window window{{peak - before, peak - before + length}, rate_hz};
   const std::ptrdiff_t quiet = before * 9 / 10;
   const double rest = std::accumulate(window.newtons.begin(), window.newtons.begin() + quiet, 0.0) /
@@ -56,7 +56,7 @@ Result<void> check_stands_out(const Window& window, const std::string& channel) 
     if (at - window.newtons.begin() < before) noise += *at * *at / static_cast<double>(before);
     peak = std::max(peak, std::abs(*at));
   }
-  if (peak > kStandsOut * std::sqrt(noise) && peak > 0) return {};
+  if (peak > kRingStandsOut * std::sqrt(noise) && peak > 0) return {};
   return schema::fail(Fault::unsuitable, "there is no release that stands out", channel,
                       "hang the weight still, then cut its thread once");
 }
@@ -78,7 +78,8 @@ double expected_at(const schema::Transducer& transducer, double force_n, double 
 // How much the channel gives of what it should.
 Uncertain gain_of(const Window& window, const schema::Transducer& transducer, double force_n) {
   double xm = 0, mm = 0, xx = 0, count = 0;
-  for (double frequency_hz = kLowest_hz; frequency_hz <= kHighest_hz; frequency_hz += kApart_hz) {
+  for (double frequency_hz = kLowestRing_hz; frequency_hz <= kHighestRing_hz;
+       frequency_hz += kRingsApart_hz) {
     const double x = spectrum_at(window, frequency_hz), m = expected_at(transducer, force_n, frequency_hz);
     xm += x * m, mm += m * m, xx += x * x, count += 1;
   }
@@ -131,7 +132,7 @@ Result<ReleasedScale> scale_by_releases(std::span<const Release> releases, const
   ReleasedScale found;
   found.scale = {scale, std::abs(scale) * std::hypot(gain.uncertainty / gain.value, relative),
                  gain.degrees_of_freedom};
-  found.notes = {fmt::format("{} releases, {:g} to {:g} Hz", gains.size(), kLowest_hz, kHighest_hz),
+  found.notes = {fmt::format("{} releases, {:g} to {:g} Hz", gains.size(), kLowestRing_hz, kHighestRing_hz),
                  fmt::format("uncertainty: {} (type A), and {:.2g} % of all forces alike (type B)",
                              gains.size() > 1 ? "scatter of the releases or what their fits leave, the larger"
                                               : "what the fit leaves; one release shows no scatter",

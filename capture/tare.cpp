@@ -18,10 +18,10 @@ using schema::Channel;
 using schema::Fault;
 using schema::Result;
 
-constexpr double kShortest_s = 1;
+constexpr double kShortestTare_s = 1;
 constexpr double kMoved_m = 0.1e-3, kResting_n = 0.1;
-constexpr double kMostDrift = 0.5, kMostNoise = 20;
-constexpr double kLowest_hz = 20, kHighest_hz = 480;
+constexpr double kMostTareDrift = 0.5, kMostNoise = 20;
+constexpr double kLowestNoise_hz = 20, kHighestNoise_hz = 480;
 constexpr int kLines = 100;
 
 std::vector<double> physical(const Take& take, std::size_t channel) {
@@ -33,10 +33,10 @@ std::vector<double> physical(const Take& take, std::size_t channel) {
 
 // Of white noise a line's power is exponential: its median is ln 2 of its mean.
 double noise_density(std::span<const double> samples, double rate_hz, double native_rate_hz) {
-  const double highest_hz = std::min(kHighest_hz, 0.45 * std::min(rate_hz, native_rate_hz));
+  const double highest_hz = std::min(kHighestNoise_hz, 0.45 * std::min(rate_hz, native_rate_hz));
   std::vector<double> powers;
   for (int i = 0; i < kLines; ++i) {
-    const double frequency_hz = kLowest_hz + (highest_hz - kLowest_hz) * i / (kLines - 1);
+    const double frequency_hz = kLowestNoise_hz + (highest_hz - kLowestNoise_hz) * i / (kLines - 1);
     powers.push_back(density_of(hann_line(samples, frequency_hz / rate_hz), samples.size(), rate_hz));
   }
   std::ranges::nth_element(powers, powers.begin() + kLines / 2);
@@ -66,7 +66,7 @@ bool is_transducers(const Take& take, const Channel& channel) {
 
 void judge(const Take& take, const ChannelTare& tare, Tare& all) {
   const Channel& told = take.header.channels[tare.channel];
-  if (drift_ratio(take.codes[tare.channel]) > kMostDrift)
+  if (drift_ratio(take.codes[tare.channel]) > kMostTareDrift)
     all.unstill.push_back(fmt::format("{} wanders", told.name));
   if (!is_transducers(take, told) && std::abs(tare.mean) > kResting_n)
     all.warnings.push_back(
@@ -114,8 +114,9 @@ std::vector<std::string> notes_on(const ChannelTare& tare, const Channel& told) 
 }  // namespace
 
 Result<Tare> tare_of(const Take& take) {
-  if (static_cast<double>(take.frames()) < kShortest_s * take.header.sample_rate_hz)
-    return schema::fail(Fault::unsuitable, fmt::format("a tare needs {:g} s at least", kShortest_s), "time");
+  if (static_cast<double>(take.frames()) < kShortestTare_s * take.header.sample_rate_hz)
+    return schema::fail(Fault::unsuitable, fmt::format("a tare needs {:g} s at least", kShortestTare_s),
+                        "time");
   Tare tare;
   for (std::size_t i = 0; i < take.codes.size(); ++i) {
     const Channel& told = take.header.channels[i];

@@ -16,7 +16,7 @@ using schema::Fault;
 using schema::Result;
 
 // Leading bits of a step: the exponent and six bits of the mantissa, so a bin is 1/64 wide.
-constexpr int kDropped = 46;
+constexpr int kDroppedTimes = 46;
 
 double whole_where_close(double rate_hz) {
   const double whole = std::round(rate_hz);
@@ -58,7 +58,7 @@ void ClockFinder::survey(std::span<const double> time_s) {
       continue;
     }
     stands_or_falls_ = stands_or_falls_ || !(step > 0);
-    const std::uint64_t key = std::bit_cast<std::uint64_t>(step) >> kDropped;
+    const std::uint64_t key = std::bit_cast<std::uint64_t>(step) >> kDroppedTimes;
     if (key != run_key) {
       if (run.count > 0) bins_[run_key].add(run);
       run = {};

@@ -11,7 +11,7 @@ namespace {
 using schema::Fault;
 using schema::Result;
 
-constexpr double kBlock_s = 0.02;
+constexpr double kWatch_s = 0.02;
 
 struct Watch {
   firmware_host::Device& device;
@@ -52,7 +52,7 @@ Result<WatchedCounts> watch_counts(firmware_host::Device& device, const std::str
   if (!index)
     return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
   const std::size_t channels = header->channels.size();
-  const auto frames = std::max<std::size_t>(1, static_cast<std::size_t>(header->sample_rate_hz * kBlock_s));
+  const auto frames = std::max<std::size_t>(1, static_cast<std::size_t>(header->sample_rate_hz * kWatch_s));
   if (const auto started = device.start(); !started) return schema::forward_error(started);
   Watch watch{device, channels, *index, std::vector<std::int32_t>(frames * channels)};
   auto counts = counts_at_marks(watch, marks, marked);

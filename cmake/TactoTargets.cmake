@@ -9,6 +9,9 @@ target_compile_options(tacto_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # gcc 12 warns falsely about std::string (bug 105651)
   # One result on every machine: a fused multiply-add would round differently where the processor has one.
   -ffp-contract=off)
+if(CMAKE_UNITY_BUILD)  # gcc takes the files of a unity for headers, and warns of what they keep to themselves
+  target_compile_options(tacto_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(TACTO_SANITIZE)
   target_compile_options(tacto_options INTERFACE -fsanitize=${TACTO_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)

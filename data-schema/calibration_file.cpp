@@ -13,7 +13,7 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::string_view kKind = "calibration";
+constexpr std::string_view kCalibrationKind = "calibration";
 
 std::string variable(const char* name) {
   const char* const text = std::getenv(name);
@@ -71,16 +71,16 @@ Result<std::string> calibration_path(const std::string& serial) {
 }
 
 Result<CalibrationFile> read_calibration(const std::string& path) {
-  const auto document = open_document(path, kKind);
+  const auto document = open_document(path, kCalibrationKind);
   if (!document) return forward_error(document);
   CalibrationFile file = calibration_from(document->body);
-  file.extra_json = unknown_members(document->body, kKind);
+  file.extra_json = unknown_members(document->body, kCalibrationKind);
   file.newer_version = document->newer_version;
   return file;
 }
 
 Result<void> write_calibration(const std::string& path, const CalibrationFile& file) {
-  const auto text = document_text(kKind, calibration_body(file), file.extra_json);
+  const auto text = document_text(kCalibrationKind, calibration_body(file), file.extra_json);
   if (!text) return forward_error(text);
   if (const auto made = make_folder_of(path); !made) return made;
   PendingFiles pending;

@@ -9,14 +9,14 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::string_view kKind = "descriptions";
+constexpr std::string_view kDescriptionsKind = "descriptions";
 
 struct Number {
   const char* name;
   double Description::*member;
 };
 
-constexpr Number kNumbers[] = {
+constexpr Number kDescriptionNumbers[] = {
     {"length_m", &Description::length_m},
     {"from_m", &Description::from_m},
     {"to_m", &Description::to_m},
@@ -48,7 +48,7 @@ Json description_body(const Description& description) {
   Json body = {
       {"texture", description.texture}, {"quantity", description.quantity}, {"unit", description.unit}};
   put_text(body, "simulated", description.simulated);
-  for (const auto& [name, member] : kNumbers)
+  for (const auto& [name, member] : kDescriptionNumbers)
     if (std::isfinite(description.*member)) body[name] = description.*member;
   body["bands"] = Json::array();
   for (const ThirdOctaveBand& band : description.bands) body["bands"].push_back(band_body(band));
@@ -61,7 +61,7 @@ Description description_from(const Json& body) {
   description.quantity = text_or(body, "quantity");
   description.unit = text_or(body, "unit");
   description.simulated = text_or(body, "simulated");
-  for (const auto& [name, member] : kNumbers) description.*member = number_or(body, name, NAN);
+  for (const auto& [name, member] : kDescriptionNumbers) description.*member = number_or(body, name, NAN);
   for (const Json& band : body["bands"]) description.bands.push_back(band_from(band));
   return description;
 }
@@ -69,13 +69,14 @@ Description description_from(const Json& body) {
 }  // namespace
 
 Result<DescriptionFile> read_descriptions(const std::string& name) {
-  const auto document = open_document(stem_of(name, ".descriptions") + ".descriptions.json", kKind);
+  const auto document =
+      open_document(stem_of(name, ".descriptions") + ".descriptions.json", kDescriptionsKind);
   if (!document) return forward_error(document);
   DescriptionFile file;
   for (const Json& each : document->body["textures"]) file.textures.push_back(description_from(each));
   file.created = text_or(document->body, "created");
   file.creator = text_or(document->body, "creator");
-  file.extra_json = unknown_members(document->body, kKind);
+  file.extra_json = unknown_members(document->body, kDescriptionsKind);
   file.newer_version = document->newer_version;
   return file;
 }
@@ -85,7 +86,7 @@ Result<std::string> descriptions_json(const DescriptionFile& file) {
   for (const Description& each : file.textures) body["textures"].push_back(description_body(each));
   put_text(body, "created", file.created);
   put_text(body, "creator", file.creator);
-  return document_text(kKind, body, file.extra_json);
+  return document_text(kDescriptionsKind, body, file.extra_json);
 }
 
 }  // namespace tacto::schema

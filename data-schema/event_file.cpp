@@ -16,7 +16,7 @@ namespace {
 
 constexpr off_t kRoom = off_t{256} * 1024;  // a sidecar with some thousand gaps and clock pairs
 
-tl::unexpected<Error> unwritable(const std::string& path, int error_number) {
+tl::unexpected<Error> unwritable_log(const std::string& path, int error_number) {
   if (error_number == EEXIST)
     return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
   return fail(Fault::cannot_write, "can't be written: " + std::generic_category().message(error_number),
@@ -40,7 +40,7 @@ EventFile::~EventFile() {
 
 Result<EventFile> EventFile::create(const std::string& path) {
   const int opened = open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
-  if (opened < 0) return unwritable(path, errno);
+  if (opened < 0) return unwritable_log(path, errno);
   EventFile file(path, opened);
   flock(opened, LOCK_EX | LOCK_NB);  // held by nobody else: the file is new
   // Where a file system can't, a full disk may leave a recording to be recovered instead of closed.
@@ -60,11 +60,11 @@ Result<EventFile> EventFile::lock(const std::string& path) {
 Result<void> EventFile::append(const std::string& text) {
   const ssize_t done = ::write(descriptor_, text.data(), text.size());
   if (done == static_cast<ssize_t>(text.size())) return {};
-  return unwritable(path_, done < 0 ? errno : ENOSPC);
+  return unwritable_log(path_, done < 0 ? errno : ENOSPC);
 }
 
 Result<void> EventFile::sync() {
-  return fdatasync(descriptor_) == 0 ? Result<void>{} : unwritable(path_, errno);
+  return fdatasync(descriptor_) == 0 ? Result<void>{} : unwritable_log(path_, errno);
 }
 
 void EventFile::release_room() {
@@ -74,15 +74,15 @@ void EventFile::release_room() {
 }
 
 Result<void> EventFile::remove() {
-  return unlink(path_.c_str()) == 0 ? Result<void>{} : unwritable(path_, errno);
+  return unlink(path_.c_str()) == 0 ? Result<void>{} : unwritable_log(path_, errno);
 }
 
 Result<void> sync_path(const std::string& path) {
   const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (opened < 0) return unwritable(path, errno);
+  if (opened < 0) return unwritable_log(path, errno);
   const int failed = fsync(opened) == 0 ? 0 : errno;
   close(opened);
-  return failed == 0 ? Result<void>{} : unwritable(path, failed);
+  return failed == 0 ? Result<void>{} : unwritable_log(path, failed);
 }
 
 std::string folder_of(const std::string& path) {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 
+#include "data-schema/files.hpp"
 #include "data-schema/json_document.hpp"
 #include "data-schema/transducer.hpp"
 
@@ -30,11 +30,6 @@ constexpr Ending kEndings[] = {
     {FileKind::descriptions, ".descriptions.json"},
     {FileKind::calibration, ".calibration.json"},
 };
-
-bool is_file(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored);
-}
 
 Result<StoredFile> by_content(const std::string& path) {
   const auto name = kind_of(path);

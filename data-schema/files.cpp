@@ -113,6 +113,11 @@ Result<void> check_readable(const std::string& path) {
   return file ? Result<void>{} : forward_error(file);
 }
 
+bool is_file(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
 Result<std::string> read_file(const std::string& path) {
   std::string text;
   const auto done = for_each_piece(path, [&](std::string_view piece) { text += piece; });

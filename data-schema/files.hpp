@@ -14,6 +14,9 @@ namespace tacto::schema {
 /// permitted.
 Result<void> check_readable(const std::string& path);
 
+/// Whether `path` names a file (not a folder).
+bool is_file(const std::string& path);
+
 /// The whole file. Errors: not_found (absent, a folder, no permission).
 Result<std::string> read_file(const std::string& path);
 

@@ -9,7 +9,7 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::string_view kKind = "formants";
+constexpr std::string_view kFormantsKind = "formants";
 
 template <class Owner, class Value>
 struct Member {
@@ -104,13 +104,13 @@ FormantTable table_from(const Json& body) {
 }  // namespace
 
 Result<FormantFile> read_formants(const std::string& name) {
-  const auto document = open_document(stem_of(name, ".formants") + ".formants.json", kKind);
+  const auto document = open_document(stem_of(name, ".formants") + ".formants.json", kFormantsKind);
   if (!document) return forward_error(document);
   FormantFile file;
   for (const Json& table : document->body["textures"]) file.tables.push_back(table_from(table));
   file.created = text_or(document->body, "created");
   file.creator = text_or(document->body, "creator");
-  file.extra_json = unknown_members(document->body, kKind);
+  file.extra_json = unknown_members(document->body, kFormantsKind);
   file.newer_version = document->newer_version;
   return file;
 }
@@ -120,7 +120,7 @@ Result<std::string> formants_json(const FormantFile& file) {
   for (const FormantTable& table : file.tables) body["textures"].push_back(table_body(table));
   put_text(body, "created", file.created);
   put_text(body, "creator", file.creator);
-  return document_text(kKind, body, file.extra_json);
+  return document_text(kFormantsKind, body, file.extra_json);
 }
 
 }  // namespace tacto::schema

@@ -50,5 +50,8 @@ std::string_view si_symbol(Dimension dimension);
 /// A value for people, with the prefix that keeps it between 1 and 1000: 0.0123 m is "12.3 mm". At most 4
 /// digits.
 std::string for_people(double value_si, Dimension dimension);
+inline std::string length_for_people(double metres) {
+  return for_people(metres, Dimension::length);
+}
 
 }  // namespace tacto::schema

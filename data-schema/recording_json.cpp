@@ -39,12 +39,12 @@ FaultNote fault_from(const Json& body) {
 
 namespace {
 
-struct TextMember {
+struct HeaderText {
   const char* name;
   std::string RecordingHeader::*member;
 };
 
-constexpr TextMember kTexts[] = {
+constexpr HeaderText kHeaderTexts[] = {
     {"clock", &RecordingHeader::clock},
     {"device", &RecordingHeader::device},
     {"serial", &RecordingHeader::serial},
@@ -67,7 +67,7 @@ struct NumberMember {
   std::optional<double> RecordingHeader::*member;
 };
 
-constexpr NumberMember kNumbers[] = {
+constexpr NumberMember kHeaderNumbers[] = {
     {"humidity_percent", &RecordingHeader::humidity_percent},
     {"clock_drift_ppm", &RecordingHeader::clock_drift_ppm},
     {"clock_drift_uncertainty_ppm", &RecordingHeader::clock_drift_uncertainty_ppm},
@@ -200,8 +200,8 @@ Json recording_body(const RecordingHeader& header) {
   Json body = {
       {"data", data_body(header)}, {"sample_rate_hz", header.sample_rate_hz}, {"channels", Json::array()}};
   put_list(body, "channels", header.channels, channel_body);
-  for (const auto& [name, member] : kTexts) put_text(body, name, header.*member);
-  for (const auto& [name, member] : kNumbers) put_number(body, name, header.*member);
+  for (const auto& [name, member] : kHeaderTexts) put_text(body, name, header.*member);
+  for (const auto& [name, member] : kHeaderNumbers) put_number(body, name, header.*member);
   if (header.transducer) body["transducer"] = embedded_transducer(*header.transducer);
   put_list(body, "gaps", header.gaps, [](const Gap& each) { return body_of(each); });
   put_list(body, "marks", header.marks, [](const Mark& each) { return body_of(each); });
@@ -221,8 +221,8 @@ RecordingHeader header_from(const Json& body) {
   header.frames = data["frames"];
   header.sample_rate_hz = body["sample_rate_hz"];
   header.channels = list_from(body, "channels", channel_from);
-  for (const auto& [name, member] : kTexts) header.*member = text_or(body, name);
-  for (const auto& [name, member] : kNumbers) header.*member = optional_number(body, name);
+  for (const auto& [name, member] : kHeaderTexts) header.*member = text_or(body, name);
+  for (const auto& [name, member] : kHeaderNumbers) header.*member = optional_number(body, name);
   if (body.contains("transducer")) header.transducer = transducer_from(body["transducer"]);
   header.gaps = list_from(body, "gaps", gap_from);
   header.marks = list_from(body, "marks", mark_from);

@@ -14,13 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_file(const std::string& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
 // There is no sidecar: perhaps there are samples that could become a recording.
-tl::unexpected<Error> absent(const std::string& name, const std::string& stem) {
+tl::unexpected<Error> absent_recording(const std::string& name, const std::string& stem) {
   if (is_file(stem + ".events.jsonl"))
     return fail(Fault::unsuitable, "was never closed, or is still being recorded", name,
                 fmt::format("'tactograph recover {}' makes a recording of what is there", stem));
@@ -44,7 +39,7 @@ Result<void> check_frames(const RecordingHeader& header, const WavInfo& info, co
   return {};
 }
 
-Result<void> check_layout(const RecordingHeader& header, const WavInfo& info, const std::string& wav) {
+Result<void> check_samples(const RecordingHeader& header, const WavInfo& info, const std::string& wav) {
   if (info.channels != header.channels.size())
     return fail(Fault::malformed,
                 fmt::format("has {} channels, its sidecar names {}", info.channels, header.channels.size()),
@@ -67,7 +62,7 @@ Result<RecordingHeader> read_sidecar(const std::string& path) {
 
 Result<void> check_wav(const RecordingHeader& header, const std::string& wav) {
   const auto reader = WavReader::open(wav);
-  return reader ? check_layout(header, reader->info(), wav) : forward_error(reader);
+  return reader ? check_samples(header, reader->info(), wav) : forward_error(reader);
 }
 
 std::string channel_names(const RecordingHeader& header) {
@@ -81,7 +76,7 @@ std::string channel_names(const RecordingHeader& header) {
 Result<Recording> open_recording(const std::string& name) {
   const std::string stem = stem_of(name, "");
   const std::string sidecar = stem + ".json";
-  if (!is_file(sidecar)) return absent(name, stem);
+  if (!is_file(sidecar)) return absent_recording(name, stem);
   auto header = read_sidecar(sidecar);
   if (!header) return forward_error(header);
   Recording recording{std::move(*header), stem};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <system_error>
 
 #include "data-schema/event_file.hpp"
@@ -14,13 +13,6 @@
 
 namespace tacto::schema {
 namespace {
-
-namespace fs = std::filesystem;
-
-bool is_file(const std::string& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
 
 std::string stem_in(const std::string& name) {
   constexpr std::string_view kEvents = ".events.jsonl";

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kUnknown = 0xFFFFFFFF;  // of a 32-bit size that "ds64" tells
 
-tl::unexpected<Error> unwritable(const std::string& path) {
+tl::unexpected<Error> unwritable_header(const std::string& path) {
   return fail(Fault::cannot_write, "its header can't be written", path);
 }
 
@@ -34,7 +34,7 @@ class Patch {
   }
   Result<void> done() {
     file_.close();
-    return file_ ? Result<void>{} : unwritable(path_);
+    return file_ ? Result<void>{} : unwritable_header(path_);
   }
 
  private:
@@ -78,7 +78,7 @@ Result<std::uint64_t> repair_riff(const std::string& path) {
   const std::uint64_t frames = layout->present_bytes / layout->block_bytes;
   std::error_code failed;
   std::filesystem::resize_file(path, layout->data_at + frames * layout->block_bytes, failed);
-  if (failed) return unwritable(path);
+  if (failed) return unwritable_header(path);
   Patch patch(path);
   set_sizes(patch, *layout, frames * layout->block_bytes);
   if (const auto patched = patch.done(); !patched) return forward_error(patched);

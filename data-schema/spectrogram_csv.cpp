@@ -14,10 +14,10 @@ namespace {
 
 using Buffer = fmt::memory_buffer;
 
-struct CloseFile {
+struct CloseTable {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
-using File = std::unique_ptr<std::FILE, CloseFile>;
+using File = std::unique_ptr<std::FILE, CloseTable>;
 
 // Nine digits drop the noise of rounding ("0.30000000000000004") and keep picometres on a metre.
 void append_axis(Buffer& row, double value) {

@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kKind = "texture";
-constexpr std::string_view kSuffix = ".texture";
+constexpr std::string_view kTextureKind = "texture";
+constexpr std::string_view kTextureSuffix = ".texture";
 
 // A recording under the name is the commonest mistake, and is answered as such.
 tl::unexpected<Error> absent(const std::string& name) {
@@ -96,10 +96,10 @@ Result<void> check_writable(const std::string& stem, const Texture& texture) {
 }  // namespace
 
 Result<Texture> read_texture(const std::string& name) {
-  const std::string path = stem_of(name, kSuffix) + ".texture.json";
+  const std::string path = stem_of(name, kTextureSuffix) + ".texture.json";
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return absent(name);
-  const auto document = open_document(path, kKind);
+  const auto document = open_document(path, kTextureKind);
   if (!document) return forward_error(document);
   Texture texture = texture_from(document->body);
   const TextureData data = texture_data_from(document->body);
@@ -113,13 +113,13 @@ Result<Texture> read_texture(const std::string& name) {
     if (!spread) return forward_error(spread);
     texture.average->spread = std::move(*spread);
   }
-  texture.extra_json = unknown_members(document->body, kKind);
+  texture.extra_json = unknown_members(document->body, kTextureKind);
   texture.newer_version = document->newer_version;
   return texture;
 }
 
 Result<void> add_texture(PendingFiles& pending, const std::string& name, const Texture& texture) {
-  const std::string stem = stem_of(name, kSuffix);
+  const std::string stem = stem_of(name, kTextureSuffix);
   if (auto named = check_stem(stem); !named) return named;
   if (auto writable = check_writable(stem, texture); !writable) return writable;
   const std::string wav = stem + ".texture.wav";
@@ -130,7 +130,7 @@ Result<void> add_texture(PendingFiles& pending, const std::string& name, const T
   if (!sha256) return forward_error(sha256);
   const TextureData data{fs::path(wav).filename().string(), *sha256, texture.signal.values.size(),
                          texture.average ? 2U : 1U};
-  const auto text = document_text(kKind, texture_body(texture, data), texture.extra_json);
+  const auto text = document_text(kTextureKind, texture_body(texture, data), texture.extra_json);
   if (!text) return forward_error(text);
   return pending.write(stem + ".texture.json", *text);
 }
@@ -142,7 +142,7 @@ Result<void> write_texture(const std::string& name, const Texture& texture) {
 }
 
 Result<void> check_texture_free(const std::string& name) {
-  const std::string stem = stem_of(name, kSuffix);
+  const std::string stem = stem_of(name, kTextureSuffix);
   std::error_code ignored;
   for (const char* ending : {".texture.json", ".texture.wav"})
     if (fs::exists(stem + ending, ignored))

@@ -9,12 +9,12 @@
 namespace tacto::schema {
 namespace {
 
-struct TextMember {
+struct TextureText {
   const char* name;
   std::string Texture::*member;
 };
 
-constexpr TextMember kTexts[] = {
+constexpr TextureText kTextureTexts[] = {
     {"simulated", &Texture::simulated}, {"surface", &Texture::surface}, {"subject", &Texture::subject},
     {"finger", &Texture::finger},       {"notes", &Texture::notes},     {"created", &Texture::created},
     {"creator", &Texture::creator},
@@ -170,7 +170,7 @@ Json texture_body(const Texture& texture, const TextureData& data) {
     body["channels"] = channels_body(texture.unit);
     body["average"] = average_body(*texture.average);
   }
-  for (const auto& [name, member] : kTexts) put_text(body, name, texture.*member);
+  for (const auto& [name, member] : kTextureTexts) put_text(body, name, texture.*member);
   if (texture.certificate) body["certificate"] = certificate_body(*texture.certificate);
   return body;
 }
@@ -186,7 +186,7 @@ Texture texture_from(const Json& body) {
   if (body.contains("source")) texture.source = source_from(body["source"]);
   if (body.contains("average")) texture.average = average_from(body["average"]);
   if (body.contains("certificate")) texture.certificate = certificate_from(body["certificate"]);
-  for (const auto& [name, member] : kTexts) texture.*member = text_or(body, name);
+  for (const auto& [name, member] : kTextureTexts) texture.*member = text_or(body, name);
   return texture;
 }
 

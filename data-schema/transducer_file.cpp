@@ -12,8 +12,8 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::string_view kKind = "transducer";
-constexpr std::string_view kSuffix = ".transducer";
+constexpr std::string_view kTransducerKind = "transducer";
+constexpr std::string_view kTransducerSuffix = ".transducer";
 
 const EmbeddedFile* preset_named(std::string_view name) {
   const auto files = embedded_files();
@@ -23,18 +23,18 @@ const EmbeddedFile* preset_named(std::string_view name) {
 
 Transducer transducer_of(const Document& document) {
   Transducer transducer = transducer_from(document.body);
-  transducer.extra_json = unknown_members(document.body, kKind);
+  transducer.extra_json = unknown_members(document.body, kTransducerKind);
   transducer.newer_version = document.newer_version;
   return transducer;
 }
 
 std::string path_of(const std::string& stem) {
-  return stem + std::string(kSuffix) + ".json";
+  return stem + std::string(kTransducerSuffix) + ".json";
 }
 
 // A file named in full may have any name; a stem has the suffix added.
 std::string existing_path(const std::string& name) {
-  const std::string path = path_of(stem_of(name, kSuffix));
+  const std::string path = path_of(stem_of(name, kTransducerSuffix));
   std::error_code ignored;
   return !std::filesystem::exists(path, ignored) && std::filesystem::is_regular_file(name, ignored) ? name
                                                                                                     : path;
@@ -53,21 +53,22 @@ std::vector<std::string_view> preset_names() {
 
 Result<Transducer> read_transducer(const std::string& name) {
   if (const EmbeddedFile* preset = preset_named(name))
-    return parse_document(preset->text, std::string(preset->name), kKind).map(transducer_of);
+    return parse_document(preset->text, std::string(preset->name), kTransducerKind).map(transducer_of);
   const std::string path = existing_path(name);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     return fail(
         Fault::not_found, "there is no such transducer", name,
         fmt::format("the presets are {}; a file is NAME.transducer.json", fmt::join(preset_names(), ", ")));
-  return open_document(path, kKind).map(transducer_of);
+  return open_document(path, kTransducerKind).map(transducer_of);
 }
 
 Result<void> write_transducer(const std::string& stem, const Transducer& transducer) {
-  const auto text = document_text(kKind, transducer_body(transducer), transducer.extra_json);
+  const auto text = document_text(kTransducerKind, transducer_body(transducer), transducer.extra_json);
   if (!text) return forward_error(text);
   PendingFiles pending;
-  if (const auto written = pending.write(path_of(stem_of(stem, kSuffix)), *text); !written) return written;
+  if (const auto written = pending.write(path_of(stem_of(stem, kTransducerSuffix)), *text); !written)
+    return written;
   return pending.commit();
 }
 

@@ -12,7 +12,7 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::size_t kPieceSamples = 131072;  // 1 MB
+constexpr std::size_t kPageSamples = 131072;  // 1 MB
 
 // 0 for samples that are no integer codes.
 int code_bits(int format) {
@@ -150,7 +150,7 @@ Result<std::vector<double>> read_wav_channel(const std::string& path, std::size_
   if (channel >= channels)
     return fail(Fault::unsuitable, fmt::format("has {} channels, no channel {}", channels, channel + 1),
                 path);
-  std::vector<double> piece(std::max<std::size_t>(kPieceSamples / channels, 1) * channels);
+  std::vector<double> piece(std::max<std::size_t>(kPageSamples / channels, 1) * channels);
   std::vector<double> values;
   for (;;) {
     const auto got = reader->read(std::span(piece));

@@ -15,7 +15,7 @@ using schema::Spectrogram;
 constexpr double kValley_db = 6;
 constexpr double kValleyReach = 4;
 // What lies further under the row's strongest cell may be a side lobe of Blackman's window (-58 dB).
-constexpr double kLeakage_db = 55;
+constexpr double kPointLeakage_db = 55;
 
 double level(double density) {
   return 10 * std::log10(density);
@@ -88,7 +88,7 @@ std::vector<RidgePoint> ridge_points(const Spectrogram& spectrogram, std::size_t
   const RowPeaks peaks(spectrogram, row, known);
   std::vector<RidgePoint> points;
   const std::size_t end = std::min(known.end, spectrogram.bins - 1);
-  const double least = peaks.strongest() * std::pow(10, -kLeakage_db / 10);
+  const double least = peaks.strongest() * std::pow(10, -kPointLeakage_db / 10);
   for (std::size_t bin = std::max<std::size_t>(known.first, 1); bin < end; ++bin) {
     if (!peaks.is_maximum(bin) || peaks.density(bin) < least) continue;
     const auto [offset, level_db] = parabolic_peak(level(peaks.density(bin - 1)), level(peaks.density(bin)),

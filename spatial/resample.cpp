@@ -19,7 +19,7 @@ namespace {
 constexpr double kMostSamples = 1e9;
 // A position that lies on the grid is on it, whatever its rounding. In pitches.
 constexpr double kOnGrid = 1e-6;
-constexpr std::size_t kBlock = 2048;
+constexpr std::size_t kPiece = 2048;
 
 // When the finger was at positions that grow.
 using Times = std::function<void(std::span<const double> way, std::span<double> sample)>;
@@ -73,9 +73,9 @@ Value values_of(ResampleMethod method, std::span<const double> values, std::size
 }
 
 void in_two_steps(const EvenPlaces& places, const Times& times, const Value& value, std::span<double> out) {
-  std::array<double, kBlock> way, sample;
-  for (std::size_t begin = 0; begin < places.count; begin += kBlock) {
-    const std::size_t size = std::min(kBlock, places.count - begin);
+  std::array<double, kPiece> way, sample;
+  for (std::size_t begin = 0; begin < places.count; begin += kPiece) {
+    const std::size_t size = std::min(kPiece, places.count - begin);
     for (std::size_t k = 0; k < size; ++k) way[k] = places.at(begin + k);
     times(std::span(way).first(size), std::span(sample).first(size));
     for (std::size_t k = 0; k < size; ++k) out[begin + k] = value(sample[k]);
@@ -107,17 +107,18 @@ schema::Result<SpaceGrid> grid_along(const MonotonePath& path, int direction, do
   using schema::Fault;
   const auto [low_m, high_m] = std::minmax({direction * path.way_m.front(), direction * path.way_m.back()});
   const double first = std::ceil(low_m / pitch_m - kOnGrid), last = std::floor(high_m / pitch_m + kOnGrid);
-  const auto text = [](double m) { return schema::for_people(m, schema::Dimension::length); };
   if (last - first < 1)
-    return schema::fail(Fault::unsuitable,
-                        fmt::format("the stroke's {} lie between two points of the grid of {}",
-                                    text(high_m - low_m), text(pitch_m)),
-                        {}, "choose a finer --grid");
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("the stroke's {} lie between two points of the grid of {}",
+                    schema::length_for_people(high_m - low_m), schema::length_for_people(pitch_m)),
+        {}, "choose a finer --grid");
   if (last - first >= kMostSamples)
     return schema::fail(
         Fault::unsuitable,
-        fmt::format("a grid of {} on {} is more than 1e9 samples", text(pitch_m), text(high_m - low_m)), {},
-        "choose a coarser --grid");
+        fmt::format("a grid of {} on {} is more than 1e9 samples", schema::length_for_people(pitch_m),
+                    schema::length_for_people(high_m - low_m)),
+        {}, "choose a coarser --grid");
   return SpaceGrid{pitch_m, first, static_cast<std::size_t>(last - first) + 1};
 }
 

@@ -14,9 +14,10 @@ namespace {
 
 using schema::Spectrogram;
 
-constexpr double kGuard = 3.5;  // unpadded bins: half of Blackman's main lobe is 3, and half a lattice step
-constexpr double kReach = 16;   // unpadded bins
-constexpr double kAlong = 1.5;  // windows
+constexpr double kFloorGuard =
+    3.5;  // unpadded bins: half of Blackman's main lobe is 3, and half a lattice step
+constexpr double kFloorReach = 16;   // unpadded bins
+constexpr double kAlong = 1.5;       // windows
 constexpr std::size_t kFewest = 24;  // cells for a median
 constexpr std::size_t kTrendPoints = 64;
 
@@ -96,8 +97,8 @@ void SpectrogramBackground::whiten_row(const Spectrogram& spectrogram, std::size
 double SpectrogramBackground::median_around(std::size_t row, std::size_t bin) {
   const std::size_t along = at_least_one(kAlong * window_rows_);
   const std::size_t stride = at_least_one(window_rows_ / 8);
-  const std::size_t guard = at_least_one(std::ceil(kGuard * unpadded_bin_));
-  const std::size_t reach = at_least_one(kReach * unpadded_bin_);
+  const std::size_t guard = at_least_one(std::ceil(kFloorGuard * unpadded_bin_));
+  const std::size_t reach = at_least_one(kFloorReach * unpadded_bin_);
   cells_.clear();
   const std::size_t first_row = row > along ? row - along : 0;
   for (std::size_t r = first_row; r < std::min(rows_, row + along + 1); r += stride) {

@@ -24,10 +24,6 @@ using schema::Texture;
 // Files hold unit^2 mm: a thousand times the number.
 constexpr float kLargestCell = 3e35F;
 
-std::string length(double metres) {
-  return schema::for_people(metres, schema::Dimension::length);
-}
-
 // Rounded down to three digits, so that the length that is suggested does fit.
 double rounded_down(double length_m) {
   const double digit = std::pow(10.0, std::floor(std::log10(length_m)) - 2);
@@ -55,13 +51,14 @@ Result<void> check_length(const Texture& texture, std::size_t window) {
   const auto& signal = texture.signal;
   if (signal.values.size() >= window) return {};
   const double have_m = static_cast<double>(signal.values.size()) * signal.pitch_m;
-  return schema::fail(Fault::unsuitable,
-                      fmt::format("the texture of {} is shorter than the window of {}", length(have_m),
-                                  length(static_cast<double>(window) * signal.pitch_m)),
-                      "texture",
-                      signal.values.size() < kShortestWindow
-                          ? "it is too short for any window"
-                          : fmt::format("a window of {} would fit", length(rounded_down(have_m))));
+  return schema::fail(
+      Fault::unsuitable,
+      fmt::format("the texture of {} is shorter than the window of {}", schema::length_for_people(have_m),
+                  schema::length_for_people(static_cast<double>(window) * signal.pitch_m)),
+      "texture",
+      signal.values.size() < kShortestWindow
+          ? "it is too short for any window"
+          : fmt::format("a window of {} would fit", schema::length_for_people(rounded_down(have_m))));
 }
 
 Result<void> check_finite(const Texture& texture) {
@@ -77,8 +74,9 @@ Result<void> check_pitch(const Texture& texture, double pitch_m) {
   if (std::abs(texture.signal.pitch_m - pitch_m) <= 1e-9 * pitch_m) return {};
   return schema::fail(
       Fault::unsuitable,
-      fmt::format("has a grid of {}, not {}", length(texture.signal.pitch_m), length(pitch_m)), "texture",
-      "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
+      fmt::format("has a grid of {}, not {}", schema::length_for_people(texture.signal.pitch_m),
+                  schema::length_for_people(pitch_m)),
+      "texture", "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
 }
 
 Result<void> check_cells(std::span<const float> cells) {

@@ -25,20 +25,18 @@ struct Asked {
   std::string least_name;
 };
 
-std::string length(double metres) {
-  return schema::for_people(metres, schema::Dimension::length);
-}
-
 // NaN lies in no range.
 Result<std::size_t> samples_of(const Asked& asked, double pitch_m) {
   const double samples = asked.length_m / pitch_m;
   const auto least = static_cast<double>(asked.least), most = static_cast<double>(kLongestTransform);
   if (samples > least - 0.5 && samples < most + 0.5)
     return std::clamp(static_cast<std::size_t>(std::llround(samples)), asked.least, kLongestTransform);
-  return schema::fail(Fault::usage, fmt::format("{} of {} can't be used", asked.what, length(asked.length_m)),
-                      asked.where,
-                      fmt::format("take {} ({}) to {} (2^24 samples)", length(least * pitch_m),
-                                  asked.least_name, length(most * pitch_m)));
+  return schema::fail(
+      Fault::usage,
+      fmt::format("{} of {} can't be used", asked.what, schema::length_for_people(asked.length_m)),
+      asked.where,
+      fmt::format("take {} ({}) to {} (2^24 samples)", schema::length_for_people(least * pitch_m),
+                  asked.least_name, schema::length_for_people(most * pitch_m)));
 }
 
 // A bin that lies on the limit is kept in spite of rounding.

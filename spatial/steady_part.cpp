@@ -14,7 +14,7 @@ namespace {
 using schema::BandPoint;
 using schema::Texture;
 
-constexpr std::size_t kPlaces = 1000;
+constexpr std::size_t kSpeedPlaces = 1000;
 
 double median_high(const std::vector<BandPoint>& bands) {
   std::vector<double> highs;
@@ -71,11 +71,11 @@ SteadyPart steady_part(const Texture& texture) {
   const double length_m = texture.signal.length_m();
   if (texture.valid_band.empty()) return {0, length_m, texture};
   std::vector<BandPoint> bands;
-  for (std::size_t i = 0; i < kPlaces; ++i)
-    bands.push_back(band_at(texture.valid_band, length_m * static_cast<double>(i) / (kPlaces - 1)));
+  for (std::size_t i = 0; i < kSpeedPlaces; ++i)
+    bands.push_back(band_at(texture.valid_band, length_m * static_cast<double>(i) / (kSpeedPlaces - 1)));
   const auto [first, last] = longest_run(bands, median_high(bands));
-  return cut(texture, length_m * static_cast<double>(first) / (kPlaces - 1),
-             length_m * static_cast<double>(last) / (kPlaces - 1));
+  return cut(texture, length_m * static_cast<double>(first) / (kSpeedPlaces - 1),
+             length_m * static_cast<double>(last) / (kSpeedPlaces - 1));
 }
 
 }  // namespace tacto::spatial

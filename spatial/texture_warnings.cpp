@@ -11,10 +11,6 @@
 namespace tacto::spatial {
 namespace {
 
-std::string length(double m) {
-  return schema::for_people(m, schema::Dimension::length);
-}
-
 // A tenth of the finest encoder's count: so much a position that rests between two even motions is moved.
 constexpr double kNothing_m = 1e-8;
 
@@ -28,8 +24,8 @@ std::vector<std::string> texture_warnings(const schema::Texture& texture) {
     warnings.push_back(fmt::format(
         "positions were moved by up to {} to make them grow; their quantum of {} and noise of {} explain {}: "
         "the finger went back on its way",
-        length(source.position_moved_m), length(error.quantum_m), length(error.noise_m),
-        length(error.explains_m())));
+        schema::length_for_people(source.position_moved_m), schema::length_for_people(error.quantum_m),
+        schema::length_for_people(error.noise_m), schema::length_for_people(error.explains_m())));
   const double highest_per_m = 1 / (2 * texture.signal.pitch_m);
   if (source.mean_speed_mps > 0 && source.filter != "none" && !source.high_per_m &&
       source.high_hz / source.mean_speed_mps > highest_per_m)
@@ -37,7 +33,7 @@ std::vector<std::string> texture_warnings(const schema::Texture& texture) {
         "{:g} Hz at {} are {}, beyond what a grid of {} holds ({}): choose a finer --grid or a lower --high",
         source.high_hz, schema::for_people(source.mean_speed_mps, schema::Dimension::speed),
         schema::for_people(source.high_hz / source.mean_speed_mps, schema::Dimension::spatial_frequency),
-        length(texture.signal.pitch_m),
+        schema::length_for_people(texture.signal.pitch_m),
         schema::for_people(highest_per_m, schema::Dimension::spatial_frequency)));
   if (source.counter_wraps > 0)
     warnings.push_back(fmt::format("the encoder's {}-bit counter ran over {} time{}, and was put right",

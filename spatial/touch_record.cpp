@@ -22,16 +22,12 @@ constexpr double kBackwardQuanta = 4;
 constexpr double kBackwardSigmas = 10;  // the noise of the furthest forward and the furthest back of 1e6
 constexpr double kBackwardOfWay = 0.002;
 // Less is dither, or the creep of a resting finger.
-constexpr double kShortestResolutions = 20;
+constexpr double kShortestTravelResolutions = 20;
 // Half a sample period belongs to its frame: a time that was written with few digits still names it.
 constexpr double kWithinFrame = 0.5;
 
 std::string seconds(double s) {
   return fmt::format("{:.4g} s", s);
-}
-
-std::string millimetres(double m) {
-  return schema::for_people(m, schema::Dimension::length);
 }
 
 }  // namespace
@@ -169,15 +165,17 @@ schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
   const double backward_m = backward_travel(positions, direction);
   const double unseen_m = std::max(kBackwardQuanta * facts_.quantum_m, kBackwardSigmas * facts_.noise_m);
   if (backward_m > std::max(unseen_m, kBackwardOfWay * advance_m))
-    return schema::fail(Fault::unsuitable,
-                        fmt::format("the finger turns round in the stretch, by {}", millimetres(backward_m)),
-                        where_, list_of_strokes());
-  if (advance_m < kShortestResolutions * facts_.resolution_m())
-    return schema::fail(Fault::unsuitable,
-                        fmt::format("the finger all but rests in the stretch: it gets {} far, and its "
-                                    "position is known to {}",
-                                    millimetres(advance_m), millimetres(facts_.resolution_m())),
-                        where_, list_of_strokes());
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("the finger turns round in the stretch, by {}", schema::length_for_people(backward_m)),
+        where_, list_of_strokes());
+  if (advance_m < kShortestTravelResolutions * facts_.resolution_m())
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("the finger all but rests in the stretch: it gets {} far, and its "
+                    "position is known to {}",
+                    schema::length_for_people(advance_m), schema::length_for_people(facts_.resolution_m())),
+        where_, list_of_strokes());
   Stroke stroke{frames, direction, positions.front(), positions.back(), {}, false};
   if (auto done = weigh(stroke); !done) return schema::forward_error(done);
   stroke.finger_up = up_below_n_ && stroke.force_n < *up_below_n_;

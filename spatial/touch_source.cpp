@@ -16,9 +16,9 @@ namespace tacto::spatial {
 namespace {
 
 using schema::Fault;
-using Index = std::optional<std::size_t>;
+using MaybeIndex = std::optional<std::size_t>;
 
-Index channel_of(const schema::RecordingHeader& header, std::string_view quantity) {
+MaybeIndex channel_of(const schema::RecordingHeader& header, std::string_view quantity) {
   const auto found = std::ranges::find(header.channels, quantity, &schema::Channel::quantity);
   if (found == header.channels.end()) return std::nullopt;
   return static_cast<std::size_t>(found - header.channels.begin());
@@ -33,11 +33,11 @@ std::string names_of(const schema::RecordingHeader& header) {
 class RecordingSource : public TouchSource {
  public:
   RecordingSource(schema::RecordingFrames frames, std::vector<schema::Channel> channels,
-                  std::array<Index, 3> indices)
+                  std::array<MaybeIndex, 3> indices)
       : frames_(std::move(frames)), channels_(std::move(channels)), indices_(indices) {}
 
   const schema::Channel* channel(Track track) const override {
-    const Index& index = indices_[static_cast<std::size_t>(track)];
+    const MaybeIndex& index = indices_[static_cast<std::size_t>(track)];
     return index ? &channels_[*index] : nullptr;
   }
   schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) override {
@@ -47,7 +47,7 @@ class RecordingSource : public TouchSource {
  private:
   schema::RecordingFrames frames_;
   std::vector<schema::Channel> channels_;
-  std::array<Index, 3> indices_;  // by Track
+  std::array<MaybeIndex, 3> indices_;  // by Track
 };
 
 }  // namespace
@@ -56,7 +56,7 @@ schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Rec
                                                                const std::string& value) {
   const auto index = schema::find_channel(recording.header, value);
   if (!index) return schema::forward_error(index);
-  const Index position = channel_of(recording.header, "position");
+  const MaybeIndex position = channel_of(recording.header, "position");
   if (!position)
     return schema::fail(
         Fault::unsuitable, fmt::format("has no position channel, only {}", names_of(recording.header)),
@@ -65,7 +65,7 @@ schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Rec
   if (!frames) return schema::forward_error(frames);
   return std::make_unique<RecordingSource>(
       std::move(*frames), recording.header.channels,
-      std::array{position, Index(*index), channel_of(recording.header, "normal_force")});
+      std::array{position, MaybeIndex(*index), channel_of(recording.header, "normal_force")});
 }
 
 }  // namespace tacto::spatial

@@ -8,7 +8,7 @@
 namespace tacto::analysis {
 namespace {
 
-struct Options {
+struct DemoOptions {
   std::string folder = "demo";
 };
 
@@ -28,7 +28,7 @@ cli::Report row_of(const DemoSurface& surface) {
   return row;
 }
 
-schema::Result<cli::Report> demonstrate(const Options& options) {
+schema::Result<cli::Report> demonstrate(const DemoOptions& options) {
   cli::Progress progress("demo");
   const auto summary = run_demo(options.folder, [&](double fraction) { progress.update(fraction); });
   if (!summary) return schema::forward_error(summary);
@@ -41,8 +41,8 @@ schema::Result<cli::Report> demonstrate(const Options& options) {
   return report;
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_demo(CLI::App& app) {
+  auto options = std::make_shared<DemoOptions>();
   app.add_option("-o,--output", options->folder,
                  "Folder to write to; what an earlier demo left there is replaced")
       ->type_name("DIR");
@@ -54,6 +54,6 @@ cli::Action declare(CLI::App& app) {
 const cli::Verb kDemoVerb{
     "demo",
     "Record five emulated surfaces, make textures and pictures, replay them, and write one page about it",
-    "tactograph demo -o demo", declare};
+    "tactograph demo -o demo", declare_demo};
 
 }  // namespace tacto::analysis

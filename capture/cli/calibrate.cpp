@@ -20,7 +20,7 @@ constexpr Way kWays[] = {
     {"encoder", "A known travel", declare_encoder},
 };
 
-cli::Action declare(CLI::App& app) {
+cli::Action declare_calibrate(CLI::App& app) {
   auto actions = std::make_shared<std::vector<std::pair<CLI::App*, cli::Action>>>();
   for (const Way& way : kWays) {
     CLI::App* const one = app.add_subcommand(way.name, way.summary);
@@ -43,6 +43,6 @@ const cli::Verb kCalibrateVerb{
     "  tactograph calibrate force --reference net_force --time 20s\n"
     "  tactograph calibrate encoder --travel 50mm --repeats 6\n"
     "  tactograph calibrate force --channel net_force --mass 0g=empty --mass 100g=loaded@1s..3s",
-    declare};
+    declare_calibrate};
 
 }  // namespace tacto::capture

@@ -18,7 +18,7 @@ namespace {
 using schema::Dimension;
 using schema::Result;
 
-struct Options {
+struct CalibrateEncoderOptions {
   CalibrateOptions common;
   double travel_m = 0, travel_uncertainty_m = 0;
   std::size_t repeats = 3;
@@ -32,7 +32,7 @@ struct Travels {
   double step = 1;
 };
 
-Result<Travels> of_recordings(const Options& options) {
+Result<Travels> of_recordings(const CalibrateEncoderOptions& options) {
   Travels travels;
   for (const std::string& text : options.from) {
     const auto part = parse_recording_part(text);
@@ -55,7 +55,7 @@ void ask_for_end(std::size_t ends) {
   std::fflush(stderr);
 }
 
-Result<Travels> of_device(const Options& options) {
+Result<Travels> of_device(const CalibrateEncoderOptions& options) {
   const auto device = firmware_host::open_device(options.common.device);
   if (!device) return schema::forward_error(device);
   std::size_t ends = 0;
@@ -73,7 +73,7 @@ Result<Travels> of_device(const Options& options) {
   return travels;
 }
 
-Result<cli::Report> run(const Options& options) {
+Result<cli::Report> run_calibrate_encoder(const CalibrateEncoderOptions& options) {
   const auto travels = options.from.empty() ? of_device(options) : of_recordings(options);
   if (!travels) return schema::forward_error(travels);
   const auto found =
@@ -101,7 +101,7 @@ Result<cli::Report> run(const Options& options) {
 }  // namespace
 
 cli::Action declare_encoder(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateEncoderOptions>();
   declare_common(app, options->common);
   cli::add_quantity(app, "--travel", options->travel_m, Dimension::length, "From one mark to the other")
       ->required();
@@ -112,7 +112,7 @@ cli::Action declare_encoder(CLI::App& app) {
   app.add_option("--channel", options->channel, "The encoder's");
   app.add_option("--from", options->from,
                  "Recordings instead of the device: travels from mark to mark, or from beginning to end");
-  return [options] { return run(*options); };
+  return [options] { return run_calibrate_encoder(*options); };
 }
 
 }  // namespace tacto::capture

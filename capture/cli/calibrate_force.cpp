@@ -19,7 +19,7 @@ using schema::Dimension;
 using schema::Fault;
 using schema::Result;
 
-struct Options {
+struct CalibrateForceOptions {
   CalibrateOptions common;
   std::string channel = "normal_force", reference, from;
   std::vector<std::string> masses, releases;
@@ -45,7 +45,7 @@ Result<Mass> parse_mass(const std::string& text, double gravity_mps2) {
   return Mass{*mass_kg * gravity_mps2, words, recording};
 }
 
-Result<Take> take_for(const Mass& mass, const Options& options) {
+Result<Take> take_for(const Mass& mass, const CalibrateForceOptions& options) {
   if (!mass.recording.empty()) {
     const auto part = parse_recording_part(mass.recording);
     return part ? take_from(*part) : schema::forward_error(part);
@@ -86,7 +86,7 @@ struct Weighed {
   std::vector<Weighing> weighings;
 };
 
-Result<Weighed> weigh(const Options& options, double gravity_mps2) {
+Result<Weighed> weigh(const CalibrateForceOptions& options, double gravity_mps2) {
   Weighed weighed;
   for (const std::string& text : options.masses) {
     auto mass = parse_mass(text, gravity_mps2);
@@ -104,7 +104,7 @@ Result<Weighed> weigh(const Options& options, double gravity_mps2) {
   return weighed;
 }
 
-double gravity_uncertainty(const Options& options, const std::vector<std::string>& weights) {
+double gravity_uncertainty(const CalibrateForceOptions& options, const std::vector<std::string>& weights) {
   const auto is_mass = [](const std::string& text) {
     return schema::parse_quantity(text.substr(0, text.find('=')), Dimension::mass).has_value();
   };
@@ -112,7 +112,7 @@ double gravity_uncertainty(const Options& options, const std::vector<std::string
   return matters ? kGravityUncertainty_mps2 / kGravity_mps2 : 0;
 }
 
-Result<cli::Report> by_weights(const Options& options) {
+Result<cli::Report> by_weights(const CalibrateForceOptions& options) {
   const double gravity_mps2 = options.gravity_mps2.value_or(kGravity_mps2);
   const auto weighed = weigh(options, gravity_mps2);
   if (!weighed) return schema::forward_error(weighed);
@@ -134,7 +134,7 @@ Result<cli::Report> by_weights(const Options& options) {
   return kept(std::move(report), options.common, take, {entry});
 }
 
-Result<Take> pull_for(const Options& options) {
+Result<Take> pull_for(const CalibrateForceOptions& options) {
   if (!options.from.empty()) {
     const auto part = parse_recording_part(options.from);
     return part ? take_from(*part) : schema::forward_error(part);
@@ -143,20 +143,20 @@ Result<Take> pull_for(const Options& options) {
   return device ? take_from(**device, options.time_s.value_or(10)) : schema::forward_error(device);
 }
 
-Result<Take> take_of_release(const Mass& mass, const Options& options) {
+Result<Take> take_of_release(const Mass& mass, const CalibrateForceOptions& options) {
   if (mass.recording.empty())
     if (const auto ready = wait_for_enter(
             fmt::format("Hang {} by a thread that pulls along +x; cut it within {:g} s after you", mass.words,
                         options.time_s.value_or(10)));
         !ready)
       return schema::forward_error(ready);
-  Options plain = options;
+  CalibrateForceOptions plain = options;
   plain.from = mass.recording;
   return pull_for(plain);
 }
 
 // The reference's newest scale; without one the device's own, of which nobody knows how good it is.
-Result<Uncertain> scale_of_reference(const Options& options, const Take& take) {
+Result<Uncertain> scale_of_reference(const CalibrateForceOptions& options, const Take& take) {
   const auto index = schema::find_channel(take.header, options.reference);
   if (!index)
     return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
@@ -170,7 +170,7 @@ Result<Uncertain> scale_of_reference(const Options& options, const Take& take) {
   return Uncertain{own_scale, 0};
 }
 
-Result<cli::Report> by_reference(const Options& options) {
+Result<cli::Report> by_reference(const CalibrateForceOptions& options) {
   const auto take = pull_for(options);
   if (!take) return schema::forward_error(take);
   const auto reference = scale_of_reference(options, *take);
@@ -187,7 +187,7 @@ Result<cli::Report> by_reference(const Options& options) {
               {entry_for(channel, "reference " + options.reference, found->scale, found->notes)});
 }
 
-Result<cli::Report> by_releases(const Options& options) {
+Result<cli::Report> by_releases(const CalibrateForceOptions& options) {
   std::vector<Release> releases;
   for (const std::string& text : options.releases) {
     const auto mass = parse_mass(text, options.gravity_mps2.value_or(kGravity_mps2));
@@ -209,7 +209,7 @@ Result<cli::Report> by_releases(const Options& options) {
               {entry_for(channel, "released weight", found->scale, found->notes)});
 }
 
-Result<cli::Report> run(Options options) {
+Result<cli::Report> run_calibrate_force(CalibrateForceOptions options) {
   const int ways = (options.masses.empty() ? 0 : 1) + (options.releases.empty() ? 0 : 1) +
                    (options.reference.empty() ? 0 : 1);
   if (ways != 1)
@@ -223,7 +223,7 @@ Result<cli::Report> run(Options options) {
 }  // namespace
 
 cli::Action declare_force(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateForceOptions>();
   declare_common(app, options->common);
   app.add_option("--mass", options->masses,
                  "A known weight, hung when asked for: 0g, 100g, 0.5N; or one of a recording: "
@@ -243,7 +243,7 @@ cli::Action declare_force(CLI::App& app) {
                     "How long to listen: 3s a weight, 10s a release or against a reference");
   cli::add_quantity(app, "--gravity", options->gravity_mps2, Dimension::acceleration,
                     "Here; 9.80665m/s^2, and 0.15 % of uncertainty for it, unless told");
-  return [options] { return run(*options); };
+  return [options] { return run_calibrate_force(*options); };
 }
 
 }  // namespace tacto::capture

@@ -13,7 +13,7 @@ namespace {
 
 using schema::Result;
 
-struct Options {
+struct CalibrateTareOptions {
   CalibrateOptions common;
   std::string from;
   double time_s = 5;
@@ -37,7 +37,7 @@ cli::Report row_of(const ChannelTare& tare, const schema::Channel& channel) {
   return row.add("mains", mains_words(tare, channel.unit));
 }
 
-Result<Take> take_for(const Options& options) {
+Result<Take> take_for(const CalibrateTareOptions& options) {
   if (!options.from.empty()) {
     const auto part = parse_recording_part(options.from);
     return part ? take_from(*part) : schema::forward_error(part);
@@ -56,7 +56,7 @@ Result<void> check_still(const Tare& tare, bool anyway) {
   return {};
 }
 
-Result<cli::Report> run(const Options& options) {
+Result<cli::Report> run_calibrate_tare(const CalibrateTareOptions& options) {
   const auto take = take_for(options);
   if (!take) return schema::forward_error(take);
   const auto tare = tare_of(*take);
@@ -74,12 +74,12 @@ Result<cli::Report> run(const Options& options) {
 }  // namespace
 
 cli::Action declare_tare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateTareOptions>();
   declare_common(app, options->common);
   app.add_option("--from", options->from, "A recording instead of the device: oak, or oak@1s..3s");
   cli::add_quantity(app, "--time", options->time_s, schema::Dimension::time, "How long to listen");
   app.add_flag("--anyway", options->anyway, "Also where something moves");
-  return [options] { return run(*options); };
+  return [options] { return run_calibrate_tare(*options); };
 }
 
 }  // namespace tacto::capture

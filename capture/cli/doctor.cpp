@@ -9,7 +9,7 @@
 namespace tacto::capture {
 namespace {
 
-struct Options {
+struct DoctorOptions {
   DoctorRequest request;
   std::optional<double> stale_after_s;
 };
@@ -25,7 +25,7 @@ cli::Report row_of(const Check& check) {
   return row.add("what_to_do", check.remedy);
 }
 
-schema::Result<cli::Report> run(const Options& options) {
+schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
   DoctorRequest request = options.request;
   request.stale_after_s = options.stale_after_s.value_or(kStaleAfter_s);
   const Diagnosis diagnosis = examine(request);
@@ -39,8 +39,8 @@ schema::Result<cli::Report> run(const Options& options) {
   return report;
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_doctor(CLI::App& app) {
+  auto options = std::make_shared<DoctorOptions>();
   DoctorRequest& request = options->request;
   app.add_option("-d,--device", request.device, "The device: usb:, usb:serial=XYZ, sim:...");
   app.add_option("-o,--folder", request.folder, "Where recordings are to go");
@@ -52,7 +52,7 @@ cli::Action declare(CLI::App& app) {
   app.footer(
       app.get_footer() +
       "\nExit code 0 where a recording can be made, 7 where the folder or the disk is in the way, else 8.");
-  return [options] { return run(*options); };
+  return [options] { return run_doctor(*options); };
 }
 
 }  // namespace
@@ -61,6 +61,6 @@ const cli::Verb kDoctorVerb{"doctor",
                             "Say what works between you and a recording: device, permission, limits, disk, "
                             "calibration",
                             "tactograph doctor\n  tactograph doctor -d sim:surface=C -o /data/study-3 --json",
-                            declare};
+                            declare_doctor};
 
 }  // namespace tacto::capture

@@ -125,7 +125,7 @@ schema::Result<cli::Report> run_profile(const ImportRequest& request) {
   return report.add("next", fmt::format("tactograph spectrogram {0} -o {0}.png --window 1mm", stem));
 }
 
-schema::Result<cli::Report> run(const ImportRequest& request) {
+schema::Result<cli::Report> run_import(const ImportRequest& request) {
   if (asks_for_profile(request)) return run_profile(request);
   schema::Result<Imported> imported = [&] {
     cli::Progress progress("importing");
@@ -136,11 +136,11 @@ schema::Result<cli::Report> run(const ImportRequest& request) {
   return report_on(*imported, request);
 }
 
-cli::Action declare(CLI::App& app) {
+cli::Action declare_import(CLI::App& app) {
   auto request = std::make_shared<ImportRequest>();
   declare_data(app, *request);
   declare_circumstances(app, *request);
-  return [request] { return run(*request); };
+  return [request] { return run_import(*request); };
 }
 
 }  // namespace
@@ -154,6 +154,6 @@ const cli::Verb kImportVerb{
     "  tactograph import tap.flac -o tap\n"
     "  tactograph import edm.xml -o edm\n"
     "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um",
-    declare};
+    declare_import};
 
 }  // namespace tacto::capture

@@ -51,7 +51,7 @@ cli::Report row_of(const ListedRecording& one) {
   return row.add("created", header.created).add("ended", header.ended);
 }
 
-schema::Result<cli::Report> run(const std::string& folder) {
+schema::Result<cli::Report> run_list(const std::string& folder) {
   const auto list = list_recordings(folder);
   if (!list) return schema::forward_error(list);
   std::vector<cli::Report> rows, troubled;
@@ -67,15 +67,15 @@ schema::Result<cli::Report> run(const std::string& folder) {
   return report;
 }
 
-cli::Action declare(CLI::App& app) {
+cli::Action declare_list(CLI::App& app) {
   auto folder = std::make_shared<std::string>(".");
   app.add_option("FOLDER", *folder, "Where the recordings are");
-  return [folder] { return run(*folder); };
+  return [folder] { return run_list(*folder); };
 }
 
 }  // namespace
 
 const cli::Verb kListVerb{"list", "Table the recordings of a folder by subject, surface and take",
-                          "tactograph list\n  tactograph list study-3 --json", declare};
+                          "tactograph list\n  tactograph list study-3 --json", declare_list};
 
 }  // namespace tacto::capture

@@ -25,7 +25,7 @@ namespace {
 using schema::Dimension;
 using schema::Result;
 
-struct Options {
+struct RecordOptions {
   std::string device = "usb:", pattern;
   RecordRequest request;
   bool allow_gaps = false, no_calibration = false;
@@ -33,7 +33,7 @@ struct Options {
   std::optional<double> stale_after_s;
 };
 
-void declare_options(CLI::App& app, Options& options) {
+void declare_options(CLI::App& app, RecordOptions& options) {
   RecordRequest& request = options.request;
   app.add_option("-d,--device", options.device,
                  "The device: usb:, the only one on USB, unless told; usb:serial=XYZ, or "
@@ -104,7 +104,7 @@ cli::Report report_on(const Recorded& recorded) {
   return report.add("next", "tactograph spatial " + stem + " -o " + stem);
 }
 
-Result<std::string> chosen_name(const Options& options) {
+Result<std::string> chosen_name(const RecordOptions& options) {
   if (options.pattern.empty() && options.request.name.empty())
     return schema::fail(schema::Fault::usage, "the recording has no name", {},
                         "give -o NAME, or --template '{subject}_{surface}_{take}'");
@@ -155,7 +155,7 @@ class Console {
   std::size_t marks_ = 0;
 };
 
-Result<cli::Report> run(const Options& options) {
+Result<cli::Report> run_record(const RecordOptions& options) {
   RecordRequest request = options.request;
   auto name = chosen_name(options);
   if (!name) return schema::forward_error(name);
@@ -183,11 +183,11 @@ Result<cli::Report> run(const Options& options) {
   return report;
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_record(CLI::App& app) {
+  auto options = std::make_shared<RecordOptions>();
   declare_options(app, *options);
   app.footer(app.get_footer() + "\n" + footer_text());
-  return [options] { return run(*options); };
+  return [options] { return run_record(*options); };
 }
 
 }  // namespace
@@ -199,6 +199,6 @@ const cli::Verb kRecordVerb{"record", "Record from a device",
                             "--time 1s -o figure1 --subject S01\n"
                             "  tactograph record -d sim:paced=1,strokes=10 --strokes 5 --template "
                             "'{subject}_{surface}_{take}' --subject S01 --surface oak",
-                            declare};
+                            declare_record};
 
 }  // namespace tacto::capture

@@ -8,7 +8,7 @@
 namespace tacto::capture {
 namespace {
 
-schema::Result<cli::Report> run(const std::string& name) {
+schema::Result<cli::Report> run_recover(const std::string& name) {
   const auto recovered = schema::recover_recording(name);
   if (!recovered) return schema::forward_error(recovered);
   const schema::RecordingHeader& header = recovered->recording.header;
@@ -24,16 +24,16 @@ schema::Result<cli::Report> run(const std::string& name) {
   return report.add("next", "tactograph validate " + stem);
 }
 
-cli::Action declare(CLI::App& app) {
+cli::Action declare_recover(CLI::App& app) {
   auto name = std::make_shared<std::string>();
   app.add_option("FILE", *name, "The recording that was broken off, by its stem or one of its files")
       ->required();
-  return [name] { return run(*name); };
+  return [name] { return run_recover(*name); };
 }
 
 }  // namespace
 
 const cli::Verb kRecoverVerb{"recover", "Make a recording whole that was broken off: crash, kill, power cut",
-                             "tactograph recover oak", declare};
+                             "tactograph recover oak", declare_recover};
 
 }  // namespace tacto::capture

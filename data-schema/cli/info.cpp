@@ -5,7 +5,7 @@
 namespace tacto::schema {
 namespace {
 
-struct Options {
+struct InfoOptions {
   std::vector<std::string> names;
 };
 
@@ -41,7 +41,7 @@ Result<cli::Report> describe_name(const std::string& name) {
   return report;
 }
 
-Result<cli::Report> run(const Options& options) {
+Result<cli::Report> run_info(const InfoOptions& options) {
   if (options.names.size() == 1) return describe_name(options.names.front());
   std::vector<cli::Report> reports;
   for (const std::string& name : options.names) {
@@ -54,18 +54,18 @@ Result<cli::Report> run(const Options& options) {
   return all;
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_info(CLI::App& app) {
+  auto options = std::make_shared<InfoOptions>();
   app.add_option("FILE", options->names,
                  "Recordings, textures, spectrograms, transducers: by stem, in full, or a preset's name")
       ->required();
-  return [options] { return run(*options); };
+  return [options] { return run_info(*options); };
 }
 
 }  // namespace
 
 const cli::Verb kInfoVerb{
     "info", "Say what a file holds: channels, units, ranges, gaps, calibration, where it came from",
-    "tactograph info oak\n  tactograph info oak.texture.json wiertlewski2011 --json", declare};
+    "tactograph info oak\n  tactograph info oak.texture.json wiertlewski2011 --json", declare_info};
 
 }  // namespace tacto::schema

@@ -7,7 +7,7 @@
 namespace tacto::schema {
 namespace {
 
-struct Options {
+struct ValidateOptions {
   std::vector<std::string> names;
 };
 
@@ -41,7 +41,7 @@ Result<void> check_name(const std::string& name, Outcome& outcome) {
   return {};
 }
 
-Result<cli::Report> run(const Options& options) {
+Result<cli::Report> run_validate(const ValidateOptions& options) {
   Outcome outcome;
   for (const std::string& name : options.names)
     if (const auto done = check_name(name, outcome); !done) return forward_error(done);
@@ -52,18 +52,19 @@ Result<cli::Report> run(const Options& options) {
   return report;
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_validate(CLI::App& app) {
+  auto options = std::make_shared<ValidateOptions>();
   app.add_option("FILE", options->names,
                  "Files to check, by stem (all files under it), in full, or a preset's name")
       ->required();
-  return [options] { return run(*options); };
+  return [options] { return run_validate(*options); };
 }
 
 }  // namespace
 
 const cli::Verb kValidateVerb{
     "validate", "Check files against their schema, checksum and samples, and list every fault",
-    "tactograph validate oak\n  tactograph validate oak.texture.json bench.transducer.json", declare};
+    "tactograph validate oak\n  tactograph validate oak.texture.json bench.transducer.json",
+    declare_validate};
 
 }  // namespace tacto::schema

@@ -21,7 +21,7 @@ bool is_real(const FoundDevice& found) {
   return found.uri.starts_with("usb:") && found.uri != "usb:";
 }
 
-schema::Result<cli::Report> run() {
+schema::Result<cli::Report> run_scan() {
   std::vector<cli::Report> rows;
   std::size_t real = 0, ready = 0;
   for (const FoundDevice& found : scan_devices()) {
@@ -35,17 +35,17 @@ schema::Result<cli::Report> run() {
                                        : "tactograph record -o oak");
 }
 
-cli::Action declare(CLI::App& app) {
+cli::Action declare_scan(CLI::App& app) {
   app.footer(
       app.get_footer() +
       "\nDevices on USB are found by their interface, whoever made them, and named by serial or port. A "
       "recording is a device too: replay:FILE, or replay:FILE,paced=1.");
-  return [] { return run(); };
+  return [] { return run_scan(); };
 }
 
 }  // namespace
 
 const cli::Verb kScanVerb{"scan", "List the devices that are there, emulated ones too", "tactograph scan",
-                          declare};
+                          declare_scan};
 
 }  // namespace tacto::firmware_host

@@ -8,7 +8,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-constexpr int kBits = 16;
+constexpr int kLoadCellBits = 16;
 constexpr double kNoiseN = 1.0 / 320;   // ATI Nano17, SI-12-0.12: resolution
 constexpr double kNativeRateHz = 1000;  // ours
 constexpr double kCutoffHz = 200;       // ours: well under half of the native rate
@@ -16,7 +16,7 @@ constexpr double kCutoffHz = 200;       // ours: well under half of the native r
 }  // namespace
 
 LoadCell::LoadCell(double range_n, double sample_rate_hz, bool noise, Random random)
-    : converter_(kBits, range_n),
+    : converter_(kLoadCellBits, range_n),
       random_(random),
       every_(std::max(1, static_cast<int>(std::lround(sample_rate_hz / kNativeRateHz)))),
       native_rate_hz_(sample_rate_hz / every_),

@@ -9,13 +9,13 @@
 namespace tacto::firmware_host {
 namespace {
 
-constexpr int kBits = 16;
+constexpr int kLvdtBits = 16;
 
 }  // namespace
 
 Lvdt::Lvdt(const LvdtParameters& parameters, double centre_m, double start_m, double sample_rate_hz,
            bool noise, Random random)
-    : converter_(kBits, parameters.range_m / 2),
+    : converter_(kLvdtBits, parameters.range_m / 2),
       random_(random),
       centre_m_(centre_m),
       noise_m_(noise ? parameters.noise_m : 0),

@@ -15,9 +15,9 @@ using schema::fail;
 using schema::Fault;
 using schema::Result;
 
-constexpr int kAttempts = 3;
+constexpr int kSendAttempts = 3;
 constexpr double kStepS = 0.1;
-constexpr auto kLongestDrain = std::chrono::seconds(2);
+constexpr auto kLongestFlush = std::chrono::seconds(2);
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void UsbOutflow::gone(libusb_transfer* transfer) {
 
 Result<void> UsbOutflow::write(std::span<const std::uint8_t> bytes, double timeout_s) {
   buffer_.assign(bytes.begin(), bytes.end());
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < kSendAttempts; ++attempt) {
     if (const auto sent = send(timeout_s); !sent) return sent;
     if (sent_whole()) return {};
     if (transfer_->status == LIBUSB_TRANSFER_TIMED_OUT)
@@ -47,7 +47,7 @@ Result<void> UsbOutflow::write(std::span<const std::uint8_t> bytes, double timeo
                   connection_.uri(), "unplug it and plug it in again");
     if (const auto cleared = clear(); !cleared) return cleared;
   }
-  return fail(Fault::device, fmt::format("the device refused what it was sent, {} times", kAttempts),
+  return fail(Fault::device, fmt::format("the device refused what it was sent, {} times", kSendAttempts),
               connection_.uri(), "unplug it and plug it in again");
 }
 
@@ -68,7 +68,7 @@ Result<void> UsbOutflow::send(double timeout_s) {
 Result<void> UsbOutflow::await_end() {
   const auto begun = std::chrono::steady_clock::now();
   for (done_ = 0; under_way_;) {
-    const bool late = std::chrono::steady_clock::now() - begun > kLongestDrain;
+    const bool late = std::chrono::steady_clock::now() - begun > kLongestFlush;
     if (const auto handled = connection_.handle_events(kStepS, done_); !handled) return handled;
     if (late && under_way_) return usb_failure(LIBUSB_ERROR_TIMEOUT, "writing", connection_.uri());
   }

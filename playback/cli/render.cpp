@@ -18,12 +18,12 @@ using schema::Result;
 
 namespace {
 
-struct Options {
+struct RenderVerbOptions {
   std::string texture, path, transducer, drive, displacement, wanted;
   RenderOptions render;
 };
 
-void add_files(CLI::App& app, Options& o) {
+void add_files(CLI::App& app, RenderVerbOptions& o) {
   app.add_option("texture", o.texture, "Texture: its stem, NAME.texture.json or NAME.texture.wav")
       ->required();
   app.add_option("--path", o.path,
@@ -71,7 +71,7 @@ void add_model(CLI::App& app, RenderOptions& o) {
                              "What to do with a drive that passes a limit of the transducer");
 }
 
-std::vector<SignalFile> files_of(const Options& o, const Rendering& rendering) {
+std::vector<SignalFile> files_of(const RenderVerbOptions& o, const Rendering& rendering) {
   std::vector<SignalFile> files{{o.drive, &rendering.drive_v}};
   if (!o.displacement.empty()) files.push_back({o.displacement, &rendering.modelled_m});
   if (!o.wanted.empty()) files.push_back({o.wanted, &rendering.wanted_m});
@@ -101,7 +101,7 @@ void add_way(Report& report, const Rendering& r) {
       .add("reading_rate_hz", r.reading_rate_hz);
 }
 
-Report report_of(const Options& o, const schema::Transducer& transducer, const Rendering& r) {
+Report report_of(const RenderVerbOptions& o, const schema::Transducer& transducer, const Rendering& r) {
   Report report;
   report.add("drive", o.drive).add("transducer", transducer.name).add("duration_s", r.drive_v.duration_s());
   report.add("rate_hz", r.drive_v.sample_rate_hz).add("gain_m_per_n", o.render.gain_m_per_n);
@@ -123,11 +123,11 @@ void warn_of(const Rendering& r) {
 }
 
 // The signals' addresses serve as names only: nothing is rendered yet.
-Result<void> check_outputs(const Options& o) {
+Result<void> check_outputs(const RenderVerbOptions& o) {
   return check_signal_files(files_of(o, Rendering{}));
 }
 
-Result<Rendering> rendered(const Options& o, const schema::Transducer& transducer) {
+Result<Rendering> rendered(const RenderVerbOptions& o, const schema::Transducer& transducer) {
   const auto texture = schema::read_texture(o.texture);
   if (!texture) return schema::forward_error(texture);
   const auto path = read_finger_path(o.path);
@@ -136,7 +136,7 @@ Result<Rendering> rendered(const Options& o, const schema::Transducer& transduce
   return render(*texture, *path, transducer, o.render, [&](double fraction) { progress.update(fraction); });
 }
 
-Result<Report> run(const Options& o) {
+Result<Report> run_render(const RenderVerbOptions& o) {
   if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
   const auto transducer = schema::read_transducer(o.transducer);
   if (!transducer) return schema::forward_error(transducer);
@@ -148,12 +148,12 @@ Result<Report> run(const Options& o) {
   return report_of(o, *transducer, *rendering);
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_render(CLI::App& app) {
+  auto options = std::make_shared<RenderVerbOptions>();
   add_files(app, *options);
   add_quantities(app, options->render);
   add_model(app, options->render);
-  return [options] { return run(*options); };
+  return [options] { return run_render(*options); };
 }
 
 }  // namespace
@@ -161,6 +161,6 @@ cli::Action declare(CLI::App& app) {
 const cli::Verb kRenderVerb{
     "render", "Play a texture along a finger path, offline: the drive for the transducer",
     "tactograph render oak --path path.csv --transducer wiertlewski2011 -o drive.wav --displacement tray.wav",
-    declare};
+    declare_render};
 
 }  // namespace tacto::playback

@@ -23,7 +23,7 @@ using schema::CertifiedPeak;
 using schema::PeakVerdict;
 using schema::Result;
 
-struct Options {
+struct CertifyOptions {
   std::vector<std::string> names;
   CertificateOptions certificate;
   bool dry = false;
@@ -90,7 +90,7 @@ Report report_of(const std::vector<NamedTexture>& files, const std::vector<Certi
   return report;
 }
 
-Result<Report> run(const Options& options) {
+Result<Report> run_certify(const CertifyOptions& options) {
   auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
   if (!options.dry)
@@ -102,8 +102,8 @@ Result<Report> run(const Options& options) {
   return report_of(*files, *certificates, !options.dry);
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_certify(CLI::App& app) {
+  auto options = std::make_shared<CertifyOptions>();
   app.add_option("TEXTURE", options->names,
                  std::string("Two or more of one surface, made at different speeds. ") + kTextureInputs)
       ->required();
@@ -111,7 +111,7 @@ cli::Action declare(CLI::App& app) {
                  "Probability from which on a peak is called, above 0.5 and below 1")
       ->capture_default_str();
   app.add_flag("--dry-run", options->dry, "Only say; store nothing in the textures");
-  return [options] { return run(*options); };
+  return [options] { return run_certify(*options); };
 }
 
 }  // namespace
@@ -119,6 +119,6 @@ cli::Action declare(CLI::App& app) {
 const cli::Verb kCertifyVerb{
     "certify",
     "Tell the surface's peaks from those of time (mains, resonances), by strokes at different speeds",
-    "tactograph certify oak-slow oak-fast", declare};
+    "tactograph certify oak-slow oak-fast", declare_certify};
 
 }  // namespace tacto::spatial

@@ -22,7 +22,7 @@ using cli::Report;
 using schema::Description;
 using schema::Result;
 
-struct Options {
+struct DescribeOptions {
   std::vector<std::string> names;
   std::string output;
   DescriptionOptions description;
@@ -82,7 +82,7 @@ Report report_of(const schema::DescriptionFile& file, const std::string& path) {
   return report;
 }
 
-Result<Report> run(const Options& options) {
+Result<Report> run_describe(const DescribeOptions& options) {
   const auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
   const auto all = described(*files, options.description);
@@ -95,20 +95,20 @@ Result<Report> run(const Options& options) {
   return report_of(*all, where.path);
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_describe(CLI::App& app) {
+  auto options = std::make_shared<DescribeOptions>();
   app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output,
                  "What to write, one row a texture: .csv, .json, or NAME (NAME.descriptions.json)");
   cli::add_quantity(app, "--window", options->description.window_m, schema::Dimension::length,
                     "Window of the spectrum [a quarter of the texture, or 8 of its longest wavelengths]");
-  return [options] { return run(*options); };
+  return [options] { return run_describe(*options); };
 }
 
 }  // namespace
 
 const cli::Verb kDescribeVerb{
     "describe", "Describe textures in numbers: RMS, one-third-octave bands, spectral centroid and slope",
-    "tactograph describe oak pine -o woods.csv", declare};
+    "tactograph describe oak pine -o woods.csv", declare_describe};
 
 }  // namespace tacto::spatial

@@ -24,21 +24,21 @@ using cli::Report;
 using schema::Dimension;
 using schema::Result;
 
-struct Options {
+struct FormantsOptions {
   std::vector<std::string> names;
   std::string output;
   SpectrogramOptions spectrogram;
   FormantOptions formants;
 };
 
-Result<schema::FormantTable> table_of(const NamedTexture& file, const Options& options) {
+Result<schema::FormantTable> table_of(const NamedTexture& file, const FormantsOptions& options) {
   auto spectrogram = spatial_spectrogram(file.texture, options.spectrogram);
   if (!spectrogram) return said_of(file, spectrogram);
   spectrogram->name = file.name;
   return formant_table(*spectrogram, options.formants);
 }
 
-Result<schema::FormantFile> found(const std::vector<NamedTexture>& files, const Options& options) {
+Result<schema::FormantFile> found(const std::vector<NamedTexture>& files, const FormantsOptions& options) {
   schema::FormantFile all;
   cli::Progress progress("formants");
   for (const NamedTexture& file : files) {
@@ -77,7 +77,7 @@ Report report_of(const schema::FormantFile& file, const std::string& path) {
   return report;
 }
 
-Result<Report> run(const Options& options) {
+Result<Report> run_formants(const FormantsOptions& options) {
   const auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
   const auto formants = found(*files, options);
@@ -91,8 +91,8 @@ Result<Report> run(const Options& options) {
   return report_of(*formants, where.path);
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_formants(CLI::App& app) {
+  auto options = std::make_shared<FormantsOptions>();
   app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output, "What to write: NAME (NAME.formants.json), .json or .csv");
   declare_spectrogram(app, options->spectrogram);
@@ -104,13 +104,13 @@ cli::Action declare(CLI::App& app) {
                     "Shortest formant [half a window]");
   cli::add_quantity(app, "--bridge", options->formants.bridge_m, Dimension::length,
                     "Longest gap in a formant [half a window]");
-  return [options] { return run(*options); };
+  return [options] { return run_formants(*options); };
 }
 
 }  // namespace
 
 const cli::Verb kFormantsVerb{
     "formants", "Find a texture's spatial formants: frequency, width, extent and strength",
-    "tactograph formants oak\n  tactograph formants oak pine -o woods --prominence 15dB", declare};
+    "tactograph formants oak\n  tactograph formants oak pine -o woods --prominence 15dB", declare_formants};
 
 }  // namespace tacto::spatial

@@ -27,7 +27,7 @@ using schema::Fault;
 using schema::Result;
 using schema::Spectrogram;
 
-struct Options {
+struct SheetOptions {
   std::vector<std::string> names;
   std::string output, title = "Textures";
   SpectrogramOptions spectrogram;
@@ -41,7 +41,7 @@ struct Drawn {
   std::vector<schema::Formant> formants;
 };
 
-Result<Drawn> drawn(const NamedTexture& file, const Options& options) {
+Result<Drawn> drawn(const NamedTexture& file, const SheetOptions& options) {
   auto spectrogram = spatial_spectrogram(file.texture, options.spectrogram);
   if (!spectrogram) return said_of(file, spectrogram);
   spectrogram->name = file.name;
@@ -53,7 +53,7 @@ Result<Drawn> drawn(const NamedTexture& file, const Options& options) {
   return made;
 }
 
-Result<std::vector<Drawn>> all_drawn(const std::vector<NamedTexture>& files, const Options& options) {
+Result<std::vector<Drawn>> all_drawn(const std::vector<NamedTexture>& files, const SheetOptions& options) {
   std::vector<Drawn> all;
   cli::Progress progress("spectrograms");
   for (const NamedTexture& file : files) {
@@ -75,7 +75,7 @@ std::string page_path(const std::string& output, std::size_t page, std::size_t p
 }
 
 Result<std::vector<std::string>> write_pages(const std::vector<SpectrogramPanel>& panels,
-                                             const SheetScales& scales, const Options& options) {
+                                             const SheetScales& scales, const SheetOptions& options) {
   const std::size_t pages = (panels.size() + kCellsOfAPage - 1) / kCellsOfAPage;
   std::vector<std::string> paths;
   schema::PendingFiles files;
@@ -105,13 +105,13 @@ Report report_of(const std::vector<SpectrogramPanel>& panels, const SheetScales&
   return report;
 }
 
-Result<void> check_options(const Options& options) {
+Result<void> check_options(const SheetOptions& options) {
   if (options.output.ends_with(".png") || options.output.ends_with(".svg")) return {};
   return schema::fail(Fault::usage, "pictures are not written in this format", options.output,
                       "take .png or .svg");
 }
 
-Result<Report> run(const Options& options) {
+Result<Report> run_sheet(const SheetOptions& options) {
   if (auto checked = check_options(options); !checked) return schema::forward_error(checked);
   const auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
@@ -127,8 +127,8 @@ Result<Report> run(const Options& options) {
   return report_of(panels, *scales, *paths);
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_sheet(CLI::App& app) {
+  auto options = std::make_shared<SheetOptions>();
   app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output,
                  "The sheet, .png or .svg; over 24 textures make SHEET-01 and on")
@@ -143,12 +143,12 @@ cli::Action declare(CLI::App& app) {
                     "Lower end of the frequency axis [0.7 of the lowest valid band, else 0.1/mm]");
   cli::add_quantity(app, "--dynamic-range", options->picture.dynamic_range_db, Dimension::level,
                     "Levels from the darkest to the brightest colour");
-  return [options] { return run(*options); };
+  return [options] { return run_sheet(*options); };
 }
 
 }  // namespace
 
 const cli::Verb kSheetVerb{"sheet", "Draw many textures on one page at one scale, for comparison",
-                           "tactograph sheet *.texture.json -o sheet.png", declare};
+                           "tactograph sheet *.texture.json -o sheet.png", declare_sheet};
 
 }  // namespace tacto::spatial

@@ -28,7 +28,7 @@ Result<Report> act_on_one(const SpatialOptions& options) {
   return outcome.report;
 }
 
-cli::Action declare(CLI::App& app) {
+cli::Action declare_spatial(CLI::App& app) {
   const auto options = std::make_shared<SpatialOptions>();
   declare_spatial(app, *options);
   return
@@ -44,6 +44,6 @@ const cli::Verb kSpatialVerb{
     "  tactograph spatial oak --list\n"
     "  tactograph spatial oak --average --align correlation -o oak-mean\n"
     "  tactograph spatial *.json --jobs 2 -o textures/",
-    declare};
+    declare_spatial};
 
 }  // namespace tacto::spatial

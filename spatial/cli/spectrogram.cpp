@@ -25,7 +25,7 @@ using schema::Fault;
 using schema::Result;
 using schema::SpectrogramHeader;
 
-struct Options {
+struct SpectrogramVerbOptions {
   std::vector<std::string> names, outputs;
   SpectrogramOptions spectrogram;
   SpectrogramPictureOptions picture;
@@ -86,7 +86,7 @@ void add_grid(Report& report, const SpectrogramRun& run) {
   if (!decimation.whole_because.empty()) report.add("whole_because", decimation.whole_because);
 }
 
-Report report_of(const SpectrogramRun& run, double lowest_per_m, const Options& options) {
+Report report_of(const SpectrogramRun& run, double lowest_per_m, const SpectrogramVerbOptions& options) {
   const SpectrogramHeader& first = run.first();
   std::vector<Report> rows;
   for (const auto& line : run.lines()) rows.push_back(row_of(line, first, lowest_per_m));
@@ -109,7 +109,7 @@ Report report_of(const SpectrogramRun& run, double lowest_per_m, const Options& 
   return report;
 }
 
-Result<void> check_options(const Options& options) {
+Result<void> check_options(const SpectrogramVerbOptions& options) {
   const auto& lowest = options.picture.min_frequency_per_m;
   if (lowest && !(*lowest > 0 && *lowest < options.spectrogram.max_frequency_per_m))
     return schema::fail(Fault::usage, "the minimum frequency must lie between 0 and the maximum",
@@ -123,7 +123,7 @@ Result<void> check_options(const Options& options) {
   return check_outputs(options.outputs);
 }
 
-Result<Report> run(const Options& options) {
+Result<Report> run_spectrogram(const SpectrogramVerbOptions& options) {
   if (auto checked = check_options(options); !checked) return schema::forward_error(checked);
   auto inputs = TextureInputs::find(options.names, {});
   if (!inputs) return schema::forward_error(inputs);
@@ -164,7 +164,7 @@ void declare_windows(CLI::App& app, SpectrogramOptions& options) {
       "Transform on the coarsest grid that keeps the bins (auto), or on the texture's (whole)");
 }
 
-void declare_options(CLI::App& app, Options& options) {
+void declare_options(CLI::App& app, SpectrogramVerbOptions& options) {
   app.add_option("TEXTURE", options.names, std::string(kTextureInputs) + "; several share one output")
       ->required();
   app.add_option("-o,--output", options.outputs,
@@ -184,10 +184,10 @@ void declare_options(CLI::App& app, Options& options) {
   app.add_flag("--compress", options.compress, "Deflate the cells of a .nc: slower, and hardly smaller");
 }
 
-cli::Action declare(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+cli::Action declare_spectrogram_verb(CLI::App& app) {
+  auto options = std::make_shared<SpectrogramVerbOptions>();
   declare_options(app, *options);
-  return [options] { return run(*options); };
+  return [options] { return run_spectrogram(*options); };
 }
 
 }  // namespace
@@ -196,6 +196,6 @@ const cli::Verb kSpectrogramVerb{
     "spectrogram", "Show a texture's spatial spectrum along its length, as a picture or a file",
     "tactograph spectrogram oak -o oak.png -o oak.nc --window 10mm --max-frequency 15/mm\n"
     "  tactograph spectrogram oak.json -o oak.nc        (a recording: its strokes, one after the other)",
-    declare};
+    declare_spectrogram_verb};
 
 }  // namespace tacto::spatial

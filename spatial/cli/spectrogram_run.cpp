@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "spatial/cli/spectrogram_run.hpp"
+#include "data-schema/quantity.hpp"
 
 #include <fmt/format.h>
 
@@ -16,17 +17,13 @@ using schema::Fault;
 using schema::Result;
 using schema::SpectrogramHeader;
 
-std::string length(double metres) {
-  return schema::for_people(metres, Dimension::length);
-}
-
 void warn_of_odd_options(const SpectrogramOptions& options, double pitch_m) {
   if (options.hop_m > options.window_m)
     cli::warn(
         fmt::format("the hop of {} is longer than the window of {}: what lies between windows is not seen",
-                    length(options.hop_m), length(options.window_m)));
+                    schema::length_for_people(options.hop_m), schema::length_for_people(options.window_m)));
   if (options.max_frequency_per_m > 0.5 / pitch_m)
-    cli::warn(fmt::format("a grid of {} holds no frequencies above {}", length(pitch_m),
+    cli::warn(fmt::format("a grid of {} holds no frequencies above {}", schema::length_for_people(pitch_m),
                           schema::for_people(0.5 / pitch_m, Dimension::spatial_frequency)));
 }
 
@@ -37,7 +34,7 @@ void warn_if_little_is_seen(const NamedTexture& texture, const SpectrogramHeader
     cli::warn(fmt::format(
         "{}: is hardly longer than the window, so the spectrogram covers only {} of {}; a shorter "
         "--window shows more",
-        texture.path, length(seen_m), length(length_m)));
+        texture.path, schema::length_for_people(seen_m), schema::length_for_people(length_m)));
 }
 
 template <class T>
@@ -97,11 +94,11 @@ Result<void> SpectrogramRun::check_alike(const NamedTexture& other) const {
   const double pitch_m = first_->pitch_m;
   const auto& texture = other.texture;
   if (std::abs(texture.signal.pitch_m - pitch_m) > 1e-9 * pitch_m)
-    return schema::fail(Fault::unsuitable,
-                        fmt::format("has a grid of {}, but {} has {}", length(texture.signal.pitch_m),
-                                    first_path_, length(pitch_m)),
-                        other.path,
-                        "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("has a grid of {}, but {} has {}", schema::length_for_people(texture.signal.pitch_m),
+                    first_path_, schema::length_for_people(pitch_m)),
+        other.path, "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
   if (texture.quantity != first_->quantity || texture.unit != first_->unit)
     return schema::fail(
         Fault::unsuitable,

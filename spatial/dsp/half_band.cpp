@@ -25,7 +25,7 @@ double kaiser_taps(double attenuation_db, double width) {
 
 // Four values side by side.
 using Lanes [[gnu::vector_size(32)]] = double;
-constexpr std::size_t kLanes = 4, kTile = 4 * kLanes;
+constexpr std::size_t kHalfBandLanes = 4, kTile = 4 * kHalfBandLanes;
 
 TACTO_SIMD_INLINE void add_pair(Lanes& sum, double tap, const double* before, const double* after) {
   Lanes low, high;
@@ -43,14 +43,14 @@ TACTO_SIMD_INLINE void tile_sum(const double* before, const double* after, const
     const double* low = before - k;
     const double* high = after + k;
     add_pair(sum0, taps[k], low, high);
-    add_pair(sum1, taps[k], low + kLanes, high + kLanes);
-    add_pair(sum2, taps[k], low + 2 * kLanes, high + 2 * kLanes);
-    add_pair(sum3, taps[k], low + 3 * kLanes, high + 3 * kLanes);
+    add_pair(sum1, taps[k], low + kHalfBandLanes, high + kHalfBandLanes);
+    add_pair(sum2, taps[k], low + 2 * kHalfBandLanes, high + 2 * kHalfBandLanes);
+    add_pair(sum3, taps[k], low + 3 * kHalfBandLanes, high + 3 * kHalfBandLanes);
   }
   std::memcpy(out, &sum0, sizeof sum0);
-  std::memcpy(out + kLanes, &sum1, sizeof sum1);
-  std::memcpy(out + 2 * kLanes, &sum2, sizeof sum2);
-  std::memcpy(out + 3 * kLanes, &sum3, sizeof sum3);
+  std::memcpy(out + kHalfBandLanes, &sum1, sizeof sum1);
+  std::memcpy(out + 2 * kHalfBandLanes, &sum2, sizeof sum2);
+  std::memcpy(out + 3 * kHalfBandLanes, &sum3, sizeof sum3);
 }
 
 // The same for n values.

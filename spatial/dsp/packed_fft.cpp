@@ -20,7 +20,7 @@ struct DestroyPlan {
   }
 };
 template <class Real>
-using Plan = std::unique_ptr<std::remove_pointer_t<typename Fftw<Real>::Plan>, DestroyPlan<Real>>;
+using PackedPlan = std::unique_ptr<std::remove_pointer_t<typename Fftw<Real>::Plan>, DestroyPlan<Real>>;
 
 // By an estimated plan in single precision, at the 2e10 operations a second that such plans reach.
 double job_s(std::size_t length, std::size_t expected) {
@@ -79,7 +79,7 @@ struct PackedFft<Real>::State {
 
   std::size_t length;
   AlignedBuffer<Complex> in, out;
-  Plan<Real> plan;
+  PackedPlan<Real> plan;
 };
 
 template <class Real>

@@ -14,7 +14,7 @@ namespace {
 // What runs at once: four sections are enough to keep the processor busy, and few enough for its registers.
 constexpr std::size_t kAtOnce = 4;
 // Longer chains pass over so many values at a time, which stay in the cache.
-constexpr std::size_t kBlock = 2048;
+constexpr std::size_t kSectionBlock = 2048;
 
 double slowest_pole(const Section& s) {
   const double square = s.a1 * s.a1 / 4 - s.a2;
@@ -92,13 +92,13 @@ void SectionChain::settle(double value) {
 }
 
 void SectionChain::run(std::span<double> values) {
-  for (; !values.empty(); values = values.subspan(std::min(kBlock, values.size())))
-    run_chain<1>(sections_, delays_.data(), values.data(), std::min(kBlock, values.size()));
+  for (; !values.empty(); values = values.subspan(std::min(kSectionBlock, values.size())))
+    run_chain<1>(sections_, delays_.data(), values.data(), std::min(kSectionBlock, values.size()));
 }
 
 void SectionChain::run_backwards(std::span<double> values) {
-  for (; !values.empty(); values = values.first(values.size() - std::min(kBlock, values.size())))
-    run_chain<-1>(sections_, delays_.data(), &values.back(), std::min(kBlock, values.size()));
+  for (; !values.empty(); values = values.first(values.size() - std::min(kSectionBlock, values.size())))
+    run_chain<-1>(sections_, delays_.data(), &values.back(), std::min(kSectionBlock, values.size()));
 }
 
 std::size_t SectionChain::memory(double share) const {

@@ -10,9 +10,9 @@ namespace tacto::spatial {
 namespace {
 
 // Sums side by side: one alone would wait for each addition to end before the next.
-constexpr std::size_t kLanes = 8;
+constexpr std::size_t kTrendLanes = 8;
 
-double total(const double (&sums)[kLanes]) {
+double total(const double (&sums)[kTrendLanes]) {
   double sum = 0;
   for (const double each : sums) sum += each;
   return sum;
@@ -21,10 +21,10 @@ double total(const double (&sums)[kLanes]) {
 }  // namespace
 
 double sum_above(std::span<const double> values, double level) {
-  double sums[kLanes] = {};
+  double sums[kTrendLanes] = {};
   std::size_t i = 0;
-  for (; i + kLanes <= values.size(); i += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += values[i + lane] - level;
+  for (; i + kTrendLanes <= values.size(); i += kTrendLanes)
+    for (std::size_t lane = 0; lane < kTrendLanes; ++lane) sums[lane] += values[i + lane] - level;
   for (; i < values.size(); ++i) sums[0] += values[i] - level;
   return total(sums);
 }
@@ -34,7 +34,7 @@ Trend trend_of(std::span<const double> values) {
   const auto count = static_cast<double>(values.size());
   Trend trend;
   trend.mean = values[0] + sum_above(values, values[0]) / count;
-  double moments[kLanes] = {}, largest[kLanes] = {};
+  double moments[kTrendLanes] = {}, largest[kTrendLanes] = {};
   const auto add = [&](std::size_t i, std::size_t lane, double position) {
     const double above = values[i] - trend.mean;
     moments[lane] += position * above;
@@ -42,8 +42,8 @@ Trend trend_of(std::span<const double> values) {
   };
   std::size_t i = 0;
   double position = -0.5 * (count - 1);  // from the middle
-  for (; i + kLanes <= values.size(); i += kLanes, position += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
+  for (; i + kTrendLanes <= values.size(); i += kTrendLanes, position += kTrendLanes)
+    for (std::size_t lane = 0; lane < kTrendLanes; ++lane)
       add(i + lane, lane, position + static_cast<double>(lane));
   for (; i < values.size(); ++i) add(i, 0, position++);
   trend.slope = 12 * total(moments) / (count * (count * count - 1));

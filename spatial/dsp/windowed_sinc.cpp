@@ -12,14 +12,15 @@ namespace tacto::spatial {
 namespace {
 
 // Kaiser's window for -120 dB: 0.1102 (120 - 8.7).
-constexpr double kBeta = 12.265;
+constexpr double kSincBeta = 12.265;
 
 double weight_at(double distance) {
   const double share = distance / static_cast<double>(WindowedSinc::kReach);
   if (std::abs(share) >= 1) return 0;
   const double turn = std::numbers::pi * distance;
   const double sinc = turn == 0 ? 1 : std::sin(turn) / turn;
-  return sinc * std::cyl_bessel_i(0, kBeta * std::sqrt(1 - share * share)) / std::cyl_bessel_i(0, kBeta);
+  return sinc * std::cyl_bessel_i(0, kSincBeta * std::sqrt(1 - share * share)) /
+         std::cyl_bessel_i(0, kSincBeta);
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ using schema::Result;
 
 namespace {
 
-constexpr double kMargin = 14;
-constexpr double kLeft = 66;
+constexpr double kPlotMargin = 14;
+constexpr double kPlotLeft = 66;
 constexpr double kBelow = 40;
 constexpr double kLegend = 18;
 
@@ -54,8 +54,9 @@ Result<Extents> extents_of(const LineFigure& figure) {
 }
 
 Box plot_box(const LineFigure& figure) {
-  const double top = kMargin + kHeadingHeight + kLegend;
-  return {kLeft, top, figure.size.width - kLeft - kMargin - 6, figure.size.height - top - kBelow - 4};
+  const double top = kPlotMargin + kHeadingHeight + kLegend;
+  return {kPlotLeft, top, figure.size.width - kPlotLeft - kPlotMargin - 6,
+          figure.size.height - top - kBelow - 4};
 }
 
 Axis x_axis_of(const LineFigure& figure, const Extent& extent, const Box& box) {
@@ -112,8 +113,8 @@ Result<void> LineFigure::draw(Canvas& canvas) const {
   const Axis y_axis = y_axis_of(extents->y, box);
   const auto x_ticks = ticks_of(x_axis, 10);
   const auto y_ticks = ticks_of(y_axis, rows);
-  draw_heading(canvas, {kMargin, kMargin, size.width - 2 * kMargin, kHeadingHeight}, title, subtitle,
-               simulated);
+  draw_heading(canvas, {kPlotMargin, kPlotMargin, size.width - 2 * kPlotMargin, kHeadingHeight}, title,
+               subtitle, simulated);
   draw_legend(canvas, *this, box);
   draw_grid(canvas, box, false, x_axis, x_ticks);
   draw_grid(canvas, box, true, y_axis, y_ticks);

@@ -22,9 +22,9 @@ namespace {
 
 using schema::Result;
 
-constexpr Colour kTrace{0.16, 0.28, 0.45};
-constexpr Colour kNoWindow{0.93, 0.93, 0.94};
-constexpr std::size_t kLabels = 4;
+constexpr Colour kSheetTrace{0.16, 0.28, 0.45};
+constexpr Colour kSheetNoWindow{0.93, 0.93, 0.94};
+constexpr std::size_t kSheetLabels = 4;
 const TextStyle kName{.size = 11, .bold = true, .align_y = 0};
 const TextStyle kFacts{.size = 8.5, .colour = kGreyInk, .align_y = 0};
 const TextStyle kSimulated{.size = 8.5, .colour = kAlarm, .bold = true, .align_x = 1, .align_y = 0};
@@ -136,7 +136,7 @@ void SheetFigure::draw_trace(Canvas& canvas, std::size_t index) const {
   }
   const Axis axis = upwards(unit.factor * scales_.low_value, unit.factor * scales_.high_value, cell.trace);
   canvas.clip(cell.trace);
-  for (const auto& piece : trace(x, y, positions(index), axis)) canvas.polyline(piece, {kTrace, 0.5});
+  for (const auto& piece : trace(x, y, positions(index), axis)) canvas.polyline(piece, {kSheetTrace, 0.5});
   canvas.release();
   canvas.frame(cell.trace, {});
   draw_axis(canvas, cell.trace, Side::left, axis, ticks_for(axis, 3, cell.leftmost));
@@ -155,10 +155,10 @@ Result<void> SheetFigure::draw_heat(Canvas& canvas, std::size_t index) const {
                               static_cast<int>(std::lround(area.height * kPixelsPerPoint)));
   if (!pixels) return schema::forward_error(pixels);
   const double end = position.place(1e3 * texture->signal.length_m());
-  canvas.fill({cell.heat.x, cell.heat.y, end - cell.heat.x, cell.heat.height}, kNoWindow);
+  canvas.fill({cell.heat.x, cell.heat.y, end - cell.heat.x, cell.heat.height}, kSheetNoWindow);
   canvas.image(area, *pixels);
   if (!texture->valid_band.empty()) draw_valid_band(canvas, area, texture->valid_band, position, frequency);
-  draw_formants(canvas, area, formants, position, frequency, kLabels);
+  draw_formants(canvas, area, formants, position, frequency, kSheetLabels);
   canvas.frame(cell.heat, {});
   draw_axis(canvas, cell.heat, Side::left, frequency, ticks_for(frequency, 5, cell.leftmost));
   draw_axis(canvas, cell.heat, Side::bottom, position, ticks_for(position, 5, cell.lowest));

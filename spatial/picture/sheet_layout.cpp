@@ -9,11 +9,11 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kMargin = 14;
+constexpr double kSheetMargin = 14;
 constexpr double kLeft = 58, kRight = 82, kBottom = 46;  // room for axes and the bar
-constexpr double kTitle = 30, kTrace = 46, kGap = 5, kHeat = 120;
+constexpr double kSheetTitle = 30, kTraceHeight = 46, kGap = 5, kHeat = 120;
 constexpr double kBetweenColumns = 14, kBetweenRows = 12;
-constexpr double kRow = kTitle + kTrace + kGap + kHeat;
+constexpr double kRow = kSheetTitle + kTraceHeight + kGap + kHeat;
 
 // One column of a lone texture is wide; four fit side by side on a page.
 double cell_width(std::size_t columns) {
@@ -36,11 +36,11 @@ SheetLayout::SheetLayout(std::size_t cell_count, std::size_t wanted_columns)
 Size SheetLayout::page() const {
   const auto across = static_cast<double>(columns), down = static_cast<double>(rows);
   return {kLeft + across * cell_width(columns) + (across - 1) * kBetweenColumns + kRight,
-          kMargin + kHeadingHeight + down * kRow + (down - 1) * kBetweenRows + kBottom};
+          kSheetMargin + kHeadingHeight + down * kRow + (down - 1) * kBetweenRows + kBottom};
 }
 
 Box SheetLayout::heading() const {
-  return {kMargin, kMargin, page().width - 2 * kMargin, kHeadingHeight};
+  return {kSheetMargin, kSheetMargin, page().width - 2 * kSheetMargin, kHeadingHeight};
 }
 
 SheetCell SheetLayout::cell(std::size_t index) const {
@@ -48,11 +48,11 @@ SheetCell SheetLayout::cell(std::size_t index) const {
   const auto column = static_cast<double>(index % columns), row = static_cast<double>(rows_above);
   const double width = cell_width(columns);
   const double x = kLeft + column * (width + kBetweenColumns);
-  const double y = kMargin + kHeadingHeight + row * (kRow + kBetweenRows);
+  const double y = kSheetMargin + kHeadingHeight + row * (kRow + kBetweenRows);
   SheetCell cell;
-  cell.title = {x, y, width, kTitle};
-  cell.trace = {x, y + kTitle, width, kTrace};
-  cell.heat = {x, y + kTitle + kTrace + kGap, width, kHeat};
+  cell.title = {x, y, width, kSheetTitle};
+  cell.trace = {x, y + kSheetTitle, width, kTraceHeight};
+  cell.heat = {x, y + kSheetTitle + kTraceHeight + kGap, width, kHeat};
   cell.leftmost = index % columns == 0;
   cell.lowest = index + columns >= cells;
   return cell;
@@ -60,7 +60,8 @@ SheetCell SheetLayout::cell(std::size_t index) const {
 
 Box SheetLayout::bar() const {
   const double top = cell(0).trace.y;
-  const double height = std::min(rows == 1 ? kTrace + kGap + kHeat : 220.0, page().height - top - kBottom);
+  const double height =
+      std::min(rows == 1 ? kTraceHeight + kGap + kHeat : 220.0, page().height - top - kBottom);
   return {page().width - kRight + 14, top, 12, height};
 }
 
