@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -97,8 +98,11 @@ bool is_date(const std::string& text) {
   if (text.size() != kShape.size()) return false;
   for (std::size_t i = 0; i < kShape.size(); ++i)
     if (kShape[i] == 'd' ? text[i] < '0' || text[i] > '9' : text[i] != '-') return false;
-  return text.substr(5, 2) >= "01" && text.substr(5, 2) <= "12" && text.substr(8) >= "01" &&
-         text.substr(8) <= "31";
+  const auto number = [&](std::size_t from, std::size_t size) { return std::stoi(text.substr(from, size)); };
+  const auto month = static_cast<unsigned>(number(5, 2)), day = static_cast<unsigned>(number(8, 2));
+  return std::chrono::year_month_day(std::chrono::year(number(0, 4)), std::chrono::month(month),
+                                     std::chrono::day(day))
+      .ok();
 }
 
 Result<void> check_date(const std::string& text, const std::string& option) {

@@ -50,6 +50,8 @@ Result<void> check(std::span<const double> differences, double travel_m, double 
 Result<TravelScale> scale_by_travel(std::span<const double> differences, double travel_m,
                                     double travel_uncertainty_m, double step) {
   if (const auto sound = check(differences, travel_m, step); !sound) return schema::forward_error(sound);
+  if (!(travel_uncertainty_m >= 0))
+    return schema::fail(Fault::usage, "an uncertainty is zero or more", "--travel-uncertainty");
   const auto count = static_cast<double>(differences.size());
   const double mean = mean_length(differences), spread = scatter(differences, mean) / std::sqrt(count);
   const double ends = step * std::sqrt(2.0 / 12 / count);

@@ -110,7 +110,10 @@ SpeedProfile TextureMaker::profile_of(const Stroke& stroke, const MonotonePath& 
                                       const SpaceGrid& grid) const {
   const double rate_hz = record_.header().sample_rate_hz;
   const auto window = speed_window(record_.facts().resolution_m(), record_.mean_speed_mps(stroke), rate_hz);
-  const LocalSpeed speed(path, rate_hz, static_cast<double>(window));
+  const Band band = options_.filter.passed(rate_hz);
+  const LocalSpeed speed(
+      path, rate_hz,
+      speed_windows(record_.facts().resolution_m(), static_cast<double>(window), band, rate_hz));
   const double length_m = static_cast<double>(grid.count - 1) * grid.pitch_m;
   return speed_profile(speed, grid.origin_m(), length_m, stroke.direction);
 }
@@ -153,9 +156,12 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   const auto [slowest, fastest] = std::ranges::minmax(profile.speed_mps);
   texture.source.min_speed_mps = slowest;
   texture.source.max_speed_mps = fastest;
-  texture.valid_band = valid_band(profile, options_.filter.passed(record_.header().sample_rate_hz));
+  texture.valid_band = valid_band(profile, options_.filter.kept(record_.header().sample_rate_hz));
   narrow(texture.valid_band, 0, 1 / (2 * options_.pitch_m));
-  if (options_.space) narrow(texture.valid_band, options_.space->low_per_m, options_.space->high_per_m);
+  if (options_.space) {
+    const auto [low_per_m, high_per_m] = options_.space->kept(options_.pitch_m);
+    narrow(texture.valid_band, low_per_m, high_per_m);
+  }
   describe(texture, stroke, number);
   return texture;
 }

@@ -30,15 +30,23 @@ schema::Result<void> check(const SpaceFilter& filter, double pitch_m, std::size_
   return {};
 }
 
+// The kernels count in samples: a rate per metre is as good as one per second.
+TimeFilter in_samples(const SpaceFilter& filter) {
+  return {filter.method, {filter.low_per_m, filter.high_per_m}, filter.edges, filter.order};
+}
+
 }  // namespace
+
+schema::KnownBand SpaceFilter::kept(double pitch_m) const {
+  const Band band = in_samples(*this).kept(1 / pitch_m);
+  return {band.low_hz, band.high_hz};
+}
 
 schema::Result<std::vector<double>> filter_in_space(std::span<const double> values, double pitch_m,
                                                     const SpaceFilter& filter) {
-  // The kernels count in samples: a rate per metre is as good as one per second.
-  const TimeFilter same{filter.method, {filter.low_per_m, filter.high_per_m}, filter.edges, filter.order};
   if (filter.method != FilterMethod::none)
     if (const auto fine = check(filter, pitch_m, values.size()); !fine) return schema::forward_error(fine);
-  return filter_in_time(values, 1 / pitch_m, same);
+  return filter_in_time(values, 1 / pitch_m, in_samples(filter));
 }
 
 }  // namespace tacto::spatial

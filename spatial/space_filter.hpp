@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data-schema/error.hpp"
+#include "data-schema/spectrogram.hpp"
 #include "spatial/time_filter.hpp"
 
 namespace tacto::spatial {
@@ -18,6 +19,10 @@ struct SpaceFilter {
   double low_per_m = 0, high_per_m = 0;
   Edges edges = Edges::treated;
   int order = 4;  ///< of the Butterworth filter, before it is run both ways
+
+  /// The part of the band that keeps nine tenths of its amplitude, in 1/m: all of it but with
+  /// FilterMethod::butterworth.
+  schema::KnownBand kept(double pitch_m) const;
 };
 
 /// Values `pitch_m` apart, filtered; as many as there were, in their unit. Errors: unsuitable, for a band

@@ -17,6 +17,11 @@ Band TimeFilter::passed(double sample_rate_hz) const {
   return method == FilterMethod::none ? Band{0, sample_rate_hz / 2} : band;
 }
 
+Band TimeFilter::kept(double sample_rate_hz) const {
+  return method == FilterMethod::butterworth ? zero_phase_band(order, band, sample_rate_hz, kKeptAmplitude)
+                                             : passed(sample_rate_hz);
+}
+
 std::string_view name_of(FilterMethod method) {
   switch (method) {
     case FilterMethod::fourier:

@@ -26,7 +26,13 @@ struct TimeFilter {
 
   /// The band that passes; with FilterMethod::none all up to half the rate.
   Band passed(double sample_rate_hz) const;
+  /// What of it keeps nine tenths of its amplitude: all of it but with FilterMethod::butterworth.
+  Band kept(double sample_rate_hz) const;
 };
+
+/// The amplitude that a Butterworth filter keeps at least, forwards and backwards, where its band is called
+/// valid.
+inline constexpr double kKeptAmplitude = 0.9;
 
 /// "fourier", "butterworth", "none"; "treated", "none".
 std::string_view name_of(FilterMethod method);

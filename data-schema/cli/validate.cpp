@@ -14,6 +14,7 @@ struct ValidateOptions {
 // Every file of every name, checked.
 struct Outcome {
   std::vector<cli::Report> files, faults;
+  Fault worst = Fault::malformed;  // a file that can't be read at all counts for more than one that is faulty
 };
 
 Result<void> check(const StoredFile& file, Outcome& outcome) {
@@ -27,28 +28,28 @@ Result<void> check(const StoredFile& file, Outcome& outcome) {
   return {};
 }
 
-Result<void> check_name(const std::string& name, Outcome& outcome) {
+// A file that can't be read, is no JSON, or no kind of ours, is a fault of the file like any other: the rest
+// is checked all the same.
+void put_unreadable(const std::string& name, const Error& error, Outcome& outcome) {
+  outcome.files.push_back(cli::Report().add("file", name).add("kind", "unknown").add("valid", false));
+  outcome.faults.push_back(cli::Report().add("where", error.where).add("what", error.what));
+  if (error.fault != Fault::malformed) outcome.worst = error.fault;
+}
+
+void check_name(const std::string& name, Outcome& outcome) {
   const auto files = stored_files(name);
-  // A file that is no JSON, or no kind of ours, is a fault of the file like any other.
-  if (!files && files.error().fault == Fault::malformed) {
-    outcome.files.push_back(cli::Report().add("file", name).add("kind", "unknown").add("valid", false));
-    outcome.faults.push_back(cli::Report().add("where", files.error().where).add("what", files.error().what));
-    return {};
-  }
-  if (!files) return forward_error(files);
+  if (!files) return put_unreadable(name, files.error(), outcome);
   for (const StoredFile& file : *files)
-    if (auto done = check(file, outcome); !done) return done;
-  return {};
+    if (const auto done = check(file, outcome); !done) put_unreadable(file.path, done.error(), outcome);
 }
 
 Result<cli::Report> run_validate(const ValidateOptions& options) {
   Outcome outcome;
-  for (const std::string& name : options.names)
-    if (const auto done = check_name(name, outcome); !done) return forward_error(done);
+  for (const std::string& name : options.names) check_name(name, outcome);
   cli::Report report;
   report.add("valid", outcome.faults.empty()).add("files", std::move(outcome.files));
   if (outcome.faults.empty()) return report;
-  report.add("faults", std::move(outcome.faults)).ends_with(Fault::malformed);
+  report.add("faults", std::move(outcome.faults)).ends_with(outcome.worst);
   return report;
 }
 

@@ -85,4 +85,12 @@ schema::Result<std::vector<Section>> butterworth_band_pass(int order, Band band,
   return design(order, prewarped(band, sample_rate_hz));
 }
 
+Band zero_phase_band(int order, Band band, double sample_rate_hz, double amplitude) {
+  const auto [width, centre] = prewarped(band, sample_rate_hz);
+  // The unit low-pass keeps as much up to w; the band-pass where (s^2 + centre^2) / (width s) = i w.
+  const double half = std::pow(1 / amplitude - 1, 0.5 / order) * width / 2, root = std::hypot(half, centre);
+  const auto digital = [&](double analog) { return std::atan(analog) / std::numbers::pi * sample_rate_hz; };
+  return {digital(centre * centre / (half + root)), digital(half + root)};
+}
+
 }  // namespace tacto::spatial

@@ -15,4 +15,8 @@ namespace tacto::spatial {
 /// unsuitable unless 0 < low < high < sample rate / 2.
 schema::Result<std::vector<Section>> butterworth_band_pass(int order, Band band, double sample_rate_hz);
 
+/// The part of the band in which the filter, forwards and backwards, keeps at least `amplitude` (0 to 1):
+/// from |H|^2 = 1 / (1 + w^(2 order)), exact for the digital filter. Precondition: as butterworth_band_pass.
+Band zero_phase_band(int order, Band band, double sample_rate_hz, double amplitude);
+
 }  // namespace tacto::spatial

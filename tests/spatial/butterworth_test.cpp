@@ -61,6 +61,23 @@ TEST(Butterworth, ZeroPhaseHasNoDelayAndTheSquaredGain) {
   for (std::size_t i = 8000; i < 12000; ++i) ASSERT_NEAR(filtered[i], (tone[i] - 7) / 2, 1e-6);
 }
 
+TEST(Butterworth, ZeroPhaseBandIsWhereTheGainSaysSo) {
+  for (const int order : {1, 4, 7})
+    for (const Band band : {Band{15, 500}, Band{1, 4900}, Band{200, 220}}) {
+      const auto sections = butterworth_band_pass(order, band, 10000);
+      const auto amplitude = [&](double hz) {
+        double power = 1;
+        for (const auto& section : *sections) power *= std::norm(section.response(hz, 10000));
+        return power;
+      };
+      const Band kept = zero_phase_band(order, band, 10000, 0.9);
+      EXPECT_NEAR(amplitude(kept.low_hz), 0.9, 1e-6) << order;  // the sections' own rounding near 1 Hz
+      EXPECT_NEAR(amplitude(kept.high_hz), 0.9, 1e-6) << order;
+      EXPECT_GT(kept.low_hz, band.low_hz);
+      EXPECT_LT(kept.high_hz, band.high_hz);
+    }
+}
+
 TEST(Butterworth, ZeroPhaseHoldsToTwelveDigitsInLongDouble) {
   // 60 s at 10 kHz are 600,000 samples; half of them show the same.
   const auto sections = butterworth_band_pass(4, {15, 500}, 10000);

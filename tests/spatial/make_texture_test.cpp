@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <numbers>
 
 #include "spatial/equaliser.hpp"
+#include "spatial/known_band.hpp"
 #include "spatial/valid_band.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
@@ -210,7 +212,13 @@ TEST_F(MakeTexture, ValidBandFollowsTheSpeed) {
   EXPECT_EQ(band.front().position_m, 0);
   EXPECT_EQ(band.back().position_m, texture.signal.length_m());
   for (const auto& point : band) {
-    EXPECT_NEAR(point.high_per_m / point.low_per_m, 500.0 / 15, 1e-9);
+    // Limits kept to 1 % each; where the finger starts and stops, within half a period of 15 Hz, the low one
+    // is higher.
+    EXPECT_LT(point.high_per_m / point.low_per_m, 1.02 * 500 / 15);
+    const bool inside = point.position_m > 2e-3 && point.position_m < texture.signal.length_m() - 2e-3;
+    if (inside) {
+      EXPECT_GT(point.high_per_m / point.low_per_m, 0.98 * 500 / 15);
+    }
     EXPECT_GT(point.high_per_m, 500 / 0.071);
   }
   const auto throughout = band_throughout(band);
@@ -219,12 +227,51 @@ TEST_F(MakeTexture, ValidBandFollowsTheSpeed) {
   EXPECT_NEAR(texture.source.max_speed_mps, 0.07, 0.001);
 }
 
+// Creeps 26.4 ms at 2 mm/s, slips 5 ms at 300 mm/s, and so on along 80 mm: 49 mm/s in the mean.
+std::vector<double> stick_slip_path() {
+  std::vector<double> path(5000, 0.0);
+  for (int i = 0; path.back() < 0.08; ++i)
+    path.push_back(path.back() + (i % 314 < 264 ? 0.002 : 0.3) / kRate_hz);
+  path.insert(path.end(), 5000, path.back());
+  return path;
+}
+
+// The amplitude of a frequency in the texture's middle half.
+double amplitude_of(const schema::Texture& texture, double per_m) {
+  const auto& samples = texture.signal.values;
+  std::complex<double> sum = 0;
+  const std::size_t from = samples.size() / 4, to = 3 * samples.size() / 4;
+  for (std::size_t i = from; i < to; ++i)
+    sum += samples[i] * std::polar(1.0, -kTurn * per_m * static_cast<double>(i) * texture.signal.pitch_m);
+  return 2 * std::abs(sum) / static_cast<double>(to - from);
+}
+
+// What a slip of some milliseconds carries past 500 Hz is lost, however slow the finger is in the mean.
+TEST_F(MakeTexture, ValidBandKnowsWhatSlipsTookAway) {
+  const auto amplitude_at = [&](double per_m, schema::KnownBand& known) {
+    const auto surface = [=](double x) { return 0.2 * std::sin(kTurn * per_m * x); };
+    const auto texture = texture_of(record(stick_slip_path(), surface, 1e-6), {});
+    known = band_along(texture.valid_band, 0.01, 0.07);
+    return amplitude_of(texture, per_m) / 0.2;
+  };
+  schema::KnownBand known;
+  EXPECT_LT(amplitude_at(4000, known), 0.05);
+  EXPECT_LT(amplitude_at(2000, known), 0.2);
+  EXPECT_NEAR(known.high_per_m, 500 / 0.3, 0.02 * 500 / 0.3);
+  EXPECT_NEAR(known.low_per_m, 15 / 0.049,
+              0.3 * 15 / 0.049);  // half a period of 15 Hz holds 33 of the cycle's 31.4 ms
+  // Within its limits a level that jumps from slip to slip comes back to 20 % (measured: 17 %).
+  for (const double per_m : {500.0, 700.0, 1000.0, 1400.0})
+    EXPECT_NEAR(amplitude_at(per_m, known), 1, 0.2) << per_m;
+}
+
 TEST_F(MakeTexture, ValidBandIsTrueToOnePercentBetweenItsPoints) {
   SpeedProfile profile;
   for (int i = 0; i <= 900; ++i) {
     profile.position_m.push_back(i * 1e-4);
     profile.speed_mps.push_back(0.05 + 0.03 * std::sin(i * 0.03));
   }
+  profile.fastest_mps = profile.speed_mps;
   const auto band = valid_band(profile, {15, 500});
   EXPECT_LT(band.size(), 150U);
   std::size_t j = 0;

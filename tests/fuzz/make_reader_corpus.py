@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes the seeds of the readers' corpora. Usage: make_reader_corpus.py TACTOGRAPH"""
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def chunk(name, content):
+    return name + struct.pack("<I", len(content)) + content
+
+
+def wav(tag, bits, samples):
+    width = bits // 8
+    form = chunk(b"fmt ", struct.pack("<HHIIHH", tag, 2, 10000, 20000 * width, 2 * width, bits))
+    body = b"WAVE" + form + chunk(b"data", samples)
+    return b"RIFF" + struct.pack("<I", len(body)) + body
+
+
+def write(corpus, name, content):
+    folder = HERE / "corpus" / corpus
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(content)
+
+
+def write_wavs():
+    write("wav", "float32", wav(3, 32, struct.pack("<8f", *range(8))))
+    write("wav", "pcm32", wav(1, 32, struct.pack("<8i", *range(8))))
+    sizes = chunk(b"ds64", struct.pack("<QQQI", 80, 16, 2, 0))
+    form = chunk(b"fmt ", struct.pack("<HHIIHH", 1, 2, 10000, 80000, 8, 32))
+    data = b"data" + b"\xff" * 4 + bytes(16)
+    write("wav", "rf64", b"RF64" + b"\xff" * 4 + b"WAVE" + sizes + form + data)
+
+
+def write_tables():
+    rows = [(i / 1000, 0.1 * (i % 5), 40 * i) for i in range(40)]
+    lines = "".join(f"{t},{force},{count}\n" for t, force, count in rows)
+    write("table", "csv", b"\0time,force,count\n" + lines.encode())
+    write("table", "times", b"\2" + lines.encode())
+    write("table", "decimal_comma", b"\0" + lines.replace(",", ";").replace(".", ",").encode())
+    values = "".join(f"<DATA_POINT_VALUE>{i % 7}</DATA_POINT_VALUE>" for i in range(20))
+    head = "<DATA><DATAFILE><UNITS>um</UNITS><NUMPOINTS>20</NUMPOINTS><SPACING>0.5</SPACING>"
+    write("table", "xml", b"\1" + f"{head}{values}</DATAFILE></DATA>".encode())
+
+
+def write_sidecars(tactograph):
+    with tempfile.TemporaryDirectory() as folder:
+        for words in ("record -d sim:surface=C,speed=50mm/s,seed=1 --time 1s -o oak", "spatial oak -o oak --stroke 1",
+            "formants oak -o oak --prominence 40dB", "describe oak -o oak.description.json"):
+            subprocess.run([tactograph, *words.split()], cwd=folder, check=True, capture_output=True)
+        for path in sorted(pathlib.Path(folder).glob("*.json")):
+            write("sidecar", path.name.removesuffix(".json"), path.read_bytes())
+        header = json.loads((pathlib.Path(folder) / "oak.json").read_text())
+    gap = {"event": "gap", "frame": 10, "device_sequence": 12, "count": 2}
+    lines = [json.dumps(each) for each in ({"event": "begin", "recording": header}, gap)]
+    write("sidecar", "events", "\n".join(lines).encode() + b"\n")
+
+
+if __name__ == "__main__":
+    write_wavs()
+    write_tables()
+    write_sidecars(str(pathlib.Path(sys.argv[1]).resolve()))
