@@ -55,11 +55,11 @@ def hum_across_three_speeds_is_temporal():
 
 def certify_refuses_what_tells_nothing():
     record("one", 0.05)
-    record("same", 0.05005)
+    record("same", 0.05)
     _, said = tacto.run("certify", "one", code=2)
     assert "two textures or more" in said, said
     _, said = tacto.run("certify", "one", "same", code=5)
-    assert "differ only by a factor of 1.00" in said and "another speed" in said, said
+    assert "differ only by a factor of 1;" in said and "another speed" in said, said
     assert "certificate" not in json.loads(pathlib.Path("one.texture.json").read_text())
 
 
