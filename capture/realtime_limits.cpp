@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capture/realtime_limits.hpp"
 
-#include <pthread.h>
-#include <sched.h>
 #include <sys/resource.h>
 
 #include <fstream>
 #include <thread>
+
+#include "firmware-host/realtime_priority.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -27,10 +27,7 @@ std::optional<double> runtime_part(const std::string& root) {
 // In a thread of its own: this one stays what it is.
 bool is_granted() {
   bool granted = false;
-  std::thread([&] {
-    const sched_param lowest{sched_get_priority_min(SCHED_FIFO)};
-    granted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &lowest) == 0;
-  }).join();
+  std::thread([&] { granted = firmware_host::RealtimePriority().granted(); }).join();
   return granted;
 }
 

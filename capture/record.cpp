@@ -14,6 +14,7 @@
 #include "capture/record_header.hpp"
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
+#include "firmware-host/realtime_priority.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -69,6 +70,7 @@ class Capture {
   Result<Recorded> finish(schema::LiveRecording& live);
 
  private:
+  void take_all();
   bool goes_on() const;
   void take_block();
   void take_events(FrameBlock& block);
@@ -147,11 +149,19 @@ void Capture::tell() {
 }
 
 void Capture::run() {
+  take_all();
+  writer_.end();
+}
+
+// Ahead of others' work, so that the link's buffer is emptied in time; a source that never makes us wait
+// would leave them nothing.
+void Capture::take_all() {
+  std::optional<firmware_host::RealtimePriority> priority;
+  if (device_.keeps_time()) priority.emplace();
   while (goes_on()) {
     take_block();
     tell();
   }
-  writer_.end();
 }
 
 Result<Recorded> Capture::finish(schema::LiveRecording& live) {

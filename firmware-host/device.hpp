@@ -80,6 +80,8 @@ class Device {
   /// Ends the stream. Errors: device.
   virtual schema::Result<void> stop() = 0;
   virtual StreamCounts counts() const = 0;
+  /// Whether frames come by the clock on the wall, and are lost where nobody takes them.
+  virtual bool keeps_time() const { return true; }
   /// What has happened since the last call, or start().
   virtual StreamEvents take_events() { return {}; }
   /// One question and its answer, by the clock on the wall; not while streaming. Errors: device: no answer;

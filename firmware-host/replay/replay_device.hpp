@@ -21,6 +21,7 @@ class ReplayDevice final : public Device {
   schema::Result<void> start() override;
   schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) override;
   schema::Result<void> stop() override;
+  bool keeps_time() const override { return paced_; }
   StreamCounts counts() const override { return counts_; }
   StreamEvents take_events() override;
 

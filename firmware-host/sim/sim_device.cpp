@@ -16,7 +16,7 @@ Result<std::unique_ptr<SimDevice>> SimDevice::open(std::string uri, const SimPar
   auto wire = WireDevice::open(
       std::move(uri), std::make_unique<SimTransport>(*board, parameters.paced, parameters.link_buffer_s));
   if (!wire) return schema::forward_error(wire);
-  return std::unique_ptr<SimDevice>(new SimDevice(std::move(board), std::move(*wire)));
+  return std::unique_ptr<SimDevice>(new SimDevice(std::move(board), std::move(*wire), parameters.paced));
 }
 
 // On the wire it is a converter that failed; here it is known why.

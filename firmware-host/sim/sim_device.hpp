@@ -25,17 +25,19 @@ class SimDevice final : public Device {
   schema::Result<void> stop() override { return wire_->stop(); }
   StreamCounts counts() const override { return wire_->counts(); }
   StreamEvents take_events() override { return wire_->take_events(); }
+  bool keeps_time() const override { return paced_; }
   schema::Result<double> round_trip_s() override { return wire_->round_trip_s(); }
 
   Client& client() { return wire_->client(); }
   SimBoard& board() { return *board_; }
 
  private:
-  SimDevice(std::unique_ptr<SimBoard> board, std::unique_ptr<WireDevice> wire)
-      : board_(std::move(board)), wire_(std::move(wire)) {}
+  SimDevice(std::unique_ptr<SimBoard> board, std::unique_ptr<WireDevice> wire, bool paced)
+      : board_(std::move(board)), wire_(std::move(wire)), paced_(paced) {}
 
   std::unique_ptr<SimBoard> board_;
   std::unique_ptr<WireDevice> wire_;
+  bool paced_;
 };
 
 /// `parameters` is what follows "sim:". Errors: as parse_sim_parameters, make_surface, read_transducer.

@@ -69,7 +69,8 @@ Report report_of(const schema::FormantFile& file, const std::string& path) {
     for (const auto& formant : table.formants) rows.push_back(row_of(table, formant));
   const auto& first = file.tables.front();
   Report report;
-  report.add("textures", file.tables.size()).add("found", rows.size()).add("formants", std::move(rows));
+  report.add("textures", file.tables.size()).add("found", rows.size());
+  report.add("formants", std::move(rows));
   report.add("level_reference", first.level_reference).add("window_m", first.window_m);
   report.add("resolution_per_m", first.resolution_per_m);
   if (!path.empty()) report.add("file", path);
