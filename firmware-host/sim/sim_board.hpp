@@ -2,6 +2,7 @@
 // The emulated device's board: the firmware's own core, with physics behind its hardware layer.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -33,6 +34,9 @@ class SimBoard {
   std::vector<std::uint8_t>& from_host() { return from_host_; }
   std::vector<std::uint8_t>& to_host() { return to_host_; }
   void set_enabled(bool enabled) { enabled_ = enabled; }
+  /// From the next time the rate is set, the encoder goes where this says (m, against seconds since then),
+  /// and there is no other physics of the finger: channels that are no encoder's read zero.
+  void set_script(std::function<double(double time_s)> position_m) { script_ = std::move(position_m); }
   /// Bytes to the host that the link holds; what does not fit stays in the firmware's ring, as long as that
   /// has room.
   void set_link_bytes(std::size_t bytes) { link_bytes_ = bytes; }
@@ -59,6 +63,7 @@ class SimBoard {
   SimParameters parameters_;
   schema::Transducer transducer_;
   HeightProfile profile_;
+  std::function<double(double)> script_;
   std::vector<wire::Channel> channels_;
   std::vector<wire::Note> notes_;
   std::vector<float> texture_;

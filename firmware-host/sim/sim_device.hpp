@@ -27,6 +27,7 @@ class SimDevice final : public Device {
   StreamEvents take_events() override { return wire_->take_events(); }
   schema::Result<double> round_trip_s() override { return wire_->round_trip_s(); }
 
+  Client* conversation() override { return &wire_->client(); }
   Client& client() { return wire_->client(); }
   SimBoard& board() { return *board_; }
 
