@@ -3,6 +3,7 @@
 #pragma once
 
 #include "firmware-host/core/profile.hpp"
+#include "firmware-host/core/wire/host_messages.hpp"
 
 namespace tacto::core {
 

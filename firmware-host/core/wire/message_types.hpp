@@ -50,6 +50,9 @@ enum class DriveSource : uint8_t { profile = 0, host = 1, sweep = 2 };
 /// What lies beyond a profile's ends.
 enum class ProfileEnds : uint8_t { stop = 0, loop = 1, mirror = 2 };
 
+/// How a profile is read between its samples.
+enum class Interpolation : uint8_t { nearest = 0, linear = 1, hermite = 2, sinc = 3 };
+
 /// A device's answer to a command.
 enum class AnswerCode : uint8_t {
   ok = 0,
@@ -86,6 +89,8 @@ enum TickFlag : uint32_t {
   kTickAmplitudeLimited = 8,  ///< the drive was held to its limit
   kTickSlewLimited = 16,
   kTickLate = 32,  ///< it began more than half a period late
+  kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
+  kTickGated = 128,         ///< the finger does not touch: the drive falls
 };
 
 inline constexpr size_t kMaxChannels = 16;
@@ -94,5 +99,7 @@ inline constexpr size_t kMaxBlockCodes = kMaxChannels * kMaxBlockFrames;
 inline constexpr size_t kMaxBlockTicks = 64;
 inline constexpr size_t kMaxChunk = 512;  ///< floats of a profile's or drive's chunk
 inline constexpr size_t kMaxSections = 16;
+inline constexpr size_t kMaxLevels = 16;  ///< of a profile's pyramid
+inline constexpr size_t kMaxTaps = 128;   ///< of the finite filter; a multiple of 4
 
 }  // namespace tacto::wire

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the finger is between the encoder's counts, and how fast it goes.
+#pragma once
+
+#include <stdint.h>
+
+namespace tacto::core {
+
+/// In counts and ticks. `count` stands for the stretch from count to count + 1.
+struct FingerPlace {
+  int32_t count = 0;
+  float offset = 0;           ///< from count on: 0 to 1, before looking ahead
+  float counts_per_tick = 0;  ///< signed
+};
+
+struct TrackerSetup {
+  bool between_counts = false;  ///< or the count alone is the place (its middle is not looked for)
+  float look_ahead_ticks = 0;   ///< the place is where the finger will be: + counts_per_tick x this
+  float smoothing_ticks = 100;  ///< over which speed is averaged where counts come every tick
+};
+
+/// Times the edges: an edge is known to lie at a count's border, within the last tick; between edges the
+/// finger goes on at its speed, but never leaves the count that the encoder shows. An alpha-beta filter whose
+/// gains begin with those of a straight line through what was seen (2 (2 n + 1) / ((n + 1) (n + 2)), 6 / ((n
+/// + 1) (n + 2))) and settle at alpha, beta = alpha^2 / (2 - alpha); it begins again where the finger turns,
+/// or is off by more than a count and a half. An edge that is overdue bounds the speed by 1 / (ticks since
+/// the last one): a finger that stops comes to rest. Safe in the tick.
+class FingerTracker {
+ public:
+  void set(const TrackerSetup& setup) noexcept {
+    setup_ = setup;
+    begun_ = false;
+  }
+  /// The place at this tick; with looking ahead, the place of then: offset may then be any number of counts.
+  FingerPlace track(int32_t count) noexcept;
+  /// |counts_per_tick|, as of the last track().
+  float speed() const noexcept { return speed_ < 0 ? -speed_ : speed_; }
+
+ private:
+  void begin(int32_t count) noexcept;
+  void see(int32_t moved) noexcept;
+  void turn(int32_t moved) noexcept;
+  void correct(float miss, float since) noexcept;
+  void stay() noexcept;
+
+  TrackerSetup setup_;
+  bool begun_ = false;
+  int32_t count_ = 0;
+  float offset_ = 0, speed_ = 0;  // from count_; counts a tick
+  float since_ = 0;               // ticks since the last edge
+  int32_t seen_ = 0;              // edges since it began again
+};
+
+}  // namespace tacto::core
