@@ -93,6 +93,8 @@ std::string_view word_of(MessageType type) {
       {MessageType::drive, "drive"},
       {MessageType::heartbeat, "heartbeat"},
       {MessageType::reset, "reset"},
+      {MessageType::texture, "texture"},
+      {MessageType::taps, "taps"},
   };
   for (const auto& [key, word] : kWords)
     if (key == type) return word;

@@ -63,10 +63,13 @@ class Firmware {
   Reply stream_start(const wire::StreamStart& message) noexcept;
   Reply stream_stop() noexcept;
   Reply limits(const wire::Limits& message) noexcept;
-  Reply profile_begin(const wire::ProfileBegin& message) noexcept { return upload_.begin(message); }
+  Reply profile_begin(const wire::ProfileBegin& message) noexcept { return upload_.begin(message, texture_); }
   Reply profile_chunk(const wire::ProfileChunk& message) noexcept { return upload_.chunk(message); }
   Reply profile_end(const wire::ProfileEnd& message) noexcept { return upload_.end(message); }
   Reply filters(const wire::Filters& message) noexcept;
+  Reply texture(const wire::Texture& message) noexcept;
+  Reply taps(const wire::Taps& message) noexcept;
+  KernelSetup kernel_setup() const noexcept;
   Reply gain(const wire::Gain& message) noexcept;
   Reply sweep(const wire::Sweep& message) noexcept;
   Reply arm(const wire::Arm& message) noexcept;
@@ -87,6 +90,8 @@ class Firmware {
   wire::SequenceCheck order_;
   wire::Limits limits_;
   wire::Filters filters_;
+  wire::Texture texture_;
+  wire::Taps taps_;
   wire::Sweep sweep_;
   wire::ProfileChunk chunk_;  // members, not locals: small cores have small stacks
   wire::Drive drive_;

@@ -15,6 +15,8 @@ constexpr float kLongestOnsetS = 10;
 constexpr uint16_t kLeastWatchdogMs = 10, kMostWatchdogMs = 1000;
 constexpr uint32_t kTickBlockPart = 100000;  // mHz: a ticks message every 10 ms
 constexpr uint32_t kNotGreeted = 255;
+constexpr float kMostTicksAhead = 1000, kMostSmoothing = 100000;
+constexpr float kMostWindowS = 1000, kMostCountsPerTick = 1e6F;
 
 Reply bad_value(uint32_t field) noexcept {
   return {AnswerCode::bad_value, field};
@@ -38,6 +40,7 @@ void Firmware::greet(const wire::Frame& frame) noexcept {
   samples_.clear();
   ticks_.clear();
   greeted_ = hello.major == wire::kProtocolMajor;
+  if (idle()) texture_ = {}, taps_ = {};  // a host of version 1.0 knows nothing of them
   nonce_ = hello.nonce;
   sequence_ = 0;
   described_ = 0;
@@ -109,6 +112,8 @@ Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
   wire::ProfileEnd end;
   wire::Limits new_limits;
   wire::Filters new_filters;
+  wire::Texture new_texture;
+  wire::Taps new_taps;
   wire::Sweep new_sweep;
   wire::Arm new_arm;
   switch (static_cast<MessageType>(frame.header.type)) {
@@ -122,6 +127,10 @@ Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
       return in_idle(frame, end, &Firmware::profile_end);
     case MessageType::filters:
       return in_idle(frame, new_filters, &Firmware::filters);
+    case MessageType::texture:
+      return in_idle(frame, new_texture, &Firmware::texture);
+    case MessageType::taps:
+      return in_idle(frame, new_taps, &Firmware::taps);
     case MessageType::sweep:
       return in_idle(frame, new_sweep, &Firmware::sweep);
     case MessageType::arm:
@@ -182,6 +191,28 @@ Reply Firmware::filters(const wire::Filters& message) noexcept {
   return {};
 }
 
+// What was uploaded under other settings is forgotten.
+Reply Firmware::texture(const wire::Texture& message) noexcept {
+  if (message.levels < 1 || message.levels > wire::kMaxLevels) return bad_value(0);
+  if (message.interpolation > wire::Interpolation::sinc) return bad_value(1);
+  if (message.between_counts > 1) return bad_value(2);
+  if (!within(message.look_ahead_ticks, 0, kMostTicksAhead)) return bad_value(4);
+  if (!within(message.smoothing_ticks, 1, kMostSmoothing)) return bad_value(5);
+  if (!within(message.full_detail_counts_per_tick, 0, kMostCountsPerTick)) return bad_value(6);
+  if (!within(message.energy_rms_v, 0, board_.about.drive_limit_v)) return bad_value(7);
+  if (!within(message.energy_window_s, 0, kMostWindowS)) return bad_value(8);
+  texture_ = message;
+  upload_.forget();
+  return {};
+}
+
+Reply Firmware::taps(const wire::Taps& message) noexcept {
+  for (uint8_t i = 0; i < message.count; ++i)
+    if (!is_finite(message.taps[i])) return bad_value(i);
+  taps_ = message;
+  return {};
+}
+
 Reply Firmware::gain(const wire::Gain& message) noexcept {
   if (!is_finite(message.gain)) return bad_value(0);
   ticker_.set_gain(message.gain);
@@ -207,16 +238,31 @@ Reply Firmware::ready(const wire::Arm& message) noexcept {
   return {};
 }
 
+KernelSetup Firmware::kernel_setup() const noexcept {
+  KernelSetup setup;
+  setup.texture = {upload_.profile(),
+                   {texture_.between_counts != 0, texture_.look_ahead_ticks, texture_.smoothing_ticks},
+                   texture_.full_detail_counts_per_tick};
+  setup.taps = taps_.taps;
+  setup.tap_count = taps_.count;
+  setup.sections = filters_.sections;
+  setup.section_count = filters_.count;
+  setup.energy_rms_v = texture_.energy_rms_v;
+  setup.energy_window_s = texture_.energy_window_s;
+  return setup;
+}
+
 Reply Firmware::arm(const wire::Arm& message) noexcept {
   Reply reply = ready(message);
   if (reply.code == AnswerCode::ok) reply = take_rate(message.rate_millihertz);
   if (reply.code != AnswerCode::ok) return reply;
-  const bool profile = message.source == DriveSource::profile;
-  if (profile) ticker_.kernel().set_profile(upload_.profile());
-  ticker_.kernel().sections().set(filters_.sections, profile ? filters_.count : uint8_t{0});
+  KernelSetup setup;
+  if (message.source == DriveSource::profile) setup = kernel_setup();
+  setup.limits = limits_;
+  setup.rate_hz = 1e-3F * static_cast<float>(message.rate_millihertz);
   ticks_.begin(ticks_in_block(message.rate_millihertz));
   told_ = wire::FaultCode::none;
-  ticker_.arm(message.source, limits_, message.rate_millihertz);
+  ticker_.arm(message.source, setup, message.rate_millihertz);
   return {};
 }
 
@@ -227,16 +273,19 @@ Reply Firmware::play() noexcept {
       (state == DriveState::armed || state == DriveState::playing) && supervisor.aim() != Aim::off;
   if (!may) return {AnswerCode::wrong_state, static_cast<uint32_t>(state)};
   supervisor.aim(Aim::play);
+  ticker_.steered();
   return {};
 }
 
 Reply Firmware::stop() noexcept {
   if (ticker_.supervisor().aim() == Aim::play) ticker_.supervisor().aim(Aim::hold);
+  ticker_.steered();
   return {};
 }
 
 Reply Firmware::disarm() noexcept {
   ticker_.supervisor().aim(Aim::off);
+  ticker_.steered();
   return {};
 }
 

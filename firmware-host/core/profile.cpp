@@ -4,6 +4,7 @@
 namespace tacto::core {
 namespace {
 
+constexpr float kMostOffset = 1 << 20;
 constexpr int32_t kFarthestSample = INT32_C(1) << 29;
 constexpr float kPerFraction = 1.0F / (1 << 24);
 constexpr float kFractions = 1 << 24;
@@ -79,6 +80,7 @@ float Profile::read(uint32_t which, int64_t place) const noexcept {
 bool Profile::place_of(int32_t count, float offset, int64_t& place) const noexcept {
   const int64_t away = static_cast<int64_t>(count) - scale_.origin_count;
   if (away > reach_ || away < -reach_) return false;
+  if (!(offset > -kMostOffset && offset < kMostOffset)) return false;
   place = away * static_cast<int64_t>(scale_.samples_per_count_q32) + scale_.at_origin_q32;
   if (offset != 0) place += stretch(scale_.samples_per_count_q32, offset);
   return true;

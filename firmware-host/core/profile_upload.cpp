@@ -24,20 +24,26 @@ bool sound(const wire::ProfileBegin& message, uint32_t& field) noexcept {
 
 }  // namespace
 
-Reply ProfileUpload::begin(const wire::ProfileBegin& message) noexcept {
+Reply ProfileUpload::begin(const wire::ProfileBegin& message, const wire::Texture& texture) noexcept {
   forget();
   uint32_t field = 0;
   if (message.samples > capacity_) return {AnswerCode::too_large, capacity_};
   if (message.samples < kLeastProfile) return {AnswerCode::bad_value, 0};
   if (!sound(message, field)) return {AnswerCode::bad_value, field};
-  scale_ = {message.samples, message.origin_count, message.at_origin_q32, message.samples_per_count_q32,
-            message.ends};
+  const ProfileScale scale{
+      message.samples, message.origin_count, message.at_origin_q32, message.samples_per_count_q32,
+      message.ends,    texture.levels,       texture.interpolation};
+  if (level_samples(scale, static_cast<uint8_t>(scale.levels - 1)) < kLeastProfile)
+    return {AnswerCode::bad_value, 0};
+  if (pyramid_samples(scale) > capacity_) return {AnswerCode::too_large, capacity_};
+  scale_ = scale;
+  total_ = pyramid_samples(scale);
   return {};
 }
 
 Reply ProfileUpload::chunk(const wire::ProfileChunk& message) noexcept {
   if (message.first > here_) return {AnswerCode::incomplete, here_};
-  if (message.count > scale_.samples - message.first) return {AnswerCode::too_large, scale_.samples};
+  if (message.count > total_ - message.first) return {AnswerCode::too_large, total_};
   complete_ = false;
   for (uint32_t i = 0; i < message.count; ++i) {
     if (!is_finite(message.values[i])) return {AnswerCode::bad_value, message.first + i};
@@ -50,7 +56,7 @@ Reply ProfileUpload::chunk(const wire::ProfileChunk& message) noexcept {
 
 uint32_t ProfileUpload::check() const noexcept {
   uint32_t check = 0;
-  for (uint32_t i = 0; i < scale_.samples; ++i) {
+  for (uint32_t i = 0; i < total_; ++i) {
     uint8_t bytes[4];
     wire::FieldWriter(bytes, sizeof bytes)(memory_[i]);
     check = wire::crc32c(bytes, sizeof bytes, check);
@@ -59,7 +65,7 @@ uint32_t ProfileUpload::check() const noexcept {
 }
 
 Reply ProfileUpload::end(const wire::ProfileEnd& message) noexcept {
-  if (scale_.samples == 0 || here_ < scale_.samples) return {AnswerCode::incomplete, here_};
+  if (total_ == 0 || here_ < total_) return {AnswerCode::incomplete, here_};
   const uint32_t is = check();
   complete_ = is == message.check;
   return complete_ ? Reply{} : Reply{AnswerCode::check_failed, is};

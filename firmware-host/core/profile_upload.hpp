@@ -21,10 +21,11 @@ class ProfileUpload {
  public:
   ProfileUpload(float* memory, uint32_t capacity) noexcept : memory_(memory), capacity_(capacity) {}
 
-  Reply begin(const wire::ProfileBegin& message) noexcept;
+  /// `texture` says how many levels there are, and how they are read.
+  Reply begin(const wire::ProfileBegin& message, const wire::Texture& texture) noexcept;
   Reply chunk(const wire::ProfileChunk& message) noexcept;
   Reply end(const wire::ProfileEnd& message) noexcept;
-  void forget() noexcept { complete_ = false, scale_ = {}, here_ = 0; }
+  void forget() noexcept { complete_ = false, scale_ = {}, total_ = here_ = 0; }
 
   bool complete() const noexcept { return complete_; }
   uint32_t here() const noexcept { return here_; }
@@ -37,7 +38,7 @@ class ProfileUpload {
   float* memory_;
   uint32_t capacity_;
   ProfileScale scale_;
-  uint32_t here_ = 0;
+  uint32_t total_ = 0, here_ = 0;  // samples of all levels
   bool complete_ = false;
 };
 

@@ -16,12 +16,15 @@ uint8_t Ticker::start_stream() noexcept {
   return run_.load();
 }
 
-void Ticker::arm(DriveSource source, const wire::Limits& limits, uint32_t rate_millihertz) noexcept {
+void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept {
   source_ = source;
   tick_ = 0;
   drive_queue_.clear();
-  kernel_.set(limits, 1e-3F * static_cast<float>(rate_millihertz));
-  supervisor_.arm(limits, rate_millihertz, hal_.read_encoder(hal_.board));
+  kernel_.set(setup);
+  steered_.store(0);
+  steered_taken_ = 0;
+  gain_taken_ = gain_.load();
+  supervisor_.arm(setup.limits, rate_millihertz, hal_.read_encoder(hal_.board));
 }
 
 FaultCode Ticker::take_stream_fault() noexcept {
@@ -52,9 +55,18 @@ void Ticker::sample(Record& record) noexcept {
   tell(FaultCode::converter);
 }
 
+// A session can be replayed to the bit because each tick says which commands it knew.
+void Ticker::take_steering(Record& record) noexcept {
+  if (const uint8_t steered = steered_.load(); steered != steered_taken_) {
+    steered_taken_ = steered;
+    gain_taken_ = gain_.load();
+  }
+  record.flags |= uint32_t{steered_taken_} << wire::kTickSteeredShift;
+}
+
 // The host's drive is for this tick or for none: what was not played in its time is not played later.
 float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
-  if (source_ == DriveSource::profile) return kernel_.wanted(encoder, gain_.load());
+  if (source_ == DriveSource::profile) return kernel_.wanted(encoder, gain_taken_);
   if (source_ == DriveSource::sweep) return supervisor_.state() == DriveState::playing ? sweep_.next() : 0;
   const float* next = drive_queue_.front();
   lacks = next == nullptr;
@@ -68,6 +80,7 @@ void Ticker::drive(Record& record) noexcept {
   record.driven = supervisor_.state() != DriveState::idle;
   record.drive_v = 0;
   if (!record.driven) return hal_.write_drive(hal_.board, 0);
+  take_steering(record);
   const FaultCode before = supervisor_.fault();
   TickSights sights{record.encoder, (record.flags & wire::kTickEnabled) != 0, false};
   const float wanted_v = wanted(record.encoder, sights.drive_lacks);

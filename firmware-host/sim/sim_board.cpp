@@ -22,7 +22,6 @@ SimBoard::SimBoard(const SimParameters& parameters, schema::Transducer transduce
     : parameters_(parameters),
       transducer_(std::move(transducer)),
       profile_(std::move(surface.profile)),
-      texture_(kHostedProfileSamples),
       surface_words_(std::move(surface.description)) {
   describe();
   firmware_ = std::make_unique<core::Firmware>(about(), hal());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware-host/core/firmware.hpp"
+#include "firmware-host/hosted_board.hpp"
 #include "firmware-host/sim/actuated_tray.hpp"
 #include "firmware-host/sim/frame_source.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
@@ -66,7 +67,7 @@ class SimBoard {
   std::function<double(double)> script_;
   std::vector<wire::Channel> channels_;
   std::vector<wire::Note> notes_;
-  std::vector<float> texture_;
+  HostedProfile texture_;
   std::vector<std::uint8_t> from_host_, to_host_;
   std::size_t link_bytes_ = static_cast<std::size_t>(-1);
   std::unique_ptr<FrameSource> source_;

@@ -171,4 +171,35 @@ struct Heartbeat {
 
 using Reset = Bare<MessageType::reset>;
 
+/// How the next profile is followed and read. Since 1.1; what a hello leaves is in the defaults.
+struct Texture {
+  static constexpr MessageType kType = MessageType::texture;
+  uint8_t levels = 1;  ///< of the profile's pyramid, at most kMaxLevels
+  Interpolation interpolation = Interpolation::hermite;
+  uint8_t between_counts = 0;  ///< 1: the encoder's edges are timed
+  uint8_t reserved = 0;
+  float look_ahead_ticks = 0;
+  float smoothing_ticks = 100;            ///< of the finger's speed
+  float full_detail_counts_per_tick = 0;  ///< speed up to which the first level serves; 0: always
+  float energy_rms_v = 0;                 ///< 0: no such limit
+  float energy_window_s = 1;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.levels, self.interpolation, self.between_counts, self.reserved, self.look_ahead_ticks,
+          self.smoothing_ticks, self.full_detail_counts_per_tick, self.energy_rms_v, self.energy_window_s);
+  }
+};
+
+/// The finite filter between profile and sections: y_n = sum taps_i x_(n-i). Since 1.1.
+struct Taps {
+  static constexpr MessageType kType = MessageType::taps;
+  uint8_t count = 0;
+  float taps[kMaxTaps] = {};
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    const size_t n = codec.count(self.count, kMaxTaps);
+    codec.array(self.taps, n);
+  }
+};
+
 }  // namespace tacto::wire

@@ -26,6 +26,8 @@ enum class MessageType : uint8_t {
   drive = 0x0F,
   heartbeat = 0x10,
   reset = 0x11,
+  texture = 0x12,
+  taps = 0x13,
   welcome = 0x81,
   channel = 0x82,
   note = 0x83,
@@ -88,10 +90,12 @@ enum TickFlag : uint32_t {
   kTickFault = 4,             ///< state is fault
   kTickAmplitudeLimited = 8,  ///< the drive was held to its limit
   kTickSlewLimited = 16,
-  kTickLate = 32,  ///< it began more than half a period late
+  kTickLate = 32,           ///< it began more than half a period late
   kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
   kTickGated = 128,         ///< the finger does not touch: the drive falls
 };
+/// From this bit on: gain, play, stop and disarm taken since arming, modulo 256.
+inline constexpr uint32_t kTickSteeredShift = 24;
 
 inline constexpr size_t kMaxChannels = 16;
 inline constexpr size_t kMaxBlockFrames = 32;
