@@ -47,9 +47,13 @@ std::string_view word_of(PlayerState state) {
 }
 
 Player::Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres)
-    : client_(client), uri_(std::move(uri)), options_(options), metres_per_count_(metres) {}
+    : client_(client), uri_(std::move(uri)), options_(options), metres_per_count_(metres) {
+  client_.listen([this](std::span<const std::uint8_t> frame) { keep(frame); });
+}
 
-Player::~Player() = default;
+Player::~Player() {
+  client_.listen({});
+}
 
 Result<std::unique_ptr<Player>> Player::make(firmware_host::Client& client, std::string uri,
                                              const PlayerOptions& options) {
@@ -65,26 +69,15 @@ Result<void> Player::require(bool allowed, const char* what, const char* remedy)
   return fail(Fault::usage, fmt::format("can't {} in the state {}", what, word_of(state_)), uri_, remedy);
 }
 
-template <class Message>
-void Player::keep(const Message& message) {
-  if (!recorder_) return;
-  std::array<std::uint8_t, wire::kMaxFrame> frame;
-  const std::size_t size = wire::encode_frame(message, 0, frame.data(), frame.size());
-  const auto end = frame.begin() + static_cast<std::ptrdiff_t>(size);
-  recorder_->command({view_.expected(), steady_ns(), {frame.begin(), end}});
-}
-
-template <class Message>
-Result<void> Player::send(const Message& message) {
-  const auto done = client_.command(message);
-  if (done) keep(message);
-  return done;
+// Every command that the device obeys is part of the session.
+void Player::keep(std::span<const std::uint8_t> frame) {
+  if (recorder_) recorder_->command({view_.expected(), steady_ns(), {frame.begin(), frame.end()}});
 }
 
 // A command to a running drive: what it answers, and what the device has said meanwhile.
 template <class Message>
 Result<void> Player::steer(const Message& message) {
-  const auto done = send(message);
+  const auto done = client_.command(message);
   take_ticks();
   take_faults();
   return done;
@@ -100,7 +93,7 @@ Result<void> Player::load(Program program) {
 
 Result<void> Player::upload() {
   return for_each_message(program_->prepared, client_.description().welcome,
-                          [this](const auto& message) { return send(message); });
+                          [this](const auto& message) { return client_.command(message); });
 }
 
 schema::SessionHeader Player::session_header() const {
@@ -128,7 +121,7 @@ Result<void> Player::arm(const std::string& session_path) {
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
   auto done = upload();
   if (done) done = gain(gain_);
-  if (done) done = send(arm_message(program_->prepared));
+  if (done) done = client_.command(arm_message(program_->prepared));
   if (!done) {
     recorder_->event({0, steady_ns(), "not armed: " + schema::message(done.error())});
     (void)end_session();

@@ -82,11 +82,8 @@ class Player {
  private:
   Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres);
   template <class Message>
-  schema::Result<void> send(const Message& message);
-  template <class Message>
   schema::Result<void> steer(const Message& message);
-  template <class Message>
-  void keep(const Message& message);
+  void keep(std::span<const std::uint8_t> frame);
   schema::Result<void> upload();
   schema::Result<void> wait_for_idle();
   schema::Result<void> beat();
