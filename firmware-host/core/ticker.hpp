@@ -16,6 +16,13 @@ struct TickCounts {
   uint32_t late = 0, lost_records = 0, underruns = 0, amplitude_limited = 0, slew_limited = 0;
 };
 
+/// Where the normal force comes from.
+struct ForceChannel {
+  bool there = false;
+  uint8_t index = 0;
+  float newtons_per_code = 0, offset_n = 0;
+};
+
 /// tick() is called by the timer's interrupt and neither waits, allocates, locks nor throws; all else is the
 /// main loop's.
 class Ticker {
@@ -34,7 +41,9 @@ class Ticker {
   bool streaming() const noexcept { return stream_.load() != Stream::off; }
 
   /// In idle only; what the source needs is set.
-  void arm(wire::DriveSource source, const wire::Limits& limits, uint32_t rate_millihertz) noexcept;
+  void arm(wire::DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept;
+  /// Which channel holds the normal force: newtons = code x scale + offset. Of a board without one: nothing.
+  void watch_force(const ForceChannel& channel) noexcept { force_ = channel; }
   void set_gain(float gain) noexcept { gain_.store(gain); }
   TickKernel& kernel() noexcept { return kernel_; }
   SweepGenerator& sweep() noexcept { return sweep_; }
@@ -55,6 +64,7 @@ class Ticker {
   void sample(Record& record) noexcept;
   void drive(Record& record) noexcept;
   float wanted(int32_t encoder, bool& lacks) noexcept;
+  float normal_force(Record& record) noexcept;
   void count(uint32_t flags) noexcept;
   void keep(bool there, const Record& record) noexcept;
   void tell(wire::FaultCode code) noexcept { stream_fault_.store(code); }
@@ -67,6 +77,7 @@ class Ticker {
   Ring<Record, kRingRecords> records_;
   Record spare_;
   wire::DriveSource source_ = wire::DriveSource::profile;
+  ForceChannel force_;
   Shared<float> gain_{1.0F};
   Shared<Stream> stream_{Stream::off};
   Shared<wire::FaultCode> stream_fault_{wire::FaultCode::none};

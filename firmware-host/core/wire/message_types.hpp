@@ -26,6 +26,11 @@ enum class MessageType : uint8_t {
   drive = 0x0F,
   heartbeat = 0x10,
   reset = 0x11,
+  profile_levels = 0x12,  ///< from 0x12 to 0x16: since protocol 1.1
+  taps = 0x13,
+  tracking = 0x14,
+  energy = 0x15,
+  contact = 0x16,
   welcome = 0x81,
   channel = 0x82,
   note = 0x83,
@@ -88,7 +93,7 @@ enum TickFlag : uint32_t {
   kTickFault = 4,             ///< state is fault
   kTickAmplitudeLimited = 8,  ///< the drive was held to its limit
   kTickSlewLimited = 16,
-  kTickLate = 32,  ///< it began more than half a period late
+  kTickLate = 32,           ///< it began more than half a period late
   kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
   kTickGated = 128,         ///< the finger does not touch: the drive falls
 };
