@@ -26,13 +26,13 @@ constexpr double kStopOverBand = 2 * kStopOverPass;
 constexpr double kLeastRateHz = 100, kMostRateHz = 100e3;
 // core::half_octaves() may say 0.02 too much: levels are chosen that much finer.
 constexpr double kSpeedMargin = 1.01;
-constexpr double kTrackerS = 4e-3;
+constexpr double kTrackerS = 2e-3;
 constexpr double kMostSamplesPerCount = 1024;
 constexpr double kQ32 = 4294967296.0;
 
 double samples_per_period(wire::Interpolation kind) {
   if (kind == wire::Interpolation::hermite) return 16;
-  return kind == wire::Interpolation::sinc ? 5 : 64;
+  return kind == wire::Interpolation::sinc ? 6 : 64;
 }
 
 Result<void> check_prepare_options(const PrepareOptions& o) {
@@ -166,7 +166,7 @@ core::KernelSetup Prepared::setup() const {
   setup.taps = taps.data();
   setup.tap_count = static_cast<std::uint16_t>(taps.size());
   setup.limits = limits;
-  setup.rate_hz = static_cast<float>(rate_hz);
+  setup.rate_hz = core::rate_of(rate_millihertz());
   setup.energy_rms_v = energy_rms_v;
   setup.energy_window_s = energy_window_s;
   setup.gate_on_n = gate_on_n;

@@ -2,6 +2,7 @@
 // From textures, a transducer and an encoder to what the tick kernel runs: in process, or on the device.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -77,6 +78,7 @@ struct Prepared {
   double pitch_m = 0;           ///< of the first level
   std::vector<std::string> notes;
 
+  std::uint32_t rate_millihertz() const { return static_cast<std::uint32_t>(std::llround(1e3 * rate_hz)); }
   /// Pointers into this: it must stay where it is, and outlive the kernel's use.
   core::KernelSetup setup() const;
 };

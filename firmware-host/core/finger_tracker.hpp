@@ -19,12 +19,14 @@ struct TrackerSetup {
   float smoothing_ticks = 100;  ///< over which speed is averaged where counts come every tick
 };
 
-/// Times the edges: an edge is known to lie at a count's border, within the last tick; between edges the
-/// finger goes on at its speed, but never leaves the count that the encoder shows. An alpha-beta filter whose
-/// gains begin with those of a straight line through what was seen (2 (2 n + 1) / ((n + 1) (n + 2)), 6 / ((n
-/// + 1) (n + 2))) and settle at alpha, beta = alpha^2 / (2 - alpha); it begins again where the finger turns,
-/// or is off by more than a count and a half. An edge that is overdue bounds the speed by 1 / (ticks since
-/// the last one): a finger that stops comes to rest. Safe in the tick.
+/// Times the edges: an edge is known to lie at a count's border, crossed within the last tick (where counts
+/// come every tick, the middle of the count is what is known); between edges the finger goes on at its speed,
+/// but the place that is given never leaves the count that the encoder shows. An alpha-beta filter whose
+/// gains begin with those of a straight line through what was seen (2 (2 n - 1) / (n (n + 1)), 6 / (n (n +
+/// 1))) and settle at alpha = t / (t + smoothing), t the ticks since the last edge, at most 0.1; beta =
+/// alpha^2 / (2 - alpha). A miss beyond 0.6 counts is no noise of the count's width, and weighs 0.2 to 0.5.
+/// It begins again where the finger turns, or is off by 4 counts. An edge that is long overdue bounds the
+/// speed by 1.5 / t: a finger that stops comes to rest. Safe in the tick.
 class FingerTracker {
  public:
   void set(const TrackerSetup& setup) noexcept {

@@ -15,8 +15,7 @@ constexpr float kLongestOnsetS = 10;
 constexpr uint16_t kLeastWatchdogMs = 10, kMostWatchdogMs = 1000;
 constexpr uint32_t kTickBlockPart = 100000;  // mHz: a ticks message every 10 ms
 constexpr uint32_t kNotGreeted = 255;
-constexpr float kMostTicksAhead = 1000, kMostSmoothing = 100000;
-constexpr float kMostWindowS = 1000, kMostCountsPerTick = 1e6F;
+constexpr float kMostTicksAhead = 2000, kLongestWindowS = 3600;
 
 Reply bad_value(uint32_t field) noexcept {
   return {AnswerCode::bad_value, field};
@@ -40,7 +39,6 @@ void Firmware::greet(const wire::Frame& frame) noexcept {
   samples_.clear();
   ticks_.clear();
   greeted_ = hello.major == wire::kProtocolMajor;
-  if (idle()) texture_ = {}, taps_ = {};  // a host of version 1.0 knows nothing of them
   nonce_ = hello.nonce;
   sequence_ = 0;
   described_ = 0;
@@ -112,8 +110,6 @@ Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
   wire::ProfileEnd end;
   wire::Limits new_limits;
   wire::Filters new_filters;
-  wire::Texture new_texture;
-  wire::Taps new_taps;
   wire::Sweep new_sweep;
   wire::Arm new_arm;
   switch (static_cast<MessageType>(frame.header.type)) {
@@ -127,17 +123,44 @@ Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
       return in_idle(frame, end, &Firmware::profile_end);
     case MessageType::filters:
       return in_idle(frame, new_filters, &Firmware::filters);
-    case MessageType::texture:
-      return in_idle(frame, new_texture, &Firmware::texture);
-    case MessageType::taps:
-      return in_idle(frame, new_taps, &Firmware::taps);
     case MessageType::sweep:
       return in_idle(frame, new_sweep, &Firmware::sweep);
     case MessageType::arm:
       return in_idle(frame, new_arm, &Firmware::arm);
     default:
+      return reply_to_texture(frame);
+  }
+}
+
+// Since protocol 1.1.
+Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
+  wire::ProfileLevels new_levels;
+  wire::Tracking new_tracking;
+  wire::Energy new_energy;
+  wire::Contact new_contact;
+  switch (static_cast<MessageType>(frame.header.type)) {
+    case MessageType::profile_levels:
+      return in_idle(frame, new_levels, &Firmware::profile_levels);
+    case MessageType::taps:
+      return in_idle(frame, new_taps_, &Firmware::taps);
+    case MessageType::tracking:
+      return in_idle(frame, new_tracking, &Firmware::tracking);
+    case MessageType::energy:
+      return in_idle(frame, new_energy, &Firmware::energy);
+    case MessageType::contact:
+      return in_idle(frame, new_contact, &Firmware::contact);
+    default:
       return {AnswerCode::unknown_type, frame.header.type};
   }
+}
+
+// A host of protocol 1.0 knows nothing of the rest: a new profile begins without it.
+Reply Firmware::profile_begin(const wire::ProfileBegin& message) noexcept {
+  taps_.count = 0;
+  tracking_ = {};
+  energy_ = {};
+  contact_ = {};
+  return upload_.begin(message);
 }
 
 // One clock for sampling and driving: a second user takes the rate that is there.
@@ -191,25 +214,34 @@ Reply Firmware::filters(const wire::Filters& message) noexcept {
   return {};
 }
 
-// What was uploaded under other settings is forgotten.
-Reply Firmware::texture(const wire::Texture& message) noexcept {
-  if (message.levels < 1 || message.levels > wire::kMaxLevels) return bad_value(0);
-  if (message.interpolation > wire::Interpolation::sinc) return bad_value(1);
-  if (message.between_counts > 1) return bad_value(2);
-  if (!within(message.look_ahead_ticks, 0, kMostTicksAhead)) return bad_value(4);
-  if (!within(message.smoothing_ticks, 1, kMostSmoothing)) return bad_value(5);
-  if (!within(message.full_detail_counts_per_tick, 0, kMostCountsPerTick)) return bad_value(6);
-  if (!within(message.energy_rms_v, 0, board_.about.drive_limit_v)) return bad_value(7);
-  if (!within(message.energy_window_s, 0, kMostWindowS)) return bad_value(8);
-  texture_ = message;
-  upload_.forget();
+Reply Firmware::taps(const wire::Taps& message) noexcept {
+  for (uint16_t i = 0; i < message.count; ++i)
+    if (!is_finite(message.taps[i])) return bad_value(i);
+  taps_ = message;
   return {};
 }
 
-Reply Firmware::taps(const wire::Taps& message) noexcept {
-  for (uint8_t i = 0; i < message.count; ++i)
-    if (!is_finite(message.taps[i])) return bad_value(i);
-  taps_ = message;
+Reply Firmware::tracking(const wire::Tracking& message) noexcept {
+  if (message.between_counts > 1) return bad_value(0);
+  if (!within(message.look_ahead_ticks, 0, kMostTicksAhead)) return bad_value(2);
+  if (!within(message.smoothing_ticks, 0, kLargestFloat)) return bad_value(3);
+  if (!within(message.full_detail_counts_per_tick, 0, kLargestFloat)) return bad_value(4);
+  tracking_ = message;
+  return {};
+}
+
+Reply Firmware::energy(const wire::Energy& message) noexcept {
+  if (!within(message.rms_v, 0, kLargestFloat)) return bad_value(0);
+  if (!within(message.window_s, 0, kLongestWindowS)) return bad_value(1);
+  energy_ = message;
+  return {};
+}
+
+Reply Firmware::contact(const wire::Contact& message) noexcept {
+  if (message.channel >= board_.channel_count) return bad_value(0);
+  if (!within(message.on_n, 0, kLargestFloat)) return bad_value(2);
+  if (!within(message.off_n, 0, message.on_n)) return bad_value(3);
+  contact_ = message;
   return {};
 }
 
@@ -238,32 +270,39 @@ Reply Firmware::ready(const wire::Arm& message) noexcept {
   return {};
 }
 
-KernelSetup Firmware::kernel_setup() const noexcept {
-  KernelSetup setup;
-  setup.texture = {upload_.profile(),
-                   {texture_.between_counts != 0, texture_.look_ahead_ticks, texture_.smoothing_ticks},
-                   texture_.full_detail_counts_per_tick};
-  setup.taps = taps_.taps;
-  setup.tap_count = taps_.count;
-  setup.sections = filters_.sections;
-  setup.section_count = filters_.count;
-  setup.energy_rms_v = texture_.energy_rms_v;
-  setup.energy_window_s = texture_.energy_window_s;
-  return setup;
-}
-
 Reply Firmware::arm(const wire::Arm& message) noexcept {
   Reply reply = ready(message);
   if (reply.code == AnswerCode::ok) reply = take_rate(message.rate_millihertz);
   if (reply.code != AnswerCode::ok) return reply;
-  KernelSetup setup;
-  if (message.source == DriveSource::profile) setup = kernel_setup();
-  setup.limits = limits_;
-  setup.rate_hz = 1e-3F * static_cast<float>(message.rate_millihertz);
+  const bool gated = contact_.on_n > 0;
+  const wire::Channel* force = gated ? &board_.channels[contact_.channel] : nullptr;
+  ticker_.watch_force(gated ? ForceChannel{true, contact_.channel, static_cast<float>(force->scale),
+                                           static_cast<float>(force->offset)}
+                            : ForceChannel{});
   ticks_.begin(ticks_in_block(message.rate_millihertz));
   told_ = wire::FaultCode::none;
-  ticker_.arm(message.source, setup, message.rate_millihertz);
+  ticker_.arm(message.source, kernel_setup(message), message.rate_millihertz);
   return {};
+}
+
+// Filters belong to the profile; limits and touch to every source.
+KernelSetup Firmware::kernel_setup(const wire::Arm& message) const noexcept {
+  KernelSetup setup;
+  setup.limits = limits_;
+  setup.rate_hz = rate_of(message.rate_millihertz);
+  setup.energy_rms_v = energy_.rms_v;
+  setup.energy_window_s = energy_.window_s;
+  setup.gate_on_n = contact_.on_n;
+  setup.gate_off_n = contact_.off_n;
+  if (message.source != DriveSource::profile) return setup;
+  setup.texture = {upload_.profile(),
+                   {tracking_.between_counts != 0, tracking_.look_ahead_ticks, tracking_.smoothing_ticks},
+                   tracking_.full_detail_counts_per_tick};
+  setup.taps = taps_.taps;
+  setup.tap_count = taps_.count;
+  setup.sections = filters_.sections;
+  setup.section_count = filters_.count;
+  return setup;
 }
 
 Reply Firmware::play() noexcept {

@@ -35,7 +35,7 @@ constexpr double bessel(double q) {
 }
 
 // sin(pi x) / (pi x) under a Kaiser window of +-4 samples, beta^2 / 4 = kQuarterBeta2.
-constexpr double kQuarterBeta2 = 12.25;
+constexpr double kQuarterBeta2 = 16;
 constexpr double windowed(double x) {
   if (x <= -4 || x >= 4) return 0;
   int whole = static_cast<int>(x < 0 ? x - 0.5 : x + 0.5);

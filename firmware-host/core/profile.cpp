@@ -4,7 +4,6 @@
 namespace tacto::core {
 namespace {
 
-constexpr float kMostOffset = 1 << 20;
 constexpr int32_t kFarthestSample = INT32_C(1) << 29;
 constexpr float kPerFraction = 1.0F / (1 << 24);
 constexpr float kFractions = 1 << 24;
@@ -35,7 +34,7 @@ int32_t reach_counts(const ProfileScale& scale) noexcept {
   return kFarthestSample / (static_cast<int32_t>(scale.samples_per_count_q32 >> 32) + 1);
 }
 
-uint32_t level_samples(const ProfileScale& scale, uint8_t level) noexcept {
+uint32_t level_samples(const ProfileScale& scale, uint32_t level) noexcept {
   if (scale.ends == wire::ProfileEnds::loop) return scale.samples >> (level / 2);
   return ((scale.samples - 1) >> (level / 2)) + 1;
 }
@@ -80,8 +79,9 @@ float Profile::read(uint32_t which, int64_t place) const noexcept {
 bool Profile::place_of(int32_t count, float offset, int64_t& place) const noexcept {
   const int64_t away = static_cast<int64_t>(count) - scale_.origin_count;
   if (away > reach_ || away < -reach_) return false;
-  if (!(offset > -kMostOffset && offset < kMostOffset)) return false;
   place = away * static_cast<int64_t>(scale_.samples_per_count_q32) + scale_.at_origin_q32;
+  const auto reach = static_cast<float>(reach_);
+  if (!(offset >= -reach && offset <= reach)) return false;
   if (offset != 0) place += stretch(scale_.samples_per_count_q32, offset);
   return true;
 }

@@ -24,7 +24,7 @@ int32_t reach_counts(const ProfileScale& scale) noexcept;
 
 /// Samples of a level: every second one goes with each second level. A loop's first level has a multiple of
 /// 2^((levels - 1) / 2) samples, other ends' one more.
-uint32_t level_samples(const ProfileScale& scale, uint8_t level) noexcept;
+uint32_t level_samples(const ProfileScale& scale, uint32_t level) noexcept;
 /// Of all levels, which lie one after the other.
 uint32_t pyramid_samples(const ProfileScale& scale) noexcept;
 
@@ -42,8 +42,8 @@ class Profile {
 
   /// At count + offset, where `coarseness` (0 and more) counts half-octaves of speed beyond the one up to
   /// which the first level serves. From n to n + 1 level n - 1 fades evenly into level n, beyond the last one
-  /// into silence: all is continuous. A profile of one level serves at every speed. |offset| < 2^20.
-  /// Safe in the tick.
+  /// into silence: all is continuous. A profile of one level serves at every speed. Beyond reach_counts() it
+  /// is zero. Safe in the tick.
   float at(int32_t count, float offset, float coarseness) const noexcept;
 
  private:

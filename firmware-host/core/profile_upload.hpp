@@ -21,11 +21,12 @@ class ProfileUpload {
  public:
   ProfileUpload(float* memory, uint32_t capacity) noexcept : memory_(memory), capacity_(capacity) {}
 
-  /// `texture` says how many levels there are, and how they are read.
-  Reply begin(const wire::ProfileBegin& message, const wire::Texture& texture) noexcept;
+  Reply begin(const wire::ProfileBegin& message) noexcept;
+  /// After begin(): all samples together are those of so many levels.
+  Reply levels(const wire::ProfileLevels& message) noexcept;
   Reply chunk(const wire::ProfileChunk& message) noexcept;
   Reply end(const wire::ProfileEnd& message) noexcept;
-  void forget() noexcept { complete_ = false, scale_ = {}, total_ = here_ = 0; }
+  void forget() noexcept { complete_ = false, scale_ = {}, samples_ = 0, here_ = 0; }
 
   bool complete() const noexcept { return complete_; }
   uint32_t here() const noexcept { return here_; }
@@ -38,7 +39,8 @@ class ProfileUpload {
   float* memory_;
   uint32_t capacity_;
   ProfileScale scale_;
-  uint32_t total_ = 0, here_ = 0;  // samples of all levels
+  uint32_t samples_ = 0;  // of all levels
+  uint32_t here_ = 0;
   bool complete_ = false;
 };
 

@@ -24,6 +24,11 @@ struct KernelSetup {
   float gate_on_n = 0, gate_off_n = 0;          ///< 0: not gated
 };
 
+/// The rate as both sides of the wire compute it, Hz.
+inline float rate_of(uint32_t millihertz) noexcept {
+  return 1e-3F * static_cast<float>(millihertz);
+}
+
 /// What a tick is told.
 struct TickInput {
   int32_t count = 0;                ///< of the encoder
@@ -67,8 +72,9 @@ class TickKernel {
 
   /// What the texture wants at a count; once a tick.
   float wanted(int32_t count, float gain) noexcept { return player_.wanted(count, gain); }
-  /// One tick of what somebody else wants. `raise`: towards the full drive, else towards zero. What is no
-  /// finite number drives zero, and `sound` is false.
+  /// One tick of what is wanted, by the texture or by somebody else.
+  TickOutput drive(float wanted, bool raise, float normal_force_n) noexcept;
+  /// The same where nobody reports a force. What is no finite number drives zero, and `sound` is false.
   float tick(float wanted, bool raise, uint32_t& flags, bool& sound) noexcept {
     const TickOutput output = drive(wanted, raise, kNoForce);
     flags |= output.flags;
@@ -82,8 +88,6 @@ class TickKernel {
   FingerPlace place() const noexcept { return player_.place(); }
 
  private:
-  TickOutput drive(float wanted, bool raise, float normal_force_n) noexcept;
-
   TexturePlayer player_;
   FirFilter fir_;
   SectionChain sections_;

@@ -76,6 +76,13 @@ float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
   return drive_v;
 }
 
+// A converter that gives nothing touches nothing.
+float Ticker::normal_force(Record& record) noexcept {
+  if (!force_.there) return kNoForce;
+  if (!record.sampled && !hal_.read_channels(hal_.board, record.codes)) return 0;
+  return static_cast<float>(record.codes[force_.index]) * force_.newtons_per_code + force_.offset_n;
+}
+
 void Ticker::drive(Record& record) noexcept {
   record.driven = supervisor_.state() != DriveState::idle;
   record.drive_v = 0;
@@ -85,10 +92,11 @@ void Ticker::drive(Record& record) noexcept {
   TickSights sights{record.encoder, (record.flags & wire::kTickEnabled) != 0, false};
   const float wanted_v = wanted(record.encoder, sights.drive_lacks);
   const bool raise = supervisor_.observe(sights);
-  bool sound = true;
-  record.drive_v = kernel_.tick(wanted_v, raise, record.flags, sound);
+  const TickOutput output = kernel_.drive(wanted_v, raise, normal_force(record));
+  record.drive_v = output.drive_v;
+  record.flags |= output.flags;
   hal_.write_drive(hal_.board, record.drive_v);
-  supervisor_.settle(sound, kernel_.at_rest());
+  supervisor_.settle(output.sound, kernel_.at_rest());
   record.tick = tick_++;
   if (supervisor_.state() == DriveState::playing) record.flags |= wire::kTickPlaying;
   if (supervisor_.state() == DriveState::fault) record.flags |= wire::kTickFault;

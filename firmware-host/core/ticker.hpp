@@ -16,6 +16,13 @@ struct TickCounts {
   uint32_t late = 0, lost_records = 0, underruns = 0, amplitude_limited = 0, slew_limited = 0;
 };
 
+/// Where the normal force comes from.
+struct ForceChannel {
+  bool there = false;
+  uint8_t index = 0;
+  float newtons_per_code = 0, offset_n = 0;
+};
+
 /// tick() is called by the timer's interrupt and neither waits, allocates, locks nor throws; all else is the
 /// main loop's.
 class Ticker {
@@ -35,6 +42,8 @@ class Ticker {
 
   /// In idle only; what the source needs is set.
   void arm(wire::DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept;
+  /// Which channel holds the normal force: newtons = code x scale + offset. Of a board without one: nothing.
+  void watch_force(const ForceChannel& channel) noexcept { force_ = channel; }
   /// Taken by the tick that first counts it.
   void set_gain(float gain) noexcept { gain_.store(gain), steered(); }
   /// A command to the drive has been obeyed.
@@ -59,6 +68,7 @@ class Ticker {
   void drive(Record& record) noexcept;
   void take_steering(Record& record) noexcept;
   float wanted(int32_t encoder, bool& lacks) noexcept;
+  float normal_force(Record& record) noexcept;
   void count(uint32_t flags) noexcept;
   void keep(bool there, const Record& record) noexcept;
   void tell(wire::FaultCode code) noexcept { stream_fault_.store(code); }
@@ -71,6 +81,7 @@ class Ticker {
   Ring<Record, kRingRecords> records_;
   Record spare_;
   wire::DriveSource source_ = wire::DriveSource::profile;
+  ForceChannel force_;
   Shared<float> gain_{1.0F};
   Shared<uint8_t> steered_;
   float gain_taken_ = 1;

@@ -8,8 +8,9 @@
 #include <cstring>
 #include <utility>
 
+#include "firmware-host/wire_fields.hpp"
 #include "firmware-host/wire_words.hpp"
-#include "playback/daemon/upload.hpp"
+#include "playback/upload.hpp"
 
 namespace tacto::playback {
 
@@ -86,14 +87,11 @@ Result<void> Player::steer(const Message& message) {
 Result<void> Player::load(Program program) {
   if (const auto may = require(state_ == PlayerState::idle, "load", "disarm first"); !may) return may;
   const wire::Welcome& about = client_.description().welcome;
-  if (const auto fits = check_fits(program.prepared, about, uri_); !fits) return fits;
+  wire::Limits& limits = program.prepared.limits;
+  limits.drive_v = std::min(limits.drive_v, about.drive_limit_v);
+  limits.slew_v_per_s = std::min(limits.slew_v_per_s, about.slew_limit_v_per_s);
   program_ = std::move(program);
   return {};
-}
-
-Result<void> Player::upload() {
-  return for_each_message(program_->prepared, client_.description().welcome,
-                          [this](const auto& message) { return client_.command(message); });
 }
 
 schema::SessionHeader Player::session_header() const {
@@ -119,9 +117,10 @@ Result<void> Player::arm(const std::string& session_path) {
   session_path_ = session_path;
   fault_.clear();
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
-  auto done = upload();
+  const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};
+  auto done = upload(client_, program_->prepared);
   if (done) done = gain(gain_);
-  if (done) done = client_.command(arm_message(program_->prepared));
+  if (done) done = client_.command(arm);
   if (!done) {
     recorder_->event({0, steady_ns(), "not armed: " + schema::message(done.error())});
     (void)end_session();

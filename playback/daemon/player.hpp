@@ -84,7 +84,6 @@ class Player {
   template <class Message>
   schema::Result<void> steer(const Message& message);
   void keep(std::span<const std::uint8_t> frame);
-  schema::Result<void> upload();
   schema::Result<void> wait_for_idle();
   schema::Result<void> beat();
   schema::Result<void> require(bool allowed, const char* what, const char* remedy) const;

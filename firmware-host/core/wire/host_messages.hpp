@@ -171,34 +171,67 @@ struct Heartbeat {
 
 using Reset = Bare<MessageType::reset>;
 
-/// How the next profile is followed and read. Since 1.1; what a hello leaves is in the defaults.
-struct Texture {
-  static constexpr MessageType kType = MessageType::texture;
-  uint8_t levels = 1;  ///< of the profile's pyramid, at most kMaxLevels
+/// The profile that was begun holds copies of falling detail, one after the other.
+struct ProfileLevels {
+  static constexpr MessageType kType = MessageType::profile_levels;
+  uint8_t levels = 1;
   Interpolation interpolation = Interpolation::hermite;
-  uint8_t between_counts = 0;  ///< 1: the encoder's edges are timed
-  uint8_t reserved = 0;
-  float look_ahead_ticks = 0;
-  float smoothing_ticks = 100;            ///< of the finger's speed
-  float full_detail_counts_per_tick = 0;  ///< speed up to which the first level serves; 0: always
-  float energy_rms_v = 0;                 ///< 0: no such limit
-  float energy_window_s = 1;
+  uint16_t reserved = 0;
+  uint32_t first_samples = 0;  ///< of the first level
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
-    codec(self.levels, self.interpolation, self.between_counts, self.reserved, self.look_ahead_ticks,
-          self.smoothing_ticks, self.full_detail_counts_per_tick, self.energy_rms_v, self.energy_window_s);
+    codec(self.levels, self.interpolation, self.reserved, self.first_samples);
   }
 };
 
-/// The finite filter between profile and sections: y_n = sum taps_i x_(n-i). Since 1.1.
+/// A finite filter between profile and filters.
 struct Taps {
   static constexpr MessageType kType = MessageType::taps;
-  uint8_t count = 0;
-  float taps[kMaxTaps] = {};
+  uint16_t count = 0;
+  float taps[kMaxTaps];
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     const size_t n = codec.count(self.count, kMaxTaps);
     codec.array(self.taps, n);
+  }
+};
+
+/// How the finger is followed between counts, and ahead.
+struct Tracking {
+  static constexpr MessageType kType = MessageType::tracking;
+  uint8_t between_counts = 0;
+  uint8_t reserved[3] = {};
+  float look_ahead_ticks = 0, smoothing_ticks = 0;
+  float full_detail_counts_per_tick = 0;  ///< speed beyond which the second level begins to come in
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.between_counts);
+    codec.array(self.reserved, sizeof self.reserved);
+    codec(self.look_ahead_ticks, self.smoothing_ticks, self.full_detail_counts_per_tick);
+  }
+};
+
+/// The drive's RMS over time; 0 V: no limit.
+struct Energy {
+  static constexpr MessageType kType = MessageType::energy;
+  float rms_v = 0, window_s = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.rms_v, self.window_s);
+  }
+};
+
+/// Drive only while the finger presses; 0 N: always.
+struct Contact {
+  static constexpr MessageType kType = MessageType::contact;
+  uint8_t channel = 0;  ///< that holds the normal force
+  uint8_t reserved[3] = {};
+  float on_n = 0, off_n = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.channel);
+    codec.array(self.reserved, sizeof self.reserved);
+    codec(self.on_n, self.off_n);
   }
 };
 

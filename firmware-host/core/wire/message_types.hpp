@@ -26,8 +26,11 @@ enum class MessageType : uint8_t {
   drive = 0x0F,
   heartbeat = 0x10,
   reset = 0x11,
-  texture = 0x12,
+  profile_levels = 0x12,  ///< from 0x12 to 0x16: since protocol 1.1
   taps = 0x13,
+  tracking = 0x14,
+  energy = 0x15,
+  contact = 0x16,
   welcome = 0x81,
   channel = 0x82,
   note = 0x83,
