@@ -2,7 +2,6 @@
 #include "playback/daemon/control_server.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -19,6 +18,7 @@ using schema::Fault;
 using schema::Result;
 
 constexpr int kLinesAtOnce = 16;
+constexpr std::size_t kMostEvents = 1000;  // between two serve(): ten a second are usual
 
 const schema::Error kTooLong{Fault::malformed,
                              fmt::format("a line has more than {} bytes", schema::kMostControlLine),
@@ -97,24 +97,35 @@ bool ControlServer::attend(ControlClient& client, short events, const Handler& h
   return answer_lines(client, handler) && here;
 }
 
-void ControlServer::serve(int timeout_ms, const Handler& handler) {
-  std::vector<pollfd> waiting{{descriptor_, POLLIN, 0}};
-  for (const ControlClient& client : clients_)
-    waiting.push_back(
-        {client.descriptor(), static_cast<short>(client.wants_to_send() ? POLLIN | POLLOUT : POLLIN), 0});
-  if (poll(waiting.data(), waiting.size(), timeout_ms) <= 0) return;
+void ControlServer::attend_all(const std::vector<pollfd>& waiting, const Handler& handler) {
   std::vector<ControlClient> staying;
   staying.reserve(clients_.size() + 1);
   for (std::size_t i = 0; i < clients_.size(); ++i)
     if (attend(clients_[i], waiting[i + 1].revents, handler)) staying.push_back(std::move(clients_[i]));
   clients_ = std::move(staying);
-  if ((waiting.front().revents & POLLIN) != 0) accept_all();
+}
+
+void ControlServer::serve(int timeout_ms, const Handler& handler) {
+  std::vector<pollfd> waiting{{descriptor_, POLLIN, 0}};
+  for (const ControlClient& client : clients_)
+    waiting.push_back(
+        {client.descriptor(), static_cast<short>(client.wants_to_send() ? POLLIN | POLLOUT : POLLIN), 0});
+  if (poll(waiting.data(), waiting.size(), timeout_ms) > 0) {
+    attend_all(waiting, handler);
+    if ((waiting.front().revents & POLLIN) != 0) accept_all();
+  }
+  deliver();
 }
 
 void ControlServer::publish(std::string_view event, const schema::ControlFields& fields) {
-  if (watchers() == 0) return;
-  const std::string line = schema::control_event_line(event, fields);
-  std::erase_if(clients_, [&](ControlClient& client) { return client.watching && !client.send_event(line); });
+  if (events_.size() < kMostEvents) events_.push_back(schema::control_event_line(event, fields));
+}
+
+void ControlServer::deliver() {
+  for (const std::string& line : events_)
+    std::erase_if(clients_,
+                  [&](ControlClient& client) { return client.watching && !client.send_event(line); });
+  events_.clear();
 }
 
 }  // namespace tacto::playback

@@ -2,6 +2,8 @@
 // The control socket: takes lines from clients, answers each, and tells watchers what happens (CONTROL.md).
 #pragma once
 
+#include <poll.h>
+
 #include <functional>
 #include <memory>
 #include <string>
@@ -33,7 +35,7 @@ class ControlServer {
 
   /// Waits at most `timeout_ms` for something to do, and does it; at most 16 lines of each client.
   void serve(int timeout_ms, const Handler& handler);
-  /// To all who watch.
+  /// To all who watch, at the end of the next serve(): requests publish while clients are attended.
   void publish(std::string_view event, const schema::ControlFields& fields);
   std::size_t clients() const { return clients_.size(); }
   std::size_t watchers() const;
@@ -41,6 +43,8 @@ class ControlServer {
  private:
   ControlServer(const SocketPlace& place, int descriptor) : place_(place), descriptor_(descriptor) {}
   void accept_all();
+  void attend_all(const std::vector<pollfd>& waiting, const Handler& handler);
+  void deliver();
   void refuse(int descriptor) const;
   bool attend(ControlClient& client, short events, const Handler& handler);
   bool answer_lines(ControlClient& client, const Handler& handler);
@@ -49,6 +53,7 @@ class ControlServer {
   SocketPlace place_;
   int descriptor_;
   std::vector<ControlClient> clients_;
+  std::vector<std::string> events_;
 };
 
 }  // namespace tacto::playback

@@ -19,7 +19,7 @@ using schema::Fault;
 using schema::Result;
 
 constexpr double kCarryS = 0.5e-3;
-constexpr std::int64_t kStaleNs = 20'000'000, kRestNs = 1'000'000;
+constexpr std::int64_t kStaleNs = 20'000'000, kRestNs = 200'000;
 constexpr double kQueueS = 4e-3;  // of drives on the device: what the carrier's own sleep may take
 constexpr float kDeviceReleaseS = 0.01F;
 
@@ -160,6 +160,8 @@ void HostLoop::follow_arming() {
   const bool wanted = board_->wants_drive();
   if (wanted == armed_) return;
   armed_ = wanted;
+  to_trim_ = to_pad_ = 0;
+  last_drive_v_ = 0;
   while (board_->drives().front() != nullptr) board_->drives().pop();
   if (!wanted) return (void)device_.command(wire::Disarm{});
   sound_ = true;
@@ -176,10 +178,12 @@ void HostLoop::follow_arming() {
   if (done) done = device_.command(arm);
   if (done) done = device_.command(wire::Play{});
   if (!done) give_up(schema::message(done.error()));
+  to_pad_ = queue_target();
 }
 
 void HostLoop::send_drives() {
   wire::Drive message;
+  for (; to_pad_ > 0; --to_pad_) message.drive_v[message.count++] = last_drive_v_;
   const std::int64_t oldest_ns = TickClock::now_ns() - kStaleNs;
   for (const TimedDrive* drive = board_->drives().front();
        drive != nullptr && message.count < wire::kMaxChunk; drive = board_->drives().front()) {
@@ -189,12 +193,17 @@ void HostLoop::send_drives() {
       --to_trim_;
       trimmed_.fetch_add(1, std::memory_order_relaxed);
     } else if (!stale) {
-      message.drive_v[message.count++] = drive->drive_v;
+      message.drive_v[message.count++] = last_drive_v_ = drive->drive_v;
     }
     board_->drives().pop();
   }
   if (message.count == 0) return;
   if (const auto sent = device_.send_drive(message); !sent) give_up(schema::message(sent.error()));
+}
+
+// Never more than a message takes.
+std::uint32_t HostLoop::queue_target() const {
+  return std::clamp(static_cast<std::uint32_t>(kQueueS * options_.rate_hz), 4U, 200U);
 }
 
 // Feeds the device's watchdog, and sees how deep its queue is.
@@ -204,8 +213,10 @@ void HostLoop::beat() {
   next_beat_ns_ = now + std::int64_t{options_.watchdog_ms} * 250'000;
   const auto pulse = device_.heartbeat();
   if (!pulse) return give_up(schema::message(pulse.error()));
-  const auto deep = static_cast<std::uint32_t>(2 * kQueueS * options_.rate_hz);
-  if (pulse->drive_queued > deep) to_trim_ = pulse->drive_queued - deep / 2;
+  if (!armed_) return;
+  const std::uint32_t target = queue_target(), queued = pulse->drive_queued;
+  if (queued > 2 * target) to_trim_ = queued - target;
+  if (queued < target / 4) to_pad_ = target - queued;
 }
 
 void HostLoop::carry_forever() {

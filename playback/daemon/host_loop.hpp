@@ -60,6 +60,7 @@ class HostLoop {
   void take_faults();
   void follow_arming();
   void send_drives();
+  std::uint32_t queue_target() const;
   void beat();
   void give_up(const std::string& why);
 
@@ -73,7 +74,8 @@ class HostLoop {
   // The carrier's.
   std::vector<std::int32_t> codes_;
   std::int64_t last_count_ns_ = 0, next_beat_ns_ = 0;
-  std::uint32_t to_trim_ = 0;
+  std::uint32_t to_trim_ = 0, to_pad_ = 0;
+  float last_drive_v_ = 0;
   bool armed_ = false, sound_ = true, enabled_ = true;
   mutable std::mutex fault_mutex_;
   std::string fault_;

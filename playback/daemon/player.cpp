@@ -98,6 +98,7 @@ schema::SessionHeader Player::session_header() const {
   const firmware_host::Description& about = client_.description();
   schema::SessionHeader header = program_->session;
   header.clock_hz = about.welcome.clock_hz;
+  header.loop = options_.loop;
   header.device_uri = uri_;
   header.device_name = about.welcome.name;
   header.device_serial = about.welcome.serial;
@@ -219,8 +220,13 @@ void Player::take(const wire::Ticks& message) {
   const double period_ns = 1e9 / program_->prepared.rate_hz;
   for (std::uint8_t i = 0; i < message.count; ++i) {
     const wire::Tick& tick = message.ticks[i];
-    const schema::SessionTick row{message.first_tick + i, time_ns + std::llround(i * period_ns), tick.encoder,
-                                  tick.drive_v, tick.flags};
+    const schema::SessionTick row{message.first_tick + i,
+                                  time_ns + std::llround(i * period_ns),
+                                  tick.encoder,
+                                  tick.drive_v,
+                                  tick.flags,
+                                  options_.lateness_ns ? options_.lateness_ns(message.first_tick + i)
+                                                       : schema::SessionTick::kLatenessUnknown};
     view_.take(row);
     recorder_->tick(row);
   }

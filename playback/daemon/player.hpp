@@ -26,7 +26,10 @@ std::string_view word_of(PlayerState state);
 struct PlayerOptions {
   FullQueue full_queue = FullQueue::lose;
   double heartbeat_s = 0.025;
-  double most_late = 0.2;  ///< part of the ticks within a second; more of them is a fault
+  double most_late = 0.2;       ///< part of the ticks within a second; more of them is a fault
+  std::string loop = "device";  ///< who closes it, for the session
+  /// How late a tick was, where somebody measures it.
+  std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
 };
 
 struct PlayerStatus {

@@ -65,6 +65,18 @@ void add_recorder(ControlFields& fields, const RecorderCounts& counts) {
   if (!counts.failure.empty()) fields.emplace_back("recorder_failure", counts.failure);
 }
 
+void add_loop(ControlFields& fields, const HostLoopStatus& loop) {
+  fields.emplace_back("wake_p50_s", loop.wake_p50_s);
+  fields.emplace_back("wake_p99_s", loop.wake_p99_s);
+  fields.emplace_back("wake_p999_s", loop.wake_p999_s);
+  fields.emplace_back("busy_p99_s", loop.busy_p99_s);
+  fields.emplace_back("missed_ticks", static_cast<std::int64_t>(loop.missed_ticks));
+  fields.emplace_back("stale_drives", static_cast<std::int64_t>(loop.stale_drives));
+  fields.emplace_back("trimmed_drives", static_cast<std::int64_t>(loop.trimmed_drives));
+  fields.emplace_back("real_time", loop.real_time);
+  if (!loop.device_fault.empty()) fields.emplace_back("device_fault", loop.device_fault);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& config, Publish publish) {
@@ -80,6 +92,8 @@ Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& confi
 
 Result<void> Service::connect() {
   player_.reset();
+  loop_client_.reset();
+  loop_.reset();
   device_ = {};
   const auto script = script_of(config_);
   if (!script) return schema::forward_error(script);
@@ -88,9 +102,10 @@ Result<void> Service::connect() {
   PlayerOptions player_options;
   player_options.heartbeat_s = 1e-3 * config_.watchdog_ms / 4;
   player_options.most_late = 1e-2 * config_.most_late_percent;
-  auto player = Player::make(*device->client, device->uri, player_options);
-  if (!player) return schema::forward_error(player);
   device_ = std::move(*device);
+  if (const auto closed = close_loop_here(player_options); !closed) return closed;
+  auto player = Player::make(client(), device_.uri, player_options);
+  if (!player) return schema::forward_error(player);
   player_ = std::move(*player);
   player_->listen([this](PlayerState state, const std::string& why, double device_s) {
     publish_("state", {{"state", std::string(word_of(state))}, {"why", why}, {"device_s", device_s}});
@@ -98,14 +113,30 @@ Result<void> Service::connect() {
   return {};
 }
 
-PrepareOptions Service::options() const {
+// Where it is asked for: then the player speaks to this computer's own real-time thread.
+Result<void> Service::close_loop_here(PlayerOptions& options) {
+  if (config_.loop != "host") return {};
+  HostLoopOptions loop_options{config_.rate_hz, config_.real_time_priority,
+                               static_cast<std::uint16_t>(config_.watchdog_ms)};
+  auto loop = HostLoop::begin(*device_.client, loop_options);
+  if (!loop) return schema::forward_error(loop);
+  loop_ = std::move(*loop);
+  auto connected = firmware_host::Client::connect(loop_->transport(), device_.uri);
+  if (!connected) return schema::forward_error(connected);
+  loop_client_ = std::move(*connected);
+  options.loop = "host";
+  options.lateness_ns = [&board = loop_->board()](std::uint64_t tick) { return board.lateness_ns(tick); };
+  return {};
+}
+
+PrepareOptions Service::options() {
   PrepareOptions options;
   options.rate_hz = config_.rate_hz;
   options.metres_per_count = player_->metres_per_count();
   options.onset_s = config_.onset_s;
   options.release_s = kReleaseS;
   options.watchdog_ms = static_cast<std::uint16_t>(config_.watchdog_ms);
-  options.most_samples = device_.client->description().welcome.profile_samples;
+  options.most_samples = client().description().welcome.profile_samples;
   return options;
 }
 
@@ -209,6 +240,8 @@ ControlFields Service::status() const {
   fields.emplace_back("round_trip_s", status.round_trip_s);
   add_ticks(fields, status.ticks);
   if (status.recorder) add_recorder(fields, *status.recorder);
+  fields.emplace_back("period_s", 1 / config_.rate_hz);
+  if (loop_) add_loop(fields, loop_->status());
   return fields;
 }
 
@@ -239,7 +272,7 @@ bool Service::step(double timeout_s) {
   const PlayerState state = player_->state();
   if (state == PlayerState::idle || state == PlayerState::lost) return false;
   (void)player_->step(timeout_s);  // a device that is gone is told as a state
-  if (const double now_s = device_.client->transport().now_s(); now_s >= next_status_s_) {
+  if (const double now_s = client().transport().now_s(); now_s >= next_status_s_) {
     next_status_s_ = now_s + kStatusEveryS;
     publish_("status", status());
   }

@@ -7,6 +7,7 @@
 
 #include "data-schema/control.hpp"
 #include "data-schema/daemon_config.hpp"
+#include "playback/daemon/host_loop.hpp"
 #include "playback/daemon/player.hpp"
 #include "playback/daemon/player_device.hpp"
 
@@ -33,6 +34,8 @@ class Service {
   Service(const schema::DaemonConfig& config, Publish publish)
       : config_(config), publish_(std::move(publish)) {}
   schema::Result<void> connect();
+  schema::Result<void> close_loop_here(PlayerOptions& options);
+  firmware_host::Client& client() { return loop_client_ ? *loop_client_ : *device_.client; }
   schema::Result<schema::ControlFields> load(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> arm();
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
@@ -42,11 +45,13 @@ class Service {
   schema::ControlFields status() const;
   std::string resolved(const std::string& file) const;
   std::string next_session() const;
-  PrepareOptions options() const;
+  PrepareOptions options();
 
   schema::DaemonConfig config_;
   Publish publish_;
   PlayerDevice device_;
+  std::unique_ptr<HostLoop> loop_;  // where the host closes it
+  std::unique_ptr<firmware_host::Client> loop_client_;
   std::unique_ptr<Player> player_;
   std::string loaded_, scene_path_;
   std::vector<std::string> notes_;

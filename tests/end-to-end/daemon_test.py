@@ -3,6 +3,7 @@
 """tactographd on the emulated device, as clients see it: the way from load to a session that replays, and what happens when
 something goes wrong."""
 import contextlib
+import hashlib
 import json
 import os
 import pathlib
@@ -17,12 +18,11 @@ import soundfile
 
 import tacto
 
-DAEMON = os.environ["TACTOGRAPHD"]
+DAEMON = os.environ.get("TACTOGRAPHD", "tactographd")
 SLOW = 4 if tacto.SANITIZED else 1
 
 
 def write_texture(stem, force_n, pitch_m=10e-6):
-    import hashlib
     wav = pathlib.Path(f"{stem}.texture.wav")
     soundfile.write(wav, force_n.astype(np.float32), round(1 / pitch_m), subtype="FLOAT")
     pathlib.Path(f"{stem}.texture.json").write_text(json.dumps({
