@@ -121,13 +121,13 @@ Result<void> Player::arm(const std::string& session_path) {
   const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};
   auto done = upload(client_, program_->prepared);
   if (done) done = gain(gain_);
+  client_.take_ticks();  // of an earlier run
   if (done) done = client_.command(arm);
   if (!done) {
     recorder_->event({0, steady_ns(), "not armed: " + schema::message(done.error())});
     (void)end_session();
     return done;
   }
-  client_.take_ticks();  // of an earlier run
   enter(PlayerState::armed, "");
   return beat();
 }

@@ -5,33 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 
 #include "firmware-host/core/wire/crc32c.hpp"
 #include "firmware-host/sim/sim_device.hpp"
 #include "playback/daemon/player.hpp"
 #include "playback/daemon/session_replay.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
-
-namespace {
-thread_local long allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/playback/allocation_hook.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -183,10 +165,13 @@ TEST(HostBoard, ATickTakesNothingFromTheHeap) {
   board.set_inputs(0, true);
   say(wire::Arm{wire::DriveSource::profile, 2'000'000}, 5);
   say(wire::Play{}, 6);
+  const long counted = tests::allocations_here();
+  ::operator delete(::operator new(8));
+  ASSERT_EQ(tests::allocations_here(), counted + 1) << "the hook sees nothing";
   ASSERT_TRUE(board.ticking());
   std::array<std::uint8_t, 4096> sink;
   float drive_v = 0;
-  const long before = allocations;
+  const long before = tests::allocations_here();
   for (int i = 0; i < 1500; ++i) {
     board.set_inputs(i, true);
     board.tick(1'000'000 + i * 500'000LL, i);
@@ -195,7 +180,7 @@ TEST(HostBoard, ATickTakesNothingFromTheHeap) {
     drive_v = board.drives().front()->drive_v;
     board.drives().pop();
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(tests::allocations_here(), before);
   EXPECT_NEAR(drive_v, 0.5, 1e-3);
   EXPECT_EQ(board.lateness_ns(1499), 1499);
 }
