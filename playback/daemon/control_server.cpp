@@ -17,7 +17,7 @@ using schema::ControlVerb;
 using schema::Fault;
 using schema::Result;
 
-constexpr int kLinesAtOnce = 16;
+constexpr int kLinesAtOnce = 16, kAcceptAtOnce = 128;
 constexpr std::size_t kMostEvents = 1000;  // between two serve(): ten a second are usual
 
 const schema::Error kTooLong{Fault::malformed,
@@ -54,7 +54,7 @@ void ControlServer::refuse(int descriptor) const {
 }
 
 void ControlServer::accept_all() {
-  for (int i = 0; i < place_.most_clients; ++i) {
+  for (int i = 0; i < kAcceptAtOnce; ++i) {
     const int accepted = accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (accepted < 0) return;
     if (clients_.size() < static_cast<std::size_t>(place_.most_clients))
