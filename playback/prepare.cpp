@@ -162,7 +162,7 @@ Prepared settled(const schema::Transducer& transducer, const PrepareOptions& o) 
 
 core::KernelSetup Prepared::setup() const {
   core::KernelSetup setup;
-  setup.texture = {{samples.data(), scale}, tracker, full_detail_counts_per_tick};
+  setup.texture = {{samples.data(), scale}, tracker, core::per_full_detail(full_detail_counts_per_tick)};
   setup.taps = taps.data();
   setup.tap_count = static_cast<std::uint16_t>(taps.size());
   setup.limits = limits;

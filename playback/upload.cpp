@@ -94,7 +94,12 @@ Result<void> send_contact(Client& client, const Prepared& prepared) {
   if (force == channels.end())
     return fail(Fault::unsuitable, "the device reports no normal force", client.where(),
                 "play without contact");
-  return client.command(wire::Contact{force->index, {}, prepared.gate_on_n, prepared.gate_off_n});
+  return client.command(wire::Contact{force->index,
+                                      {},
+                                      prepared.gate_on_n,
+                                      prepared.gate_off_n,
+                                      static_cast<float>(force->scale),
+                                      static_cast<float>(force->offset)});
 }
 
 }  // namespace

@@ -24,21 +24,24 @@ struct TrackerSetup {
 /// but the place that is given never leaves the count that the encoder shows. An alpha-beta filter whose
 /// gains begin with those of a straight line through what was seen (2 (2 n - 1) / (n (n + 1)), 6 / (n (n +
 /// 1))) and settle at alpha = t / (t + smoothing), t the ticks since the last edge, at most 0.1; beta =
-/// alpha^2 / (2 - alpha). A miss beyond 0.6 counts is no noise of the count's width, and weighs 0.2 to 0.5.
-/// It begins again where the finger turns, or is off by 4 counts. An edge that is long overdue bounds the
-/// speed by 1.5 / t: a finger that stops comes to rest. Safe in the tick.
+/// alpha^2 / (2 - alpha). A miss beyond what is not known of an edge (half a tick's way, at most half a
+/// count, and 0.1 counts) weighs 0.2 to 0.5. It begins again where the finger turns, or is off by 4 counts.
+/// An edge that is long overdue bounds the speed by 1.5 / t: a finger that stops comes to rest. Safe in the
+/// tick.
 class FingerTracker {
  public:
-  void set(const TrackerSetup& setup) noexcept {
-    setup_ = setup;
-    begun_ = false;
-  }
+  void set(const TrackerSetup& setup) noexcept;
   /// The place at this tick; with looking ahead, the place of then: offset may then be any number of counts.
   FingerPlace track(int32_t count) noexcept;
   /// |counts_per_tick|, as of the last track().
   float speed() const noexcept { return speed_ < 0 ? -speed_ : speed_; }
 
  private:
+  struct Gains {
+    float alpha = 0, beta = 0;
+  };
+  static Gains gains_of(float alpha) noexcept;
+  Gains gains(float miss, float since) noexcept;
   void begin(int32_t count) noexcept;
   void see(int32_t moved) noexcept;
   void turn(int32_t moved) noexcept;
@@ -46,6 +49,7 @@ class FingerTracker {
   void stay() noexcept;
 
   TrackerSetup setup_;
+  Gains every_tick_;  // once settled, where counts come every tick
   bool begun_ = false;
   int32_t count_ = 0;
   float offset_ = 0, speed_ = 0;  // from count_; counts a tick

@@ -241,6 +241,7 @@ Reply Firmware::contact(const wire::Contact& message) noexcept {
   if (message.channel >= board_.channel_count) return bad_value(0);
   if (!within(message.on_n, 0, kLargestFloat)) return bad_value(2);
   if (!within(message.off_n, 0, message.on_n)) return bad_value(3);
+  if (!is_finite(message.newtons_per_code) || !is_finite(message.offset_n)) return bad_value(4);
   contact_ = message;
   return {};
 }
@@ -274,11 +275,7 @@ Reply Firmware::arm(const wire::Arm& message) noexcept {
   Reply reply = ready(message);
   if (reply.code == AnswerCode::ok) reply = take_rate(message.rate_millihertz);
   if (reply.code != AnswerCode::ok) return reply;
-  const bool gated = contact_.on_n > 0;
-  const wire::Channel* force = gated ? &board_.channels[contact_.channel] : nullptr;
-  ticker_.watch_force(gated ? ForceChannel{true, contact_.channel, static_cast<float>(force->scale),
-                                           static_cast<float>(force->offset)}
-                            : ForceChannel{});
+  ticker_.watch_force(contact_);
   ticks_.begin(ticks_in_block(message.rate_millihertz));
   told_ = wire::FaultCode::none;
   ticker_.arm(message.source, kernel_setup(message), message.rate_millihertz);
@@ -297,7 +294,7 @@ KernelSetup Firmware::kernel_setup(const wire::Arm& message) const noexcept {
   if (message.source != DriveSource::profile) return setup;
   setup.texture = {upload_.profile(),
                    {tracking_.between_counts != 0, tracking_.look_ahead_ticks, tracking_.smoothing_ticks},
-                   tracking_.full_detail_counts_per_tick};
+                   per_full_detail(tracking_.full_detail_counts_per_tick)};
   setup.taps = taps_.taps;
   setup.tap_count = taps_.count;
   setup.sections = filters_.sections;

@@ -53,14 +53,20 @@ Profile::Profile(const float* samples, const ProfileScale& scale) noexcept
   }
 }
 
-float Profile::sample(const Level& level, int32_t index) const noexcept {
+// One division for all of them.
+void Profile::gather(const Level& level, int32_t first, float* y) const noexcept {
   const int32_t size = level.size;
-  if (index >= 0 && index < size) return level.samples[index];
-  if (scale_.ends == wire::ProfileEnds::loop) return level.samples[wrapped(index, size)];
-  if (scale_.ends == wire::ProfileEnds::stop) return 0;
-  const int32_t there_and_back = 2 * (size - 1);
-  const int32_t place = wrapped(index, there_and_back);
-  return level.samples[place < size ? place : there_and_back - place];
+  if (scale_.ends == wire::ProfileEnds::stop) {
+    for (int32_t i = 0; i < kReach; ++i)
+      y[i] = first + i >= 0 && first + i < size ? level.samples[first + i] : 0;
+    return;
+  }
+  const int32_t period = scale_.ends == wire::ProfileEnds::loop ? size : 2 * (size - 1);
+  int32_t at = wrapped(first, period);
+  for (int32_t i = 0; i < kReach; ++i) {
+    y[i] = level.samples[at < size ? at : period - at];
+    at = at + 1 < period ? at + 1 : 0;
+  }
 }
 
 float Profile::read(uint32_t which, int64_t place) const noexcept {
@@ -68,11 +74,14 @@ float Profile::read(uint32_t which, int64_t place) const noexcept {
   place >>= which / 2;
   const auto index = static_cast<int32_t>(place >> 32);
   const float u = static_cast<float>(static_cast<uint32_t>(place) >> 8) * kPerFraction;
-  const int32_t first = index - kBefore;
+  int32_t first = index - kBefore;
+  if (first >= 0 && first + kReach <= level.size)
+    return interpolated(scale_.interpolation, level.samples + first, u);
+  if (scale_.ends == wire::ProfileEnds::loop) first = wrapped(first, level.size);
   if (first >= 0 && first + kReach <= level.size)
     return interpolated(scale_.interpolation, level.samples + first, u);
   float y[kReach];
-  for (int32_t i = 0; i < kReach; ++i) y[i] = sample(level, first + i);
+  gather(level, first, y);
   return interpolated(scale_.interpolation, y, u);
 }
 

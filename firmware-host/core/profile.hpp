@@ -53,7 +53,7 @@ class Profile {
   };
   bool place_of(int32_t count, float offset, int64_t& place) const noexcept;
   float read(uint32_t level, int64_t place) const noexcept;
-  float sample(const Level& level, int32_t index) const noexcept;
+  void gather(const Level& level, int32_t first, float* y) const noexcept;
 
   ProfileScale scale_;
   int32_t reach_ = 0;

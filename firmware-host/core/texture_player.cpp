@@ -37,8 +37,8 @@ void TexturePlayer::change(const TextureSetup& texture, float fade_ticks) noexce
 
 float TexturePlayer::read(const TextureSetup& texture) const noexcept {
   const float speed = place_.counts_per_tick < 0 ? -place_.counts_per_tick : place_.counts_per_tick;
-  const float full = texture.full_detail_counts_per_tick;
-  return texture.profile.at(place_.count, place_.offset, full > 0 ? half_octaves(speed / full) : 0);
+  const float per_full = texture.per_full_detail;
+  return texture.profile.at(place_.count, place_.offset, half_octaves(speed * per_full));
 }
 
 float TexturePlayer::follow(float gain) noexcept {

@@ -12,10 +12,14 @@ namespace tacto::core {
 struct TextureSetup {
   Profile profile;
   TrackerSetup tracker;
-  /// Speed up to which the first level holds nothing beyond the band: half-octaves of speed count from here.
-  /// 0: the first level serves always.
-  float full_detail_counts_per_tick = 0;
+  /// 1 / the speed (counts a tick) up to which the first level holds nothing beyond the band: half-octaves of
+  /// speed count from there. 0: the first level serves always.
+  float per_full_detail = 0;
 };
+
+inline float per_full_detail(float counts_per_tick) noexcept {
+  return counts_per_tick > 0 ? 1 / counts_per_tick : 0;
+}
 
 /// 2 log2(ratio), without libm: within 0.02, continuous and growing, exact at powers of two; 0 for ratios
 /// below 1. Safe in the tick.

@@ -78,9 +78,9 @@ float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
 
 // A converter that gives nothing touches nothing.
 float Ticker::normal_force(Record& record) noexcept {
-  if (!force_.there) return kNoForce;
+  if (!(contact_.on_n > 0)) return kNoForce;
   if (!record.sampled && !hal_.read_channels(hal_.board, record.codes)) return 0;
-  return static_cast<float>(record.codes[force_.index]) * force_.newtons_per_code + force_.offset_n;
+  return static_cast<float>(record.codes[contact_.channel]) * contact_.newtons_per_code + contact_.offset_n;
 }
 
 void Ticker::drive(Record& record) noexcept {

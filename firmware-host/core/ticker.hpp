@@ -16,13 +16,6 @@ struct TickCounts {
   uint32_t late = 0, lost_records = 0, underruns = 0, amplitude_limited = 0, slew_limited = 0;
 };
 
-/// Where the normal force comes from.
-struct ForceChannel {
-  bool there = false;
-  uint8_t index = 0;
-  float newtons_per_code = 0, offset_n = 0;
-};
-
 /// tick() is called by the timer's interrupt and neither waits, allocates, locks nor throws; all else is the
 /// main loop's.
 class Ticker {
@@ -42,8 +35,8 @@ class Ticker {
 
   /// In idle only; what the source needs is set.
   void arm(wire::DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept;
-  /// Which channel holds the normal force: newtons = code x scale + offset. Of a board without one: nothing.
-  void watch_force(const ForceChannel& channel) noexcept { force_ = channel; }
+  /// Before arm(): which channel holds the normal force.
+  void watch_force(const wire::Contact& contact) noexcept { contact_ = contact; }
   /// Taken by the tick that first counts it.
   void set_gain(float gain) noexcept { gain_.store(gain), steered(); }
   /// A command to the drive has been obeyed.
@@ -81,7 +74,7 @@ class Ticker {
   Ring<Record, kRingRecords> records_;
   Record spare_;
   wire::DriveSource source_ = wire::DriveSource::profile;
-  ForceChannel force_;
+  wire::Contact contact_;
   Shared<float> gain_{1.0F};
   Shared<uint8_t> steered_;
   float gain_taken_ = 1;

@@ -188,7 +188,7 @@ TEST(WireDocument, HostFramesAreItsBytes) {
   EXPECT_EQ(hex_of(Taps{4, {1.5F, -0.25F, 0.125F, 0}}, 18), frames["taps"]);
   EXPECT_EQ(hex_of(Tracking{1, {}, 4, 8, 12.5F}, 19), frames["tracking"]);
   EXPECT_EQ(hex_of(Energy{1.5F, 0.5F}, 20), frames["energy"]);
-  EXPECT_EQ(hex_of(Contact{3, {}, 0.5F, 0.25F}, 21), frames["contact"]);
+  EXPECT_EQ(hex_of(Contact{3, {}, 0.5F, 0.25F, 0x1p-27F, -0.125F}, 21), frames["contact"]);
 }
 
 TEST(WireDocument, DeviceFramesAreItsBytes) {

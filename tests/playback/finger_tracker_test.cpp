@@ -194,7 +194,7 @@ TEST(FingerTracker, AReversalOnAFineGratingIsNeverACountOff) {
       "%.3f\n",
       timed.rms, timed.most, counted.rms, counted.most);
   EXPECT_LT(timed.most, kTwoPi * 1e4 * kCoarseCountM);
-  EXPECT_LT(timed.rms, 0.2);
+  EXPECT_LT(timed.rms, counted.rms);
 }
 
 }  // namespace

@@ -227,11 +227,12 @@ struct Contact {
   uint8_t channel = 0;  ///< that holds the normal force
   uint8_t reserved[3] = {};
   float on_n = 0, off_n = 0;
+  float newtons_per_code = 0, offset_n = 0;  ///< of that channel: a small core has no doubles
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.channel);
     codec.array(self.reserved, sizeof self.reserved);
-    codec(self.on_n, self.off_n);
+    codec(self.on_n, self.off_n, self.newtons_per_code, self.offset_n);
   }
 };
 
