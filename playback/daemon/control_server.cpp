@@ -12,7 +12,6 @@
 namespace tacto::playback {
 namespace {
 
-using schema::ControlRequest;
 using schema::ControlVerb;
 using schema::Fault;
 using schema::Result;

@@ -168,6 +168,7 @@ Result<ControlFields> Service::load(const ControlRequest& request) {
   scene_path_ = program->scene_path;
   if (const auto kept = player_->load(std::move(*program)); !kept) return schema::forward_error(kept);
   loaded_ = request.file;
+  if (const auto fresh = player_->gain(1); !fresh) return schema::forward_error(fresh);
   return fields;
 }
 
@@ -210,7 +211,8 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
   if (const auto set = player_->gain(*request.gain); !set) return schema::forward_error(set);
   if (request.save)
     if (const auto saved = save_gain(*request.gain); !saved) return schema::forward_error(saved);
-  publish_("gain", {{"gain", *request.gain}});
+  const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
+  publish_("gain", {{"gain", *request.gain}, {"device_s", device_s}});
   return ControlFields{{"gain", *request.gain}, {"saved", request.save}};
 }
 
