@@ -33,6 +33,7 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   if (!document) return judged(document.error());
   checked.newer_version = document->newer_version;
   if (file.kind == FileKind::recording) checked.findings = check_recording(file.path, *document, progress);
+  if (file.kind == FileKind::scene) checked.findings = check_scene(file.path, *document);
   if (file.kind == FileKind::texture) checked.findings = check_texture(file.path, *document, progress);
   return checked;
 }
@@ -46,6 +47,10 @@ Result<Checked> check_preset(const std::string& name) {
 
 Result<Checked> check_file(const StoredFile& file, const Progress& progress) {
   if (file.kind == FileKind::transducer && !file.path.ends_with(".json")) return check_preset(file.path);
+  if (file.kind == FileKind::session) {
+    auto checked = check_session(file.path);
+    return checked ? checked : judged(checked.error());
+  }
   if (file.kind != FileKind::spectrogram) return check_document(file, progress);
   auto checked = check_spectrogram(file.path);
   return checked ? checked : judged(checked.error());

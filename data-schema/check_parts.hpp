@@ -16,7 +16,11 @@ std::vector<Finding> check_recording(const std::string& path, const Document& do
 std::vector<Finding> check_texture(const std::string& path, const Document& document,
                                    const Progress& progress);
 
+/// Whether the scene's textures are there and of one kind.
+std::vector<Finding> check_scene(const std::string& path, const Document& document);
+
 /// Errors: as of check_file.
+Result<Checked> check_session(const std::string& path);
 Result<Checked> check_spectrogram(const std::string& path);
 
 /// What a sidecar says of its WAV.

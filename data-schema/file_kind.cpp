@@ -13,8 +13,9 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 7> kNames = {"recording", "texture",      "transducer", "spectrogram",
-                                                    "formants",  "descriptions", "calibration"};
+constexpr std::array<std::string_view, 9> kNames = {"recording",   "texture",  "transducer",
+                                                    "spectrogram", "formants", "descriptions",
+                                                    "calibration", "scene",    "session"};
 
 struct Ending {
   FileKind kind;
@@ -29,6 +30,8 @@ constexpr Ending kEndings[] = {
     {FileKind::formants, ".formants.json"},
     {FileKind::descriptions, ".descriptions.json"},
     {FileKind::calibration, ".calibration.json"},
+    {FileKind::scene, ".scene.json"},
+    {FileKind::session, ".session"},
 };
 
 Result<StoredFile> by_content(const std::string& path) {
@@ -51,9 +54,11 @@ Result<StoredFile> by_wav(const std::string& path) {
 
 Result<StoredFile> named_in_full(const std::string& path) {
   if (path.ends_with(".nc")) return StoredFile{FileKind::spectrogram, path};
+  if (path.ends_with(".session")) return StoredFile{FileKind::session, path};
   if (path.ends_with(".wav")) return by_wav(path);
   if (path.ends_with(".json")) return by_content(path);
-  return fail(Fault::malformed, "is no file of tactograph", path, "its files end in .json, .wav or .nc");
+  return fail(Fault::malformed, "is no file of tactograph", path,
+              "its files end in .json, .wav, .nc or .session");
 }
 
 std::vector<StoredFile> under_stem(const std::string& stem) {

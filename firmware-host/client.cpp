@@ -98,7 +98,8 @@ Result<std::uint32_t> Client::send(const Encoder& encode) {
   std::array<std::uint8_t, wire::kMaxFrame> frame;
   const std::uint32_t sequence = sequence_++;
   const std::size_t size = encode(sequence, frame);
-  const auto written = transport_->write(std::span(frame).first(size), kAnswerTimeoutS);
+  sent_.assign(frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(size));
+  const auto written = transport_->write(sent_, kAnswerTimeoutS);
   if (!written) return schema::forward_error(written);
   return sequence;
 }
@@ -126,6 +127,7 @@ Result<void> Client::exchange(const Encoder& encode, MessageType type) {
     if (!answered) return schema::forward_error(answered);
     if (!*answered) continue;
     if (answer_->code != wire::AnswerCode::ok) return refused(type, *answer_);
+    if (obeyed_) obeyed_(sent_);
     return {};
   }
   return silent(type);

@@ -60,6 +60,8 @@ class Client {
         },
         Message::kType);
   }
+  /// From now on `told` hears each command that the device has obeyed, as the frame that was sent.
+  void listen(std::function<void(std::span<const std::uint8_t> frame)> told) { obeyed_ = std::move(told); }
   /// Sends without waiting: drive. Errors: device: gone.
   schema::Result<void> send_drive(const wire::Drive& drive);
   /// Feeds the watchdog; gives the device's state. Errors: as of command().
@@ -117,6 +119,8 @@ class Client {
   bool converter_failed_ = false;
   std::uint32_t refused_drives_ = 0;
   std::vector<std::uint8_t> received_;
+  std::vector<std::uint8_t> sent_;  // the last frame
+  std::function<void(std::span<const std::uint8_t>)> obeyed_;
 };
 
 }  // namespace tacto::firmware_host

@@ -64,6 +64,8 @@ struct StreamEvents {
   std::vector<DeviceFault> faults;
 };
 
+class Client;
+
 /// A device that is open. Not safe to share between threads.
 class Device {
  public:
@@ -89,6 +91,8 @@ class Device {
   virtual schema::Result<double> round_trip_s() {
     return schema::fail(schema::Fault::unsuitable, "answers no questions", capabilities().uri);
   }
+  /// The conversation itself, for what is no stream: drive. Null where nobody is there to answer.
+  virtual Client* conversation() { return nullptr; }
 };
 
 /// Opens by URI; there are `usb:`, the only device on USB, or one by `serial=` or `port=`; `sim:`, with every

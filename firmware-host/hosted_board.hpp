@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,11 +13,20 @@
 
 namespace tacto::firmware_host {
 
-inline constexpr std::uint32_t kHostedProfileSamples = 65536;  // 256 KB: what a larger board would have
+/// Room for a texture: 16 MB, of which the system gives only what is written to.
+class HostedProfile {
+ public:
+  static constexpr std::uint32_t kSamples = 1U
+                                            << 22;  ///< a metre of texture on a 1 um grid, in all its levels
+  float* data() { return samples_.get(); }
+
+ private:
+  std::unique_ptr<float[]> samples_ = std::make_unique_for_overwrite<float[]>(kSamples);
+};
 
 /// The core's view of what the board keeps, and goes on keeping.
 inline core::Board board_of(const wire::Welcome& welcome, const std::vector<wire::Channel>& channels,
-                            const std::vector<wire::Note>& notes, std::vector<float>& profile) {
+                            const std::vector<wire::Note>& notes, HostedProfile& profile) {
   core::Board board;
   board.about = welcome;
   board.channels = channels.data();
@@ -24,7 +34,7 @@ inline core::Board board_of(const wire::Welcome& welcome, const std::vector<wire
   board.notes = notes.data();
   board.note_count = static_cast<std::uint8_t>(notes.size());
   board.profile_memory = profile.data();
-  board.profile_samples = static_cast<std::uint32_t>(profile.size());
+  board.profile_samples = HostedProfile::kSamples;
   return board;
 }
 

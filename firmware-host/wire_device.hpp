@@ -23,6 +23,7 @@ class WireDevice final : public Device {
   StreamEvents take_events() override;
   schema::Result<double> round_trip_s() override;
 
+  Client* conversation() override { return client_.get(); }
   /// For what is not a stream: drive, heartbeat.
   Client& client() { return *client_; }
 

@@ -93,6 +93,11 @@ std::string_view word_of(MessageType type) {
       {MessageType::drive, "drive"},
       {MessageType::heartbeat, "heartbeat"},
       {MessageType::reset, "reset"},
+      {MessageType::profile_levels, "profile_levels"},
+      {MessageType::taps, "taps"},
+      {MessageType::tracking, "tracking"},
+      {MessageType::energy, "energy"},
+      {MessageType::contact, "contact"},
   };
   for (const auto& [key, word] : kWords)
     if (key == type) return word;

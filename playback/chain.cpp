@@ -28,6 +28,7 @@ std::complex<double> chain_response(const Chain& chain, double frequency_hz) {
 std::complex<double> inverse_response(const Chain& chain, Inverse inverse, double frequency_hz) {
   if (inverse == Inverse::full) return 1.0 / chain_response(chain, frequency_hz);
   if (inverse == Inverse::magnitude) return 1.0 / std::abs(chain_response(chain, frequency_hz));
+  if (inverse == Inverse::none) return chain.transducer.drive_limit_v / chain.transducer.displacement_limit_m;
   return 1.0 / std::abs(chain_response(chain, 0));
 }
 

@@ -12,8 +12,9 @@ namespace tacto::playback {
 enum class Reconstruction { none, butterworth3 };
 /// How the converter keeps a sample: points of a band-limited signal, or held until the next one.
 enum class Hold { none, zero_order };
-/// How much of the chain the drive undoes: amplitude and phase, amplitude alone, or only the gain at rest.
-enum class Inverse { full, magnitude, gain };
+/// How much of the chain the drive undoes: amplitude and phase, amplitude alone, only the gain at rest, or
+/// nothing.
+enum class Inverse { full, magnitude, gain, none };
 
 /// From the drive's samples to the tray's displacement.
 struct Chain {
@@ -30,7 +31,8 @@ struct Chain {
 std::complex<double> chain_response(const Chain& chain, double frequency_hz);
 
 /// What a wanted displacement's spectrum is multiplied by to get the drive's, V/m. `full` is 1 /
-/// chain_response, with no delay; there is no "none", for metres are not volts.
+/// chain_response, with no delay; `none` knows nothing of the response: the drive's limit for the
+/// displacement's.
 std::complex<double> inverse_response(const Chain& chain, Inverse inverse, double frequency_hz);
 
 }  // namespace tacto::playback

@@ -10,6 +10,7 @@
 #include "playback/reference/exact_drive.hpp"
 #include "playback/reference/spatial_content.hpp"
 #include "playback/reference/wanted.hpp"
+#include "playback/texture_check.hpp"
 #include "playback/texture_lookup.hpp"
 
 namespace tacto::playback {
@@ -47,20 +48,6 @@ Result<void> check_options(const RenderOptions& o) {
   return {};
 }
 
-Result<void> check_texture(const schema::Texture& texture) {
-  if (texture.unit != "N")
-    return fail(Fault::unsuitable, fmt::format("the texture holds {} in {}", texture.quantity, texture.unit),
-                "texture", "only force in N can be played");
-  if (texture.signal.values.size() < 2 || !(texture.signal.pitch_m > 0))
-    return fail(Fault::unsuitable, "the texture has fewer than 2 samples", "texture");
-  const auto& values = texture.signal.values;
-  const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
-  if (bad != values.end())
-    return fail(Fault::unsuitable, "the texture's value is not a finite number",
-                fmt::format("texture, sample {}", bad - values.begin()));
-  return {};
-}
-
 Result<void> check_length(const FingerPath& path, const RenderOptions& options) {
   if (path.duration_s() < 1 / options.band.low_hz)
     return fail(Fault::unsuitable,
@@ -77,7 +64,7 @@ Result<void> check_length(const FingerPath& path, const RenderOptions& options) 
 Result<void> check_inputs(const schema::Texture& texture, const FingerPath& path,
                           const RenderOptions& options) {
   if (auto sound = check_options(options); !sound) return sound;
-  if (auto sound = check_texture(texture); !sound) return sound;
+  if (auto sound = check_playable(texture); !sound) return sound;
   if (auto sound = check_finger_path(path); !sound) return sound;
   return check_length(path, options);
 }

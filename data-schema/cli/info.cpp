@@ -25,6 +25,10 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_descriptions(file.path);
     case FileKind::calibration:
       return describe_calibration(file.path);
+    case FileKind::scene:
+      return describe_scene(file.path);
+    case FileKind::session:
+      return describe_session(file.path);
   }
   return fail(Fault::internal, "a kind of file that nobody describes", file.path);
 }

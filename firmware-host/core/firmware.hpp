@@ -55,6 +55,7 @@ class Firmware {
   void obey(const wire::Frame& frame) noexcept;
   Reply reply_to(const wire::Frame& frame) noexcept;
   Reply reply_to_setup(const wire::Frame& frame) noexcept;
+  Reply reply_to_texture(const wire::Frame& frame) noexcept;
   template <class Message>
   Reply with(const wire::Frame& frame, Message& message, Reply (Firmware::*command)(const Message&)) noexcept;
   template <class Message>
@@ -63,10 +64,16 @@ class Firmware {
   Reply stream_start(const wire::StreamStart& message) noexcept;
   Reply stream_stop() noexcept;
   Reply limits(const wire::Limits& message) noexcept;
-  Reply profile_begin(const wire::ProfileBegin& message) noexcept { return upload_.begin(message); }
+  Reply profile_begin(const wire::ProfileBegin& message) noexcept;
+  Reply profile_levels(const wire::ProfileLevels& message) noexcept { return upload_.levels(message); }
   Reply profile_chunk(const wire::ProfileChunk& message) noexcept { return upload_.chunk(message); }
   Reply profile_end(const wire::ProfileEnd& message) noexcept { return upload_.end(message); }
   Reply filters(const wire::Filters& message) noexcept;
+  Reply taps(const wire::Taps& message) noexcept;
+  Reply tracking(const wire::Tracking& message) noexcept;
+  Reply energy(const wire::Energy& message) noexcept;
+  Reply contact(const wire::Contact& message) noexcept;
+  KernelSetup kernel_setup(const wire::Arm& message) const noexcept;
   Reply gain(const wire::Gain& message) noexcept;
   Reply sweep(const wire::Sweep& message) noexcept;
   Reply arm(const wire::Arm& message) noexcept;
@@ -87,6 +94,10 @@ class Firmware {
   wire::SequenceCheck order_;
   wire::Limits limits_;
   wire::Filters filters_;
+  wire::Taps taps_, new_taps_;
+  wire::Tracking tracking_;
+  wire::Energy energy_;
+  wire::Contact contact_;
   wire::Sweep sweep_;
   wire::ProfileChunk chunk_;  // members, not locals: small cores have small stacks
   wire::Drive drive_;

@@ -15,6 +15,7 @@ constexpr float kLongestOnsetS = 10;
 constexpr uint16_t kLeastWatchdogMs = 10, kMostWatchdogMs = 1000;
 constexpr uint32_t kTickBlockPart = 100000;  // mHz: a ticks message every 10 ms
 constexpr uint32_t kNotGreeted = 255;
+constexpr float kMostTicksAhead = 2000, kLongestWindowS = 3600;
 
 Reply bad_value(uint32_t field) noexcept {
   return {AnswerCode::bad_value, field};
@@ -127,8 +128,39 @@ Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
     case MessageType::arm:
       return in_idle(frame, new_arm, &Firmware::arm);
     default:
+      return reply_to_texture(frame);
+  }
+}
+
+// Since protocol 1.1.
+Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
+  wire::ProfileLevels new_levels;
+  wire::Tracking new_tracking;
+  wire::Energy new_energy;
+  wire::Contact new_contact;
+  switch (static_cast<MessageType>(frame.header.type)) {
+    case MessageType::profile_levels:
+      return in_idle(frame, new_levels, &Firmware::profile_levels);
+    case MessageType::taps:
+      return in_idle(frame, new_taps_, &Firmware::taps);
+    case MessageType::tracking:
+      return in_idle(frame, new_tracking, &Firmware::tracking);
+    case MessageType::energy:
+      return in_idle(frame, new_energy, &Firmware::energy);
+    case MessageType::contact:
+      return in_idle(frame, new_contact, &Firmware::contact);
+    default:
       return {AnswerCode::unknown_type, frame.header.type};
   }
+}
+
+// A host of protocol 1.0 knows nothing of the rest: a new profile begins without it.
+Reply Firmware::profile_begin(const wire::ProfileBegin& message) noexcept {
+  taps_.count = 0;
+  tracking_ = {};
+  energy_ = {};
+  contact_ = {};
+  return upload_.begin(message);
 }
 
 // One clock for sampling and driving: a second user takes the rate that is there.
@@ -182,6 +214,38 @@ Reply Firmware::filters(const wire::Filters& message) noexcept {
   return {};
 }
 
+Reply Firmware::taps(const wire::Taps& message) noexcept {
+  for (uint16_t i = 0; i < message.count; ++i)
+    if (!is_finite(message.taps[i])) return bad_value(i);
+  taps_ = message;
+  return {};
+}
+
+Reply Firmware::tracking(const wire::Tracking& message) noexcept {
+  if (message.between_counts > 1) return bad_value(0);
+  if (!within(message.look_ahead_ticks, 0, kMostTicksAhead)) return bad_value(2);
+  if (!within(message.smoothing_ticks, 0, kLargestFloat)) return bad_value(3);
+  if (!within(message.full_detail_counts_per_tick, 0, kLargestFloat)) return bad_value(4);
+  tracking_ = message;
+  return {};
+}
+
+Reply Firmware::energy(const wire::Energy& message) noexcept {
+  if (!within(message.rms_v, 0, kLargestFloat)) return bad_value(0);
+  if (!within(message.window_s, 0, kLongestWindowS)) return bad_value(1);
+  energy_ = message;
+  return {};
+}
+
+Reply Firmware::contact(const wire::Contact& message) noexcept {
+  if (message.channel >= board_.channel_count) return bad_value(0);
+  if (!within(message.on_n, 0, kLargestFloat)) return bad_value(2);
+  if (!within(message.off_n, 0, message.on_n)) return bad_value(3);
+  if (!is_finite(message.newtons_per_code) || !is_finite(message.offset_n)) return bad_value(4);
+  contact_ = message;
+  return {};
+}
+
 Reply Firmware::gain(const wire::Gain& message) noexcept {
   if (!is_finite(message.gain)) return bad_value(0);
   ticker_.set_gain(message.gain);
@@ -211,13 +275,31 @@ Reply Firmware::arm(const wire::Arm& message) noexcept {
   Reply reply = ready(message);
   if (reply.code == AnswerCode::ok) reply = take_rate(message.rate_millihertz);
   if (reply.code != AnswerCode::ok) return reply;
-  const bool profile = message.source == DriveSource::profile;
-  if (profile) ticker_.kernel().set_profile(upload_.profile());
-  ticker_.kernel().sections().set(filters_.sections, profile ? filters_.count : uint8_t{0});
+  ticker_.watch_force(contact_);
   ticks_.begin(ticks_in_block(message.rate_millihertz));
   told_ = wire::FaultCode::none;
-  ticker_.arm(message.source, limits_, message.rate_millihertz);
+  ticker_.arm(message.source, kernel_setup(message), message.rate_millihertz);
   return {};
+}
+
+// Filters belong to the profile; limits and touch to every source.
+KernelSetup Firmware::kernel_setup(const wire::Arm& message) const noexcept {
+  KernelSetup setup;
+  setup.limits = limits_;
+  setup.rate_hz = rate_of(message.rate_millihertz);
+  setup.energy_rms_v = energy_.rms_v;
+  setup.energy_window_s = energy_.window_s;
+  setup.gate_on_n = contact_.on_n;
+  setup.gate_off_n = contact_.off_n;
+  if (message.source != DriveSource::profile) return setup;
+  setup.texture = {upload_.profile(),
+                   {tracking_.between_counts != 0, tracking_.look_ahead_ticks, tracking_.smoothing_ticks},
+                   per_full_detail(tracking_.full_detail_counts_per_tick)};
+  setup.taps = taps_.taps;
+  setup.tap_count = taps_.count;
+  setup.sections = filters_.sections;
+  setup.section_count = filters_.count;
+  return setup;
 }
 
 Reply Firmware::play() noexcept {
@@ -227,16 +309,19 @@ Reply Firmware::play() noexcept {
       (state == DriveState::armed || state == DriveState::playing) && supervisor.aim() != Aim::off;
   if (!may) return {AnswerCode::wrong_state, static_cast<uint32_t>(state)};
   supervisor.aim(Aim::play);
+  ticker_.steered();
   return {};
 }
 
 Reply Firmware::stop() noexcept {
   if (ticker_.supervisor().aim() == Aim::play) ticker_.supervisor().aim(Aim::hold);
+  ticker_.steered();
   return {};
 }
 
 Reply Firmware::disarm() noexcept {
   ticker_.supervisor().aim(Aim::off);
+  ticker_.steered();
   return {};
 }
 

@@ -1,45 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texture on the device: drive against encoder count, read between samples.
+// The texture on the device: what is wanted against encoder count, in copies of falling detail, read between
+// samples.
 #pragma once
 
-#include "firmware-host/core/wire/host_messages.hpp"
+#include "firmware-host/core/interpolation.hpp"
 
 namespace tacto::core {
 
 /// Where counts lie on the samples: sample x 2^32 = (count - origin_count) samples_per_count_q32 +
 /// at_origin_q32, exactly, in 64-bit integers: no position is lost in a float's 24 bits.
 struct ProfileScale {
-  uint32_t samples = 0;
+  uint32_t samples = 0;  ///< of the first level
   int32_t origin_count = 0;
   int64_t at_origin_q32 = 0;
   uint64_t samples_per_count_q32 = 0;
   wire::ProfileEnds ends = wire::ProfileEnds::stop;
+  uint8_t levels = 1;  ///< at most kMaxLevels
+  wire::Interpolation interpolation = wire::Interpolation::hermite;
 };
 
 /// Counts farther than this from the origin read zero, whatever the ends: 268 m of a 1 um grid.
 int32_t reach_counts(const ProfileScale& scale) noexcept;
 
-/// Cubic Hermite interpolation with slopes from central differences of fourth order, m_i = (8 (y_i+1 - y_i-1)
-/// - (y_i+2 - y_i-2)) / 12. Error for a sinusoid of spatial frequency k: at most 0.0026 w^4 + 0.0032 w^5 of
-/// its amplitude for w = 2 pi k pitch up to 0.63 (ten samples a period), and 4e-7 for single precision.
-/// Ends: stop: samples outside are zero; loop: sample n is sample 0; mirror: about the first and last sample.
+/// Samples of a level: every second one goes with each second level. A loop's first level has a multiple of
+/// 2^((levels - 1) / 2) samples, other ends' one more.
+uint32_t level_samples(const ProfileScale& scale, uint32_t level) noexcept;
+/// Of all levels, which lie one after the other.
+uint32_t pyramid_samples(const ProfileScale& scale) noexcept;
+
+/// A pyramid: level n holds the texture up to a spatial frequency that falls by the square root of two with
+/// each level. Ends: stop: samples outside are zero; loop: sample n is sample 0; mirror: about the first and
+/// last sample. Interpolation's errors stand at interpolated().
 class Profile {
  public:
   Profile() = default;
   /// At least 6 samples, which are not copied. `scale` as a ProfileUpload lets through.
-  Profile(const float* samples, const ProfileScale& scale) noexcept
-      : samples_(samples), scale_(scale), reach_(reach_counts(scale)) {}
+  Profile(const float* samples, const ProfileScale& scale) noexcept;
 
-  /// Safe in the tick.
-  float at(int32_t count) const noexcept;
+  /// At a count, of the first level. Safe in the tick.
+  float at(int32_t count) const noexcept { return at(count, 0, 0); }
+
+  /// At count + offset, where `coarseness` (0 and more) counts half-octaves of speed beyond the one up to
+  /// which the first level serves. From n to n + 1 level n - 1 fades evenly into level n, beyond the last one
+  /// into silence: all is continuous. A profile of one level serves at every speed. Beyond reach_counts() it
+  /// is zero. Safe in the tick.
+  float at(int32_t count, float offset, float coarseness) const noexcept;
 
  private:
-  float between(const float* y, float u) const noexcept;
-  float sample(int32_t index) const noexcept;
+  struct Level {
+    const float* samples = nullptr;
+    int32_t size = 0;
+  };
+  bool place_of(int32_t count, float offset, int64_t& place) const noexcept;
+  float read(uint32_t level, int64_t place) const noexcept;
+  void gather(const Level& level, int32_t first, float* y) const noexcept;
 
-  const float* samples_ = nullptr;
   ProfileScale scale_;
   int32_t reach_ = 0;
+  Level levels_[wire::kMaxLevels];
 };
 
 }  // namespace tacto::core

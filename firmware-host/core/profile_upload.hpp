@@ -3,6 +3,7 @@
 #pragma once
 
 #include "firmware-host/core/profile.hpp"
+#include "firmware-host/core/wire/host_messages.hpp"
 
 namespace tacto::core {
 
@@ -21,9 +22,11 @@ class ProfileUpload {
   ProfileUpload(float* memory, uint32_t capacity) noexcept : memory_(memory), capacity_(capacity) {}
 
   Reply begin(const wire::ProfileBegin& message) noexcept;
+  /// After begin(): all samples together are those of so many levels.
+  Reply levels(const wire::ProfileLevels& message) noexcept;
   Reply chunk(const wire::ProfileChunk& message) noexcept;
   Reply end(const wire::ProfileEnd& message) noexcept;
-  void forget() noexcept { complete_ = false, scale_ = {}, here_ = 0; }
+  void forget() noexcept { complete_ = false, scale_ = {}, samples_ = 0, here_ = 0; }
 
   bool complete() const noexcept { return complete_; }
   uint32_t here() const noexcept { return here_; }
@@ -36,6 +39,7 @@ class ProfileUpload {
   float* memory_;
   uint32_t capacity_;
   ProfileScale scale_;
+  uint32_t samples_ = 0;  // of all levels
   uint32_t here_ = 0;
   bool complete_ = false;
 };

@@ -16,12 +16,15 @@ uint8_t Ticker::start_stream() noexcept {
   return run_.load();
 }
 
-void Ticker::arm(DriveSource source, const wire::Limits& limits, uint32_t rate_millihertz) noexcept {
+void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept {
   source_ = source;
   tick_ = 0;
   drive_queue_.clear();
-  kernel_.set(limits, 1e-3F * static_cast<float>(rate_millihertz));
-  supervisor_.arm(limits, rate_millihertz, hal_.read_encoder(hal_.board));
+  kernel_.set(setup);
+  steered_.store(0);
+  steered_taken_ = 0;
+  gain_taken_ = gain_.load();
+  supervisor_.arm(setup.limits, rate_millihertz, hal_.read_encoder(hal_.board));
 }
 
 FaultCode Ticker::take_stream_fault() noexcept {
@@ -52,9 +55,18 @@ void Ticker::sample(Record& record) noexcept {
   tell(FaultCode::converter);
 }
 
+// A session can be replayed to the bit because each tick says which commands it knew.
+void Ticker::take_steering(Record& record) noexcept {
+  if (const uint8_t steered = steered_.load(); steered != steered_taken_) {
+    steered_taken_ = steered;
+    gain_taken_ = gain_.load();
+  }
+  record.flags |= uint32_t{steered_taken_} << wire::kTickSteeredShift;
+}
+
 // The host's drive is for this tick or for none: what was not played in its time is not played later.
 float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
-  if (source_ == DriveSource::profile) return kernel_.wanted(encoder, gain_.load());
+  if (source_ == DriveSource::profile) return kernel_.wanted(encoder, gain_taken_);
   if (source_ == DriveSource::sweep) return supervisor_.state() == DriveState::playing ? sweep_.next() : 0;
   const float* next = drive_queue_.front();
   lacks = next == nullptr;
@@ -64,18 +76,27 @@ float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
   return drive_v;
 }
 
+// A converter that gives nothing touches nothing.
+float Ticker::normal_force(Record& record) noexcept {
+  if (!(contact_.on_n > 0)) return kNoForce;
+  if (!record.sampled && !hal_.read_channels(hal_.board, record.codes)) return 0;
+  return static_cast<float>(record.codes[contact_.channel]) * contact_.newtons_per_code + contact_.offset_n;
+}
+
 void Ticker::drive(Record& record) noexcept {
   record.driven = supervisor_.state() != DriveState::idle;
   record.drive_v = 0;
   if (!record.driven) return hal_.write_drive(hal_.board, 0);
+  take_steering(record);
   const FaultCode before = supervisor_.fault();
   TickSights sights{record.encoder, (record.flags & wire::kTickEnabled) != 0, false};
   const float wanted_v = wanted(record.encoder, sights.drive_lacks);
   const bool raise = supervisor_.observe(sights);
-  bool sound = true;
-  record.drive_v = kernel_.tick(wanted_v, raise, record.flags, sound);
+  const TickOutput output = kernel_.drive(wanted_v, raise, normal_force(record));
+  record.drive_v = output.drive_v;
+  record.flags |= output.flags;
   hal_.write_drive(hal_.board, record.drive_v);
-  supervisor_.settle(sound, kernel_.at_rest());
+  supervisor_.settle(output.sound, kernel_.at_rest());
   record.tick = tick_++;
   if (supervisor_.state() == DriveState::playing) record.flags |= wire::kTickPlaying;
   if (supervisor_.state() == DriveState::fault) record.flags |= wire::kTickFault;

@@ -34,8 +34,13 @@ class Ticker {
   bool streaming() const noexcept { return stream_.load() != Stream::off; }
 
   /// In idle only; what the source needs is set.
-  void arm(wire::DriveSource source, const wire::Limits& limits, uint32_t rate_millihertz) noexcept;
-  void set_gain(float gain) noexcept { gain_.store(gain); }
+  void arm(wire::DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept;
+  /// Before arm(): which channel holds the normal force.
+  void watch_force(const wire::Contact& contact) noexcept { contact_ = contact; }
+  /// Taken by the tick that first counts it.
+  void set_gain(float gain) noexcept { gain_.store(gain), steered(); }
+  /// A command to the drive has been obeyed.
+  void steered() noexcept { steered_.store(static_cast<uint8_t>(steered_.load() + 1)); }
   TickKernel& kernel() noexcept { return kernel_; }
   SweepGenerator& sweep() noexcept { return sweep_; }
   DriveSupervisor& supervisor() noexcept { return supervisor_; }
@@ -54,7 +59,9 @@ class Ticker {
   void look(Record& record) noexcept;
   void sample(Record& record) noexcept;
   void drive(Record& record) noexcept;
+  void take_steering(Record& record) noexcept;
   float wanted(int32_t encoder, bool& lacks) noexcept;
+  float normal_force(Record& record) noexcept;
   void count(uint32_t flags) noexcept;
   void keep(bool there, const Record& record) noexcept;
   void tell(wire::FaultCode code) noexcept { stream_fault_.store(code); }
@@ -67,7 +74,11 @@ class Ticker {
   Ring<Record, kRingRecords> records_;
   Record spare_;
   wire::DriveSource source_ = wire::DriveSource::profile;
+  wire::Contact contact_;
   Shared<float> gain_{1.0F};
+  Shared<uint8_t> steered_;
+  float gain_taken_ = 1;
+  uint8_t steered_taken_ = 0;
   Shared<Stream> stream_{Stream::off};
   Shared<wire::FaultCode> stream_fault_{wire::FaultCode::none};
   Shared<uint8_t> run_;

@@ -51,7 +51,6 @@ ReplayBoard::ReplayBoard(schema::Recording recording, schema::WavReader reader, 
       welcome_(replay_welcome(recording_, serial)),
       channels_(replay_channels(recording_.header)),
       notes_(replay_notes(recording_)),
-      texture_(kHostedProfileSamples),
       frame_(channels_.size()) {
   if (const auto position = schema::find_channel(recording_.header, "position")) position_ = *position;
   firmware_ = std::make_unique<core::Firmware>(about(), hal());

@@ -7,6 +7,7 @@
 #include "data-schema/recording.hpp"
 #include "firmware-host/core/firmware.hpp"
 #include "firmware-host/gadget/gadget_board.hpp"
+#include "firmware-host/hosted_board.hpp"
 
 namespace tacto::firmware_host {
 
@@ -43,7 +44,7 @@ class ReplayBoard final : public GadgetBoard {
   wire::Welcome welcome_;
   std::vector<wire::Channel> channels_;
   std::vector<wire::Note> notes_;
-  std::vector<float> texture_;
+  HostedProfile texture_;
   std::optional<std::size_t> position_;  // the encoder's channel
   std::vector<std::int32_t> ahead_;      // frames read and not yet given
   std::size_t used_ = 0;                 // of it

@@ -6,6 +6,7 @@
 
 #include "firmware-host/hosted_board.hpp"
 #include "firmware-host/sim/counter_run.hpp"
+#include "firmware-host/sim/scripted_run.hpp"
 #include "firmware-host/sim/sim_description.hpp"
 #include "firmware-host/wire_fields.hpp"
 
@@ -21,7 +22,6 @@ SimBoard::SimBoard(const SimParameters& parameters, schema::Transducer transduce
     : parameters_(parameters),
       transducer_(std::move(transducer)),
       profile_(std::move(surface.profile)),
-      texture_(kHostedProfileSamples),
       surface_words_(std::move(surface.description)) {
   describe();
   firmware_ = std::make_unique<core::Firmware>(about(), hal());
@@ -78,6 +78,9 @@ double SimBoard::stream_bytes_per_s() const {
 }
 
 std::unique_ptr<FrameSource> SimBoard::source_at(const SimParameters& parameters) const {
+  if (script_)
+    return std::make_unique<ScriptedRun>(script_, 1 / parameters.sample_rate_hz,
+                                         parameters.encoder_quantum_m);
   if (parameters.counter) return std::make_unique<CounterRun>();
   return std::make_unique<SimRun>(parameters, transducer_, profile_);
 }

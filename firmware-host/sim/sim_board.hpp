@@ -2,10 +2,12 @@
 // The emulated device's board: the firmware's own core, with physics behind its hardware layer.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "firmware-host/core/firmware.hpp"
+#include "firmware-host/hosted_board.hpp"
 #include "firmware-host/sim/actuated_tray.hpp"
 #include "firmware-host/sim/frame_source.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
@@ -33,6 +35,9 @@ class SimBoard {
   std::vector<std::uint8_t>& from_host() { return from_host_; }
   std::vector<std::uint8_t>& to_host() { return to_host_; }
   void set_enabled(bool enabled) { enabled_ = enabled; }
+  /// From the next time the rate is set, the encoder goes where this says (m, against seconds since then),
+  /// and there is no other physics of the finger: channels that are no encoder's read zero.
+  void set_script(std::function<double(double time_s)> position_m) { script_ = std::move(position_m); }
   /// Bytes to the host that the link holds; what does not fit stays in the firmware's ring, as long as that
   /// has room.
   void set_link_bytes(std::size_t bytes) { link_bytes_ = bytes; }
@@ -59,9 +64,10 @@ class SimBoard {
   SimParameters parameters_;
   schema::Transducer transducer_;
   HeightProfile profile_;
+  std::function<double(double)> script_;
   std::vector<wire::Channel> channels_;
   std::vector<wire::Note> notes_;
-  std::vector<float> texture_;
+  HostedProfile texture_;
   std::vector<std::uint8_t> from_host_, to_host_;
   std::size_t link_bytes_ = static_cast<std::size_t>(-1);
   std::unique_ptr<FrameSource> source_;

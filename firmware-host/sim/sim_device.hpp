@@ -28,6 +28,7 @@ class SimDevice final : public Device {
   bool keeps_time() const override { return paced_; }
   schema::Result<double> round_trip_s() override { return wire_->round_trip_s(); }
 
+  Client* conversation() override { return &wire_->client(); }
   Client& client() { return wire_->client(); }
   SimBoard& board() { return *board_; }
 

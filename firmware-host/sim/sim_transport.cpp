@@ -50,7 +50,9 @@ schema::Result<std::size_t> SimTransport::read(std::span<std::uint8_t> bytes, do
   return take_first(board_.to_host(), bytes);
 }
 
+// A device at rest has no time to catch up with when it is woken.
 schema::Result<void> SimTransport::write(std::span<const std::uint8_t> bytes, double) {
+  if (pacer_ && !board_.ticking()) now_s_ = std::max(now_s_, pacer_->now_s());
   board_.from_host().insert(board_.from_host().end(), bytes.begin(), bytes.end());
   board_.poll();
   return {};

@@ -7,5 +7,9 @@
 namespace tacto::playback {
 
 extern const cli::Verb kRenderVerb;
+extern const cli::Verb kPlayVerb;
+extern const cli::Verb kCtlVerb;
+extern const cli::Verb kSessionVerb;
+extern const cli::Verb kReplayVerb;
 
 }  // namespace tacto::playback

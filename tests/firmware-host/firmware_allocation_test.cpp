@@ -31,6 +31,8 @@ namespace {
 
 static_assert(noexcept(std::declval<Firmware&>().tick()));
 static_assert(noexcept(std::declval<Firmware&>().poll()));
+static_assert(noexcept(std::declval<TickKernel&>().tick(TickInput{})));
+static_assert(noexcept(std::declval<TickKernel&>().change(TextureSetup{}, 1)));
 static_assert(noexcept(std::declval<TickKernel&>().tick(0, true, std::declval<uint32_t&>(),
                                                         std::declval<bool&>())));
 
@@ -61,8 +63,10 @@ TEST(Allocation, NeitherTickNorPollAllocates) {
 
 TEST(Allocation, TheKernelDoesNotAllocate) {
   static tests::KernelWorkload workload;
+  static tests::TextureWorkload texture;
   const long before = allocations;
   for (int i = 0; i < 1000; ++i) workload.tick();
+  for (int i = 0; i < 20000; ++i) texture.tick();
   EXPECT_EQ(allocations, before);
 }
 

@@ -54,6 +54,60 @@ class KernelWorkload {
   float profile_[kWorkloadSamples];
 };
 
+inline constexpr uint32_t kTextureFirst = 1025, kTextureSamples = 2 * (1025 + 513), kTextureTaps = 64;
+inline constexpr uint32_t kTextureFingerprint = 992532874;
+
+/// All that a texture needs of a tick: place between counts, looking ahead, two levels at most speeds, 64
+/// taps, a change of gain now and then, energy, touch, limits.
+class TextureWorkload {
+ public:
+  TextureWorkload() noexcept {
+    float smooth = 0;
+    for (float& value : samples_)
+      value = smooth = 0.8F * smooth + static_cast<float>(next()) * (1.0F / 65536);
+    for (float& tap : taps_) tap = static_cast<float>(next()) * (1.0F / 131072);
+    core::KernelSetup setup;
+    setup.texture = {
+        {samples_, {kTextureFirst, -500, INT64_C(3) << 30, 429496730, wire::ProfileEnds::mirror, 4}},
+        {true, 40, 40},
+        1.25F};
+    setup.taps = taps_;
+    setup.tap_count = kTextureTaps;
+    setup.limits = {5, 15708, 0.05F, 0.01F, 100, 200};
+    setup.rate_hz = 20000;
+    setup.energy_rms_v = 1.2F, setup.energy_window_s = 0.05F;
+    setup.gate_on_n = 0.2F, setup.gate_off_n = 0.1F;
+    kernel_.set(setup);
+  }
+
+  /// One tick: the finger's speed wanders between rest and 4 counts a tick, and turns now and then.
+  float tick() noexcept {
+    const int32_t draw = next();
+    if (draw % 700 == 0) way_ = -way_;
+    if (draw % 64 == 0) speed_ = (draw >> 6) & 7;
+    part_ += speed_;
+    count_ += way_ * (part_ >> 1);
+    part_ &= 1;
+    const bool raise = ++ticks_ < kWorkloadTicks - 400;
+    const float gain = (ticks_ & 4096U) != 0 ? 3.0F : 8.0F;
+    const auto output = kernel_.tick({count_, gain, raise, ticks_ % 3000 < 200 ? 0.0F : 0.3F});
+    flags_ |= output.flags;
+    return output.drive_v;
+  }
+  uint32_t flags() const noexcept { return flags_; }
+
+ private:
+  int32_t next() noexcept {
+    random_ = random_ * 1664525U + 1013904223U;
+    return static_cast<int32_t>(random_ >> 16) - 32768;
+  }
+
+  uint32_t random_ = 7, flags_ = 0, ticks_ = 0;
+  int32_t count_ = 0, way_ = 1, speed_ = 3, part_ = 0;
+  core::TickKernel kernel_;
+  float samples_[kTextureSamples], taps_[kTextureTaps];
+};
+
 /// FNV-1a over the bits of what was driven.
 class DriveFingerprint {
  public:

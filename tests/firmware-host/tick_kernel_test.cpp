@@ -179,6 +179,21 @@ TEST(TickKernel, ItsBitsAreTheSameEverywhere) {
   EXPECT_EQ(workload->flags(), wire::kTickAmplitudeLimited | wire::kTickSlewLimited);
 }
 
+TEST(TickKernel, ATexturesBitsAreTheSameEverywhere) {
+  auto workload = std::make_unique<tests::TextureWorkload>();
+  tests::DriveFingerprint fingerprint;
+  float most_v = 0;
+  for (std::uint32_t i = 0; i < tests::kWorkloadTicks; ++i) {
+    const float drive_v = workload->tick();
+    most_v = std::max(most_v, drive_v);
+    fingerprint.add(drive_v);
+  }
+  EXPECT_EQ(fingerprint.value(), tests::kTextureFingerprint);
+  EXPECT_GT(most_v, 1);
+  EXPECT_EQ(workload->flags(), wire::kTickAmplitudeLimited | wire::kTickSlewLimited |
+                                   wire::kTickEnergyLimited | wire::kTickGated);
+}
+
 TEST(TickKernel, WhatIsNoNumberDrivesTowardsZeroAndIsForgotten) {
   TickKernel kernel;
   kernel.set({5, 5000, 0, 0.001F, 100, 200}, 1e4F);

@@ -29,7 +29,7 @@ def frame(kind, sequence, payload):
 
 # name: (type, sequence, struct format, values)
 EXAMPLES = {
-    "hello": (0x01, 0, "<BBHI", (1, 0, 0, 0x12345678)),
+    "hello": (0x01, 0, "<BBHI", (1, 1, 0, 0x12345678)),
     "stream_start": (0x02, 1, "<IB", (10_000_000, 32)),
     "stream_stop": (0x03, 2, "<", ()),
     "limits": (0x04, 3, "<ffffHH", (5.0, 15708.0, 0.05, 0.01, 100, 200)),
@@ -46,8 +46,13 @@ EXAMPLES = {
     "drive": (0x0F, 14, "<Hff", (2, 0.125, -0.125)),
     "heartbeat": (0x10, 15, "<I", (42,)),
     "reset": (0x11, 16, "<", ()),
+    "profile_levels": (0x12, 17, "<BBHI", (5, 3, 0, 1601)),
+    "taps": (0x13, 18, "<Hffff", (4, 1.5, -0.25, 0.125, 0.0)),
+    "tracking": (0x14, 19, "<B3sfff", (1, b"", 4.0, 8.0, 12.5)),
+    "energy": (0x15, 20, "<ff", (1.5, 0.5)),
+    "contact": (0x16, 21, "<B3sffff", (3, b"", 0.5, 0.25, 2.0**-27, -0.125)),
     "welcome": (0x81, 0, "<BBHI32s32s24sBBHIIIIIIIIff",
-                (1, 0, 0, 0x12345678, b"bench 1", b"0007", b"1.2.3", 4, 1, 16, 7, 168_000_000, 10_000_000, 1_000_000,
+                (1, 1, 0, 0x12345678, b"bench 1", b"0007", b"1.2.3", 4, 1, 16, 15, 168_000_000, 10_000_000, 1_000_000,
                  20_000_000, 256, 16384, 1024, 5.0, 15708.0)),
     "channel": (0x82, 1, "<B24s24s8s40sddddd12s",
                 (1, b"position", b"position", b"m", b"encoder", 1e-6, 0.0, float("nan"), float("nan"), float("nan"),

@@ -144,8 +144,8 @@ Drive example_drive() {
 }
 
 Welcome example_welcome() {
-  return {1, 0,         0,        0x12345678, "bench 1", "0007", "1.2.3", 4,    1, 16,
-          7, 168000000, 10000000, 1000000,    20000000,  256,    16384,   1024, 5, 15708};
+  return {1,  1,         0,        0x12345678, "bench 1", "0007", "1.2.3", 4,    1, 16,
+          15, 168000000, 10000000, 1000000,    20000000,  256,    16384,   1024, 5, 15708};
 }
 
 Samples example_samples() {
@@ -166,7 +166,7 @@ Ticks example_ticks() {
 
 TEST(WireDocument, HostFramesAreItsBytes) {
   auto frames = documented_frames();
-  EXPECT_EQ(hex_of(Hello{1, 0, 0, 0x12345678}, 0), frames["hello"]);
+  EXPECT_EQ(hex_of(Hello{1, 1, 0, 0x12345678}, 0), frames["hello"]);
   EXPECT_EQ(hex_of(StreamStart{10000000, 32}, 1), frames["stream_start"]);
   EXPECT_EQ(hex_of(StreamStop{}, 2), frames["stream_stop"]);
   EXPECT_EQ(hex_of(Limits{5, 15708, 0.05F, 0.01F, 100, 200}, 3), frames["limits"]);
@@ -184,6 +184,11 @@ TEST(WireDocument, HostFramesAreItsBytes) {
   EXPECT_EQ(hex_of(example_drive(), 14), frames["drive"]);
   EXPECT_EQ(hex_of(Heartbeat{42}, 15), frames["heartbeat"]);
   EXPECT_EQ(hex_of(Reset{}, 16), frames["reset"]);
+  EXPECT_EQ(hex_of(ProfileLevels{5, Interpolation::sinc, 0, 1601}, 17), frames["profile_levels"]);
+  EXPECT_EQ(hex_of(Taps{4, {1.5F, -0.25F, 0.125F, 0}}, 18), frames["taps"]);
+  EXPECT_EQ(hex_of(Tracking{1, {}, 4, 8, 12.5F}, 19), frames["tracking"]);
+  EXPECT_EQ(hex_of(Energy{1.5F, 0.5F}, 20), frames["energy"]);
+  EXPECT_EQ(hex_of(Contact{3, {}, 0.5F, 0.25F, 0x1p-27F, -0.125F}, 21), frames["contact"]);
 }
 
 TEST(WireDocument, DeviceFramesAreItsBytes) {

@@ -12,6 +12,7 @@ enum Feature : uint32_t {
   kFeatureSimulated = 1,    ///< nothing of it is real
   kFeatureDrive = 2,        ///< it has an output
   kFeatureEnableInput = 4,  ///< it has a hardware enable input
+  kFeatureTextures = 8,     ///< it reads levels, and understands taps, tracking, energy and contact
 };
 
 /// Everything to `nonce` stays as it is in every version.

@@ -171,4 +171,69 @@ struct Heartbeat {
 
 using Reset = Bare<MessageType::reset>;
 
+/// The profile that was begun holds copies of falling detail, one after the other.
+struct ProfileLevels {
+  static constexpr MessageType kType = MessageType::profile_levels;
+  uint8_t levels = 1;
+  Interpolation interpolation = Interpolation::hermite;
+  uint16_t reserved = 0;
+  uint32_t first_samples = 0;  ///< of the first level
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.levels, self.interpolation, self.reserved, self.first_samples);
+  }
+};
+
+/// A finite filter between profile and filters.
+struct Taps {
+  static constexpr MessageType kType = MessageType::taps;
+  uint16_t count = 0;
+  float taps[kMaxTaps];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    const size_t n = codec.count(self.count, kMaxTaps);
+    codec.array(self.taps, n);
+  }
+};
+
+/// How the finger is followed between counts, and ahead.
+struct Tracking {
+  static constexpr MessageType kType = MessageType::tracking;
+  uint8_t between_counts = 0;
+  uint8_t reserved[3] = {};
+  float look_ahead_ticks = 0, smoothing_ticks = 0;
+  float full_detail_counts_per_tick = 0;  ///< speed beyond which the second level begins to come in
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.between_counts);
+    codec.array(self.reserved, sizeof self.reserved);
+    codec(self.look_ahead_ticks, self.smoothing_ticks, self.full_detail_counts_per_tick);
+  }
+};
+
+/// The drive's RMS over time; 0 V: no limit.
+struct Energy {
+  static constexpr MessageType kType = MessageType::energy;
+  float rms_v = 0, window_s = 0;
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.rms_v, self.window_s);
+  }
+};
+
+/// Drive only while the finger presses; 0 N: always.
+struct Contact {
+  static constexpr MessageType kType = MessageType::contact;
+  uint8_t channel = 0;  ///< that holds the normal force
+  uint8_t reserved[3] = {};
+  float on_n = 0, off_n = 0;
+  float newtons_per_code = 0, offset_n = 0;  ///< of that channel: a small core has no doubles
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.channel);
+    codec.array(self.reserved, sizeof self.reserved);
+    codec(self.on_n, self.off_n, self.newtons_per_code, self.offset_n);
+  }
+};
+
 }  // namespace tacto::wire

@@ -26,6 +26,11 @@ enum class MessageType : uint8_t {
   drive = 0x0F,
   heartbeat = 0x10,
   reset = 0x11,
+  profile_levels = 0x12,  ///< from 0x12 to 0x16: since protocol 1.1
+  taps = 0x13,
+  tracking = 0x14,
+  energy = 0x15,
+  contact = 0x16,
   welcome = 0x81,
   channel = 0x82,
   note = 0x83,
@@ -49,6 +54,9 @@ enum class DriveSource : uint8_t { profile = 0, host = 1, sweep = 2 };
 
 /// What lies beyond a profile's ends.
 enum class ProfileEnds : uint8_t { stop = 0, loop = 1, mirror = 2 };
+
+/// How a profile is read between its samples.
+enum class Interpolation : uint8_t { nearest = 0, linear = 1, hermite = 2, sinc = 3 };
 
 /// A device's answer to a command.
 enum class AnswerCode : uint8_t {
@@ -85,8 +93,12 @@ enum TickFlag : uint32_t {
   kTickFault = 4,             ///< state is fault
   kTickAmplitudeLimited = 8,  ///< the drive was held to its limit
   kTickSlewLimited = 16,
-  kTickLate = 32,  ///< it began more than half a period late
+  kTickLate = 32,           ///< it began more than half a period late
+  kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
+  kTickGated = 128,         ///< the finger does not touch: the drive falls
 };
+/// From this bit on: gain, play, stop and disarm taken since arming, modulo 256.
+inline constexpr uint32_t kTickSteeredShift = 24;
 
 inline constexpr size_t kMaxChannels = 16;
 inline constexpr size_t kMaxBlockFrames = 32;
@@ -94,5 +106,7 @@ inline constexpr size_t kMaxBlockCodes = kMaxChannels * kMaxBlockFrames;
 inline constexpr size_t kMaxBlockTicks = 64;
 inline constexpr size_t kMaxChunk = 512;  ///< floats of a profile's or drive's chunk
 inline constexpr size_t kMaxSections = 16;
+inline constexpr size_t kMaxLevels = 16;  ///< of a profile's pyramid
+inline constexpr size_t kMaxTaps = 128;   ///< of the finite filter; a multiple of 4
 
 }  // namespace tacto::wire

@@ -23,20 +23,32 @@ struct Cost {
 
 tests::KernelWorkload workload;
 
-bool count_kernel() {
+tests::TextureWorkload texture;
+
+template <class Workload>
+uint32_t count_ticks(Workload& ticked, const char* fingerprint_name, const char* counts_name,
+                     const char* most_name) {
   tests::DriveFingerprint fingerprint;
   Cost cost;
   for (uint32_t i = 0; i < tests::kWorkloadTicks; ++i) {
     const uint32_t before = counter();
-    const float drive_v = workload.tick();
+    const float drive_v = ticked.tick();
     cost.add(counted(before, counter()));
     fingerprint.add(drive_v);
   }
-  say("kernel_fingerprint", fingerprint.value());
-  say("kernel_ticks", cost.ticks);
-  say("kernel_counts", cost.total);
-  say("kernel_most_counts", cost.most);
-  return fingerprint.value() == tests::kWorkloadFingerprint;
+  say(fingerprint_name, fingerprint.value());
+  say(counts_name, cost.total);
+  say(most_name, cost.most);
+  return fingerprint.value();
+}
+
+bool count_kernel() {
+  say("kernel_ticks", tests::kWorkloadTicks);
+  const uint32_t sections =
+      count_ticks(workload, "kernel_fingerprint", "kernel_counts", "kernel_most_counts");
+  const uint32_t levels =
+      count_ticks(texture, "texture_fingerprint", "texture_counts", "texture_most_counts");
+  return sections == tests::kWorkloadFingerprint && levels == tests::kTextureFingerprint;
 }
 
 // The board's side of the hardware layer, in memory.

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/cli/describe.hpp"
+#include "data-schema/session_reader.hpp"
+
+namespace tacto::schema {
+namespace {
+
+const char* words_of(SessionEnding ending) {
+  if (ending == SessionEnding::closed) return "closed";
+  if (ending == SessionEnding::unclosed) return "not closed: still written, or its writer was killed";
+  return "damaged: what stands before the damage was read";
+}
+
+void add_device(cli::Report& report, const SessionHeader& header) {
+  report.add("device", header.device_uri).add("loop", header.loop).add("rate_hz", header.rate_hz);
+  report.add("transducer", header.transducer.name).add("encoder_step_m", header.metres_per_count);
+  add_text(report, "scene", header.scene_file);
+  std::vector<cli::Report> rows;
+  for (const SessionTexture& texture : header.textures)
+    rows.push_back(cli::Report()
+                       .add("texture", texture.file)
+                       .add("at_m", texture.at_m)
+                       .add("gain_m_per_n", texture.gain_m_per_n)
+                       .add("ends", word_of(texture.ends)));
+  report.add("textures", std::move(rows));
+  report.add("inverse", header.inverse).add("delay_s", header.delay_s);
+}
+
+void add_totals(cli::Report& report, const SessionTotals& totals) {
+  report.add("ending", words_of(totals.ending)).add("ticks", totals.ticks);
+  report.add("duration_s", 1e-9 * static_cast<double>(totals.last_ns - totals.first_ns));
+  report.add("lost_ticks", totals.lost_ticks).add("late_ticks", totals.late_ticks);
+  report.add("commands", totals.commands);
+  std::vector<cli::Report> rows;
+  for (const SessionEvent& event : totals.events)
+    rows.push_back(cli::Report().add("tick", event.tick).add("event", event.text));
+  report.add("events", std::move(rows));
+}
+
+}  // namespace
+
+Result<cli::Report> describe_session(const std::string& path) {
+  auto reader = SessionReader::open(path);
+  if (!reader) return forward_error(reader);
+  warn_of_version(path, reader->header().newer_version);
+  cli::Report report = report_of(FileKind::session, path, reader->header().simulated);
+  report.add("created", reader->header().created).add("creator", reader->header().creator);
+  add_device(report, reader->header());
+  add_totals(report, session_totals(*reader));
+  return report;
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/daemon_config.hpp"
+
+#include "data-schema/json_document.hpp"
+
+namespace tacto::schema {
+
+Result<DaemonConfig> read_daemon_config(const std::string& path) {
+  const auto document = open_document(path, "daemon");
+  if (!document) return forward_error(document);
+  const Json& body = document->body;
+  DaemonConfig config;
+  for (const auto& [name, member] :
+       {std::pair{"device", &DaemonConfig::device}, std::pair{"transducer", &DaemonConfig::transducer},
+        std::pair{"loop", &DaemonConfig::loop}, std::pair{"socket", &DaemonConfig::socket},
+        std::pair{"socket_group", &DaemonConfig::socket_group},
+        std::pair{"sessions", &DaemonConfig::sessions}, std::pair{"files", &DaemonConfig::files},
+        std::pair{"finger_path", &DaemonConfig::finger_path}})
+    config.*member = text_or(body, name, config.*member);
+  for (const auto& [name, member] : {std::pair{"rate_hz", &DaemonConfig::rate_hz},
+                                     std::pair{"most_speed_mps", &DaemonConfig::most_speed_mps},
+                                     std::pair{"onset_s", &DaemonConfig::onset_s},
+                                     std::pair{"most_late_percent", &DaemonConfig::most_late_percent}})
+    config.*member = number_or(body, name, config.*member);
+  for (const auto& [name, member] : {std::pair{"most_clients", &DaemonConfig::most_clients},
+                                     std::pair{"real_time_priority", &DaemonConfig::real_time_priority},
+                                     std::pair{"watchdog_ms", &DaemonConfig::watchdog_ms}})
+    config.*member = static_cast<int>(number_or(body, name, config.*member));
+  return config;
+}
+
+}  // namespace tacto::schema

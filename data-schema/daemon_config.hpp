@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tactographd's configuration, one JSON file: schemas/daemon.schema.json says what each member means.
+#pragma once
+
+#include <string>
+
+#include "data-schema/error.hpp"
+
+namespace tacto::schema {
+
+struct DaemonConfig {
+  std::string device, transducer;
+  std::string loop = "device";
+  double rate_hz = 2000;  ///< the paper's
+  std::string socket, socket_group;
+  int most_clients = 16;
+  std::string sessions, files;
+  int real_time_priority = 50;
+  int watchdog_ms = 100;
+  double most_speed_mps = 2;
+  double onset_s = 0.02;
+  double most_late_percent = 20;
+  std::string finger_path;
+};
+
+/// Errors: not_found; malformed, by JSON pointer, also for a member that does not exist; unsupported_version.
+Result<DaemonConfig> read_daemon_config(const std::string& path);
+
+}  // namespace tacto::schema

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writes a session as it happens.
+#pragma once
+
+#include <span>
+
+#include "data-schema/session.hpp"
+
+namespace tacto::schema {
+
+/// Appends whole blocks. After a failure (a full disk) the file ends with its last whole block, and what
+/// comes later may be tried again. Not safe in the tick.
+class SessionWriter {
+ public:
+  /// Errors: usage, where the file is there already; cannot_write; as session_header_text.
+  static Result<SessionWriter> create(const std::string& path, const SessionHeader& header);
+  SessionWriter(SessionWriter&& other) noexcept;
+  SessionWriter& operator=(SessionWriter&& other) noexcept;
+  ~SessionWriter();
+
+  /// Any number of ticks, one following the other without holes. Errors: cannot_write.
+  Result<void> add(std::span<const SessionTick> ticks);
+  Result<void> add(const SessionCommand& command);
+  Result<void> add(const SessionLoss& loss);
+  Result<void> add(const SessionEvent& event);
+  /// Returns when all that was added is on the disk. Errors: cannot_write.
+  Result<void> sync();
+  /// The last block, and sync(). Errors: cannot_write.
+  Result<void> close(const SessionEnd& end);
+  const std::string& path() const { return path_; }
+
+ private:
+  SessionWriter(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+  Result<void> append(const std::string& block);
+  std::string path_;
+  int descriptor_ = -1;
+  std::int64_t size_ = 0;
+};
+
+}  // namespace tacto::schema

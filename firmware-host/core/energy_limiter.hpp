@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much the drive may do over time: what heats the bender and tires the skin.
+#pragma once
+
+#include "firmware-host/core/wire/message_types.hpp"
+
+namespace tacto::core {
+
+/// Follows the mean square e of what is wished (one pole, `window` ticks) and turns it down by limit / root
+/// where the root of e passes the limit. The root is followed by Newton's step once a tick: a gain without
+/// steps, which bounds the RMS within 2 % once `window` has passed. A limit of 0 is none. Safe in the tick.
+class EnergyLimiter {
+ public:
+  void set(float rms_v, float window_ticks) noexcept {
+    limit_v_ = rms_v;
+    share_ = window_ticks > 1 ? 1 / window_ticks : 1;
+    rest();
+  }
+  void rest() noexcept { mean_square_ = 0, root_v_ = limit_v_; }
+  float limit(float wished_v, uint32_t& flags) noexcept {
+    if (!(limit_v_ > 0)) return wished_v;
+    mean_square_ += share_ * (wished_v * wished_v - mean_square_);
+    const float least = limit_v_ * limit_v_;
+    if (mean_square_ <= least && root_v_ <= limit_v_ * kAtLimit) return root_v_ = limit_v_, wished_v;
+    root_v_ = 0.5F * (root_v_ + (mean_square_ > least ? mean_square_ : least) / root_v_);
+    if (mean_square_ <= least) return wished_v * (limit_v_ / root_v_);
+    flags |= wire::kTickEnergyLimited;
+    return wished_v * (limit_v_ / root_v_);
+  }
+
+ private:
+  static constexpr float kAtLimit = 1.000001F;  // from here on Newton's steps are roundings
+  float limit_v_ = 0, share_ = 1, mean_square_ = 0, root_v_ = 0;
+};
+
+}  // namespace tacto::core

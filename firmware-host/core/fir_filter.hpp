@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A filter of finite length.
+#pragma once
+
+#include "firmware-host/core/wire/message_types.hpp"
+
+namespace tacto::core {
+
+/// y_n = sum_i taps_i x_(n-i), in four sums that are added at the end: the order is part of the result, and
+/// the same everywhere. Always stable. Without taps it passes what comes. Safe in the tick.
+class FirFilter {
+ public:
+  /// At most kMaxTaps; zeros are added up to a multiple of 4.
+  void set(const float* taps, uint16_t count) noexcept {
+    count_ = static_cast<uint16_t>((count + 3U) & ~3U);
+    for (uint16_t i = 0; i < count_; ++i) reversed_[count_ - 1 - i] = i < count ? taps[i] : 0;
+    rest();
+  }
+  /// Forgets the past.
+  void rest() noexcept {
+    for (float& value : past_) value = 0;
+    at_ = 0;
+  }
+  float filter(float x) noexcept {
+    if (count_ == 0) return x;
+    past_[at_] = past_[at_ + count_] = x;
+    at_ = static_cast<uint16_t>(at_ + 1U == count_ ? 0U : at_ + 1U);
+    const float* x_oldest = past_ + at_;
+    float sums[4] = {};
+    for (uint16_t i = 0; i < count_; i = static_cast<uint16_t>(i + 4))
+      for (uint16_t j = 0; j < 4; ++j) sums[j] += reversed_[i + j] * x_oldest[i + j];
+    return (sums[0] + sums[2]) + (sums[1] + sums[3]);
+  }
+
+ private:
+  float reversed_[wire::kMaxTaps] = {};
+  float past_[2 * wire::kMaxTaps] = {};  // twice, so that a tick reads on without turning
+  uint16_t count_ = 0, at_ = 0;
+};
+
+}  // namespace tacto::core

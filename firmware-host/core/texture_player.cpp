@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/texture_player.hpp"
+
+namespace tacto::core {
+
+// The exponent is the whole part; of the rest m, log2(1 + m) is about m + 0.3431 m (1 - m).
+float half_octaves(float ratio) noexcept {
+  if (!(ratio > 1)) return 0;
+  uint32_t bits;
+  __builtin_memcpy(&bits, &ratio, sizeof bits);
+  const auto whole = static_cast<float>(static_cast<int32_t>(bits >> 23) - 127);
+  const float rest = static_cast<float>(bits & 0x7FFFFFU) * (1.0F / (1 << 23));
+  return 2 * (whole + rest + 0.3431F * rest * (1 - rest));
+}
+
+void TexturePlayer::begin(float gain_ticks) noexcept {
+  gain_ticks_ = gain_ticks > 1 ? static_cast<uint32_t>(gain_ticks) : 1;
+  gain_left_ = 0;
+  gained_ = false;
+  fade_ = 0;
+  tracker_.set(texture_.tracker);
+  place_ = {};
+}
+
+void TexturePlayer::set(const TextureSetup& texture, float gain_ticks) noexcept {
+  texture_ = texture;
+  begin(gain_ticks);
+}
+
+// A second change before the first is through begins from what is nearer.
+void TexturePlayer::change(const TextureSetup& texture, float fade_ticks) noexcept {
+  if (fade_ <= 0.5F) leaving_ = texture_;
+  texture_ = texture;
+  fade_ = 1;
+  fade_step_ = fade_ticks > 1 ? 1 / fade_ticks : 1;
+}
+
+float TexturePlayer::read(const TextureSetup& texture) const noexcept {
+  const float speed = place_.counts_per_tick < 0 ? -place_.counts_per_tick : place_.counts_per_tick;
+  const float per_full = texture.per_full_detail;
+  return texture.profile.at(place_.count, place_.offset, half_octaves(speed * per_full));
+}
+
+float TexturePlayer::follow(float gain) noexcept {
+  if (!gained_) gain_ = gain_aim_ = gain;
+  gained_ = true;
+  if (gain != gain_aim_) {
+    gain_aim_ = gain;
+    gain_left_ = gain_ticks_;
+    gain_step_ = (gain - gain_) / static_cast<float>(gain_ticks_);
+  }
+  if (gain_left_ > 0) gain_ = --gain_left_ > 0 ? gain_ + gain_step_ : gain_aim_;
+  return gain_;
+}
+
+float TexturePlayer::wanted(int32_t count, float gain) noexcept {
+  place_ = tracker_.track(count);
+  float value = read(texture_);
+  if (fade_ > 0) {
+    value += fade_ * fade_ * (3 - 2 * fade_) * (read(leaving_) - value);
+    fade_ -= fade_step_;
+  }
+  return follow(gain) * value;
+}
+
+}  // namespace tacto::core

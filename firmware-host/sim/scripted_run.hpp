@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A finger that goes where it is told.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "firmware-host/sim/frame_source.hpp"
+
+namespace tacto::firmware_host {
+
+/// The encoder follows a script: frame i is of (i + 1) x period. Only the position's channel, the second of
+/// the emulated device's, says something; the others read zero.
+class ScriptedRun final : public FrameSource {
+ public:
+  ScriptedRun(std::function<double(double)> position_m, double period_s, double quantum_m)
+      : position_m_(std::move(position_m)), period_s_(period_s), quantum_m_(quantum_m), count_(count_at(0)) {}
+
+  bool next(std::span<std::int32_t> frame) override {
+    count_ = count_at(++frames_);
+    std::ranges::fill(frame, 0);
+    if (frame.size() > 1) frame[1] = count_;
+    return true;
+  }
+  std::int32_t encoder_count() const override { return count_; }
+
+ private:
+  std::int32_t count_at(std::uint64_t frame) const {
+    return static_cast<std::int32_t>(
+        std::floor(position_m_(static_cast<double>(frame) * period_s_) / quantum_m_));
+  }
+
+  std::function<double(double)> position_m_;
+  double period_s_, quantum_m_;
+  std::uint64_t frames_ = 0;
+  std::int32_t count_;
+};
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "playback/cli/verbs.hpp"
+#include "playback/daemon/control_connection.hpp"
+
+namespace tacto::playback {
+
+using cli::Report;
+using schema::ControlFields;
+using schema::ControlRequest;
+using schema::ControlVerb;
+using schema::Dimension;
+using schema::Result;
+
+namespace {
+
+constexpr const char* kUsualSocket = "/run/tactographd/control";
+constexpr int kEventMs = 500;
+constexpr std::array<std::string_view, 10> kCtlActions = {"hello",  "load", "arm",    "play",  "stop",
+                                                          "disarm", "gain", "status", "watch", "top"};
+
+std::atomic<bool> ctl_stop_asked{false};
+
+void ask_ctl_to_stop(int) {
+  ctl_stop_asked = true;
+}
+
+struct CtlOptions {
+  std::string socket = kUsualSocket, action, what, ends;
+  std::optional<double> at_m, gain_m_per_n;
+  std::optional<double> time_s;
+  bool save = false;
+};
+
+// What a field is for people and machines alike: its key says the unit.
+void add_fields(Report& report, const ControlFields& fields) {
+  for (const auto& [name, value] : fields) {
+    if (name == "ok" || name == "id" || name == "event") continue;
+    std::visit(
+        [&, &key = name](const auto& plain) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(plain)>, std::vector<double>>)
+            report.add(key, plain);
+        },
+        value);
+  }
+}
+
+// The daemon may run in another folder: what is here is named in full.
+std::string full_name(const std::string& file) {
+  std::error_code ignored;
+  for (const char* ending : {"", ".texture.json", ".scene.json"})
+    if (std::filesystem::is_regular_file(file + ending, ignored))
+      return std::filesystem::absolute(file, ignored).string();
+  return file;
+}
+
+Result<double> gain_in(const std::string& text) {
+  const auto gain = schema::parse_quantity(text, Dimension::none);
+  if (gain) return *gain;
+  return schema::fail(schema::Fault::usage, fmt::format("'{}' is no gain", text), "gain",
+                      "a factor, as in 0.5");
+}
+
+Result<ControlRequest> request_of(const CtlOptions& o) {
+  ControlRequest request;
+  const auto index = std::ranges::find(kCtlActions, o.action) - kCtlActions.begin();
+  request.verb = o.action == "top" ? ControlVerb::watch : static_cast<ControlVerb>(index);
+  request.file = request.verb == ControlVerb::load ? full_name(o.what) : "";
+  request.at_m = o.at_m;
+  request.gain_m_per_n = o.gain_m_per_n;
+  if (!o.ends.empty())
+    request.ends =
+        static_cast<schema::TextureEnds>(cli::choose("--ends", o.ends, {"stop", "mirror", "loop"}));
+  request.save = o.save;
+  if (request.verb != ControlVerb::gain) return request;
+  const auto gain = gain_in(o.what);
+  if (!gain) return schema::forward_error(gain);
+  request.gain = *gain;
+  return request;
+}
+
+void show_top(const ControlFields& fields) {
+  const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
+  fmt::print("\033[H\033[2J{:<8} {}\n", schema::control_text(fields, "state"),
+             schema::control_text(fields, "fault"));
+  fmt::print("period   {:8.1f} us   round trip {:.2f} ms\n", 1e6 * number("period_s"),
+             1e3 * number("round_trip_s"));
+  fmt::print("finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"), 1e3 * number("speed_mps"));
+  fmt::print("drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V   gain {:g}\n", number("drive_v"),
+             number("drive_rms_v"), number("drive_peak_v"), number("gain"));
+  fmt::print("ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}\n", number("ticks"),
+             number("late_ticks"), number("lost_ticks"), number("limited_ticks"));
+  if (number("wake_p99_s") > 0)
+    fmt::print("late by  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f} us   busy p99 {:.2f} us\n",
+               1e6 * number("wake_p50_s"), 1e6 * number("wake_p99_s"), 1e6 * number("wake_p999_s"),
+               1e6 * number("busy_p99_s"));
+  std::fflush(stdout);
+}
+
+void show_event(const schema::ControlReply& event, bool top) {
+  if (top && event.event == "status") return show_top(event.fields);
+  if (top) return;
+  fmt::print("{}", schema::control_event_line(event.event, event.fields));
+  std::fflush(stdout);
+}
+
+// Until it is interrupted, or the time is over: nothing can be asked meanwhile.
+Result<Report> watch(ControlConnection& connection, const CtlOptions& o) {
+  const auto begun = std::chrono::steady_clock::now();
+  const auto elapsed_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  };
+  while (!ctl_stop_asked && (!o.time_s || elapsed_s() < *o.time_s)) {
+    const auto event = connection.next_event(kEventMs);
+    if (!event && event.error().what == "the daemon hung up") return schema::forward_error(event);
+    if (!event) continue;
+    show_event(*event, o.action == "top");
+  }
+  return Report();
+}
+
+Result<Report> run_ctl(const CtlOptions& o) {
+  const auto request = request_of(o);
+  if (!request) return schema::forward_error(request);
+  auto connection = ControlConnection::open(o.socket);
+  if (!connection) return schema::forward_error(connection);
+  Report report;
+  if (o.action == "hello") {
+    add_fields(report, connection->hello());
+    return report;
+  }
+  const auto answer = connection->ask(*request);
+  if (!answer) return schema::forward_error(answer);
+  if (request->verb == ControlVerb::watch) {
+    std::signal(SIGINT, ask_ctl_to_stop);
+    return watch(*connection, o);
+  }
+  add_fields(report, *answer);
+  return report;
+}
+
+cli::Action declare_ctl(CLI::App& app) {
+  auto options = std::make_shared<CtlOptions>();
+  CtlOptions& o = *options;
+  app.add_option_function<std::string>(
+         "action",
+         [&o](const std::string& word) {
+           const std::vector<std::string> words(kCtlActions.begin(), kCtlActions.end());
+           o.action = kCtlActions[cli::choose("action", word, words)];
+         },
+         "load, arm, play, stop, disarm, gain, status; watch: events as lines of JSON; top: live figures")
+      ->required();
+  app.add_option("what", o.what, "load: a texture or scene; gain: a factor");
+  app.add_option("--socket", o.socket, "The daemon's")->capture_default_str();
+  cli::add_quantity(app, "--at", o.at_m, Dimension::length, "load of a texture: where its position 0 lies");
+  cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance,
+                    "load of a texture: displacement for force");
+  app.add_option("--ends", o.ends, "load of a texture: stop, mirror or loop");
+  app.add_flag("--save", o.save, "gain: also into the scene's file");
+  cli::add_quantity(app, "--time", o.time_s, Dimension::time, "watch, top: how long");
+  return [options] { return run_ctl(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kCtlVerb{"ctl", "Steer the daemon: load, arm, play, stop, gain, status, watch, top",
+                         "tactograph ctl load oak --at 10mm\n"
+                         "  tactograph ctl arm && tactograph ctl play\n"
+                         "  tactograph ctl gain 0.5",
+                         declare_ctl};
+
+}  // namespace tacto::playback

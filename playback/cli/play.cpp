@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/play.hpp"
+
+#include <atomic>
+#include <csignal>
+#include <memory>
+
+#include "data-schema/cli/progress.hpp"
+#include "playback/cli/verbs.hpp"
+
+namespace tacto::playback {
+
+using cli::Report;
+using schema::Dimension;
+using schema::Result;
+
+namespace {
+
+std::atomic<bool> play_stop_asked{false};
+
+void ask_play_to_stop(int) {
+  play_stop_asked = true;
+}
+
+void declare_what(CLI::App& app, PlayOptions& o) {
+  app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
+  app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:surface=C ...")->required();
+  app.add_option("-o,--output", o.session, "The session: NAME.session")->required();
+  app.add_option("--transducer", o.transducer,
+                 "A preset or NAME.transducer.json; the device's own unless told");
+  app.add_option("--finger-path", o.finger_path,
+                 "Where an emulated device's finger goes: CSV with the columns time_s,position_m");
+  cli::add_quantity(app, "--time", o.time_s, Dimension::time,
+                    "How long; unless told as long as the finger's path, or 10 s");
+}
+
+void declare_texture(CLI::App& app, PlayOptions& o) {
+  cli::add_quantity(app, "--at", o.program.at_m, Dimension::length,
+                    "Of a texture: where its position 0 lies on the encoder's axis");
+  cli::add_quantity(app, "--gain", o.program.gain_m_per_n, Dimension::compliance,
+                    "Of a texture: displacement for force, 1mm/N unless told");
+  app.add_option_function<std::string>(
+         "--ends",
+         [&o](const std::string& word) {
+           o.program.ends =
+               static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
+         },
+         "Of a texture: what lies beyond its ends")
+      ->type_name("stop|mirror|loop");
+}
+
+void declare_chain(CLI::App& app, PlayOptions& o) {
+  cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
+  cli::add_choice<Inverse>(
+      app, "--inverse", o.prepare.inverse,
+      {{"full", Inverse::full}, {"magnitude", Inverse::magnitude}, {"gain", Inverse::gain}},
+      "What of the transducer the drive undoes");
+  app.add_flag("!--no-look-ahead", o.prepare.look_ahead,
+               "Read the texture where the finger is, not where it will be when the inverse has answered");
+  cli::add_quantity(app, "--onset", o.prepare.onset_s, Dimension::time, "In which the drive rises");
+}
+
+void add_played(Report& report, const PlayOutcome& outcome) {
+  const TickView& ticks = outcome.status.ticks;
+  report.add("ticks", outcome.recorder.ticks).add("lost_ticks", ticks.lost());
+  report.add("late_ticks", ticks.late()).add("limited_ticks", ticks.limited());
+  report.add("drive_peak_v", ticks.drive_peak_v());
+  report.add("passes_to_hz", outcome.passes_to_hz).add("delay_left_s", outcome.delay_left_s);
+  report.add("inverse_error_db", outcome.inverse_error_db);
+}
+
+Report play_report(const PlayOptions& o, const PlayOutcome& outcome) {
+  Report report;
+  report.add("session", o.session).add("device", outcome.device);
+  if (!outcome.simulated.empty()) report.add("simulated", outcome.simulated);
+  report.add("played_s", outcome.status.ticks.span_s());
+  add_played(report, outcome);
+  for (const std::string& note : outcome.notes) cli::warn(note);
+  if (!outcome.recorder.failure.empty()) cli::warn("the session is incomplete: " + outcome.recorder.failure);
+  if (outcome.status.state != PlayerState::fault) return report;
+  cli::warn("playing ended in a fault: " + outcome.status.fault);
+  report.add("fault", outcome.status.fault).ends_with(schema::Fault::device);
+  return report;
+}
+
+Result<Report> run_play(PlayOptions o) {
+  o.session = schema::session_path(o.session);
+  std::signal(SIGINT, ask_play_to_stop);
+  std::signal(SIGTERM, ask_play_to_stop);
+  cli::Progress progress("playing");
+  const auto outcome = play_once(o, play_stop_asked, [&](double part) { progress.update(part); });
+  if (!outcome) return schema::forward_error(outcome);
+  return play_report(o, *outcome);
+}
+
+cli::Action declare_play(CLI::App& app) {
+  auto options = std::make_shared<PlayOptions>();
+  options->prepare.onset_s = 0.02;
+  declare_what(app, *options);
+  declare_texture(app, *options);
+  declare_chain(app, *options);
+  return [options] { return run_play(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kPlayVerb{"play", "Play a texture or scene on a device, live, and keep the session",
+                          "tactograph play oak -d usb: --time 60s -o first\n"
+                          "  tactograph play oak -d sim: --finger-path path.csv -o first",
+                          declare_play};
+
+}  // namespace tacto::playback

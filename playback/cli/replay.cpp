@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "data-schema/cli/progress.hpp"
+#include "playback/cli/verbs.hpp"
+#include "playback/daemon/session_replay.hpp"
+
+namespace tacto::playback {
+
+using cli::Report;
+using schema::Result;
+
+namespace {
+
+struct ReplayVerbOptions {
+  std::string session;
+};
+
+Result<Report> run_replay(const ReplayVerbOptions& o) {
+  cli::Progress progress("replaying");
+  const auto outcome = replay_session(o.session, [&](double part) { progress.update(part); });
+  if (!outcome) return schema::forward_error(outcome);
+  Report report;
+  report.add("session", schema::session_path(o.session)).add("ticks_compared", outcome->ticks);
+  report.add("same_to_the_bit", !outcome->first_difference && !outcome->lost_at);
+  if (outcome->ending != schema::SessionEnding::closed && !outcome->first_difference && !outcome->lost_at)
+    cli::warn("the session was never closed: what is in it was compared");
+  if (outcome->lost_at) {
+    cli::warn(fmt::format("ticks are missing from {} on: the drive after them can't be replayed",
+                          *outcome->lost_at));
+    report.add("lost_at_tick", *outcome->lost_at).ends_with(schema::Fault::unsuitable);
+  }
+  if (!outcome->first_difference) return report;
+  const Difference& first = *outcome->first_difference;
+  report.add("first_difference_tick", first.tick).add("recorded_v", double{first.recorded_v});
+  report.add("replayed_v", double{first.replayed_v}).ends_with(schema::Fault::unsuitable);
+  return report;
+}
+
+cli::Action declare_replay(CLI::App& app) {
+  auto options = std::make_shared<ReplayVerbOptions>();
+  app.add_option("session", options->session, "NAME.session")->required();
+  return [options] { return run_replay(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kReplayVerb{"replay",
+                            "Compute a session's drive again, and tell the first tick that differs in a bit",
+                            "tactograph replay first.session", declare_replay};
+
+}  // namespace tacto::playback

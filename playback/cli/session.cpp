@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "playback/cli/verbs.hpp"
+#include "playback/daemon/session_export.hpp"
+#include "playback/daemon/stroke_report.hpp"
+
+namespace tacto::playback {
+
+using cli::Report;
+using schema::Result;
+
+namespace {
+
+struct SessionVerbOptions {
+  std::string session;
+  std::vector<std::string> outputs;
+};
+
+Report stroke_row(const PlayedStroke& stroke) {
+  Report row;
+  row.add("from_s", stroke.from_s).add("to_s", stroke.to_s);
+  row.add("from_m", stroke.from_m).add("to_m", stroke.to_m);
+  row.add("received_rms_m", stroke.received_rms_m);
+  if (stroke.wanted_rms_m > 0)
+    row.add("wanted_rms_m", stroke.wanted_rms_m)
+        .add("error_db", stroke.error_db)
+        .add("received_over_wanted_db", stroke.level_db);
+  return row.add("limited_ticks", stroke.limited_ticks);
+}
+
+Result<Report> run_session(const SessionVerbOptions& o) {
+  for (const std::string& output : o.outputs)
+    if (const auto done = export_session(o.session, output); !done) return schema::forward_error(done);
+  const auto strokes = report_strokes(o.session);
+  if (!strokes) return schema::forward_error(strokes);
+  for (const std::string& note : strokes->notes) cli::warn(note);
+  Report report;
+  report.add("session", schema::session_path(o.session));
+  if (!o.outputs.empty()) report.add("written", o.outputs);
+  report.add("band_low_hz", strokes->low_hz).add("band_high_hz", strokes->high_hz);
+  std::vector<Report> rows;
+  for (const PlayedStroke& stroke : strokes->strokes) rows.push_back(stroke_row(stroke));
+  return report.add("strokes", std::move(rows));
+}
+
+cli::Action declare_session(CLI::App& app) {
+  auto options = std::make_shared<SessionVerbOptions>();
+  app.add_option("session", options->session, "NAME.session")->required();
+  app.add_option("-o,--output", options->outputs,
+                 "Table of the ticks: .csv, .wav or .nc; may be given again");
+  return [options] { return run_session(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kSessionVerb{
+    "session", "Export a session, and say of each stroke what the finger received against what was wanted",
+    "tactograph session first -o first.csv -o first.nc", declare_session};
+
+}  // namespace tacto::playback

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One client of the control socket, as the server keeps it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace tacto::playback {
+
+/// Buffers of bounded size around a connected socket that never waits. Closes it.
+class ControlClient {
+ public:
+  explicit ControlClient(int descriptor) : descriptor_(descriptor) {}
+  ControlClient(ControlClient&& other) noexcept;
+  ControlClient& operator=(ControlClient&& other) noexcept;
+  ~ControlClient();
+
+  int descriptor() const { return descriptor_; }
+  /// Takes in what has come. False where the client is gone.
+  bool receive();
+  /// The next whole line without its newline, if there is one.
+  std::optional<std::string> take_line();
+  /// More than a line may have, and still no end.
+  bool is_endless() const;
+  /// Sends as much as the socket takes; keeps the rest. False where the client is gone, or has not taken
+  /// 256 KB.
+  bool send(const std::string& line);
+  /// An event: dropped, and counted, where the client does not keep up.
+  bool send_event(const std::string& line);
+  bool flush();
+  bool wants_to_send() const { return !out_.empty(); }
+
+  bool greeted = false, watching = false;
+  std::uint64_t dropped_events = 0;
+
+ private:
+  int descriptor_;
+  std::string in_, out_;
+};
+
+}  // namespace tacto::playback

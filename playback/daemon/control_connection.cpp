@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/control_connection.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "playback/daemon/control_socket.hpp"
+
+namespace tacto::playback {
+
+using schema::ControlFields;
+using schema::ControlReply;
+using schema::ControlRequest;
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+constexpr int kAnswerMs = 10'000;  // a texture of 100 mm takes a second to load
+
+}  // namespace
+
+ControlConnection::ControlConnection(ControlConnection&& other) noexcept
+    : socket_(std::move(other.socket_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      received_(std::move(other.received_)),
+      hello_(std::move(other.hello_)) {}
+
+ControlConnection& ControlConnection::operator=(ControlConnection&& other) noexcept {
+  std::swap(socket_, other.socket_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(received_, other.received_);
+  std::swap(hello_, other.hello_);
+  return *this;
+}
+
+ControlConnection::~ControlConnection() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<ControlConnection> ControlConnection::open(const std::string& socket) {
+  const auto connected = connect_control_socket(socket);
+  if (!connected) return schema::forward_error(connected);
+  ControlConnection connection(socket, *connected);
+  ControlRequest hello;
+  hello.verb = schema::ControlVerb::hello;
+  hello.version = schema::kControlVersion;
+  auto answer = connection.ask(hello);
+  if (!answer) return schema::forward_error(answer);
+  connection.hello_ = std::move(*answer);
+  return connection;
+}
+
+Result<std::string> ControlConnection::line(int timeout_ms) {
+  for (;;) {
+    if (const auto end = received_.find('\n'); end != std::string::npos) {
+      std::string line = received_.substr(0, end);
+      received_.erase(0, end + 1);
+      return line;
+    }
+    pollfd waiting{descriptor_, POLLIN, 0};
+    const int ready = poll(&waiting, 1, timeout_ms);
+    if (ready < 0 && errno == EINTR) return fail(Fault::device, "interrupted", socket_);
+    if (ready <= 0) return fail(Fault::device, "the daemon says nothing", socket_, "see its journal");
+    char bytes[4096];
+    const ssize_t got = recv(descriptor_, bytes, sizeof bytes, 0);
+    if (got <= 0) return fail(Fault::device, "the daemon hung up", socket_, "see its journal");
+    received_.append(bytes, static_cast<std::size_t>(got));
+  }
+}
+
+Result<ControlFields> ControlConnection::ask(const ControlRequest& request) {
+  const std::string text = schema::control_request_line(request);
+  if (::send(descriptor_, text.data(), text.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(text.size()))
+    return fail(Fault::device, "the daemon hung up", socket_, "see its journal");
+  const auto answer = line(kAnswerMs);
+  if (!answer) return schema::forward_error(answer);
+  auto reply = schema::parse_control_reply(*answer);
+  if (!reply) return schema::forward_error(reply);
+  if (!reply->ok) return tl::unexpected(reply->error);
+  return std::move(reply->fields);
+}
+
+Result<ControlReply> ControlConnection::next_event(int timeout_ms) {
+  const auto text = line(timeout_ms);
+  return text ? schema::parse_control_reply(*text) : schema::forward_error(text);
+}
+
+}  // namespace tacto::playback

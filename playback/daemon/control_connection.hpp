@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A client's side of the control socket.
+#pragma once
+
+#include <string>
+
+#include "data-schema/control.hpp"
+
+namespace tacto::playback {
+
+class ControlConnection {
+ public:
+  /// Connects and says hello. Errors: as connect_control_socket; unsupported_version; device: no answer.
+  static schema::Result<ControlConnection> open(const std::string& socket);
+  ControlConnection(ControlConnection&& other) noexcept;
+  ControlConnection& operator=(ControlConnection&& other) noexcept;
+  ~ControlConnection();
+
+  /// Sends and waits, 10 s at most. Errors: the daemon's own; device: it hung up, or says nothing.
+  schema::Result<schema::ControlFields> ask(const schema::ControlRequest& request);
+  /// After `watch`: the next event. Errors: device: it hung up, or nothing came for `timeout_ms`.
+  schema::Result<schema::ControlReply> next_event(int timeout_ms);
+  const schema::ControlFields& hello() const { return hello_; }
+
+ private:
+  ControlConnection(std::string socket, int descriptor)
+      : socket_(std::move(socket)), descriptor_(descriptor) {}
+  schema::Result<std::string> line(int timeout_ms);
+  std::string socket_;
+  int descriptor_;
+  std::string received_;
+  schema::ControlFields hello_;
+};
+
+}  // namespace tacto::playback

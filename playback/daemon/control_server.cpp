@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/control_server.hpp"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "playback/daemon/control_socket.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::ControlVerb;
+using schema::Fault;
+using schema::Result;
+
+constexpr int kLinesAtOnce = 16, kAcceptAtOnce = 128;
+constexpr std::size_t kMostEvents = 1000;  // between two serve(): ten a second are usual
+
+const schema::Error kTooLong{Fault::malformed,
+                             fmt::format("a line has more than {} bytes", schema::kMostControlLine),
+                             "request", "end each request with a newline"};
+const schema::Error kNotGreeted{Fault::usage, "the first request must be hello", "request",
+                                R"(send {"request":"hello","version":"1.0"} first)"};
+const schema::Error kOnlyWatches{Fault::usage, "who watches can't ask", "request", "open another connection"};
+
+}  // namespace
+
+Result<std::unique_ptr<ControlServer>> ControlServer::listen(const SocketPlace& place) {
+  const auto opened = open_control_socket(place.path, place.group);
+  if (!opened) return schema::forward_error(opened);
+  return std::unique_ptr<ControlServer>(new ControlServer(place, *opened));
+}
+
+ControlServer::~ControlServer() {
+  ::close(descriptor_);
+  unlink(place_.path.c_str());
+}
+
+std::size_t ControlServer::watchers() const {
+  return static_cast<std::size_t>(std::ranges::count_if(clients_, &ControlClient::watching));
+}
+
+void ControlServer::refuse(int descriptor) const {
+  const std::string line = schema::control_error_line(
+      "", {Fault::unsuitable, fmt::format("{} clients are connected already", clients_.size()), place_.path,
+           "close one, or raise most_clients in the configuration"});
+  [[maybe_unused]] const auto told =
+      ::send(descriptor, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  ::close(descriptor);
+}
+
+void ControlServer::accept_all() {
+  for (int i = 0; i < kAcceptAtOnce; ++i) {
+    const int accepted = accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (accepted < 0) return;
+    if (clients_.size() < static_cast<std::size_t>(place_.most_clients))
+      clients_.emplace_back(accepted);
+    else
+      refuse(accepted);
+  }
+}
+
+std::string ControlServer::answer_to(ControlClient& client, const std::string& line, const Handler& handler) {
+  std::string id;
+  const auto request = schema::parse_control_request(line, &id);
+  if (!request) return schema::control_error_line(id, request.error());
+  if (client.watching) return schema::control_error_line(id, kOnlyWatches);
+  if (!client.greeted && request->verb != ControlVerb::hello)
+    return schema::control_error_line(id, kNotGreeted);
+  const auto fields = handler(*request);
+  if (!fields) return schema::control_error_line(id, fields.error());
+  client.greeted = client.greeted || request->verb == ControlVerb::hello;
+  client.watching = client.watching || request->verb == ControlVerb::watch;
+  return schema::control_reply_line(id, *fields);
+}
+
+bool ControlServer::answer_lines(ControlClient& client, const Handler& handler) {
+  for (int i = 0; i < kLinesAtOnce; ++i) {
+    const auto line = client.take_line();
+    if (!line) break;
+    if (!client.send(answer_to(client, *line, handler))) return false;
+  }
+  if (!client.is_endless()) return true;
+  client.send(schema::control_error_line("", kTooLong));
+  return false;
+}
+
+// False where the client is to go.
+bool ControlServer::attend(ControlClient& client, short events, const Handler& handler) {
+  if ((events & POLLOUT) != 0 && !client.flush()) return false;
+  if ((events & (POLLIN | POLLHUP | POLLERR)) == 0) return true;
+  const bool here = client.receive();
+  return answer_lines(client, handler) && here;
+}
+
+void ControlServer::attend_all(const std::vector<pollfd>& waiting, const Handler& handler) {
+  std::vector<ControlClient> staying;
+  staying.reserve(clients_.size() + 1);
+  for (std::size_t i = 0; i < clients_.size(); ++i)
+    if (attend(clients_[i], waiting[i + 1].revents, handler)) staying.push_back(std::move(clients_[i]));
+  clients_ = std::move(staying);
+}
+
+void ControlServer::serve(int timeout_ms, const Handler& handler) {
+  std::vector<pollfd> waiting{{descriptor_, POLLIN, 0}};
+  for (const ControlClient& client : clients_)
+    waiting.push_back(
+        {client.descriptor(), static_cast<short>(client.wants_to_send() ? POLLIN | POLLOUT : POLLIN), 0});
+  if (poll(waiting.data(), waiting.size(), timeout_ms) > 0) {
+    attend_all(waiting, handler);
+    if ((waiting.front().revents & POLLIN) != 0) accept_all();
+  }
+  deliver();
+}
+
+void ControlServer::publish(std::string_view event, const schema::ControlFields& fields) {
+  if (events_.size() < kMostEvents) events_.push_back(schema::control_event_line(event, fields));
+}
+
+void ControlServer::deliver() {
+  for (const std::string& line : events_)
+    std::erase_if(clients_,
+                  [&](ControlClient& client) { return client.watching && !client.send_event(line); });
+  events_.clear();
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The control socket: takes lines from clients, answers each, and tells watchers what happens (CONTROL.md).
+#pragma once
+
+#include <poll.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data-schema/control.hpp"
+#include "playback/daemon/control_client.hpp"
+
+namespace tacto::playback {
+
+struct SocketPlace {
+  std::string path;
+  std::string group;  ///< whose members may connect; empty: only the daemon's user
+  int most_clients = 16;
+};
+
+/// Never waits for a client: neither for one who is silent in the middle of a line, nor for one who does not
+/// read. One thread.
+class ControlServer {
+ public:
+  using Handler = std::function<schema::Result<schema::ControlFields>(const schema::ControlRequest&)>;
+
+  /// A socket that a dead daemon left is replaced. Errors: usage: a path that no socket can have, a group
+  /// that does not exist; unsuitable: another daemon listens there; cannot_write.
+  static schema::Result<std::unique_ptr<ControlServer>> listen(const SocketPlace& place);
+  ControlServer(const ControlServer&) = delete;
+  ControlServer& operator=(const ControlServer&) = delete;
+  ~ControlServer();
+
+  /// Waits at most `timeout_ms` for something to do, and does it; at most 16 lines of each client.
+  void serve(int timeout_ms, const Handler& handler);
+  /// To all who watch, at the end of the next serve(): requests publish while clients are attended.
+  void publish(std::string_view event, const schema::ControlFields& fields);
+  std::size_t clients() const { return clients_.size(); }
+  std::size_t watchers() const;
+
+ private:
+  ControlServer(const SocketPlace& place, int descriptor) : place_(place), descriptor_(descriptor) {}
+  void accept_all();
+  void attend_all(const std::vector<pollfd>& waiting, const Handler& handler);
+  void deliver();
+  void refuse(int descriptor) const;
+  bool attend(ControlClient& client, short events, const Handler& handler);
+  bool answer_lines(ControlClient& client, const Handler& handler);
+  std::string answer_to(ControlClient& client, const std::string& line, const Handler& handler);
+
+  SocketPlace place_;
+  int descriptor_;
+  std::vector<ControlClient> clients_;
+  std::vector<std::string> events_;
+};
+
+}  // namespace tacto::playback

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/control_socket.hpp"
+
+#include <fmt/format.h>
+#include <grp.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <system_error>
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr int kBacklog = 128;
+constexpr mode_t kOwnerOnly = 0600, kOwnerAndGroup = 0660;
+
+std::string system_words(int error_number) {
+  return std::generic_category().message(error_number);
+}
+
+Result<sockaddr_un> address_of(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof address.sun_path)
+    return fail(Fault::usage, fmt::format("a socket's path has 1 to {} bytes", sizeof address.sun_path - 1),
+                path);
+  std::memcpy(address.sun_path, path.data(), path.size());
+  return address;
+}
+
+int fresh_socket() {
+  return socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+}
+
+bool connects(int descriptor, const sockaddr_un& address) {
+  return connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+}
+
+bool somebody_listens(const sockaddr_un& address) {
+  const int probe = fresh_socket();
+  const bool there = connects(probe, address) || errno == EAGAIN;
+  ::close(probe);
+  return there;
+}
+
+// Only a socket is removed: never a file that somebody keeps under that name.
+void remove_stale(const std::string& path) {
+  struct stat status {};
+  if (lstat(path.c_str(), &status) == 0 && S_ISSOCK(status.st_mode)) unlink(path.c_str());
+}
+
+Result<gid_t> group_of(const std::string& name) {
+  const group* const found = getgrnam(name.c_str());
+  if (found != nullptr) return found->gr_gid;
+  return fail(Fault::usage, fmt::format("there is no group '{}'", name), "socket_group",
+              fmt::format("addgroup --system {}", name));
+}
+
+// Before it listens nobody can connect: there is no moment in which everybody may.
+Result<void> permit(const std::string& path, const std::string& group) {
+  if (group.empty())
+    return chmod(path.c_str(), kOwnerOnly) == 0 ? Result<void>()
+                                                : fail(Fault::cannot_write, system_words(errno), path);
+  const auto id = group_of(group);
+  if (!id) return schema::forward_error(id);
+  const bool done =
+      chown(path.c_str(), static_cast<uid_t>(-1), *id) == 0 && chmod(path.c_str(), kOwnerAndGroup) == 0;
+  if (done) return {};
+  return fail(Fault::cannot_write, "can't be given to the group: " + system_words(errno), path,
+              "let the daemon's user be a member of the group");
+}
+
+Result<void> bind_and_listen(int descriptor, const sockaddr_un& address, const std::string& path,
+                             const std::string& group) {
+  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    return fail(Fault::cannot_write, "the socket can't be made: " + system_words(errno), path);
+  if (const auto permitted = permit(path, group); !permitted) {
+    unlink(path.c_str());
+    return permitted;
+  }
+  if (::listen(descriptor, kBacklog) == 0) return {};
+  return fail(Fault::cannot_write, "can't listen: " + system_words(errno), path);
+}
+
+}  // namespace
+
+Result<int> open_control_socket(const std::string& path, const std::string& group) {
+  const auto address = address_of(path);
+  if (!address) return schema::forward_error(address);
+  if (somebody_listens(*address))
+    return fail(Fault::unsuitable, "another daemon listens there", path, "stop it, or name another socket");
+  remove_stale(path);
+  const int descriptor = fresh_socket();
+  if (descriptor < 0) return fail(Fault::internal, "no socket: " + system_words(errno), path);
+  const auto done = bind_and_listen(descriptor, *address, path, group);
+  if (done) return descriptor;
+  ::close(descriptor);
+  return schema::forward_error(done);
+}
+
+Result<int> connect_control_socket(const std::string& path) {
+  const auto address = address_of(path);
+  if (!address) return schema::forward_error(address);
+  const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (descriptor >= 0 && connects(descriptor, *address)) return descriptor;
+  const int why = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (why == EACCES || why == EPERM)
+    return fail(Fault::not_found, "this user may not connect", path,
+                "become a member of the socket's group: `ls -l` names it");
+  return fail(Fault::not_found, "no daemon listens there: " + system_words(why), path,
+              "start one: tactographd --config FILE, or systemctl start tactographd");
+}
+
+}  // namespace tacto::playback

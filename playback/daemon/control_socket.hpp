@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The control socket in the file system: who may have it, and who may connect.
+#pragma once
+
+#include <string>
+
+#include "data-schema/error.hpp"
+
+namespace tacto::playback {
+
+/// A listening Unix socket, that its user alone, or a group's members too, may connect to. One that nobody
+/// listens on is replaced. Errors: usage: a path too long, an unknown group; unsuitable: somebody listens
+/// there; cannot_write.
+schema::Result<int> open_control_socket(const std::string& path, const std::string& group);
+
+/// A connected one, for clients. Errors: not_found: nobody listens there, or not permitted, with what to do.
+schema::Result<int> connect_control_socket(const std::string& path);
+
+}  // namespace tacto::playback

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/flight_recorder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "firmware-host/core/wire/message_types.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::Result;
+using schema::SessionLoss;
+using schema::SessionTick;
+
+constexpr auto kWriteEvery = std::chrono::milliseconds(20);
+constexpr auto kSyncEvery = std::chrono::milliseconds(100);
+constexpr auto kRoomAgain = std::chrono::microseconds(200);
+constexpr std::size_t kBatch = 4096;
+constexpr std::size_t kMostOwed = 1000;  // disjoint losses; later ones are only counted
+
+}  // namespace
+
+FlightRecorder::FlightRecorder(schema::SessionWriter writer, FullQueue full)
+    : writer_(std::move(writer)), path_(writer_.path()), full_(full) {
+  batch_.reserve(kBatch);
+}
+
+Result<std::unique_ptr<FlightRecorder>> FlightRecorder::begin(const std::string& path,
+                                                              const schema::SessionHeader& header,
+                                                              FullQueue full) {
+  auto writer = schema::SessionWriter::create(path, header);
+  if (!writer) return schema::forward_error(writer);
+  std::unique_ptr<FlightRecorder> recorder(new FlightRecorder(std::move(*writer), full));
+  recorder->thread_ = std::thread([self = recorder.get()] { self->run(); });
+  return recorder;
+}
+
+FlightRecorder::~FlightRecorder() {
+  stop();
+}
+
+void FlightRecorder::stop() {
+  ending_.store(true);
+  if (thread_.joinable()) thread_.join();
+}
+
+void FlightRecorder::tick(const SessionTick& tick) noexcept {
+  SessionTick* place = queue_.place();
+  while (place == nullptr && full_ == FullQueue::wait) {
+    std::this_thread::sleep_for(kRoomAgain);
+    place = queue_.place();
+  }
+  if (place == nullptr) {
+    if (missing_++ == 0) missing_from_ = tick.tick;
+    queue_lost_.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  *place = tick;
+  queue_.push();
+  if (missing_ > 0) confess();
+}
+
+// There is room again: say what is missing before it.
+void FlightRecorder::confess() {
+  const std::lock_guard lock(notes_mutex_);
+  notes_.losses.push_back({missing_from_, std::exchange(missing_, 0), SessionLoss::Why::recorder});
+}
+
+void FlightRecorder::command(schema::SessionCommand command) {
+  const std::lock_guard lock(notes_mutex_);
+  notes_.commands.push_back(std::move(command));
+}
+
+void FlightRecorder::loss(const SessionLoss& loss) {
+  link_lost_.fetch_add(loss.count);
+  const std::lock_guard lock(notes_mutex_);
+  notes_.losses.push_back(loss);
+}
+
+void FlightRecorder::event(schema::SessionEvent event) {
+  const std::lock_guard lock(notes_mutex_);
+  notes_.events.push_back(std::move(event));
+}
+
+RecorderCounts FlightRecorder::counts() const {
+  const std::lock_guard lock(notes_mutex_);
+  return {written_.load(), queue_lost_.load(), disk_lost_.load(), late_.load(), failure_};
+}
+
+void FlightRecorder::failed(const schema::Error& error) {
+  const std::lock_guard lock(notes_mutex_);
+  failure_ = schema::message(error);
+}
+
+void FlightRecorder::write_run(std::span<const SessionTick> ticks) {
+  const auto done = writer_.add(ticks);
+  if (!done) {
+    failed(done.error());
+    disk_lost_.fetch_add(ticks.size());
+    if (owed_.size() < kMostOwed) owed_.push_back({ticks.front().tick, ticks.size(), SessionLoss::Why::disk});
+    return;
+  }
+  written_.fetch_add(ticks.size());
+  for (const SessionTick& tick : ticks) late_.fetch_add((tick.flags & wire::kTickLate) != 0);
+}
+
+// A block holds ticks that follow each other.
+void FlightRecorder::write_ticks() {
+  for (bool more = true; more;) {
+    batch_.clear();
+    for (const SessionTick* next = queue_.front(); next != nullptr && batch_.size() < kBatch;
+         next = queue_.front()) {
+      if (!batch_.empty() && next->tick != batch_.back().tick + 1) break;
+      batch_.push_back(*next);
+      queue_.pop();
+    }
+    if (!batch_.empty()) write_run(batch_);
+    more = queue_.front() != nullptr;
+  }
+}
+
+void FlightRecorder::write_notes() {
+  Notes notes;
+  {
+    const std::lock_guard lock(notes_mutex_);
+    notes = std::exchange(notes_, {});
+  }
+  owed_.insert(owed_.end(), notes.losses.begin(), notes.losses.end());
+  const auto put = [&](const auto& note) {
+    const auto done = writer_.add(note);
+    if (!done) failed(done.error());
+    return done.has_value();
+  };
+  for (const auto& command : notes.commands) put(command);
+  for (const auto& event : notes.events) put(event);
+  while (!owed_.empty() && put(owed_.front())) owed_.erase(owed_.begin());
+}
+
+void FlightRecorder::run() {
+  auto sync_due = std::chrono::steady_clock::now() + kSyncEvery;
+  std::uint64_t synced = 0;
+  while (!ending_.load()) {
+    std::this_thread::sleep_for(kWriteEvery);
+    write_notes();
+    write_ticks();
+    if (std::chrono::steady_clock::now() < sync_due) continue;
+    sync_due = std::chrono::steady_clock::now() + kSyncEvery;
+    if (written_.load() == std::exchange(synced, written_.load())) continue;
+    if (const auto done = writer_.sync(); !done) failed(done.error());
+  }
+}
+
+Result<void> FlightRecorder::close() {
+  stop();
+  if (missing_ > 0) confess();
+  write_notes();
+  write_ticks();
+  return writer_.close(
+      {written_.load(), queue_lost_.load() + disk_lost_.load() + link_lost_.load(), late_.load()});
+}
+
+}  // namespace tacto::playback

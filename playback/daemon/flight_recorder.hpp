@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The flight recorder: keeps a session on disk without ever holding up who plays.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "data-schema/session_writer.hpp"
+#include "firmware-host/core/ring.hpp"
+
+namespace tacto::playback {
+
+/// What to do when the recorder's queue is full: lose the tick and count it, or wait (in emulated time, which
+/// nobody feels).
+enum class FullQueue { lose, wait };
+
+/// What is on its way to the disk, and what will never get there.
+struct RecorderCounts {
+  std::uint64_t ticks = 0;       ///< written
+  std::uint64_t queue_lost = 0;  ///< the queue was full
+  std::uint64_t disk_lost = 0;   ///< the disk took nothing
+  std::uint64_t late = 0;        ///< of the written, late ones
+  std::string failure;           ///< the disk's last words; empty while it works
+};
+
+/// tick() puts into a queue of 65,536 (3 s at 20 kHz, 2 MB), without a lock, allocation or system call; a
+/// thread of its own writes, and syncs every 100 ms. All else is for the same one thread as tick(), and takes
+/// a lock that the writer never holds while it writes.
+class FlightRecorder {
+ public:
+  /// Errors: as SessionWriter::create.
+  static schema::Result<std::unique_ptr<FlightRecorder>> begin(const std::string& path,
+                                                               const schema::SessionHeader& header,
+                                                               FullQueue full);
+  FlightRecorder(const FlightRecorder&) = delete;
+  FlightRecorder& operator=(const FlightRecorder&) = delete;
+  ~FlightRecorder();
+
+  void tick(const schema::SessionTick& tick) noexcept;
+  void command(schema::SessionCommand command);
+  /// Ticks that never came.
+  void loss(const schema::SessionLoss& loss);
+  void event(schema::SessionEvent event);
+
+  RecorderCounts counts() const;
+  const std::string& path() const { return path_; }
+  /// Writes what is left and the last block. Errors: cannot_write.
+  schema::Result<void> close();
+
+ private:
+  static constexpr std::uint32_t kQueue = 65536;
+  struct Notes {
+    std::vector<schema::SessionCommand> commands;
+    std::vector<schema::SessionLoss> losses;
+    std::vector<schema::SessionEvent> events;
+  };
+  FlightRecorder(schema::SessionWriter writer, FullQueue full);
+  void run();
+  void stop();
+  void write_ticks();
+  void write_run(std::span<const schema::SessionTick> ticks);
+  void write_notes();
+  void failed(const schema::Error& error);
+  void confess();
+
+  schema::SessionWriter writer_;
+  std::string path_;
+  FullQueue full_;
+  core::Ring<schema::SessionTick, kQueue> queue_;
+  std::atomic<std::uint64_t> queue_lost_{0}, disk_lost_{0}, written_{0}, late_{0}, link_lost_{0};
+  std::uint64_t missing_ = 0, missing_from_ = 0;  // the putter's: ticks that found no room
+  std::vector<schema::SessionTick> batch_;        // the writer's
+  std::vector<schema::SessionLoss> owed_;         // the writer's: losses that the disk did not take either
+  mutable std::mutex notes_mutex_;
+  Notes notes_;
+  std::string failure_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace tacto::playback

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/host_board.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "firmware-host/wire_fields.hpp"
+
+namespace tacto::playback {
+
+HostBoard::HostBoard(const firmware_host::Description& device, double rate_hz) : about_(device) {
+  wire::Welcome& welcome = about_.welcome;
+  welcome.clock_hz = kClockHz;
+  welcome.default_rate_millihertz = welcome.least_rate_millihertz = welcome.most_rate_millihertz =
+      firmware_host::millihertz(rate_hz);
+  firmware_ = std::make_unique<core::Firmware>(board(), hal());
+}
+
+core::Board HostBoard::board() {
+  return firmware_host::board_of(about_.welcome, about_.channels, about_.notes, profile_);
+}
+
+core::Hal HostBoard::hal() {
+  core::Hal hal;
+  hal.board = this;
+  hal.read_encoder = [](void* b) noexcept { return of(b).encoder_.load(std::memory_order_relaxed); };
+  hal.read_channels = [](void*, std::int32_t*) noexcept { return false; };  // the device streams them itself
+  hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
+  hal.enable_closed = [](void* b) noexcept { return of(b).enabled_.load(std::memory_order_acquire); };
+  hal.clock = [](void* b) noexcept { return static_cast<std::uint64_t>(of(b).now_ns_ - of(b).began_ns_); };
+  hal.set_rate = [](void* b, std::uint32_t rate) noexcept {
+    of(b).ticking_ = rate > 0;
+    of(b).ticks_ = 0;
+  };
+  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
+    return of(b).from_player_.take({bytes, size});
+  };
+  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
+    return of(b).to_player_.put({bytes, size});
+  };
+  hal.restart = [](void*) noexcept {};
+  return hal;
+}
+
+void HostBoard::rest(std::int64_t now_ns) noexcept {
+  if (began_ns_ == 0) began_ns_ = now_ns;
+  now_ns_ = now_ns;
+  firmware_->poll();
+  wants_drive_.store(ticking_, std::memory_order_release);
+}
+
+// A drive that finds no room is not kept for later.
+void HostBoard::tick(std::int64_t now_ns, std::int64_t late_ns) noexcept {
+  now_ns_ = now_ns;
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  lateness_[ticks_++ % kLatenesses].store(static_cast<std::int32_t>(std::min(late_ns, kMost)),
+                                          std::memory_order_relaxed);
+  firmware_->tick();
+  if (TimedDrive* place = drives_.place(); place != nullptr) {
+    *place = {now_ns, drive_v_};
+    drives_.push();
+  } else {
+    drives_lost_.store(drives_lost_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  }
+  firmware_->poll();
+  wants_drive_.store(ticking_, std::memory_order_release);
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The firmware's core on this computer: its hardware is another thread, reached without locks.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "firmware-host/client.hpp"
+#include "firmware-host/core/firmware.hpp"
+#include "firmware-host/core/ring.hpp"
+#include "firmware-host/hosted_board.hpp"
+#include "playback/daemon/byte_ring.hpp"
+
+namespace tacto::playback {
+
+/// What a tick wants driven, and when that was.
+struct TimedDrive {
+  std::int64_t time_ns = 0;
+  float drive_v = 0;
+};
+
+/// tick() and rest() are the real-time thread's; inputs and outputs other threads'.
+class HostBoard {
+ public:
+  static constexpr std::uint32_t kClockHz = 1'000'000'000;
+
+  /// Says of itself what the device said, but ticks at one rate.
+  HostBoard(const firmware_host::Description& device, double rate_hz);
+  HostBoard(const HostBoard&) = delete;
+  HostBoard& operator=(const HostBoard&) = delete;
+
+  /// Safe in the tick: neither allocates, locks nor calls the system.
+  void tick(std::int64_t now_ns, std::int64_t late_ns) noexcept;
+  /// Answers the player while nothing ticks.
+  void rest(std::int64_t now_ns) noexcept;
+  bool ticking() const noexcept { return ticking_; }
+
+  // From other threads.
+  void set_inputs(std::int32_t encoder, bool enabled) noexcept {
+    encoder_.store(encoder, std::memory_order_relaxed);
+    enabled_.store(enabled, std::memory_order_release);
+  }
+  void open_enable() noexcept { enabled_.store(false, std::memory_order_release); }
+  ByteRing<65536>& from_player() noexcept { return from_player_; }
+  ByteRing<262144>& to_player() noexcept { return to_player_; }
+  core::Ring<TimedDrive, 1024>& drives() noexcept { return drives_; }
+  bool wants_drive() const noexcept { return wants_drive_.load(std::memory_order_acquire); }
+  /// Of one of the last 16,384 ticks since arming.
+  std::int32_t lateness_ns(std::uint64_t tick) const noexcept {
+    return lateness_[tick % kLatenesses].load(std::memory_order_relaxed);
+  }
+  std::uint64_t drives_lost() const noexcept { return drives_lost_.load(std::memory_order_relaxed); }
+
+ private:
+  static constexpr std::size_t kLatenesses = 16384;
+  static HostBoard& of(void* board) noexcept { return *static_cast<HostBoard*>(board); }
+  core::Board board();
+  core::Hal hal();
+
+  firmware_host::Description about_;
+  firmware_host::HostedProfile profile_;
+  std::atomic<std::int32_t> encoder_{0};
+  std::atomic<bool> enabled_{false}, wants_drive_{false};
+  ByteRing<65536> from_player_;
+  ByteRing<262144> to_player_;
+  core::Ring<TimedDrive, 1024> drives_;
+  std::array<std::atomic<std::int32_t>, kLatenesses> lateness_{};
+  std::atomic<std::uint64_t> drives_lost_{0};
+  std::uint64_t ticks_ = 0;  // since arming
+  std::int64_t now_ns_ = 0, began_ns_ = 0;
+  float drive_v_ = 0;
+  bool ticking_ = false;
+  std::unique_ptr<core::Firmware> firmware_;
+};
+
+}  // namespace tacto::playback

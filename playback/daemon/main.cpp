@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tactographd: plays textures on a device, steered over a socket. See README.md and CONTROL.md.
+#include <fmt/format.h>
+#include <sys/mman.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <string_view>
+
+#include "data-schema/version.hpp"
+#include "playback/daemon/control_server.hpp"
+#include "playback/daemon/service.hpp"
+#include "playback/daemon/service_manager.hpp"
+
+namespace {
+
+using namespace tacto;
+using playback::ControlServer;
+using playback::Service;
+using playback::ServiceManager;
+
+constexpr int kIdleMs = 100;
+constexpr double kStepS = 2e-3;
+constexpr const char* kHelp =
+    "tactographd --config FILE\n\n"
+    "Plays textures on a device, steered by `tactograph ctl` or any client of its socket.\n"
+    "FILE is JSON, as data-schema/schemas/daemon.schema.json says: device, transducer, socket, sessions ...\n"
+    "It answers SIGTERM and Ctrl-C by ramping the drive to zero. Messages go to stderr, which systemd "
+    "keeps.\n";
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+void ask_to_stop(int) {
+  stop_asked = 1;
+}
+
+int failed(const schema::Error& error) {
+  fmt::print(stderr, "tactographd: {}\n", schema::message(error));
+  return schema::exit_code(error.fault);
+}
+
+double steady_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// To the journal what changes; to watchers everything.
+void tell(ControlServer& server, const ServiceManager& manager, std::string_view event,
+          const schema::ControlFields& fields) {
+  server.publish(event, fields);
+  if (event != "state") return;
+  const std::string state = schema::control_text(fields, "state"), why = schema::control_text(fields, "why");
+  fmt::print(stderr, "tactographd: {}{}{}\n", state, why.empty() ? "" : ": ", why);
+  manager.tell("STATUS=" + state);
+}
+
+void serve_until_asked(ControlServer& server, Service& service, ServiceManager& manager) {
+  const auto handle = [&](const schema::ControlRequest& request) { return service.handle(request); };
+  while (stop_asked == 0) {
+    const bool busy = service.step(kStepS);
+    server.serve(busy ? 0 : kIdleMs, handle);
+    manager.feed_watchdog(steady_s());
+  }
+}
+
+int run(const char* config_path) {
+  const auto config = schema::read_daemon_config(config_path);
+  if (!config) return failed(config.error());
+  auto server = ControlServer::listen({config->socket, config->socket_group, config->most_clients});
+  if (!server) return failed(server.error());
+  ServiceManager manager;
+  const auto publish = [&](std::string_view event, const schema::ControlFields& fields) {
+    tell(**server, manager, event, fields);
+  };
+  const auto service = Service::open(*config, publish);
+  if (!service) return failed(service.error());
+  if (mlockall(MCL_CURRENT) != 0) fmt::print(stderr, "tactographd: memory is not locked (LimitMEMLOCK)\n");
+  fmt::print(stderr, "tactographd: ready on {}\n", config->socket);
+  manager.tell("READY=1");
+  serve_until_asked(**server, **service, manager);
+  manager.tell("STOPPING=1");
+  (*service)->end();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string_view first = argc > 1 ? argv[1] : "";
+  if (first == "--help" || first == "-h") return std::fputs(kHelp, stdout) < 0 ? 1 : 0;
+  if (first == "--version") return std::puts(kCreator.data()) < 0 ? 1 : 0;
+  if (argc != 3 || first != "--config")
+    return failed({schema::Fault::usage, "wants --config FILE", "command line", "see tactographd --help"});
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  return run(argv[2]);
+}

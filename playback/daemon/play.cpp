@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/play.hpp"
+
+#include <utility>
+
+#include "playback/daemon/player_device.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kUsualS = 10, kPlayStepS = 0.01, kReleaseWaitS = 0.05;
+
+Result<std::optional<FingerScript>> script_at(const std::string& file) {
+  if (file.empty()) return std::optional<FingerScript>();
+  auto path = read_finger_path(file);
+  if (!path) return schema::forward_error(path);
+  return std::optional(FingerScript{std::move(*path), false});
+}
+
+double time_of(const PlayOptions& options, const std::optional<FingerScript>& script) {
+  if (options.time_s) return *options.time_s;
+  return script ? script->path.duration_s() : kUsualS;
+}
+
+// In emulated time nobody waits, so nothing may be lost.
+bool is_unpaced(const std::string& uri) {
+  return uri.starts_with("sim:") && uri.find("paced=1") == std::string::npos;
+}
+
+Result<std::string> transducer_for(const PlayOptions& options, const firmware_host::Capabilities& about) {
+  if (!options.transducer.empty()) return options.transducer;
+  if (about.transducer) return about.transducer->name;
+  return fail(Fault::usage, "the device does not say which transducer it has", about.uri,
+              "name it with --transducer");
+}
+
+Result<Program> program_for(const PlayOptions& options, const PlayerDevice& device, double metres_per_count) {
+  const auto transducer = transducer_for(options, device.device->capabilities());
+  if (!transducer) return schema::forward_error(transducer);
+  PrepareOptions prepare = options.prepare;
+  prepare.metres_per_count = metres_per_count;
+  prepare.most_samples = device.client->description().welcome.profile_samples;
+  return make_program(options.program, *transducer, prepare);
+}
+
+Result<void> run_until(Player& player, double time_s, const std::atomic<bool>& stop_asked,
+                       const std::function<void(double)>& progress) {
+  while (player.played_s() < time_s && !stop_asked) {
+    if (const auto done = player.step(kPlayStepS); !done) return done;
+    if (player.state() == PlayerState::fault) break;
+    if (progress) progress(player.played_s() / time_s);
+  }
+  return {};
+}
+
+// The ramp is part of the session.
+Result<void> ramp_down(Player& player) {
+  if (const auto stopped = player.stop(); !stopped) return stopped;
+  const double until_s = player.played_s() + kReleaseWaitS;
+  while (player.played_s() < until_s)
+    if (const auto done = player.step(kPlayStepS); !done) return done;
+  return {};
+}
+
+PlayOutcome outcome_of(const Prepared& made) {
+  PlayOutcome outcome;
+  outcome.passes_to_hz = made.passes_to_hz;
+  outcome.delay_s = made.delay_s;
+  outcome.delay_left_s = made.delay_left_s;
+  outcome.inverse_error_db = made.inverse_error_db;
+  outcome.notes = made.notes;
+  return outcome;
+}
+
+Result<void> play_through(Player& player, const PlayOptions& options, double time_s,
+                          const std::atomic<bool>& stop_asked, const std::function<void(double)>& progress,
+                          PlayOutcome& outcome) {
+  if (const auto done = player.gain(options.gain); !done) return done;
+  if (const auto done = player.arm(options.session); !done) return done;
+  if (const auto done = player.play(); !done) return done;
+  if (const auto done = run_until(player, time_s, stop_asked, progress); !done) return done;
+  outcome.status = player.status();
+  if (player.state() != PlayerState::fault)
+    if (const auto done = ramp_down(player); !done) return done;
+  return player.disarm();
+}
+
+}  // namespace
+
+Result<PlayOutcome> play_once(const PlayOptions& options, const std::atomic<bool>& stop_asked,
+                              const std::function<void(double)>& progress) {
+  const auto script = script_at(options.finger_path);
+  if (!script) return schema::forward_error(script);
+  auto device = open_player_device(options.device_uri, *script);
+  if (!device) return schema::forward_error(device);
+  PlayerOptions player_options;
+  player_options.full_queue = is_unpaced(options.device_uri) ? FullQueue::wait : FullQueue::lose;
+  const auto player = Player::make(*device->client, device->uri, player_options);
+  if (!player) return schema::forward_error(player);
+  auto program = program_for(options, *device, (*player)->metres_per_count());
+  if (!program) return schema::forward_error(program);
+  PlayOutcome outcome = outcome_of(program->prepared);
+  outcome.device = device->uri;
+  outcome.simulated = device->device->capabilities().simulated;
+  outcome.asked_s = time_of(options, *script);
+  if (const auto loaded = (*player)->load(std::move(*program)); !loaded) return schema::forward_error(loaded);
+  const auto played = play_through(**player, options, outcome.asked_s, stop_asked, progress, outcome);
+  if (!played) return schema::forward_error(played);
+  outcome.recorder = (*player)->last_session();
+  return outcome;
+}
+
+}  // namespace tacto::playback

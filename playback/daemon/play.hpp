@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plays once, from opening the device to the closed session, without a daemon.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "playback/daemon/player.hpp"
+#include "playback/daemon/program.hpp"
+
+namespace tacto::playback {
+
+struct PlayOptions {
+  ProgramRequest program;
+  std::string device_uri;
+  std::string transducer;        ///< empty: the device's own
+  std::string finger_path;       ///< CSV, for an emulated device; empty: its own finger
+  std::optional<double> time_s;  ///< unless told as long as the finger's path, or 10 s
+  double gain = 1;
+  PrepareOptions prepare;  ///< rate, inverse, delay ...; gain, ends, encoder and limits are filled in
+  std::string session;     ///< its file
+};
+
+struct PlayOutcome {
+  PlayerStatus status;  ///< as it was before the device was disarmed
+  RecorderCounts recorder;
+  std::string device, simulated;
+  double asked_s = 0;
+  double passes_to_hz = 0, delay_s = 0, delay_left_s = 0, inverse_error_db = 0;
+  std::vector<std::string> notes;
+};
+
+/// Emulated devices play as fast as they can, or paced; `stop_asked` ends it early, by a ramp. A fault ends
+/// it too, and is in the outcome. Errors: as open_player_device, make_program, Player.
+schema::Result<PlayOutcome> play_once(const PlayOptions& options, const std::atomic<bool>& stop_asked,
+                                      const std::function<void(double)>& progress = {});
+
+}  // namespace tacto::playback

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/player.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "firmware-host/wire_fields.hpp"
+#include "firmware-host/wire_words.hpp"
+#include "playback/upload.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+constexpr double kIdleWaitS = 1, kIdleStepS = 0.01;
+
+std::int64_t steady_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+PlayerState state_of(std::uint32_t flags) {
+  if ((flags & wire::kTickFault) != 0) return PlayerState::fault;
+  return (flags & wire::kTickPlaying) != 0 ? PlayerState::playing : PlayerState::armed;
+}
+
+// The encoder's step stands in the description of the channel that it gives.
+Result<double> encoder_step(const firmware_host::Description& about, const std::string& uri) {
+  for (const wire::Channel& channel : about.channels)
+    if (std::strcmp(channel.quantity, "position") == 0 && std::isfinite(channel.scale) && channel.scale != 0)
+      return channel.scale;
+  return fail(Fault::device, "the device does not say what its encoder counts", uri,
+              "it lacks a channel of the quantity position");
+}
+
+}  // namespace
+
+std::string_view word_of(PlayerState state) {
+  constexpr std::string_view kWords[] = {"idle", "armed", "playing", "fault", "lost"};
+  return kWords[static_cast<std::size_t>(state)];
+}
+
+Player::Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres)
+    : client_(client), uri_(std::move(uri)), options_(options), metres_per_count_(metres) {
+  client_.listen([this](std::span<const std::uint8_t> frame) { keep(frame); });
+}
+
+Player::~Player() {
+  client_.listen({});
+}
+
+Result<std::unique_ptr<Player>> Player::make(firmware_host::Client& client, std::string uri,
+                                             const PlayerOptions& options) {
+  if ((client.description().welcome.features & wire::kFeatureDrive) == 0)
+    return fail(Fault::device, "the device has no output", uri);
+  const auto step = encoder_step(client.description(), uri);
+  if (!step) return schema::forward_error(step);
+  return std::unique_ptr<Player>(new Player(client, std::move(uri), options, *step));
+}
+
+Result<void> Player::require(bool allowed, const char* what, const char* remedy) const {
+  if (allowed) return {};
+  return fail(Fault::usage, fmt::format("can't {} in the state {}", what, word_of(state_)), uri_, remedy);
+}
+
+// Every command that the device obeys is part of the session.
+void Player::keep(std::span<const std::uint8_t> frame) {
+  if (recorder_) recorder_->command({view_.expected(), steady_ns(), {frame.begin(), frame.end()}});
+}
+
+// A command to a running drive: what it answers, and what the device has said meanwhile.
+template <class Message>
+Result<void> Player::steer(const Message& message) {
+  const auto done = client_.command(message);
+  take_ticks();
+  take_faults();
+  return done;
+}
+
+Result<void> Player::load(Program program) {
+  if (const auto may = require(state_ == PlayerState::idle, "load", "disarm first"); !may) return may;
+  const wire::Welcome& about = client_.description().welcome;
+  wire::Limits& limits = program.prepared.limits;
+  limits.drive_v = std::min(limits.drive_v, about.drive_limit_v);
+  limits.slew_v_per_s = std::min(limits.slew_v_per_s, about.slew_limit_v_per_s);
+  program_ = std::move(program);
+  return {};
+}
+
+schema::SessionHeader Player::session_header() const {
+  const firmware_host::Description& about = client_.description();
+  schema::SessionHeader header = program_->session;
+  header.clock_hz = about.welcome.clock_hz;
+  header.loop = options_.loop;
+  header.device_uri = uri_;
+  header.device_name = about.welcome.name;
+  header.device_serial = about.welcome.serial;
+  header.device_firmware = about.welcome.firmware;
+  header.initial_gain = gain_;
+  for (const wire::Note& note : about.notes)
+    if (note.kind == wire::NoteKind::simulated_by) header.simulated = note.text;
+  return header;
+}
+
+Result<void> Player::arm(const std::string& session_path) {
+  if (const auto may = require(state_ == PlayerState::idle, "arm", "disarm first"); !may) return may;
+  if (const auto may = require(loaded(), "arm", "load a texture or scene first"); !may) return may;
+  auto recorder = FlightRecorder::begin(session_path, session_header(), options_.full_queue);
+  if (!recorder) return schema::forward_error(recorder);
+  recorder_ = std::move(*recorder);
+  session_path_ = session_path;
+  fault_.clear();
+  view_.begin(program_->prepared.rate_hz, metres_per_count_);
+  const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};
+  auto done = upload(client_, program_->prepared);
+  if (done) done = gain(gain_);
+  client_.take_ticks();  // of an earlier run
+  if (done) done = client_.command(arm);
+  if (!done) {
+    recorder_->event({0, steady_ns(), "not armed: " + schema::message(done.error())});
+    (void)end_session();
+    return done;
+  }
+  enter(PlayerState::armed, "");
+  return beat();
+}
+
+Result<void> Player::play() {
+  const bool may = state_ == PlayerState::armed || state_ == PlayerState::playing;
+  const char* const remedy = state_ == PlayerState::fault ? "disarm first, then arm" : "arm first";
+  if (const auto allowed = require(may, "play", remedy); !allowed) return allowed;
+  return steer(wire::Play{});
+}
+
+Result<void> Player::stop() {
+  const bool may = state_ != PlayerState::idle && state_ != PlayerState::lost;
+  if (const auto allowed = require(may, "stop", "nothing plays"); !allowed) return allowed;
+  return steer(wire::Stop{});
+}
+
+Result<void> Player::gain(double gain) {
+  if (!std::isfinite(gain)) return fail(Fault::usage, "the gain is no finite number", uri_);
+  gain_ = gain;
+  if (!recorder_) return {};
+  return steer(wire::Gain{static_cast<float>(gain * program_->prepared.gain_m_per_n)});
+}
+
+Result<void> Player::wait_for_idle() {
+  for (double waited_s = 0; waited_s < kIdleWaitS; waited_s += kIdleStepS) {
+    const auto pulse = client_.heartbeat();
+    if (!pulse) return schema::forward_error(pulse);
+    take_ticks();
+    if (pulse->state == wire::DriveState::idle) return {};
+    if (const auto received = client_.receive(kIdleStepS); !received) return schema::forward_error(received);
+  }
+  return fail(Fault::device, "the device did not come to rest", uri_, "switch off the amplifier");
+}
+
+Result<void> Player::disarm() {
+  if (state_ == PlayerState::idle) return {};
+  if (const auto may = require(state_ != PlayerState::lost, "disarm", "the device is gone"); !may) return may;
+  auto done = steer(wire::Disarm{});
+  if (done) done = wait_for_idle();
+  if (!done) return lose(done.error());
+  enter(PlayerState::idle, "");
+  return end_session();
+}
+
+Result<void> Player::end_session() {
+  if (!recorder_) return {};
+  const auto closed = recorder_->close();
+  last_session_ = recorder_->counts();
+  recorder_.reset();
+  return closed;
+}
+
+Result<void> Player::lose(const schema::Error& error) {
+  const bool first = state_ != PlayerState::lost;
+  if (first) enter(PlayerState::lost, schema::message(error));
+  (void)end_session();
+  return tl::unexpected(error);
+}
+
+Result<void> Player::beat() {
+  const double asked_s = client_.transport().now_s();
+  const auto pulse = client_.heartbeat();
+  if (!pulse) return schema::forward_error(pulse);
+  round_trip_s_ = client_.transport().now_s() - asked_s;
+  next_beat_s_ = client_.transport().now_s() + options_.heartbeat_s;
+  return {};
+}
+
+Result<void> Player::step(double timeout_s) {
+  if (state_ == PlayerState::lost || state_ == PlayerState::idle) return {};
+  auto done = client_.receive(timeout_s);
+  if (done && client_.transport().now_s() >= next_beat_s_) done = beat();
+  take_faults();
+  take_ticks();
+  if (!done) return lose(done.error());
+  watch_lateness();
+  return {};
+}
+
+void Player::take(const wire::Ticks& message) {
+  if (message.first_tick > view_.expected()) {
+    const std::uint64_t lost = message.first_tick - view_.expected();
+    view_.take_loss(lost);
+    recorder_->loss({view_.expected(), lost, schema::SessionLoss::Why::link});
+  }
+  const wire::Welcome& about = client_.description().welcome;
+  const double ns_per_clock = 1e9 / std::max(1U, about.clock_hz);
+  const auto time_ns = std::llround(static_cast<double>(message.device_ticks) * ns_per_clock);
+  const double period_ns = 1e9 / program_->prepared.rate_hz;
+  for (std::uint8_t i = 0; i < message.count; ++i) {
+    const wire::Tick& tick = message.ticks[i];
+    const schema::SessionTick row{message.first_tick + i,
+                                  time_ns + std::llround(i * period_ns),
+                                  tick.encoder,
+                                  tick.drive_v,
+                                  tick.flags,
+                                  options_.lateness_ns ? options_.lateness_ns(message.first_tick + i)
+                                                       : schema::SessionTick::kLatenessUnknown};
+    view_.take(row);
+    recorder_->tick(row);
+  }
+}
+
+// Of a run that is over, ticks may still be on their way: they belong to nobody.
+void Player::take_ticks() {
+  for (const wire::Ticks& message : client_.take_ticks()) {
+    if (!recorder_ || message.count == 0 || message.first_tick < view_.expected()) continue;
+    take(message);
+    const PlayerState seen = state_of(view_.last().flags);
+    if (seen != state_ && state_ != PlayerState::fault && state_ != PlayerState::idle) enter(seen, fault_);
+  }
+}
+
+void Player::take_faults() {
+  for (const wire::Fault& fault : client_.take_faults()) {
+    const firmware_host::FaultWords words = firmware_host::words_of(fault.code, fault.detail);
+    if (!recorder_) continue;
+    if (fault.code == wire::FaultCode::ring_full) {
+      recorder_->event({view_.expected(), steady_ns(), words.what});
+      continue;
+    }
+    fault_ = words.remedy.empty() ? words.what : words.what + " (" + words.remedy + ")";
+    enter(PlayerState::fault, fault_);
+  }
+}
+
+// Late ticks play what the finger felt too late: beyond a limit, not at all.
+void Player::watch_lateness() {
+  if (state_ != PlayerState::playing || view_.late_part() <= options_.most_late) return;
+  fault_ = fmt::format(
+      "{:.0f} % of the ticks of a second were late (fewer programs beside this one, or a lower rate)",
+      100 * view_.late_part());
+  (void)steer(wire::Stop{});
+  enter(PlayerState::fault, fault_);
+}
+
+void Player::enter(PlayerState state, const std::string& why) {
+  if (state == state_) return;
+  state_ = state;
+  if (state == PlayerState::lost) fault_ = why;
+  const std::string words = fmt::format("{}{}{}", word_of(state), why.empty() ? "" : ": ", why);
+  if (recorder_) recorder_->event({view_.expected(), steady_ns(), words});
+  if (listener_) listener_(state, why, 1e-9 * static_cast<double>(view_.last().time_ns));
+}
+
+PlayerStatus Player::status() const {
+  PlayerStatus status{state_, fault_, gain_, view_, std::nullopt, session_path_, round_trip_s_};
+  if (recorder_) status.recorder = recorder_->counts();
+  return status;
+}
+
+}  // namespace tacto::playback

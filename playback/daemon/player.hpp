@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plays on a device that closes the loop: uploads, arms, steers, supervises, records. The device may be on
+// USB, emulated, or the host's own real-time loop: it is spoken to alike.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "firmware-host/client.hpp"
+#include "playback/daemon/flight_recorder.hpp"
+#include "playback/daemon/program.hpp"
+#include "playback/daemon/tick_view.hpp"
+
+namespace tacto::playback {
+
+/// idle: no output. armed: ticking, the drive at zero. playing. fault: the drive has been ramped to zero,
+/// until disarm. lost: the device does not answer any more (its own watchdog has ramped it to zero).
+///   idle -> armed by arm; armed -> playing by play; playing -> armed by stop; armed, playing, fault -> idle
+///   by disarm; armed, playing -> fault by the device (its words in PlayerStatus::fault) or by too many late
+///   ticks; any -> lost by a device that does not answer.
+enum class PlayerState { idle, armed, playing, fault, lost };
+std::string_view word_of(PlayerState state);
+
+struct PlayerOptions {
+  FullQueue full_queue = FullQueue::lose;
+  double heartbeat_s = 0.025;
+  double most_late = 0.2;       ///< part of the ticks within a second; more of them is a fault
+  std::string loop = "device";  ///< who closes it, for the session
+  /// How late a tick was, where somebody measures it.
+  std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
+};
+
+struct PlayerStatus {
+  PlayerState state = PlayerState::idle;
+  std::string fault;  ///< why, and what to do; empty where nothing is wrong
+  double gain = 1;
+  TickView ticks;  ///< since arming
+  std::optional<RecorderCounts> recorder;
+  std::string session;      ///< file being written, or written last
+  double round_trip_s = 0;  ///< of the last heartbeat
+};
+
+/// One thread, which also owns the client. Every call ends within the client's timeouts. What cannot be done
+/// in the state that it is in is refused (usage), with what to do first.
+class Player {
+ public:
+  /// Told of every change of state, with words.
+  using Listener = std::function<void(PlayerState state, const std::string& why, double device_s)>;
+
+  /// The client outlives it. Errors: device: no output, or no encoder whose step it tells.
+  static schema::Result<std::unique_ptr<Player>> make(firmware_host::Client& client, std::string uri,
+                                                      const PlayerOptions& options);
+  ~Player();
+
+  /// The encoder's step, m a count.
+  double metres_per_count() const { return metres_per_count_; }
+  void listen(Listener listener) { listener_ = std::move(listener); }
+
+  /// Uploads. In idle. Errors: usage; device.
+  schema::Result<void> load(Program program);
+  bool loaded() const { return program_.has_value(); }
+  /// Begins a session (never over a file that is there), and arms. In idle, loaded. Errors: usage; device;
+  /// cannot_write.
+  schema::Result<void> arm(const std::string& session_path);
+  schema::Result<void> play();
+  schema::Result<void> stop();
+  /// At any time; kept for the next session. Errors: usage, for a gain that is no number; device.
+  schema::Result<void> gain(double gain);
+  /// Ramps to zero, waits for idle (a second at most), and closes the session. Errors: device; cannot_write.
+  schema::Result<void> disarm();
+
+  /// Takes in what the device says, waiting at most `timeout_s` for it, and keeps it alive. An error (the
+  /// device is gone) is told once; from then on the state is lost.
+  schema::Result<void> step(double timeout_s);
+
+  PlayerState state() const { return state_; }
+  /// Counts of the session that was closed last.
+  const RecorderCounts& last_session() const { return last_session_; }
+  PlayerStatus status() const;
+  /// Seconds of ticks since arming, by the device's clock.
+  double played_s() const { return view_.span_s(); }
+
+ private:
+  Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres);
+  template <class Message>
+  schema::Result<void> steer(const Message& message);
+  void keep(std::span<const std::uint8_t> frame);
+  schema::Result<void> wait_for_idle();
+  schema::Result<void> beat();
+  schema::Result<void> require(bool allowed, const char* what, const char* remedy) const;
+  schema::SessionHeader session_header() const;
+  void take_ticks();
+  void take(const wire::Ticks& message);
+  void take_faults();
+  void watch_lateness();
+  void enter(PlayerState state, const std::string& why);
+  void follow(const TickView& view);
+  schema::Result<void> lose(const schema::Error& error);
+  schema::Result<void> end_session();
+
+  firmware_host::Client& client_;
+  std::string uri_;
+  PlayerOptions options_;
+  double metres_per_count_ = 0;
+  Listener listener_;
+  std::optional<Program> program_;
+  std::unique_ptr<FlightRecorder> recorder_;
+  std::string session_path_;
+  RecorderCounts last_session_;
+  PlayerState state_ = PlayerState::idle;
+  std::string fault_;
+  double gain_ = 1;
+  TickView view_;
+  double next_beat_s_ = 0, round_trip_s_ = 0;
+};
+
+}  // namespace tacto::playback

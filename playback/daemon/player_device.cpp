@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/player_device.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "firmware-host/sim/sim_device.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::string_view kSimScheme = "sim:";
+constexpr double kScriptRateHz = 20e3;  // read linearly between: 3 nm off at 10 m/s^2
+constexpr mode_t kForAll = 0666;
+
+std::string lock_path(const std::string& device_name) {
+  std::string name = device_name;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-'; }, '_');
+  const bool usual = access("/run/lock", W_OK) == 0;
+  return (usual ? "/run/lock/tactograph-" : "/tmp/tactograph-") + name.substr(0, 100) + ".lock";
+}
+
+// Positions along a path at any time.
+class Script {
+ public:
+  explicit Script(const FingerScript& script)
+      : repeated_(script.repeated),
+        positions_(positions_along(
+            script.path, kScriptRateHz,
+            2 + static_cast<std::size_t>(std::ceil(script.path.duration_s() * kScriptRateHz)))) {}
+
+  double operator()(double time_s) const {
+    const double last = static_cast<double>(positions_.size() - 1);
+    double place = time_s * kScriptRateHz;
+    if (repeated_) place = last - std::abs(std::fmod(place, 2 * last) - last);
+    place = std::clamp(place, 0.0, last);
+    const auto i = std::min(static_cast<std::size_t>(place), positions_.size() - 2);
+    return std::lerp(positions_[i], positions_[i + 1], place - static_cast<double>(i));
+  }
+
+ private:
+  bool repeated_;
+  std::vector<double> positions_;
+};
+
+Result<std::unique_ptr<firmware_host::Device>> open_scripted(const std::string& uri,
+                                                             const FingerScript& script) {
+  if (!uri.starts_with(kSimScheme))
+    return fail(Fault::unsuitable, "only an emulated finger goes where it is told", uri,
+                "leave the finger's path out, or play on sim:");
+  auto device = firmware_host::make_sim_device(uri, std::string_view(uri).substr(kSimScheme.size()));
+  if (!device) return schema::forward_error(device);
+  (*device)->board().set_script(Script(script));
+  return std::unique_ptr<firmware_host::Device>(std::move(*device));
+}
+
+}  // namespace
+
+DeviceLock::DeviceLock(DeviceLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+DeviceLock& DeviceLock::operator=(DeviceLock&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+DeviceLock::~DeviceLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
+  const std::string path = lock_path(device_name);
+  int opened = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+  if (opened < 0) opened = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kForAll);
+  if (opened < 0) return fail(Fault::cannot_write, "the lock can't be made", path, "see who owns it");
+  [[maybe_unused]] const int shared = fchmod(opened, kForAll);
+  if (flock(opened, LOCK_EX | LOCK_NB) == 0) return DeviceLock(opened);
+  ::close(opened);
+  return fail(Fault::unsuitable, "another program plays on the device", device_name,
+              "stop it: tactographd, or tactograph play");
+}
+
+Result<PlayerDevice> open_player_device(const std::string& uri, const std::optional<FingerScript>& script) {
+  auto device = script ? open_scripted(uri, *script) : firmware_host::open_device(uri);
+  if (!device) return schema::forward_error(device);
+  firmware_host::Client* const client = (*device)->conversation();
+  if (client == nullptr)
+    return fail(Fault::unsuitable, "nothing can be played on a replay", uri, "play on sim: or usb:");
+  const firmware_host::Capabilities& about = (*device)->capabilities();
+  auto lock = DeviceLock::take(about.simulated.empty() ? about.serial : about.uri);
+  if (!lock) return schema::forward_error(lock);
+  return PlayerDevice{std::move(*device), client, about.uri, std::move(*lock)};
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The device that is played on, opened and held for this process alone.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "firmware-host/client.hpp"
+#include "firmware-host/device.hpp"
+#include "playback/finger_path.hpp"
+
+namespace tacto::playback {
+
+/// A lock that other programs of ours respect, and that goes with this process however it ends.
+class DeviceLock {
+ public:
+  /// Errors: unsuitable: another program plays on the device.
+  static schema::Result<DeviceLock> take(const std::string& device_name);
+  DeviceLock() = default;
+  DeviceLock(DeviceLock&& other) noexcept;
+  DeviceLock& operator=(DeviceLock&& other) noexcept;
+  ~DeviceLock();
+
+ private:
+  explicit DeviceLock(int descriptor) : descriptor_(descriptor) {}
+  int descriptor_ = -1;
+};
+
+/// What an emulated device's finger does.
+struct FingerScript {
+  FingerPath path;
+  bool repeated = false;  ///< there and back, over and over; else it rests at the end
+};
+
+struct PlayerDevice {
+  std::unique_ptr<firmware_host::Device> device;
+  firmware_host::Client* client = nullptr;
+  std::string uri;
+  DeviceLock lock;
+};
+
+/// Opens by URI (see open_device). A script is for `sim:` alone. Errors: as open_device; unsuitable: a device
+/// that nothing can be played on (a replay), a script for a real one; another program plays on it.
+schema::Result<PlayerDevice> open_player_device(const std::string& uri,
+                                                const std::optional<FingerScript>& script);
+
+}  // namespace tacto::playback

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is to be played, as a user names it: a texture or a scene, made ready for a device.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "data-schema/session.hpp"
+#include "playback/prepare.hpp"
+
+namespace tacto::playback {
+
+/// What is asked for. A texture may say where it lies; a scene says it itself.
+struct ProgramRequest {
+  std::string file;  ///< stem or file of a texture or scene
+  std::optional<double> at_m, gain_m_per_n;
+  std::optional<schema::TextureEnds> ends;
+};
+
+/// Ready to upload. `session` lacks only what the player knows: device, clock, initial state.
+struct Program {
+  Prepared prepared;
+  schema::SessionHeader session;
+  std::string scene_path;  ///< empty for a texture by itself
+  double length_m = 0;     ///< from the first texture's start to the last one's end
+};
+
+/// Reads the files, and prepares. `options`: rate, encoder, limits; gain and ends are taken from the request
+/// or the scene. Errors: as read_texture, read_scene, read_transducer, prepare; unsuitable: a scene of
+/// several textures whose ends are not `stop`; usage: a place or gain for a scene.
+schema::Result<Program> make_program(const ProgramRequest& request, const std::string& transducer,
+                                     PrepareOptions options);
+
+}  // namespace tacto::playback

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/service.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <ctime>
+#include <filesystem>
+
+#include "data-schema/creation_time.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/scene.hpp"
+#include "data-schema/version.hpp"
+#include "playback/daemon/program.hpp"
+
+namespace tacto::playback {
+
+using schema::ControlFields;
+using schema::ControlRequest;
+using schema::ControlVerb;
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kStatusEveryS = 0.1;
+constexpr double kReleaseS = 0.01;
+
+// An emulated device that runs ahead of the clock would play to nobody.
+std::string paced(const std::string& uri) {
+  if (!uri.starts_with("sim:") || uri.find("paced=") != std::string::npos) return uri;
+  return uri + (uri == "sim:" ? "paced=1" : ",paced=1");
+}
+
+Result<std::optional<FingerScript>> script_of(const schema::DaemonConfig& config) {
+  if (config.finger_path.empty()) return std::optional<FingerScript>();
+  auto path = read_finger_path(config.finger_path);
+  if (!path) return schema::forward_error(path);
+  return std::optional(FingerScript{std::move(*path), true});
+}
+
+void add_ticks(ControlFields& fields, const TickView& view) {
+  const auto count = [](std::uint64_t n) { return static_cast<std::int64_t>(n); };
+  fields.emplace_back("ticks", count(view.ticks()));
+  fields.emplace_back("lost_ticks", count(view.lost()));
+  fields.emplace_back("late_ticks", count(view.late()));
+  fields.emplace_back("limited_ticks", count(view.limited()));
+  fields.emplace_back("played_s", view.span_s());
+  fields.emplace_back("device_s", 1e-9 * static_cast<double>(view.last().time_ns));
+  fields.emplace_back("encoder_count", std::int64_t{view.last().encoder});
+  fields.emplace_back("position_m", view.position_m());
+  fields.emplace_back("speed_mps", view.speed_mps());
+  fields.emplace_back("drive_v", double{view.last().drive_v});
+  fields.emplace_back("drive_rms_v", view.drive_rms_v());
+  fields.emplace_back("drive_peak_v", view.drive_peak_v());
+}
+
+void add_recorder(ControlFields& fields, const RecorderCounts& counts) {
+  fields.emplace_back("recorded_ticks", static_cast<std::int64_t>(counts.ticks));
+  fields.emplace_back("recorder_lost_ticks", static_cast<std::int64_t>(counts.queue_lost + counts.disk_lost));
+  if (!counts.failure.empty()) fields.emplace_back("recorder_failure", counts.failure);
+}
+
+void add_loop(ControlFields& fields, const HostLoopStatus& loop) {
+  fields.emplace_back("wake_p50_s", loop.wake_p50_s);
+  fields.emplace_back("wake_p99_s", loop.wake_p99_s);
+  fields.emplace_back("wake_p999_s", loop.wake_p999_s);
+  fields.emplace_back("busy_p99_s", loop.busy_p99_s);
+  fields.emplace_back("missed_ticks", static_cast<std::int64_t>(loop.missed_ticks));
+  fields.emplace_back("stale_drives", static_cast<std::int64_t>(loop.stale_drives));
+  fields.emplace_back("trimmed_drives", static_cast<std::int64_t>(loop.trimmed_drives));
+  fields.emplace_back("real_time", loop.real_time);
+  if (!loop.device_fault.empty()) fields.emplace_back("device_fault", loop.device_fault);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& config, Publish publish) {
+  std::unique_ptr<Service> service(new Service(config, std::move(publish)));
+  std::error_code failed;
+  fs::create_directories(config.sessions, failed);
+  if (failed) return fail(Fault::cannot_write, "can't be made: " + failed.message(), config.sessions);
+  if (const auto sound = schema::read_transducer(config.transducer); !sound)
+    return schema::forward_error(sound);
+  if (const auto connected = service->connect(); !connected) return schema::forward_error(connected);
+  return service;
+}
+
+Result<void> Service::connect() {
+  player_.reset();
+  loop_client_.reset();
+  loop_.reset();
+  device_ = {};
+  const auto script = script_of(config_);
+  if (!script) return schema::forward_error(script);
+  auto device = open_player_device(paced(config_.device), *script);
+  if (!device) return schema::forward_error(device);
+  PlayerOptions player_options;
+  player_options.heartbeat_s = 1e-3 * config_.watchdog_ms / 4;
+  player_options.most_late = 1e-2 * config_.most_late_percent;
+  device_ = std::move(*device);
+  if (const auto closed = close_loop_here(player_options); !closed) return closed;
+  auto player = Player::make(client(), device_.uri, player_options);
+  if (!player) return schema::forward_error(player);
+  player_ = std::move(*player);
+  player_->listen([this](PlayerState state, const std::string& why, double device_s) {
+    publish_("state", {{"state", std::string(word_of(state))}, {"why", why}, {"device_s", device_s}});
+  });
+  return {};
+}
+
+// Where it is asked for: then the player speaks to this computer's own real-time thread.
+Result<void> Service::close_loop_here(PlayerOptions& options) {
+  if (config_.loop != "host") return {};
+  HostLoopOptions loop_options{config_.rate_hz, config_.real_time_priority,
+                               static_cast<std::uint16_t>(config_.watchdog_ms)};
+  auto loop = HostLoop::begin(*device_.client, loop_options);
+  if (!loop) return schema::forward_error(loop);
+  loop_ = std::move(*loop);
+  auto connected = firmware_host::Client::connect(loop_->transport(), device_.uri);
+  if (!connected) return schema::forward_error(connected);
+  loop_client_ = std::move(*connected);
+  options.loop = "host";
+  options.lateness_ns = [&board = loop_->board()](std::uint64_t tick) { return board.lateness_ns(tick); };
+  return {};
+}
+
+PrepareOptions Service::options() {
+  PrepareOptions options;
+  options.rate_hz = config_.rate_hz;
+  options.metres_per_count = player_->metres_per_count();
+  options.onset_s = config_.onset_s;
+  options.release_s = kReleaseS;
+  options.watchdog_ms = static_cast<std::uint16_t>(config_.watchdog_ms);
+  options.most_samples = client().description().welcome.profile_samples;
+  return options;
+}
+
+std::string Service::resolved(const std::string& file) const {
+  return config_.files.empty() ? file : (fs::path(config_.files) / file).string();
+}
+
+// A lost device may be back by the time somebody loads.
+Result<ControlFields> Service::load(const ControlRequest& request) {
+  if (player_->state() == PlayerState::lost)
+    if (const auto connected = connect(); !connected) return schema::forward_error(connected);
+  if (player_->state() != PlayerState::idle)
+    return fail(Fault::usage, "can't load while the device is armed", "load", "disarm first");
+  auto program = make_program({resolved(request.file), request.at_m, request.gain_m_per_n, request.ends},
+                              config_.transducer, options());
+  if (!program) return schema::forward_error(program);
+  const Prepared& made = program->prepared;
+  ControlFields fields{{"file", request.file},
+                       {"length_m", program->length_m},
+                       {"gain_m_per_n", double{made.gain_m_per_n}},
+                       {"rate_hz", made.rate_hz},
+                       {"passes_to_hz", made.passes_to_hz},
+                       {"delay_s", made.delay_s},
+                       {"delay_left_s", made.delay_left_s},
+                       {"inverse_error_db", made.inverse_error_db}};
+  notes_ = made.notes;
+  for (std::size_t i = 0; i < notes_.size(); ++i)
+    fields.emplace_back(fmt::format("note_{}", i + 1), notes_[i]);
+  scene_path_ = program->scene_path;
+  if (const auto kept = player_->load(std::move(*program)); !kept) return schema::forward_error(kept);
+  loaded_ = request.file;
+  if (const auto fresh = player_->gain(1); !fresh) return schema::forward_error(fresh);
+  return fields;
+}
+
+std::string Service::next_session() const {
+  std::tm parts{};
+  const std::time_t now = std::time(nullptr);
+  gmtime_r(&now, &parts);
+  char date[32];
+  std::strftime(date, sizeof date, "%Y%m%dT%H%M%SZ", &parts);
+  const std::string stem = (fs::path(config_.sessions) / date).string();
+  std::string path = schema::session_path(stem);
+  for (int i = 2; schema::is_file(path); ++i) path = schema::session_path(fmt::format("{}-{}", stem, i));
+  return path;
+}
+
+Result<ControlFields> Service::arm() {
+  const std::string path = next_session();
+  if (const auto armed = player_->arm(path); !armed) return schema::forward_error(armed);
+  return ControlFields{{"state", std::string(word_of(player_->state()))}, {"session", path}};
+}
+
+// G_psi as it was felt to be right, with who and when: the file's own gains times the factor.
+Result<void> Service::save_gain(double factor) {
+  if (scene_path_.empty())
+    return fail(Fault::usage, "a texture by itself keeps no gain", loaded_, "load a scene");
+  auto scene = schema::read_scene(scene_path_);
+  if (!scene) return schema::forward_error(scene);
+  for (schema::Layer& layer : scene->layers)
+    std::visit(
+        [&](schema::TextureLayer& texture) {
+          texture.gain_m_per_n *= factor;
+          texture.gain_set_by = "tactographd";
+          texture.gain_set_on = schema::creation_time();
+        },
+        layer);
+  return schema::write_scene(scene_path_, *scene);
+}
+
+Result<ControlFields> Service::gain(const ControlRequest& request) {
+  if (const auto set = player_->gain(*request.gain); !set) return schema::forward_error(set);
+  if (request.save)
+    if (const auto saved = save_gain(*request.gain); !saved) return schema::forward_error(saved);
+  const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
+  publish_("gain", {{"gain", *request.gain}, {"device_s", device_s}});
+  return ControlFields{{"gain", *request.gain}, {"saved", request.save}};
+}
+
+Result<ControlFields> Service::done(const Result<void>& result) const {
+  if (!result) return schema::forward_error(result);
+  return ControlFields{{"state", std::string(word_of(player_->state()))}};
+}
+
+ControlFields Service::hello() const {
+  const wire::Welcome& about = device_.client->description().welcome;
+  return {{"version", std::string(schema::kControlVersion)},
+          {"daemon", std::string(kCreator)},
+          {"device", device_.uri},
+          {"device_name", std::string(about.name)},
+          {"serial", std::string(about.serial)},
+          {"transducer", config_.transducer},
+          {"loop", config_.loop},
+          {"rate_hz", config_.rate_hz}};
+}
+
+ControlFields Service::status() const {
+  const PlayerStatus status = player_->status();
+  ControlFields fields{{"state", std::string(word_of(status.state))}, {"gain", status.gain}};
+  if (!status.fault.empty()) fields.emplace_back("fault", status.fault);
+  if (!loaded_.empty()) fields.emplace_back("loaded", loaded_);
+  if (!status.session.empty()) fields.emplace_back("session", status.session);
+  fields.emplace_back("round_trip_s", status.round_trip_s);
+  add_ticks(fields, status.ticks);
+  if (status.recorder) add_recorder(fields, *status.recorder);
+  fields.emplace_back("period_s", 1 / config_.rate_hz);
+  if (loop_) add_loop(fields, loop_->status());
+  return fields;
+}
+
+Result<ControlFields> Service::handle(const ControlRequest& request) {
+  switch (request.verb) {
+    case ControlVerb::hello:
+      return hello();
+    case ControlVerb::load:
+      return load(request);
+    case ControlVerb::arm:
+      return arm();
+    case ControlVerb::play:
+      return done(player_->play());
+    case ControlVerb::stop:
+      return done(player_->stop());
+    case ControlVerb::disarm:
+      return done(player_->disarm());
+    case ControlVerb::gain:
+      return gain(request);
+    case ControlVerb::status:
+    case ControlVerb::watch:
+      return status();
+  }
+  return fail(Fault::internal, "a request that nobody answers", "request");
+}
+
+bool Service::step(double timeout_s) {
+  const PlayerState state = player_->state();
+  if (state == PlayerState::idle || state == PlayerState::lost) return false;
+  (void)player_->step(timeout_s);  // a device that is gone is told as a state
+  if (const double now_s = client().transport().now_s(); now_s >= next_status_s_) {
+    next_status_s_ = now_s + kStatusEveryS;
+    publish_("status", status());
+  }
+  return true;
+}
+
+void Service::end() {
+  (void)player_->stop();
+  (void)player_->disarm();
+}
+
+}  // namespace tacto::playback

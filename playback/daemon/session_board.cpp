@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/session_board.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware-host/hosted_board.hpp"
+#include "firmware-host/wire_fields.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr std::size_t kProfileSamples = std::size_t{1} << 24;  // as much as prepare() makes at most
+constexpr std::uint32_t kReplayClockHz = 1'000'000;
+
+}  // namespace
+
+bool is_frame(std::span<const std::uint8_t> bytes) {
+  wire::FrameHeader header;
+  const std::size_t around = wire::kHeaderSize + wire::kCheckSize;
+  return bytes.size() >= around && wire::read_header(bytes.data(), header) &&
+         header.length <= wire::kMaxPayload && bytes.size() == around + header.length;
+}
+
+SessionBoard::SessionBoard(const schema::SessionHeader& header)
+    : header_(header),
+      profile_(std::make_unique_for_overwrite<float[]>(kProfileSamples)),
+      encoder_(header.initial_encoder) {
+  firmware_ = std::make_unique<core::Firmware>(board(), hal());
+  say(wire::Hello{});
+}
+
+core::Board SessionBoard::board() {
+  core::Board board;
+  board.profile_memory = profile_.get();
+  board.profile_samples = static_cast<std::uint32_t>(kProfileSamples);
+  wire::Welcome& about = board.about;
+  about.features = wire::kFeatureDrive;
+  about.clock_hz = kReplayClockHz;
+  const std::uint32_t rate = firmware_host::millihertz(header_.rate_hz);
+  about.default_rate_millihertz = about.least_rate_millihertz = about.most_rate_millihertz = rate;
+  about.drive_limit_v = static_cast<float>(header_.transducer.drive_limit_v);
+  about.slew_limit_v_per_s = static_cast<float>(header_.transducer.slew_limit_v_per_s);
+  return board;
+}
+
+core::Hal SessionBoard::hal() {
+  core::Hal hal;
+  hal.board = this;
+  hal.read_encoder = [](void* b) noexcept { return of(b).encoder_; };
+  hal.read_channels = [](void*, std::int32_t*) noexcept { return true; };
+  hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
+  hal.enable_closed = [](void* b) noexcept { return of(b).enabled_; };
+  hal.clock = [](void* b) noexcept { return of(b).clock_; };
+  hal.set_rate = [](void*, std::uint32_t) noexcept {};
+  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
+    return firmware_host::take_first(of(b).from_host_, {bytes, size});
+  };
+  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
+    of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
+    return size;
+  };
+  hal.restart = [](void*) noexcept {};
+  return hal;
+}
+
+// Of what the core says, only answers matter.
+void SessionBoard::listen() {
+  std::size_t at = 0;
+  wire::Frame frame;
+  for (wire::Arrival arrival = wire::Arrival::frame;
+       at < to_host_.size() || arrival != wire::Arrival::nothing;) {
+    std::size_t used = 0;
+    arrival = decoder_.take(to_host_.data() + at, to_host_.size() - at, used, frame);
+    at += used;
+    if (arrival != wire::Arrival::frame) continue;
+    wire::Answer answer;
+    const bool is_answer = frame.header.type == static_cast<std::uint8_t>(wire::MessageType::answer);
+    if (is_answer && wire::parse(frame.payload, frame.header.length, answer) == wire::Parse::ok)
+      answer_ = answer;
+  }
+  to_host_.clear();
+}
+
+// Each frame gets the next sequence number: the core drops what it has heard before.
+std::optional<wire::Answer> SessionBoard::say_frame(std::span<const std::uint8_t> frame) {
+  std::vector<std::uint8_t> sealed(frame.begin(), frame.end());
+  const wire::FrameHeader header{
+      wire::kProtocolMajor, sealed[3],
+      static_cast<std::uint16_t>(frame.size() - wire::kHeaderSize - wire::kCheckSize), sequence_++};
+  sealed.resize(wire::seal_frame(header, sealed.data()));
+  from_host_.insert(from_host_.end(), sealed.begin(), sealed.end());
+  answer_.reset();
+  firmware_->poll();
+  listen();
+  return answer_;
+}
+
+float SessionBoard::tick(const schema::SessionTick& recorded) {
+  encoder_ = recorded.encoder;
+  enabled_ = (recorded.flags & wire::kTickEnabled) != 0;
+  clock_ += static_cast<std::uint64_t>(std::llround(kReplayClockHz / header_.rate_hz));
+  firmware_->tick();
+  firmware_->poll();
+  to_host_.clear();
+  return drive_v_;
+}
+
+}  // namespace tacto::playback

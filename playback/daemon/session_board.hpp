@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A board whose inputs are a session's, around the firmware's own core.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "data-schema/session.hpp"
+#include "firmware-host/core/firmware.hpp"
+#include "firmware-host/core/wire/frame_decoder.hpp"
+
+namespace tacto::playback {
+
+/// Whether these bytes are one whole frame.
+bool is_frame(std::span<const std::uint8_t> bytes);
+
+/// Encoder and enable input are as told; the drive is kept.
+class SessionBoard {
+ public:
+  explicit SessionBoard(const schema::SessionHeader& header);
+  SessionBoard(const SessionBoard&) = delete;
+  SessionBoard& operator=(const SessionBoard&) = delete;
+
+  /// Before arming: where the encoder is.
+  void rest_at(std::int32_t encoder) { encoder_ = encoder; }
+  /// Hands a frame to the core; gives its answer, none where there was none. Precondition: is_frame().
+  std::optional<wire::Answer> say_frame(std::span<const std::uint8_t> frame);
+  template <class Message>
+  std::optional<wire::Answer> say(const Message& message) {
+    std::uint8_t frame[wire::kMaxFrame];
+    const std::size_t size = wire::encode_frame(message, 0, frame, sizeof frame);
+    return say_frame(std::span<const std::uint8_t>(frame, size));
+  }
+  /// One tick; the drive of it.
+  float tick(const schema::SessionTick& recorded);
+
+ private:
+  static SessionBoard& of(void* board) noexcept { return *static_cast<SessionBoard*>(board); }
+  core::Board board();
+  core::Hal hal();
+  void listen();
+
+  schema::SessionHeader header_;
+  std::unique_ptr<float[]> profile_;
+  std::vector<std::uint8_t> from_host_, to_host_;
+  wire::FrameDecoder decoder_;
+  std::optional<wire::Answer> answer_;
+  std::uint32_t sequence_ = 0;
+  std::int32_t encoder_ = 0;
+  bool enabled_ = true;
+  float drive_v_ = 0;
+  std::uint64_t clock_ = 0;
+  std::unique_ptr<core::Firmware> firmware_;
+};
+
+}  // namespace tacto::playback

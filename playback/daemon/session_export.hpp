@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session as a table for other programs.
+#pragma once
+
+#include <string>
+
+#include "data-schema/error.hpp"
+
+namespace tacto::playback {
+
+/// By the file's ending: `.csv`, a line a tick, any length; `.wav`, 64-bit float at the ticks' rate, drive in
+/// volts and position in metres; `.nc`, netCDF-4 with units. Errors: as reading; usage: another ending;
+/// unsuitable: a WAV of a session with ticks missing, which it could not show; cannot_write.
+schema::Result<void> export_session(const std::string& session, const std::string& file);
+
+}  // namespace tacto::playback

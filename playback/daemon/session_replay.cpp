@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/session_replay.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <deque>
+#include <filesystem>
+
+#include "firmware-host/wire_words.hpp"
+#include "playback/daemon/session_board.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+using schema::SessionCommand;
+using schema::SessionTick;
+
+constexpr std::uint64_t kBeatEvery = 8;  // ticks; a watchdog of 10 ms at 1 kHz is 10
+constexpr std::uint64_t kNever = UINT64_MAX;
+
+wire::MessageType type_of(const SessionCommand& command) {
+  return static_cast<wire::MessageType>(command.frame[3]);
+}
+
+// The first tick in fault: before it the host has to be as silent as it was.
+struct FirstFault {
+  std::uint64_t tick = kNever;
+  std::uint64_t watchdog_ticks = 0;
+
+  void see(const std::vector<SessionTick>& ticks) {
+    for (const SessionTick& row : ticks)
+      if (tick == kNever && (row.flags & wire::kTickFault) != 0) tick = row.tick;
+  }
+  // Whatever the cause was: a silence that ends in the same tick changes nothing about another cause.
+  bool beats_before(std::uint64_t now) const {
+    const std::uint64_t last = tick - std::min(tick, watchdog_ticks + 1);
+    if (tick != kNever && tick > watchdog_ticks && now == last) return true;
+    return now % kBeatEvery == 0 && (tick == kNever || now < last || now > tick);
+  }
+};
+
+Result<FirstFault> first_fault(const std::string& name) {
+  auto reader = schema::SessionReader::open(name);
+  if (!reader) return schema::forward_error(reader);
+  FirstFault fault;
+  while (const auto block = reader->next()) {
+    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) fault.see(*ticks);
+    const auto* command = std::get_if<SessionCommand>(&*block);
+    if (command == nullptr) continue;
+    if (!is_frame(command->frame))
+      return fail(Fault::malformed, "a command in it is no frame of the wire", reader->path());
+    wire::Limits limits;
+    const std::size_t payload = command->frame.size() - wire::kHeaderSize - wire::kCheckSize;
+    if (type_of(*command) == wire::MessageType::limits &&
+        wire::parse(command->frame.data() + wire::kHeaderSize, payload, limits) == wire::Parse::ok)
+      fault.watchdog_ticks = static_cast<std::uint32_t>(1e-6F * limits.watchdog_ms *
+                                                        static_cast<float>(1e3 * reader->header().rate_hz));
+  }
+  return fault;
+}
+
+class SessionPlayer {
+ public:
+  SessionPlayer(const schema::SessionHeader& header, const FirstFault& fault)
+      : board_(header), fault_(fault) {}
+
+  // Upload goes in at once; arming waits for the first tick, steering for the tick that took it.
+  void hand(const SessionCommand& command) {
+    const bool uploads = !armed_ && type_of(command) != wire::MessageType::arm && waiting_.empty();
+    if (uploads) return obey(command);
+    waiting_.push_back(command);
+  }
+  void play(const std::vector<SessionTick>& ticks) {
+    for (const SessionTick& tick : ticks) {
+      if (is_over()) return;
+      take(tick);
+    }
+  }
+
+  bool is_over() const { return refused_.has_value() || outcome_.first_difference || outcome_.lost_at; }
+  const std::optional<std::string>& refused() const { return refused_; }
+  const ReplayOutcome& outcome() const { return outcome_; }
+
+ private:
+  void obey(const SessionCommand& command) {
+    const auto answer = board_.say_frame(command.frame);
+    if (answer && answer->code == wire::AnswerCode::ok) return;
+    const auto words = answer ? firmware_host::words_of(answer->code, answer->detail).what : "no answer";
+    refused_ = fmt::format("{} is refused: {}", firmware_host::word_of(type_of(command)), words);
+  }
+  void obey_next() {
+    const SessionCommand command = std::move(waiting_.front());
+    waiting_.pop_front();
+    obey(command);
+  }
+  void take(const SessionTick& tick) {
+    if (tick.tick != outcome_.ticks) {
+      outcome_.lost_at = outcome_.ticks;
+      return;
+    }
+    if (!armed_) board_.rest_at(tick.encoder);
+    while (!armed_ && !waiting_.empty()) {
+      armed_ = type_of(waiting_.front()) == wire::MessageType::arm;
+      obey_next();
+    }
+    const auto steered = static_cast<std::uint8_t>(tick.flags >> wire::kTickSteeredShift);
+    for (; steered_ != steered && !waiting_.empty(); ++steered_) obey_next();
+    if (fault_.beats_before(tick.tick)) board_.say(wire::Heartbeat{});
+    compare(tick, board_.tick(tick));
+  }
+  void compare(const SessionTick& tick, float replayed_v) {
+    ++outcome_.ticks;
+    if (std::bit_cast<std::uint32_t>(replayed_v) == std::bit_cast<std::uint32_t>(tick.drive_v)) return;
+    outcome_.first_difference = {tick.tick, tick.drive_v, replayed_v};
+  }
+
+  SessionBoard board_;
+  FirstFault fault_;
+  std::deque<SessionCommand> waiting_;
+  std::optional<std::string> refused_;
+  ReplayOutcome outcome_;
+  std::uint8_t steered_ = 0;
+  bool armed_ = false;
+};
+
+// Commands stand in the file where they were sent; a tick that took one may stand before it by what was on
+// its way. They are few: all are read first.
+Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) {
+  auto reader = schema::SessionReader::open(name);
+  if (!reader) return schema::forward_error(reader);
+  while (const auto block = reader->next())
+    if (const auto* command = std::get_if<SessionCommand>(&*block)) player.hand(*command);
+  return {};
+}
+
+}  // namespace
+
+Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress) {
+  const auto fault = first_fault(name);
+  if (!fault) return schema::forward_error(fault);
+  auto reader = schema::SessionReader::open(name);
+  if (!reader) return schema::forward_error(reader);
+  std::error_code ignored;
+  const auto size = static_cast<double>(std::filesystem::file_size(reader->path(), ignored));
+  SessionPlayer player(reader->header(), *fault);
+  if (const auto handed = hand_over_commands(name, player); !handed) return schema::forward_error(handed);
+  while (const auto block = reader->next()) {
+    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) player.play(*ticks);
+    if (player.is_over()) break;
+    if (progress) progress(static_cast<double>(reader->sound_bytes()) / size);
+  }
+  if (player.refused())
+    return fail(Fault::unsuitable, *player.refused(), reader->path(), "was it made by a newer version?");
+  ReplayOutcome outcome = player.outcome();
+  outcome.ending = reader->ending();
+  return outcome;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plays a session again, on the firmware's own core, and compares drive with drive.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "data-schema/session_reader.hpp"
+
+namespace tacto::playback {
+
+/// Where the replayed drive first differs from the recorded one.
+struct Difference {
+  std::uint64_t tick = 0;
+  float recorded_v = 0, replayed_v = 0;
+};
+
+struct ReplayOutcome {
+  std::uint64_t ticks = 0;  ///< compared
+  std::optional<Difference> first_difference;
+  /// Ticks that are missing in the session: what comes after them can't be replayed, for the filters' past is
+  /// not known.
+  std::optional<std::uint64_t> lost_at;
+  schema::SessionEnding ending = schema::SessionEnding::unread;
+};
+
+/// The recorded commands go to a device of this program's core in the ticks that took them, the recorded
+/// counts to its encoder; its drive has to be the recorded one to the bit. A fault is met again where its
+/// cause is in the ticks (enable input, jump, no number) or in the silence of the host. Nothing but the
+/// session is read. Errors: malformed, where a command in it is no frame; unsuitable, where the core refuses
+/// one, with its reason. `progress` hears fractions.
+schema::Result<ReplayOutcome> replay_session(const std::string& name,
+                                             const std::function<void(double)>& progress = {});
+
+}  // namespace tacto::playback

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/stroke_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data-schema/files.hpp"
+#include "data-schema/statistics.hpp"
+#include "data-schema/texture.hpp"
+#include "firmware-host/core/wire/message_types.hpp"
+#include "playback/chain.hpp"
+#include "playback/daemon/session_columns.hpp"
+#include "playback/reference/spatial_content.hpp"
+#include "playback/reference/wanted.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kShortestStrokeM = 5e-3;
+constexpr double kTurnM = 0.2e-3;  // a finger that goes back by less has not turned
+
+struct StrokeRange {
+  std::size_t first = 0, last = 0;
+};
+
+bool plays(const SessionColumns& columns, std::size_t i) {
+  return (columns.flags[i] & wire::kTickPlaying) != 0;
+}
+
+// The farthest place so far in a direction ends a stroke once the finger has gone back from it.
+std::vector<StrokeRange> stroke_ranges(const SessionColumns& columns) {
+  const std::vector<double>& x = columns.position_m;
+  std::vector<StrokeRange> ranges;
+  std::size_t start = 0, farthest = 0;
+  int direction = 0;
+  const auto end_stroke = [&](std::size_t next) {
+    if (std::abs(x[farthest] - x[start]) >= kShortestStrokeM) ranges.push_back({start, farthest});
+    start = next;
+  };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!plays(columns, i)) {
+      if (direction != 0) end_stroke(i);
+      direction = 0, start = farthest = i;
+      continue;
+    }
+    const double ahead = x[i] - x[farthest];
+    if (direction == 0 && std::abs(x[i] - x[start]) > kTurnM) direction = x[i] > x[start] ? 1 : -1;
+    if (direction == 0 || direction * ahead >= 0) {
+      farthest = direction == 0 ? farthest : i;
+    } else if (-direction * ahead > kTurnM) {
+      end_stroke(farthest);
+      direction = -direction, farthest = i;
+    }
+  }
+  if (direction != 0) end_stroke(farthest);
+  return ranges;
+}
+
+FingerPath path_of(const SessionColumns& columns) {
+  FingerPath path;
+  path.position_m = columns.position_m;
+  path.time_s.resize(columns.tick.size());
+  for (std::size_t i = 0; i < path.time_s.size(); ++i)
+    path.time_s[i] = static_cast<double>(i) / columns.header.rate_hz;
+  return path;
+}
+
+Result<schema::Texture> same_texture(const schema::SessionTexture& played) {
+  if (played.ends != schema::TextureEnds::stop)
+    return fail(Fault::unsuitable, "was played with mirrored or looped ends, which the reference does not do",
+                played.file);
+  auto texture = schema::read_texture(played.file);
+  if (!texture) return texture;
+  const auto sum = schema::sha256_of_file(schema::stem_of(played.file, ".texture") + ".texture.wav");
+  if (sum && *sum == played.sha256) return texture;
+  return fail(Fault::unsuitable, "is not what was played any more", played.file);
+}
+
+struct Judge {
+  const SessionColumns& columns;
+  spatial::Band band;
+  FingerPath path;
+  ReadingGrid grid;
+
+  explicit Judge(const SessionColumns& session)
+      : columns(session),
+        band{session.header.low_hz, session.header.high_hz},
+        path(path_of(session)),
+        grid(reading_grid(path.duration_s(), session.header.rate_hz, band, 0)) {}
+
+  Result<std::vector<double>> wanted_m() {
+    std::vector<double> sum(columns.tick.size(), 0.0);
+    const double fastest_mps = greatest_speed_mps(path);
+    for (const schema::SessionTexture& played : columns.header.textures) {
+      const auto texture = same_texture(played);
+      if (!texture) return schema::forward_error(texture);
+      const double finest_hz = fastest_mps * highest_spatial_frequency(texture->signal);
+      const ReadingGrid fine = reading_grid(path.duration_s(), columns.header.rate_hz, band, finest_hz);
+      const TextureLookup lookup(texture->signal, played.at_m);
+      const auto values = signal_of(exact_wanted(lookup, path, fine, band, played.gain_m_per_n, 0));
+      for (std::size_t i = 0; i < std::min(sum.size(), values.size()); ++i)
+        sum[i] += columns.gain[i] * values[i];
+    }
+    return sum;
+  }
+  std::vector<double> received_m() const {
+    const Chain chain{columns.header.transducer, Reconstruction::none, 0, Hold::zero_order,
+                      columns.header.rate_hz};
+    auto drive = spectrum_of(columns.drive_v, columns.header.rate_hz, grid.period);
+    keep_band(drive, band);
+    return signal_of(through(drive, [&](double f) { return chain_response(chain, f); }));
+  }
+};
+
+double rms_in(const std::vector<double>& values, const StrokeRange& range) {
+  return schema::statistics_of(std::span(values).subspan(range.first, range.last - range.first + 1)).rms();
+}
+
+PlayedStroke stroke_of(const SessionColumns& columns, const StrokeRange& range,
+                       const std::vector<double>& wanted, const std::vector<double>& received) {
+  PlayedStroke stroke;
+  stroke.from_s = columns.time_s[range.first], stroke.to_s = columns.time_s[range.last];
+  stroke.from_m = columns.position_m[range.first], stroke.to_m = columns.position_m[range.last];
+  stroke.received_rms_m = rms_in(received, range);
+  for (std::size_t i = range.first; i <= range.last; ++i)
+    stroke.limited_ticks += (columns.flags[i] & (wire::kTickAmplitudeLimited | wire::kTickSlewLimited)) != 0;
+  if (wanted.empty()) return stroke;
+  std::vector<double> difference(received.size());
+  std::ranges::transform(received, wanted, difference.begin(), std::minus<>());
+  stroke.wanted_rms_m = rms_in(wanted, range);
+  stroke.error_db = 20 * std::log10(rms_in(difference, range) / stroke.wanted_rms_m);
+  stroke.level_db = 20 * std::log10(stroke.received_rms_m / stroke.wanted_rms_m);
+  return stroke;
+}
+
+}  // namespace
+
+Result<StrokeReport> report_strokes(const std::string& name) {
+  const auto columns = read_session_columns(name);
+  if (!columns) return schema::forward_error(columns);
+  StrokeReport report;
+  report.low_hz = columns->header.low_hz, report.high_hz = columns->header.high_hz;
+  if (columns->lost_at) {
+    report.notes.push_back(fmt::format("{} ticks are missing: strokes are not judged", columns->lost));
+    return report;
+  }
+  const auto ranges = stroke_ranges(*columns);
+  if (ranges.empty()) return report;
+  Judge judge(*columns);
+  const auto wanted = judge.wanted_m();
+  if (!wanted) report.notes.push_back(schema::message(wanted.error()));
+  const auto received = judge.received_m();
+  for (const StrokeRange& range : ranges)
+    report.strokes.push_back(stroke_of(*columns, range, wanted.value_or(std::vector<double>()), received));
+  return report;
+}
+
+}  // namespace tacto::playback

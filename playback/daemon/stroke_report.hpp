@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the finger received in each stroke of a session, against what was wanted.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "data-schema/session_reader.hpp"
+
+namespace tacto::playback {
+
+/// One way of the finger without turning, while playing.
+struct PlayedStroke {
+  double from_s = 0, to_s = 0;  ///< since the first tick
+  double from_m = 0, to_m = 0;
+  double wanted_rms_m = 0, received_rms_m = 0;
+  double error_db = 0;  ///< RMS of received - wanted, re RMS of wanted; at most 0 where nothing was wanted
+  double level_db = 0;  ///< received over wanted
+  std::uint64_t limited_ticks = 0;
+};
+
+struct StrokeReport {
+  std::vector<PlayedStroke> strokes;
+  double low_hz = 0, high_hz = 0;  ///< the band in which both are taken
+  std::vector<std::string> notes;  ///< what could not be judged, and why
+};
+
+/// Wanted: gain x texture at the recorded positions, through the exact reference (reference/wanted.hpp), with
+/// the gain of the commands. Received: the recorded drive, held between ticks, through the transducer's
+/// model: what the actuator would do without a finger on it, hysteresis or a second mode. The delay that the
+/// session was prepared with and did not look ahead by is part of the error. A stroke is at least 5 mm long.
+/// Errors: as SessionReader::open; unsuitable: no ticks, or over 30 minutes of them (memory); a texture that
+/// is gone or has changed leaves the wanted side out, with a note.
+schema::Result<StrokeReport> report_strokes(const std::string& name);
+
+}  // namespace tacto::playback

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the ticks of a run look like from outside: the last one, counts, the finger's speed, the drive's
+// level.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "data-schema/session.hpp"
+
+namespace tacto::playback {
+
+/// Takes ticks one by one; no allocation.
+class TickView {
+ public:
+  /// Begins anew.
+  void begin(double rate_hz, double metres_per_count);
+  /// In order.
+  void take(const schema::SessionTick& tick);
+  void take_loss(std::uint64_t count) { lost_ += count; }
+
+  std::uint64_t expected() const { return expected_; }
+  std::uint64_t ticks() const { return ticks_; }
+  std::uint64_t lost() const { return lost_; }
+  std::uint64_t late() const { return late_; }
+  std::uint64_t limited() const { return limited_; }
+  /// Of the last whole second: the part of the ticks that were late.
+  double late_part() const { return late_part_; }
+  const schema::SessionTick& last() const { return last_; }
+  double span_s() const { return static_cast<double>(expected_) / rate_hz_; }
+  double position_m() const { return metres_per_count_ * last_.encoder; }
+  /// Over the last 20 ms; + as the encoder counts up.
+  double speed_mps() const;
+  /// Over the last 100 ms, about.
+  double drive_rms_v() const;
+  double drive_peak_v() const { return peak_v_; }
+
+ private:
+  static constexpr std::size_t kPlaces = 512;  // 25 ms at 20 kHz
+  double rate_hz_ = 1, metres_per_count_ = 0;
+  std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, limited_ = 0;
+  std::uint64_t second_from_ = 0, late_before_ = 0;
+  double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0;
+  schema::SessionTick last_;
+  std::array<std::int32_t, kPlaces> counts_{};
+};
+
+}  // namespace tacto::playback

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/prepare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "playback/inverse_filter.hpp"
+#include "playback/pyramid.hpp"
+#include "playback/reference/spatial_content.hpp"
+#include "playback/texture_check.hpp"
+#include "playback/texture_layout.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+// Between two levels, half an octave apart each, content reaches twice the band's edge before it is faded
+// out.
+constexpr double kStopOverBand = 2 * kStopOverPass;
+constexpr double kLeastRateHz = 100, kMostRateHz = 100e3;
+// core::half_octaves() may say 0.02 too much: levels are chosen that much finer.
+constexpr double kSpeedMargin = 1.01;
+constexpr double kTrackerS = 2e-3;
+constexpr double kMostSamplesPerCount = 1024;
+constexpr double kQ32 = 4294967296.0;
+
+double samples_per_period(wire::Interpolation kind) {
+  if (kind == wire::Interpolation::hermite) return 16;
+  return kind == wire::Interpolation::sinc ? 6 : 64;
+}
+
+Result<void> check_prepare_options(const PrepareOptions& o) {
+  const auto wrong = [](std::string what, std::string remedy) {
+    return fail(Fault::usage, std::move(what), {}, std::move(remedy));
+  };
+  if (!(o.rate_hz >= kLeastRateHz && o.rate_hz <= kMostRateHz))
+    return wrong(fmt::format("ticks at {:g} Hz", o.rate_hz), "100Hz to 100kHz; the paper's is 2kHz");
+  if (!(o.metres_per_count > 0 && o.metres_per_count < 1))
+    return wrong("the encoder's step is not above 0", "give the length of one count");
+  if (!(o.gain_m_per_n >= 0 && o.gain_m_per_n <= 1))
+    return wrong("the gain is not between 0 and 1 m/N", "a fingertip asks for about 1mm/N");
+  if (!(o.band.low_hz > 0 && o.band.low_hz < o.band.high_hz && o.band.high_hz < kMostRateHz))
+    return wrong("the band is empty or reaches 0 Hz", "0 < low < high");
+  if (!(o.delay_s >= 0 && o.delay_s <= 0.02)) return wrong("a delay beyond 0 to 20 ms", "2ms is usual");
+  if (!(o.max_speed_mps > 0 && o.max_speed_mps <= 10))
+    return wrong("a largest speed beyond 0 to 10 m/s", "a finger goes at up to 0.5 m/s");
+  if (!(o.onset_s >= 0 && o.release_s >= 0 && o.seam_m >= 0 && std::isfinite(o.onset_s + o.release_s)))
+    return wrong("an onset, release or seam below 0", "0 turns each off");
+  if (!(o.energy_rms_v >= 0 && o.energy_window_s > 0)) return wrong("no window of energy", "take 1s");
+  if (!std::isfinite(o.origin_m)) return wrong("the origin is not finite", "give a length");
+  return {};
+}
+
+Result<void> check_placed(std::span<const PlacedTexture> textures, const PrepareOptions& options) {
+  if (textures.empty()) return fail(Fault::unsuitable, "there is no texture to play", "scene");
+  for (const PlacedTexture& placed : textures) {
+    if (auto sound = check_playable(*placed.texture); !sound) return sound;
+    if (!std::isfinite(placed.at_m) || !std::isfinite(placed.weight))
+      return fail(Fault::usage, "a texture's place or weight is not finite", "scene");
+  }
+  if (textures.size() > 1 && options.ends != Ends::stop)
+    return fail(Fault::usage, "several textures can't be looped or mirrored", "scene", "let them stop");
+  return {};
+}
+
+PyramidShape shape_of(const schema::SpaceSignal& path, const Prepared& prepared, const PrepareOptions& o) {
+  PyramidShape shape{o.ends, 1, 0, samples_per_period(o.interpolation)};
+  const double per_m = prepared.passes_to_hz / o.max_speed_mps;  // what passes at the greatest speed
+  const double coarsest = std::exp2(0.5 * (wire::kMaxLevels - 1)) * per_m;
+  shape.finest_per_m = std::min(std::max(highest_spatial_frequency(path), per_m), coarsest);
+  const double steps = std::ceil(2 * std::log2(shape.finest_per_m / per_m));
+  shape.levels = std::min(static_cast<int>(steps) + 1, static_cast<int>(wire::kMaxLevels));
+  return shape;
+}
+
+Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, const PrepareOptions& o) {
+  const PyramidShape shape = shape_of(path, prepared, o);
+  const std::size_t size = pyramid_size(path, shape);
+  if (size > o.most_samples)
+    return fail(Fault::unsuitable,
+                fmt::format("the texture takes {} samples in {} levels, there is room for {}", size,
+                            shape.levels, o.most_samples),
+                "texture", "play a shorter part, let the host close the loop, or interpolate by sinc");
+  Pyramid pyramid = make_pyramid(path, shape);
+  prepared.samples = std::move(pyramid.samples);
+  prepared.scale.samples = static_cast<std::uint32_t>(pyramid.first_level_samples);
+  prepared.scale.levels = static_cast<std::uint8_t>(shape.levels);
+  prepared.finest_per_m = shape.finest_per_m;
+  prepared.pitch_m = pyramid.pitch_m;
+  const double full_mps = kSpeedMargin * prepared.passes_to_hz / shape.finest_per_m;
+  prepared.full_detail_counts_per_tick = static_cast<float>(full_mps / (o.metres_per_count * o.rate_hz));
+  return {};
+}
+
+Result<void> lay_on_counts(Prepared& prepared, double first_m, const PrepareOptions& o) {
+  core::ProfileScale& scale = prepared.scale;
+  const double per_count = o.metres_per_count / prepared.pitch_m;
+  if (per_count > kMostSamplesPerCount)
+    return fail(Fault::unsuitable, fmt::format("one count of the encoder spans {:.0f} samples", per_count),
+                "encoder", "a texture this fine needs a finer encoder");
+  scale.samples_per_count_q32 = static_cast<std::uint64_t>(std::llround(per_count * kQ32));
+  scale.origin_count = o.origin_count;
+  // Without timing of the edges, the middle of the count is the best guess.
+  const double at_origin =
+      (o.origin_m - first_m) / prepared.pitch_m + (o.between_counts ? 0 : 0.5 * per_count);
+  scale.at_origin_q32 = std::llround(at_origin * kQ32);
+  scale.ends = o.ends;
+  scale.interpolation = o.interpolation;
+  return {};
+}
+
+void undo_chain(Prepared& prepared, const schema::Transducer& transducer, const PrepareOptions& o) {
+  const Chain chain{transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz};
+  const InverseDesign design{o.delay_s, 20, prepared.stops_at_hz};
+  const spatial::Band band{std::min(o.band.low_hz, 0.5 * prepared.passes_to_hz), prepared.passes_to_hz};
+  InverseFilter filter = inverse_filter(chain, o.inverse, band, design);
+  prepared.taps = std::move(filter.taps);
+  prepared.delay_s = filter.delay_s;
+  prepared.delay_left_s = o.look_ahead ? 0 : filter.delay_s;
+  prepared.inverse_error_db = filter.error_db;
+  prepared.inverse_gain_db = filter.gain_db;
+  prepared.beyond_band_db = filter.beyond_band_db;
+  const double ahead_ticks = o.look_ahead ? filter.delay_s * o.rate_hz : 0;
+  prepared.tracker = {o.between_counts, static_cast<float>(ahead_ticks),
+                      static_cast<float>(kTrackerS * o.rate_hz)};
+}
+
+wire::Limits limits_of(const schema::Transducer& t, const PrepareOptions& o) {
+  const double counts = std::ceil(4 * o.max_speed_mps / (o.metres_per_count * o.rate_hz));
+  return {static_cast<float>(t.drive_limit_v),
+          static_cast<float>(t.slew_limit_v_per_s),
+          static_cast<float>(o.onset_s),
+          static_cast<float>(o.release_s),
+          o.watchdog_ms,
+          static_cast<std::uint16_t>(std::clamp(counts, 10.0, 65535.0))};
+}
+
+Prepared settled(const schema::Transducer& transducer, const PrepareOptions& o) {
+  Prepared prepared;
+  prepared.rate_hz = o.rate_hz;
+  prepared.limits = limits_of(transducer, o);
+  prepared.gain_m_per_n = static_cast<float>(o.gain_m_per_n);
+  prepared.energy_rms_v = static_cast<float>(o.energy_rms_v);
+  prepared.energy_window_s = static_cast<float>(o.energy_window_s);
+  prepared.gate_on_n = static_cast<float>(o.contact_on_n);
+  prepared.gate_off_n = static_cast<float>(o.contact_off_n);
+  prepared.passes_to_hz = std::min(o.band.high_hz, o.rate_hz / (1 + kStopOverBand));
+  prepared.stops_at_hz = kStopOverBand * prepared.passes_to_hz;
+  if (prepared.passes_to_hz < o.band.high_hz)
+    prepared.notes.push_back(
+        fmt::format("at {:g} ticks a second the band ends at {:.4g} Hz", o.rate_hz, prepared.passes_to_hz));
+  return prepared;
+}
+
+}  // namespace
+
+core::KernelSetup Prepared::setup() const {
+  core::KernelSetup setup;
+  setup.texture = {{samples.data(), scale}, tracker, core::per_full_detail(full_detail_counts_per_tick)};
+  setup.taps = taps.data();
+  setup.tap_count = static_cast<std::uint16_t>(taps.size());
+  setup.limits = limits;
+  setup.rate_hz = core::rate_of(rate_millihertz());
+  setup.energy_rms_v = energy_rms_v;
+  setup.energy_window_s = energy_window_s;
+  setup.gate_on_n = gate_on_n;
+  setup.gate_off_n = gate_off_n;
+  return setup;
+}
+
+Result<Prepared> prepare(std::span<const PlacedTexture> textures, const schema::Transducer& transducer,
+                         const PrepareOptions& options) {
+  if (auto sound = check_prepare_options(options); !sound) return schema::forward_error(sound);
+  if (auto sound = check_placed(textures, options); !sound) return schema::forward_error(sound);
+  const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m);
+  Prepared prepared = settled(transducer, options);
+  if (auto filled = fill_levels(prepared, path, options); !filled) return schema::forward_error(filled);
+  if (auto laid = lay_on_counts(prepared, path.origin_m, options); !laid) return schema::forward_error(laid);
+  undo_chain(prepared, transducer, options);
+  return prepared;
+}
+
+}  // namespace tacto::playback

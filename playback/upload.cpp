@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/upload.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "firmware-host/core/wire/crc32c.hpp"
+
+namespace tacto::playback {
+
+using firmware_host::Client;
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+Result<void> check_room(const Client& client, const Prepared& prepared) {
+  const wire::Welcome& device = client.description().welcome;
+  if ((device.features & wire::kFeatureTextures) == 0)
+    return fail(Fault::device,
+                fmt::format("'{}' (firmware {}) plays no textures by itself: its protocol is {}.{}",
+                            device.name, device.firmware, device.major, device.minor),
+                client.where(), "update its firmware, or let the host close the loop");
+  if (prepared.samples.size() > device.profile_samples)
+    return fail(Fault::unsuitable,
+                fmt::format("the texture takes {} samples, '{}' holds {}", prepared.samples.size(),
+                            device.name, device.profile_samples),
+                client.where(), "play a shorter part, interpolate by sinc, or let the host close the loop");
+  const double rate_millihertz = 1e3 * prepared.rate_hz;
+  if (rate_millihertz < device.least_rate_millihertz || rate_millihertz > device.most_rate_millihertz)
+    return fail(Fault::unsuitable,
+                fmt::format("'{}' ticks at {:g} to {:g} Hz, not at {:g} Hz", device.name,
+                            1e-3 * device.least_rate_millihertz, 1e-3 * device.most_rate_millihertz,
+                            prepared.rate_hz),
+                client.where());
+  return {};
+}
+
+std::uint32_t check_of(const std::vector<float>& samples) {
+  std::uint32_t check = 0;
+  for (const float sample : samples) {
+    std::uint8_t bytes[4];
+    wire::FieldWriter(bytes, sizeof bytes)(sample);
+    check = wire::crc32c(bytes, sizeof bytes, check);
+  }
+  return check;
+}
+
+Result<void> send_samples(Client& client, const Prepared& prepared) {
+  wire::ProfileChunk chunk{};
+  for (std::size_t first = 0; first < prepared.samples.size(); first += wire::kMaxChunk) {
+    const std::size_t count = std::min(wire::kMaxChunk, prepared.samples.size() - first);
+    chunk.first = static_cast<std::uint32_t>(first);
+    chunk.count = static_cast<std::uint16_t>(count);
+    std::copy_n(prepared.samples.begin() + static_cast<std::ptrdiff_t>(first), count, chunk.values);
+    if (auto sent = client.command(chunk); !sent) return sent;
+  }
+  return client.command(wire::ProfileEnd{check_of(prepared.samples)});
+}
+
+Result<void> send_levels(Client& client, const Prepared& prepared) {
+  const core::ProfileScale& scale = prepared.scale;
+  const auto all = static_cast<std::uint32_t>(prepared.samples.size());
+  const wire::ProfileBegin begin{all, scale.origin_count, scale.at_origin_q32, scale.samples_per_count_q32,
+                                 scale.ends};
+  if (auto sent = client.command(begin); !sent) return sent;
+  if (auto sent = client.command(wire::ProfileLevels{scale.levels, scale.interpolation, 0, scale.samples});
+      !sent)
+    return sent;
+  return send_samples(client, prepared);
+}
+
+Result<void> send_filters(Client& client, const Prepared& prepared) {
+  wire::Taps taps{};
+  taps.count = static_cast<std::uint16_t>(prepared.taps.size());
+  std::ranges::copy(prepared.taps, taps.taps);
+  if (auto sent = client.command(taps); !sent) return sent;
+  if (auto sent = client.command(wire::Filters{}); !sent) return sent;
+  const core::TrackerSetup& tracker = prepared.tracker;
+  return client.command(wire::Tracking{tracker.between_counts,
+                                       {},
+                                       tracker.look_ahead_ticks,
+                                       tracker.smoothing_ticks,
+                                       prepared.full_detail_counts_per_tick});
+}
+
+Result<void> send_contact(Client& client, const Prepared& prepared) {
+  if (!(prepared.gate_on_n > 0)) return {};
+  const auto& channels = client.description().channels;
+  const auto force = std::ranges::find_if(
+      channels, [](const wire::Channel& c) { return std::string_view(c.quantity) == "normal_force"; });
+  if (force == channels.end())
+    return fail(Fault::unsuitable, "the device reports no normal force", client.where(),
+                "play without contact");
+  return client.command(wire::Contact{force->index,
+                                      {},
+                                      prepared.gate_on_n,
+                                      prepared.gate_off_n,
+                                      static_cast<float>(force->scale),
+                                      static_cast<float>(force->offset)});
+}
+
+}  // namespace
+
+Result<void> upload(Client& client, const Prepared& prepared) {
+  if (auto room = check_room(client, prepared); !room) return room;
+  if (auto sent = client.command(prepared.limits); !sent) return sent;
+  if (auto sent = send_levels(client, prepared); !sent) return sent;
+  if (auto sent = send_filters(client, prepared); !sent) return sent;
+  if (auto sent = client.command(wire::Energy{prepared.energy_rms_v, prepared.energy_window_s}); !sent)
+    return sent;
+  if (auto sent = send_contact(client, prepared); !sent) return sent;
+  return client.command(wire::Gain{prepared.gain_m_per_n});
+}
+
+}  // namespace tacto::playback

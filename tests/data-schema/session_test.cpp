@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "data-schema/check.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/session_reader.hpp"
+#include "data-schema/session_writer.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::schema {
+namespace {
+
+SessionHeader made_header() {
+  SessionHeader header;
+  header.created = "2026-01-02T03:04:05Z";
+  header.creator = "test";
+  header.build = "none";
+  header.rate_hz = 10e3;
+  header.clock_hz = 1e6;
+  header.metres_per_count = 1e-6;
+  header.device_uri = "sim:";
+  header.transducer = read_transducer("wiertlewski2011").value();
+  header.textures = {{"oak.texture.json", std::string(64, 'a'), 0.01, 1e-3, TextureEnds::loop}};
+  header.inverse = "full";
+  header.delay_s = 1.5e-3;
+  return header;
+}
+
+std::vector<SessionTick> made_ticks(std::uint64_t first, std::size_t count) {
+  std::vector<SessionTick> ticks(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t n = first + i;
+    ticks[i] = {n,
+                static_cast<std::int64_t>(n * 100'000 + n % 7),
+                static_cast<std::int32_t>(n) - 5,
+                0.001F * static_cast<float>(n),
+                static_cast<std::uint32_t>(n % 64),
+                static_cast<std::int32_t>(n % 1000) - 10};
+  }
+  return ticks;
+}
+
+std::vector<SessionTick> ticks_in(SessionReader& reader) {
+  std::vector<SessionTick> all;
+  while (auto block = reader.next())
+    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
+      all.insert(all.end(), ticks->begin(), ticks->end());
+  return all;
+}
+
+class Session : public testing::Test {
+ protected:
+  SessionWriter created() { return std::move(*SessionWriter::create(path_, made_header())); }
+  void write_whole() {
+    auto writer = created();
+    ASSERT_TRUE(writer.add(SessionCommand{0, 5, {1, 2, 3}}));
+    ASSERT_TRUE(writer.add(made_ticks(0, 10000)));
+    ASSERT_TRUE(writer.add(SessionLoss{10000, 7, SessionLoss::Why::recorder}));
+    ASSERT_TRUE(writer.add(SessionEvent{10000, 99, "fault: encoder_jump"}));
+    ASSERT_TRUE(writer.add(made_ticks(10007, 3)));
+    ASSERT_TRUE(writer.close({10003, 7, 0}));
+  }
+  tests::TemporaryFolder folder_;
+  std::string path_ = folder_ / "one.session";
+};
+
+TEST_F(Session, ReadsBackToTheBit) {
+  write_whole();
+  auto reader = SessionReader::open(folder_ / "one");
+  ASSERT_TRUE(reader) << message(reader.error());
+  EXPECT_EQ(reader->header().textures[0].ends, TextureEnds::loop);
+  EXPECT_EQ(reader->header().transducer.mass_kg, 6.8e-3);
+  EXPECT_EQ(reader->header().delay_s, 1.5e-3);
+  auto expected = made_ticks(0, 10000);
+  const auto tail = made_ticks(10007, 3);
+  expected.insert(expected.end(), tail.begin(), tail.end());
+  EXPECT_EQ(ticks_in(*reader), expected);
+  EXPECT_EQ(reader->ending(), SessionEnding::closed);
+  auto again = SessionReader::open(path_);
+  const SessionTotals totals = session_totals(*again);
+  EXPECT_EQ(totals.ticks, 10003U);
+  EXPECT_EQ(totals.lost_ticks, 7U);
+  EXPECT_EQ(totals.commands, 1U);
+  ASSERT_EQ(totals.events.size(), 1U);
+  EXPECT_EQ(totals.events[0].text, "fault: encoder_jump");
+  ASSERT_TRUE(check_file({FileKind::session, path_}));
+  EXPECT_TRUE(check_file({FileKind::session, path_})->findings.empty());
+}
+
+TEST_F(Session, IsNeverWrittenOverAnother) {
+  write_whole();
+  const auto second = SessionWriter::create(path_, made_header());
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().fault, Fault::usage);
+}
+
+// Wherever it is cut, what was whole is read, and nothing else.
+TEST_F(Session, CutAnywhereGivesItsWholeBlocks) {
+  {
+    auto writer = created();
+    for (std::uint64_t i = 0; i < 20; ++i) ASSERT_TRUE(writer.add(made_ticks(10 * i, 10)));
+  }
+  const auto size = std::filesystem::file_size(path_);
+  const std::size_t block = 20 + 20 + 200;
+  for (std::size_t cut = 0; cut < 3 * block; cut += 17) {
+    std::filesystem::resize_file(path_, size - cut);
+    auto reader = SessionReader::open(path_);
+    ASSERT_TRUE(reader);
+    EXPECT_EQ(ticks_in(*reader), made_ticks(0, 10 * (20 - (cut + block - 1) / block)));
+    EXPECT_EQ(reader->ending(), cut % block == 0 ? SessionEnding::unclosed : SessionEnding::damaged);
+  }
+}
+
+TEST_F(Session, AFlippedBitEndsTheReadingBeforeItsBlock) {
+  write_whole();
+  std::string bytes = read_file(path_).value();
+  const auto sound = std::filesystem::file_size(path_);
+  bytes[bytes.size() - 100] = static_cast<char>(bytes[bytes.size() - 100] ^ 4);
+  std::ofstream(path_, std::ios::binary) << bytes;
+  ASSERT_EQ(std::filesystem::file_size(path_), sound);
+  auto reader = SessionReader::open(path_);
+  EXPECT_EQ(ticks_in(*reader), made_ticks(0, 10000));
+  EXPECT_EQ(reader->ending(), SessionEnding::damaged);
+  const auto checked = check_file({FileKind::session, path_});
+  ASSERT_EQ(checked->findings.size(), 1U);
+  EXPECT_NE(checked->findings[0].where.find("byte "), std::string::npos);
+}
+
+TEST_F(Session, AKilledWriterLosesNothingThatWasSynced) {
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    auto writer = SessionWriter::create(path_, made_header());
+    const bool done = writer && writer->add(made_ticks(0, 5000)) && writer->sync();
+    [[maybe_unused]] const auto told = write(ready[1], done ? "y" : "n", 1);
+    for (;;) pause();
+  }
+  char word = 0;
+  ASSERT_EQ(read(ready[0], &word, 1), 1);
+  EXPECT_EQ(word, 'y');
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  auto reader = SessionReader::open(path_);
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(ticks_in(*reader), made_ticks(0, 5000));
+  EXPECT_EQ(reader->ending(), SessionEnding::unclosed);
+}
+
+// A file size limit stands in for a full disk: both cut a write short.
+TEST_F(Session, AFullDiskLeavesWholeBlocksAndLaterOnesAreTaken) {
+  auto writer = created();
+  ASSERT_TRUE(writer.add(made_ticks(0, 100)));
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto old = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit tight = before;
+  tight.rlim_cur = std::filesystem::file_size(path_) + 1000;
+  setrlimit(RLIMIT_FSIZE, &tight);
+  const auto failed = writer.add(made_ticks(100, 100));
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old);
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().fault, Fault::cannot_write);
+  ASSERT_TRUE(writer.add(SessionLoss{100, 100, SessionLoss::Why::disk}));
+  ASSERT_TRUE(writer.add(made_ticks(200, 10)));
+  ASSERT_TRUE(writer.close({110, 100, 0}));
+  auto reader = SessionReader::open(path_);
+  const SessionTotals totals = session_totals(*reader);
+  EXPECT_EQ(totals.ending, SessionEnding::closed);
+  EXPECT_EQ(totals.ticks, 110U);
+  EXPECT_EQ(totals.lost_ticks, 100U);
+}
+
+TEST_F(Session, NoHeaderIsNoSession) {
+  std::ofstream(path_) << "nothing of the kind";
+  const auto reader = SessionReader::open(path_);
+  ASSERT_FALSE(reader);
+  EXPECT_EQ(reader.error().fault, Fault::malformed);
+}
+
+}  // namespace
+}  // namespace tacto::schema

@@ -1,0 +1,348 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""tactographd on the emulated device, as clients see it: the way from load to a session that replays, and what happens when
+something goes wrong."""
+import contextlib
+import hashlib
+import json
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import numpy as np
+import soundfile
+
+import tacto
+
+DAEMON = os.environ.get("TACTOGRAPHD", "tactographd")
+SLOW = 4 if tacto.SANITIZED else 1
+
+
+def write_texture(stem, force_n, pitch_m=10e-6):
+    wav = pathlib.Path(f"{stem}.texture.wav")
+    soundfile.write(wav, force_n.astype(np.float32), round(1 / pitch_m), subtype="FLOAT")
+    pathlib.Path(f"{stem}.texture.json").write_text(json.dumps({
+        "kind": "texture", "version": "1.0", "pitch_m": pitch_m, "quantity": "tangential_force", "unit": "N",
+        "direction": 1, "source_origin_m": 0.0,
+        "data": {"file": wav.name, "sha256": hashlib.sha256(wav.read_bytes()).hexdigest(), "samples": len(force_n)}}))
+
+
+def prepare_files(**changed):
+    x = np.arange(4000) * 10e-6
+    write_texture("oak", 0.02 * np.sin(2 * np.pi * 1000 * x))
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.2,0.004\n1.0,0.034\n1.2,0.034\n")
+    config = {"kind": "daemon", "version": "1.0", "device": "sim:", "transducer": "wiertlewski2011", "rate_hz": 2000,
+              "socket": "control", "sessions": "sessions", "finger_path": "path.csv", **changed}
+    pathlib.Path("tactographd.json").write_text(json.dumps(config))
+
+
+@contextlib.contextmanager
+def daemon(code=0, **options):
+    """A daemon that is ready; at the end it is asked to stop, and has to with `code`."""
+    process = subprocess.Popen([DAEMON, "--config", "tactographd.json"], stderr=subprocess.PIPE, text=True, **options)
+    said = []
+    while not said or "ready" not in said[-1]:
+        line = process.stderr.readline()
+        assert line, said
+        said.append(line)
+    try:
+        yield process
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+        process.wait(timeout=20)
+        process.stderr.close()
+    assert process.returncode == code, process.returncode
+
+
+class Client:
+    def __init__(self, greet=True):
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.socket.settimeout(20)
+        self.socket.connect("control")
+        self.lines = self.socket.makefile("r")
+        if greet:
+            assert self.ask(request="hello", version="1.0")["ok"]
+
+    def ask(self, **request):
+        self.socket.sendall((json.dumps(request) + "\n").encode())
+        return json.loads(self.lines.readline())
+
+    def must(self, **request):
+        answer = self.ask(**request)
+        assert answer["ok"], answer
+        return answer
+
+    def wait_for(self, state, seconds=5):
+        for _ in range(int(50 * seconds * SLOW)):
+            status = self.must(request="status")
+            if status["state"] == state:
+                return status
+            time.sleep(0.02)
+        raise AssertionError((state, status))
+
+
+def begin(client):
+    client.must(request="load", file="oak", gain_m_per_n=0.0005)
+    session = client.must(request="arm")["session"]
+    client.must(request="play")
+    return session
+
+
+def ticks_of(session):
+    tacto.run("session", session, "-o", "table.csv")
+    return np.genfromtxt("table.csv", delimiter=",", names=True)
+
+
+def expect_a_ramp(session):
+    """The drive is zero within 20 ms of the first tick in fault, and stays there."""
+    ticks = ticks_of(session)
+    fault = int(np.argmax(ticks["fault"] > 0))
+    assert ticks["fault"][fault] == 1 and len(ticks) > fault + 40
+    assert np.all(ticks["drive_v"][fault + 40:] == 0)
+
+
+def from_load_to_a_session_that_replays():
+    prepare_files()
+    ctl = lambda *arguments, code=0: tacto.run("ctl", *arguments, "--socket", "control", code=code)
+    with daemon():
+        watcher = Client()
+        assert watcher.must(request="watch")["state"] == "idle"
+        _, said = ctl("play", code=2)
+        assert "can't play in the state idle" in said and "arm first" in said, said
+        assert "500" in ctl("load", "oak", "--gain", "0.5mm/N")[0]
+        ctl("arm")
+        ctl("play")
+        time.sleep(1)
+        ctl("gain", "0.5")
+        time.sleep(0.5)
+        status = json.loads(ctl("status", "--json")[0])
+        assert status["state"] == "playing" and status["drive_peak_v"] > 0.01 and status["lost_ticks"] == 0, status
+        assert abs(status["speed_mps"]) < 0.2 and status["gain"] == 0.5
+        _, said = ctl("load", "oak", code=2)
+        assert "disarm first" in said
+        ctl("stop")
+        time.sleep(0.2)
+        ctl("disarm")
+        session = json.loads(ctl("status", "--json")[0])["session"]
+        events = []
+        watcher.socket.settimeout(0.5)
+        with contextlib.suppress(TimeoutError, OSError):
+            while True:
+                events.append(json.loads(watcher.lines.readline()))
+    states = [e["state"] for e in events if e["event"] == "state"]
+    assert states == ["armed", "playing", "armed", "idle"], states
+    assert sum(e["event"] == "status" for e in events) >= 5 and all("device_s" in e for e in events)
+    replayed = tacto.run_json("replay", session)
+    assert replayed["same_to_the_bit"] and replayed["ticks_compared"] > 2000
+    assert tacto.run_json("validate", session)["valid"]
+    assert tacto.run_json("info", session)["ending"] == "closed"
+
+
+def kill_9_in_mid_play():
+    """What was synced is there and replays; the next daemon takes socket and device over."""
+    prepare_files()
+    with daemon(code=-signal.SIGKILL) as process:
+        session = begin(Client())
+        time.sleep(1.5)
+        process.kill()
+        process.wait()
+    described = tacto.run_json("info", session)
+    assert described["ending"].startswith("not closed") and described["ticks"] > 2000, described
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+    with daemon():
+        assert Client().must(request="status")["state"] == "idle"
+
+
+def sigstop_of_200_ms():
+    """A link that holds 250 ms and a device that ticks on: it has to save itself, and the daemon has to say so."""
+    prepare_files(device="sim:link_buffer=1s")
+    with daemon() as process:
+        client = Client()
+        session = begin(client)
+        time.sleep(0.7)
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(0.2 * SLOW)
+        process.send_signal(signal.SIGCONT)
+        status = client.wait_for("fault")
+        assert "heard nothing from this computer" in status["fault"], status
+        assert not client.ask(request="play")["ok"]
+        time.sleep(0.1)
+        client.must(request="disarm")
+        client.must(request="arm")
+        client.must(request="play")
+        client.wait_for("playing")
+    expect_a_ramp(session)
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+
+
+def encoder_jump_of_10_mm():
+    prepare_files()
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.9,0.006\n0.90001,0.016\n1.8,0.020\n")
+    with daemon():
+        client = Client()
+        session = begin(client)
+        status = client.wait_for("fault")
+        assert "the encoder jumped by" in status["fault"], status
+        time.sleep(0.2)
+        client.must(request="disarm")
+    expect_a_ramp(session)
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+
+
+def a_texture_with_nan():
+    prepare_files()
+    force = np.sin(np.arange(4000) / 10)
+    force[1234] = np.nan
+    write_texture("bad", force)
+    with daemon():
+        answer = Client().ask(request="load", file="bad")
+        assert not answer["ok"] and "1234" in json.dumps(answer["error"]), answer
+
+
+def garbage_and_endless_lines():
+    prepare_files()
+    with daemon():
+        client = Client(greet=False)
+        assert "hello" in client.ask(request="status")["error"]["remedy"]
+        answer = client.ask(request="hello", version="2.0")
+        assert not answer["ok"] and "2.0" in answer["error"]["what"]
+        client.must(request="hello", version="1.0")
+        for line in (b"\xff\xfe\x00nothing\n", b"{}\n", b"[" * 5000 + b"\n", b'{"request":"fly"}\n', b'{"request":"gain"}\n',
+                     b'{"request":"load","file":7}\n', b"\n"):
+            client.socket.sendall(line)
+            answer = json.loads(client.lines.readline())
+            assert not answer["ok"] and answer["error"]["what"], (line, answer)
+        assert client.ask(request="status", id=7)["id"] == 7
+        endless = Client()
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+            endless.socket.sendall(b"x" * 1_000_000)
+        with contextlib.suppress(ConnectionResetError):
+            assert "16384 bytes" in endless.lines.readline()
+        client.must(request="status")
+
+
+def a_thousand_clients():
+    """Those who are too many are told so; those who play go on playing."""
+    prepare_files(most_clients=8)
+    with daemon():
+        client = Client()
+        begin(client)
+        crowd = []
+        for _ in range(1000):
+            one = socket.socket(socket.AF_UNIX)
+            one.settimeout(10)
+            one.connect("control")
+            one.setblocking(False)
+            crowd.append(one)
+            if len(crowd) % 50 == 0:
+                client.must(request="status")
+        time.sleep(0.3)
+        refused = 0
+        for one in crowd:
+            with contextlib.suppress(BlockingIOError, OSError):
+                refused += b"clients are connected already" in one.recv(4096)
+        assert refused > 950, refused
+        for one in crowd:
+            one.close()
+        status = client.must(request="status")
+        assert status["state"] == "playing" and status["lost_ticks"] == 0, status
+        client.must(request="disarm")
+    print(f"1000 connected, {refused} refused")
+
+
+def second_daemon():
+    prepare_files()
+    with daemon():
+        second = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
+        assert second.returncode == 5 and "another daemon listens there" in second.stderr, second
+        config = json.loads(pathlib.Path("tactographd.json").read_text())
+        pathlib.Path("other.json").write_text(json.dumps({**config, "socket": "other"}))
+        second = subprocess.run([DAEMON, "--config", "other.json"], capture_output=True, text=True, timeout=20)
+        assert second.returncode == 5 and "another program plays on the device" in second.stderr, second
+        assert Client().must(request="status")["state"] == "idle"
+
+
+def permissions():
+    prepare_files()
+    with daemon():
+        assert os.stat("control").st_mode & 0o777 == 0o600
+        if os.geteuid() == 0:
+            os.chmod(".", 0o755)
+            done = subprocess.run(["setpriv", "--reuid", "65534", "--clear-groups", tacto.COMMAND, "ctl", "status", "--socket",
+                                   "control"], capture_output=True, text=True)
+            assert done.returncode == 3 and "this user may not connect" in done.stderr, done
+    prepare_files(socket_group="no-such-group")
+    second = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
+    assert second.returncode == 2 and "no-such-group" in second.stderr, second
+    prepare_files(device_=1)
+    second = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
+    assert second.returncode == 4 and "device_" in second.stderr, second
+
+
+def full_disk_for_the_log():
+    """A limit of the file's size stands in for the disk. Playing goes on; what is missing is counted, and said."""
+    import resource
+    prepare_files()
+    with daemon(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000))):
+        client = Client()
+        session = begin(client)
+        for _ in range(int(100 * SLOW)):
+            status = client.must(request="status")
+            if status["recorder_lost_ticks"] > 0:
+                break
+            time.sleep(0.1)
+        assert status["state"] == "playing" and status["recorder_lost_ticks"] > 0, status
+        assert "recorder_failure" in status
+        client.ask(request="disarm")
+    described = tacto.run_json("info", session)
+    assert described["ticks"] > 1000, described
+    replayed = json.loads(tacto.run("replay", session, "--json", code=0)[0])
+    assert replayed["same_to_the_bit"] and replayed["ticks_compared"] == described["ticks"]
+
+
+def the_loop_closed_on_the_host():
+    """The same, with the kernel on this computer's real-time thread. How late its ticks are is measured, not judged: machines stall."""
+    prepare_files(loop="host", device="sim:rate=2kHz", most_late_percent=100, watchdog_ms=500)
+    with daemon():
+        client = Client()
+        session = begin(client)
+        time.sleep(1.5)
+        status = client.must(request="status")
+        assert status["state"] == "playing" and status["drive_peak_v"] > 0.01, status
+        assert status["period_s"] == 1 / 2000 and 0 < status["wake_p99_s"] < 1 and status["busy_p99_s"] > 0, status
+        client.must(request="disarm")
+    print(f"wake-up p99 {1e6 * status['wake_p99_s']:.0f} us, work p99 {1e6 * status['busy_p99_s']:.1f} us, "
+          f"missed {status['missed_ticks']}, stale {status['stale_drives']}")
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+    ticks = ticks_of(session)
+    assert np.sum(np.isfinite(ticks["lateness_s"])) == len(ticks) > 2000
+
+
+def gain_saved_in_the_scene():
+    prepare_files()
+    layer = {"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 0.001}
+    pathlib.Path("s.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": [layer]}))
+    with daemon():
+        client = Client()
+        client.must(request="load", file="s")
+        client.must(request="gain", gain=0.5, save=True)
+        client.must(request="load", file="oak")
+        answer = client.ask(request="gain", gain=0.5, save=True)
+        assert not answer["ok"] and "load a scene" in answer["error"]["remedy"]
+    saved = json.loads(pathlib.Path("s.scene.json").read_text())["layers"][0]
+    assert saved["gain_m_per_n"] == 0.0005 and saved["gain_set_on"] and saved["gain_set_by"]
+
+
+TESTS = [from_load_to_a_session_that_replays, kill_9_in_mid_play, sigstop_of_200_ms, encoder_jump_of_10_mm, a_texture_with_nan,
+         garbage_and_endless_lines, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
+         the_loop_closed_on_the_host, gain_saved_in_the_scene]
+
+if __name__ == "__main__":
+    for test in TESTS:
+        if len(sys.argv) < 2 or test.__name__ in sys.argv[1:]:
+            tacto.in_folder(test)

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""play, replay and session as a user runs them; ten minutes of emulated time at 10 kHz."""
+import json
+import pathlib
+
+import numpy as np
+import soundfile
+import xarray
+
+import tacto
+from daemon_test import write_texture
+
+MINUTES = 1 if tacto.SANITIZED else 10
+
+
+def write_grating(stem="oak", per_m=1000, length_m=0.04):
+    x = np.arange(round(length_m / 10e-6)) * 10e-6
+    write_texture(stem, 0.02 * np.sin(2 * np.pi * per_m * x))
+
+
+def write_strokes(seconds, period_s=2.0):
+    """There and back between 4 and 34 mm, with rests."""
+    rows = ["time_s,position_m"]
+    for k in range(int(seconds / period_s) + 1):
+        rows += [f"{k * period_s + t:.3f},{x}" for t, x in ((0, 0.004), (0.1, 0.004), (0.9, 0.034), (1.1, 0.034), (1.9, 0.004))]
+    pathlib.Path("path.csv").write_text("\n".join(rows) + "\n")
+
+
+def plays_what_was_wanted():
+    write_grating()
+    write_strokes(4)
+    report = tacto.run_json("play", "oak", "-d", "sim:", "--finger-path", "path.csv", "--time", "4s", "--gain", "0.5mm/N", "-o", "one")
+    assert report["lost_ticks"] == 0 and report["drive_peak_v"] > 0.05, report
+    assert tacto.run_json("replay", "one")["same_to_the_bit"]
+    said = tacto.run_json("session", "one", "-o", "one.csv", "-o", "one.wav", "-o", "one.nc")
+    strokes = said["strokes"]
+    assert len(strokes) == 4, strokes
+    for stroke in strokes:
+        assert abs(stroke["to_m"] - stroke["from_m"]) > 0.029
+        assert abs(stroke["received_over_wanted_db"]) < 0.5 and stroke["error_db"] < -15, stroke
+    print("error of each stroke:", ", ".join(f"{s['error_db']:.1f} dB" for s in strokes))
+    table = np.genfromtxt("one.csv", delimiter=",", names=True)
+    wav, rate = soundfile.read("one.wav", dtype="float64")
+    nc = xarray.open_dataset("one.nc")
+    assert rate == 2000 and len(table) == len(wav) == nc.sizes["time"]
+    np.testing.assert_allclose(wav[:, 0], table["drive_v"], rtol=1e-8)
+    np.testing.assert_allclose(nc.position, table["position_m"], rtol=1e-8)
+    assert nc.drive.attrs["units"] == "V"
+    np.testing.assert_allclose(np.diff(table["time_s"]), 1 / 2000, atol=1.1e-6)  # the emulated clock counts microseconds
+
+
+def two_textures_in_a_scene():
+    write_grating("oak", 1000, 0.015)
+    write_grating("elm", 2000, 0.015)
+    write_strokes(2)
+    layer = {"type": "texture", "texture": "oak", "at_m": 0.004, "gain_m_per_n": 5e-4}
+    scene = {"kind": "scene", "version": "1.0", "layers": [layer, {**layer, "texture": "elm", "at_m": 0.019, "gain_m_per_n": 2.5e-4}]}
+    pathlib.Path("both.scene.json").write_text(json.dumps(scene))
+    tacto.run("validate", "both")
+    tacto.run("play", "both", "-d", "sim:", "--finger-path", "path.csv", "--time", "2s", "-o", "both")
+    assert tacto.run_json("replay", "both.session")["same_to_the_bit"]
+    assert [t["gain_m_per_n"] for t in tacto.run_json("info", "both.session")["textures"]] == [5e-4, 2.5e-4]
+    tacto.run("session", "both", "-o", "both.csv")
+    table = np.genfromtxt("both.csv", delimiter=",", names=True)
+    for low, high, per_m in ((0.006, 0.017, 1000), (0.021, 0.031, 2000)):
+        way = (table["position_m"] > low) & (table["position_m"] < high) & (table["time_s"] < 1)
+        x, v = table["position_m"][way], table["drive_v"][way]
+        grid = np.linspace(x[0], x[-1], 4096)
+        spectrum = np.abs(np.fft.rfft(np.interp(grid, x, v) * np.hanning(4096)))
+        peak = np.argmax(spectrum) / (grid[-1] - grid[0])
+        assert abs(peak - per_m) < 100, (peak, per_m)
+
+
+def wrong_use():
+    write_grating()
+    write_strokes(1)
+    for arguments, code, words in (
+            (("play", "oak", "-d", "sim:"), 2, "--output"),
+            (("play", "nothing", "-d", "sim:", "-o", "x"), 3, "nothing"),
+            (("play", "oak", "-d", "replay:none", "-o", "x"), 3, "none"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--rate", "100"), 2, "Hz"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--finger-path", "none.csv"), 3, "none.csv"),
+            (("replay", "none"), 3, "none.session"),
+            (("session", "none"), 3, "none.session"),
+            (("ctl", "status", "--socket", "none"), 3, "no daemon listens there"),
+            (("ctl", "fly"), 2, "load")):
+        _, said = tacto.run(*arguments, code=code)
+        assert words in said, (arguments, said)
+    assert not pathlib.Path("x.session").exists()
+    tacto.run("play", "oak", "-d", "sim:", "-o", "x", "--time", "0.1s")
+    _, said = tacto.run("play", "oak", "-d", "sim:", "-o", "x", "--time", "0.1s", code=2)
+    assert "is there already" in said
+    _, said = tacto.run("session", "x", "-o", "x.mat", code=2)
+    assert ".csv, .wav or .nc" in said
+    pathlib.Path("x.session").write_bytes(pathlib.Path("x.session").read_bytes()[:-30] + b"torn")
+    _, said = tacto.run("validate", "x.session", code=4)
+    tacto.run("replay", "x")
+
+
+def ten_minutes_at_10_khz():
+    """No growth of memory, no drift of position, log complete, and the same to the bit."""
+    write_grating()
+    write_strokes(60 * MINUTES)
+    arguments = ("play", "oak", "-d", "sim:", "--finger-path", "path.csv", "--rate", "10kHz", "--gain", "0.5mm/N")
+    short = tacto.peak_mb(*arguments, "--time", "20s", "-o", "short")
+    long = tacto.peak_mb(*arguments, "--time", f"{60 * MINUTES}s", "-o", "long")
+    print(f"peak memory: {short:.1f} MB after 20 s, {long:.1f} MB after {MINUTES} min")
+    assert tacto.SANITIZED or long < short + 4
+    about = tacto.run_json("info", "long.session")
+    assert about["lost_ticks"] == 0 and about["ending"] == "closed" and about["ticks"] >= 600_000 * MINUTES, about
+    assert tacto.run_json("replay", "long")["same_to_the_bit"]
+    tacto.run("session", "short", "-o", "short.csv")
+    table = np.genfromtxt("short.csv", delimiter=",", names=True)
+    assert np.all(np.diff(table["tick"]) == 1)
+    cycle = 20000
+    first = table["encoder_count"][1000:1000 + cycle]
+    assert np.all(np.abs(table["encoder_count"][1000 + 8 * cycle:1000 + 9 * cycle] - first) <= 1), "the position drifts"
+
+
+if __name__ == "__main__":
+    for test in (plays_what_was_wanted, two_textures_in_a_scene, wrong_use, ten_minutes_at_10_khz):
+        tacto.in_folder(test)

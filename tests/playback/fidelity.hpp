@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a finger feels against what a texture asks: the kernel's drive through the integrated tray, and the
+// exact reference along the same path.
+#pragma once
+
+#include <algorithm>
+#include <complex>
+#include <optional>
+
+#include "data-schema/texture.hpp"
+#include "data-schema/transducer.hpp"
+#include "firmware-host/sim/actuated_tray.hpp"
+#include "playback/finger_path.hpp"
+#include "playback/prepare.hpp"
+#include "playback/reference/padded_spectrum.hpp"
+#include "playback/reference/spatial_content.hpp"
+#include "playback/reference/wanted.hpp"
+#include "playback/texture_layout.hpp"
+
+namespace tacto::tests {
+
+inline constexpr double kTrueCountM = 1e-9;  // an encoder so fine that its place is the finger's
+inline constexpr double kLeftOutS = 0.2;     // at each end
+
+struct FidelityCase {
+  playback::PrepareOptions options;  ///< ends and seam are the loop's
+  schema::Transducer model;          ///< that is inverted
+  schema::Transducer real;           ///< that moves
+  firmware_host::TrayPhysics physics;
+  playback::FingerPath path;
+};
+
+struct Fidelity {
+  double error_db = 0;  ///< over the band, RMS re wanted
+  double error_um = 0;
+  double wanted_um = 0;
+  double delay_s = 0;  ///< of the filter
+};
+
+/// The loop again and again, as long as the path is.
+inline schema::Texture tiled(const schema::SpaceSignal& loop, double length_m) {
+  schema::Texture texture;
+  texture.signal.pitch_m = loop.pitch_m;
+  const auto samples = static_cast<std::size_t>(length_m / loop.pitch_m) + 1;
+  for (std::size_t i = 0; i < samples; ++i)
+    texture.signal.values.push_back(loop.values[i % loop.values.size()]);
+  return texture;
+}
+
+/// RMS over the band of what lies between the ends, under a Hann window.
+inline double rms_in_band(std::span<const double> values, double rate_hz, const spatial::Band& band) {
+  const auto skipped = static_cast<std::size_t>(kLeftOutS * rate_hz);
+  std::vector<double> windowed(values.begin() + static_cast<std::ptrdiff_t>(skipped),
+                               values.end() - static_cast<std::ptrdiff_t>(skipped));
+  for (std::size_t i = 0; i < windowed.size(); ++i)
+    windowed[i] *=
+        1 - std::cos(2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(windowed.size()));
+  const auto spectrum = playback::spectrum_of(windowed, rate_hz, windowed.size());
+  const auto n = static_cast<double>(windowed.size());
+  return std::sqrt(2 * playback::energy_in(spectrum, band) / 1.5) / n;
+}
+
+/// The kernel, tick by tick, from an encoder that steps by metres_per_count; the tray at `fine` steps a tick.
+inline std::vector<double> felt_displacement(const FidelityCase& c, const playback::Prepared& prepared,
+                                             std::size_t ticks, std::size_t fine) {
+  const auto positions = playback::positions_along(c.path, c.options.rate_hz, ticks);
+  firmware_host::ActuatedTray tray(c.real, c.options.rate_hz * static_cast<double>(fine),
+                                   c.options.reconstruction == playback::Reconstruction::none
+                                       ? std::nullopt
+                                       : std::optional(c.options.reconstruction_cutoff_hz),
+                                   c.physics);
+  core::TickKernel kernel;
+  kernel.set(prepared.setup());
+  std::vector<double> displacement_m;
+  for (const double position_m : positions) {
+    const auto count = static_cast<std::int32_t>(std::floor(position_m / c.options.metres_per_count));
+    const double drive_v = kernel.tick({count, prepared.gain_m_per_n, true, core::kNoForce}).drive_v;
+    for (std::size_t i = 0; i < fine; ++i) displacement_m.push_back(tray.tick(drive_v));
+  }
+  return displacement_m;
+}
+
+inline schema::Result<Fidelity> fidelity_of(const schema::Texture& texture, FidelityCase c) {
+  const playback::PlacedTexture placed{&texture, 0, 1};
+  c.options.ends = playback::Ends::loop;
+  const auto prepared = playback::prepare(std::span(&placed, 1), c.model, c.options);
+  if (!prepared) return schema::forward_error(prepared);
+  const auto loop = playback::laid_out(std::span(&placed, 1), playback::Ends::loop, c.options.seam_m);
+  const double most = *std::ranges::max_element(c.path.position_m);
+  const schema::Texture long_texture = tiled(loop, most + 0.01);
+  const auto fine = static_cast<std::size_t>(std::ceil(20e3 / c.options.rate_hz));
+  const double rate_hz = c.options.rate_hz * static_cast<double>(fine);
+  const double finest_hz = playback::highest_spatial_frequency(loop) * playback::greatest_speed_mps(c.path);
+  // What lies beside the band is neither wanted nor an error: the reference reaches beyond it.
+  const spatial::Band reference{10, c.options.band.high_hz * 1.01};
+  const auto grid = playback::reading_grid(c.path.duration_s(), rate_hz, reference, finest_hz);
+  const playback::TextureLookup lookup(long_texture.signal, 0);
+  const auto wanted = playback::signal_of(
+      playback::exact_wanted(lookup, c.path, grid, reference, c.options.gain_m_per_n, 0.005));
+  const auto felt = felt_displacement(c, *prepared, wanted.size() / fine, fine);
+  std::vector<double> error(felt.size());
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] = felt[i] - wanted[i];
+  const double wanted_m = rms_in_band(std::span(wanted).first(felt.size()), rate_hz, c.options.band);
+  const double error_m = rms_in_band(error, rate_hz, c.options.band);
+  return Fidelity{20 * std::log10(error_m / wanted_m), error_m * 1e6, wanted_m * 1e6, prepared->delay_s};
+}
+
+}  // namespace tacto::tests

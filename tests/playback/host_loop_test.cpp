@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loop closed on this computer: the tick's promises, and a whole way on the emulated device. Machines
+// stall, so nothing here asserts how late a tick was; that late ticks are counted is asserted.
+#include "playback/daemon/host_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "firmware-host/core/wire/crc32c.hpp"
+#include "firmware-host/sim/sim_device.hpp"
+#include "playback/daemon/player.hpp"
+#include "playback/daemon/session_replay.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+#include "tests/playback/allocation_hook.hpp"
+
+namespace tacto::playback {
+namespace {
+
+static_assert(noexcept(std::declval<HostBoard&>().tick(0, 0)));
+
+TEST(TimeHistogram, TellsQuantilesWithinAnEighth) {
+  TimeHistogram histogram;
+  EXPECT_EQ(histogram.quantile_s(0.5), 0);
+  for (int i = 1; i <= 10000; ++i) histogram.add(i * 100);
+  for (const double part : {0.1, 0.5, 0.9, 0.99}) {
+    EXPECT_GE(histogram.quantile_s(part), part * 1e-3);
+    EXPECT_LE(histogram.quantile_s(part), part * 1e-3 * 1.14);
+  }
+  histogram.add(-5);
+  histogram.add(INT64_MAX);
+  EXPECT_GT(histogram.quantile_s(1), 1);
+}
+
+TEST(TickClock, PassesOverPeriodsThatItSlept) {
+  TickClock clock;
+  clock.begin(1000);
+  std::uint64_t missed = 0;
+  const std::int64_t began = TickClock::now_ns();
+  for (int i = 0; i < 20; ++i) clock.wait(missed);
+  EXPECT_GE(TickClock::now_ns() - began, 20'000'000 - 1000);
+  const std::uint64_t before = missed;
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const std::int64_t late_ns = clock.wait(missed);
+  EXPECT_GE(late_ns, 18'000'000);
+  EXPECT_GE(missed - before, 18U);
+  const std::int64_t next = TickClock::now_ns();
+  clock.wait(missed);
+  EXPECT_LE(next - began, TickClock::now_ns() - began);  // waits again, no burst
+}
+
+schema::Texture host_grating() {
+  schema::Texture texture;
+  texture.signal = {10e-6, 0, std::vector<double>(4000)};
+  for (std::size_t i = 0; i < texture.signal.values.size(); ++i)
+    texture.signal.values[i] = 0.02 * std::sin(2 * 3.141592653589793 * 0.01 * static_cast<double>(i));
+  return texture;
+}
+
+class HostLoopOnSim : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto device = firmware_host::make_sim_device("sim:paced=1", "paced=1,rate=2kHz");
+    ASSERT_TRUE(device) << schema::message(device.error());
+    device_ = std::move(*device);
+    device_->board().set_script(
+        [](double t) { return 2e-3 + 0.03 - std::abs(std::fmod(0.04 * t, 0.06) - 0.03); });
+    ASSERT_TRUE(schema::write_texture(folder_ / "grating", host_grating()));
+    auto loop = HostLoop::begin(device_->client(), {2000, 50, 200});
+    ASSERT_TRUE(loop) << schema::message(loop.error());
+    loop_ = std::move(*loop);
+    auto client = firmware_host::Client::connect(loop_->transport(), "sim:");
+    ASSERT_TRUE(client) << schema::message(client.error());
+    client_ = std::move(*client);
+    PlayerOptions options;
+    options.most_late = 1;
+    options.loop = "host";
+    options.lateness_ns = [this](std::uint64_t tick) { return loop_->board().lateness_ns(tick); };
+    player_ = std::move(*Player::make(*client_, "sim:", options));
+  }
+  Program program() {
+    PrepareOptions options;
+    options.watchdog_ms = 500;
+    options.most_samples = client_->description().welcome.profile_samples;
+    auto made = make_program({folder_ / "grating", {}, 5e-4, {}}, "wiertlewski2011", options);
+    EXPECT_TRUE(made) << schema::message(made.error());
+    return std::move(*made);
+  }
+  void run(double seconds) {
+    for (const double end = player_->played_s() + seconds; player_->played_s() < end;)
+      ASSERT_TRUE(player_->step(0.01));
+  }
+
+  tests::TemporaryFolder folder_;
+  std::unique_ptr<firmware_host::SimDevice> device_;
+  std::unique_ptr<HostLoop> loop_;
+  std::unique_ptr<firmware_host::Client> client_;
+  std::unique_ptr<Player> player_;
+};
+
+TEST_F(HostLoopOnSim, PlaysOnTheDeviceAndItsSessionReplaysToTheBit) {
+  ASSERT_TRUE(player_->load(program()));
+  const std::string session = folder_ / "host.session";
+  const auto armed = player_->arm(session);
+  ASSERT_TRUE(armed) << schema::message(armed.error());
+  ASSERT_TRUE(player_->play());
+  run(1.5);
+  EXPECT_EQ(player_->state(), PlayerState::playing)
+      << player_->status().fault << loop_->status().device_fault;
+  EXPECT_GT(player_->status().ticks.drive_peak_v(), 0.05);
+  ASSERT_TRUE(player_->gain(0.5));
+  run(0.3);
+  ASSERT_TRUE(player_->stop());
+  run(0.1);
+  ASSERT_TRUE(player_->disarm());
+  const auto replayed = replay_session(session);
+  ASSERT_TRUE(replayed) << schema::message(replayed.error());
+  EXPECT_FALSE(replayed->lost_at);
+  EXPECT_FALSE(replayed->first_difference);
+  EXPECT_GT(replayed->ticks, 3500U);
+  auto reader = schema::SessionReader::open(session);
+  EXPECT_EQ(reader->header().loop, "host");
+  const HostLoopStatus status = loop_->status();
+  std::printf("wake-up p50 %.1f us, p99 %.1f us; work p99 %.2f us; missed %llu; real time %d\n",
+              1e6 * status.wake_p50_s, 1e6 * status.wake_p99_s, 1e6 * status.busy_p99_s,
+              static_cast<unsigned long long>(status.missed_ticks), status.real_time);
+}
+
+TEST_F(HostLoopOnSim, ADeviceThatFaultsOpensTheEnableInput) {
+  ASSERT_TRUE(player_->load(program()));
+  ASSERT_TRUE(player_->arm(folder_ / "host.session"));
+  ASSERT_TRUE(player_->play());
+  run(0.5);
+  device_->board().set_enabled(false);
+  for (int i = 0; i < 200 && player_->state() != PlayerState::fault; ++i) ASSERT_TRUE(player_->step(0.01));
+  EXPECT_EQ(player_->state(), PlayerState::fault);
+  EXPECT_NE(loop_->status().device_fault.find("enable input"), std::string::npos);
+}
+
+TEST(HostBoard, ATickTakesNothingFromTheHeap) {
+  auto device = firmware_host::make_sim_device("sim:", "");
+  ASSERT_TRUE(device);
+  HostBoard board((*device)->client().description(), 2000);
+  const auto say = [&](const auto& message, std::uint32_t sequence) {
+    std::array<std::uint8_t, wire::kMaxFrame> frame;
+    const std::size_t size = wire::encode_frame(message, sequence, frame.data(), frame.size());
+    board.from_player().put(std::span(frame).first(size));
+    board.rest(1'000'000);
+  };
+  say(wire::Hello{}, 0);
+  say(wire::Limits{5, 15708, 0.01F, 0.01F, 1000, 100}, 1);
+  wire::ProfileChunk chunk{};
+  chunk.count = 64;
+  for (int i = 0; i < 64; ++i) chunk.values[i] = 0.5F;
+  std::uint8_t bytes[4];
+  std::uint32_t check = 0;
+  for (int i = 0; i < 64; ++i) {
+    wire::FieldWriter(bytes, sizeof bytes)(chunk.values[i]);
+    check = wire::crc32c(bytes, sizeof bytes, check);
+  }
+  say(wire::ProfileBegin{64, 0, 0, std::uint64_t{1} << 30, wire::ProfileEnds::loop}, 2);
+  say(chunk, 3);
+  say(wire::ProfileEnd{check}, 4);
+  board.set_inputs(0, true);
+  say(wire::Arm{wire::DriveSource::profile, 2'000'000}, 5);
+  say(wire::Play{}, 6);
+  const long counted = tests::allocations_here();
+  ::operator delete(::operator new(8));
+  ASSERT_EQ(tests::allocations_here(), counted + 1) << "the hook sees nothing";
+  ASSERT_TRUE(board.ticking());
+  std::array<std::uint8_t, 4096> sink;
+  float drive_v = 0;
+  const long before = tests::allocations_here();
+  for (int i = 0; i < 1500; ++i) {
+    board.set_inputs(i, true);
+    board.tick(1'000'000 + i * 500'000LL, i);
+    while (board.to_player().take(sink) > 0) {
+    }
+    drive_v = board.drives().front()->drive_v;
+    board.drives().pop();
+  }
+  EXPECT_EQ(tests::allocations_here(), before);
+  EXPECT_NEAR(drive_v, 0.5, 1e-3);
+  EXPECT_EQ(board.lateness_ns(1499), 1499);
+}
+
+}  // namespace
+}  // namespace tacto::playback

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The emulated device closes the loop with what was uploaded: every tick of it is the in-process kernel's, to
+// the bit.
+#include "playback/upload.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware-host/core/wire/crc32c.hpp"
+#include "firmware-host/sim/sim_device.hpp"
+#include "made_textures.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using firmware_host::Client;
+
+schema::Transducer uploaded_transducer() {
+  return *schema::read_transducer("wiertlewski2011");
+}
+
+schema::Texture two_sines() {
+  return texture_of(0.02, [](double x) {
+    return 0.02 * (std::sin(kTwoPi * 1.3e3 * x) + 0.7 * std::sin(kTwoPi * 41e3 * x));
+  });
+}
+
+PrepareOptions device_options(double rate_hz) {
+  PrepareOptions options;
+  options.rate_hz = rate_hz;
+  options.ends = Ends::mirror;
+  options.energy_rms_v = 0.3;
+  options.energy_window_s = 0.1;
+  return options;
+}
+
+std::unique_ptr<firmware_host::SimDevice> sim_device() {
+  auto device = firmware_host::make_sim_device("sim:", "surface=C,speed=80mm/s,seed=1");
+  return device ? std::move(*device) : nullptr;
+}
+
+/// Ticks of a second of playing.
+std::vector<wire::Tick> play_a_second(Client& client, double rate_hz) {
+  EXPECT_TRUE(
+      client.command(wire::Arm{wire::DriveSource::profile, static_cast<std::uint32_t>(1e3 * rate_hz)}));
+  EXPECT_TRUE(client.command(wire::Play{}));
+  std::vector<wire::Tick> ticks;
+  while (static_cast<double>(ticks.size()) < rate_hz && client.heartbeat()) {
+    EXPECT_TRUE(client.receive(0.02));
+    for (const wire::Ticks& block : client.take_ticks())
+      ticks.insert(ticks.end(), block.ticks, block.ticks + block.count);
+  }
+  return ticks;
+}
+
+class Uploaded : public testing::TestWithParam<double> {};
+
+TEST_P(Uploaded, TheDevicesDriveIsTheKernelsToTheBit) {
+  const auto prepared = prepare(two_sines(), uploaded_transducer(), device_options(GetParam()));
+  ASSERT_TRUE(prepared) << message(prepared.error());
+  EXPECT_GT(prepared->scale.levels, 4);
+  const auto device = sim_device();
+  ASSERT_TRUE(device);
+  const auto sent = upload(device->client(), *prepared);
+  ASSERT_TRUE(sent) << message(sent.error());
+  const auto ticks = play_a_second(device->client(), GetParam());
+  core::TickKernel kernel;
+  kernel.set(prepared->setup());
+  double energy = 0;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const bool raise = (ticks[i].flags & wire::kTickPlaying) != 0;
+    const auto output = kernel.tick({ticks[i].encoder, prepared->gain_m_per_n, raise, core::kNoForce});
+    ASSERT_EQ(output.drive_v, ticks[i].drive_v) << i;
+    energy += output.drive_v * output.drive_v;
+  }
+  EXPECT_GT(std::sqrt(energy / static_cast<double>(ticks.size())), 0.05)
+      << "a drive of nothing proves nothing";
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, Uploaded, testing::Values(2e3, 10e3));
+
+TEST(Upload, ATextureTooLargeIsRefusedWithBothSizes) {
+  PrepareOptions options = device_options(2e3);
+  const auto fine = texture_of(0.06, [](double x) { return 0.01 * std::sin(kTwoPi * 160e3 * x); });
+  const auto prepared = prepare(fine, uploaded_transducer(), options);
+  ASSERT_TRUE(prepared);
+  const auto device = sim_device();
+  const auto sent = upload(device->client(), *prepared);
+  ASSERT_FALSE(sent);
+  EXPECT_NE(message(sent.error()).find(std::to_string(prepared->samples.size())), std::string::npos);
+  EXPECT_NE(message(sent.error()).find("65536"), std::string::npos);
+}
+
+// Between upload and arming a new profile takes levels, taps and all back: a host of protocol 1.0 plays as it
+// did.
+TEST(Upload, AnOlderHostsProfileKnowsNothingOfIt) {
+  const auto prepared = prepare(two_sines(), uploaded_transducer(), device_options(2e3));
+  const auto device = sim_device();
+  Client& client = device->client();
+  ASSERT_TRUE(upload(client, *prepared));
+  ASSERT_TRUE(client.command(wire::ProfileBegin{512, 0, 0, UINT64_C(1) << 32, wire::ProfileEnds::loop}));
+  wire::ProfileChunk chunk{0, 512, {}};
+  std::fill_n(chunk.values, 512, 0.25F);
+  ASSERT_TRUE(client.command(chunk));
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(chunk.values);
+  ASSERT_TRUE(client.command(wire::ProfileEnd{wire::crc32c(bytes, sizeof chunk.values)}));
+  ASSERT_TRUE(client.command(wire::Gain{1}));
+  EXPECT_EQ(play_a_second(client, 2e3).back().drive_v, 0.25F);
+}
+
+TEST(Upload, LevelsThatDoNotAddUpAreRefused) {
+  const auto device = sim_device();
+  Client& client = device->client();
+  EXPECT_FALSE(client.command(wire::ProfileLevels{2, wire::Interpolation::hermite, 0, 64}));
+  ASSERT_TRUE(client.command(wire::ProfileBegin{160, 0, 0, UINT64_C(1) << 32, wire::ProfileEnds::loop}));
+  EXPECT_TRUE(client.command(wire::ProfileLevels{3, wire::Interpolation::hermite, 0, 64}));
+  EXPECT_FALSE(client.command(wire::ProfileLevels{3, wire::Interpolation::hermite, 0, 65}));
+  EXPECT_FALSE(client.command(wire::ProfileLevels{0, wire::Interpolation::hermite, 0, 64}));
+  EXPECT_FALSE(client.command(wire::ProfileLevels{17, wire::Interpolation::hermite, 0, 64}));
+  EXPECT_FALSE(client.command(wire::ProfileLevels{3, static_cast<wire::Interpolation>(4), 0, 64}));
+}
+
+}  // namespace
+}  // namespace tacto::playback
