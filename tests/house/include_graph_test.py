@@ -20,7 +20,7 @@ MAY_INCLUDE = {
     "data-schema": [],
     "capture": ["data-schema", "firmware-host"],
     "spatial": ["data-schema"],
-    "playback": ["data-schema", "firmware-host", "spatial"],
+    "playback": ["data-schema", "firmware-host", "firmware-host/core", "spatial"],
     "analysis": ["data-schema", "firmware-host", "capture", "spatial", "playback"],
 }
 
