@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "data-schema/statistics.hpp"
+#include "playback/kernel_drive.hpp"
 #include "playback/reference/exact_drive.hpp"
 #include "playback/reference/spatial_content.hpp"
 #include "playback/reference/wanted.hpp"
@@ -43,6 +44,8 @@ Result<void> check_options(const RenderOptions& o) {
     return wrong("the gain is not between 0 and 1 m/N", "a fingertip asks for about 1mm/N");
   if (!std::isfinite(o.at_m)) return wrong("the texture's place is not finite", "give --at a length");
   if (!(o.onset_s >= 0 && std::isfinite(o.onset_s))) return wrong("the onset is below 0", "0s turns it off");
+  if (!(o.encoder_step_m > 0 && o.encoder_step_m < 1))
+    return wrong("the encoder's step is not above 0", "1um is usual");
   if (!(o.reconstruction_cutoff_hz > 0))
     return wrong("the filter's cut-off is not above 0", "the paper's is 600Hz");
   return {};
@@ -111,6 +114,38 @@ Result<ExactDrive> limited_drive(Rendering& rendering, const PaddedSpectrum& wan
   return held;
 }
 
+PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
+  PrepareOptions options;
+  options.rate_hz = o.rate_hz;
+  options.metres_per_count = o.encoder_step_m;
+  options.gain_m_per_n = o.gain_m_per_n;
+  options.band = o.band;
+  options.inverse = o.inverse;
+  options.reconstruction = o.reconstruction;
+  options.reconstruction_cutoff_hz = o.reconstruction_cutoff_hz;
+  options.hold = o.hold;
+  options.onset_s = onset_s;
+  return options;
+}
+
+// What the kernel's limits took away is told; refused, unless it may.
+Result<ExactDrive> kernels_drive(Rendering& rendering, const schema::Texture& texture, const FingerPath& path,
+                                 const PaddedSpectrum& wanted, const Chain& chain, const RenderOptions& o) {
+  const PrepareOptions options = kernel_options(o, rendering.onset_s);
+  const auto prepared = prepare(texture, chain.transducer, options, o.at_m);
+  if (!prepared) return schema::forward_error(prepared);
+  rendering.warnings.insert(rendering.warnings.end(), prepared->notes.begin(), prepared->notes.end());
+  KernelDrive drive = kernel_drive(*prepared, path, options, wanted.samples);
+  const auto clipped =
+      static_cast<std::size_t>(std::max(drive.tally.amplitude_limited(), drive.tally.slew_limited()));
+  if (clipped > 0 && o.over_limit == OverLimit::refuse)
+    return fail(Fault::unsuitable, fmt::format("the limits took away {} samples of the drive", clipped),
+                "drive", "take a smaller --gain; --over-limit clip plays it clipped");
+  if (clipped > 0) rendering.clipping = {clipped, 0, drive.tally.removed_db()};
+  rendering.delay_s = prepared->delay_left_s;
+  return moved_by(std::move(drive.drive_v), wanted, chain);
+}
+
 double error_db(const Rendering& rendering, const PaddedSpectrum& wanted, const spatial::Band& band) {
   std::vector<double> difference(rendering.wanted_m.values.size());
   std::ranges::transform(rendering.modelled_m.values, rendering.wanted_m.values, difference.begin(),
@@ -162,7 +197,10 @@ Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
   report(0.1);
   const auto wanted = exact_wanted(lookup, path, grid, options.band, options.gain_m_per_n, rendering.onset_s);
   report(0.8);
-  auto drive = limited_drive(rendering, wanted, chain_of(transducer, options), options);
+  const Chain chain = chain_of(transducer, options);
+  auto drive = options.engine == Engine::kernel
+                   ? kernels_drive(rendering, texture, path, wanted, chain, options)
+                   : limited_drive(rendering, wanted, chain, options);
   if (!drive) return schema::forward_error(drive);
   const double start_s = path.time_s.front();
   rendering.wanted_m = {options.rate_hz, start_s, signal_of(wanted)};

@@ -21,6 +21,9 @@ namespace tacto::playback {
 /// What to do with a drive that passes a limit of the transducer.
 enum class OverLimit { refuse, clip };
 
+/// Who computes the drive: the slow exact reference, or the kernel that runs in real time.
+enum class Engine { reference, kernel };
+
 struct RenderOptions {
   double rate_hz = 10e3;       ///< of the drive; Wiertlewski 2011 records at 10 kHz
   double gain_m_per_n = 1e-3;  ///< G_psi: displacement for force. A fingertip has about 1e3 N/m
@@ -31,6 +34,8 @@ struct RenderOptions {
   double reconstruction_cutoff_hz = 600;
   Hold hold = Hold::none;
   OverLimit over_limit = OverLimit::refuse;
+  Engine engine = Engine::reference;
+  double encoder_step_m = 1e-6;  ///< of the kernel's encoder
   /// Raised-cosine fade of the force at either end of the path, at most a quarter of it: nothing starts with
   /// a jump where the finger starts inside the texture. What is left is the ringing of the band's edges: on a
   /// real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3 of it.
@@ -49,8 +54,10 @@ struct Rendering {
   schema::TimeSignal wanted_m;    ///< gain x force along the path, in the band (keep_band)
   schema::TimeSignal modelled_m;  ///< drive_v through the transducer's model, over all frequencies
   double error_db = 0;  ///< RMS of modelled - wanted in the band, re RMS of wanted; from drive_v as it is
-  double delay_s = 0;  ///< of the displacement behind the wanted one: none, the inverse is applied to spectra
-  Peaks peaks;         ///< of the drive and the modelled displacement, against the limits
+  /// Of the displacement behind the wanted one. The reference has none, its inverse is applied to spectra;
+  /// the kernel looks ahead by what its filter takes.
+  double delay_s = 0;
+  Peaks peaks;  ///< of the drive and the modelled displacement, against the limits
   std::optional<Clipping> clipping;
   std::size_t samples_outside = 0;  ///< of the drive, where the finger is beside the texture
   double max_speed_mps = 0;
@@ -62,7 +69,8 @@ struct Rendering {
   std::vector<std::string> warnings;
 };
 
-/// Renders in double precision; all signals share the path's time axis. `progress` hears 0 to 1.
+/// Renders in double precision, or (engine) by the tick kernel, as it would run: single precision, position
+/// from an encoder, limits held. All signals share the path's time axis. `progress` hears 0 to 1.
 ///
 /// Errors: usage, for options out of range (rate <= 2 band.high_hz, 0 < low < high, gain, onset not finite);
 /// unsuitable, for a texture that isn't force in N, a path that check_finger_path() refuses, that never meets

@@ -13,7 +13,7 @@ namespace tacto::core {
 
 /// Begins with no output and no stream. tick() in the timer's interrupt, poll() in the main loop, as often as
 /// it can: tick() may interrupt poll() anywhere, poll() never runs within a tick (one core; a host calls both
-/// from one thread). 44 KB, the profile's memory (the board's) apart. No heap, no locks, no libm.
+/// from one thread). 47 KB, the profile's memory (the board's) apart. No heap, no locks, no libm.
 class Firmware {
  public:
   /// Precondition: the board's channels and rates are as Board says.

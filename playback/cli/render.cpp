@@ -53,10 +53,13 @@ void add_quantities(CLI::App& app, RenderOptions& o) {
 }
 
 void add_model(CLI::App& app, RenderOptions& o) {
-  cli::add_choice<Inverse>(
-      app, "--inverse", o.inverse,
-      {{"full", Inverse::full}, {"magnitude", Inverse::magnitude}, {"gain", Inverse::gain}},
-      "What of the transducer the drive undoes: amplitude and phase, amplitude, or the gain at rest");
+  cli::add_choice<Inverse>(app, "--inverse", o.inverse,
+                           {{"full", Inverse::full},
+                            {"magnitude", Inverse::magnitude},
+                            {"gain", Inverse::gain},
+                            {"none", Inverse::none}},
+                           "What of the transducer the drive undoes: amplitude and phase, amplitude, the "
+                           "gain at rest, or nothing");
   CLI::Option* reconstruction = cli::add_choice<Reconstruction>(
       app, "--reconstruction", o.reconstruction,
       {{"none", Reconstruction::none}, {"butterworth3", Reconstruction::butterworth3}},
@@ -66,6 +69,12 @@ void add_model(CLI::App& app, RenderOptions& o) {
       ->needs(reconstruction);
   cli::add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
                         "Whether the converter holds each sample until the next, undone as well");
+  CLI::Option* engine = cli::add_choice<Engine>(
+      app, "--engine", o.engine, {{"reference", Engine::reference}, {"kernel", Engine::kernel}},
+      "Who computes the drive: the exact reference, or the tick kernel as it runs in real time");
+  cli::add_quantity(app, "--encoder-step", o.encoder_step_m, Dimension::length,
+                    "One count of the kernel's encoder")
+      ->needs(engine);
   cli::add_choice<OverLimit>(app, "--over-limit", o.over_limit,
                              {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
                              "What to do with a drive that passes a limit of the transducer");

@@ -50,6 +50,10 @@ ExactDrive exact_drive(const PaddedSpectrum& wanted, const spatial::Band& band, 
   return played(inverted(wanted, chain, inverse), wanted, chain, static_cast<std::size_t>(oversampling));
 }
 
+ExactDrive moved_by(std::vector<double> drive_v, const PaddedSpectrum& wanted, const Chain& chain) {
+  return played(std::move(drive_v), wanted, chain, 1);
+}
+
 schema::Result<ExactDrive> clipped_drive(const PaddedSpectrum& wanted, const spatial::Band& band,
                                          const Chain& chain, Inverse inverse) {
   double ceiling_m = chain.transducer.displacement_limit_m;

@@ -24,6 +24,9 @@ struct ExactDrive {
 ExactDrive exact_drive(const PaddedSpectrum& wanted, const spatial::Band& band, const Chain& chain,
                        Inverse inverse);
 
+/// A drive that somebody else computed: rounded, and what it moves.
+ExactDrive moved_by(std::vector<double> drive_v, const PaddedSpectrum& wanted, const Chain& chain);
+
 /// The same held within the transducer's limits at the samples: the wanted displacement is clipped and its
 /// band kept again, the drive clipped in level and in slew, repeated with a lower ceiling while the modelled
 /// displacement still passes its limit. Errors: unsuitable, where 20 rounds don't bring it under.

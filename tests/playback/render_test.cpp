@@ -54,6 +54,44 @@ TEST(Render, ASineAtOneSpeedHasItsClosedForm) {
   EXPECT_NEAR(rendering->highest_passed_per_m, 10e3, 1e-6);
 }
 
+// The tick kernel instead of the reference: what is wanted, by an encoder of 1 um, within -40 dB of it (the
+// onset in it), and the same drive to -40 dB away from the path's ends.
+TEST(Render, TheKernelsDriveIsTheReferences) {
+  const auto texture = texture_of(0.12, [](double x) {
+    return 0.01 * (std::sin(kTwoPi * 1e3 * x) + 0.5 * std::sin(kTwoPi * 4.3e3 * x));
+  });
+  const auto path = steady_path(0.005, 0.0517, 2);
+  RenderOptions options;
+  options.hold = Hold::zero_order;
+  const auto exact = render(texture, path, paper(), options);
+  options.engine = Engine::kernel;
+  const auto kernel = render(texture, path, paper(), options);
+  ASSERT_TRUE(exact && kernel) << message(kernel.error());
+  EXPECT_LT(kernel->error_db, -40);
+  EXPECT_EQ(kernel->delay_s, 0);
+  EXPECT_FALSE(kernel->clipping);
+  auto difference = exact->modelled_m;
+  for (std::size_t i = 0; i < difference.values.size(); ++i)
+    difference.values[i] -= kernel->modelled_m.values[i];
+  EXPECT_LT(rms_between(difference, 0.2, 1.8), 1e-2 * rms_between(exact->modelled_m, 0.2, 1.8));
+}
+
+TEST(Render, WhatTheKernelsLimitsTookAwayIsRefusedOrTold) {
+  const auto texture = sine_texture(0.12, 5e3, 0.2);
+  RenderOptions options;
+  options.engine = Engine::kernel;
+  const auto refused = render(texture, steady_path(0.005, 0.05, 2), paper(), options);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(message(refused.error()).find("--over-limit clip"), std::string::npos);
+  options.over_limit = OverLimit::clip;
+  const auto clipped = render(texture, steady_path(0.005, 0.05, 2), paper(), options);
+  ASSERT_TRUE(clipped);
+  ASSERT_TRUE(clipped->clipping);
+  EXPECT_GT(clipped->clipping->samples, 5000U);
+  EXPECT_GT(clipped->clipping->removed_db, -20);
+  EXPECT_LE(clipped->peaks.drive_v.value, 5);
+}
+
 TEST(Render, SignalsShareThePathsAxis) {
   const auto texture = sine_texture(0.12, 5e3, 0.01);
   FingerPath path = steady_path(0.005, 0.05, 2);
