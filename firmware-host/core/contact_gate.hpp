@@ -19,7 +19,8 @@ class ContactGate {
     weight_.set(ticks, ticks);
   }
   float step(float force_n) noexcept {
-    if (!(on_n_ > 0) || !is_finite(force_n)) return weight_.step(true), 1;
+    if (!(on_n_ > 0)) return 1;
+    if (!is_finite(force_n)) return weight_.step(true), 1;
     touching_ = touching_ ? force_n >= off_n_ : force_n >= on_n_;
     return weight_.step(touching_);
   }

@@ -15,6 +15,7 @@ class Envelope {
     level_ = 0;
   }
   float step(bool raise) noexcept {
+    if (raise && level_ >= 1) return 1;
     level_ += raise ? rise_ : -fall_;
     level_ = level_ < 0 ? 0 : level_ > 1 ? 1 : level_;
     return level_ * level_ * (3 - 2 * level_);

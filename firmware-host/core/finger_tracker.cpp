@@ -90,7 +90,7 @@ void FingerTracker::see(int32_t moved) noexcept {
 
 FingerPlace FingerTracker::track(int32_t count) noexcept {
   if (!begun_) begin(count);
-  const int32_t moved = count - count_;
+  const auto moved = static_cast<int32_t>(static_cast<uint32_t>(count) - static_cast<uint32_t>(count_));
   since_ += 1;
   offset_ += speed_;
   count_ = count;

@@ -29,7 +29,7 @@ class TimeHistogram {
   }
 
  private:
-  static constexpr std::size_t kPerOctave = 8, kFirstOctave = 4, kBuckets = 8 * 28;
+  static constexpr std::size_t kPerOctave = 8, kFirstOctave = 4, kBuckets = kPerOctave * 28;
   static std::size_t bucket(std::uint64_t ns) noexcept {
     if (ns < 16) return 0;
     const auto octave = static_cast<std::size_t>(std::bit_width(ns) - 1);
