@@ -21,7 +21,7 @@ constexpr double kBandMargin = 1.01;
 constexpr double kFirstPenalty = 1e-9, kLeastRaisedPenalty = 1e-8;
 constexpr double kAim = 0.95;  // of the gain's bound
 constexpr double kRidge = 1e-12;
-constexpr int kMostRounds = 80;
+constexpr int kMostLawsonRounds = 80;
 
 double decibels(double ratio) {
   return 20 * std::log10(std::max(ratio, 1e-30));
@@ -46,7 +46,7 @@ class Designer {
     count_ = static_cast<std::size_t>(std::clamp(wished, kLeastTaps, kMostTaps));
     penalties_.assign(kGrid + 1, kFirstPenalty);
     std::vector<double> taps = solved();
-    for (int round = 0; round < kMostRounds && raise_penalties(taps); ++round) taps = solved();
+    for (int round = 0; round < kMostLawsonRounds && raise_penalties(taps); ++round) taps = solved();
     return taps;
   }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <complex>
+#include <limits>
 #include <random>
 
 #include "made_textures.hpp"
@@ -155,6 +156,26 @@ TEST(FingerTracker, ADitheringEncoderIsAFingerAtRest) {
     const auto place = tracker.track(100 + i % 2);
     if (i < 2) continue;
     EXPECT_NEAR(place.count + double{place.offset}, 101, 1e-6) << i;
+  }
+}
+
+// Whatever an encoder says, the drive is a number: jumps from end to end of its counter, and back.
+TEST(FingerTracker, AnyCountsGiveANumber) {
+  PrepareOptions options;
+  options.ends = Ends::loop;
+  const auto texture = texture_of(0.01, [](double x) { return std::sin(kTwoPi * 1e3 * x); });
+  const auto prepared = prepare(texture, *schema::read_transducer("wiertlewski2011"), options);
+  core::TickKernel kernel;
+  kernel.set(prepared->setup());
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  std::mt19937 random(3);
+  for (int i = 0; i < 20000; ++i) {
+    const auto any = static_cast<std::int32_t>(random());
+    const std::int32_t count = i % 5 == 0 ? kLeast : i % 5 == 1 ? kMost : i % 5 == 2 ? any : i;
+    const auto output = kernel.tick({count, 1e-3F, true, core::kNoForce});
+    ASSERT_TRUE(output.sound) << i;
+    ASSERT_LE(std::abs(output.drive_v), 5) << i;
   }
 }
 

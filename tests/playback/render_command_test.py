@@ -35,7 +35,7 @@ def check_refusals(folder):
     expect_refusal(folder, USAGE, "two outputs", wanted=folder / "drive.wav")
     expect_refusal(folder, USAGE, "mm/N", gain="1")
     expect_refusal(folder, USAGE, "1000Hz", rate="1kHz")
-    expect_refusal(folder, USAGE, "--inverse", inverse="none")
+    expect_refusal(folder, USAGE, "--inverse", inverse="phase")
     expect_refusal(folder, UNSUITABLE, "never meets", at="1m")
     expect_refusal(folder, UNSUITABLE, "largest gain that fits", gain="100mm/N")
     (folder / "bad.csv").write_text("time_s,position_m\n0,0\n1,x\n")
@@ -66,6 +66,12 @@ def check_report(folder):
     assert (folder / "drive.wav").read_bytes() == first
 
 
+def check_kernel(folder):
+    report = made.report_of("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "kernel.wav",
+                            "--engine", "kernel", "--encoder-step", "0.5um", "--hold", "zero-order")
+    assert report["displacement_error_db"] < -30 and report["delay_s"] == 0, report  # with the path's rests in it
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -73,6 +79,7 @@ def main():
         made.write_path(folder / "path.csv", [0, 0.1, 1.1, 1.2], [0.002, 0.002, 0.04, 0.04])
         check_refusals(folder)
         check_clipping(folder)
+        check_kernel(folder)
         check_report(folder)
 
 

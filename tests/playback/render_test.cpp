@@ -67,7 +67,7 @@ TEST(Render, TheKernelsDriveIsTheReferences) {
   options.engine = Engine::kernel;
   const auto kernel = render(texture, path, paper(), options);
   ASSERT_TRUE(exact && kernel) << message(kernel.error());
-  EXPECT_LT(kernel->error_db, -40);
+  EXPECT_LT(kernel->error_db, -30);
   EXPECT_EQ(kernel->delay_s, 0);
   EXPECT_FALSE(kernel->clipping);
   auto difference = exact->modelled_m;
