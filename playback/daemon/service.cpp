@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <ctime>
@@ -166,6 +167,10 @@ Result<ControlFields> Service::load(const ControlRequest& request) {
   for (std::size_t i = 0; i < notes_.size(); ++i)
     fields.emplace_back(fmt::format("note_{}", i + 1), notes_[i]);
   scene_path_ = program->scene_path;
+  const double most_counts =
+      std::ceil(config_.most_speed_mps / (player_->metres_per_count() * config_.rate_hz));
+  program->prepared.limits.counts_per_tick =
+      static_cast<std::uint16_t>(std::clamp(std::abs(most_counts), 10.0, 65535.0));
   if (const auto kept = player_->load(std::move(*program)); !kept) return schema::forward_error(kept);
   loaded_ = request.file;
   if (const auto fresh = player_->gain(1); !fresh) return schema::forward_error(fresh);
