@@ -7,15 +7,15 @@
 
 namespace tacto::firmware_host {
 
-/// Gives the calling thread the lowest priority of SCHED_FIFO, where the user may have it, and takes it back
-/// at the end; threads made in between inherit it. Without the permission nothing happens: `tactograph
-/// doctor` says whether there is one. Made and destroyed by the same thread.
+/// Gives the calling thread a priority of SCHED_FIFO (1 is the lowest; 0: none), where the user may have it,
+/// and takes it back at the end; threads made in between inherit it. Without the permission nothing happens:
+/// `tactograph doctor` says whether there is one. Made and destroyed by the same thread.
 class RealtimePriority {
  public:
-  RealtimePriority() noexcept {
+  explicit RealtimePriority(int priority = 1) noexcept {
     const bool known = pthread_getschedparam(pthread_self(), &policy_, &before_) == 0;
-    const sched_param lowest{sched_get_priority_min(SCHED_FIFO)};
-    granted_ = known && pthread_setschedparam(pthread_self(), SCHED_FIFO, &lowest) == 0;
+    const sched_param wish{priority};
+    granted_ = known && priority > 0 && pthread_setschedparam(pthread_self(), SCHED_FIFO, &wish) == 0;
   }
   RealtimePriority(const RealtimePriority&) = delete;
   RealtimePriority& operator=(const RealtimePriority&) = delete;

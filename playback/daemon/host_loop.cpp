@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/daemon/host_loop.hpp"
 
-#include <pthread.h>
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstring>
 
+#include "firmware-host/realtime_priority.hpp"
 #include "firmware-host/wire_fields.hpp"
 #include "firmware-host/wire_words.hpp"
 
@@ -55,13 +53,6 @@ Result<std::size_t> position_channel(const firmware_host::Description& about) {
   return fail(Fault::device, "the device streams no position", "host loop");
 }
 
-bool become_real_time(int priority) {
-  if (priority <= 0) return false;
-  sched_param wish{};
-  wish.sched_priority = priority;
-  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &wish) == 0;
-}
-
 }  // namespace
 
 HostLoop::HostLoop(firmware_host::Client& device, const HostLoopOptions& options, std::size_t channel)
@@ -106,7 +97,8 @@ HostLoopStatus HostLoop::status() const {
 
 // The real-time thread. While nothing ticks it answers the player a thousand times a second.
 void HostLoop::tick_forever() {
-  real_time_.store(become_real_time(options_.priority));
+  const firmware_host::RealtimePriority priority(options_.priority);
+  real_time_.store(priority.granted());
   TickClock clock;
   std::uint64_t missed = 0;
   bool ticked = false;
