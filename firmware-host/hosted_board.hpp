@@ -16,8 +16,8 @@ namespace tacto::firmware_host {
 /// Room for a texture: 16 MB, of which the system gives only what is written to.
 class HostedProfile {
  public:
-  static constexpr std::uint32_t kSamples = 1U
-                                            << 22;  ///< a metre of texture on a 1 um grid, in all its levels
+  /// A metre of texture on a 1 um grid, in all its levels.
+  static constexpr std::uint32_t kSamples = 1U << 22;
   float* data() { return samples_.get(); }
 
  private:
