@@ -132,7 +132,8 @@ void undo_chain(Prepared& prepared, const schema::Transducer& transducer, const 
 }
 
 wire::Limits limits_of(const schema::Transducer& t, const PrepareOptions& o) {
-  const double counts = std::ceil(4 * o.max_speed_mps / (o.metres_per_count * o.rate_hz));
+  const double jump_mps = o.jump_mps > 0 ? o.jump_mps : 4 * o.max_speed_mps;
+  const double counts = std::ceil(jump_mps / (o.metres_per_count * o.rate_hz));
   return {static_cast<float>(t.drive_limit_v),
           static_cast<float>(t.slew_limit_v_per_s),
           static_cast<float>(o.onset_s),

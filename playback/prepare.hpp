@@ -48,6 +48,7 @@ struct PrepareOptions {
   bool look_ahead = true;      ///< read where the finger will be after that delay
   bool between_counts = true;  ///< time the encoder's edges
   double max_speed_mps = 0.5;  ///< up to which nothing folds; beyond, the texture fades to silence
+  double jump_mps = 0;         ///< beyond it the encoder has jumped, a fault; 0: four times max_speed_mps
   double onset_s = 0.05, release_s = 0.01;
   std::uint16_t watchdog_ms = 100;
   double energy_rms_v = 0, energy_window_s = 1;     ///< 0: no such limit

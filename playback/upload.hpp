@@ -2,8 +2,6 @@
 // What was prepared, into a device whose firmware closes the loop.
 #pragma once
 
-#include <optional>
-
 #include "firmware-host/client.hpp"
 #include "playback/prepare.hpp"
 

@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "capture/cli/live_line.hpp"
-#include "capture/cli/stop_signals.hpp"
 #include "capture/cli/terminal_keys.hpp"
 #include "capture/cli/verbs.hpp"
 #include "capture/take_name.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/report.hpp"
+#include "data-schema/cli/stop_signals.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
 
 namespace tacto::capture {
@@ -148,7 +148,7 @@ class Console {
     }
   }
 
-  StopSignals signals_;
+  cli::StopSignals signals_;
   TerminalKeys keys_;
   cli::Progress progress_{"recording"};
   bool stopped_ = false;

@@ -23,8 +23,7 @@ class EnergyLimiter {
     const float least = limit_v_ * limit_v_;
     if (mean_square_ <= least && root_v_ <= limit_v_ * kAtLimit) return root_v_ = limit_v_, wished_v;
     root_v_ = 0.5F * (root_v_ + (mean_square_ > least ? mean_square_ : least) / root_v_);
-    if (mean_square_ <= least) return wished_v * (limit_v_ / root_v_);
-    flags |= wire::kTickEnergyLimited;
+    if (mean_square_ > least) flags |= wire::kTickEnergyLimited;
     return wished_v * (limit_v_ / root_v_);
   }
 

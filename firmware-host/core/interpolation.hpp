@@ -16,8 +16,7 @@ inline constexpr int32_t kReach = 8, kBefore = 3;
 /// - hermite: cubic, slopes from central differences of fourth order, m_i = (8 (y_i+1 - y_i-1) - (y_i+2 -
 ///   y_i-2)) / 12: at most 0.0026 w^4 + 0.0032 w^5, and 4e-7 for single precision.
 /// - sinc: eight samples under a Kaiser window (beta 8), for profiles of few samples a period: at most 6e-4
-/// up
-///   to w = 1.05 (six samples a period), where hermite errs by 7e-3.
+///   up to w = 1.05 (six samples a period), where hermite errs by 7e-3.
 /// Safe in the tick.
 float interpolated(wire::Interpolation kind, const float* y, float u) noexcept;
 

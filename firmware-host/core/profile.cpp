@@ -75,11 +75,9 @@ float Profile::read(uint32_t which, int64_t place) const noexcept {
   const auto index = static_cast<int32_t>(place >> 32);
   const float u = static_cast<float>(static_cast<uint32_t>(place) >> 8) * kPerFraction;
   int32_t first = index - kBefore;
-  if (first >= 0 && first + kReach <= level.size)
-    return interpolated(scale_.interpolation, level.samples + first, u);
-  if (scale_.ends == wire::ProfileEnds::loop) first = wrapped(first, level.size);
-  if (first >= 0 && first + kReach <= level.size)
-    return interpolated(scale_.interpolation, level.samples + first, u);
+  const auto inside = [&] { return first >= 0 && first + kReach <= level.size; };
+  if (!inside() && scale_.ends == wire::ProfileEnds::loop) first = wrapped(first, level.size);
+  if (inside()) return interpolated(scale_.interpolation, level.samples + first, u);
   float y[kReach];
   gather(level, first, y);
   return interpolated(scale_.interpolation, y, u);

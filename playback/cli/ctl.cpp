@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
+#include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/control_connection.hpp"
 
@@ -29,12 +28,6 @@ constexpr const char* kUsualSocket = "/run/tactographd/control";
 constexpr int kEventMs = 500;
 constexpr std::array<std::string_view, 10> kCtlActions = {"hello",  "load", "arm",    "play",  "stop",
                                                           "disarm", "gain", "status", "watch", "top"};
-
-std::atomic<bool> ctl_stop_asked{false};
-
-void ask_ctl_to_stop(int) {
-  ctl_stop_asked = true;
-}
 
 struct CtlOptions {
   std::string socket = kUsualSocket, action, what, ends;
@@ -117,15 +110,15 @@ void show_event(const schema::ControlReply& event, bool top) {
 
 // Until it is interrupted, or the time is over: nothing can be asked meanwhile.
 Result<Report> watch(ControlConnection& connection, const CtlOptions& o) {
+  const cli::StopSignals signals;
   const auto begun = std::chrono::steady_clock::now();
   const auto elapsed_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   };
-  while (!ctl_stop_asked && (!o.time_s || elapsed_s() < *o.time_s)) {
+  while (!signals.stop_asked() && (!o.time_s || elapsed_s() < *o.time_s)) {
     const auto event = connection.next_event(kEventMs);
-    if (!event && event.error().what == "the daemon hung up") return schema::forward_error(event);
-    if (!event) continue;
-    show_event(*event, o.action == "top");
+    if (!event) return schema::forward_error(event);
+    if (*event) show_event(**event, o.action == "top");
   }
   return Report();
 }
@@ -142,10 +135,7 @@ Result<Report> run_ctl(const CtlOptions& o) {
   }
   const auto answer = connection->ask(*request);
   if (!answer) return schema::forward_error(answer);
-  if (request->verb == ControlVerb::watch) {
-    std::signal(SIGINT, ask_ctl_to_stop);
-    return watch(*connection, o);
-  }
+  if (request->verb == ControlVerb::watch) return watch(*connection, o);
   add_fields(report, *answer);
   return report;
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/daemon/play.hpp"
 
-#include <atomic>
-#include <csignal>
 #include <memory>
 
 #include "data-schema/cli/progress.hpp"
+#include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/verbs.hpp"
 
 namespace tacto::playback {
@@ -15,12 +14,6 @@ using schema::Dimension;
 using schema::Result;
 
 namespace {
-
-std::atomic<bool> play_stop_asked{false};
-
-void ask_play_to_stop(int) {
-  play_stop_asked = true;
-}
 
 void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
@@ -85,10 +78,10 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome) {
 
 Result<Report> run_play(PlayOptions o) {
   o.session = schema::session_path(o.session);
-  std::signal(SIGINT, ask_play_to_stop);
-  std::signal(SIGTERM, ask_play_to_stop);
+  const cli::StopSignals signals;
   cli::Progress progress("playing");
-  const auto outcome = play_once(o, play_stop_asked, [&](double part) { progress.update(part); });
+  const auto outcome = play_once(
+      o, [&] { return signals.stop_asked(); }, [&](double part) { progress.update(part); });
   if (!outcome) return schema::forward_error(outcome);
   return play_report(o, *outcome);
 }

@@ -5,7 +5,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <utility>
 
 #include "playback/daemon/control_socket.hpp"
@@ -56,7 +55,7 @@ Result<ControlConnection> ControlConnection::open(const std::string& socket) {
   return connection;
 }
 
-Result<std::string> ControlConnection::line(int timeout_ms) {
+Result<std::optional<std::string>> ControlConnection::line(int timeout_ms) {
   for (;;) {
     if (const auto end = received_.find('\n'); end != std::string::npos) {
       std::string line = received_.substr(0, end);
@@ -64,9 +63,7 @@ Result<std::string> ControlConnection::line(int timeout_ms) {
       return line;
     }
     pollfd waiting{descriptor_, POLLIN, 0};
-    const int ready = poll(&waiting, 1, timeout_ms);
-    if (ready < 0 && errno == EINTR) return fail(Fault::device, "interrupted", socket_);
-    if (ready <= 0) return fail(Fault::device, "the daemon says nothing", socket_, "see its journal");
+    if (poll(&waiting, 1, timeout_ms) <= 0) return std::optional<std::string>();
     char bytes[4096];
     const ssize_t got = recv(descriptor_, bytes, sizeof bytes, 0);
     if (got <= 0) return fail(Fault::device, "the daemon hung up", socket_, "see its journal");
@@ -80,15 +77,18 @@ Result<ControlFields> ControlConnection::ask(const ControlRequest& request) {
     return fail(Fault::device, "the daemon hung up", socket_, "see its journal");
   const auto answer = line(kAnswerMs);
   if (!answer) return schema::forward_error(answer);
-  auto reply = schema::parse_control_reply(*answer);
+  if (!*answer) return fail(Fault::device, "the daemon says nothing", socket_, "see its journal");
+  auto reply = schema::parse_control_reply(**answer);
   if (!reply) return schema::forward_error(reply);
   if (!reply->ok) return tl::unexpected(reply->error);
   return std::move(reply->fields);
 }
 
-Result<ControlReply> ControlConnection::next_event(int timeout_ms) {
+Result<std::optional<ControlReply>> ControlConnection::next_event(int timeout_ms) {
   const auto text = line(timeout_ms);
-  return text ? schema::parse_control_reply(*text) : schema::forward_error(text);
+  if (!text) return schema::forward_error(text);
+  if (!*text) return std::optional<ControlReply>();
+  return schema::parse_control_reply(**text);
 }
 
 }  // namespace tacto::playback

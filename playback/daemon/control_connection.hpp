@@ -2,6 +2,7 @@
 // A client's side of the control socket.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "data-schema/control.hpp"
@@ -18,14 +19,15 @@ class ControlConnection {
 
   /// Sends and waits, 10 s at most. Errors: the daemon's own; device: it hung up, or says nothing.
   schema::Result<schema::ControlFields> ask(const schema::ControlRequest& request);
-  /// After `watch`: the next event. Errors: device: it hung up, or nothing came for `timeout_ms`.
-  schema::Result<schema::ControlReply> next_event(int timeout_ms);
+  /// After `watch`: the next event; none where nothing came for `timeout_ms`, or a signal did. Errors:
+  /// device: it hung up; malformed: a line that is no event.
+  schema::Result<std::optional<schema::ControlReply>> next_event(int timeout_ms);
   const schema::ControlFields& hello() const { return hello_; }
 
  private:
   ControlConnection(std::string socket, int descriptor)
       : socket_(std::move(socket)), descriptor_(descriptor) {}
-  schema::Result<std::string> line(int timeout_ms);
+  schema::Result<std::optional<std::string>> line(int timeout_ms);
   std::string socket_;
   int descriptor_;
   std::string received_;

@@ -26,9 +26,10 @@ struct RecorderCounts {
   std::string failure;           ///< the disk's last words; empty while it works
 };
 
-/// tick() puts into a queue of 65,536 (3 s at 20 kHz, 2 MB), without a lock, allocation or system call; a
-/// thread of its own writes, and syncs every 100 ms. All else is for the same one thread as tick(), and takes
-/// a lock that the writer never holds while it writes.
+/// tick() puts into a queue of 65,536 (3 s at 20 kHz, 2 MB), without a lock, allocation or system call (but
+/// for the tick that finds room again: it notes what was lost); a thread of its own writes, and syncs every
+/// 100 ms. All else is for the same one thread as tick(), and takes a lock that the writer never holds while
+/// it writes.
 class FlightRecorder {
  public:
   /// Errors: as SessionWriter::create.

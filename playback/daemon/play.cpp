@@ -14,21 +14,9 @@ using schema::Result;
 
 constexpr double kUsualS = 10, kPlayStepS = 0.01, kReleaseWaitS = 0.05;
 
-Result<std::optional<FingerScript>> script_at(const std::string& file) {
-  if (file.empty()) return std::optional<FingerScript>();
-  auto path = read_finger_path(file);
-  if (!path) return schema::forward_error(path);
-  return std::optional(FingerScript{std::move(*path), false});
-}
-
 double time_of(const PlayOptions& options, const std::optional<FingerScript>& script) {
   if (options.time_s) return *options.time_s;
   return script ? script->path.duration_s() : kUsualS;
-}
-
-// In emulated time nobody waits, so nothing may be lost.
-bool is_unpaced(const std::string& uri) {
-  return uri.starts_with("sim:") && uri.find("paced=1") == std::string::npos;
 }
 
 Result<std::string> transducer_for(const PlayOptions& options, const firmware_host::Capabilities& about) {
@@ -47,9 +35,9 @@ Result<Program> program_for(const PlayOptions& options, const PlayerDevice& devi
   return make_program(options.program, *transducer, prepare);
 }
 
-Result<void> run_until(Player& player, double time_s, const std::atomic<bool>& stop_asked,
+Result<void> run_until(Player& player, double time_s, const std::function<bool()>& stop_asked,
                        const std::function<void(double)>& progress) {
-  while (player.played_s() < time_s && !stop_asked) {
+  while (player.played_s() < time_s && !stop_asked()) {
     if (const auto done = player.step(kPlayStepS); !done) return done;
     if (player.state() == PlayerState::fault) break;
     if (progress) progress(player.played_s() / time_s);
@@ -77,8 +65,8 @@ PlayOutcome outcome_of(const Prepared& made) {
 }
 
 Result<void> play_through(Player& player, const PlayOptions& options, double time_s,
-                          const std::atomic<bool>& stop_asked, const std::function<void(double)>& progress,
-                          PlayOutcome& outcome) {
+                          const std::function<bool()>& stop_asked,
+                          const std::function<void(double)>& progress, PlayOutcome& outcome) {
   if (const auto done = player.gain(options.gain); !done) return done;
   if (const auto done = player.arm(options.session); !done) return done;
   if (const auto done = player.play(); !done) return done;
@@ -91,14 +79,15 @@ Result<void> play_through(Player& player, const PlayOptions& options, double tim
 
 }  // namespace
 
-Result<PlayOutcome> play_once(const PlayOptions& options, const std::atomic<bool>& stop_asked,
+Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                               const std::function<void(double)>& progress) {
-  const auto script = script_at(options.finger_path);
+  const auto script = read_finger_script(options.finger_path, false);
   if (!script) return schema::forward_error(script);
   auto device = open_player_device(options.device_uri, *script);
   if (!device) return schema::forward_error(device);
   PlayerOptions player_options;
-  player_options.full_queue = is_unpaced(options.device_uri) ? FullQueue::wait : FullQueue::lose;
+  // In emulated time nobody waits, so nothing may be lost.
+  player_options.full_queue = device->device->keeps_time() ? FullQueue::lose : FullQueue::wait;
   const auto player = Player::make(*device->client, device->uri, player_options);
   if (!player) return schema::forward_error(player);
   auto program = program_for(options, *device, (*player)->metres_per_count());

@@ -2,7 +2,6 @@
 // Plays once, from opening the device to the closed session, without a daemon.
 #pragma once
 
-#include <atomic>
 #include <functional>
 
 #include "playback/daemon/player.hpp"
@@ -32,7 +31,7 @@ struct PlayOutcome {
 
 /// Emulated devices play as fast as they can, or paced; `stop_asked` ends it early, by a ramp. A fault ends
 /// it too, and is in the outcome. Errors: as open_player_device, make_program, Player.
-schema::Result<PlayOutcome> play_once(const PlayOptions& options, const std::atomic<bool>& stop_asked,
+schema::Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                                       const std::function<void(double)>& progress = {});
 
 }  // namespace tacto::playback

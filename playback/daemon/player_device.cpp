@@ -90,6 +90,13 @@ Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
               "stop it: tactographd, or tactograph play");
 }
 
+Result<std::optional<FingerScript>> read_finger_script(const std::string& file, bool repeated) {
+  if (file.empty()) return std::optional<FingerScript>();
+  auto path = read_finger_path(file);
+  if (!path) return schema::forward_error(path);
+  return std::optional(FingerScript{std::move(*path), repeated});
+}
+
 Result<PlayerDevice> open_player_device(const std::string& uri, const std::optional<FingerScript>& script) {
   auto device = script ? open_scripted(uri, *script) : firmware_host::open_device(uri);
   if (!device) return schema::forward_error(device);

@@ -33,6 +33,9 @@ struct FingerScript {
   bool repeated = false;  ///< there and back, over and over; else it rests at the end
 };
 
+/// The script of a finger path's CSV; none where no file is named. Errors: as read_finger_path.
+schema::Result<std::optional<FingerScript>> read_finger_script(const std::string& file, bool repeated);
+
 struct PlayerDevice {
   std::unique_ptr<firmware_host::Device> device;
   firmware_host::Client* client = nullptr;

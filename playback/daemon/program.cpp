@@ -106,8 +106,17 @@ std::vector<PlacedTexture> placed(const Laid& laid) {
 }
 
 const char* word_of(Inverse inverse) {
-  if (inverse == Inverse::full) return "full";
-  return inverse == Inverse::magnitude ? "magnitude" : "gain";
+  switch (inverse) {
+    case Inverse::full:
+      return "full";
+    case Inverse::magnitude:
+      return "magnitude";
+    case Inverse::gain:
+      return "gain";
+    case Inverse::none:
+      break;
+  }
+  return "none";
 }
 
 std::string transducer_sum(const std::string& name) {

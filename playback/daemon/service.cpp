@@ -37,13 +37,6 @@ std::string paced(const std::string& uri) {
   return uri + (uri == "sim:" ? "paced=1" : ",paced=1");
 }
 
-Result<std::optional<FingerScript>> script_of(const schema::DaemonConfig& config) {
-  if (config.finger_path.empty()) return std::optional<FingerScript>();
-  auto path = read_finger_path(config.finger_path);
-  if (!path) return schema::forward_error(path);
-  return std::optional(FingerScript{std::move(*path), true});
-}
-
 void add_ticks(ControlFields& fields, const TickView& view) {
   const auto count = [](std::uint64_t n) { return static_cast<std::int64_t>(n); };
   fields.emplace_back("ticks", count(view.ticks()));
@@ -96,7 +89,7 @@ Result<void> Service::connect() {
   loop_client_.reset();
   loop_.reset();
   device_ = {};
-  const auto script = script_of(config_);
+  const auto script = read_finger_script(config_.finger_path, true);
   if (!script) return schema::forward_error(script);
   auto device = open_player_device(paced(config_.device), *script);
   if (!device) return schema::forward_error(device);
@@ -137,6 +130,7 @@ PrepareOptions Service::options() {
   options.onset_s = config_.onset_s;
   options.release_s = kReleaseS;
   options.watchdog_ms = static_cast<std::uint16_t>(config_.watchdog_ms);
+  options.jump_mps = config_.most_speed_mps;
   options.most_samples = client().description().welcome.profile_samples;
   return options;
 }
@@ -167,10 +161,7 @@ Result<ControlFields> Service::load(const ControlRequest& request) {
   for (std::size_t i = 0; i < notes_.size(); ++i)
     fields.emplace_back(fmt::format("note_{}", i + 1), notes_[i]);
   scene_path_ = program->scene_path;
-  const double most_counts =
-      std::ceil(config_.most_speed_mps / (player_->metres_per_count() * config_.rate_hz));
-  program->prepared.limits.counts_per_tick =
-      static_cast<std::uint16_t>(std::clamp(std::abs(most_counts), 10.0, 65535.0));
+  saved_gain_ = 1;
   if (const auto kept = player_->load(std::move(*program)); !kept) return schema::forward_error(kept);
   loaded_ = request.file;
   if (const auto fresh = player_->gain(1); !fresh) return schema::forward_error(fresh);
@@ -195,8 +186,11 @@ Result<ControlFields> Service::arm() {
   return ControlFields{{"state", std::string(word_of(player_->state()))}, {"session", path}};
 }
 
-// G_psi as it was felt to be right, with who and when: the file's own gains times the factor.
+// G_psi as it was felt to be right, with who and when: the gains that were loaded times the factor, however
+// often it is saved.
 Result<void> Service::save_gain(double factor) {
+  if (factor == 0)
+    return fail(Fault::usage, "a gain of 0 would lose the layers' own gains", loaded_, "save another one");
   if (scene_path_.empty())
     return fail(Fault::usage, "a texture by itself keeps no gain", loaded_, "load a scene");
   auto scene = schema::read_scene(scene_path_);
@@ -204,12 +198,14 @@ Result<void> Service::save_gain(double factor) {
   for (schema::Layer& layer : scene->layers)
     std::visit(
         [&](schema::TextureLayer& texture) {
-          texture.gain_m_per_n *= factor;
+          texture.gain_m_per_n *= factor / saved_gain_;
           texture.gain_set_by = "tactographd";
           texture.gain_set_on = schema::creation_time();
         },
         layer);
-  return schema::write_scene(scene_path_, *scene);
+  auto written = schema::write_scene(scene_path_, *scene);
+  if (written) saved_gain_ = factor;
+  return written;
 }
 
 Result<ControlFields> Service::gain(const ControlRequest& request) {

@@ -54,6 +54,7 @@ class Service {
   std::unique_ptr<firmware_host::Client> loop_client_;
   std::unique_ptr<Player> player_;
   std::string loaded_, scene_path_;
+  double saved_gain_ = 1;  // that the scene's file holds, of the gains that were loaded
   std::vector<std::string> notes_;
   double next_status_s_ = 0;
 };

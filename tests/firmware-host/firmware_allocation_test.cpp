@@ -3,28 +3,9 @@
 // playing, streaming, being spoken to and in fault.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "tests/firmware-host/allocation_hook.hpp"
 #include "tests/firmware-host/firmware_bench.hpp"
 #include "tests/firmware-host/kernel_workload.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace tacto::core {
 namespace {
@@ -37,9 +18,9 @@ static_assert(noexcept(std::declval<TickKernel&>().tick(0, true, std::declval<ui
                                                         std::declval<bool&>())));
 
 TEST(Allocation, TheHookSeesAllocations) {
-  const long before = allocations;
+  const long before = tests::allocations_here();
   ::operator delete(::operator new(8));
-  EXPECT_EQ(allocations, before + 1);
+  EXPECT_EQ(tests::allocations_here(), before + 1);
 }
 
 TEST(Allocation, NeitherTickNorPollAllocates) {
@@ -49,7 +30,7 @@ TEST(Allocation, NeitherTickNorPollAllocates) {
   bench.board.to_host.reserve(10'000'000);
   const auto beat = tests::framed(wire::Heartbeat{1}, bench.sequence_);
   bench.board.from_host.insert(bench.board.from_host.end(), beat.begin(), beat.end());
-  const long before = allocations;
+  const long before = tests::allocations_here();
   for (int i = 0; i < 5000; ++i) {
     bench.board.clock += tests::kTestClockHz / 10000;
     bench.board.encoder += 1;
@@ -57,17 +38,17 @@ TEST(Allocation, NeitherTickNorPollAllocates) {
     bench.firmware->tick();
     bench.firmware->poll();
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(tests::allocations_here(), before);
   EXPECT_GT(bench.board.to_host.size(), 100'000U);
 }
 
 TEST(Allocation, TheKernelDoesNotAllocate) {
   static tests::KernelWorkload workload;
   static tests::TextureWorkload texture;
-  const long before = allocations;
+  const long before = tests::allocations_here();
   for (int i = 0; i < 1000; ++i) workload.tick();
   for (int i = 0; i < 20000; ++i) texture.tick();
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(tests::allocations_here(), before);
 }
 
 }  // namespace

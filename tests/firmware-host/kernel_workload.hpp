@@ -13,6 +13,19 @@ inline constexpr uint32_t kWorkloadSections = 8;
 /// Of all its drives: what every machine must give. It changes only with the kernel or the workload.
 inline constexpr uint32_t kWorkloadFingerprint = 1475156588;
 
+/// Whole numbers of 16 bits, signed: a linear congruential generator.
+class WorkloadRandom {
+ public:
+  explicit WorkloadRandom(uint32_t seed) noexcept : state_(seed) {}
+  int32_t operator()() noexcept {
+    state_ = state_ * 1664525U + 1013904223U;
+    return static_cast<int32_t>(state_ >> 16) - 32768;
+  }
+
+ private:
+  uint32_t state_;
+};
+
 class KernelWorkload {
  public:
   /// A profile of smoothed noise, 10 um apart, read by an encoder of 1 um; eight sections of an actuator's
@@ -20,7 +33,7 @@ class KernelWorkload {
   KernelWorkload() noexcept {
     float smooth = 0;
     for (float& value : profile_)
-      value = smooth = 0.6F * smooth + static_cast<float>(next()) * (1.0F / 32768);
+      value = smooth = 0.6F * smooth + static_cast<float>(next_()) * (1.0F / 32768);
     kernel_.set_profile(
         {profile_, {kWorkloadSamples, -500, INT64_C(1) << 30, 429496730, wire::ProfileEnds::mirror}});
     kernel_.set({5, 15708, 0.05F, 0.01F, 100, 200}, 20000);
@@ -34,7 +47,7 @@ class KernelWorkload {
 
   /// One tick: the finger goes on by 0 to 3 counts, and turns now and then.
   float tick() noexcept {
-    const int32_t draw = next();
+    const int32_t draw = next_();
     if (draw % 500 == 0) way_ = -way_;
     count_ += way_ * (draw & 3);
     bool sound = true;
@@ -43,12 +56,8 @@ class KernelWorkload {
   uint32_t flags() const noexcept { return flags_; }
 
  private:
-  int32_t next() noexcept {
-    random_ = random_ * 1664525U + 1013904223U;
-    return static_cast<int32_t>(random_ >> 16) - 32768;
-  }
-
-  uint32_t random_ = 1, flags_ = 0, ticks_ = 0;
+  WorkloadRandom next_{1};
+  uint32_t flags_ = 0, ticks_ = 0;
   int32_t count_ = 0, way_ = 1;
   core::TickKernel kernel_;
   float profile_[kWorkloadSamples];
@@ -64,8 +73,8 @@ class TextureWorkload {
   TextureWorkload() noexcept {
     float smooth = 0;
     for (float& value : samples_)
-      value = smooth = 0.8F * smooth + static_cast<float>(next()) * (1.0F / 65536);
-    for (float& tap : taps_) tap = static_cast<float>(next()) * (1.0F / 131072);
+      value = smooth = 0.8F * smooth + static_cast<float>(next_()) * (1.0F / 65536);
+    for (float& tap : taps_) tap = static_cast<float>(next_()) * (1.0F / 131072);
     core::KernelSetup setup;
     setup.texture = {
         {samples_, {kTextureFirst, -500, INT64_C(3) << 30, 429496730, wire::ProfileEnds::mirror, 4}},
@@ -82,7 +91,7 @@ class TextureWorkload {
 
   /// One tick: the finger's speed wanders between rest and 4 counts a tick, and turns now and then.
   float tick() noexcept {
-    const int32_t draw = next();
+    const int32_t draw = next_();
     if (draw % 700 == 0) way_ = -way_;
     if (draw % 64 == 0) speed_ = (draw >> 6) & 7;
     part_ += speed_;
@@ -97,12 +106,8 @@ class TextureWorkload {
   uint32_t flags() const noexcept { return flags_; }
 
  private:
-  int32_t next() noexcept {
-    random_ = random_ * 1664525U + 1013904223U;
-    return static_cast<int32_t>(random_ >> 16) - 32768;
-  }
-
-  uint32_t random_ = 7, flags_ = 0, ticks_ = 0;
+  WorkloadRandom next_{7};
+  uint32_t flags_ = 0, ticks_ = 0;
   int32_t count_ = 0, way_ = 1, speed_ = 3, part_ = 0;
   core::TickKernel kernel_;
   float samples_[kTextureSamples], taps_[kTextureTaps];

@@ -13,7 +13,7 @@
 #include "playback/daemon/player.hpp"
 #include "playback/daemon/session_replay.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
-#include "tests/playback/allocation_hook.hpp"
+#include "tests/firmware-host/allocation_hook.hpp"
 
 namespace tacto::playback {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/playback/allocation_hook.hpp"
+#include "tests/firmware-host/allocation_hook.hpp"
 
 #include <cstdlib>
 #include <new>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/cli/stop_signals.hpp"
+#include "data-schema/cli/stop_signals.hpp"
 
 #include <atomic>
 #include <cstdlib>
 #include <iterator>
 
-namespace tacto::capture {
+namespace tacto::cli {
 namespace {
 
 // Handlers have no other way to the outside.
@@ -43,4 +43,4 @@ std::size_t StopSignals::take_marks() {
   return marks_asked.exchange(0);
 }
 
-}  // namespace tacto::capture
+}  // namespace tacto::cli

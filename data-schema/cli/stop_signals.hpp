@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people ask of a recording under way by signals.
+// What people ask of long work under way by signals.
 #pragma once
 
 #include <csignal>
 #include <cstddef>
 
-namespace tacto::capture {
+namespace tacto::cli {
 
 /// While it lives, SIGINT and SIGTERM ask to stop, SIGHUP too (the terminal went), and SIGUSR1 marks; before
 /// and after, signals do what they did. A second SIGINT ends the process at once. One at a time.
@@ -25,4 +25,4 @@ class StopSignals {
   struct sigaction before_[4]{};
 };
 
-}  // namespace tacto::capture
+}  // namespace tacto::cli
