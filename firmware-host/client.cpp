@@ -20,6 +20,7 @@ using wire::Parse;
 constexpr double kAnswerTimeoutS = 0.5;
 constexpr double kStallS = 1;
 constexpr int kAttempts = 3;
+constexpr double kMostBehindS = 10;  // of frames that stand before an answer; a device queues no more
 constexpr std::size_t kReceiveBytes = 16384;
 constexpr std::size_t kMostTicksKept = 4096;  // messages; 40 s where nobody takes them
 
@@ -40,15 +41,27 @@ Result<std::unique_ptr<Client>> Client::connect(std::unique_ptr<Transport> trans
 }
 
 Result<void> Client::greet() {
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    if (const auto flushed = attempt > 0 ? flush() : Result<void>(); !flushed) return flushed;
+  Asking asking{transport_->now_s(), blocks_seen_};
+  while (may_ask(asking)) {
+    if (const auto flushed = asking.times > 1 ? flush() : Result<void>(); !flushed) return flushed;
     const auto greeted = greet_once();
     if (!greeted) return schema::forward_error(greeted);
     if (!description_.welcome.major) continue;
     if (const auto version = check_version(); !version) return version;
     if (*greeted) return {};
   }
-  return silent(MessageType::hello);
+  return silent(MessageType::hello, asking);
+}
+
+// A device may have seconds of frames waiting for a slow bus, and its answer stands behind them: as long as
+// they come, it is not silent.
+bool Client::may_ask(Asking& asking) const {
+  const bool sends = blocks_seen_ > asking.blocks_seen;
+  asking.blocks_seen = blocks_seen_;
+  const bool in_time = transport_->now_s() - asking.since_s < kMostBehindS;
+  if (asking.times >= kAttempts && !(sends && in_time)) return false;
+  ++asking.times;
+  return true;
 }
 
 // An earlier program may have left half a frame: a device that waits for its end gets it, and finds the hello
@@ -119,7 +132,8 @@ Result<bool> Client::await(double timeout_s, Done done) {
 Result<void> Client::exchange(const Encoder& encode, MessageType type) {
   answer_.reset();
   const std::uint32_t first = sequence_;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  Asking asking{transport_->now_s(), blocks_seen_};
+  while (may_ask(asking)) {
     if (const auto sent = send(encode); !sent) return schema::forward_error(sent);
     const auto answered = await(kAnswerTimeoutS, [&] {
       return answer_ && answer_->of == type && answer_->of_sequence - first < sequence_ - first;
@@ -130,7 +144,7 @@ Result<void> Client::exchange(const Encoder& encode, MessageType type) {
     if (obeyed_) obeyed_(sent_);
     return {};
   }
-  return silent(type);
+  return silent(type, asking);
 }
 
 tl::unexpected<schema::Error> Client::refused(MessageType type, const wire::Answer& answer) const {
@@ -139,10 +153,10 @@ tl::unexpected<schema::Error> Client::refused(MessageType type, const wire::Answ
               std::move(words.remedy));
 }
 
-tl::unexpected<schema::Error> Client::silent(MessageType type) const {
+tl::unexpected<schema::Error> Client::silent(MessageType type, const Asking& asking) const {
   return fail(Fault::device,
-              fmt::format("the device did not answer {}, asked {} times in {:g} s", word_of(type), kAttempts,
-                          kAttempts * kAnswerTimeoutS),
+              fmt::format("the device did not answer {}, asked {} times in {:.1f} s", word_of(type),
+                          asking.times, transport_->now_s() - asking.since_s),
               where_, "unplug it and plug it in again");
 }
 
@@ -156,7 +170,8 @@ Result<void> Client::send_drive(const wire::Drive& drive) {
 
 Result<wire::Pulse> Client::heartbeat() {
   pulse_.reset();
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  Asking asking{transport_->now_s(), blocks_seen_};
+  while (may_ask(asking)) {
     std::uint32_t token = 0;
     const auto sent = send([&](std::uint32_t sequence, std::span<std::uint8_t> frame) {
       token = sequence;
@@ -167,7 +182,7 @@ Result<wire::Pulse> Client::heartbeat() {
     if (!answered) return schema::forward_error(answered);
     if (*answered) return *pulse_;
   }
-  return silent(MessageType::heartbeat);
+  return silent(MessageType::heartbeat, asking);
 }
 
 Result<void> Client::start_stream(std::uint32_t rate_millihertz, std::uint8_t block_frames) {
@@ -214,6 +229,7 @@ Result<void> Client::receive(double timeout_s) {
 
 void Client::accept(const wire::Frame& frame) {
   const auto type = static_cast<MessageType>(frame.header.type);
+  if (type == MessageType::samples) ++blocks_seen_;
   if (type == MessageType::welcome) return accept_welcome(frame);
   if (description_.welcome.major == 0 || frame.header.major != wire::kProtocolMajor) return;
   if (order_.check(frame.header.sequence) == wire::Order::stale) return;

@@ -41,7 +41,7 @@ struct LinkCounts {
 /// One connection. Every call ends within its timeouts, whatever the device does. One thread.
 class Client {
  public:
-  /// Says hello and waits for the description, up to three times. Errors: device: no answer, or none that
+  /// Says hello and waits for the description, as often as command(). Errors: device: no answer, or none that
   /// makes sense; unsupported_version: a device of a major version that is not spoken here, by name.
   static schema::Result<std::unique_ptr<Client>> connect(std::unique_ptr<Transport> transport,
                                                          std::string where);
@@ -50,8 +50,9 @@ class Client {
   Transport& transport() { return *transport_; }
   const std::string& where() const { return where_; }
 
-  /// Sends a command and waits for its answer; sends again where none comes, up to three times. Errors:
-  /// device: no answer, gone, or refused, with the reason.
+  /// Sends a command and waits for its answer; sends again where none comes: three times in 1.5 s, and up to
+  /// 10 s while a device is still sending frames that it had before. Errors: device: no answer, gone, or
+  /// refused, with the reason.
   template <class Message>
   schema::Result<void> command(const Message& message) {
     return exchange(
@@ -84,6 +85,11 @@ class Client {
   LinkCounts counts() const;
 
  private:
+  struct Asking {
+    double since_s = 0;
+    std::uint64_t blocks_seen = 0;  // when it was asked last
+    int times = 0;
+  };
   using Encoder = std::function<std::size_t(std::uint32_t sequence, std::span<std::uint8_t> frame)>;
   Client(std::unique_ptr<Transport> transport, std::string where);
   schema::Result<void> greet();
@@ -100,7 +106,8 @@ class Client {
   void accept_welcome(const wire::Frame& frame);
   void accept_samples(const wire::Frame& frame);
   tl::unexpected<schema::Error> refused(wire::MessageType type, const wire::Answer& answer) const;
-  tl::unexpected<schema::Error> silent(wire::MessageType type) const;
+  bool may_ask(Asking& asking) const;
+  tl::unexpected<schema::Error> silent(wire::MessageType type, const Asking& asking) const;
 
   std::unique_ptr<Transport> transport_;
   std::string where_;
@@ -119,6 +126,7 @@ class Client {
   bool converter_failed_ = false;
   std::uint32_t refused_drives_ = 0;
   std::vector<std::uint8_t> received_;
+  std::uint64_t blocks_seen_ = 0;   // messages of samples, of an earlier program too
   std::vector<std::uint8_t> sent_;  // the last frame
   std::function<void(std::span<const std::uint8_t>)> obeyed_;
 };

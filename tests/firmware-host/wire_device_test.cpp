@@ -229,6 +229,51 @@ TEST(WireDevice, ADeviceThatNeverAnswersIsAnError) {
   EXPECT_NE(started.error().what.find("did not answer stream_start"), std::string::npos);
 }
 
+// A bus that takes two thirds of what a device sends: the rest waits in the device, and all later answers
+// behind it.
+class SlowBus final : public Transport {
+ public:
+  explicit SlowBus(std::unique_ptr<Transport> inner) : inner_(std::move(inner)) {}
+  schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override {
+    std::array<std::uint8_t, 4096> fresh;
+    const auto came = inner_->read(fresh, waiting_.empty() ? timeout_s : kReadS);
+    if (!came) return came;
+    waiting_.insert(waiting_.end(), fresh.begin(), fresh.begin() + static_cast<std::ptrdiff_t>(*came));
+    const std::size_t size =
+        std::min({bytes.size(), waiting_.size(), *came > 0 ? *came * 2 / 3 + 1 : kIdleBytes});
+    std::copy_n(waiting_.begin(), size, bytes.begin());
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(size));
+    return size;
+  }
+  schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override {
+    return inner_->write(bytes, timeout_s);
+  }
+  double now_s() override { return inner_->now_s(); }
+
+ private:
+  static constexpr double kReadS = 4e-3;
+  static constexpr std::size_t kIdleBytes = 300;
+  std::unique_ptr<Transport> inner_;
+  std::deque<std::uint8_t> waiting_;
+};
+
+TEST(WireDevice, AnAnswerBehindSecondsOfFramesIsWaitedFor) {
+  const auto parameters = parse_sim_parameters(kParameters);
+  SimBoard board(*parameters, *schema::read_transducer("wiertlewski2011"),
+                 *make_surface(parameters->surface));
+  auto bus = std::make_unique<SlowBus>(std::make_unique<SimTransport>(board, false));
+  Transport& clock = *bus;
+  const auto device = WireDevice::open("test:", std::move(bus));
+  ASSERT_TRUE(device) << message(device.error());
+  const Streamed streamed = stream_from(**device, 40000);
+  EXPECT_FALSE(streamed.error);
+  EXPECT_TRUE(streamed.events.gaps.empty());
+  const double asked_s = clock.now_s();
+  const auto stopped = (*device)->stop();
+  EXPECT_TRUE(stopped) << message(stopped.error());
+  EXPECT_GT(clock.now_s() - asked_s, 1.5) << "longer than a silent device is waited for";
+}
+
 TEST(WireDevice, AStreamThatStallsIsAnErrorAfterItsFrames) {
   int blocks = 0;
   Bench bench = bench_with([&](MessageType type) {
