@@ -13,28 +13,28 @@ Json body_of(const Gap& gap) {
   return {{"frame", gap.frame}, {"device_sequence", gap.device_sequence}, {"count", gap.count}};
 }
 Gap gap_from(const Json& body) {
-  return {body["frame"], body["device_sequence"], body["count"]};
+  return {body.at("frame"), body.at("device_sequence"), body.at("count")};
 }
 
 Json body_of(const Mark& mark) {
   return {{"frame", mark.frame}, {"label", mark.label}};
 }
 Mark mark_from(const Json& body) {
-  return {body["frame"], body["label"]};
+  return {body.at("frame"), body.at("label")};
 }
 
 Json body_of(const ClockPair& pair) {
   return {{"device_sequence", pair.device_sequence}, {"device_s", pair.device_s}, {"host_s", pair.host_s}};
 }
 ClockPair clock_pair_from(const Json& body) {
-  return {body["device_sequence"], body["device_s"], body["host_s"]};
+  return {body.at("device_sequence"), body.at("device_s"), body.at("host_s")};
 }
 
 Json body_of(const FaultNote& fault) {
   return {{"frame", fault.frame}, {"what", fault.what}};
 }
 FaultNote fault_from(const Json& body) {
-  return {body["frame"], body["what"]};
+  return {body.at("frame"), body.at("what")};
 }
 
 namespace {

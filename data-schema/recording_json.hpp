@@ -27,6 +27,7 @@ Json body_of(const Gap& gap);
 Json body_of(const Mark& mark);
 Json body_of(const ClockPair& pair);
 Json body_of(const FaultNote& fault);
+/// These throw where a member is missing or of another type: a journal's lines have passed no schema.
 Gap gap_from(const Json& body);
 Mark mark_from(const Json& body);
 ClockPair clock_pair_from(const Json& body);

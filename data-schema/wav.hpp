@@ -25,6 +25,7 @@ struct WavInfo {
   bool integer = false;  ///< samples are integer PCM
   std::string format;    ///< libsndfile's words for it
   int code_bits = 0;     ///< width of the codes, where `integer`
+  bool plain = false;    ///< every sample is stored as itself, in as many bits: nothing is compressed
 };
 
 /// Reads any sound file that libsndfile knows. Not safe in the tick.

@@ -64,7 +64,8 @@ WavInfo described(const SF_INFO& header) {
           static_cast<std::uint64_t>(std::max<sf_count_t>(header.frames, 0)),
           holds_codes(header.format),
           words_for(header.format),
-          code_bits(header.format)};
+          code_bits(header.format),
+          holds_plain_samples(header.format)};
 }
 
 tl::unexpected<Error> truncated(const std::string& path, std::uint64_t promised, std::uint64_t present) {
@@ -85,7 +86,6 @@ struct WavReader::State {
   OpenSound file;
   WavInfo info;
   std::string path;
-  bool exact_length = false;
   std::uint64_t next_frame = 0;
 
   // Whole frames that `samples` has room for.
@@ -96,7 +96,7 @@ struct WavReader::State {
 
   Result<std::size_t> advanced(sf_count_t got, sf_count_t wanted) {
     next_frame += static_cast<std::uint64_t>(got);
-    if (got < wanted && exact_length && next_frame < info.frames)
+    if (got < wanted && info.plain && next_frame < info.frames)
       return truncated(path, info.frames, next_frame);
     return static_cast<std::size_t>(got);
   }
@@ -119,7 +119,7 @@ Result<WavReader> WavReader::open(const std::string& path) {
   if (!file) return fail(Fault::malformed, fmt::format("not a sound file: {}", sf_strerror(nullptr)), path);
   // Plain codes, not fractions of full scale.
   if (holds_codes(header.format)) sf_command(file.get(), SFC_SET_NORM_DOUBLE, nullptr, SF_FALSE);
-  State state{std::move(file), described(header), path, holds_plain_samples(header.format), 0};
+  State state{std::move(file), described(header), path, 0};
   return WavReader(std::make_unique<State>(std::move(state)));
 }
 
@@ -150,6 +150,9 @@ Result<std::vector<double>> read_wav_channel(const std::string& path, std::size_
   if (channel >= channels)
     return fail(Fault::unsuitable, fmt::format("has {} channels, no channel {}", channels, channel + 1),
                 path);
+  if (!reader->info().plain)
+    return fail(Fault::unsuitable, fmt::format("holds {}, not plain samples", reader->info().format), path,
+                "import it");
   std::vector<double> piece(std::max<std::size_t>(kPageSamples / channels, 1) * channels);
   std::vector<double> values;
   for (;;) {

@@ -96,6 +96,18 @@ TEST(WavReader, RefusesWhatItCantRead) {
   EXPECT_EQ(read_wav_channel(folder / "a.wav", 1).error().fault, Fault::unsuitable);
 }
 
+TEST(WavReader, RefusesToReadAChannelOfWhatIsCompressed) {
+  const TemporaryFolder folder;
+  std::string compressed = wav_of({1, 2, 3, 4}, 16, 8);
+  compressed[20] = 6;                      // A-law
+  compressed[32] = 1, compressed[34] = 8;  // a byte a frame
+  put(folder / "a.wav", compressed);
+  const auto samples = read_wav_channel(folder / "a.wav", 0);
+  ASSERT_FALSE(samples);
+  EXPECT_EQ(samples.error().fault, Fault::unsuitable);
+  EXPECT_NE(samples.error().what.find("not plain samples"), std::string::npos) << samples.error().what;
+}
+
 TEST(WavWriter, GivesEveryBitBack) {
   const TemporaryFolder folder;
   const std::vector<double> samples = {0.1,    -1e300, 5e-324, 0, std::numeric_limits<double>::infinity(),
