@@ -112,6 +112,8 @@ schema::SessionHeader Player::session_header() const {
 Result<void> Player::arm(const std::string& session_path) {
   if (const auto may = require(state_ == PlayerState::idle, "arm", "disarm first"); !may) return may;
   if (const auto may = require(loaded(), "arm", "load a texture or scene first"); !may) return may;
+  // Another program may have been killed in mid-play: the device is then still on its way to rest.
+  if (const auto rests = wait_for_idle(); !rests) return rests;
   auto recorder = FlightRecorder::begin(session_path, session_header(), options_.full_queue);
   if (!recorder) return schema::forward_error(recorder);
   recorder_ = std::move(*recorder);
@@ -120,8 +122,8 @@ Result<void> Player::arm(const std::string& session_path) {
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
   const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};
   auto done = upload(client_, program_->prepared);
-  if (done) done = gain(gain_);
-  client_.take_ticks();  // of an earlier run
+  if (done) done = client_.command(device_gain());
+  client_.take_ticks();  // of an earlier run, be it another program's that was killed
   if (done) done = client_.command(arm);
   if (!done) {
     recorder_->event({0, steady_ns(), "not armed: " + schema::message(done.error())});
@@ -149,7 +151,11 @@ Result<void> Player::gain(double gain) {
   if (!std::isfinite(gain)) return fail(Fault::usage, "the gain is no finite number", uri_);
   gain_ = gain;
   if (!recorder_) return {};
-  return steer(wire::Gain{static_cast<float>(gain * program_->prepared.gain_m_per_n)});
+  return steer(device_gain());
+}
+
+wire::Gain Player::device_gain() const {
+  return {static_cast<float>(gain_ * program_->prepared.gain_m_per_n)};
 }
 
 Result<void> Player::wait_for_idle() {

@@ -87,6 +87,7 @@ class Player {
   template <class Message>
   schema::Result<void> steer(const Message& message);
   void keep(std::span<const std::uint8_t> frame);
+  wire::Gain device_gain() const;
   schema::Result<void> wait_for_idle();
   schema::Result<void> beat();
   schema::Result<void> require(bool allowed, const char* what, const char* remedy) const;

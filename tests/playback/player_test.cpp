@@ -8,6 +8,7 @@
 
 #include "data-schema/session_reader.hpp"
 #include "firmware-host/sim/sim_device.hpp"
+#include "firmware-host/sim/sim_transport.hpp"
 #include "playback/daemon/player_device.hpp"
 #include "playback/daemon/session_replay.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
@@ -219,6 +220,28 @@ TEST_F(PlayerOnSim, AHostThatStandsStillIsAFaultOnTheDeviceAndReplays) {
   EXPECT_NE(player_->status().fault.find("heard nothing"), std::string::npos);
   ASSERT_TRUE(player_->disarm());
   expect_same_to_the_bit();
+}
+
+// That program was killed in mid-play: the device is still ramping down when the next one greets it.
+TEST_F(PlayerOnSim, WhatAnEarlierProgramsRunHasStillToSayBelongsToNobody) {
+  begin();
+  ASSERT_TRUE(player_->play());
+  run(0.5);
+  const auto client = firmware_host::Client::connect(
+      std::make_unique<firmware_host::SimTransport>(device_->board(), false), "sim:");
+  ASSERT_TRUE(client) << schema::message(client.error());
+  PlayerOptions options;
+  options.full_queue = FullQueue::wait;
+  const auto next = Player::make(**client, "sim:", options);
+  ASSERT_TRUE(next) << schema::message(next.error());
+  ASSERT_TRUE((*next)->load(program()));
+  const auto armed = (*next)->arm(folder_ / "two.session");
+  ASSERT_TRUE(armed) << schema::message(armed.error());
+  ASSERT_TRUE((*next)->play());
+  while ((*next)->played_s() < 0.5) ASSERT_TRUE((*next)->step(0.01));
+  EXPECT_EQ((*next)->status().ticks.lost(), 0U);
+  EXPECT_GE((*next)->status().ticks.ticks(), 1000U);
+  EXPECT_EQ((*next)->state(), PlayerState::playing);
 }
 
 TEST_F(PlayerOnSim, APlayedTextureThatIsNoNumberNeverGetsToTheDevice) {
