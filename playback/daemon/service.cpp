@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr double kStatusEveryS = 0.1;
 constexpr double kReleaseS = 0.01;
+constexpr double kObeyedS = 0.2, kLookS = 0.01;  // a device's ticks come every 10 ms, and a ramp takes 20 ms
 
 // An emulated device that runs ahead of the clock would play to nobody.
 std::string paced(const std::string& uri) {
@@ -217,8 +218,16 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
   return ControlFields{{"gain", *request.gain}, {"saved", request.save}};
 }
 
-Result<ControlFields> Service::done(const Result<void>& result) const {
+// The answer tells the state that the command led to, once the device's ticks show it.
+Result<ControlFields> Service::done(const Result<void>& result, PlayerState wanted) {
   if (!result) return schema::forward_error(result);
+  const double until_s = client().transport().now_s() + kObeyedS;
+  const auto waits = [&] {
+    const PlayerState state = player_->state();
+    return state != wanted && state != PlayerState::lost && client().transport().now_s() < until_s;
+  };
+  while (waits())
+    if (const auto stepped = player_->step(kLookS); !stepped) return schema::forward_error(stepped);
   return ControlFields{{"state", std::string(word_of(player_->state()))}};
 }
 
@@ -257,11 +266,11 @@ Result<ControlFields> Service::handle(const ControlRequest& request) {
     case ControlVerb::arm:
       return arm();
     case ControlVerb::play:
-      return done(player_->play());
+      return done(player_->play(), PlayerState::playing);
     case ControlVerb::stop:
-      return done(player_->stop());
+      return done(player_->stop(), PlayerState::armed);
     case ControlVerb::disarm:
-      return done(player_->disarm());
+      return done(player_->disarm(), PlayerState::idle);
     case ControlVerb::gain:
       return gain(request);
     case ControlVerb::status:

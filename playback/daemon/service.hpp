@@ -40,7 +40,7 @@ class Service {
   schema::Result<schema::ControlFields> arm();
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
   schema::Result<void> save_gain(double factor);
-  schema::Result<schema::ControlFields> done(const schema::Result<void>& result) const;
+  schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState wanted);
   schema::ControlFields hello() const;
   schema::ControlFields status() const;
   std::string resolved(const std::string& file) const;

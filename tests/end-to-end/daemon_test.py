@@ -116,7 +116,7 @@ def from_load_to_a_session_that_replays():
         assert "can't play in the state idle" in said and "arm first" in said, said
         assert "500" in ctl("load", "oak", "--gain", "0.5mm/N")[0]
         ctl("arm")
-        ctl("play")
+        assert "playing" in ctl("play")[0]
         time.sleep(1)
         ctl("gain", "0.5")
         time.sleep(0.5)
@@ -125,9 +125,8 @@ def from_load_to_a_session_that_replays():
         assert abs(status["speed_mps"]) < 0.2 and status["gain"] == 0.5
         _, said = ctl("load", "oak", code=2)
         assert "disarm first" in said
-        ctl("stop")
-        time.sleep(0.2)
-        ctl("disarm")
+        assert "armed" in ctl("stop")[0]
+        assert "idle" in ctl("disarm")[0]
         session = json.loads(ctl("status", "--json")[0])["session"]
         events = []
         watcher.socket.settimeout(0.5)

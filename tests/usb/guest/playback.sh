@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The daemon plays oak on a device behind the cable, whose emulated finger goes there, back and rests: SECONDS_WANTED in
+# device loop, then in host loop, then killed in mid-play, then unplugged. Config NAME.json and texture come by results.
+. "$GUEST/prelude.sh"
+R=/guest/results
+mkdir -p /run/lock
+cp "$R"/oak.texture.* /guest/
+ctl() { timeout 60 "$TACTOGRAPH" ctl "$@" --socket /guest/control; }
+status() { ctl status --json >"$R/$1.json"; }
+
+# daemon NAME : one that is ready.
+daemon() {
+  "$TACTOGRAPHD" --config "$R/$1.config.json" 2>"$R/$1.log" &
+  DAEMON_PID=$!
+  within 60 daemon_ready "$1"
+}
+daemon_ready() { kill -0 $DAEMON_PID || { cat "$R/$1.log"; fail "tactographd ended"; }; grep -q ready "$R/$1.log"; }
+begin() {
+  ctl load oak --gain 0.5mm/N
+  ctl arm
+  ctl play
+}
+end_daemon() {
+  kill -TERM $DAEMON_PID
+  wait $DAEMON_PID || fail "tactographd ended with $?"
+}
+keep() { cp "$(sed -n 's/^ *"session": "\(.*\)".*/\1/p' "$R/$1.json")" "$R/$1.session"; }
+
+# played NAME SECONDS : from ready to a session that is kept.
+played() {
+  daemon "$1"
+  begin
+  sleep "$2"
+  status "$1"
+  ctl stop
+  sleep 0.3
+  ctl disarm
+  keep "$1"
+  end_daemon
+}
+
+start_gadget --board sim:rate=2kHz,strokes=1000,surface=C --serial P1
+"$TACTOGRAPH" scan --json >"$R/scan.out"
+say "device loop, $SECONDS_WANTED s"
+played device "$SECONDS_WANTED"
+say "host loop, $HOST_SECONDS s"
+played host "$HOST_SECONDS"
+
+say "killed in mid-play; the next one takes over"
+daemon killed
+begin
+sleep 2
+status killed
+kill -9 $DAEMON_PID
+wait $DAEMON_PID || true
+keep killed
+daemon after
+status after
+begin
+sleep 1
+status after
+
+say "unplugged in mid-play"
+unplug
+lost() { ctl status | grep -q lost; }
+within 20 lost
+status unplugged
+keep after
+replug
+begin
+sleep 1
+status replugged
+end_daemon
+stop_gadget

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""tactographd over the kernel's USB: the device's loop and the host's, each with a session that replays to the bit; a
+daemon that is killed and a device that is unplugged in mid-play. Finger and transducer are simulated.
+"""
+import hashlib
+import json
+import os
+import pathlib
+import sys
+
+import numpy as np
+import soundfile
+
+import tacto
+import virtual_machine
+
+TIME_S = int(os.environ["TACTO_USB_SECONDS"])
+HOST_S = 10
+RATES_HZ = {"device": 2000, "host": 1000}
+
+
+def write_texture(folder):
+    x = np.arange(40000) * 1e-6
+    soundfile.write(folder / "oak.texture.wav", (0.02 * np.sin(2 * np.pi * 1000 * x)).astype(np.float32), 1000000, subtype="FLOAT")
+    sha256 = hashlib.sha256((folder / "oak.texture.wav").read_bytes()).hexdigest()
+    (folder / "oak.texture.json").write_text(json.dumps({
+        "kind": "texture", "version": "1.0", "pitch_m": 1e-6, "quantity": "tangential_force", "unit": "N", "direction": 1,
+        "source_origin_m": 0.0, "data": {"file": "oak.texture.wav", "sha256": sha256, "samples": len(x)}}))
+
+
+# A processor that QEMU translates stalls for tens of milliseconds, on a busy machine for hundreds: lateness is printed, not
+# judged, and the watchdog is patient.
+def write_configs(folder):
+    config = {"kind": "daemon", "version": "1.0", "device": "usb:", "transducer": "wiertlewski2011", "socket": "/guest/control",
+              "sessions": "/guest/sessions", "files": "/guest", "rate_hz": RATES_HZ["device"], "watchdog_ms": 1000}
+    for name in ("device", "killed", "after"):
+        (folder / f"{name}.config.json").write_text(json.dumps(config))
+    host = {"loop": "host", "rate_hz": RATES_HZ["host"], "most_late_percent": 100, "most_speed_mps": 100,
+            "real_time_priority": 0}  # the only processor is shared with device and bus
+    (folder / "host.config.json").write_text(json.dumps({**config, **host}))
+
+
+def status(name):
+    return json.loads(pathlib.Path(f"{name}.json").read_text())
+
+
+def ticks_of(name):
+    tacto.run("session", f"{name}.session", "-o", f"{name}.csv")
+    return np.genfromtxt(f"{name}.csv", delimiter=",", names=True)
+
+
+def expect_played(name, seconds):
+    """It drove the bender as the finger moved, lost no tick, and replays."""
+    said = status(name)
+    assert said["state"] == "playing" and said["drive_peak_v"] > 0.01 and said["lost_ticks"] == 0, said
+    replayed = tacto.run_json("replay", f"{name}.session")
+    # The emulated board passes over time in which its processor was elsewhere.
+    assert replayed["same_to_the_bit"] and replayed["ticks_compared"] > 0.25 * seconds * RATES_HZ[name], replayed
+    assert tacto.run_json("validate", f"{name}.session")["valid"]
+    ticks = ticks_of(name)
+    position = ticks["encoder_count"]
+    assert np.any(np.diff(position) > 0) and np.any(np.diff(position) < 0) and np.any(np.diff(position) == 0)
+    print(f"{name} loop: {len(ticks)} ticks, drive {np.ptp(ticks['drive_v']):.2f} V peak to peak, replayed to the bit; "
+          f"round trip {1e3 * said.get('round_trip_s', float('nan')):.2f} ms, late {said.get('late_ticks')}, missed {said.get('missed_ticks')}")
+
+
+def played_over_usb():
+    results = pathlib.Path("results")
+    results.mkdir()
+    write_texture(results)
+    write_configs(results)
+    said = virtual_machine.run("playback.sh", results.resolve(), timeout_s=4 * TIME_S + 300, TACTOGRAPH=tacto.COMMAND,
+                               TACTOGRAPHD=os.environ["TACTOGRAPHD"], GADGET=os.environ["GADGET"], SECONDS_WANTED=TIME_S,
+                               HOST_SECONDS=HOST_S)
+    print(said)
+    os.chdir(results)
+    found = json.loads(pathlib.Path("scan.out").read_text())["devices"]
+    assert [d["serial"] for d in found if d["uri"].startswith("usb:")] == ["P1"], found
+    expect_played("device", TIME_S)
+    expect_played("host", HOST_S)
+    for name in ("killed", "after"):
+        assert status(name)["state"] == "playing", status(name)
+    replayed = tacto.run_json("replay", "killed.session")
+    assert replayed["same_to_the_bit"] and replayed["ticks_compared"] > RATES_HZ["device"], replayed
+    assert status("unplugged")["state"] == "lost" and "unplugged" in json.dumps(status("unplugged")), status("unplugged")
+    assert tacto.run_json("replay", "after.session")["same_to_the_bit"]
+    assert status("replugged")["state"] == "playing", status("replugged")
+
+
+if __name__ == "__main__":
+    try:
+        tacto.in_folder(played_over_usb)
+    except virtual_machine.GuestFailed as failed:
+        sys.exit(f"FAILED: {failed}")
