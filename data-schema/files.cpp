@@ -14,6 +14,7 @@
 #include <system_error>
 #include <vector>
 
+#include "data-schema/pending_names.hpp"
 #include "data-schema/sha256.hpp"
 
 namespace tacto::schema {
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kManyFiles = 16;
+constexpr std::size_t kLongestBeginning = 256;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -97,6 +99,20 @@ Result<void> sync(const std::string& temporary, const std::string& path) {
   return failed == 0 ? Result<void>{} : unwritable(path, failed);
 }
 
+// Some file systems can't refuse to replace; there a look beforehand has to do.
+Result<void> move(const std::string& temporary, const std::string& path, Existing existing) {
+  const unsigned flags = existing == Existing::keep ? RENAME_NOREPLACE : 0;
+  int failed = renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, path.c_str(), flags) == 0 ? 0 : errno;
+  if (failed == EINVAL || failed == ENOSYS) {
+    std::error_code ignored;
+    const bool taken = existing == Existing::keep && fs::exists(path, ignored);
+    failed = taken ? EEXIST : std::rename(temporary.c_str(), path.c_str()) == 0 ? 0 : errno;
+  }
+  if (failed == EEXIST)
+    return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
+  return failed == 0 ? Result<void>{} : unwritable(path, failed);
+}
+
 // All of a file system at once: for many files that is far quicker than each by itself.
 Result<void> sync_folder(const std::string& temporary, const std::string& path) {
   const int file = open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
@@ -136,15 +152,44 @@ std::string sha256_of(std::string_view text) {
   return sum.hexadecimal();
 }
 
+Result<void> check_table_free(const std::string& path,
+                              const std::function<bool(std::string_view beginning)>& ours) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return {};
+  const auto file = opened(path);
+  if (!file) return forward_error(file);
+  std::string line(kLongestBeginning, '\0');
+  line.resize(std::fread(line.data(), 1, line.size(), file->get()));
+  if (line.empty() || ours(line.substr(0, line.find('\n')))) return {};
+  return fail(Fault::usage, "is something else than such a table, and would be lost", path,
+              "choose another name, or remove it first");
+}
+
+void remove_pending_files() noexcept {
+  pending_names().remove_all();
+}
+
+Result<void> check_sum(const std::string& path, const std::string& sha256) {
+  const auto is = sha256_of_file(path);
+  if (!is) return forward_error(is);
+  if (*is == sha256) return {};
+  return fail(Fault::malformed, "is not what its sidecar was written for: its SHA-256 is another", path,
+              "bring the right one back, or make it anew; 'tactograph validate' says more");
+}
+
 PendingFiles::~PendingFiles() {
-  for (const Pending& file : pending_) std::remove(file.temporary.c_str());
+  for (const Pending& file : pending_) {
+    std::remove(file.temporary.c_str());
+    pending_names().forget(file.name);
+  }
 }
 
 Result<std::string> PendingFiles::add(const std::string& path) {
   if (const auto fits = check_target(path); !fits) return forward_error(fits);
   const std::string temporary = temporary_for(path).string();
+  PendingName* const name = pending_names().keep(temporary);
+  pending_.push_back({temporary, path, name});
   if (const auto made = write_all(temporary, path, ""); !made) return forward_error(made);
-  pending_.push_back({temporary, path});
   return temporary;
 }
 
@@ -166,11 +211,18 @@ Result<void> PendingFiles::sync_all() const {
   return {};
 }
 
-Result<void> PendingFiles::commit() {
+Result<void> PendingFiles::commit(Existing existing) {
   if (auto synced = sync_all(); !synced) return synced;
+  std::vector<std::string> appeared;
   while (!pending_.empty()) {
     const Pending& file = pending_.front();
-    if (std::rename(file.temporary.c_str(), file.path.c_str()) != 0) return unwritable(file.path, errno);
+    if (auto moved = move(file.temporary, file.path, existing); !moved) {
+      if (existing == Existing::keep)
+        for (const std::string& path : appeared) std::remove(path.c_str());
+      return moved;
+    }
+    appeared.push_back(file.path);
+    pending_names().forget(file.name);
     pending_.erase(pending_.begin());
   }
   return {};

@@ -2,6 +2,7 @@
 // Files that appear whole or not at all, and their checksums.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "data-schema/error.hpp"
 
 namespace tacto::schema {
+
+struct PendingName;
 
 /// That a file is there and may be read. Errors: not_found, saying whether it is absent, a folder or not
 /// permitted.
@@ -24,6 +27,21 @@ Result<std::string> read_file(const std::string& path);
 Result<std::string> sha256_of_file(const std::string& path);
 std::string sha256_of(std::string_view text);
 
+/// Whether a file's SHA-256 is what a sidecar says. Errors: malformed; not_found.
+Result<void> check_sum(const std::string& path, const std::string& sha256);
+
+/// Whether a file of the name `path` may be replaced by a table: there is none, or `ours` says so of how its
+/// first line begins. Errors: usage: something else would be lost.
+Result<void> check_table_free(const std::string& path,
+                              const std::function<bool(std::string_view beginning)>& ours);
+
+/// What commit() does with files that have the names already.
+enum class Existing { replace, keep };
+
+/// Removes what all pending files of this process have written. For the handler of a signal that ends it:
+/// async-signal-safe.
+void remove_pending_files() noexcept;
+
 /// A set of files that are written beside their names and take them together at commit(). Until then, and
 /// after a failure, the folder is as it was; leftovers are removed by the destructor.
 class PendingFiles {
@@ -38,12 +56,14 @@ class PendingFiles {
   Result<std::string> add(const std::string& path);
   /// add() and the content at once.
   Result<void> write(const std::string& path, std::string_view content);
-  /// Syncs all to disk, then renames them in the order they were added. Errors: cannot_write.
-  Result<void> commit();
+  /// Syncs all to disk, then renames them in the order they were added. Errors: cannot_write; usage, where
+  /// what exists is to be kept and a name is taken, be it since a moment ago: then none of them appears.
+  Result<void> commit(Existing existing = Existing::replace);
 
  private:
   struct Pending {
     std::string temporary, path;
+    PendingName* name;
   };
   Result<void> sync_all() const;
   std::vector<Pending> pending_;

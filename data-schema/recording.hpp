@@ -126,6 +126,10 @@ Result<QuantityName> quantity_named(std::string_view name);
 /// unsupported_version.
 Result<Recording> open_recording(const std::string& name);
 
+/// Whether its samples are those that the sidecar was written for. Errors: malformed, where their SHA-256 is
+/// another; not_found.
+Result<void> check_samples_sum(const Recording& recording);
+
 /// Where the samples are.
 std::string wav_path(const Recording& recording);
 

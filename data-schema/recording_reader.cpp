@@ -85,6 +85,10 @@ Result<Recording> open_recording(const std::string& name) {
   return recording;
 }
 
+Result<void> check_samples_sum(const Recording& recording) {
+  return check_sum(wav_path(recording), recording.header.sha256);
+}
+
 std::string wav_path(const Recording& recording) {
   return (fs::path(recording.stem).parent_path() / recording.header.wav_file).string();
 }

@@ -13,6 +13,7 @@ struct RecordingWriter::State {
   std::string stem;
   RecordingHeader header;
   PendingFiles pending;
+  Existing existing = Existing::keep;
   std::string temporary_wav;
   std::optional<WavWriter> wav;
 
@@ -45,6 +46,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& name, Recordi
   if (!writer) return forward_error(writer);
   state->temporary_wav = *temporary;
   state->header = std::move(header);
+  if (replace) state->existing = Existing::replace;
   state->wav.emplace(std::move(*writer));
   return RecordingWriter(std::move(state));
 }
@@ -72,7 +74,8 @@ Result<Recording> RecordingWriter::close() {
   state_->wav.reset();
   if (!closed) return forward_error(closed);
   if (const auto described = state_->describe(); !described) return forward_error(described);
-  if (const auto committed = state_->pending.commit(); !committed) return forward_error(committed);
+  if (const auto committed = state_->pending.commit(state_->existing); !committed)
+    return forward_error(committed);
   return Recording{state_->header, state_->stem};
 }
 

@@ -9,6 +9,7 @@
 #include <exception>
 #include <memory>
 
+#include "data-schema/files.hpp"
 #include "data-schema/version.hpp"
 
 namespace tacto::cli {
@@ -82,11 +83,24 @@ int refuse_verb(std::span<const Verb* const> verbs, std::string_view word) {
       {schema::Fault::usage, fmt::format("there is no verb '{}'", word), "", "the verbs are: " + names});
 }
 
+// Verbs that end in another way when asked (record) have handlers of their own meanwhile.
+void leave_nothing_behind(int signal) {
+  schema::remove_pending_files();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void handle_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (std::signal(signal, leave_nothing_behind) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a file beyond the shell's limit is then an error of writing, as a full disk is
+}
+
 }  // namespace
 
 int run_command(std::span<const Verb* const> verbs, int argc, const char* const* argv) {
-  std::signal(SIGXFSZ,
-              SIG_IGN);  // a file beyond the shell's limit is then an error of writing, as a full disk is
+  handle_signals();
   if (argc > 1 && is_unknown_verb(verbs, argv[1])) return refuse_verb(verbs, argv[1]);
   CLI::App app(
       "Records how a surface pulls on a finger, turns it into force against position, and plays it back.",

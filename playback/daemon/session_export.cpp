@@ -15,11 +15,18 @@
 namespace tacto::playback {
 namespace {
 
+constexpr std::string_view kColumns =
+    "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s";
+
 using schema::fail;
 using schema::Fault;
 using schema::PendingFiles;
 using schema::Result;
 using schema::SessionTick;
+
+bool is_session_table(std::string_view line) {
+  return line == kColumns;
+}
 
 int flag(std::uint32_t flags, std::uint32_t which) {
   return (flags & which) != 0 ? 1 : 0;
@@ -44,7 +51,7 @@ Result<void> write_csv(const std::string& session, const std::string& temporary)
   auto reader = schema::SessionReader::open(session);
   if (!reader) return schema::forward_error(reader);
   std::ofstream out(temporary, std::ios::binary);
-  out << "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s\n";
+  out << kColumns << '\n';
   while (const auto block = reader->next())
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
       out << lines_of(*ticks, reader->header());
@@ -96,11 +103,14 @@ constexpr Format kFormats[] = {{".csv", write_csv}, {".wav", write_wav}, {".nc",
 Result<void> export_session(const std::string& session, const std::string& file) {
   for (const Format& format : kFormats) {
     if (!file.ends_with(format.ending)) continue;
+    const bool table = format.ending == ".csv";
+    if (table)
+      if (const auto free = schema::check_table_free(file, is_session_table); !free) return free;
     PendingFiles pending;
     const auto temporary = pending.add(file);
     if (!temporary) return schema::forward_error(temporary);
     if (const auto written = format.write(session, *temporary); !written) return written;
-    return pending.commit();
+    return pending.commit(table ? schema::Existing::replace : schema::Existing::keep);
   }
   return fail(Fault::usage, fmt::format("'{}' is no format that a session can be exported to", file),
               "output", "name a file that ends in .csv, .wav or .nc");

@@ -12,9 +12,13 @@ namespace tacto::spatial {
 
 namespace {
 
-// A table of the same name may be replaced; what was recorded or made may not.
-schema::Result<void> check_replaceable(const std::string& path) {
+// A table of the same kind may be replaced; what was recorded or made may not.
+schema::Result<void> check_replaceable(const std::string& path, bool csv) {
   using schema::FileKind;
+  if (csv)
+    return schema::check_table_free(path, [](std::string_view line) {
+      return line.starts_with("texture,from_mm,to_mm,") || line.starts_with("texture,quantity,length_mm,");
+    });
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return {};
   const auto there = schema::stored_files(path);
@@ -37,7 +41,7 @@ TablePath table_path(const std::string& output, const std::string& kind) {
 schema::Result<void> write_table(const TablePath& where,
                                  const std::function<schema::Result<std::string>()>& json,
                                  const std::function<std::string()>& csv) {
-  if (const auto free = check_replaceable(where.path); !free) return free;
+  if (const auto free = check_replaceable(where.path, where.csv); !free) return free;
   const auto text = where.csv ? csv() : json();
   if (!text) return schema::forward_error(text);
   schema::PendingFiles files;

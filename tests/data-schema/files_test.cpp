@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "tests/data-schema/temporary_folder.hpp"
 
@@ -52,6 +53,52 @@ TEST(PendingFiles, LeaveNothingAfterAFailedCommit) {
     EXPECT_EQ(committed.error().fault, Fault::cannot_write);
   }
   EXPECT_EQ(folder.files(), 1U);  // the folder that stood in the way
+}
+
+TEST(PendingFiles, ThatAreToKeepWhatIsThereAppearAllOrNotAtAll) {
+  const TemporaryFolder folder;
+  PendingFiles first, second;
+  for (PendingFiles* pending : {&first, &second})
+    for (const char* name : {"b", "a"})
+      ASSERT_TRUE(pending->write(folder / name, pending == &first ? "1" : "2"));
+  ASSERT_TRUE(first.commit(Existing::keep));
+  const auto late = second.commit(Existing::keep);
+  ASSERT_FALSE(late);
+  EXPECT_EQ(late.error().fault, Fault::usage);
+  EXPECT_EQ(read_file(folder / "a").value() + read_file(folder / "b").value(), "11");
+  std::filesystem::remove(folder / "b");
+  PendingFiles third;
+  for (const char* name : {"b", "a"}) ASSERT_TRUE(third.write(folder / name, "3"));
+  EXPECT_FALSE(third.commit(Existing::keep));
+  EXPECT_FALSE(is_file(folder / "b"));
+  EXPECT_EQ(read_file(folder / "a").value(), "1");
+}
+
+TEST(PendingFiles, AreRemovedWhereASignalEndsTheProcess) {
+  const TemporaryFolder folder;
+  PendingFiles pending;
+  ASSERT_TRUE(pending.write(folder / "a", "content"));
+  {
+    PendingFiles done;
+    ASSERT_TRUE(done.write(folder / "b", "content"));
+    ASSERT_TRUE(done.commit());
+  }
+  EXPECT_EQ(folder.files(), 2U);
+  remove_pending_files();
+  EXPECT_EQ(folder.files(), 1U);
+  EXPECT_TRUE(is_file(folder / "b"));
+}
+
+TEST(Files, ATableReplacesOnlyItsLike) {
+  const TemporaryFolder folder;
+  const auto ours = [](std::string_view line) { return line == "texture,mm"; };
+  EXPECT_TRUE(check_table_free(folder / "a.csv", ours));
+  std::ofstream(folder / "a.csv") << "texture,mm\n1,2\n";
+  EXPECT_TRUE(check_table_free(folder / "a.csv", ours));
+  std::ofstream(folder / "a.csv") << "time,force\n1,2\n";
+  const auto refused = check_table_free(folder / "a.csv", ours);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, Fault::usage);
 }
 
 TEST(PendingFiles, RefuseFoldersThatAreAbsentOrInTheWay) {
