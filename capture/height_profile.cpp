@@ -111,6 +111,9 @@ Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& 
   const auto last = static_cast<double>(x.size() - 1);
   profile.origin_m = x.front();
   profile.pitch_m = (x.back() - x.front()) / last;
+  if (profile.pitch_m == 0)
+    return fail(Fault::unsuitable, "the position does not move", file,
+                "a profile is heights at growing positions; is this the right column?");
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double off_m = std::abs(x[i] - (x.front() + static_cast<double>(i) * profile.pitch_m));
     profile.unevenness_m = std::max(profile.unevenness_m, off_m);

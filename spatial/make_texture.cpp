@@ -11,6 +11,7 @@
 #include "data-schema/creation_time.hpp"
 #include "data-schema/quantity.hpp"
 #include "data-schema/version.hpp"
+#include "spatial/dsp/thinned.hpp"
 #include "spatial/equaliser.hpp"
 #include "spatial/smoothed_speed.hpp"
 
@@ -18,6 +19,9 @@ namespace tacto::spatial {
 namespace {
 
 using schema::Fault;
+
+constexpr double kSlowPart = 0.25;        // of the median speed
+constexpr std::size_t kMostFiner = 4096;  // 1 um of a grid of 4 mm
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -118,6 +122,35 @@ SpeedProfile TextureMaker::profile_of(const Stroke& stroke, const MonotonePath& 
   return speed_profile(speed, grid.origin_m(), length_m, stroke.direction);
 }
 
+Band TextureMaker::kept_band() const {
+  const double rate_hz = record_.header().sample_rate_hz;
+  Band band = options_.filter.kept(rate_hz);
+  band.high_hz = std::min(band.high_hz, kept_hz(options_.method, rate_hz));
+  return band;
+}
+
+// How many times finer than the texture's a grid has to be to hold what the band lets through where the
+// finger goes at a quarter of its usual speed; at its stops no grid does.
+std::size_t TextureMaker::finer_by(const SpeedProfile& profile) const {
+  const Band band = options_.filter.passed(record_.header().sample_rate_hz);
+  const double highest_per_m = band.high_hz / (kSlowPart * median(profile.speed_mps));
+  return std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(2 * options_.pitch_m * highest_per_m)), 1,
+                                 kMostFiner);
+}
+
+// Samples that far apart would fold what lies beyond half a cycle a sample onto what they can hold.
+schema::Result<std::vector<double>> TextureMaker::on_grid(const Stroke& stroke, const MonotonePath& path,
+                                                          const SpaceGrid& grid,
+                                                          const SpeedProfile& profile) {
+  const std::size_t finer = finer_by(profile);
+  const auto times = static_cast<double>(finer);
+  const SpaceGrid fine{grid.pitch_m / times, grid.first * times, (grid.count - 1) * finer + 1};
+  auto values = resampled(stroke, path, fine);
+  if (!values) return values;
+  if (finer > 1) *values = thinned(*values, finer);
+  return options_.space ? filter_in_space(*values, grid.pitch_m, *options_.space) : values;
+}
+
 // A finger that all but rests has its band at frequencies that no grid holds: what came out would be noise.
 schema::Result<void> TextureMaker::check_band(const SpeedProfile& profile) const {
   const Band band = options_.filter.passed(record_.header().sample_rate_hz);
@@ -145,8 +178,7 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   if (!grid) return schema::forward_error(grid);
   const SpeedProfile profile = profile_of(stroke, *path, *grid);
   if (const auto fine = check_band(profile); !fine) return schema::forward_error(fine);
-  auto values = resampled(stroke, *path, *grid);
-  if (values && options_.space) values = filter_in_space(*values, grid->pitch_m, *options_.space);
+  auto values = on_grid(stroke, *path, *grid, profile);
   if (!values) return schema::forward_error(values);
 
   schema::Texture texture;
@@ -156,8 +188,8 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   const auto [slowest, fastest] = std::ranges::minmax(profile.speed_mps);
   texture.source.min_speed_mps = slowest;
   texture.source.max_speed_mps = fastest;
-  texture.valid_band = valid_band(profile, options_.filter.kept(record_.header().sample_rate_hz));
-  narrow(texture.valid_band, 0, 1 / (2 * options_.pitch_m));
+  texture.valid_band = valid_band(profile, kept_band());
+  narrow(texture.valid_band, 0, (finer_by(profile) > 1 ? kThinnedPass : 0.5) / options_.pitch_m);
   if (options_.space) {
     const auto [low_per_m, high_per_m] = options_.space->kept(options_.pitch_m);
     narrow(texture.valid_band, low_per_m, high_per_m);

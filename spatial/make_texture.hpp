@@ -61,6 +61,10 @@ class TextureMaker {
   schema::Result<MonotonePath> path_of(const Stroke& stroke, double shift_m) const;
   schema::Result<std::vector<double>> resampled(const Stroke& stroke, const MonotonePath& path,
                                                 const SpaceGrid& grid);
+  Band kept_band() const;
+  std::size_t finer_by(const SpeedProfile& profile) const;
+  schema::Result<std::vector<double>> on_grid(const Stroke& stroke, const MonotonePath& path,
+                                              const SpaceGrid& grid, const SpeedProfile& profile);
   SpeedProfile profile_of(const Stroke& stroke, const MonotonePath& path, const SpaceGrid& grid) const;
   void describe(schema::Texture& texture, const Stroke& stroke, int number) const;
   void describe_filter(schema::TextureSource& source) const;

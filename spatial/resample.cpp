@@ -98,6 +98,19 @@ std::string_view name_of(ResampleMethod method) {
   return "hermite";
 }
 
+double kept_hz(ResampleMethod method, double sample_rate_hz) {
+  switch (method) {
+    case ResampleMethod::linear:
+      return 0.178 * sample_rate_hz;
+    case ResampleMethod::sinc:
+      return 0.45 * sample_rate_hz;
+    case ResampleMethod::hermite:
+    case ResampleMethod::swapped:
+      break;
+  }
+  return 0.24 * sample_rate_hz;
+}
+
 std::size_t margin_of(ResampleMethod method) {
   // A slope of the monotone cubic reaches one sample beyond the next.
   return method == ResampleMethod::sinc ? WindowedSinc::kReach : 2;

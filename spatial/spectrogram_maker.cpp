@@ -79,10 +79,27 @@ Result<void> check_pitch(const Texture& texture, double pitch_m) {
       "texture", "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
 }
 
+constexpr double kFaintest = 1e-12;
+constexpr const char* kTakeAmplitudes =
+    "'tactograph spectrogram --scaling amplitude' can show it; or import the recording in a fitting unit";
+
 Result<void> check_cells(std::span<const float> cells) {
   if (std::ranges::all_of(cells, [](float cell) { return cell <= kLargestCell; })) return {};
   return schema::fail(Fault::unsuitable, "its densities do not fit single precision", "texture",
-                      "take amplitudes ('--scaling amplitude')");
+                      kTakeAmplitudes);
+}
+
+// Densities are squares: in single precision those of the faintest forces would all be zero.
+Result<void> check_faintness(const Texture& texture, Scaling scaling) {
+  if (scaling == Scaling::amplitude) return {};
+  double largest = 0;
+  for (const double value : texture.signal.values) largest = std::max(largest, std::abs(value));
+  if (largest == 0 || largest >= kFaintest) return {};
+  return schema::fail(
+      Fault::unsuitable,
+      fmt::format("its largest value is {:.3g} {}, whose densities do not fit single precision", largest,
+                  texture.unit),
+      "texture", kTakeAmplitudes);
 }
 
 }  // namespace
@@ -109,6 +126,7 @@ Result<SpectrogramHeader> SpectrogramMaker::describe(const Texture& texture) con
   if (auto fits = check_pitch(texture, pitch_m_); !fits) return schema::forward_error(fits);
   if (auto fits = check_length(texture, shape_.window); !fits) return schema::forward_error(fits);
   if (auto fits = check_finite(texture); !fits) return schema::forward_error(fits);
+  if (auto fits = check_faintness(texture, options_.scaling); !fits) return schema::forward_error(fits);
   SpectrogramHeader header;
   const std::size_t rows = transform_.rows_of(texture.signal.values.size());
   for (std::size_t row = 0; row < rows; ++row) {

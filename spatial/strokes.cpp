@@ -199,19 +199,21 @@ std::vector<FrameRange> pieces_between_gaps(std::size_t frames, std::span<const 
   return pieces;
 }
 
-schema::Result<Strokes> find_strokes(const ReadFrames& read, std::span<const FrameRange> pieces,
-                                     double sample_rate_hz, const PositionFacts& facts) {
+schema::Result<FoundStrokes> find_strokes(const ReadFrames& read, std::span<const FrameRange> pieces,
+                                          double sample_rate_hz, const PositionFacts& facts) {
   Strokes strokes;
   for (const FrameRange& piece : pieces) {
     if (piece.size() < 2) continue;
     const auto found = strokes_in(read, piece, sample_rate_hz, facts);
-    if (!found) return found;
+    if (!found) return schema::forward_error(found);
     strokes.insert(strokes.end(), found->begin(), found->end());
   }
-  const double shortest_m =
-      std::max(kShortestOfLongest * longest_of(strokes), kShortestResolutions * facts.resolution_m());
-  std::erase_if(strokes, [&](const Stroke& stroke) { return stroke.advance_m() < shortest_m; });
-  return strokes;
+  const auto drop_below = [&](double shortest_m) {
+    return std::erase_if(strokes, [&](const Stroke& stroke) { return stroke.advance_m() < shortest_m; });
+  };
+  drop_below(kShortestResolutions * facts.resolution_m());
+  const std::size_t short_runs = drop_below(kShortestOfLongest * longest_of(strokes));
+  return FoundStrokes{std::move(strokes), short_runs};
 }
 
 double backward_travel(std::span<const double> position_m, int direction) {

@@ -35,8 +35,12 @@ std::vector<FrameRange> pieces_between_gaps(std::size_t frames, std::span<const 
 /// Where the position is so coarse that a speed of 1 mm/s would not show, what lies between strokes is
 /// searched again with a longer window. Memory: a chunk, a window of 0.5 s at most, and the list. Errors: of
 /// reading.
-schema::Result<std::vector<Stroke>> find_strokes(const ReadFrames& read, std::span<const FrameRange> pieces,
-                                                 double sample_rate_hz, const PositionFacts& facts);
+struct FoundStrokes {
+  std::vector<Stroke> strokes;
+  std::size_t short_runs = 0;  ///< long enough for the position to tell, and shorter than 5 % of the longest
+};
+schema::Result<FoundStrokes> find_strokes(const ReadFrames& read, std::span<const FrameRange> pieces,
+                                          double sample_rate_hz, const PositionFacts& facts);
 
 /// How far a stretch goes back at most, against its direction: 0 for a monotone one. m.
 double backward_travel(std::span<const double> position_m, int direction);

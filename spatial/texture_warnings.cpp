@@ -20,17 +20,19 @@ std::vector<std::string> texture_warnings(const schema::Texture& texture) {
   const schema::TextureSource& source = texture.source;
   const PositionError error{source.position_quantum_m, source.position_noise_m};
   std::vector<std::string> warnings;
-  if (source.position_moved_m > std::max(error.explains_m(), kNothing_m))
+  const double explained_m = error.explains_m() + error.quantum_m;
+  if (source.position_moved_m > std::max(explained_m, kNothing_m))
     warnings.push_back(fmt::format(
         "positions were moved by up to {} to make them grow; their quantum of {} and noise of {} explain {}: "
         "the finger went back on its way",
         schema::length_for_people(source.position_moved_m), schema::length_for_people(error.quantum_m),
-        schema::length_for_people(error.noise_m), schema::length_for_people(error.explains_m())));
+        schema::length_for_people(error.noise_m), schema::length_for_people(explained_m)));
   const double highest_per_m = 1 / (2 * texture.signal.pitch_m);
   if (source.mean_speed_mps > 0 && source.filter != "none" && !source.high_per_m &&
       source.high_hz / source.mean_speed_mps > highest_per_m)
     warnings.push_back(fmt::format(
-        "{:g} Hz at {} are {}, beyond what a grid of {} holds ({}): choose a finer --grid or a lower --high",
+        "{:g} Hz at {} are {}, beyond what a grid of {} holds ({}), and left out: choose a finer --grid, or "
+        "a lower --high",
         source.high_hz, schema::for_people(source.mean_speed_mps, schema::Dimension::speed),
         schema::for_people(source.high_hz / source.mean_speed_mps, schema::Dimension::spatial_frequency),
         schema::length_for_people(texture.signal.pitch_m),
@@ -40,6 +42,17 @@ std::vector<std::string> texture_warnings(const schema::Texture& texture) {
                                    source.counter_bits, source.counter_wraps,
                                    source.counter_wraps == 1 ? "" : "s"));
   return warnings;
+}
+
+std::string rate_warning(const TextureOptions& options, double sample_rate_hz) {
+  const double high_hz = options.filter.passed(sample_rate_hz).high_hz;
+  const double kept = kept_hz(options.method, sample_rate_hz);
+  if (options.filter.method == FilterMethod::none || options.space || high_hz <= kept) return {};
+  const bool sinc = options.method == ResampleMethod::sinc;
+  return fmt::format(
+      "at {:g} Hz the method {} keeps nine tenths of what lies below {:g} Hz only, so the band to "
+      "{:g} Hz is not all valid: {} a lower --high",
+      sample_rate_hz, name_of(options.method), kept, high_hz, sinc ? "choose" : "choose --method sinc, or");
 }
 
 }  // namespace tacto::spatial

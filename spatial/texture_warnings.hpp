@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "data-schema/texture.hpp"
+#include "spatial/make_texture.hpp"
 
 namespace tacto::spatial {
 
-/// One line each: positions that conditioning had to move further than their quantum and 6 standard
-/// deviations of their noise explain (the finger went back); a band whose upper end lies, at the mean speed,
-/// beyond what the grid can hold; a counter that ran over.
+/// One line each: positions that conditioning had to move further than their quantum, one more (a count that
+/// flickers) and 6 standard deviations of their noise explain (the finger went back); a band whose upper end
+/// lies, at the mean speed, beyond what the grid can hold; a counter that ran over.
 std::vector<std::string> texture_warnings(const schema::Texture& texture);
+
+/// Where a method loses part of the band that a recording of this rate is asked for; empty where it does not.
+std::string rate_warning(const TextureOptions& options, double sample_rate_hz);
 
 }  // namespace tacto::spatial

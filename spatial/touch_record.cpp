@@ -65,7 +65,8 @@ schema::Result<void> TouchRecord::survey() {
   facts_ = *facts;
   auto strokes = find_strokes(read, pieces_, header_.sample_rate_hz, facts_);
   if (!strokes) return schema::forward_error(strokes);
-  strokes_ = std::move(*strokes);
+  strokes_ = std::move(strokes->strokes);
+  short_runs_ = strokes->short_runs;
   if (source_->channel(Track::normal_force) == nullptr) return {};
   for (Stroke& stroke : strokes_)
     if (auto done = weigh(stroke); !done) return done;

@@ -40,6 +40,8 @@ class TouchRecord {
 
   /// Strokes by time; may be none.
   const std::vector<Stroke>& strokes() const { return strokes_; }
+  /// Runs that are no strokes for being shorter than 5 % of the longest.
+  std::size_t short_runs() const { return short_runs_; }
   /// What tells the finger up; absent without a normal force.
   std::optional<double> finger_up_below_n() const { return up_below_n_; }
   /// The stretches between gaps.
@@ -76,6 +78,7 @@ class TouchRecord {
   PositionFacts facts_;
   std::vector<FrameRange> pieces_;
   std::vector<Stroke> strokes_;
+  std::size_t short_runs_ = 0;
   std::optional<double> up_below_n_;
 };
 

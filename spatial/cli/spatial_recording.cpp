@@ -38,7 +38,11 @@ class Run {
   Result<Report> textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
   Result<Report> averages(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
   Result<void> check_names(const std::vector<std::string>& stems);
+  schema::Existing existing() const {
+    return options_.force ? schema::Existing::replace : schema::Existing::keep;
+  }
   void warn(const std::string& text) { warnings_.push_back(text); }
+  void warn_of_short_runs(const TouchRecord& record);
   void warn_of(const std::string& what, const schema::Texture& texture);
 
   const SpatialOptions& options_;
@@ -55,6 +59,7 @@ Result<Report> Run::list(const TouchRecord& record) const {
   report.add("recording", record.where());
   add_position(report, record);
   report.add("found", rows.size());
+  if (record.short_runs() > 0) report.add("shorter_passed_over", record.short_runs());
   if (!rows.empty()) report.add("strokes", std::move(rows));
   return report;
 }
@@ -62,6 +67,14 @@ Result<Report> Run::list(const TouchRecord& record) const {
 Result<std::vector<StrokeJob>> Run::one_job(const Result<Stroke>& stroke, int number) const {
   if (!stroke) return schema::forward_error(stroke);
   return std::vector<StrokeJob>{{*stroke, number, stem_}};
+}
+
+void Run::warn_of_short_runs(const TouchRecord& record) {
+  if (record.short_runs() == 0) return;
+  warn(fmt::format(
+      "{}: {} shorter than 5 % of the longest stroke {} no texture; --from and --to make one of it",
+      record.where(), record.short_runs() == 1 ? "a run" : fmt::format("{} runs", record.short_runs()),
+      record.short_runs() == 1 ? "makes" : "make"));
 }
 
 // Leaves out the strokes with the finger up, and says so.
@@ -86,6 +99,7 @@ Result<std::vector<StrokeJob>> Run::found_strokes(const TouchRecord& record) {
   if (all.empty())
     return schema::fail(Fault::unsuitable, "no stroke was found", record.where(),
                         "ask for a stretch with --from and --to");
+  warn_of_short_runs(record);
   std::vector<StrokeJob> jobs = down_only(record, std::move(all));
   if (jobs.empty())
     return schema::fail(Fault::unsuitable, "in all strokes the finger was up", record.where(),
@@ -143,7 +157,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
   if (!head)
     return schema::fail(Fault::unsuitable, "none of the strokes found makes a texture",
                         maker.record().where(), "the warnings say why");
-  if (auto done = pending.commit(); !done) return schema::forward_error(done);
+  if (auto done = pending.commit(existing()); !done) return schema::forward_error(done);
   head->add("textures", std::move(rows));
   return std::move(*head);
 }
@@ -173,7 +187,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
   if (!head)
     return schema::fail(Fault::unsuitable, "no two strokes can be averaged", maker.record().where(),
                         "the warnings say why");
-  if (auto done = pending.commit(); !done) return schema::forward_error(done);
+  if (auto done = pending.commit(existing()); !done) return schema::forward_error(done);
   head->add("averages", std::move(rows));
   return std::move(*head);
 }
@@ -185,9 +199,13 @@ Result<Report> Run::on(const std::string& name) {
   if (!recording) return schema::forward_error(recording);
   if (const std::string& version = recording->header.newer_version; !version.empty())
     warn(fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", name, version));
+  // A texture says of which samples it was made.
+  if (const auto sound = schema::check_samples_sum(*recording); !sound) return schema::forward_error(sound);
   auto record = TouchRecord::open(*recording, wanted->channel);
   if (!record) return schema::forward_error(record);
   if (options_.list) return list(*record);
+  if (const std::string lost = rate_warning(*wanted, recording->header.sample_rate_hz); !lost.empty())
+    warn(fmt::format("{}: {}", name, lost));
   auto maker = TextureMaker::open(std::move(*record), *wanted);
   if (!maker) return schema::forward_error(maker);
   const auto chosen = jobs(maker->record());

@@ -193,6 +193,16 @@ TEST_F(MakeTexture, BothWaysGiveTheSameSurface) {
   EXPECT_NEAR(back.source.mean_speed_mps, 0.03, 0.001);
 }
 
+// The amplitude of a frequency in the texture's middle half.
+double amplitude_of(const schema::Texture& texture, double per_m) {
+  const auto& samples = texture.signal.values;
+  std::complex<double> sum = 0;
+  const std::size_t from = samples.size() / 4, to = 3 * samples.size() / 4;
+  for (std::size_t i = from; i < to; ++i)
+    sum += samples[i] * std::polar(1.0, -kTurn * per_m * static_cast<double>(i) * texture.signal.pitch_m);
+  return 2 * std::abs(sum) / static_cast<double>(to - from);
+}
+
 TEST_F(MakeTexture, PositionsLieOnTheGridOfTheBench) {
   const auto recording = record(stroke_path(-0.0312345, 0.05, 0.05, 0), ridges, 0.5e-6);
   TextureOptions options;
@@ -202,6 +212,36 @@ TEST_F(MakeTexture, PositionsLieOnTheGridOfTheBench) {
   EXPECT_NEAR(std::remainder(texture.source_origin_m, 1e-5), 0, 1e-15);
   EXPECT_NEAR(texture.source_origin_m, -0.0312345, 2e-3);
   EXPECT_LT(error_of(texture, ridges, 0.005), 0.015);
+}
+
+// 1.5 /mm on a grid of 0.5 mm would come back as 0.5 /mm.
+TEST_F(MakeTexture, NothingFoldsOnACoarseGrid) {
+  const auto line = [](double x) { return 0.05 * std::sin(kTurn * 1500 * x); };
+  const auto held = [](double x) { return 0.05 * std::sin(kTurn * 700 * x); };
+  TextureOptions options;
+  options.pitch_m = 0.5e-3;
+  const auto folded = texture_of(record(stroke_path(0, 0.1, 0.05, 0), line, 0), options);
+  EXPECT_LT(amplitude_of(folded, 500), 1e-3 * 0.05);
+  const auto kept = texture_of(record(stroke_path(0, 0.1, 0.05, 0), held, 0), options);
+  EXPECT_NEAR(amplitude_of(kept, 700), 0.05, 0.01 * 0.05);
+  EXPECT_NEAR(band_throughout(kept.valid_band).high_per_m, 0.4 / 0.5e-3, 1e-6);
+}
+
+// At a low rate the cubics flatten what the band lets through; the valid band ends where they keep nine
+// tenths.
+TEST_F(MakeTexture, ValidBandEndsWhereTheMethodLosesTheLine) {
+  for (const auto method : {ResampleMethod::hermite, ResampleMethod::linear, ResampleMethod::sinc}) {
+    TextureOptions options;
+    options.method = method;
+    options.filter.band = {15, 4900};
+    const double known_hz = kept_hz(method, kRate_hz);
+    const double speed_mps = 0.05, per_m = 0.98 * known_hz / speed_mps;
+    const auto line = [=](double x) { return 0.1 * std::sin(kTurn * per_m * x); };
+    const auto texture = texture_of(record(stroke_path(0, 0.1, speed_mps, 0), line, 0), options);
+    const auto known = band_along(texture.valid_band, 0.03, 0.07);
+    EXPECT_NEAR(known.high_per_m, known_hz / speed_mps, 0.02 * known_hz / speed_mps) << name_of(method);
+    EXPECT_GT(amplitude_of(texture, per_m), 0.89 * 0.1) << name_of(method);
+  }
 }
 
 TEST_F(MakeTexture, ValidBandFollowsTheSpeed) {
@@ -234,16 +274,6 @@ std::vector<double> stick_slip_path() {
     path.push_back(path.back() + (i % 314 < 264 ? 0.002 : 0.3) / kRate_hz);
   path.insert(path.end(), 5000, path.back());
   return path;
-}
-
-// The amplitude of a frequency in the texture's middle half.
-double amplitude_of(const schema::Texture& texture, double per_m) {
-  const auto& samples = texture.signal.values;
-  std::complex<double> sum = 0;
-  const std::size_t from = samples.size() / 4, to = 3 * samples.size() / 4;
-  for (std::size_t i = from; i < to; ++i)
-    sum += samples[i] * std::polar(1.0, -kTurn * per_m * static_cast<double>(i) * texture.signal.pitch_m);
-  return 2 * std::abs(sum) / static_cast<double>(to - from);
 }
 
 // What a slip of some milliseconds carries past 500 Hz is lost, however slow the finger is in the mean.

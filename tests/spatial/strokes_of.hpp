@@ -30,8 +30,9 @@ inline PositionFacts facts_of(std::span<const double> position_m, double sample_
 inline std::vector<Stroke> strokes_of(std::span<const double> position_m, double sample_rate_hz,
                                       std::span<const schema::Gap> gaps = {}) {
   const auto pieces = pieces_between_gaps(position_m.size(), gaps);
-  return *find_strokes(reader_of(position_m), pieces, sample_rate_hz,
-                       facts_of(position_m, sample_rate_hz, gaps));
+  return find_strokes(reader_of(position_m), pieces, sample_rate_hz,
+                      facts_of(position_m, sample_rate_hz, gaps))
+      ->strokes;
 }
 
 }  // namespace tacto::spatial
