@@ -62,9 +62,11 @@ struct Recovered {
   std::vector<std::string> notes;  ///< what was lost, and what was put right; also its warnings
 };
 
-/// Makes a recording of what a LiveRecording left: cuts off an unfinished frame, puts the WAV's header right,
-/// writes the sidecar with the events, removes their file. `name` as open_recording(). Errors: not_found;
-/// unsuitable, where the recording was closed, or is still being made; malformed; cannot_write.
+/// Makes a recording of what a LiveRecording left: writes the WAV's header anew where it was lost, cuts off
+/// an unfinished frame and zeros that were never written, writes the sidecar with the events, removes their
+/// file. `name` as open_recording(). Errors: not_found, also where the WAV is missing; unsuitable, where the
+/// recording was closed, or is still being made; malformed, where journal or WAV are of something else, or
+/// the WAV holds nothing of what the journal knows, and then nothing is changed; cannot_write.
 Result<Recovered> recover_recording(const std::string& name);
 
 }  // namespace tacto::schema

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
-#include <system_error>
+#include <algorithm>
 
 #include "data-schema/event_file.hpp"
 #include "data-schema/files.hpp"
@@ -9,7 +7,7 @@
 #include "data-schema/recording_close.hpp"
 #include "data-schema/recording_events.hpp"
 #include "data-schema/recording_place.hpp"
-#include "data-schema/riff_layout.hpp"
+#include "data-schema/wav_remains.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -28,25 +26,33 @@ Result<void> check_recoverable(const std::string& stem) {
               "name it by its stem: it has left NAME.wav and NAME.events.jsonl");
 }
 
-// Killed before its header was on the disk: nothing had been recorded yet.
-Result<void> begin_wav(const std::string& wav, const RecordingHeader& header) {
-  if (is_file(wav) && riff_layout(wav)) return {};
-  auto writer = WavWriter::create(wav, header.sample_rate_hz, header.channels.size(), header.format);
-  return writer ? writer->close() : forward_error(writer);
-}
-
 std::optional<Recording> open_closed(const std::string& stem) {
   if (!is_file(stem + ".json")) return std::nullopt;
   auto recording = open_recording(stem);
   return recording ? std::optional(std::move(*recording)) : std::nullopt;
 }
 
-std::vector<std::string> notes_on(const EventLog& log, const std::string& wav) {
+// The number of a stored frame, of one that was counted with those that the link lost.
+std::uint64_t stored_number(std::uint64_t device_sequence, const std::vector<Gap>& gaps) {
+  std::uint64_t lost = 0;
+  for (const Gap& gap : gaps)
+    if (gap.device_sequence <= device_sequence) lost += gap.count;
+  return device_sequence - std::min(device_sequence, lost);
+}
+
+// As many frames there were at least, by what was noted beside them.
+std::uint64_t frames_known_of(const RecordingHeader& header) {
+  std::uint64_t known = 0;
+  for (const Gap& gap : header.gaps) known = std::max(known, gap.frame);
+  for (const Mark& mark : header.marks) known = std::max(known, mark.frame);
+  for (const FaultNote& fault : header.faults) known = std::max(known, fault.frame);
+  for (const ClockPair& pair : header.clock_pairs)
+    known = std::max(known, stored_number(pair.device_sequence, header.gaps));
+  return known;
+}
+
+std::vector<std::string> notes_on(const EventLog& log) {
   std::vector<std::string> notes = {"it was never closed: what came in its last 100 ms may be missing"};
-  const auto layout = riff_layout(wav);
-  if (layout && layout->block_bytes > 0 && layout->present_bytes % layout->block_bytes != 0)
-    notes.push_back(fmt::format("its last frame was broken off: {} bytes of it were cut off",
-                                layout->present_bytes % layout->block_bytes));
   if (!log.cut_line.empty()) notes.push_back("its last event was broken off: " + log.cut_line);
   return notes;
 }
@@ -67,8 +73,10 @@ Result<Recovered> recover_recording(const std::string& name) {
   if (auto whole = open_closed(stem)) return already_closed(std::move(*whole), *events);
   auto log = read_events(events_path(stem));
   if (!log) return forward_error(log);
-  if (const auto begun = begin_wav(wav, log->header); !begun) return forward_error(begun);
-  Recovered recovered{{}, notes_on(*log, wav)};
+  const auto remains = salvage_wav(wav, log->header, frames_known_of(log->header));
+  if (!remains) return forward_error(remains);
+  Recovered recovered{{}, notes_on(*log)};
+  recovered.notes.insert(recovered.notes.end(), remains->notes.begin(), remains->notes.end());
   log->header.ended = "broken off";
   log->header.warnings.insert(log->header.warnings.end(), recovered.notes.begin(), recovered.notes.end());
   auto recording = close_recording(stem, std::move(log->header), *events);

@@ -43,7 +43,7 @@ LiveRecording begun(const std::string& name) {
   auto live = LiveRecording::create(name, header());
   EXPECT_TRUE(live) << message(live.error());
   EXPECT_TRUE(live->write(counted(0, 600)));
-  EXPECT_TRUE(live->add(Gap{600, 600, 7}) && live->add(Mark{600, "lift"}));
+  EXPECT_TRUE(live->add(Gap{600, 607, 7}) && live->add(Mark{600, "lift"}));
   EXPECT_TRUE(live->write(counted(600, 400)));
   for (int i = 0; i < 20; ++i)
     EXPECT_TRUE(live->add(ClockPair{static_cast<std::uint64_t>(i), i * (1 + 40e-6), 100.0 + i}));
@@ -116,6 +116,81 @@ TEST(LiveRecording, AHeaderFromTheVeryBeginningIsPutRight) {
   ASSERT_TRUE(recovered) << message(recovered.error());
   EXPECT_EQ(recovered->recording.header.frames, 50U);
   EXPECT_TRUE(check_file({FileKind::recording, folder / "oak.json"})->findings.empty());
+}
+
+void overwrite(const std::string& path, std::size_t at, const std::string& bytes) {
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(static_cast<std::streamoff>(at));
+  file << bytes;
+}
+
+std::string joined(const std::vector<std::string>& notes) {
+  std::string all;
+  for (const std::string& note : notes) all += note + "\n";
+  return all;
+}
+
+// The header is rewritten all the time, so it is what a power cut hits.
+TEST(LiveRecording, ALostHeaderIsWrittenAnewByTheJournal) {
+  for (const std::size_t lost : {4, 12, 50, 70, 112}) {
+    const TemporaryFolder folder;
+    { const auto dropped = begun(folder / "oak"); }
+    overwrite(folder / "oak.wav", lost == 50 ? 48 : 0, std::string(lost, '\0'));
+    const auto recovered = recover_recording(folder / "oak");
+    ASSERT_TRUE(recovered) << message(recovered.error());
+    EXPECT_NE(joined(recovered->notes).find("header was damaged"), std::string::npos);
+    expect_whole(folder / "oak", 1000);
+  }
+}
+
+TEST(LiveRecording, APageOfZerosCostsItsFramesAndIsNoted) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  overwrite(folder / "oak.wav", 0, std::string(4096, '\0'));
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_EQ(recovered->recording.header.frames, 1000U);
+  EXPECT_NE(joined(recovered->notes).find("its first 332 frames (0.0332 s) are zeros"), std::string::npos);
+}
+
+TEST(LiveRecording, WhatIsNotItsWavIsLeftAsItIs) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  const std::string text(5000, 'x');
+  std::ofstream(folder / "oak.wav", std::ios::binary) << text;
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::malformed);
+  EXPECT_EQ(*read_file(folder / "oak.wav"), text);
+  EXPECT_TRUE(fs::exists(folder / "oak.events.jsonl") && !fs::exists(folder / "oak.json"));
+  fs::remove(folder / "oak.wav");
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::not_found);
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+// The journal of a second and more, beside a WAV of less.
+TEST(LiveRecording, WhatTheJournalKnowsAndTheWavLacksIsSaid) {
+  const TemporaryFolder folder;
+  {
+    auto live = begun(folder / "oak");
+    ASSERT_TRUE(live.write(counted(1000, 1000)) && live.add(Mark{2000, "late"}));
+  }
+  fs::resize_file(folder / "oak.wav", 40);
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::malformed);
+  EXPECT_EQ(fs::file_size(folder / "oak.wav"), 40U);
+  overwrite(folder / "oak.wav", 0, std::string(112 + 12, '\0'));
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_EQ(recovered->recording.header.frames, 1U);
+  EXPECT_NE(joined(recovered->notes).find("at least 1999 frames (0.2 s) are lost"), std::string::npos);
+}
+
+TEST(LiveRecording, ZerosThatTheHeaderNeverPromisedAreNoSamples) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  std::ofstream(folder / "oak.wav", std::ios::app | std::ios::binary) << std::string(12 * 10000, '\0');
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_NE(joined(recovered->notes).find("last 10000 frames (1 s) were zeros"), std::string::npos);
+  expect_whole(folder / "oak", 1000);
 }
 
 TEST(LiveRecording, WithoutASampleThereIsAnEmptyRecording) {
