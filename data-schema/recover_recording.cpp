@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstddef>
 
 #include "data-schema/event_file.hpp"
 #include "data-schema/files.hpp"
+#include "data-schema/journal_gaps.hpp"
 #include "data-schema/live_recording.hpp"
 #include "data-schema/recording_close.hpp"
 #include "data-schema/recording_events.hpp"
@@ -51,9 +55,41 @@ std::uint64_t frames_known_of(const RecordingHeader& header) {
   return known;
 }
 
+// What a sidecar can hold, of bytes that may be anything.
+std::string printable(std::string_view bytes) {
+  constexpr std::size_t kMost = 80;
+  std::string text(bytes.substr(0, kMost));
+  std::ranges::replace_if(
+      text, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+// Those that lie beyond the samples go later, when the samples are counted.
+std::vector<std::string> make_gaps_agree(std::vector<Gap>& gaps) {
+  AgreedGaps agreed = agreed_gaps(gaps);
+  gaps = std::move(agreed.gaps);
+  std::vector<std::string> notes;
+  if (agreed.left_out > 0)
+    notes.push_back(
+        fmt::format("{} gaps of its journal contradict those before them and were left out: its "
+                    "time may be wrong there",
+                    agreed.left_out));
+  if (agreed.untold > 0)
+    notes.push_back(
+        fmt::format("{} missing frames stood in no line of its journal that can be read: they are "
+                    "counted to the gap after them, and the time before it is too early",
+                    agreed.untold));
+  return notes;
+}
+
 std::vector<std::string> notes_on(const EventLog& log) {
   std::vector<std::string> notes = {"it was never closed: what came in its last 100 ms may be missing"};
-  if (!log.cut_line.empty()) notes.push_back("its last event was broken off: " + log.cut_line);
+  if (!log.cut_line.empty()) notes.push_back("its last event was broken off: " + printable(log.cut_line));
+  if (log.bad_lines > 0)
+    notes.push_back(fmt::format(
+        "{} lines of its journal can't be read (the first is line {}) and were left out: a gap, a "
+        "mark or a fault may be unknown, and its time may have a hole",
+        log.bad_lines, log.first_bad_line));
   return notes;
 }
 
@@ -73,14 +109,19 @@ Result<Recovered> recover_recording(const std::string& name) {
   if (auto whole = open_closed(stem)) return already_closed(std::move(*whole), *events);
   auto log = read_events(events_path(stem));
   if (!log) return forward_error(log);
+  const auto gap_notes = make_gaps_agree(log->header.gaps);
   const auto remains = salvage_wav(wav, log->header, frames_known_of(log->header));
   if (!remains) return forward_error(remains);
   Recovered recovered{{}, notes_on(*log)};
+  recovered.notes.insert(recovered.notes.end(), gap_notes.begin(), gap_notes.end());
   recovered.notes.insert(recovered.notes.end(), remains->notes.begin(), remains->notes.end());
+  const auto said_before = static_cast<std::ptrdiff_t>(log->header.warnings.size());
   log->header.ended = "broken off";
   log->header.warnings.insert(log->header.warnings.end(), recovered.notes.begin(), recovered.notes.end());
   auto recording = close_recording(stem, std::move(log->header), *events);
   if (!recording) return forward_error(recording);
+  const auto& warnings = recording->header.warnings;  // closing adds its own
+  recovered.notes.assign(warnings.begin() + said_before, warnings.end());
   recovered.recording = std::move(*recording);
   return recovered;
 }

@@ -183,6 +183,46 @@ TEST(LiveRecording, WhatTheJournalKnowsAndTheWavLacksIsSaid) {
   EXPECT_NE(joined(recovered->notes).find("at least 1999 frames (0.2 s) are lost"), std::string::npos);
 }
 
+// A bad disk, or a file that was edited.
+TEST(LiveRecording, ABadLineOfTheJournalCostsThatLineAlone) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  const std::string events = *read_file(folder / "oak.events.jsonl");
+  const auto first_end = events.find('\n') + 1;
+  std::ofstream(folder / "oak.events.jsonl", std::ios::binary)
+      << events.substr(0, first_end) << "{\"event\": \"g\xff\n"
+      << events.substr(first_end) << "\xfe{";
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_NE(joined(recovered->notes).find("1 lines of its journal can't be read (the first is line 2)"),
+            std::string::npos);
+  EXPECT_NE(joined(recovered->notes).find("its last event was broken off: ?{"), std::string::npos);
+  EXPECT_EQ(recovered->notes, recovered->recording.header.warnings);
+  expect_whole(folder / "oak", 1000);
+}
+
+// The device numbers its frames: what a lost line told of is missing all the same.
+TEST(LiveRecording, TheGapOfALostLineIsCountedToTheNext) {
+  const TemporaryFolder folder;
+  {
+    auto live = begun(folder / "oak");
+    ASSERT_TRUE(live.add(Gap{1000, 1007 + 5 + 3, 3}) && live.add(Gap{1000, 1007 + 5 + 3, 3}));
+    ASSERT_TRUE(live.write(counted(1000, 10)) && live.add(Mark{2000, "lost"}) &&
+                live.add(Gap{2000, 2020, 5}));
+  }
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  const auto& gaps = recovered->recording.header.gaps;
+  ASSERT_EQ(gaps.size(), 2U);
+  EXPECT_EQ(gaps[1].count, 8U);
+  EXPECT_EQ(gaps[1].device_sequence, 1015U);
+  EXPECT_EQ(recovered->recording.header.marks.size(), 1U);
+  const std::string notes = joined(recovered->notes);
+  for (const char* said : {"1 gaps of its journal contradict", "5 missing frames stood in no line",
+                           "1 marks and 1 gaps lie beyond its last frame, 1010", "at least 990 frames"})
+    EXPECT_NE(notes.find(said), std::string::npos) << said << " in " << notes;
+}
+
 TEST(LiveRecording, ZerosThatTheHeaderNeverPromisedAreNoSamples) {
   const TemporaryFolder folder;
   { const auto dropped = begun(folder / "oak"); }
