@@ -63,10 +63,6 @@ Result<void> EventFile::append(const std::string& text) {
   return unwritable_log(path_, done < 0 ? errno : ENOSPC);
 }
 
-Result<void> EventFile::sync() {
-  return fdatasync(descriptor_) == 0 ? Result<void>{} : unwritable_log(path_, errno);
-}
-
 void EventFile::release_room() {
   struct stat status {};
   if (fstat(descriptor_, &status) == 0) [[maybe_unused]]

@@ -21,7 +21,6 @@ class EventFile {
 
   /// Errors: cannot_write.
   Result<void> append(const std::string& text);
-  Result<void> sync();
   /// Gives back what was kept for the sidecar; nothing may be appended any more.
   void release_room();
   Result<void> remove();

@@ -12,15 +12,17 @@
 
 namespace tacto::schema {
 
-/// How long what was written may be on its way to the disk. With blocks of 20 ms and a disk that takes as
-/// long again, a power cut loses less than 100 ms; a killed process loses only what was not yet written.
+/// The pause between two syncs. With blocks of 20 ms and a disk that syncs in as long again, a power cut
+/// loses less than 100 ms; a busy disk may take a second for a sync, and a power cut then loses that much. A
+/// killed process loses only the block that was not yet written, whatever the disk does.
 inline constexpr double kSyncEvery_s = 0.05;
 
 /// Writes NAME.wav (32-bit codes, header kept true) and NAME.events.jsonl (what the sidecar will say, then
-/// gaps, marks, clock pairs and faults, a line each) as they come, both synced to disk at least every
-/// kSyncEvery_s. close() folds the events into NAME.json. Dropped without close(), or killed, it leaves both
-/// files, from which recover_recording() makes the recording. The events' file keeps room for the sidecar on
-/// file systems that can, so that a full disk does not prevent closing. One thread at a time.
+/// gaps, marks, clock pairs and faults, a line each) as they come; a thread of its own brings both to the
+/// disk, with pauses of kSyncEvery_s. close() folds the events into NAME.json. Dropped without close(), or
+/// killed, it leaves both files, from which recover_recording() makes the recording. The events' file keeps
+/// room for the sidecar on file systems that can, so that a full disk does not prevent closing. One thread at
+/// a time.
 class LiveRecording {
  public:
   /// `name` as RecordingWriter::create(); the header's format must be pcm32. Errors: usage, where anything of
@@ -30,8 +32,8 @@ class LiveRecording {
   LiveRecording& operator=(LiveRecording&&) noexcept;
   ~LiveRecording();
 
-  /// Appends whole frames. Errors: cannot_write (disk full ...): then close() keeps all whole frames that
-  /// were written.
+  /// Appends whole frames; doesn't wait for the disk. Errors: cannot_write (disk full, a sync that failed
+  /// ...): then close() keeps all whole frames that were written.
   Result<void> write(std::span<const std::int32_t> interleaved);
   /// Append to the events, and to the header. Errors: cannot_write.
   Result<void> add(const Gap& gap);

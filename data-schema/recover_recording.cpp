@@ -83,7 +83,9 @@ std::vector<std::string> make_gaps_agree(std::vector<Gap>& gaps) {
 }
 
 std::vector<std::string> notes_on(const EventLog& log) {
-  std::vector<std::string> notes = {"it was never closed: what came in its last 100 ms may be missing"};
+  std::vector<std::string> notes = {
+      "it was never closed: what came in its last 100 ms may be missing, or in a "
+      "second where the disk was busy and power was cut"};
   if (!log.cut_line.empty()) notes.push_back("its last event was broken off: " + printable(log.cut_line));
   if (log.bad_lines > 0)
     notes.push_back(fmt::format(
