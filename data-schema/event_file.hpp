@@ -25,6 +25,11 @@ class EventFile {
   void release_room();
   Result<void> remove();
 
+  /// Whether its path still names this file: somebody may rename its folder, or delete it.
+  bool is_at_its_path() const;
+  /// Where it is now, in full; empty where it was deleted.
+  std::string place() const;
+
  private:
   EventFile(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
   std::string path_;

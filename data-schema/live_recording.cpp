@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/live_recording.hpp"
 
+#include <fmt/format.h>
+
 #include <cassert>
 #include <filesystem>
 #include <system_error>
@@ -23,6 +25,7 @@ struct LiveRecording::State {
   std::unique_ptr<BackgroundSync> sync;
 
   Result<void> append(const std::string& line);
+  Result<void> check_place() const;
 };
 
 LiveRecording::LiveRecording(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -95,9 +98,22 @@ std::uint64_t LiveRecording::frames() const {
   return state_->header.frames;
 }
 
+// Files that are open can be written whatever becomes of their names; to be closed they have to be found.
+Result<void> LiveRecording::State::check_place() const {
+  const std::string wav_name = stem + ".wav", now = recording_stem_of(events.place());
+  if (events.is_at_its_path() && is_file(wav_name)) return {};
+  if (!is_file(now + ".wav"))
+    return fail(Fault::cannot_write, "was deleted while it was recorded: its frames are lost", wav_name,
+                "record again");
+  return fail(
+      Fault::cannot_write, "was renamed, or its folder was, while it was recorded", wav_name,
+      fmt::format("its frames are in {0}.wav: 'tactograph recover {0}' makes a recording of them", now));
+}
+
 // A WAV that libsndfile could not complete is put right by what it holds.
 Result<Recording> LiveRecording::close() {
   state_->sync.reset();  // closing syncs by itself
+  if (const auto there = state_->check_place(); !there) return forward_error(there);
   [[maybe_unused]] const auto closed = state_->wav.close();
   return close_recording(state_->stem, std::move(state_->header), state_->events);
 }

@@ -47,7 +47,8 @@ class LiveRecording {
   std::uint64_t frames() const;
 
   /// Puts the WAV's header right, folds the events into the sidecar and removes their file. Once only.
-  /// Errors: cannot_write; unsuitable. After one the recording can still be recovered.
+  /// Errors: cannot_write, also where the files were renamed or deleted meanwhile; unsuitable. After one the
+  /// recording can still be recovered, from where the error says.
   Result<Recording> close();
   /// Instead of close(), where there is nothing to keep: removes both files. Errors: cannot_write.
   Result<void> discard();

@@ -16,11 +16,6 @@
 namespace tacto::schema {
 namespace {
 
-std::string stem_in(const std::string& name) {
-  constexpr std::string_view kEvents = ".events.jsonl";
-  return name.ends_with(kEvents) ? name.substr(0, name.size() - kEvents.size()) : stem_of(name, "");
-}
-
 Result<void> check_recoverable(const std::string& stem) {
   if (is_file(events_path(stem))) return {};
   if (is_file(stem + ".json"))
@@ -104,7 +99,7 @@ Result<Recovered> already_closed(Recording recording, EventFile& events) {
 }  // namespace
 
 Result<Recovered> recover_recording(const std::string& name) {
-  const std::string stem = stem_in(name), wav = stem + ".wav";
+  const std::string stem = recording_stem_of(name), wav = stem + ".wav";
   if (const auto there = check_recoverable(stem); !there) return forward_error(there);
   auto events = EventFile::lock(events_path(stem));
   if (!events) return forward_error(events);

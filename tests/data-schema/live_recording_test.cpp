@@ -252,6 +252,36 @@ TEST(LiveRecording, ClosedBetweenItsLastTwoStepsIsWhole) {
   EXPECT_FALSE(fs::exists(folder / "oak.events.jsonl"));
 }
 
+TEST(LiveRecording, WhereItsFolderWasRenamedTheFramesAreSaidToBeThere) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "here");
+  {
+    auto live = begun(folder / "here/oak");
+    fs::rename(folder / "here", folder / "there");
+    const auto closed = live.close();
+    ASSERT_FALSE(closed);
+    EXPECT_EQ(closed.error().fault, Fault::cannot_write);
+    EXPECT_NE(
+        closed.error().remedy.find("tactograph recover " +
+                                   fs::canonical(folder / "there/oak.wav").replace_extension().string()),
+        std::string::npos)
+        << message(closed.error());
+  }
+  ASSERT_TRUE(recover_recording(folder / "there/oak"));
+  expect_whole(folder / "there/oak", 1000);
+}
+
+TEST(LiveRecording, WhereItsFilesWereDeletedThatIsSaid) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "here");
+  auto live = begun(folder / "here/oak");
+  fs::remove_all(folder / "here");
+  const auto closed = live.close();
+  ASSERT_FALSE(closed);
+  EXPECT_EQ(closed.error().fault, Fault::cannot_write);
+  EXPECT_NE(closed.error().what.find("deleted"), std::string::npos);
+}
+
 TEST(LiveRecording, OneUnderWayIsLeftAlone) {
   const TemporaryFolder folder;
   auto live = begun(folder / "oak");
