@@ -6,6 +6,7 @@
 #include "capture/cli/verbs.hpp"
 #include "data-schema/cli/command.hpp"
 #include "data-schema/cli/verbs.hpp"
+#include "data-schema/standard_descriptors.hpp"
 #include "firmware-host/cli/verbs.hpp"
 #include "playback/cli/verbs.hpp"
 #include "spatial/cli/verbs.hpp"
@@ -26,5 +27,6 @@ constexpr std::array<const tacto::cli::Verb*, 21> kVerbs = {
 }  // namespace
 
 int main(int argc, char** argv) {
+  tacto::schema::open_closed_descriptors();
   return tacto::cli::run_command(kVerbs, argc, argv);
 }

@@ -125,6 +125,8 @@ Result<std::string> keep_calibration(const schema::RecordingHeader& device, cons
                                      const std::string& now) {
   const auto place = path.empty() ? schema::calibration_path(device.serial) : Result<std::string>(path);
   if (!place) return place;
+  const auto alone = schema::lock_calibration(*place);
+  if (!alone) return schema::forward_error(alone);
   CalibrationFile file;
   if (schema::is_file(*place)) {
     auto before = schema::read_calibration(*place);

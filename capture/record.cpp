@@ -117,7 +117,7 @@ void Capture::take_events(FrameBlock& block) {
   for (const schema::Gap& gap : block.events.gaps) told += gap.count;
   const std::uint64_t lost = device_.counts().lost_frames;
   if (told == 0 && lost > lost_noted_)
-    block.events.gaps.push_back({frames_, frames_ + lost_noted_, lost - lost_noted_});
+    block.events.gaps.push_back({frames_, frames_ + lost, lost - lost_noted_});
   lost_noted_ = std::max(lost, lost_noted_ + told);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data-schema/error.hpp"
+#include "data-schema/folder_lock.hpp"
 
 namespace tacto::schema {
 
@@ -45,6 +46,10 @@ Result<CalibrationFile> read_calibration(const std::string& path);
 
 /// Whole or not at all; makes the folder. Errors: cannot_write; unsuitable: a number that is not finite.
 Result<void> write_calibration(const std::string& path, const CalibrationFile& file);
+
+/// Makes the file's folder and keeps others from changing what is in it: to be held from reading a file to
+/// writing it with more in it, or one of two who calibrate at once loses his entries. Errors: cannot_write.
+Result<FolderLock> lock_calibration(const std::string& path);
 
 /// The channel's newest entry that has a scale, or a zero; nullptr where none has. Entries of one second: the
 /// one that stands last.

@@ -88,6 +88,11 @@ Result<void> write_calibration(const std::string& path, const CalibrationFile& f
   return pending.commit();
 }
 
+Result<FolderLock> lock_calibration(const std::string& path) {
+  if (const auto made = make_folder_of(path); !made) return forward_error(made);
+  return FolderLock::take(path);
+}
+
 const CalibrationEntry* newest_scale(const CalibrationFile& file, std::string_view channel) {
   return newest(file, channel, &CalibrationEntry::scale);
 }

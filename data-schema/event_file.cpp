@@ -2,6 +2,7 @@
 #include "data-schema/event_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,6 +11,8 @@
 #include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include "data-schema/files.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -21,6 +24,10 @@ tl::unexpected<Error> unwritable_log(const std::string& path, int error_number) 
     return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
   return fail(Fault::cannot_write, "can't be written: " + std::generic_category().message(error_number),
               path);
+}
+
+std::string kernel_name_of(int descriptor) {
+  return fmt::format("/proc/self/fd/{}", descriptor);
 }
 
 }  // namespace
@@ -63,10 +70,6 @@ Result<void> EventFile::append(const std::string& text) {
   return unwritable_log(path_, done < 0 ? errno : ENOSPC);
 }
 
-Result<void> EventFile::sync() {
-  return fdatasync(descriptor_) == 0 ? Result<void>{} : unwritable_log(path_, errno);
-}
-
 void EventFile::release_room() {
   struct stat status {};
   if (fstat(descriptor_, &status) == 0) [[maybe_unused]]
@@ -75,6 +78,17 @@ void EventFile::release_room() {
 
 Result<void> EventFile::remove() {
   return unlink(path_.c_str()) == 0 ? Result<void>{} : unwritable_log(path_, errno);
+}
+
+bool EventFile::is_at_its_path() const {
+  std::error_code absent;
+  return std::filesystem::equivalent(kernel_name_of(descriptor_), path_, absent);
+}
+
+std::string EventFile::place() const {
+  std::error_code unknown;
+  const auto place = std::filesystem::read_symlink(kernel_name_of(descriptor_), unknown);
+  return is_file(place.string()) ? place.string() : "";
 }
 
 Result<void> sync_path(const std::string& path) {

@@ -21,10 +21,14 @@ class EventFile {
 
   /// Errors: cannot_write.
   Result<void> append(const std::string& text);
-  Result<void> sync();
   /// Gives back what was kept for the sidecar; nothing may be appended any more.
   void release_room();
   Result<void> remove();
+
+  /// Whether its path still names this file: somebody may rename its folder, or delete it.
+  bool is_at_its_path() const;
+  /// Where it is now, in full; empty where it was deleted.
+  std::string place() const;
 
  private:
   EventFile(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/live_recording.hpp"
 
+#include <fmt/format.h>
+
 #include <cassert>
-#include <chrono>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "data-schema/background_sync.hpp"
 #include "data-schema/event_file.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/recording_close.hpp"
@@ -15,17 +17,15 @@
 
 namespace tacto::schema {
 
-using Clock = std::chrono::steady_clock;
-
 struct LiveRecording::State {
   std::string stem;
   RecordingHeader header;
   EventFile events;
   WavWriter wav;
-  Clock::time_point synced = Clock::now();
+  std::unique_ptr<BackgroundSync> sync;
 
   Result<void> append(const std::string& line);
-  Result<void> sync_where_due();
+  Result<void> check_place() const;
 };
 
 LiveRecording::LiveRecording(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -51,29 +51,23 @@ Result<LiveRecording> LiveRecording::create(const std::string& name, RecordingHe
     if (const auto removed = events->remove(); !removed) return forward_error(removed);
     return forward_error(begun);
   }
-  auto state = std::make_unique<State>(
-      State{stem, std::move(header), std::move(*events), std::move(*writer), Clock::time_point()});
   if (const auto synced = sync_path(folder_of(wav)); !synced) return forward_error(synced);
+  auto sync = BackgroundSync::start({wav, events_path(stem)}, kSyncEvery_s);
+  if (!sync) return forward_error(sync);
+  auto state = std::make_unique<State>(
+      State{stem, std::move(header), std::move(*events), std::move(*writer), std::move(*sync)});
   return LiveRecording(std::move(state));
-}
-
-Result<void> LiveRecording::State::sync_where_due() {
-  const auto now = Clock::now();
-  if (std::chrono::duration<double>(now - synced).count() < kSyncEvery_s) return {};
-  synced = now;
-  if (const auto done = wav.sync(); !done) return done;
-  return events.sync();
 }
 
 Result<void> LiveRecording::State::append(const std::string& line) {
   const auto appended = events.append(line);
-  return appended ? sync_where_due() : appended;
+  return appended ? sync->written() : appended;
 }
 
 Result<void> LiveRecording::write(std::span<const std::int32_t> interleaved) {
   if (const auto written = state_->wav.write(interleaved); !written) return written;
   state_->header.frames += interleaved.size() / state_->header.channels.size();
-  return state_->sync_where_due();
+  return state_->sync->written();
 }
 
 Result<void> LiveRecording::add(const Gap& gap) {
@@ -104,13 +98,28 @@ std::uint64_t LiveRecording::frames() const {
   return state_->header.frames;
 }
 
+// Files that are open can be written whatever becomes of their names; to be closed they have to be found.
+Result<void> LiveRecording::State::check_place() const {
+  const std::string wav_name = stem + ".wav", now = recording_stem_of(events.place());
+  if (events.is_at_its_path() && is_file(wav_name)) return {};
+  if (!is_file(now + ".wav"))
+    return fail(Fault::cannot_write, "was deleted while it was recorded: its frames are lost", wav_name,
+                "record again");
+  return fail(
+      Fault::cannot_write, "was renamed, or its folder was, while it was recorded", wav_name,
+      fmt::format("its frames are in {0}.wav: 'tactograph recover {0}' makes a recording of them", now));
+}
+
 // A WAV that libsndfile could not complete is put right by what it holds.
 Result<Recording> LiveRecording::close() {
+  state_->sync.reset();  // closing syncs by itself
+  if (const auto there = state_->check_place(); !there) return forward_error(there);
   [[maybe_unused]] const auto closed = state_->wav.close();
   return close_recording(state_->stem, std::move(state_->header), state_->events);
 }
 
 Result<void> LiveRecording::discard() {
+  state_->sync.reset();
   [[maybe_unused]] const auto closed = state_->wav.close();
   std::error_code failed;
   std::filesystem::remove(state_->stem + ".wav", failed);

@@ -12,15 +12,17 @@
 
 namespace tacto::schema {
 
-/// How long what was written may be on its way to the disk. With blocks of 20 ms and a disk that takes as
-/// long again, a power cut loses less than 100 ms; a killed process loses only what was not yet written.
+/// The pause between two syncs. With blocks of 20 ms and a disk that syncs in as long again, a power cut
+/// loses less than 100 ms; a busy disk may take a second for a sync, and a power cut then loses that much. A
+/// killed process loses only the block that was not yet written, whatever the disk does.
 inline constexpr double kSyncEvery_s = 0.05;
 
 /// Writes NAME.wav (32-bit codes, header kept true) and NAME.events.jsonl (what the sidecar will say, then
-/// gaps, marks, clock pairs and faults, a line each) as they come, both synced to disk at least every
-/// kSyncEvery_s. close() folds the events into NAME.json. Dropped without close(), or killed, it leaves both
-/// files, from which recover_recording() makes the recording. The events' file keeps room for the sidecar on
-/// file systems that can, so that a full disk does not prevent closing. One thread at a time.
+/// gaps, marks, clock pairs and faults, a line each) as they come; a thread of its own brings both to the
+/// disk, with pauses of kSyncEvery_s. close() folds the events into NAME.json. Dropped without close(), or
+/// killed, it leaves both files, from which recover_recording() makes the recording. The events' file keeps
+/// room for the sidecar on file systems that can, so that a full disk does not prevent closing. One thread at
+/// a time.
 class LiveRecording {
  public:
   /// `name` as RecordingWriter::create(); the header's format must be pcm32. Errors: usage, where anything of
@@ -30,8 +32,8 @@ class LiveRecording {
   LiveRecording& operator=(LiveRecording&&) noexcept;
   ~LiveRecording();
 
-  /// Appends whole frames. Errors: cannot_write (disk full ...): then close() keeps all whole frames that
-  /// were written.
+  /// Appends whole frames; doesn't wait for the disk. Errors: cannot_write (disk full, a sync that failed
+  /// ...): then close() keeps all whole frames that were written.
   Result<void> write(std::span<const std::int32_t> interleaved);
   /// Append to the events, and to the header. Errors: cannot_write.
   Result<void> add(const Gap& gap);
@@ -45,7 +47,8 @@ class LiveRecording {
   std::uint64_t frames() const;
 
   /// Puts the WAV's header right, folds the events into the sidecar and removes their file. Once only.
-  /// Errors: cannot_write; unsuitable. After one the recording can still be recovered.
+  /// Errors: cannot_write, also where the files were renamed or deleted meanwhile; unsuitable. After one the
+  /// recording can still be recovered, from where the error says.
   Result<Recording> close();
   /// Instead of close(), where there is nothing to keep: removes both files. Errors: cannot_write.
   Result<void> discard();
@@ -62,9 +65,11 @@ struct Recovered {
   std::vector<std::string> notes;  ///< what was lost, and what was put right; also its warnings
 };
 
-/// Makes a recording of what a LiveRecording left: cuts off an unfinished frame, puts the WAV's header right,
-/// writes the sidecar with the events, removes their file. `name` as open_recording(). Errors: not_found;
-/// unsuitable, where the recording was closed, or is still being made; malformed; cannot_write.
+/// Makes a recording of what a LiveRecording left: writes the WAV's header anew where it was lost, cuts off
+/// an unfinished frame and zeros that were never written, writes the sidecar with the events, removes their
+/// file. `name` as open_recording(). Errors: not_found, also where the WAV is missing; unsuitable, where the
+/// recording was closed, or is still being made; malformed, where journal or WAV are of something else, or
+/// the WAV holds nothing of what the journal knows, and then nothing is changed; cannot_write.
 Result<Recovered> recover_recording(const std::string& name);
 
 }  // namespace tacto::schema

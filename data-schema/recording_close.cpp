@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/recording_close.hpp"
 
+#include <fmt/format.h>
+
 #include "data-schema/clock_fit.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/recording_place.hpp"
@@ -32,8 +34,12 @@ void note_clocks(RecordingHeader& header) {
 
 // What was noted of frames that did not come to the disk.
 void forget_beyond_end(RecordingHeader& header) {
-  std::erase_if(header.gaps, [&](const Gap& gap) { return gap.frame > header.frames; });
-  std::erase_if(header.marks, [&](const Mark& mark) { return mark.frame > header.frames; });
+  const auto gaps = std::erase_if(header.gaps, [&](const Gap& gap) { return gap.frame > header.frames; });
+  const auto marks =
+      std::erase_if(header.marks, [&](const Mark& mark) { return mark.frame > header.frames; });
+  if (gaps + marks > 0)
+    header.warnings.push_back(fmt::format(
+        "{} marks and {} gaps lie beyond its last frame, {}, and were left out", marks, gaps, header.frames));
   std::erase_if(header.strokes, [&](const StrokeFigures& stroke) {
     return stroke.first_frame + stroke.frames > header.frames;
   });

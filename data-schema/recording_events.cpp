@@ -77,9 +77,9 @@ Result<EventLog> read_events(const std::string& path) {
                 "delete it");
   auto header = header_in(line, path);
   if (!header) return forward_error(header);
-  EventLog log{std::move(*header), {}};
-  while (take_line(text, line))
-    if (!add_event(log.header, line)) return EventLog{std::move(log.header), std::string(line)};
+  EventLog log{.header = std::move(*header), .cut_line = {}};
+  for (std::size_t number = 2; take_line(text, line); ++number)
+    if (!add_event(log.header, line) && log.bad_lines++ == 0) log.first_bad_line = number;
   log.cut_line = text;
   return log;
 }

@@ -22,10 +22,11 @@ std::string event_line(const FaultNote& fault);
 struct EventLog {
   RecordingHeader header;  ///< with the events in it
   std::string cut_line;    ///< what is left of a line that was being written when all ended
+  std::size_t bad_lines = 0, first_bad_line = 0;  ///< whole ones that say nothing; the first one's number
 };
 
-/// Reads such a file, as far as its lines are whole. Errors: not_found; unsuitable, where not even the
-/// first line is whole; malformed, where that says nothing.
+/// Reads such a file; a line that says nothing is passed over and counted. Errors: not_found; unsuitable,
+/// where not even the first line is whole; malformed, where that says nothing.
 Result<EventLog> read_events(const std::string& path);
 
 }  // namespace tacto::schema

@@ -253,6 +253,9 @@ std::optional<Violation> gap_breach(const RecordingHeader& header, std::size_t i
   if (frame > header.frames || (i > 0 && frame < header.gaps[i - 1].frame))
     return Violation{fmt::format("/gaps/{}/frame", i),
                      fmt::format("gaps must grow and end at frame {}", header.frames)};
+  if (i > 0 && frame == header.gaps[i - 1].frame &&
+      header.gaps[i].device_sequence == header.gaps[i - 1].device_sequence)
+    return Violation{fmt::format("/gaps/{}/device_sequence", i), "the same gap is there twice"};
   return std::nullopt;
 }
 

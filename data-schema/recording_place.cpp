@@ -10,9 +10,19 @@
 #include "data-schema/version.hpp"
 
 namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kEventsEnding = ".events.jsonl";
+
+}  // namespace
 
 std::string events_path(const std::string& stem) {
-  return stem + ".events.jsonl";
+  return stem + std::string(kEventsEnding);
+}
+
+std::string recording_stem_of(const std::string& name) {
+  return name.ends_with(kEventsEnding) ? name.substr(0, name.size() - kEventsEnding.size())
+                                       : stem_of(name, "");
 }
 
 Result<void> check_free(const std::string& stem) {

@@ -12,6 +12,9 @@ namespace tacto::schema {
 /// Where the events of a recording are kept while it is made.
 std::string events_path(const std::string& stem);
 
+/// The stem of such a file, or of any other of a recording's.
+std::string recording_stem_of(const std::string& name);
+
 /// That nothing of a recording of this stem is there. Errors: usage, naming the file.
 Result<void> check_free(const std::string& stem);
 

@@ -74,8 +74,6 @@ class WavWriter {
   /// full ...).
   Result<void> write(std::span<const double> interleaved);
   Result<void> write(std::span<const std::int32_t> interleaved);
-  /// Returns when all that was written is on the disk. Errors: cannot_write.
-  Result<void> sync();
   /// Ends the file. Errors: cannot_write. Without it the destructor closes, and nobody learns of a failure.
   Result<void> close();
   /// The same, with another rate in the header than it had until now. Errors: also usage, as create().

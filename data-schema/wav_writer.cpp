@@ -47,7 +47,6 @@ struct WavWriter::State {
   std::string path;
   std::size_t channels = 0;
   int header_rate = 0;
-  int descriptor = -1;  // belongs to `file`
   SampleFormat format = SampleFormat::float64;
 
   State() = default;
@@ -98,7 +97,6 @@ Result<WavWriter> WavWriter::create(const std::string& path, int flags, double s
     ::close(opened);
     return unwritten(path, nullptr);
   }
-  state->descriptor = opened;
   state->path = path;
   state->channels = channels;
   state->header_rate = header.samplerate;
@@ -120,12 +118,6 @@ Result<void> WavWriter::write(std::span<const std::int32_t> interleaved) {
   assert(state_->format == SampleFormat::pcm32);
   const sf_count_t wanted = state_->frames(interleaved.size());
   return state_->written(sf_writef_int(state_->file, interleaved.data(), wanted), wanted);
-}
-
-Result<void> WavWriter::sync() {
-  if (fdatasync(state_->descriptor) == 0) return {};
-  return fail(Fault::cannot_write, "can't be brought to the disk: " + std::generic_category().message(errno),
-              state_->path);
 }
 
 Result<void> WavWriter::close() {

@@ -11,6 +11,7 @@
 #include "capture/travel.hpp"
 #include "capture/watch_counts.hpp"
 #include "data-schema/cli/report.hpp"
+#include "data-schema/cli/talk.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -51,7 +52,7 @@ Result<Travels> of_recordings(const CalibrateEncoderOptions& options) {
 }
 
 void ask_for_end(std::size_t ends) {
-  fmt::print(stderr, "Go to the {} mark, then press Enter: ", ends % 2 == 0 ? "first" : "second");
+  cli::talk(fmt::format("Go to the {} mark, then press Enter: ", ends % 2 == 0 ? "first" : "second"));
   std::fflush(stderr);
 }
 

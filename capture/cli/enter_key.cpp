@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capture/cli/enter_key.hpp"
+#include "data-schema/cli/talk.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -22,7 +23,7 @@ schema::Result<bool> read_line() {
 }  // namespace
 
 schema::Result<void> wait_for_enter(const std::string& what_to_do) {
-  fmt::print(stderr, "{}, then press Enter: ", what_to_do);
+  cli::talk(fmt::format("{}, then press Enter: ", what_to_do));
   std::fflush(stderr);
   const auto line = read_line();
   return line ? schema::Result<void>{} : schema::forward_error(line);

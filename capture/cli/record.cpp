@@ -17,6 +17,7 @@
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/report.hpp"
 #include "data-schema/cli/stop_signals.hpp"
+#include "data-schema/cli/talk.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
 
 namespace tacto::capture {
@@ -67,8 +68,8 @@ std::string footer_text() {
          "its rests and\n"
          "turns it eases the load. 40 mm there and back at 50 mm/s take 1.8 s.\n"
          "While it records: Ctrl-C or q stops and keeps, m or SIGUSR1 marks. A crash or a power cut loses "
-         "the last "
-         "100 ms:\n"
+         "the last 100 ms\n"
+         "(a power cut a second, where the disk was busy):\n"
          "'tactograph recover NAME' makes a recording of the rest.";
 }
 
@@ -129,7 +130,7 @@ class Console {
     hooks.new_marks = [this] { return signals_.take_marks() + std::exchange(marks_, 0); };
     if (isatty(STDERR_FILENO) == 1)
       hooks.view = [](const LiveView& view, const schema::RecordingHeader& header) {
-        fmt::print(stderr, "\r\033[K{}", live_line(view, header, terminal_columns()));
+        cli::talk(fmt::format("\r\033[K{}", live_line(view, header, terminal_columns())));
         std::fflush(stderr);
       };
     else
@@ -137,7 +138,7 @@ class Console {
     return hooks;
   }
   ~Console() {
-    if (isatty(STDERR_FILENO) == 1) fmt::print(stderr, "\r\033[K");
+    if (isatty(STDERR_FILENO) == 1) cli::talk("\r\033[K");
   }
 
  private:

@@ -9,6 +9,7 @@
 #include <exception>
 #include <memory>
 
+#include "data-schema/cli/talk.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/version.hpp"
 
@@ -35,7 +36,7 @@ Entry declare(CLI::App& parent, const Verb& verb) {
 }
 
 int print_error(const schema::Error& error) {
-  fmt::print(stderr, "tactograph: {}\n", schema::message(error));
+  talk(fmt::format("tactograph: {}\n", schema::message(error)));
   return schema::exit_code(error.fault);
 }
 
@@ -57,8 +58,8 @@ int act(const Entry& entry) {
 
 int print_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version arrive here too
-  fmt::print(stderr, "tactograph: {}; see 'tactograph {}--help'\n", error.what(),
-             app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+  talk(fmt::format("tactograph: {}; see 'tactograph {}--help'\n", error.what(),
+                   app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " "));
   return schema::exit_code(schema::Fault::usage);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/progress.hpp"
+#include "data-schema/cli/talk.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -14,7 +15,7 @@ Progress::Progress(std::string task)
     : task_(std::move(task)), terminal_(isatty(STDERR_FILENO) == 1), next_(Clock::now() + 1s) {}
 
 Progress::~Progress() {
-  if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
+  if (shown_ && terminal_) talk("\r\033[K");
 }
 
 void Progress::update(double fraction) {
@@ -22,8 +23,7 @@ void Progress::update(double fraction) {
   if (now < next_) return;
   next_ = now + (terminal_ ? 100ms : 5000ms);
   shown_ = true;
-  fmt::print(stderr, "{}{}  {:3.0f} %{}", terminal_ ? "\r" : "", task_, 100 * fraction,
-             terminal_ ? "" : "\n");
+  talk(fmt::format("{}{}  {:3.0f} %{}", terminal_ ? "\r" : "", task_, 100 * fraction, terminal_ ? "" : "\n"));
   std::fflush(stderr);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/verb.hpp"
+#include "data-schema/cli/talk.hpp"
 
 #include <fmt/format.h>
 
@@ -54,7 +55,7 @@ std::size_t choose(const std::string& option, const std::string& word,
 }
 
 void warn(const std::string& text) {
-  fmt::print(stderr, "tactograph: warning: {}\n", text);
+  talk(fmt::format("tactograph: warning: {}\n", text));
 }
 
 }  // namespace tacto::cli

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <exception>
 
+#include "data-schema/cli/talk.hpp"
+#include "data-schema/standard_descriptors.hpp"
 #include "firmware-host/gadget/configfs_gadget.hpp"
 #include "firmware-host/gadget/gadget_loop.hpp"
 #include "firmware-host/gadget/gadget_options.hpp"
@@ -22,7 +24,7 @@ void stop_on_signals() {
 }
 
 void say(const std::string& words) {
-  fmt::print(stderr, "tactograph-gadget: {}\n", words);
+  cli::talk(fmt::format("tactograph-gadget: {}\n", words));
 }
 
 // Plugged in from here to the end. The link outlives the plug: nothing blocks in it then.
@@ -66,6 +68,7 @@ int run_with(std::span<const char* const> arguments) {
 }  // namespace tacto::firmware_host
 
 int main(int count, char** values) {
+  tacto::schema::open_closed_descriptors();
   try {
     return tacto::firmware_host::run_with({values + 1, values + count});
   } catch (const std::exception& error) {

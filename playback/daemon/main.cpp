@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "data-schema/cli/talk.hpp"
+#include "data-schema/standard_descriptors.hpp"
 #include "data-schema/version.hpp"
 #include "playback/daemon/control_server.hpp"
 #include "playback/daemon/service.hpp"
@@ -36,7 +38,7 @@ void ask_to_stop(int) {
 }
 
 int failed(const schema::Error& error) {
-  fmt::print(stderr, "tactographd: {}\n", schema::message(error));
+  cli::talk(fmt::format("tactographd: {}\n", schema::message(error)));
   return schema::exit_code(error.fault);
 }
 
@@ -50,7 +52,7 @@ void tell(ControlServer& server, const ServiceManager& manager, std::string_view
   server.publish(event, fields);
   if (event != "state") return;
   const std::string state = schema::control_text(fields, "state"), why = schema::control_text(fields, "why");
-  fmt::print(stderr, "tactographd: {}{}{}\n", state, why.empty() ? "" : ": ", why);
+  cli::talk(fmt::format("tactographd: {}{}{}\n", state, why.empty() ? "" : ": ", why));
   manager.tell("STATUS=" + state);
 }
 
@@ -74,8 +76,8 @@ int run(const char* config_path) {
   };
   const auto service = Service::open(*config, publish);
   if (!service) return failed(service.error());
-  if (mlockall(MCL_CURRENT) != 0) fmt::print(stderr, "tactographd: memory is not locked (LimitMEMLOCK)\n");
-  fmt::print(stderr, "tactographd: ready on {}\n", config->socket);
+  if (mlockall(MCL_CURRENT) != 0) cli::talk("tactographd: memory is not locked (LimitMEMLOCK)\n");
+  cli::talk(fmt::format("tactographd: ready on {}\n", config->socket));
   manager.tell("READY=1");
   serve_until_asked(**server, **service, manager);
   manager.tell("STOPPING=1");
@@ -86,6 +88,7 @@ int run(const char* config_path) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  schema::open_closed_descriptors();
   const std::string_view first = argc > 1 ? argv[1] : "";
   if (first == "--help" || first == "-h") return std::fputs(kHelp, stdout) < 0 ? 1 : 0;
   if (first == "--version") return std::puts(kCreator.data()) < 0 ? 1 : 0;

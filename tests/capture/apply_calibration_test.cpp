@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 #include "capture/record.hpp"
 #include "tests/capture/sim_take.hpp"
@@ -131,6 +132,18 @@ TEST(KeepCalibration, AddsToItsDevicesFile) {
   other.serial = "T-2";
   EXPECT_EQ(keep_calibration(other, "", {}, path, kNow).error().fault, Fault::unsuitable);
   EXPECT_EQ(schema::read_calibration(path)->entries.size(), 2U);
+}
+
+TEST(KeepCalibration, OfSeveralAtOnceLosesNone) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "new/T-1.calibration.json";
+  std::vector<std::thread> people;
+  for (int person = 0; person < 4; ++person)
+    people.emplace_back([&] {
+      for (int i = 0; i < 5; ++i) EXPECT_TRUE(keep_calibration(header(), "", {tare(3, "")}, path, kNow));
+    });
+  for (std::thread& person : people) person.join();
+  EXPECT_EQ(schema::read_calibration(path)->entries.size(), 20U);
 }
 
 TEST(CalibrationOf, IsNoneOnlyWhereNobodyNamedOne) {

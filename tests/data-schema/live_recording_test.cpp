@@ -43,7 +43,7 @@ LiveRecording begun(const std::string& name) {
   auto live = LiveRecording::create(name, header());
   EXPECT_TRUE(live) << message(live.error());
   EXPECT_TRUE(live->write(counted(0, 600)));
-  EXPECT_TRUE(live->add(Gap{600, 600, 7}) && live->add(Mark{600, "lift"}));
+  EXPECT_TRUE(live->add(Gap{600, 607, 7}) && live->add(Mark{600, "lift"}));
   EXPECT_TRUE(live->write(counted(600, 400)));
   for (int i = 0; i < 20; ++i)
     EXPECT_TRUE(live->add(ClockPair{static_cast<std::uint64_t>(i), i * (1 + 40e-6), 100.0 + i}));
@@ -118,6 +118,121 @@ TEST(LiveRecording, AHeaderFromTheVeryBeginningIsPutRight) {
   EXPECT_TRUE(check_file({FileKind::recording, folder / "oak.json"})->findings.empty());
 }
 
+void overwrite(const std::string& path, std::size_t at, const std::string& bytes) {
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(static_cast<std::streamoff>(at));
+  file << bytes;
+}
+
+std::string joined(const std::vector<std::string>& notes) {
+  std::string all;
+  for (const std::string& note : notes) all += note + "\n";
+  return all;
+}
+
+// The header is rewritten all the time, so it is what a power cut hits.
+TEST(LiveRecording, ALostHeaderIsWrittenAnewByTheJournal) {
+  for (const std::size_t lost : {4, 12, 50, 70, 112}) {
+    const TemporaryFolder folder;
+    { const auto dropped = begun(folder / "oak"); }
+    overwrite(folder / "oak.wav", lost == 50 ? 48 : 0, std::string(lost, '\0'));
+    const auto recovered = recover_recording(folder / "oak");
+    ASSERT_TRUE(recovered) << message(recovered.error());
+    EXPECT_NE(joined(recovered->notes).find("header was damaged"), std::string::npos);
+    expect_whole(folder / "oak", 1000);
+  }
+}
+
+TEST(LiveRecording, APageOfZerosCostsItsFramesAndIsNoted) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  overwrite(folder / "oak.wav", 0, std::string(4096, '\0'));
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_EQ(recovered->recording.header.frames, 1000U);
+  EXPECT_NE(joined(recovered->notes).find("its first 332 frames (0.0332 s) are zeros"), std::string::npos);
+}
+
+TEST(LiveRecording, WhatIsNotItsWavIsLeftAsItIs) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  const std::string text(5000, 'x');
+  std::ofstream(folder / "oak.wav", std::ios::binary) << text;
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::malformed);
+  EXPECT_EQ(*read_file(folder / "oak.wav"), text);
+  EXPECT_TRUE(fs::exists(folder / "oak.events.jsonl") && !fs::exists(folder / "oak.json"));
+  fs::remove(folder / "oak.wav");
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::not_found);
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+// The journal of a second and more, beside a WAV of less.
+TEST(LiveRecording, WhatTheJournalKnowsAndTheWavLacksIsSaid) {
+  const TemporaryFolder folder;
+  {
+    auto live = begun(folder / "oak");
+    ASSERT_TRUE(live.write(counted(1000, 1000)) && live.add(Mark{2000, "late"}));
+  }
+  fs::resize_file(folder / "oak.wav", 40);
+  EXPECT_EQ(recover_recording(folder / "oak").error().fault, Fault::malformed);
+  EXPECT_EQ(fs::file_size(folder / "oak.wav"), 40U);
+  overwrite(folder / "oak.wav", 0, std::string(112 + 12, '\0'));
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_EQ(recovered->recording.header.frames, 1U);
+  EXPECT_NE(joined(recovered->notes).find("at least 1999 frames (0.2 s) are lost"), std::string::npos);
+}
+
+// A bad disk, or a file that was edited.
+TEST(LiveRecording, ABadLineOfTheJournalCostsThatLineAlone) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  const std::string events = *read_file(folder / "oak.events.jsonl");
+  const auto first_end = events.find('\n') + 1;
+  std::ofstream(folder / "oak.events.jsonl", std::ios::binary)
+      << events.substr(0, first_end) << "{\"event\": \"g\xff\n"
+      << events.substr(first_end) << "\xfe{";
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_NE(joined(recovered->notes).find("1 lines of its journal can't be read (the first is line 2)"),
+            std::string::npos);
+  EXPECT_NE(joined(recovered->notes).find("its last event was broken off: ?{"), std::string::npos);
+  EXPECT_EQ(recovered->notes, recovered->recording.header.warnings);
+  expect_whole(folder / "oak", 1000);
+}
+
+// The device numbers its frames: what a lost line told of is missing all the same.
+TEST(LiveRecording, TheGapOfALostLineIsCountedToTheNext) {
+  const TemporaryFolder folder;
+  {
+    auto live = begun(folder / "oak");
+    ASSERT_TRUE(live.add(Gap{1000, 1007 + 5 + 3, 3}) && live.add(Gap{1000, 1007 + 5 + 3, 3}));
+    ASSERT_TRUE(live.write(counted(1000, 10)) && live.add(Mark{2000, "lost"}) &&
+                live.add(Gap{2000, 2020, 5}));
+  }
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  const auto& gaps = recovered->recording.header.gaps;
+  ASSERT_EQ(gaps.size(), 2U);
+  EXPECT_EQ(gaps[1].count, 8U);
+  EXPECT_EQ(gaps[1].device_sequence, 1015U);
+  EXPECT_EQ(recovered->recording.header.marks.size(), 1U);
+  const std::string notes = joined(recovered->notes);
+  for (const char* said : {"1 gaps of its journal contradict", "5 missing frames stood in no line",
+                           "1 marks and 1 gaps lie beyond its last frame, 1010", "at least 990 frames"})
+    EXPECT_NE(notes.find(said), std::string::npos) << said << " in " << notes;
+}
+
+TEST(LiveRecording, ZerosThatTheHeaderNeverPromisedAreNoSamples) {
+  const TemporaryFolder folder;
+  { const auto dropped = begun(folder / "oak"); }
+  std::ofstream(folder / "oak.wav", std::ios::app | std::ios::binary) << std::string(12 * 10000, '\0');
+  const auto recovered = recover_recording(folder / "oak");
+  ASSERT_TRUE(recovered) << message(recovered.error());
+  EXPECT_NE(joined(recovered->notes).find("last 10000 frames (1 s) were zeros"), std::string::npos);
+  expect_whole(folder / "oak", 1000);
+}
+
 TEST(LiveRecording, WithoutASampleThereIsAnEmptyRecording) {
   const TemporaryFolder folder;
   { const auto live = LiveRecording::create(folder / "oak", header()); }
@@ -135,6 +250,36 @@ TEST(LiveRecording, ClosedBetweenItsLastTwoStepsIsWhole) {
   ASSERT_TRUE(recover_recording(folder / "oak"));
   EXPECT_EQ(open_recording(folder / "oak")->header.ended, "");
   EXPECT_FALSE(fs::exists(folder / "oak.events.jsonl"));
+}
+
+TEST(LiveRecording, WhereItsFolderWasRenamedTheFramesAreSaidToBeThere) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "here");
+  {
+    auto live = begun(folder / "here/oak");
+    fs::rename(folder / "here", folder / "there");
+    const auto closed = live.close();
+    ASSERT_FALSE(closed);
+    EXPECT_EQ(closed.error().fault, Fault::cannot_write);
+    EXPECT_NE(
+        closed.error().remedy.find("tactograph recover " +
+                                   fs::canonical(folder / "there/oak.wav").replace_extension().string()),
+        std::string::npos)
+        << message(closed.error());
+  }
+  ASSERT_TRUE(recover_recording(folder / "there/oak"));
+  expect_whole(folder / "there/oak", 1000);
+}
+
+TEST(LiveRecording, WhereItsFilesWereDeletedThatIsSaid) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "here");
+  auto live = begun(folder / "here/oak");
+  fs::remove_all(folder / "here");
+  const auto closed = live.close();
+  ASSERT_FALSE(closed);
+  EXPECT_EQ(closed.error().fault, Fault::cannot_write);
+  EXPECT_NE(closed.error().what.find("deleted"), std::string::npos);
 }
 
 TEST(LiveRecording, OneUnderWayIsLeftAlone) {

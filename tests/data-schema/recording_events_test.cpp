@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording's journal: what is written is what is read, and a broken line ends it without taking the rest
-// along.
+// A recording's journal: what is written is what is read, and a broken line takes no other along.
 #include "data-schema/recording_events.hpp"
 
 #include <gtest/gtest.h>
@@ -55,15 +54,18 @@ TEST(RecordingEvents, ComeBackAsTheyWereWritten) {
 }
 
 // A kill cuts the last line; a bad disk does worse.
-TEST(RecordingEvents, EndAtALineThatIsNone) {
+TEST(RecordingEvents, AreReadPastALineThatIsNone) {
   for (const std::string line :
        {R"({"event": "gap", "frame": 10, "device_sequence": 12, "co`nt": 2})",
         R"({"event": "mark", "frame": 1})", R"({"event": "clock"})",
         R"({"event": "fault", "frame": 1, "what": 7})", R"({"event": 5})", "[]", "7", "",
         R"({"event": "gap", "frame": "ten", "device_sequence": 12, "count": 2})"}) {
     const EventLog log = log_of(kWhole + line + "\n" + event_line(Mark{15, "after"}));
-    EXPECT_EQ(log.cut_line, line);
-    EXPECT_EQ(log.header.marks.size(), 1U) << line;
+    EXPECT_EQ(log.cut_line, "");
+    EXPECT_EQ(log.bad_lines, 1U);
+    EXPECT_EQ(log.first_bad_line, 6U);
+    ASSERT_EQ(log.header.marks.size(), 2U) << line;
+    EXPECT_EQ(log.header.marks[1].label, "after");
     EXPECT_EQ(log.header.gaps.size(), 1U) << line;
   }
   EXPECT_EQ(log_of(kWhole + R"({"event": "mar)").cut_line, R"({"event": "mar)");

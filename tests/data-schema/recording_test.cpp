@@ -222,6 +222,16 @@ TEST(Recording, NamesTheSampleThatIsNotFinite) {
   }
 }
 
+TEST(Recording, AGapThatIsThereTwiceIsRefused) {
+  const TemporaryFolder folder;
+  auto writer = RecordingWriter::create(folder / "oak", full_header(SampleFormat::float64)).value();
+  ASSERT_TRUE(writer.write(std::span(kSamples)));
+  writer.header().gaps = {{2, 7, 5}, {2, 7, 5}};
+  const auto closed = writer.close();
+  ASSERT_FALSE(closed);
+  EXPECT_EQ(closed.error().where, "/gaps/1/device_sequence");
+}
+
 TEST(Recording, CountsGapsInTheTime) {
   const TemporaryFolder folder;
   RecordingHeader header = full_header(SampleFormat::float64);

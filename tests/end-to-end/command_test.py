@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command as a whole: help, JSON, exit codes, completion, and a session in files."""
 import json
+import pathlib
 import subprocess
 
 import tacto
@@ -40,6 +41,20 @@ def a_full_output_is_an_error():
     assert done.returncode == 7 and "stdout" in done.stderr, done
 
 
+def closed_outputs_get_nothing():
+    """The files that are opened must not take the numbers of stdout and stderr, or words land among the frames."""
+    def in_shell(redirected, *arguments):
+        return subprocess.run(["bash", "-c", f'exec {redirected}; exec "$@"', "-", tacto.COMMAND, *arguments]).returncode
+    tacto.run("record", "-d", "sim:seed=1", "-o", "open", "--time", "0.3s")
+    for name, redirected in (("closed", "0<&- 1>&- 2>&-"), ("full", "1>/dev/null 2>/dev/full")):
+        code = in_shell(redirected, "record", "-d", "sim:paced=1,seed=1", "-o", name, "--time", "0.3s")
+        assert code == 0, (name, code)
+        tacto.run("validate", name)
+        assert pathlib.Path(f"{name}.wav").read_bytes() == pathlib.Path("open.wav").read_bytes(), name
+        assert in_shell(redirected, "validate", name) == 0
+        assert in_shell(redirected, "info", "nowhere") == 3
+
+
 def bash_completes():
     script, _ = tacto.run("completion")
     probe = script + """
@@ -54,5 +69,5 @@ complete_words tactograph render --tra
 
 if __name__ == "__main__":
     for test in (every_verb_helps_with_an_example, words_that_are_no_verbs_are_refused, json_goes_to_stdout_alone,
-                 a_full_output_is_an_error, bash_completes):
+                 a_full_output_is_an_error, closed_outputs_get_nothing, bash_completes):
         tacto.in_folder(test)
