@@ -26,6 +26,7 @@ struct ControlRequest {
   std::string version;  ///< hello
   std::string file;     ///< load
   std::optional<double> at_m, gain_m_per_n;
+  std::optional<double> fade_s;  ///< load while armed
   std::optional<TextureEnds> ends;
   std::optional<double> gain;
   bool save = false;

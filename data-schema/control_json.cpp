@@ -74,6 +74,7 @@ ControlRequest request_of(const Json& body) {
   request.file = text_or(body, "file");
   request.at_m = optional_number(body, "at_m");
   request.gain_m_per_n = optional_number(body, "gain_m_per_n");
+  request.fade_s = optional_number(body, "fade_s");
   request.gain = optional_number(body, "gain");
   request.save = body.value("save", false);
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
@@ -156,6 +157,7 @@ std::string control_request_line(const ControlRequest& request) {
   if (request.at_m) body["at_m"] = *request.at_m;
   if (request.gain_m_per_n) body["gain_m_per_n"] = *request.gain_m_per_n;
   if (request.ends) body["ends"] = word_of(*request.ends);
+  if (request.fade_s) body["fade_s"] = *request.fade_s;
   if (request.gain) body["gain"] = *request.gain;
   if (request.save) body["save"] = true;
   return line_of(body);

@@ -38,8 +38,7 @@ Result<void> check_room(const Client& client, const Prepared& prepared) {
   return {};
 }
 
-std::uint32_t check_of(const std::vector<float>& samples) {
-  std::uint32_t check = 0;
+std::uint32_t check_with(std::span<const float> samples, std::uint32_t check) {
   for (const float sample : samples) {
     std::uint8_t bytes[4];
     wire::FieldWriter(bytes, sizeof bytes)(sample);
@@ -48,19 +47,22 @@ std::uint32_t check_of(const std::vector<float>& samples) {
   return check;
 }
 
-Result<void> send_samples(Client& client, const Prepared& prepared) {
+Result<void> send_samples(Client& client, const Prepared& prepared, double times) {
   wire::ProfileChunk chunk{};
+  std::uint32_t check = 0;
   for (std::size_t first = 0; first < prepared.samples.size(); first += wire::kMaxChunk) {
     const std::size_t count = std::min(wire::kMaxChunk, prepared.samples.size() - first);
     chunk.first = static_cast<std::uint32_t>(first);
     chunk.count = static_cast<std::uint16_t>(count);
-    std::copy_n(prepared.samples.begin() + static_cast<std::ptrdiff_t>(first), count, chunk.values);
+    std::ranges::transform(std::span(prepared.samples).subspan(first, count), chunk.values,
+                           [=](float sample) { return static_cast<float>(times * sample); });
+    check = check_with(std::span(chunk.values, count), check);
     if (auto sent = client.command(chunk); !sent) return sent;
   }
-  return client.command(wire::ProfileEnd{check_of(prepared.samples)});
+  return client.command(wire::ProfileEnd{check});
 }
 
-Result<void> send_levels(Client& client, const Prepared& prepared) {
+Result<void> send_levels(Client& client, const Prepared& prepared, double times) {
   const core::ProfileScale& scale = prepared.scale;
   const auto all = static_cast<std::uint32_t>(prepared.samples.size());
   const wire::ProfileBegin begin{all, scale.origin_count, scale.at_origin_q32, scale.samples_per_count_q32,
@@ -69,7 +71,7 @@ Result<void> send_levels(Client& client, const Prepared& prepared) {
   if (auto sent = client.command(wire::ProfileLevels{scale.levels, scale.interpolation, 0, scale.samples});
       !sent)
     return sent;
-  return send_samples(client, prepared);
+  return send_samples(client, prepared, times);
 }
 
 Result<void> send_filters(Client& client, const Prepared& prepared) {
@@ -77,7 +79,10 @@ Result<void> send_filters(Client& client, const Prepared& prepared) {
   taps.count = static_cast<std::uint16_t>(prepared.taps.size());
   std::ranges::copy(prepared.taps, taps.taps);
   if (auto sent = client.command(taps); !sent) return sent;
-  if (auto sent = client.command(wire::Filters{}); !sent) return sent;
+  return client.command(wire::Filters{});
+}
+
+Result<void> send_tracking(Client& client, const Prepared& prepared) {
   const core::TrackerSetup& tracker = prepared.tracker;
   return client.command(wire::Tracking{tracker.between_counts,
                                        {},
@@ -107,12 +112,21 @@ Result<void> send_contact(Client& client, const Prepared& prepared) {
 Result<void> upload(Client& client, const Prepared& prepared) {
   if (auto room = check_room(client, prepared); !room) return room;
   if (auto sent = client.command(prepared.limits); !sent) return sent;
-  if (auto sent = send_levels(client, prepared); !sent) return sent;
+  if (auto sent = send_levels(client, prepared, 1); !sent) return sent;
   if (auto sent = send_filters(client, prepared); !sent) return sent;
+  if (auto sent = send_tracking(client, prepared); !sent) return sent;
   if (auto sent = client.command(wire::Energy{prepared.energy_rms_v, prepared.energy_window_s}); !sent)
     return sent;
   if (auto sent = send_contact(client, prepared); !sent) return sent;
   return client.command(wire::Gain{prepared.gain_m_per_n});
+}
+
+Result<void> upload_change(Client& client, const Prepared& prepared, double device_gain_m_per_n,
+                           double fade_s) {
+  const double times = prepared.gain_m_per_n / device_gain_m_per_n;
+  if (auto sent = send_levels(client, prepared, times); !sent) return sent;
+  if (auto sent = send_tracking(client, prepared); !sent) return sent;
+  return client.command(wire::Change{static_cast<float>(fade_s)});
 }
 
 }  // namespace tacto::playback

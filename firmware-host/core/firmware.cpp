@@ -4,7 +4,11 @@
 namespace tacto::core {
 
 Firmware::Firmware(const Board& board, const Hal& hal) noexcept
-    : board_(board), hal_(hal), ticker_(hal), upload_(board.profile_memory, board.profile_samples) {
+    : board_(board),
+      hal_(hal),
+      ticker_(hal),
+      upload_(board.profile_memory, board.profile_samples),
+      next_(board.profile_memory, board.profile_samples) {
   wire::Welcome& about = board_.about;
   about.major = wire::kProtocolMajor;
   about.minor = wire::kProtocolMinor;

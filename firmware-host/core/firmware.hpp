@@ -61,18 +61,24 @@ class Firmware {
   template <class Message>
   Reply in_idle(const wire::Frame& frame, Message& message,
                 Reply (Firmware::*command)(const Message&)) noexcept;
+  template <class Message>
+  Reply to_profile(const wire::Frame& frame, Message& message,
+                   Reply (Firmware::*command)(const Message&)) noexcept;
   Reply stream_start(const wire::StreamStart& message) noexcept;
   Reply stream_stop() noexcept;
   Reply limits(const wire::Limits& message) noexcept;
   Reply profile_begin(const wire::ProfileBegin& message) noexcept;
-  Reply profile_levels(const wire::ProfileLevels& message) noexcept { return upload_.levels(message); }
-  Reply profile_chunk(const wire::ProfileChunk& message) noexcept { return upload_.chunk(message); }
-  Reply profile_end(const wire::ProfileEnd& message) noexcept { return upload_.end(message); }
+  Reply next_profile_begin(const wire::ProfileBegin& message) noexcept;
+  Reply profile_levels(const wire::ProfileLevels& message) noexcept { return building().levels(message); }
+  Reply profile_chunk(const wire::ProfileChunk& message) noexcept { return building().chunk(message); }
+  Reply profile_end(const wire::ProfileEnd& message) noexcept { return building().end(message); }
   Reply filters(const wire::Filters& message) noexcept;
   Reply taps(const wire::Taps& message) noexcept;
   Reply tracking(const wire::Tracking& message) noexcept;
   Reply energy(const wire::Energy& message) noexcept;
   Reply contact(const wire::Contact& message) noexcept;
+  Reply change(const wire::Change& message) noexcept;
+  TextureSetup texture_setup() const noexcept;
   KernelSetup kernel_setup(const wire::Arm& message) const noexcept;
   Reply gain(const wire::Gain& message) noexcept;
   Reply sweep(const wire::Sweep& message) noexcept;
@@ -84,18 +90,23 @@ class Firmware {
   Reply reset() noexcept;
   Reply drive(const wire::Drive& message) noexcept;
   Reply take_rate(uint32_t rate_millihertz) noexcept;
+  Reply wrong_state() const noexcept;
   bool idle() const noexcept { return drive_state() == wire::DriveState::idle; }
+  /// Armed or playing, and not on its way to idle: it is not idle before the main loop says so.
+  bool runs() const noexcept;
+  bool plays_profile() const noexcept;
+  ProfileUpload& building() noexcept { return idle() ? upload_ : next_; }
 
   Board board_;
   Hal hal_;
   Ticker ticker_;
-  ProfileUpload upload_;
+  ProfileUpload upload_, next_;  // next: uploaded while the other one plays
   wire::FrameDecoder decoder_;
   wire::SequenceCheck order_;
   wire::Limits limits_;
   wire::Filters filters_;
   wire::Taps taps_, new_taps_;
-  wire::Tracking tracking_;
+  wire::Tracking tracking_, next_tracking_;
   wire::Energy energy_;
   wire::Contact contact_;
   wire::Sweep sweep_;
@@ -111,6 +122,7 @@ class Firmware {
   uint8_t run_ = 0;
   Owed owed_ = Owed::nothing;
   bool greeted_ = false, limited_ = false;
+  bool changed_ = false;  // and no next profile has begun since
   wire::FaultCode told_ = wire::FaultCode::none, stream_fault_ = wire::FaultCode::none;
   uint8_t received_[512];
   size_t received_size_ = 0, received_used_ = 0;

@@ -11,7 +11,7 @@ using wire::DriveSource;
 using wire::DriveState;
 using wire::MessageType;
 
-constexpr float kLongestOnsetS = 10;
+constexpr float kLongestOnsetS = 10, kLongestFadeS = 10;
 constexpr uint16_t kLeastWatchdogMs = 10, kMostWatchdogMs = 1000;
 constexpr uint32_t kTickBlockPart = 100000;  // mHz: a ticks message every 10 ms
 constexpr uint32_t kNotGreeted = 255;
@@ -67,8 +67,30 @@ Reply Firmware::with(const wire::Frame& frame, Message& message,
 template <class Message>
 Reply Firmware::in_idle(const wire::Frame& frame, Message& message,
                         Reply (Firmware::*command)(const Message&)) noexcept {
-  if (!idle()) return {AnswerCode::wrong_state, static_cast<uint32_t>(drive_state())};
+  if (!idle()) return wrong_state();
   return with(frame, message, command);
+}
+
+// What a profile is made of: in idle the one that will be armed, beside one that plays the next.
+template <class Message>
+Reply Firmware::to_profile(const wire::Frame& frame, Message& message,
+                           Reply (Firmware::*command)(const Message&)) noexcept {
+  if (!idle() && !plays_profile()) return wrong_state();
+  return with(frame, message, command);
+}
+
+Reply Firmware::wrong_state() const noexcept {
+  return {AnswerCode::wrong_state, static_cast<uint32_t>(drive_state())};
+}
+
+bool Firmware::runs() const noexcept {
+  const DriveState state = drive_state();
+  return (state == DriveState::armed || state == DriveState::playing) &&
+         ticker_.supervisor().aim() != Aim::off;
+}
+
+bool Firmware::plays_profile() const noexcept {
+  return runs() && ticker_.source() == DriveSource::profile;
 }
 
 Reply Firmware::reply_to(const wire::Frame& frame) noexcept {
@@ -106,23 +128,23 @@ Reply Firmware::reply_to(const wire::Frame& frame) noexcept {
 
 // What a running drive must not have changed under it.
 Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
-  wire::ProfileBegin begin;
-  wire::ProfileEnd end;
   wire::Limits new_limits;
   wire::Filters new_filters;
+  wire::Energy new_energy;
+  wire::Contact new_contact;
   wire::Sweep new_sweep;
   wire::Arm new_arm;
   switch (static_cast<MessageType>(frame.header.type)) {
     case MessageType::limits:
       return in_idle(frame, new_limits, &Firmware::limits);
-    case MessageType::profile_begin:
-      return in_idle(frame, begin, &Firmware::profile_begin);
-    case MessageType::profile_chunk:
-      return in_idle(frame, chunk_, &Firmware::profile_chunk);
-    case MessageType::profile_end:
-      return in_idle(frame, end, &Firmware::profile_end);
     case MessageType::filters:
       return in_idle(frame, new_filters, &Firmware::filters);
+    case MessageType::taps:
+      return in_idle(frame, new_taps_, &Firmware::taps);
+    case MessageType::energy:
+      return in_idle(frame, new_energy, &Firmware::energy);
+    case MessageType::contact:
+      return in_idle(frame, new_contact, &Firmware::contact);
     case MessageType::sweep:
       return in_idle(frame, new_sweep, &Firmware::sweep);
     case MessageType::arm:
@@ -132,23 +154,26 @@ Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
   }
 }
 
-// Since protocol 1.1.
+// What comes with a texture: a running drive gets a next one beside it.
 Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
+  wire::ProfileBegin begin;
   wire::ProfileLevels new_levels;
+  wire::ProfileEnd end;
   wire::Tracking new_tracking;
-  wire::Energy new_energy;
-  wire::Contact new_contact;
+  wire::Change new_change;
   switch (static_cast<MessageType>(frame.header.type)) {
+    case MessageType::profile_begin:
+      return to_profile(frame, begin, &Firmware::profile_begin);
     case MessageType::profile_levels:
-      return in_idle(frame, new_levels, &Firmware::profile_levels);
-    case MessageType::taps:
-      return in_idle(frame, new_taps_, &Firmware::taps);
+      return to_profile(frame, new_levels, &Firmware::profile_levels);
+    case MessageType::profile_chunk:
+      return to_profile(frame, chunk_, &Firmware::profile_chunk);
+    case MessageType::profile_end:
+      return to_profile(frame, end, &Firmware::profile_end);
     case MessageType::tracking:
-      return in_idle(frame, new_tracking, &Firmware::tracking);
-    case MessageType::energy:
-      return in_idle(frame, new_energy, &Firmware::energy);
-    case MessageType::contact:
-      return in_idle(frame, new_contact, &Firmware::contact);
+      return to_profile(frame, new_tracking, &Firmware::tracking);
+    case MessageType::change:
+      return with(frame, new_change, &Firmware::change);
     default:
       return {AnswerCode::unknown_type, frame.header.type};
   }
@@ -156,11 +181,21 @@ Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
 
 // A host of protocol 1.0 knows nothing of the rest: a new profile begins without it.
 Reply Firmware::profile_begin(const wire::ProfileBegin& message) noexcept {
+  if (!idle()) return next_profile_begin(message);
   taps_.count = 0;
   tracking_ = {};
   energy_ = {};
   contact_ = {};
   return upload_.begin(message);
+}
+
+// Never where something is read: not in the profile that plays, and not before the one that leaves is gone.
+Reply Firmware::next_profile_begin(const wire::ProfileBegin& message) noexcept {
+  if (ticker_.fading()) return wrong_state();
+  changed_ = false;
+  next_tracking_ = tracking_;
+  next_tracking_.full_detail_counts_per_tick = 0;
+  return next_.begin_beside(upload_, message);
 }
 
 // One clock for sampling and driving: a second user takes the rate that is there.
@@ -169,7 +204,7 @@ Reply Firmware::take_rate(uint32_t rate) noexcept {
   if (rate < about.least_rate_millihertz || rate > about.most_rate_millihertz) return bad_value(0);
   const bool shared = ticker_.streaming() || !idle();
   if (shared && rate == rate_millihertz_) return {};
-  if (shared) return {AnswerCode::wrong_state, static_cast<uint32_t>(drive_state())};
+  if (shared) return wrong_state();
   rate_millihertz_ = rate;
   hal_.set_rate(hal_.board, 0);
   ticker_.set_period(static_cast<float>(about.clock_hz) / (1e-3F * static_cast<float>(rate)));
@@ -226,7 +261,7 @@ Reply Firmware::tracking(const wire::Tracking& message) noexcept {
   if (!within(message.look_ahead_ticks, 0, kMostTicksAhead)) return bad_value(2);
   if (!within(message.smoothing_ticks, 0, kLargestFloat)) return bad_value(3);
   if (!within(message.full_detail_counts_per_tick, 0, kLargestFloat)) return bad_value(4);
-  tracking_ = message;
+  (idle() ? tracking_ : next_tracking_) = message;
   return {};
 }
 
@@ -249,6 +284,20 @@ Reply Firmware::contact(const wire::Contact& message) noexcept {
 Reply Firmware::gain(const wire::Gain& message) noexcept {
   if (!is_finite(message.gain)) return bad_value(0);
   ticker_.set_gain(message.gain);
+  return {};
+}
+
+// Sent again because its answer was lost, it has been obeyed already.
+Reply Firmware::change(const wire::Change& message) noexcept {
+  if (!plays_profile()) return wrong_state();
+  if (!within(message.fade_s, 0, kLongestFadeS)) return bad_value(0);
+  if (changed_) return {};
+  if (!next_.complete()) return {AnswerCode::incomplete, next_.here()};
+  upload_ = next_;
+  tracking_ = next_tracking_;
+  next_.forget();
+  changed_ = true;
+  ticker_.change(texture_setup(), message.fade_s);
   return {};
 }
 
@@ -278,8 +327,16 @@ Reply Firmware::arm(const wire::Arm& message) noexcept {
   ticker_.watch_force(contact_);
   ticks_.begin(ticks_in_block(message.rate_millihertz));
   told_ = wire::FaultCode::none;
+  next_.forget();
+  changed_ = false;
   ticker_.arm(message.source, kernel_setup(message), message.rate_millihertz);
   return {};
+}
+
+TextureSetup Firmware::texture_setup() const noexcept {
+  return {upload_.profile(),
+          {tracking_.between_counts != 0, tracking_.look_ahead_ticks, tracking_.smoothing_ticks},
+          per_full_detail(tracking_.full_detail_counts_per_tick)};
 }
 
 // Filters belong to the profile; limits and touch to every source.
@@ -292,9 +349,7 @@ KernelSetup Firmware::kernel_setup(const wire::Arm& message) const noexcept {
   setup.gate_on_n = contact_.on_n;
   setup.gate_off_n = contact_.off_n;
   if (message.source != DriveSource::profile) return setup;
-  setup.texture = {upload_.profile(),
-                   {tracking_.between_counts != 0, tracking_.look_ahead_ticks, tracking_.smoothing_ticks},
-                   per_full_detail(tracking_.full_detail_counts_per_tick)};
+  setup.texture = texture_setup();
   setup.taps = taps_.taps;
   setup.tap_count = taps_.count;
   setup.sections = filters_.sections;
@@ -303,12 +358,8 @@ KernelSetup Firmware::kernel_setup(const wire::Arm& message) const noexcept {
 }
 
 Reply Firmware::play() noexcept {
-  DriveSupervisor& supervisor = ticker_.supervisor();
-  const DriveState state = supervisor.state();
-  const bool may =
-      (state == DriveState::armed || state == DriveState::playing) && supervisor.aim() != Aim::off;
-  if (!may) return {AnswerCode::wrong_state, static_cast<uint32_t>(state)};
-  supervisor.aim(Aim::play);
+  if (!runs()) return wrong_state();
+  ticker_.supervisor().aim(Aim::play);
   ticker_.steered();
   return {};
 }
@@ -327,7 +378,7 @@ Reply Firmware::disarm() noexcept {
 
 // Only from rest: a restart would cut a drive off with a step.
 Reply Firmware::reset() noexcept {
-  if (!idle()) return {AnswerCode::wrong_state, static_cast<uint32_t>(drive_state())};
+  if (!idle()) return wrong_state();
   ticker_.stop_stream();
   hal_.restart(hal_.board);
   return {};
@@ -336,7 +387,7 @@ Reply Firmware::reset() noexcept {
 // A drive that does not fit would be played too late: it is refused whole.
 Reply Firmware::drive(const wire::Drive& message) noexcept {
   auto& queue = ticker_.drive_queue();
-  if (idle()) return {AnswerCode::wrong_state, static_cast<uint32_t>(drive_state())};
+  if (idle()) return wrong_state();
   if (message.count > kDriveQueue - queue.size()) return {AnswerCode::too_large, kDriveQueue - queue.size()};
   for (uint16_t i = 0; i < message.count; ++i) {
     *queue.place() = message.drive_v[i];

@@ -25,10 +25,26 @@ bool sound(const wire::ProfileBegin& message, uint32_t& field) noexcept {
 
 }  // namespace
 
+void ProfileUpload::forget() noexcept {
+  *this = ProfileUpload(memory_, capacity_);
+}
+
 Reply ProfileUpload::begin(const wire::ProfileBegin& message) noexcept {
   forget();
+  return begin_within(capacity_, message);
+}
+
+Reply ProfileUpload::begin_beside(const ProfileUpload& other, const wire::ProfileBegin& message) noexcept {
+  forget();
+  const bool at_start = other.place_ > 0;
+  const Reply reply = begin_within(at_start ? other.place_ : capacity_ - other.samples_, message);
+  if (reply.code == AnswerCode::ok && !at_start) place_ = capacity_ - samples_;
+  return reply;
+}
+
+Reply ProfileUpload::begin_within(uint32_t room, const wire::ProfileBegin& message) noexcept {
   uint32_t field = 0;
-  if (message.samples > capacity_) return {AnswerCode::too_large, capacity_};
+  if (message.samples > room) return {AnswerCode::too_large, room};
   if (message.samples < kLeastProfile) return {AnswerCode::bad_value, 0};
   if (!sound(message, field)) return {AnswerCode::bad_value, field};
   scale_ = {message.samples, message.origin_count, message.at_origin_q32, message.samples_per_count_q32,
@@ -54,33 +70,34 @@ Reply ProfileUpload::levels(const wire::ProfileLevels& message) noexcept {
 }
 
 Reply ProfileUpload::chunk(const wire::ProfileChunk& message) noexcept {
-  if (message.first > here_) return {AnswerCode::incomplete, here_};
+  if (samples_ == 0 || message.first > here_) return {AnswerCode::incomplete, here_};
   if (message.count > samples_ - message.first) return {AnswerCode::too_large, samples_};
   complete_ = false;
+  if (message.first < checked_) checked_ = check_ = 0;
+  float* const to = memory_ + place_ + message.first;
   for (uint32_t i = 0; i < message.count; ++i) {
     if (!is_finite(message.values[i])) return {AnswerCode::bad_value, message.first + i};
-    memory_[message.first + i] = message.values[i];
+    to[i] = message.values[i];
   }
   const uint32_t end = message.first + message.count;
   here_ = end > here_ ? end : here_;
+  if (message.first == checked_) check_up_to(end);
   return {};
 }
 
-uint32_t ProfileUpload::check() const noexcept {
-  uint32_t check = 0;
-  for (uint32_t i = 0; i < samples_; ++i) {
+void ProfileUpload::check_up_to(uint32_t end) noexcept {
+  for (; checked_ < end; ++checked_) {
     uint8_t bytes[4];
-    wire::FieldWriter(bytes, sizeof bytes)(memory_[i]);
-    check = wire::crc32c(bytes, sizeof bytes, check);
+    wire::FieldWriter(bytes, sizeof bytes)(memory_[place_ + checked_]);
+    check_ = wire::crc32c(bytes, sizeof bytes, check_);
   }
-  return check;
 }
 
 Reply ProfileUpload::end(const wire::ProfileEnd& message) noexcept {
   if (samples_ == 0 || here_ < samples_) return {AnswerCode::incomplete, here_};
-  const uint32_t is = check();
-  complete_ = is == message.check;
-  return complete_ ? Reply{} : Reply{AnswerCode::check_failed, is};
+  check_up_to(samples_);
+  complete_ = check_ == message.check;
+  return complete_ ? Reply{} : Reply{AnswerCode::check_failed, check_};
 }
 
 }  // namespace tacto::core

@@ -24,7 +24,18 @@ void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_mil
   steered_.store(0);
   steered_taken_ = 0;
   gain_taken_ = gain_.load();
+  change_.store(kNoChange);
+  change_taken_ = false;
   supervisor_.arm(setup.limits, rate_millihertz, hal_.read_encoder(hal_.board));
+}
+
+// What the tick reads is written before the word that sends it there.
+void Ticker::change(const TextureSetup& texture, float fade_s) noexcept {
+  next_texture_ = texture;
+  fade_s_ = fade_s;
+  const auto count = static_cast<uint8_t>(steered_.load() + 1);
+  change_.store(static_cast<uint16_t>(kChangeAsked | count));
+  steered();
 }
 
 FaultCode Ticker::take_stream_fault() noexcept {
@@ -60,13 +71,34 @@ void Ticker::take_steering(Record& record) noexcept {
   if (const uint8_t steered = steered_.load(); steered != steered_taken_) {
     steered_taken_ = steered;
     gain_taken_ = gain_.load();
+    take_change();
   }
   record.flags |= uint32_t{steered_taken_} << wire::kTickSteeredShift;
 }
 
+// Not before its own count: a tick may come between the word and the count, and take an earlier command.
+void Ticker::take_change() noexcept {
+  const uint16_t asked = change_.load();
+  const auto since = static_cast<int8_t>(steered_taken_ - static_cast<uint8_t>(asked));
+  if (asked == kNoChange || change_taken_ || since < 0) return;
+  kernel_.change(next_texture_, fade_s_);
+  change_taken_ = true;
+}
+
+// From here on nothing reads the texture that left.
+void Ticker::end_change() noexcept {
+  if (!change_taken_ || kernel_.changing()) return;
+  change_taken_ = false;
+  change_.store(kNoChange);
+}
+
 // The host's drive is for this tick or for none: what was not played in its time is not played later.
 float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
-  if (source_ == DriveSource::profile) return kernel_.wanted(encoder, gain_taken_);
+  if (source_ == DriveSource::profile) {
+    const float wanted = kernel_.wanted(encoder, gain_taken_);
+    end_change();
+    return wanted;
+  }
   if (source_ == DriveSource::sweep) return supervisor_.state() == DriveState::playing ? sweep_.next() : 0;
   const float* next = drive_queue_.front();
   lacks = next == nullptr;

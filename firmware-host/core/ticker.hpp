@@ -39,6 +39,12 @@ class Ticker {
   void watch_force(const wire::Contact& contact) noexcept { contact_ = contact; }
   /// Taken by the tick that first counts it.
   void set_gain(float gain) noexcept { gain_.store(gain), steered(); }
+  /// Another texture fades in over fade_s, beginning in the tick that first counts it. Armed by a profile,
+  /// and not while fading().
+  void change(const TextureSetup& texture, float fade_s) noexcept;
+  /// A change is under way: the texture that leaves is still read. Of use until the drive is idle.
+  bool fading() const noexcept { return change_.load() != kNoChange; }
+  wire::DriveSource source() const noexcept { return source_; }
   /// A command to the drive has been obeyed.
   void steered() noexcept { steered_.store(static_cast<uint8_t>(steered_.load() + 1)); }
   TickKernel& kernel() noexcept { return kernel_; }
@@ -60,6 +66,8 @@ class Ticker {
   void sample(Record& record) noexcept;
   void drive(Record& record) noexcept;
   void take_steering(Record& record) noexcept;
+  void take_change() noexcept;
+  void end_change() noexcept;
   float wanted(int32_t encoder, bool& lacks) noexcept;
   float normal_force(Record& record) noexcept;
   void count(uint32_t flags) noexcept;
@@ -77,8 +85,14 @@ class Ticker {
   wire::Contact contact_;
   Shared<float> gain_{1.0F};
   Shared<uint8_t> steered_;
+  // The main loop writes this word where it is kNoChange, the tick where it is not.
+  static constexpr uint16_t kNoChange = 0, kChangeAsked = 0x100;  // and the count of commands that it is
+  Shared<uint16_t> change_{kNoChange};
+  TextureSetup next_texture_;
+  float fade_s_ = 0;
   float gain_taken_ = 1;
   uint8_t steered_taken_ = 0;
+  bool change_taken_ = false;
   Shared<Stream> stream_{Stream::off};
   Shared<wire::FaultCode> stream_fault_{wire::FaultCode::none};
   Shared<uint8_t> run_;

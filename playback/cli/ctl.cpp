@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 10> kCtlActions = {"hello",  "load", "arm
 
 struct CtlOptions {
   std::string socket = kUsualSocket, action, what, ends;
-  std::optional<double> at_m, gain_m_per_n;
+  std::optional<double> at_m, gain_m_per_n, fade_s;
   std::optional<double> time_s;
   bool save = false;
 };
@@ -72,6 +72,7 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   request.file = request.verb == ControlVerb::load ? full_name(o.what) : "";
   request.at_m = o.at_m;
   request.gain_m_per_n = o.gain_m_per_n;
+  request.fade_s = o.fade_s;
   if (!o.ends.empty())
     request.ends =
         static_cast<schema::TextureEnds>(cli::choose("--ends", o.ends, {"stop", "mirror", "loop"}));
@@ -157,6 +158,8 @@ cli::Action declare_ctl(CLI::App& app) {
   cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance,
                     "load of a texture: displacement for force");
   app.add_option("--ends", o.ends, "load of a texture: stop, mirror or loop");
+  cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
+                    "load while one plays: how long the change takes, 50ms unless told");
   app.add_flag("--save", o.save, "gain: also into the scene's file");
   cli::add_quantity(app, "--time", o.time_s, Dimension::time, "watch, top: how long");
   return [options] { return run_ctl(*options); };
@@ -167,7 +170,8 @@ cli::Action declare_ctl(CLI::App& app) {
 const cli::Verb kCtlVerb{"ctl", "Steer the daemon: load, arm, play, stop, gain, status, watch, top",
                          "tactograph ctl load oak --at 10mm\n"
                          "  tactograph ctl arm && tactograph ctl play\n"
-                         "  tactograph ctl gain 0.5",
+                         "  tactograph ctl gain 0.5\n"
+                         "  tactograph ctl load cork --fade 200ms",
                          declare_ctl};
 
 }  // namespace tacto::playback

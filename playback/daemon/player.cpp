@@ -10,6 +10,7 @@
 
 #include "firmware-host/wire_fields.hpp"
 #include "firmware-host/wire_words.hpp"
+#include "playback/texture_change.hpp"
 #include "playback/upload.hpp"
 
 namespace tacto::playback {
@@ -21,6 +22,8 @@ using schema::Result;
 namespace {
 
 constexpr double kIdleWaitS = 1, kIdleStepS = 0.01;
+constexpr double kLongestFadeS = 10;  // the wire's
+constexpr double kBehindS = 0.05;     // how far the device may be ahead of the ticks that have come
 
 std::int64_t steady_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -29,6 +32,10 @@ std::int64_t steady_ns() {
 PlayerState state_of(std::uint32_t flags) {
   if ((flags & wire::kTickFault) != 0) return PlayerState::fault;
   return (flags & wire::kTickPlaying) != 0 ? PlayerState::playing : PlayerState::armed;
+}
+
+bool runs(PlayerState state) {
+  return state == PlayerState::armed || state == PlayerState::playing;
 }
 
 // The encoder's step stands in the description of the channel that it gives.
@@ -84,13 +91,40 @@ Result<void> Player::steer(const Message& message) {
   return done;
 }
 
-Result<void> Player::load(Program program) {
-  if (const auto may = require(state_ == PlayerState::idle, "load", "disarm first"); !may) return may;
+Result<void> Player::may_load() const {
+  return require(state_ == PlayerState::idle || runs(state_), "load", "disarm first");
+}
+
+Result<void> Player::load(Program program, double fade_s) {
+  if (const auto may = may_load(); !may) return may;
   const wire::Welcome& about = client_.description().welcome;
   wire::Limits& limits = program.prepared.limits;
   limits.drive_v = std::min(limits.drive_v, about.drive_limit_v);
   limits.slew_v_per_s = std::min(limits.slew_v_per_s, about.slew_limit_v_per_s);
+  if (runs(state_)) return change(std::move(program), fade_s);
   program_ = std::move(program);
+  return {};
+}
+
+Result<void> Player::may_change(const Program& program, double fade_s) const {
+  if (!(fade_s >= 0 && fade_s <= kLongestFadeS))
+    return fail(Fault::usage, fmt::format("a fade of {:g} s", fade_s), uri_, "0 s to 10 s; 50 ms is usual");
+  if (view_.expected() < faded_at_)
+    return fail(Fault::usage, "the last change of texture is not through yet", uri_, "load again once it is");
+  return check_texture_change(program_->prepared, program.prepared,
+                              client_.description().welcome.profile_samples);
+}
+
+// The device's gain stays what it is, so that a gain that comes later is a factor of the same.
+Result<void> Player::change(Program program, double fade_s) {
+  if (const auto may = may_change(program, fade_s); !may) return may;
+  const auto done = upload_change(client_, program.prepared, device_gain_m_per_n_, fade_s);
+  take_ticks();
+  take_faults();
+  if (!done) return done;
+  program_ = std::move(program);
+  faded_at_ = view_.expected() + static_cast<std::uint64_t>((fade_s + kBehindS) * program_->prepared.rate_hz);
+  recorder_->event({view_.expected(), steady_ns(), "texture changed to " + program_->name()});
   return {};
 }
 
@@ -120,6 +154,8 @@ Result<void> Player::arm(const std::string& session_path) {
   session_path_ = session_path;
   fault_.clear();
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
+  device_gain_m_per_n_ = program_->prepared.gain_m_per_n;
+  faded_at_ = 0;
   const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};
   auto done = upload(client_, program_->prepared);
   if (done) done = client_.command(device_gain());
@@ -135,9 +171,8 @@ Result<void> Player::arm(const std::string& session_path) {
 }
 
 Result<void> Player::play() {
-  const bool may = state_ == PlayerState::armed || state_ == PlayerState::playing;
   const char* const remedy = state_ == PlayerState::fault ? "disarm first, then arm" : "arm first";
-  if (const auto allowed = require(may, "play", remedy); !allowed) return allowed;
+  if (const auto allowed = require(runs(state_), "play", remedy); !allowed) return allowed;
   return steer(wire::Play{});
 }
 
@@ -155,7 +190,7 @@ Result<void> Player::gain(double gain) {
 }
 
 wire::Gain Player::device_gain() const {
-  return {static_cast<float>(gain_ * program_->prepared.gain_m_per_n)};
+  return {static_cast<float>(gain_ * device_gain_m_per_n_)};
 }
 
 Result<void> Player::wait_for_idle() {

@@ -42,6 +42,8 @@ struct PlayerStatus {
   double round_trip_s = 0;  ///< of the last heartbeat
 };
 
+inline constexpr double kUsualFadeS = 0.05;  ///< of a change of texture
+
 /// One thread, which also owns the client. Every call ends within the client's timeouts. What cannot be done
 /// in the state that it is in is refused (usage), with what to do first.
 class Player {
@@ -58,8 +60,13 @@ class Player {
   double metres_per_count() const { return metres_per_count_; }
   void listen(Listener listener) { listener_ = std::move(listener); }
 
-  /// Uploads. In idle. Errors: usage; device.
-  schema::Result<void> load(Program program);
+  /// In idle: kept for arm(), which uploads it. Armed or playing: the texture changes to it, over `fade_s` (0
+  /// to 10 s); gain() goes on from what it is. Errors: usage, in another state, while an earlier change still
+  /// fades, or for another fade; as of check_texture_change(); device. After an error the texture that played
+  /// plays on.
+  schema::Result<void> load(Program program, double fade_s = kUsualFadeS);
+  /// Whether it may be loaded in this state. Errors: usage.
+  schema::Result<void> may_load() const;
   bool loaded() const { return program_.has_value(); }
   /// Begins a session (never over a file that is there), and arms. In idle, loaded. Errors: usage; device;
   /// cannot_write.
@@ -91,6 +98,8 @@ class Player {
   schema::Result<void> wait_for_idle();
   schema::Result<void> beat();
   schema::Result<void> require(bool allowed, const char* what, const char* remedy) const;
+  schema::Result<void> change(Program program, double fade_s);
+  schema::Result<void> may_change(const Program& program, double fade_s) const;
   schema::SessionHeader session_header() const;
   void take_ticks();
   void take(const wire::Ticks& message);
@@ -113,6 +122,8 @@ class Player {
   PlayerState state_ = PlayerState::idle;
   std::string fault_;
   double gain_ = 1;
+  double device_gain_m_per_n_ = 0;  // that gain_ is a factor of; since arming
+  std::uint64_t faded_at_ = 0;      // the tick by which the last change is through
   TickView view_;
   double next_beat_s_ = 0, round_trip_s_ = 0;
 };

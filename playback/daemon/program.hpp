@@ -23,6 +23,9 @@ struct Program {
   schema::SessionHeader session;
   std::string scene_path;  ///< empty for a texture by itself
   double length_m = 0;     ///< from the first texture's start to the last one's end
+
+  /// The scene's file, or the texture's.
+  const std::string& name() const { return scene_path.empty() ? session.textures.front().file : scene_path; }
 };
 
 /// Reads the files, and prepares. `options`: rate, encoder, limits; gain and ends are taken from the request

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <ctime>
 #include <filesystem>
+#include <future>
 
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
@@ -31,11 +33,28 @@ namespace fs = std::filesystem;
 constexpr double kStatusEveryS = 0.1;
 constexpr double kReleaseS = 0.01;
 constexpr double kObeyedS = 0.2, kLookS = 0.01;  // a device's ticks come every 10 ms, and a ramp takes 20 ms
+constexpr auto kLookEvery = std::chrono::milliseconds(1);
+constexpr double kBesideS = 5e-3;
 
 // An emulated device that runs ahead of the clock would play to nobody.
 std::string paced(const std::string& uri) {
   if (!uri.starts_with("sim:") || uri.find("paced=") != std::string::npos) return uri;
   return uri + (uri == "sim:" ? "paced=1" : ",paced=1");
+}
+
+ControlFields fields_of(const std::string& file, const Program& program) {
+  const Prepared& made = program.prepared;
+  ControlFields fields{{"file", file},
+                       {"length_m", program.length_m},
+                       {"gain_m_per_n", double{made.gain_m_per_n}},
+                       {"rate_hz", made.rate_hz},
+                       {"passes_to_hz", made.passes_to_hz},
+                       {"delay_s", made.delay_s},
+                       {"delay_left_s", made.delay_left_s},
+                       {"inverse_error_db", made.inverse_error_db}};
+  for (std::size_t i = 0; i < made.notes.size(); ++i)
+    fields.emplace_back(fmt::format("note_{}", i + 1), made.notes[i]);
+  return fields;
 }
 
 void add_ticks(ControlFields& fields, const TickView& view) {
@@ -144,29 +163,33 @@ std::string Service::resolved(const std::string& file) const {
 Result<ControlFields> Service::load(const ControlRequest& request) {
   if (player_->state() == PlayerState::lost)
     if (const auto connected = connect(); !connected) return schema::forward_error(connected);
-  if (player_->state() != PlayerState::idle)
-    return fail(Fault::usage, "can't load while the device is armed", "load", "disarm first");
-  auto program = make_program({resolved(request.file), request.at_m, request.gain_m_per_n, request.ends},
-                              config_.transducer, options());
+  if (const auto may = player_->may_load(); !may) return schema::forward_error(may);
+  auto program = prepared_program({resolved(request.file), request.at_m, request.gain_m_per_n, request.ends});
   if (!program) return schema::forward_error(program);
-  const Prepared& made = program->prepared;
-  ControlFields fields{{"file", request.file},
-                       {"length_m", program->length_m},
-                       {"gain_m_per_n", double{made.gain_m_per_n}},
-                       {"rate_hz", made.rate_hz},
-                       {"passes_to_hz", made.passes_to_hz},
-                       {"delay_s", made.delay_s},
-                       {"delay_left_s", made.delay_left_s},
-                       {"inverse_error_db", made.inverse_error_db}};
-  notes_ = made.notes;
-  for (std::size_t i = 0; i < notes_.size(); ++i)
-    fields.emplace_back(fmt::format("note_{}", i + 1), notes_[i]);
-  scene_path_ = program->scene_path;
-  saved_gain_ = 1;
-  if (const auto kept = player_->load(std::move(*program)); !kept) return schema::forward_error(kept);
+  ControlFields fields = fields_of(request.file, *program);
+  const std::string scene_path = program->scene_path;
+  const bool changes = player_->state() != PlayerState::idle;
+  const double fade_s = request.fade_s.value_or(kUsualFadeS);
+  if (const auto kept = player_->load(std::move(*program), fade_s); !kept) return schema::forward_error(kept);
   loaded_ = request.file;
+  scene_path_ = scene_path;
+  saved_gain_ = 1;
+  fields.emplace_back("changed", changes);
+  if (changes) fields.emplace_back("fade_s", fade_s);
+  if (changes) return fields;
   if (const auto fresh = player_->gain(1); !fresh) return schema::forward_error(fresh);
   return fields;
+}
+
+// Preparing may take longer than a device's watchdog waits: while one plays, the player goes on beside it.
+Result<Program> Service::prepared_program(const ProgramRequest& request) {
+  const auto make = [this, &request, options = options()] {
+    return make_program(request, config_.transducer, options);
+  };
+  if (player_->state() == PlayerState::idle) return make();
+  auto made = std::async(std::launch::async, make);
+  while (made.wait_for(kLookEvery) != std::future_status::ready) (void)step(kBesideS);
+  return made.get();
 }
 
 std::string Service::next_session() const {

@@ -37,6 +37,7 @@ class Service {
   schema::Result<void> close_loop_here(PlayerOptions& options);
   firmware_host::Client& client() { return loop_client_ ? *loop_client_ : *device_.client; }
   schema::Result<schema::ControlFields> load(const schema::ControlRequest& request);
+  schema::Result<Program> prepared_program(const ProgramRequest& request);
   schema::Result<schema::ControlFields> arm();
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
   schema::Result<void> save_gain(double factor);
@@ -55,7 +56,6 @@ class Service {
   std::unique_ptr<Player> player_;
   std::string loaded_, scene_path_;
   double saved_gain_ = 1;  // that the scene's file holds, of the gains that were loaded
-  std::vector<std::string> notes_;
   double next_status_s_ = 0;
 };
 

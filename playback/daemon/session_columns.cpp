@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "firmware-host/core/wire/host_messages.hpp"
 #include "playback/daemon/session_board.hpp"
@@ -19,25 +18,31 @@ using schema::SessionTick;
 
 constexpr std::size_t kMostColumnTicks = std::size_t{1} << 24;
 
-// The factor of each command that steers, in their order; NaN where it is no gain.
-struct GainSteps {
-  std::vector<double> factors;
+struct SteeringStep {
+  std::optional<double> gain;  // the factor, where it is a gain
+  bool changes_texture = false;
+};
+
+// Each command that steers, in their order.
+struct SteeringSteps {
+  std::vector<SteeringStep> steps;
   double textures_gain = 1;
   bool armed = false;
 
   void see(const schema::SessionCommand& command) {
     if (!is_frame(command.frame)) return;
     const auto type = static_cast<wire::MessageType>(command.frame[3]);
-    if (armed) factors.push_back(factor_of(command, type));
+    if (armed && wire::steers(type))
+      steps.push_back({factor_of(command, type), type == wire::MessageType::change});
     armed = armed || type == wire::MessageType::arm;
   }
-  double factor_of(const schema::SessionCommand& command, wire::MessageType type) const {
+  std::optional<double> factor_of(const schema::SessionCommand& command, wire::MessageType type) const {
     wire::Gain gain;
     const std::size_t payload = command.frame.size() - wire::kHeaderSize - wire::kCheckSize;
     const bool is_gain =
         type == wire::MessageType::gain &&
         wire::parse(command.frame.data() + wire::kHeaderSize, payload, gain) == wire::Parse::ok;
-    return is_gain ? gain.gain / textures_gain : std::numeric_limits<double>::quiet_NaN();
+    return is_gain ? std::optional(gain.gain / textures_gain) : std::nullopt;
   }
 };
 
@@ -58,15 +63,17 @@ void add_row(SessionColumns& columns, const SessionTick& tick, std::int64_t firs
   columns.encoder.push_back(tick.encoder);
 }
 
-void add_gains(SessionColumns& columns, const GainSteps& steps) {
+void follow_steps(SessionColumns& columns, const std::vector<SteeringStep>& steps) {
   double gain = columns.header.initial_gain;
   std::uint8_t taken = 0;
   std::size_t next = 0;
   columns.gain.reserve(columns.tick.size());
   for (const std::uint32_t flags : columns.flags) {
     const auto steered = static_cast<std::uint8_t>(flags >> wire::kTickSteeredShift);
-    for (; taken != steered && next < steps.factors.size(); ++taken, ++next)
-      if (!std::isnan(steps.factors[next])) gain = steps.factors[next];
+    for (; taken != steered && next < steps.size(); ++taken, ++next) {
+      gain = steps[next].gain.value_or(gain);
+      if (steps[next].changes_texture && !columns.changed_at) columns.changed_at = columns.gain.size();
+    }
     columns.gain.push_back(gain);
   }
 }
@@ -78,7 +85,7 @@ Result<SessionColumns> read_session_columns(const std::string& name) {
   if (!reader) return schema::forward_error(reader);
   SessionColumns columns;
   columns.header = reader->header();
-  GainSteps steps;
+  SteeringSteps steps;
   steps.textures_gain = shared_gain(columns.header);
   std::int64_t first_ns = 0;
   while (const auto block = reader->next()) {
@@ -97,7 +104,7 @@ Result<SessionColumns> read_session_columns(const std::string& name) {
     for (const SessionTick& tick : *ticks) add_row(columns, tick, first_ns);
   }
   if (columns.tick.empty()) return fail(Fault::unsuitable, "holds no ticks", reader->path());
-  add_gains(columns, steps);
+  follow_steps(columns, steps.steps);
   return columns;
 }
 

@@ -22,6 +22,8 @@ struct SessionColumns {
   std::vector<std::int32_t> encoder;
   std::optional<std::uint64_t> lost_at;  ///< the first tick that is missing
   std::uint64_t lost = 0;
+  /// The first row that another texture than the header's is in.
+  std::optional<std::size_t> changed_at;
 };
 
 /// Errors: as SessionReader::open; unsuitable: no ticks, or more than 2^24 (28 min at 10 kHz; memory).

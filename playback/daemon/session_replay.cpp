@@ -6,6 +6,7 @@
 #include <bit>
 #include <deque>
 #include <filesystem>
+#include <utility>
 
 #include "firmware-host/wire_words.hpp"
 #include "playback/daemon/session_board.hpp"
@@ -68,11 +69,20 @@ class SessionPlayer {
   SessionPlayer(const schema::SessionHeader& header, const FirstFault& fault)
       : board_(header), fault_(fault) {}
 
-  // Upload goes in at once; arming waits for the first tick, steering for the tick that took it.
+  // Upload goes in at once; arming waits for the first tick, steering for the tick that took it. What is
+  // uploaded after arming goes in right before the change that is to it: then the device is known to have
+  // taken it. What no change is to did nothing.
   void hand(const SessionCommand& command) {
-    const bool uploads = !armed_ && type_of(command) != wire::MessageType::arm && waiting_.empty();
-    if (uploads) return obey(command);
-    waiting_.push_back(command);
+    const wire::MessageType type = type_of(command);
+    if (type == wire::MessageType::arm) {
+      arming_ = command;
+      return;
+    }
+    if (!arming_) return obey(command);
+    if (type == wire::MessageType::profile_begin) next_.clear();
+    if (!wire::steers(type)) return next_.push_back(command);
+    waiting_.push_back({{}, command});
+    if (type == wire::MessageType::change) waiting_.back().upload = std::exchange(next_, {});
   }
   void play(const std::vector<SessionTick>& ticks) {
     for (const SessionTick& tick : ticks) {
@@ -86,26 +96,31 @@ class SessionPlayer {
   const ReplayOutcome& outcome() const { return outcome_; }
 
  private:
+  struct Steering {
+    std::vector<SessionCommand> upload;  // that belongs to it
+    SessionCommand command;
+  };
   void obey(const SessionCommand& command) {
+    if (refused_) return;
     const auto answer = board_.say_frame(command.frame);
     if (answer && answer->code == wire::AnswerCode::ok) return;
     const auto words = answer ? firmware_host::words_of(answer->code, answer->detail).what : "no answer";
     refused_ = fmt::format("{} is refused: {}", firmware_host::word_of(type_of(command)), words);
   }
   void obey_next() {
-    const SessionCommand command = std::move(waiting_.front());
+    const Steering next = std::move(waiting_.front());
     waiting_.pop_front();
-    obey(command);
+    for (const SessionCommand& part : next.upload) obey(part);
+    obey(next.command);
   }
   void take(const SessionTick& tick) {
     if (tick.tick != outcome_.ticks) {
       outcome_.lost_at = outcome_.ticks;
       return;
     }
-    if (!armed_) board_.rest_at(tick.encoder);
-    while (!armed_ && !waiting_.empty()) {
-      armed_ = type_of(waiting_.front()) == wire::MessageType::arm;
-      obey_next();
+    if (tick.tick == 0 && arming_) {
+      board_.rest_at(tick.encoder);
+      obey(*arming_);
     }
     const auto steered = static_cast<std::uint8_t>(tick.flags >> wire::kTickSteeredShift);
     for (; steered_ != steered && !waiting_.empty(); ++steered_) obey_next();
@@ -120,11 +135,12 @@ class SessionPlayer {
 
   SessionBoard board_;
   FirstFault fault_;
-  std::deque<SessionCommand> waiting_;
+  std::optional<SessionCommand> arming_;
+  std::deque<Steering> waiting_;
+  std::vector<SessionCommand> next_;  // what was uploaded since, for a change to come
   std::optional<std::string> refused_;
   ReplayOutcome outcome_;
   std::uint8_t steered_ = 0;
-  bool armed_ = false;
 };
 
 // Commands stand in the file where they were sent; a tick that took one may stand before it by what was on

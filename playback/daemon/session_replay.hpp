@@ -26,7 +26,8 @@ struct ReplayOutcome {
 };
 
 /// The recorded commands go to a device of this program's core in the ticks that took them, the recorded
-/// counts to its encoder; its drive has to be the recorded one to the bit. A fault is met again where its
+/// counts to its encoder (a texture that it changes to, in the tick of the change); its drive has to be the
+/// recorded one to the bit. A fault is met again where its
 /// cause is in the ticks (enable input, jump, no number) or in the silence of the host. Nothing but the
 /// session is read. Errors: malformed, where a command in it is no frame; unsuitable, where the core refuses
 /// one, with its reason. `progress` hears fractions.

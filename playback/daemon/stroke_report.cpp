@@ -118,12 +118,12 @@ struct Judge {
   }
 };
 
-double rms_in(const std::vector<double>& values, const StrokeRange& range) {
-  return schema::statistics_of(std::span(values).subspan(range.first, range.last - range.first + 1)).rms();
+double rms_in(std::span<const double> values, const StrokeRange& range) {
+  return schema::statistics_of(values.subspan(range.first, range.last - range.first + 1)).rms();
 }
 
 PlayedStroke stroke_of(const SessionColumns& columns, const StrokeRange& range,
-                       const std::vector<double>& wanted, const std::vector<double>& received) {
+                       std::span<const double> wanted, const std::vector<double>& received) {
   PlayedStroke stroke;
   stroke.from_s = columns.time_s[range.first], stroke.to_s = columns.time_s[range.last];
   stroke.from_m = columns.position_m[range.first], stroke.to_m = columns.position_m[range.last];
@@ -139,6 +139,16 @@ PlayedStroke stroke_of(const SessionColumns& columns, const StrokeRange& range,
   return stroke;
 }
 
+// The session's header knows the texture that it began with.
+bool is_of_first_texture(const SessionColumns& columns, const StrokeRange& range) {
+  return !columns.changed_at || range.last < *columns.changed_at;
+}
+
+std::string note_of_change(const SessionColumns& columns) {
+  return fmt::format("the texture changes at {:.3f} s: strokes that reach beyond are not judged",
+                     columns.time_s[*columns.changed_at]);
+}
+
 }  // namespace
 
 Result<StrokeReport> report_strokes(const std::string& name) {
@@ -150,14 +160,18 @@ Result<StrokeReport> report_strokes(const std::string& name) {
     report.notes.push_back(fmt::format("{} ticks are missing: strokes are not judged", columns->lost));
     return report;
   }
+  if (columns->changed_at) report.notes.push_back(note_of_change(*columns));
   const auto ranges = stroke_ranges(*columns);
   if (ranges.empty()) return report;
   Judge judge(*columns);
   const auto wanted = judge.wanted_m();
   if (!wanted) report.notes.push_back(schema::message(wanted.error()));
   const auto received = judge.received_m();
-  for (const StrokeRange& range : ranges)
-    report.strokes.push_back(stroke_of(*columns, range, wanted.value_or(std::vector<double>()), received));
+  for (const StrokeRange& range : ranges) {
+    const bool judged = wanted && is_of_first_texture(*columns, range);
+    report.strokes.push_back(
+        stroke_of(*columns, range, judged ? std::span(*wanted) : std::span<const double>(), received));
+  }
   return report;
 }
 

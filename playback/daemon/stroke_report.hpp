@@ -30,7 +30,8 @@ struct StrokeReport {
 /// model: what the actuator would do without a finger on it, hysteresis or a second mode. The delay that the
 /// session was prepared with and did not look ahead by is part of the error. A stroke is at least 5 mm long.
 /// Errors: as SessionReader::open; unsuitable: no ticks, or over 30 minutes of them (memory); a texture that
-/// is gone or has changed leaves the wanted side out, with a note.
+/// is gone or is another one by now leaves the wanted side out, with a note; so does a change of texture, of
+/// the strokes that reach beyond it.
 schema::Result<StrokeReport> report_strokes(const std::string& name);
 
 }  // namespace tacto::playback

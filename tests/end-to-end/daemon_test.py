@@ -123,8 +123,6 @@ def from_load_to_a_session_that_replays():
         status = json.loads(ctl("status", "--json")[0])
         assert status["state"] == "playing" and status["drive_peak_v"] > 0.01 and status["lost_ticks"] == 0, status
         assert abs(status["speed_mps"]) < 0.2 and status["gain"] == 0.5
-        _, said = ctl("load", "oak", code=2)
-        assert "disarm first" in said
         assert "armed" in ctl("stop")[0]
         assert "idle" in ctl("disarm")[0]
         session = json.loads(ctl("status", "--json")[0])["session"]
@@ -319,6 +317,9 @@ def the_loop_closed_on_the_host():
         time.sleep(1.5)
         status = client.must(request="status")
         assert status["state"] == "playing" and status["drive_peak_v"] > 0.01, status
+        assert client.must(request="load", file="oak", at_m=0.002, gain_m_per_n=0.0008)["changed"]
+        time.sleep(0.5)
+        assert client.must(request="status")["state"] == "playing"
         assert status["period_s"] == 1 / 2000 and 0 < status["wake_p99_s"] < 1 and status["busy_p99_s"] > 0, status
         client.must(request="disarm")
     print(f"wake-up p99 {1e6 * status['wake_p99_s']:.0f} us, work p99 {1e6 * status['busy_p99_s']:.1f} us, "
@@ -346,9 +347,56 @@ def gain_saved_in_the_scene():
     assert saved["gain_m_per_n"] == 0.0005 and saved["gain_set_on"] and saved["gain_set_by"]
 
 
+def a_texture_changed_in_mid_play():
+    """The states stay, the gain stays, the drive has no step, the session replays, and says what it can't judge."""
+    prepare_files(device="sim:link_buffer=1s")  # a device that ticks on by itself, and hears whether the daemon is busy
+    x = np.arange(100_000) * 1e-6               # 100 mm: takes longer to prepare than the watchdog's 100 ms
+    write_texture("cork", 0.01 * np.sin(2 * np.pi * 1000 * x), 1e-6)
+    with daemon():
+        client = Client()
+        watcher = Client()
+        watcher.must(request="watch")
+        session = begin(client)
+        client.must(request="gain", gain=0.5)
+        time.sleep(2)
+        answer = json.loads(tacto.run("ctl", "load", "cork", "--gain", "0.25mm/N", "--fade", "100ms", "--socket", "control", "--json")[0])
+        assert answer["changed"] and answer["fade_s"] == 0.1, answer
+        changed = client.must(request="status")["ticks"]
+        time.sleep(2)
+        status = client.must(request="status")
+        assert status["state"] == "playing" and status["loaded"].endswith("cork") and status["gain"] == 0.5, status
+        assert status["session"] == session and status["lost_ticks"] == 0
+        answer = client.ask(request="load", file="nothing")
+        assert not answer["ok"], answer
+        answer = client.ask(request="load", file="oak", fade_s=11)
+        assert not answer["ok"] and "fade_s" in answer["error"]["where"], answer
+        assert client.must(request="status")["state"] == "playing"
+        answer = client.must(request="load", file="oak", gain_m_per_n=0.0005)
+        assert answer["changed"] and answer["fade_s"] == 0.05
+        client.must(request="disarm")
+        assert not client.must(request="load", file="oak")["changed"]
+        events = []
+        watcher.socket.settimeout(0.5)
+        with contextlib.suppress(TimeoutError, OSError):
+            while True:
+                events.append(json.loads(watcher.lines.readline()))
+    states = [e["state"] for e in events if e["event"] == "state"]
+    assert states[:2] == ["armed", "playing"] and states[2:] in (["idle"], ["armed", "idle"]), states  # while the drive falls it is armed
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+    described = tacto.run_json("session", session)
+    judged = ["error_db" in stroke for stroke in described["strokes"]]
+    assert True in judged and False in judged and judged == sorted(judged, reverse=True), judged
+    ticks = ticks_of(session)
+    drive = ticks["drive_v"]
+    one, two = drive[600:3000], drive[changed + 400:changed + 2800]  # 1.2 s each: a way of the finger and its rests
+    assert 3.5 < np.std(one) / np.std(two) < 4.5, (np.std(one), np.std(two))  # 0.02 N x 0.5 mm/N to 0.01 N x 0.25 mm/N
+    steps = np.abs(np.diff(drive[ticks["playing"] > 0]))
+    assert np.max(steps) < 1.1 * np.max(np.abs(np.diff(one))), (np.max(steps), np.max(np.abs(np.diff(one))))
+
+
 TESTS = [from_load_to_a_session_that_replays, kill_9_in_mid_play, sigstop_of_200_ms, encoder_jump_of_10_mm, a_texture_with_nan,
          garbage_and_endless_lines, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
-         the_loop_closed_on_the_host, gain_saved_in_the_scene]
+         the_loop_closed_on_the_host, gain_saved_in_the_scene, a_texture_changed_in_mid_play]
 
 if __name__ == "__main__":
     for test in TESTS:

@@ -27,9 +27,14 @@ TEST(Allocation, NeitherTickNorPollAllocates) {
   tests::FirmwareBench bench;
   bench.play_profile(2);
   bench.expect_ok(bench.code(wire::StreamStart{tests::kTenKilohertz, 32}));
+  bench.upload_constant(-1);
   bench.board.to_host.reserve(10'000'000);
-  const auto beat = tests::framed(wire::Heartbeat{1}, bench.sequence_);
-  bench.board.from_host.insert(bench.board.from_host.end(), beat.begin(), beat.end());
+  const auto say = [&](const auto& message) {
+    const auto frame = tests::framed(message, bench.sequence_++);
+    bench.board.from_host.insert(bench.board.from_host.end(), frame.begin(), frame.end());
+  };
+  say(wire::Change{0.1F});
+  say(wire::Heartbeat{1});
   const long before = tests::allocations_here();
   for (int i = 0; i < 5000; ++i) {
     bench.board.clock += tests::kTestClockHz / 10000;

@@ -59,14 +59,25 @@ class FirmwareBench {
     collect();
   }
 
-  void upload_constant(float value) {
-    const std::vector<float> wanted(64, value);
+  void upload_constant(float value) { upload(std::vector<float>(64, value)); }
+  /// A loop, one sample a count, sample 0 at count 0.
+  void upload(const std::vector<float>& wanted) {
+    expect_ok(code(begin_of(wanted.size())));
+    upload_samples(wanted);
+  }
+  static wire::ProfileBegin begin_of(std::size_t samples) {
+    return {static_cast<std::uint32_t>(samples), 0, 0, UINT64_C(1) << 32, wire::ProfileEnds::loop};
+  }
+  /// What comes after profile_begin.
+  void upload_samples(const std::vector<float>& wanted) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(wanted.data());
     wire::ProfileChunk chunk{};
-    chunk.count = 64;
-    std::copy(wanted.begin(), wanted.end(), chunk.values);
-    expect_ok(code(wire::ProfileBegin{64, 0, 0, UINT64_C(1) << 32, wire::ProfileEnds::loop}));
-    expect_ok(code(chunk));
+    for (; chunk.first < wanted.size(); chunk.first += chunk.count) {
+      const std::size_t left = wanted.size() - chunk.first;
+      chunk.count = static_cast<std::uint16_t>(std::min(left, wire::kMaxChunk));
+      std::copy_n(wanted.begin() + chunk.first, chunk.count, chunk.values);
+      expect_ok(code(chunk));
+    }
     expect_ok(code(wire::ProfileEnd{wire::crc32c(bytes, wanted.size() * 4)}));
   }
   void arm_profile(float value) {

@@ -88,7 +88,9 @@ TEST(FirmwareDrive, NothingChangesUnderARunningDrive) {
   FirmwareBench bench;
   bench.play_profile(1);
   EXPECT_EQ(bench.code(kTestLimits), AnswerCode::wrong_state);
-  EXPECT_EQ(bench.code(wire::ProfileBegin{64, 0, 0, 1, wire::ProfileEnds::stop}), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.code(wire::Taps{}), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.code(wire::Energy{}), AnswerCode::wrong_state);
+  EXPECT_EQ(bench.code(wire::Contact{}), AnswerCode::wrong_state);
   EXPECT_EQ(bench.code(wire::Filters{}), AnswerCode::wrong_state);
   EXPECT_EQ(bench.code(wire::Arm{wire::DriveSource::profile, kTenKilohertz}), AnswerCode::wrong_state);
   EXPECT_EQ(bench.code(wire::StreamStart{5'000'000, 32}), AnswerCode::wrong_state) << "another rate";

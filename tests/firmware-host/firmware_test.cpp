@@ -223,6 +223,7 @@ TEST(ProfileUpload, TakesChunksInOrderAndChecksThem) {
   EXPECT_EQ(bench.code(wire::ProfileBegin{20, 0, 0, 1, static_cast<wire::ProfileEnds>(3)}),
             AnswerCode::bad_value);
   EXPECT_EQ(bench.code(wire::ProfileEnd{0}), AnswerCode::incomplete);
+  EXPECT_EQ(bench.code(chunk), AnswerCode::incomplete) << "nothing has begun";
   bench.expect_ok(bench.code(wire::ProfileBegin{20, 0, 0, 1, wire::ProfileEnds::stop}));
   chunk.first = 5;
   EXPECT_EQ(bench.code(chunk), AnswerCode::incomplete) << "a hole";
@@ -240,6 +241,24 @@ TEST(ProfileUpload, TakesChunksInOrderAndChecksThem) {
   const float sent[20] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
   bench.expect_ok(
       bench.code(wire::ProfileEnd{wire::crc32c(reinterpret_cast<const std::uint8_t*>(sent), 80)}));
+}
+
+// The check is of what is there in the end, whichever chunk came again, and with which samples.
+TEST(ProfileUpload, AChunkThatComesAgainChangesTheCheck) {
+  FirmwareBench bench;
+  const auto chunk_of = [](std::uint32_t first, float value) {
+    wire::ProfileChunk chunk{};
+    chunk.first = first, chunk.count = 8;
+    std::fill_n(chunk.values, 8, value);
+    return chunk;
+  };
+  bench.expect_ok(bench.code(FirmwareBench::begin_of(24)));
+  for (const std::uint32_t first : {0U, 8U, 16U}) bench.expect_ok(bench.code(chunk_of(first, 1)));
+  for (const std::uint32_t again : {8U, 0U, 16U}) {
+    bench.expect_ok(bench.code(chunk_of(again, 2)));
+    const auto* there = reinterpret_cast<const std::uint8_t*>(bench.board.profile);
+    bench.expect_ok(bench.code(wire::ProfileEnd{wire::crc32c(there, 96)}));
+  }
 }
 
 TEST(Filters, UnstableOnesAreRefusedByTheirPlace) {

@@ -189,6 +189,7 @@ TEST(WireDocument, HostFramesAreItsBytes) {
   EXPECT_EQ(hex_of(Tracking{1, {}, 4, 8, 12.5F}, 19), frames["tracking"]);
   EXPECT_EQ(hex_of(Energy{1.5F, 0.5F}, 20), frames["energy"]);
   EXPECT_EQ(hex_of(Contact{3, {}, 0.5F, 0.25F, 0x1p-27F, -0.125F}, 21), frames["contact"]);
+  EXPECT_EQ(hex_of(Change{0.0625F}, 22), frames["change"]);
 }
 
 TEST(WireDocument, DeviceFramesAreItsBytes) {

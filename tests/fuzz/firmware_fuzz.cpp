@@ -60,7 +60,7 @@ class Conversation {
   void frame(Input& input) {
     std::uint8_t bytes[wire::kMaxFrame];
     wire::FrameHeader header;
-    header.type = static_cast<std::uint8_t>(input.byte() % 20);
+    header.type = static_cast<std::uint8_t>(input.byte() % 24);
     header.sequence = sequence_++;
     header.length = static_cast<std::uint16_t>(input.bytes(bytes + wire::kHeaderSize, input.byte()));
     const std::size_t size = wire::seal_frame(header, bytes);

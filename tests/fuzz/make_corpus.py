@@ -25,11 +25,15 @@ def arm(source):
     return action_frame(0x0B, struct.pack("<BI", source, 10_000_000))
 
 
-def profile():
-    values = [3 * math.sin(i) for i in range(32)]
+def profile(volts=3):
+    values = [volts * math.sin(i) for i in range(32)]
     begin = action_frame(5, struct.pack("<IiqQB", 32, 0, 16 << 32, 1 << 32, 1))
     chunk = action_frame(6, struct.pack("<IH32f", 0, 32, *values))
     return begin + chunk + action_frame(7, struct.pack("<I", crc32c(struct.pack("<32f", *values))))
+
+
+def change(fade_s):
+    return action_frame(0x17, struct.pack("<f", fade_s))
 
 
 def crc32c(data):
@@ -45,6 +49,9 @@ CONVERSATIONS = {
     "stream": HELLO + action_frame(2, struct.pack("<IB", 10_000_000, 32)) + TICKS + action_frame(3),
     "profile": HELLO + LIMITS + profile() + action_frame(8, struct.pack("<Bfffff", 1, 1, 0.5, 0, -0.3, 0.1)) + arm(0) +
                PLAY + TICKS + bytes([4, 5]) + TICKS + STOP + TICKS + DISARM + TICKS,
+    "change": HELLO + LIMITS + profile() + arm(0) + PLAY + TICKS + profile(-4) +
+              action_frame(0x14, struct.pack("<B3sfff", 1, b"", 0, 9, 1)) + change(0.01) + TICKS + profile(2) + change(0) +
+              TICKS + DISARM + TICKS,
     "host_drive": HELLO + LIMITS + arm(1) + PLAY + action_frame(0x0F, struct.pack("<H50f", 50, *[2.0] * 50)) + TICKS +
                   bytes([3]) + TICKS + DISARM + TICKS,
     "sweep": HELLO + LIMITS + action_frame(0x0A, struct.pack("<fIII", 1, 10_000, 500_000, 4_000_000)) + arm(2) + PLAY +

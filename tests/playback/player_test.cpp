@@ -1,104 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The player on the emulated device, in emulated time: states, refusals, faults, sessions that replay.
-#include "playback/daemon/player.hpp"
+#include <vector>
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "data-schema/session_reader.hpp"
-#include "firmware-host/sim/sim_device.hpp"
+#include "data-schema/session_writer.hpp"
 #include "firmware-host/sim/sim_transport.hpp"
-#include "playback/daemon/player_device.hpp"
-#include "playback/daemon/session_replay.hpp"
-#include "tests/data-schema/temporary_folder.hpp"
-#include "tests/playback/made_textures.hpp"
+#include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {
 namespace {
-
-constexpr double kRateHz = 2000;
-
-schema::Texture grating() {
-  schema::Texture texture;
-  texture.signal = {10e-6, 0, std::vector<double>(4000)};
-  for (std::size_t i = 0; i < texture.signal.values.size(); ++i)
-    texture.signal.values[i] = 0.02 * std::sin(2 * 3.141592653589793 * 1000 * 10e-6 * static_cast<double>(i));
-  return texture;
-}
-
-class PlayerOnSim : public testing::Test {
- protected:
-  void SetUp() override {
-    auto device = firmware_host::make_sim_device("sim:", "");
-    ASSERT_TRUE(device) << schema::message(device.error());
-    device_ = std::move(*device);
-    device_->board().set_script([this](double t) { return place_m(t); });
-    PlayerOptions options;
-    options.full_queue = FullQueue::wait;
-    auto player = Player::make(device_->client(), "sim:", options);
-    ASSERT_TRUE(player) << schema::message(player.error());
-    player_ = std::move(*player);
-    ASSERT_TRUE(schema::write_texture(folder_ / "grating", grating()));
-  }
-  // 40 mm/s there and back over 30 mm; at `jump_s_` it is suddenly 10 mm further on.
-  double place_m(double t) const {
-    const double way = 2e-3 + 0.03 - std::abs(std::fmod(0.04 * t, 0.06) - 0.03);
-    return way + (t >= jump_s_ ? 0.01 : 0);
-  }
-  Program program() {
-    PrepareOptions options;
-    options.rate_hz = kRateHz;
-    options.metres_per_count = player_->metres_per_count();
-    options.onset_s = 0.02;
-    options.most_samples = device_->client().description().welcome.profile_samples;
-    auto made = make_program({folder_ / "grating", {}, 5e-4, {}}, "wiertlewski2011", options);
-    EXPECT_TRUE(made) << schema::message(made.error());
-    return std::move(*made);
-  }
-  void begin() {
-    ASSERT_TRUE(player_->load(program()));
-    const auto armed = player_->arm(session_);
-    ASSERT_TRUE(armed) << schema::message(armed.error());
-  }
-  void run(double seconds) {
-    for (const double end = player_->played_s() + seconds; player_->played_s() < end;)
-      ASSERT_TRUE(player_->step(0.01));
-  }
-  std::vector<schema::SessionTick> ticks() {
-    auto reader = schema::SessionReader::open(session_);
-    std::vector<schema::SessionTick> all;
-    while (auto block = reader->next())
-      if (auto* some = std::get_if<std::vector<schema::SessionTick>>(&*block))
-        all.insert(all.end(), some->begin(), some->end());
-    return all;
-  }
-  void expect_zero_within_20_ms_of_fault() {
-    const auto all = ticks();
-    const auto fault =
-        std::ranges::find_if(all, [](const auto& t) { return (t.flags & wire::kTickFault) != 0; });
-    ASSERT_NE(fault, all.end());
-    ASSERT_GT(all.end() - fault, static_cast<long>(0.02 * kRateHz))
-        << "the session ends before the ramp does";
-    for (auto tick = fault + static_cast<long>(0.02 * kRateHz); tick != all.end(); ++tick)
-      ASSERT_EQ(tick->drive_v, 0) << tick->tick - fault->tick << " ticks after the fault";
-  }
-  void expect_same_to_the_bit() {
-    const auto replayed = replay_session(session_);
-    ASSERT_TRUE(replayed) << schema::message(replayed.error());
-    EXPECT_FALSE(replayed->lost_at);
-    EXPECT_EQ(replayed->ticks, ticks().size());
-    if (replayed->first_difference)
-      FAIL() << "tick " << replayed->first_difference->tick << ": " << replayed->first_difference->recorded_v
-             << " V, replayed " << replayed->first_difference->replayed_v << " V";
-  }
-
-  tests::TemporaryFolder folder_;
-  std::string session_ = folder_ / "one.session";
-  double jump_s_ = 1e9;
-  std::unique_ptr<firmware_host::SimDevice> device_;
-  std::unique_ptr<Player> player_;
-};
 
 TEST_F(PlayerOnSim, PlaysRecordsAndReplaysToTheBit) {
   begin();
@@ -165,7 +74,7 @@ TEST_F(PlayerOnSim, WhatCanNotBeDoneIsRefusedWithWhatToDo) {
   expect_refused(player_->play(), "arm first");
   expect_refused(player_->stop(), "nothing plays");
   begin();
-  expect_refused(player_->load(program()), "disarm first");
+  expect_refused(player_->load(program(), 10.1), "0 s to 10 s; 50 ms is usual");
   expect_refused(player_->arm(session_), "disarm first");
   EXPECT_FALSE(player_->gain(std::nan("")));
   ASSERT_TRUE(player_->disarm());
@@ -182,6 +91,7 @@ TEST_F(PlayerOnSim, AnEncodersJumpOf10MmRampsToZeroAndReplays) {
   EXPECT_EQ(player_->state(), PlayerState::fault);
   EXPECT_NE(player_->status().fault.find("the encoder jumped by"), std::string::npos);
   EXPECT_EQ(player_->play().error().remedy, "disarm first, then arm");
+  EXPECT_EQ(player_->load(program()).error().remedy, "disarm first");
   ASSERT_TRUE(player_->disarm());
   EXPECT_EQ(player_->state(), PlayerState::idle);
   expect_zero_within_20_ms_of_fault();

@@ -38,17 +38,24 @@ std::unique_ptr<firmware_host::SimDevice> sim_device() {
   return device ? std::move(*device) : nullptr;
 }
 
-/// Ticks of a second of playing.
-std::vector<wire::Tick> play_a_second(Client& client, double rate_hz) {
-  EXPECT_TRUE(
-      client.command(wire::Arm{wire::DriveSource::profile, static_cast<std::uint32_t>(1e3 * rate_hz)}));
-  EXPECT_TRUE(client.command(wire::Play{}));
-  std::vector<wire::Tick> ticks;
-  while (static_cast<double>(ticks.size()) < rate_hz && client.heartbeat()) {
+void take_ticks(Client& client, std::size_t up_to, std::vector<wire::Tick>& ticks) {
+  while (ticks.size() < up_to && client.heartbeat()) {
     EXPECT_TRUE(client.receive(0.02));
     for (const wire::Ticks& block : client.take_ticks())
       ticks.insert(ticks.end(), block.ticks, block.ticks + block.count);
   }
+}
+
+/// Ticks of a second of playing. Halfway, `meanwhile`.
+std::vector<wire::Tick> play_a_second(
+    Client& client, double rate_hz, const std::function<void()>& meanwhile = [] {}) {
+  EXPECT_TRUE(
+      client.command(wire::Arm{wire::DriveSource::profile, static_cast<std::uint32_t>(1e3 * rate_hz)}));
+  EXPECT_TRUE(client.command(wire::Play{}));
+  std::vector<wire::Tick> ticks;
+  take_ticks(client, static_cast<std::size_t>(rate_hz / 2), ticks);
+  meanwhile();
+  take_ticks(client, static_cast<std::size_t>(rate_hz), ticks);
   return ticks;
 }
 
@@ -74,6 +81,35 @@ TEST_P(Uploaded, TheDevicesDriveIsTheKernelsToTheBit) {
   }
   EXPECT_GT(std::sqrt(energy / static_cast<double>(ticks.size())), 0.05)
       << "a drive of nothing proves nothing";
+}
+
+// The device's gain stays the first one's: what is sent is scaled to it.
+TEST_P(Uploaded, AChangeIsTheKernelsToTheBit) {
+  PrepareOptions options = device_options(GetParam());
+  const auto one = prepare(two_sines(), uploaded_transducer(), options);
+  options.gain_m_per_n = 0.7e-3, options.ends = Ends::loop;
+  auto two = prepare(sine_texture(0.013, 3e3, 0.03), uploaded_transducer(), options);
+  ASSERT_TRUE(one && two);
+  const auto device = sim_device();
+  ASSERT_TRUE(upload(device->client(), *one));
+  const auto ticks = play_a_second(device->client(), GetParam(), [&] {
+    const auto changed = upload_change(device->client(), *two, one->gain_m_per_n, 0.2);
+    EXPECT_TRUE(changed) << message(changed.error());
+  });
+  for (float& sample : two->samples)
+    sample = static_cast<float>(double{two->gain_m_per_n} / one->gain_m_per_n * sample);
+  core::TickKernel kernel;
+  kernel.set(one->setup());
+  bool changed = false;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    if (!changed && ticks[i].flags >> wire::kTickSteeredShift == 2)
+      kernel.change(two->setup().texture, 0.2F), changed = true;
+    const bool raise = (ticks[i].flags & wire::kTickPlaying) != 0;
+    const auto output = kernel.tick({ticks[i].encoder, one->gain_m_per_n, raise, core::kNoForce});
+    ASSERT_EQ(output.drive_v, ticks[i].drive_v) << i;
+  }
+  EXPECT_TRUE(changed);
+  EXPECT_FALSE(kernel.changing());
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, Uploaded, testing::Values(2e3, 10e3));

@@ -236,4 +236,14 @@ struct Contact {
   }
 };
 
+/// The profile that was uploaded while another one plays takes its place.
+struct Change {
+  static constexpr MessageType kType = MessageType::change;
+  float fade_s = 0;  ///< 0 to 10
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    codec(self.fade_s);
+  }
+};
+
 }  // namespace tacto::wire

@@ -26,11 +26,12 @@ enum class MessageType : uint8_t {
   drive = 0x0F,
   heartbeat = 0x10,
   reset = 0x11,
-  profile_levels = 0x12,  ///< from 0x12 to 0x16: since protocol 1.1
+  profile_levels = 0x12,  ///< from 0x12 to 0x17: since protocol 1.1
   taps = 0x13,
   tracking = 0x14,
   energy = 0x15,
   contact = 0x16,
+  change = 0x17,
   welcome = 0x81,
   channel = 0x82,
   note = 0x83,
@@ -97,8 +98,13 @@ enum TickFlag : uint32_t {
   kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
   kTickGated = 128,         ///< the finger does not touch: the drive falls
 };
-/// From this bit on: gain, play, stop and disarm taken since arming, modulo 256.
+/// From this bit on: commands that steer, taken since arming, modulo 256.
 inline constexpr uint32_t kTickSteeredShift = 24;
+/// Whether a running drive obeys this command in a tick, which counts it.
+constexpr bool steers(MessageType type) noexcept {
+  return type == MessageType::gain || type == MessageType::play || type == MessageType::stop ||
+         type == MessageType::disarm || type == MessageType::change;
+}
 
 inline constexpr size_t kMaxChannels = 16;
 inline constexpr size_t kMaxBlockFrames = 32;
