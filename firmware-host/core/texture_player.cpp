@@ -18,19 +18,19 @@ void TexturePlayer::begin(float gain_ticks) noexcept {
   gain_left_ = 0;
   gained_ = false;
   fade_ = 0;
-  tracker_.set(texture_.tracker);
+  tracker_.set(playing().tracker);
   place_ = {};
 }
 
 void TexturePlayer::set(const TextureSetup& texture, float gain_ticks) noexcept {
-  texture_ = texture;
+  playing() = texture;
   begin(gain_ticks);
 }
 
 // A second change before the first is through begins from what is nearer.
 void TexturePlayer::change(const TextureSetup& texture, float fade_ticks) noexcept {
-  if (fade_ <= 0.5F) leaving_ = texture_;
-  texture_ = texture;
+  if (fade_ <= 0.5F) which_ ^= 1U;
+  playing() = texture;
   fade_ = 1;
   fade_step_ = fade_ticks > 1 ? 1 / fade_ticks : 1;
 }
@@ -55,9 +55,9 @@ float TexturePlayer::follow(float gain) noexcept {
 
 float TexturePlayer::wanted(int32_t count, float gain) noexcept {
   place_ = tracker_.track(count);
-  float value = read(texture_);
+  float value = read(playing());
   if (fade_ > 0) {
-    value += fade_ * fade_ * (3 - 2 * fade_) * (read(leaving_) - value);
+    value += fade_ * fade_ * (3 - 2 * fade_) * (read(leaving()) - value);
     fade_ -= fade_step_;
   }
   return follow(gain) * value;

@@ -41,7 +41,11 @@ class TexturePlayer {
   float read(const TextureSetup& texture) const noexcept;
   float follow(float gain) noexcept;
 
-  TextureSetup texture_, leaving_;
+  TextureSetup& playing() noexcept { return textures_[which_]; }
+  const TextureSetup& leaving() const noexcept { return textures_[1 - which_]; }
+
+  TextureSetup textures_[2];  // the one that plays and the one that leaves: a change copies one, not both
+  uint8_t which_ = 0;
   FingerTracker tracker_;
   FingerPlace place_;
   float gain_ = 0, gain_aim_ = 0, gain_step_ = 0;

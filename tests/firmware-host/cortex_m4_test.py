@@ -33,16 +33,19 @@ def main():
 
     kernel = instructions(figures["kernel_counts"] / figures["kernel_ticks"])
     texture = instructions(figures["texture_counts"] / figures["kernel_ticks"])
+    change = instructions(figures["change_counts"] / figures["change_ticks"])
+    change_most = instructions(figures["change_most_counts"])
     tick = instructions(figures["firmware_tick_counts"] / figures["firmware_ticks"])
     poll = instructions(figures["firmware_poll_counts"] / figures["firmware_ticks"])
     flash, ram = int(size[0]) + int(size[1]), int(size[1]) + int(size[2])
     print(f"a texture's kernel (two levels, 64 taps) {texture:.0f}, at most {instructions(figures['texture_most_counts']):.0f}; "
-          f"kernel of eight sections {kernel:.0f}, whole tick {tick:.0f}, poll {poll:.0f} instructions a tick, of {CYCLES} cycles; "
+          f"while it changes {change:.0f}, at most {change_most:.0f}; kernel of eight sections {kernel:.0f}, whole tick {tick:.0f}, poll {poll:.0f} instructions a tick, of {CYCLES} cycles; "
           f"flash {flash} B, RAM {ram} B with this program's buffers, of which the firmware "
           f"{figures['firmware_bytes']} B, stack {figures['deepest_stack_bytes']} B")
     assert 1600 < figures["counts_of_10000_instructions"] < 1760, "a nanosecond an instruction at 168 MHz"
     assert (tick + poll) * CYCLES_PER_INSTRUCTION < CYCLES
     assert (tick - kernel + texture + poll) * CYCLES_PER_INSTRUCTION < CYCLES
+    assert (tick - kernel + change_most) * CYCLES_PER_INSTRUCTION < CYCLES
     assert instructions(figures["firmware_tick_most_counts"]) * CYCLES_PER_INSTRUCTION < CYCLES / 2
     assert flash < 64 * 1024 and figures["firmware_bytes"] < 48 * 1024 and figures["deepest_stack_bytes"] < 2048
 

@@ -76,7 +76,7 @@ class TextureWorkload {
       value = smooth = 0.8F * smooth + static_cast<float>(next_()) * (1.0F / 65536);
     for (float& tap : taps_) tap = static_cast<float>(next_()) * (1.0F / 131072);
     core::KernelSetup setup;
-    setup.texture = {
+    setup.texture = texture_ = {
         {samples_, {kTextureFirst, -500, INT64_C(3) << 30, 429496730, wire::ProfileEnds::mirror, 4}},
         {true, 40, 40},
         1.25F};
@@ -104,8 +104,11 @@ class TextureWorkload {
     return output.drive_v;
   }
   uint32_t flags() const noexcept { return flags_; }
+  /// To the same texture, which costs what another one would.
+  void change(float fade_s) noexcept { kernel_.change(texture_, fade_s); }
 
  private:
+  core::TextureSetup texture_;
   WorkloadRandom next_{7};
   uint32_t flags_ = 0, ticks_ = 0;
   int32_t count_ = 0, way_ = 1, speed_ = 3, part_ = 0;

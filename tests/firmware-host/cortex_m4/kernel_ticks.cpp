@@ -10,7 +10,7 @@ namespace tacto::cortex_m4 {
 namespace {
 
 constexpr uint32_t kRate = 20'000'000;
-constexpr uint32_t kFirmwareTicks = 4000;
+constexpr uint32_t kFirmwareTicks = 4000, kChangeTicks = 1000;
 
 struct Cost {
   uint32_t ticks = 0, total = 0, most = 0;
@@ -49,6 +49,20 @@ bool count_kernel() {
   const uint32_t levels =
       count_ticks(texture, "texture_fingerprint", "texture_counts", "texture_most_counts");
   return sections == tests::kWorkloadFingerprint && levels == tests::kTextureFingerprint;
+}
+
+// While one texture goes over into another, both are read; the first tick of it takes the change too.
+void count_change() {
+  Cost cost;
+  for (uint32_t i = 0; i < kChangeTicks; ++i) {
+    const uint32_t before = counter();
+    if (i == 0) texture.change(0.05F);
+    texture.tick();
+    cost.add(counted(before, counter()));
+  }
+  say("change_ticks", cost.ticks);
+  say("change_counts", cost.total);
+  say("change_most_counts", cost.most);
 }
 
 // The board's side of the hardware layer, in memory.
@@ -170,6 +184,7 @@ void calibrate() {
 void run() {
   calibrate();
   const bool same_bits = count_kernel();
+  count_change();
   const bool played = count_firmware();
   say("deepest_stack_bytes", deepest_stack());
   say(same_bits ? "same bits\n" : "other bits than the host\n");
