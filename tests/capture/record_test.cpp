@@ -196,7 +196,7 @@ TEST(Record, LostFramesAreAGapWhereTheyWereLost) {
   const auto& gaps = recorded->recording.header.gaps;
   ASSERT_EQ(gaps.size(), 1U);
   EXPECT_EQ(gaps[0].frame, 300U);
-  EXPECT_EQ(gaps[0].device_sequence, 300U);
+  EXPECT_EQ(gaps[0].device_sequence, 325U);
   EXPECT_EQ(gaps[0].count, 25U);
   EXPECT_NE(recorded->recording.header.warnings.at(0).find("25 frames were lost"), std::string::npos);
 }
