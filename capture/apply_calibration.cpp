@@ -41,10 +41,15 @@ const CalibrationEntry* usable(const CalibrationEntry* entry, const Channel& cha
   return nullptr;
 }
 
-void warn_if_stale(const CalibrationEntry* entry, double stale_after_s, const std::string& now,
-                   std::vector<std::string>& warnings) {
+void warn_of_date(const CalibrationEntry* entry, double stale_after_s, const std::string& now,
+                  std::vector<std::string>& warnings) {
   if (entry == nullptr) return;
   const auto age_s = schema::seconds_between(entry->date, now);
+  if (age_s && *age_s < -kClockSlack_s)
+    warnings.push_back(fmt::format(
+        "the calibration of {} is of the future ({}, {}, {:.0f} days ahead): one clock is wrong, and until "
+        "then no newer one counts",
+        entry->channel, entry->method, day_of(entry->date), -*age_s / 86400));
   if (age_s && *age_s <= stale_after_s) return;
   warnings.push_back(fmt::format("the calibration of {} is stale ({}, {}, {:.0f} days old)", entry->channel,
                                  entry->method, day_of(entry->date), age_s.value_or(0) / 86400));
@@ -99,10 +104,11 @@ Result<std::vector<std::string>> apply_calibration(schema::RecordingHeader& head
     return schema::forward_error(same_device);
   std::vector<std::string> warnings;
   for (Channel& channel : header.channels) {
+    if (channel.calibration) continue;
     const Found found{usable(schema::newest_scale(file, channel.name), channel, warnings),
                       usable(schema::newest_zero(file, channel.name), channel, warnings)};
-    warn_if_stale(found.scale, stale_after_s, now, warnings);
-    if (found.zero != found.scale) warn_if_stale(found.zero, stale_after_s, now, warnings);
+    warn_of_date(found.scale, stale_after_s, now, warnings);
+    if (found.zero != found.scale) warn_of_date(found.zero, stale_after_s, now, warnings);
     if (found.scale || found.zero) calibrate(channel, found);
   }
   return warnings;

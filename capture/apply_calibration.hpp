@@ -15,10 +15,14 @@ namespace tacto::capture {
 /// so per decade of time, strain gauges' zeros drift with the room.
 inline constexpr double kStaleAfter_s = 30 * 86400.0;
 
+/// A calibration may be dated so far ahead of now: two computers' clocks.
+inline constexpr double kClockSlack_s = 86400;
+
 /// Puts the newest scale and the newest zero of each channel into the header: scale, offset, range, and
 /// where they come from. Gives what people should be told: a calibration older than `stale_after_s` at `now`
-/// (ISO 8601), or made of another own scale of the device, which is not applied. Errors: unsuitable: the
-/// calibration of another device.
+/// (ISO 8601), or dated after it, or made of another own scale of the device, which is not applied. A channel
+/// that is calibrated already, a replay's, stays as it is. Errors: unsuitable: the calibration of another
+/// device.
 schema::Result<std::vector<std::string>> apply_calibration(schema::RecordingHeader& header,
                                                            const schema::CalibrationFile& calibration,
                                                            double stale_after_s, const std::string& now);

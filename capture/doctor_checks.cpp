@@ -9,6 +9,7 @@
 #include "capture/disk_speed.hpp"
 #include "capture/doctor.hpp"
 #include "capture/realtime_limits.hpp"
+#include "capture/udev_rule.hpp"
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/live_recording.hpp"
@@ -26,6 +27,23 @@ constexpr double kLeastRoom_s = 10, kGoodRoom_s = 600, kGoodSpeed = 4;
 constexpr double kLeastLocked_bytes = 64 << 20;
 constexpr double kLargestBlock_bytes = 16 << 20;
 constexpr const char* kRule = "60-tactograph.rules";
+
+// An emulated device is at rest only if asked for it; a real one is when its user takes the finger off.
+std::string tare_command(const std::string& device) {
+  constexpr std::string_view kSim = "sim:";
+  std::string at_rest = device;
+  if (device.starts_with(kSim)) {
+    std::string kept;
+    for (std::size_t at = kSim.size(), end = 0; at < device.size(); at = end + 1) {
+      end = std::min(device.find(',', at), device.size());
+      const std::string key = device.substr(at, end - at);
+      if (!key.starts_with("finger=") && !key.starts_with("strokes=") && !key.starts_with("force"))
+        kept += key + ",";
+    }
+    at_rest = fmt::format("sim:{}finger=up,strokes=0", kept);
+  }
+  return "tactograph calibrate tare -d " + at_rest;
+}
 
 Check judged(std::string name, std::string found, const std::string& warning) {
   return {std::move(name), warning.empty() ? Health::works : Health::warns, std::move(found), warning};
@@ -95,9 +113,9 @@ Check check_permission(const schema::Error& why, const std::string& root) {
   const std::string found = rule.empty() ? fmt::format("{} is not installed", kRule) : rule + " is there";
   const std::string remedy =
       rule.empty() ? fmt::format(
-                         "sudo cp firmware-host/usb/{} /etc/udev/rules.d/ && sudo udevadm control "
+                         "echo '{}' | sudo tee /etc/udev/rules.d/{} && sudo udevadm control "
                          "--reload && sudo udevadm trigger, then plug the device in anew",
-                         kRule)
+                         kUdevRule, kRule)
                    : "be of the group plugdev, or sit at the computer; then plug the device in anew";
   if (is_denied(why)) return {"permission", Health::fails, found, remedy, schema::Fault::not_found};
   return rule.empty() ? judged("permission", found, remedy) : judged("permission", found, {});
@@ -139,7 +157,7 @@ Check check_disk(const std::string& folder, double bytes_per_s) {
 }
 
 Check check_calibration(const firmware_host::Capabilities& said, const DoctorRequest& request) {
-  const std::string tare = fmt::format("tactograph calibrate tare -d {}", request.device);
+  const std::string tare = tare_command(request.device);
   const auto file = calibration_of(said.serial, request.calibration);
   if (!file)
     return {"calibration", Health::fails, schema::message(file.error()),
@@ -148,15 +166,19 @@ Check check_calibration(const firmware_host::Capabilities& said, const DoctorReq
   if ((**file).serial != said.serial)
     return {"calibration", Health::fails, "is that of the device " + (**file).serial, "name this device's",
             schema::Fault::unsuitable};
-  std::vector<std::string> parts, stale;
+  std::vector<std::string> parts, stale, ahead;
   for (const schema::Channel& channel : said.channels)
     for (const auto* entry : newest_of(**file, channel.name)) {
       const auto age_s = schema::seconds_between(entry->date, schema::creation_time());
       parts.push_back(fmt::format("{} {} {}", channel.name, entry->method, entry->date.substr(0, 10)));
       if (!age_s || *age_s > request.stale_after_s) stale.push_back(channel.name);
+      if (age_s && *age_s < -kClockSlack_s) ahead.push_back(channel.name);
     }
   if (parts.empty()) return judged("calibration", "has nothing on these channels", tare);
   const std::string found = fmt::format("{}", fmt::join(parts, ", "));
+  if (!ahead.empty())
+    return judged("calibration", fmt::format("of the future: {}; {}", fmt::join(ahead, ", "), found),
+                  "one clock is wrong: set this one, or put the file away and calibrate anew");
   return stale.empty()
              ? judged("calibration", found, {})
              : judged("calibration", fmt::format("stale: {}; {}", fmt::join(stale, ", "), found), tare);

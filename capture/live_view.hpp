@@ -43,6 +43,8 @@ class LiveFigures {
   const schema::RecordingHeader& header() const { return header_; }
   const std::vector<schema::Statistics>& statistics() const { return statistics_; }
   std::size_t strokes() const { return counter_.strokes().size(); }
+  /// No more frames come: a stroke that had come to a stop is counted.
+  void finish() { counter_.finish(); }
   /// The strokes so far as the sidecar keeps them, with what is missing in them by the header's gaps.
   std::vector<schema::StrokeFigures> stroke_figures() const;
   /// Of all since the last call; time, losses and disk are the caller's to add.

@@ -12,6 +12,7 @@
 
 #include "capture/disk_writer.hpp"
 #include "capture/record_header.hpp"
+#include "capture/text_encoding.hpp"
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
 #include "firmware-host/realtime_priority.hpp"
@@ -49,16 +50,43 @@ Result<std::uint64_t> frames_wanted(const RecordRequest& request, double rate_hz
   return static_cast<std::uint64_t>(frames);
 }
 
+Result<void> check_folder(const RecordRequest& request) {
+  std::error_code unknown;
+  const std::string folder = folder_of(request.name);
+  if (std::filesystem::is_directory(folder, unknown)) return {};
+  return schema::fail(Fault::cannot_write, "there is no such folder", folder, "make it first");
+}
+
+// A sidecar is UTF-8; from the bytes alone nobody can tell what a Latin-1 keyboard meant.
+Result<void> check_words(const RecordRequest& request) {
+  const std::pair<const char*, const std::string&> words[] = {{"--subject", request.subject},
+                                                              {"--finger", request.finger},
+                                                              {"--surface", request.surface},
+                                                              {"--notes", request.notes},
+                                                              {"-o", request.name}};
+  for (const auto& [option, text] : words)
+    if (!is_utf8(text))
+      return schema::fail(Fault::usage, "is not UTF-8", option,
+                          "use a terminal in a UTF-8 locale, or plain letters");
+  return {};
+}
+
+std::string megabytes(double bytes) {
+  return fmt::format("{:.3g} MB", bytes / 1e6);
+}
+
 Result<void> check_room(const RecordRequest& request, const schema::RecordingHeader& header) {
   const double needed = request.time_s.value_or(0) * header.sample_rate_hz *
                             static_cast<double>(header.channels.size()) * sizeof(std::int32_t) +
                         kSpare_bytes;
   const double left = disk_left_bytes(request.name);
   if (needed <= left) return {};
-  return schema::fail(Fault::cannot_write,
-                      fmt::format("{:g} s need {:.0f} MB, and the disk has {:.0f} MB left",
-                                  request.time_s.value_or(0), needed / 1e6, left / 1e6),
-                      folder_of(request.name), "record for less, or to another disk");
+  const std::string what = request.time_s
+                               ? fmt::format("{:g} s need {}", *request.time_s, megabytes(needed))
+                               : fmt::format("a recording needs {} to begin with", megabytes(needed));
+  return schema::fail(Fault::cannot_write, fmt::format("{}, and the disk has {} left", what, megabytes(left)),
+                      folder_of(request.name),
+                      request.time_s ? "record for less, or to another disk" : "record to another disk");
 }
 
 // One recording: from the device to the writer, looked at on the way.
@@ -174,6 +202,7 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
     return schema::fail(Fault::device, "the device gave no frames", device_.capabilities().uri);
   }
   schema::RecordingHeader& header = live.header();
+  figures_.finish();
   header.strokes = figures_.stroke_figures();
   if (failure_) header.ended = failure_->what;
   const std::uint64_t due = stream_ended_ && request_.time_s ? wanted_ : 0;
@@ -198,6 +227,8 @@ Result<schema::RecordingHeader> calibrated_header(const Device& device, const Re
 }  // namespace
 
 Result<Recorded> record(Device& device, const RecordRequest& request, const RecordHooks& hooks) {
+  if (const auto words = check_words(request); !words) return schema::forward_error(words);
+  if (const auto folder = check_folder(request); !folder) return schema::forward_error(folder);
   const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
   if (!frames) return schema::forward_error(frames);
   auto header = calibrated_header(device, request);

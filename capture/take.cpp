@@ -61,6 +61,16 @@ Result<void> check_part(const schema::RecordingHeader& header, const std::string
                       "choose a longer part");
 }
 
+// A part that reaches beyond the end was meant of another recording.
+Result<void> check_end(const schema::RecordingHeader& header, const RecordingPart& part) {
+  const double end_s = schema::frame_time_s(header, header.frames);
+  if (part.to_s == std::numeric_limits<double>::infinity() || part.to_s < end_s + 1 / header.sample_rate_hz)
+    return {};
+  return schema::fail(Fault::unsuitable,
+                      fmt::format("has {:.4g} s, and the part ends at {:g} s", end_s, part.to_s), part.name,
+                      "name a part that it has");
+}
+
 std::uint64_t frame_at(const schema::RecordingHeader& header, double time_s) {
   std::uint64_t low = 0, high = header.frames;
   while (low < high) {
@@ -108,6 +118,8 @@ Result<Take> take_from(firmware_host::Device& device, double time_s) {
                         fmt::format("from {:g} s to {:g} s", kShortest_s, kLongest_s));
   auto header = header_for(device.capabilities(), {});
   if (!header) return schema::forward_error(header);
+  for (schema::Channel& channel : header->channels)
+    channel = nominal(channel);  // a replay's may be calibrated
   const auto frames = static_cast<std::size_t>(time_s * header->sample_rate_hz);
   Take take{std::move(*header), device.capabilities().name, {}};
   take.codes.resize(take.header.channels.size());
@@ -127,6 +139,7 @@ Result<Take> take_from(const RecordingPart& part) {
   if (!recording) return schema::forward_error(recording);
   if (const auto sound = check_source(*recording); !sound) return schema::forward_error(sound);
   const schema::RecordingHeader& header = recording->header;
+  if (const auto there = check_end(header, part); !there) return schema::forward_error(there);
   const std::uint64_t first = frame_at(header, part.from_s);
   const std::uint64_t last = std::max(first, frame_at(header, part.to_s));
   if (const auto fits = check_part(header, part.name, first, last); !fits) return schema::forward_error(fits);

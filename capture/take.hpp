@@ -35,8 +35,8 @@ schema::Result<RecordingPart> parse_recording_part(const std::string& text);
 /// is none; device: as of Device; frames lost, or a stream that ends early.
 schema::Result<Take> take_from(firmware_host::Device& device, double time_s);
 
-/// Errors: as open_recording(); unsuitable: no serial number (an import), numbers of another program, a gap
-/// in that part, less than 0.1 s of it.
+/// Errors: as open_recording(); unsuitable: no serial number (an import), numbers of another program, a part
+/// that ends beyond the recording, a gap in it, less than 0.1 s of it.
 schema::Result<Take> take_from(const RecordingPart& part);
 
 /// A channel as its device says it, before calibration.

@@ -6,23 +6,46 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
+#include <set>
+#include <string_view>
 #include <system_error>
 
 namespace tacto::capture {
 namespace {
 
+namespace fs = std::filesystem;
 using schema::fail;
 using schema::Fault;
 using schema::Result;
 
 constexpr int kMostTakes = 9999;
 
-bool is_free(const std::string& stem) {
-  std::error_code ignored;
-  for (const char* ending : {".wav", ".json", ".events.jsonl"})
-    if (std::filesystem::exists(stem + ending, ignored)) return false;
-  return true;
-}
+// The stems that folders have, each folder read once: takes are looked for by the thousand.
+class TakenStems {
+ public:
+  bool holds(const std::string& stem) {
+    const fs::path path(stem);
+    const auto [folder, is_new] = folders_.try_emplace(path.parent_path().string());
+    if (is_new) folder->second = stems_in(folder->first);
+    return folder->second.contains(path.filename().string());
+  }
+
+ private:
+  static std::set<std::string> stems_in(const std::string& folder) {
+    std::set<std::string> stems;
+    std::error_code failed;
+    for (fs::directory_iterator at(folder.empty() ? "." : folder, failed), end; !failed && at != end;
+         at.increment(failed)) {
+      const std::string name = at->path().filename().string();
+      for (const std::string_view ending : {".wav", ".json", ".events.jsonl"})
+        if (name.ends_with(ending)) stems.insert(name.substr(0, name.size() - ending.size()));
+    }
+    return stems;
+  }
+
+  std::map<std::string, std::set<std::string>> folders_;
+};
 
 // UTF-8 beyond ASCII stays: names of surfaces are in every language.
 std::string file_safe(std::string text) {
@@ -76,12 +99,20 @@ Result<std::string> filled(const std::string& pattern, const NameParts& parts, i
 
 Result<std::string> name_of_take(const std::string& pattern, const NameParts& parts) {
   const bool counts = pattern.find("{take}") != std::string::npos;
-  for (int take = 1; take <= (counts ? kMostTakes : 1); ++take) {
+  TakenStems taken;
+  auto next = filled(pattern, parts, counts ? kMostTakes : 1);
+  if (!next) return next;
+  if (taken.holds(*next))
+    return fail(
+        Fault::usage,
+        counts ? fmt::format("there is a take {} already", kMostTakes) : "a recording of that name is there",
+        pattern, counts ? "choose another template" : "put {take} into it, which counts up");
+  for (int take = (counts ? kMostTakes : 1) - 1; take >= 1; --take) {
     auto name = filled(pattern, parts, take);
-    if (!name || is_free(*name)) return name;
+    if (!name || taken.holds(*name)) break;
+    next = std::move(name);
   }
-  return fail(Fault::usage, counts ? "there are 9999 takes already" : "a recording of that name is there",
-              pattern, counts ? "choose another template" : "put {take} into it, which counts up");
+  return next;
 }
 
 }  // namespace tacto::capture

@@ -110,7 +110,7 @@ Result<void> ClockFinder::locate_step(double step, std::uint64_t row, const Plac
   if (std::abs(step / period_s_ - ticks) > kMostJitter)
     return uneven(step, period_s_, fmt::format("{}: {}", file, place_of(row)));
   const auto missing = static_cast<std::uint64_t>(ticks) - 1;
-  if (missing > 0) gaps_.push_back({row, row + missing_, missing});
+  if (missing > 0) gaps_.push_back({row, row + missing_ + missing, missing});
   missing_ += missing;
   return {};
 }

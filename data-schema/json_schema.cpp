@@ -75,6 +75,8 @@ std::string explained(const std::string& said, const Json& value, const Json& ru
   if (said.find("enum") != std::string::npos && rule.contains("enum"))
     return fmt::format("{} is none of {}", brief(value), list_of(rule["enum"]));
   if (rule.contains("const")) return fmt::format("{} is not {}", brief(value), rule["const"].dump());
+  if (said.find("'not' constraint") != std::string::npos && rule.contains("not"))
+    return fmt::format("{} must not stand here", brief(value));
   if (said.find("regex") != std::string::npos && rule.contains("pattern"))
     return fmt::format("{} does not match {}", brief(value), rule["pattern"].dump());
   return fmt::format("{} ({})", said.substr(0, said.find_last_not_of('.') + 1), brief(value));

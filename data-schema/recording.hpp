@@ -50,7 +50,7 @@ struct Channel {
 /// Missing frames: `count` of them are absent before stored frame `frame`.
 struct Gap {
   std::uint64_t frame = 0;
-  std::uint64_t device_sequence = 0;
+  std::uint64_t device_sequence = 0;  ///< that frame's number, lost ones counted: frame + all gaps up to here
   std::uint64_t count = 0;
 };
 
@@ -146,6 +146,9 @@ Result<std::vector<double>> read_stored(const Recording& recording, std::size_t 
 
 /// Time of a stored frame, gaps counted.
 double frame_time_s(const RecordingHeader& header, std::uint64_t frame);
+
+/// From the first frame to a period after the last, gaps counted; 0 without frames.
+double duration_s(const RecordingHeader& header);
 
 /// Streams a recording to disk: frames as they come, the sidecar at close. Both appear together at close(); a
 /// writer that is dropped before leaves nothing.

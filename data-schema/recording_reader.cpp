@@ -125,4 +125,8 @@ double frame_time_s(const RecordingHeader& header, std::uint64_t frame) {
   return static_cast<double>(sequence) / header.sample_rate_hz;
 }
 
+double duration_s(const RecordingHeader& header) {
+  return header.frames == 0 ? 0 : frame_time_s(header, header.frames - 1) + 1 / header.sample_rate_hz;
+}
+
 }  // namespace tacto::schema

@@ -66,9 +66,14 @@ schema::Result<void> TextureMaker::choose_equaliser() {
   if (options_.equalise == Equalise::on && !header.transducer)
     return schema::fail(Fault::unsuitable, "names no transducer, so there is no response to divide by",
                         record_.where(), "leave --equalise away");
-  if (header.transducer &&
-      (options_.equalise == Equalise::on || record_.channel().quantity == "tangential_force"))
-    equaliser_ = equaliser(*header.transducer);
+  const bool of_transducer = record_.channel().quantity == "tangential_force";
+  if (options_.equalise == Equalise::on && !of_transducer)
+    return schema::fail(Fault::unsuitable,
+                        record_.channel().name +
+                            " did not pass through the transducer, whose response says "
+                            "nothing of it",
+                        record_.where(), "leave --equalise away, or take tangential_force");
+  if (header.transducer && of_transducer) equaliser_ = equaliser(*header.transducer);
   return {};
 }
 

@@ -38,7 +38,7 @@ struct TextureOptions {
 class TextureMaker {
  public:
   /// Errors: of TouchRecord::open; unsuitable (a filter that does not fit the rate, equalising without a
-  /// transducer); usage (a pitch that is not above 0).
+  /// transducer, or a channel that is no tangential force); usage (a pitch that is not above 0).
   static schema::Result<TextureMaker> open(const schema::Recording& recording, const TextureOptions& options);
   /// Of a record that is open; options.channel is not read.
   static schema::Result<TextureMaker> open(TouchRecord record, const TextureOptions& options);

@@ -109,7 +109,7 @@ cli::Action declare_encoder(CLI::App& app) {
   cli::add_quantity(app, "--travel-uncertainty", options->travel_uncertainty_m, Dimension::length,
                     "Standard uncertainty of that");
   app.add_option("--repeats", options->repeats, "How many travels, there and back in turn")
-      ->check(CLI::PositiveNumber);
+      ->check(cli::from_one());
   app.add_option("--channel", options->channel, "The encoder's");
   app.add_option("--from", options->from,
                  "Recordings instead of the device: travels from mark to mark, or from beginning to end");

@@ -18,6 +18,7 @@ struct CalibrateOptions {
   std::string device = "usb:";
   std::string calibration;  ///< the file; empty: where calibrations are kept
   bool dry_run = false;
+  bool anyway = false;  ///< also what can't be right
 };
 
 void declare_common(CLI::App& app, CalibrateOptions& options);
@@ -30,7 +31,9 @@ cli::Action declare_encoder(CLI::App& app);
 /// "scale", "scale_uncertainty", "interval of 95 %", against the device's own. `per` is the unit's ending.
 void add_scale(cli::Report& report, const Uncertain& scale, double own_scale, const std::string& unit);
 
-/// Keeps the entries unless it is a dry run, and says where.
+/// Keeps the entries unless it is a dry run, and says where. A scale that can't be right (doubt_of_scale) is
+/// warned of where nothing is kept or `anyway` was said. Errors: unsuitable: one, else; as
+/// keep_calibration().
 schema::Result<cli::Report> kept(cli::Report report, const CalibrateOptions& options, const Take& take,
                                  std::vector<schema::CalibrationEntry> entries);
 

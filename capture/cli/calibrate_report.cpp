@@ -1,16 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
+#include "capture/believable_scale.hpp"
 #include "capture/cli/calibrate_parts.hpp"
+#include "data-schema/cli/report.hpp"
 #include "data-schema/creation_time.hpp"
 
 namespace tacto::capture {
+namespace {
+
+schema::Result<void> check_scales(const std::vector<schema::CalibrationEntry>& entries, bool only_warn) {
+  for (const schema::CalibrationEntry& entry : entries) {
+    const std::string doubt = doubt_of_scale(entry);
+    if (doubt.empty()) continue;
+    if (!only_warn)
+      return schema::fail(schema::Fault::unsuitable, doubt + ": not kept", entry.method,
+                          "look for a mistaken unit or two exchanged weights with --dry-run; keep it with "
+                          "--anyway");
+    cli::warn(doubt);
+  }
+  return {};
+}
+
+}  // namespace
 
 void declare_common(CLI::App& app, CalibrateOptions& options) {
   app.add_option("-d,--device", options.device, "The device: usb:, usb:serial=XYZ, sim:...");
   app.add_option("--calibration", options.calibration,
                  "The file to keep it in; SERIAL.calibration.json in ~/.config/tactograph/calibrations");
   app.add_flag("--dry-run", options.dry_run, "Measure and say, keep nothing");
+  app.add_flag("--anyway", options.anyway,
+               "Keep it also where it can't be right: something moved in a tare, a scale more than twice or "
+               "less than half the device's own, or known worse than to 20 %");
   app.fallthrough();
 }
 
@@ -31,6 +52,8 @@ void add_scale(cli::Report& report, const Uncertain& scale, double own_scale, co
 
 schema::Result<cli::Report> kept(cli::Report report, const CalibrateOptions& options, const Take& take,
                                  std::vector<schema::CalibrationEntry> entries) {
+  if (const auto right = check_scales(entries, options.dry_run || options.anyway); !right)
+    return schema::forward_error(right);
   if (options.dry_run) return report;
   const std::string now = schema::creation_time();
   const auto path =

@@ -17,7 +17,6 @@ struct CalibrateTareOptions {
   CalibrateOptions common;
   std::string from;
   double time_s = 5;
-  bool anyway = false;
 };
 
 std::string mains_words(const ChannelTare& tare, const std::string& unit) {
@@ -61,7 +60,8 @@ Result<cli::Report> run_calibrate_tare(const CalibrateTareOptions& options) {
   if (!take) return schema::forward_error(take);
   const auto tare = tare_of(*take);
   if (!tare) return schema::forward_error(tare);
-  if (const auto still = check_still(*tare, options.anyway); !still) return schema::forward_error(still);
+  if (const auto still = check_still(*tare, options.common.anyway); !still)
+    return schema::forward_error(still);
   for (const std::string& warning : tare->warnings) cli::warn(warning);
   cli::Report report = report_on(*take);
   std::vector<cli::Report> rows;
@@ -78,7 +78,6 @@ cli::Action declare_tare(CLI::App& app) {
   declare_common(app, options->common);
   app.add_option("--from", options->from, "A recording instead of the device: oak, or oak@1s..3s");
   cli::add_quantity(app, "--time", options->time_s, schema::Dimension::time, "How long to listen");
-  app.add_flag("--anyway", options->anyway, "Also where something moves");
   return [options] { return run_calibrate_tare(*options); };
 }
 

@@ -81,11 +81,6 @@ std::vector<cli::Report> rows_of(const Imported& imported) {
   return rows;
 }
 
-// Gaps counted, and the last frame's own period.
-double duration_s(const schema::RecordingHeader& header) {
-  return schema::frame_time_s(header, header.frames - 1) + 1 / header.sample_rate_hz;
-}
-
 std::string next_command(const schema::Recording& recording) {
   const auto& channels = recording.header.channels;
   const bool placed = std::ranges::find(channels, "position", &schema::Channel::quantity) != channels.end();

@@ -43,9 +43,10 @@ cli::Report row_of(const ListedRecording& one) {
   const schema::RecordingHeader& header = one.header;
   const std::uint64_t missing = missing_frames(header);
   cli::Report row;
-  row.add("subject", header.subject).add("surface", header.surface).add("take", one.take);
+  row.add("subject", header.subject).add("surface", header.surface);
+  if (one.take) row.add("take", *one.take);
   row.add("name", std::filesystem::path(one.stem).filename().string()).add("finger", header.finger);
-  row.add("duration_s", static_cast<double>(header.frames + missing) / header.sample_rate_hz);
+  row.add("duration_s", schema::duration_s(header));
   add_strokes(row, header);
   row.add("lost_frames", missing).add("gaps", header.gaps.size()).add("marks", header.marks.size());
   return row.add("created", header.created).add("ended", header.ended);
@@ -75,7 +76,7 @@ cli::Action declare_list(CLI::App& app) {
 
 }  // namespace
 
-const cli::Verb kListVerb{"list", "Table the recordings of a folder by subject, surface and take",
+const cli::Verb kListVerb{"list", "Table the recordings of a folder by subject, surface and date",
                           "tactograph list\n  tactograph list study-3 --json", declare_list};
 
 }  // namespace tacto::capture

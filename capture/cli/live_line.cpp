@@ -18,11 +18,38 @@ double part_of_range(const schema::Channel& channel, const ChannelLevel& level) 
   return std::clamp(std::max(up, down), 0.0, 1.0);
 }
 
-std::string bar(const schema::Channel& channel, const ChannelLevel& level) {
-  if (!channel.range_max && !channel.range_min) return "";
-  const auto full = static_cast<std::size_t>(std::lround(kBar * part_of_range(channel, level)));
-  return fmt::format("{} [{}{}]{}  ", channel.name, std::string(full, '#'), std::string(kBar - full, '-'),
-                     level.clipped ? " CLIP" : "");
+bool has_range(const schema::Channel& channel) {
+  return channel.range_max || channel.range_min;
+}
+
+std::string bars(const LiveView& view, const schema::RecordingHeader& header) {
+  std::string text;
+  for (std::size_t i = 0; i < view.levels.size(); ++i) {
+    if (!has_range(header.channels[i])) continue;
+    const auto full =
+        static_cast<std::size_t>(std::lround(kBar * part_of_range(header.channels[i], view.levels[i])));
+    text += fmt::format("{} [{}{}]  ", header.channels[i].name, std::string(full, '#'),
+                        std::string(kBar - full, '-'));
+  }
+  return text;
+}
+
+// The same where bars have no room.
+std::string peaks(const LiveView& view, const schema::RecordingHeader& header) {
+  std::string text;
+  for (std::size_t i = 0; i < view.levels.size(); ++i)
+    if (has_range(header.channels[i]))
+      text += fmt::format("{}{:.0f}", text.empty() ? "peaks " : "/",
+                          100 * part_of_range(header.channels[i], view.levels[i]));
+  return text.empty() ? text : text + " %  ";
+}
+
+// What can't be mended afterwards stands where it is seen.
+std::string clipping(const LiveView& view, const schema::RecordingHeader& header) {
+  std::string text;
+  for (std::size_t i = 0; i < view.levels.size(); ++i)
+    if (view.levels[i].clipped) text += (text.empty() ? "CLIP " : ", ") + header.channels[i].name;
+  return text.empty() ? text : text + "  ";
 }
 
 std::string judged(double value, const schema::TargetBand& band, const char* more, const char* less) {
@@ -32,7 +59,7 @@ std::string judged(double value, const schema::TargetBand& band, const char* mor
 std::string finger(const LiveView& view) {
   std::string text;
   if (view.speed_mps)
-    text += fmt::format("finger {:3.0f} mm/s {}  ", *view.speed_mps * 1e3,
+    text += fmt::format("{:3.0f} mm/s {}  ", *view.speed_mps * 1e3,
                         judged(*view.speed_mps, schema::kTargetSpeed_mps, "FASTER", "SLOWER"));
   if (view.normal_n)
     text += fmt::format("load {:.2f} N {}  ", *view.normal_n,
@@ -44,10 +71,12 @@ std::string finger(const LiveView& view) {
 
 std::string live_line(const LiveView& view, const schema::RecordingHeader& header, std::size_t columns) {
   std::string line = fmt::format("{:.1f} s  ", view.time_s);
+  line += clipping(view, header);
   line += finger(view);
-  line += fmt::format("{} strokes  {} lost  {:.1f} GB left  ", view.strokes, view.lost_frames,
-                      static_cast<double>(view.disk_left_bytes) / 1e9);
-  for (std::size_t i = 0; i < view.levels.size(); ++i) line += bar(header.channels[i], view.levels[i]);
+  line += fmt::format("{} strokes  {} lost  ", view.strokes, view.lost_frames);
+  const std::string levels = bars(view, header);
+  line += line.size() + levels.size() <= columns ? levels : peaks(view, header);
+  line += fmt::format("{:.1f} GB left  ", static_cast<double>(view.disk_left_bytes) / 1e9);
   return line.substr(0, columns);
 }
 

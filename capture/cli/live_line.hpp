@@ -9,9 +9,10 @@
 
 namespace tacto::capture {
 
-/// "12.3 s  finger  48 mm/s ok  load 0.90 N LESS  3 strokes  0 lost  12.4 GB left  normal_force [###-----]
-/// CLIP": levels as parts of their converters' ranges, speed and load against their target bands, with what
-/// to do about them. Without colours, for every terminal; at most one line of `columns` characters.
+/// "12.3 s  CLIP net_force   48 mm/s ok  load 0.90 N LESS  3 strokes  0 lost  normal_force [###-----]
+/// net_force [########]  12.4 GB left": what clips, speed and load against their target bands with what to do
+/// about them, levels as parts of their converters' ranges ("peaks 37/100 %" where bars have no room: 80
+/// columns). Without colours, for every terminal; at most one line of `columns` characters.
 std::string live_line(const LiveView& view, const schema::RecordingHeader& header, std::size_t columns);
 
 }  // namespace tacto::capture

@@ -47,7 +47,7 @@ void declare_options(CLI::App& app, RecordOptions& options) {
   cli::add_quantity(app, "--time", request.time_s, Dimension::time,
                     "How long to record; without it until the strokes are made, or Ctrl-C");
   app.add_option("--strokes", request.strokes, "End after so many strokes of 5 mm or more")
-      ->check(CLI::PositiveNumber);
+      ->check(cli::from_one());
   app.add_flag("--allow-gaps", options.allow_gaps, "Lost frames are no failure");
   app.add_option("--calibration", options.calibration,
                  "The device's calibration, where it is not the one that 'tactograph calibrate' keeps");
@@ -94,7 +94,7 @@ cli::Report report_on(const Recorded& recorded) {
   cli::Report report;
   report.add("device", header.device).add("simulated", header.simulated).add("surface", header.surface);
   report.add("frames", header.frames).add("sample_rate_hz", header.sample_rate_hz);
-  report.add("duration_s", static_cast<double>(header.frames) / header.sample_rate_hz);
+  report.add("duration_s", schema::duration_s(header));
   report.add("clipped_samples", recorded.counts.clipped).add("lost_frames", recorded.counts.lost_frames);
   report.add("gaps", header.gaps.size()).add("marks", header.marks.size());
   report.add("channels", rows_of(recorded));

@@ -7,14 +7,23 @@
 namespace tacto::schema {
 namespace {
 
+// Of a zero, which is a stored number, and beside it what it makes of nothing in the channel's unit: by the
+// entry's own scale, or the device's where it has none.
+void add_zero(cli::Report& row, const CalibrationEntry& entry) {
+  if (!entry.zero) return;
+  const double scale = entry.scale.value_or(entry.nominal_scale);
+  const std::string ending = entry.unit == "N" || entry.unit == "m" ? (entry.unit == "N" ? "_n" : "_m") : "";
+  row.add("zero_as_stored", *entry.zero).add("zero" + ending, *entry.zero * scale);
+  if (entry.zero_uncertainty) row.add("zero_uncertainty" + ending, std::abs(*entry.zero_uncertainty * scale));
+}
+
 cli::Report row_of(const CalibrationEntry& entry) {
   cli::Report row;
   row.add("channel", entry.channel).add("method", entry.method).add("date", entry.date);
   if (entry.scale) row.add("scale", *entry.scale).add("of_nominal", *entry.scale / entry.nominal_scale);
   if (entry.scale && entry.scale_uncertainty)
     row.add("uncertainty_percent", 100 * std::abs(*entry.scale_uncertainty / *entry.scale));
-  if (entry.zero) row.add("zero", *entry.zero);
-  if (entry.zero_uncertainty) row.add("zero_uncertainty", *entry.zero_uncertainty);
+  add_zero(row, entry);
   row.add("unit", entry.unit);
   if (!entry.notes.empty()) row.add("notes", entry.notes);
   return row;

@@ -30,11 +30,6 @@ Report channel_row(const Channel& channel, const Statistics& statistics) {
   return row;
 }
 
-// The frames' own time and what is missing between them.
-double duration_s(const RecordingHeader& header) {
-  return header.frames == 0 ? 0 : frame_time_s(header, header.frames - 1) + 1 / header.sample_rate_hz;
-}
-
 void add_clocks(Report& report, const RecordingHeader& header) {
   if (header.clock_drift_ppm) report.add("clock_drift_ppm", *header.clock_drift_ppm);
   if (header.clock_drift_uncertainty_ppm)

@@ -69,6 +69,23 @@ std::string number_for_people(std::string_view key, double value) {
   return fmt::format("{:.4g} {}", value, suffix->unit);
 }
 
+// Text of files as it may be shown: what steers a terminal (ASCII's control signs and the C1 set in UTF-8)
+// as "\\x1b". Line ends and tabs stay.
+std::string harmless(const std::string& text) {
+  std::string shown;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    if ((byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7F)
+      shown += fmt::format("\\x{:02x}", byte);
+    else if (byte == 0xC2 && next >= 0x80 && next < 0xA0)
+      shown += fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(text[++i])));
+    else
+      shown += text[i];
+  }
+  return shown;
+}
+
 // Columns by display width: UTF-8 continuation bytes take no room.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
@@ -85,9 +102,9 @@ struct ReportPrinter {
     if (const auto* number = std::get_if<double>(&value)) return number_for_people(key, *number);
     if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
     if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
-    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    if (const auto* text = std::get_if<std::string>(&value)) return harmless(*text);
     if (const auto* lines = std::get_if<std::vector<std::string>>(&value))
-      return fmt::format("{}", fmt::join(*lines, "; "));
+      return harmless(fmt::format("{}", fmt::join(*lines, "; ")));
     return "";
   }
 

@@ -54,6 +54,18 @@ std::size_t choose(const std::string& option, const std::string& word,
   return static_cast<std::size_t>(found - words.begin());
 }
 
+// CLI11's own says between which 309 digits the number must be.
+const CLI::Validator& from_one() {
+  static const CLI::Validator kFromOne(
+      [](std::string& text) {
+        const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+        const bool fits = digits && text.find_first_not_of('0') != std::string::npos;
+        return fits ? std::string() : fmt::format("'{}' is no whole number from 1 on", text);
+      },
+      "POSITIVE");
+  return kFromOne;
+}
+
 void warn(const std::string& text) {
   talk(fmt::format("tactograph: warning: {}\n", text));
 }

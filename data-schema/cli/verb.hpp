@@ -64,6 +64,9 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Choice& value, c
       ->default_str(standard);
 }
 
+/// For an option that counts: a whole number from 1.
+const CLI::Validator& from_one();
+
 /// One line to stderr: what the user should know although the job goes on.
 void warn(const std::string& text);
 

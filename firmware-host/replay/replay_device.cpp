@@ -20,7 +20,8 @@ Capabilities capabilities_of(const schema::Recording& recording, std::string uri
   Capabilities capabilities;
   capabilities.uri = std::move(uri);
   capabilities.name = "replay of " + recording.stem;
-  capabilities.serial = header.device;
+  capabilities.serial = header.serial;
+  capabilities.firmware = header.firmware;
   capabilities.simulated = header.simulated;
   capabilities.clock = header.clock;
   capabilities.sample_rate_hz = header.sample_rate_hz;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "firmware-host/sim/finger_path.hpp"
 #include "firmware-host/sim/sim_transport.hpp"
 
 namespace tacto::firmware_host {
@@ -23,6 +24,12 @@ Result<std::unique_ptr<SimDevice>> SimDevice::open(std::string uri, const SimPar
 Result<std::size_t> SimDevice::read(std::span<std::int32_t> interleaved) {
   const auto frames = wire_->read(interleaved);
   if (frames || board_->diverged_s() < 0) return frames;
+  if (board_->diverged_s() < StrokePlan{}.rest_s)
+    return schema::fail(Fault::device,
+                        fmt::format("the motion of the transducer '{}' diverges before the finger has moved",
+                                    capabilities().transducer ? capabilities().transducer->name : ""),
+                        capabilities().uri,
+                        "its parameters can't be those of a tray that works: take another transducer");
   return schema::fail(Fault::device,
                       fmt::format("the simulated finger's motion diverged at {:.4f} s", board_->diverged_s()),
                       capabilities().uri, "ask for less friction, load or depth");

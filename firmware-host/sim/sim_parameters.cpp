@@ -32,16 +32,24 @@ std::string shown(double value, Dimension dimension) {
   return dimension == Dimension::none ? fmt::format("{:g}", value) : schema::for_people(value, dimension);
 }
 
+// An end of the range as people write it may be a rounding beyond it: 50um is not 50e-6.
+double within_rounding(double value, const NumberKey& number) {
+  for (const double end : {number.least, number.most})
+    if (std::abs(value - end) <= 1e-12 * std::abs(end)) return end;
+  return value;
+}
+
 Result<void> set(SimParameters& parameters, const NumberKey& number, std::string_view text) {
   const auto value = schema::parse_quantity(text, number.dimension);
   if (!value) return schema::fail(Fault::usage, value.error().what, where(number.key), value.error().remedy);
-  const bool fits = *value >= number.least && *value <= number.most;
-  if (!fits || (number.whole && *value != std::floor(*value)))
+  const double wanted = within_rounding(*value, number);
+  const bool fits = wanted >= number.least && wanted <= number.most;
+  if (!fits || (number.whole && wanted != std::floor(wanted)))
     return schema::fail(
         Fault::usage, fmt::format("'{}' is out of range", text), where(number.key),
         fmt::format("from {} to {}{}", shown(number.least, number.dimension),
                     shown(number.most, number.dimension), number.whole ? ", whole numbers" : ""));
-  number.store(parameters, *value);
+  number.store(parameters, wanted);
   return {};
 }
 

@@ -128,7 +128,7 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
   cli::add_choice<Equalise>(
       app, "--equalise", options.texture.equalise,
       {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
-      "Divide by the transducer's sensor response; auto: where the recording names one");
+      "Divide by the transducer's sensor response; auto: a tangential force, where the recording names one");
 }
 
 // --band, --low and --high, --filter none: all say the same thing, the filter.

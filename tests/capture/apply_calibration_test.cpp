@@ -102,6 +102,18 @@ TEST(ApplyCalibration, AStaleOneIsAppliedAndWarnedOf) {
   EXPECT_EQ(apply_calibration(later, file, 19 * 86400.0, kNow)->size(), 2U);
 }
 
+TEST(ApplyCalibration, OneOfTheFutureIsWarnedOf) {
+  auto device = header();
+  const CalibrationFile file{"T-1", {}, {}, {scale(0.02, "2027-09-21T12:00:00Z")}, {}, {}};
+  const auto warnings = apply_calibration(device, file, kStaleAfter_s, kNow);
+  ASSERT_EQ(warnings->size(), 1U);
+  EXPECT_NE((*warnings)[0].find("of the future (weights, 2027-09-21, 304 days ahead)"), std::string::npos)
+      << (*warnings)[0];
+  const CalibrationFile ahead{"T-1", {}, {}, {scale(0.02, "2026-11-21T22:00:00Z")}, {}, {}};
+  auto near = header();
+  EXPECT_TRUE(apply_calibration(near, ahead, kStaleAfter_s, kNow)->empty());
+}
+
 TEST(ApplyCalibration, OneOfAnotherScaleOfTheDeviceIsNot) {
   auto device = header();
   CalibrationFile file{"T-1", {}, {}, {scale(0.02, kDay, 0.011)}, {}, {}};

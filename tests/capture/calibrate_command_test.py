@@ -101,6 +101,22 @@ def travel():
     assert done.returncode == 2 and "Go to the first mark" in done.stderr, done
 
 
+def what_cannot_be_right_is_refused():
+    before = len(entries())
+    swapped = ["calibrate", "force", "--mass", "0N=w0@0.1s..0.9s", "--mass", "1N=w1@0.1s..0.9s", "--mass", "0.5N=w2@0.1s..0.9s"]
+    _, error = tacto.run(*swapped, code=5)
+    assert "%" in error and "--anyway" in error and "--dry-run" in error, error
+    output, error = tacto.run(*swapped, "--dry-run", "--json")
+    assert json.loads(output)["interval_of_95_percent"] > 20 and "known to +-" in error, error
+    _, error = tacto.run("calibrate", "encoder", "--travel", "35m", "--from", "t0", "--from", "t2", code=5)
+    assert "times the device's own" in error, error
+    _, error = tacto.run("calibrate", "force", "--mass", "0N=w0@0.1s..9s", "--mass", "1N=w2", code=5)
+    assert "w0" in error and "ends at 9 s" in error, error
+    assert len(entries()) == before
+    tacto.run("calibrate", "encoder", "--travel", "35m", "--from", "t0", "--from", "t2", "--anyway", "--calibration", "absurd.json")
+    assert len(json.loads(pathlib.Path("absurd.json").read_text())["entries"]) == 1
+
+
 def a_recording_takes_it_along():
     tacto.run("record", "-d", bench("finger=up,weight=0.8N,pull=0.3N"), "-o", "known", "--time", "1s")
     side = json.loads(pathlib.Path("known.json").read_text())
@@ -117,6 +133,11 @@ def a_recording_takes_it_along():
     assert shown["serial"] == "sim-7" and shown["channels"][2]["calibrated"] == side["channels"][2]["calibrated"]
     assert shown["channels"][2]["scale_uncertainty_percent"] > 0
     tacto.run("validate", "known")
+    # A replay is of the same device, and keeps the calibration that its recording had.
+    _, error = tacto.run("record", "-d", "replay:known", "-o", "again")
+    again = json.loads(pathlib.Path("again.json").read_text())
+    assert "warning" not in error and again["serial"] == "sim-7" and again["channels"] == side["channels"], (error, again)
+    assert again["firmware"] == side["firmware"]
     tacto.run("record", "-d", bench("finger=up"), "-o", "plain", "--time", "0.2s", "--no-calibration")
     assert "calibration" not in pathlib.Path("plain.json").read_text()
 
@@ -144,6 +165,12 @@ def the_file_is_one_of_ours():
     tacto.run("validate", FILE)
     report = tacto.run_json("info", FILE)
     assert report["serial"] == "sim-7" and len(report["entries"]) == len(entries()) >= 7
+    # A zero is a stored number; beside it stands what it is in newtons.
+    for told, kept in zip(report["entries"], entries(), strict=True):
+        if "zero" in kept:
+            assert told["zero_as_stored"] == kept["zero"] and "zero" not in told, told
+            newtons = kept["zero"] * kept.get("scale", kept["nominal_scale"])
+            assert abs(told["zero_n"] - newtons) < 1e-12 and told["zero_uncertainty_n"] < 0.1, told
     first = entries()[0]
     assert first["method"] == "tare" and first["degrees_of_freedom"] == 19
 
@@ -176,7 +203,7 @@ def doctor():
 def test():
     os.environ["XDG_CONFIG_HOME"] = str(pathlib.Path("config").absolute())
     for step in (tare, a_finger_is_refused, weights, weights_hung_when_asked_for, against_the_reference, travel,
-                 a_recording_takes_it_along, a_stale_one_is_warned_of, another_devices_is_refused,
+                 what_cannot_be_right_is_refused, a_recording_takes_it_along, a_stale_one_is_warned_of, another_devices_is_refused,
                  the_file_is_one_of_ours, wrong_words, doctor):
         step()
 

@@ -9,6 +9,9 @@
 
 #include "capture/disk_speed.hpp"
 #include "capture/realtime_limits.hpp"
+#include "capture/tare.hpp"
+#include "capture/udev_rule.hpp"
+#include "tests/capture/sim_take.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::capture {
@@ -44,8 +47,20 @@ TEST(Doctor, AnEmulatedDeviceCanRecord) {
   EXPECT_NE(of(diagnosis, "device").found.find("emulated"), std::string::npos);
   EXPECT_NE(of(diagnosis, "round trip").found.find("99 of 100"), std::string::npos);
   EXPECT_EQ(of(diagnosis, "calibration").health, Health::warns);
-  EXPECT_EQ(diagnosis.next, "tactograph calibrate tare -d sim:surface=C");
+  EXPECT_EQ(diagnosis.next, "tactograph calibrate tare -d sim:surface=C,finger=up,strokes=0");
   EXPECT_EQ(folder.files(), 0U);
+}
+
+// What the command says would be refused otherwise: a finger that strokes is not still.
+TEST(Doctor, TheTareItAsksForOfAnEmulatedDeviceCanBeMade) {
+  const TemporaryFolder folder;
+  const DoctorRequest asked = request(folder, "sim:finger=down,seed=3,strokes=9");
+  firmware_host::Capabilities said;
+  said.serial = "none-of-this";
+  EXPECT_EQ(check_calibration(said, asked).remedy,
+            "tactograph calibrate tare -d sim:seed=3,finger=up,strokes=0");
+  const Take take = sim_take("seed=3,finger=up,strokes=0", 1);
+  EXPECT_TRUE(tare_of(take)->unstill.empty());
 }
 
 TEST(Doctor, WithoutADeviceItSaysSoAndLooksAtTheRest) {
@@ -127,7 +142,8 @@ TEST(Doctor, TheRuleForPermissionIsLookedForWhereUdevDoes) {
   const schema::Error denied{Fault::not_found, "this user may not open the device", "usb:", ""};
   const Check without = check_permission(denied, folder / "");
   EXPECT_EQ(without.health, Health::fails);
-  EXPECT_NE(without.remedy.find("60-tactograph.rules"), std::string::npos);
+  EXPECT_NE(without.remedy.find("/etc/udev/rules.d/60-tactograph.rules"), std::string::npos);
+  EXPECT_NE(without.remedy.find(std::string(kUdevRule)), std::string::npos);
   fs::create_directories(folder / "etc/udev/rules.d");
   std::ofstream(folder / "etc/udev/rules.d/60-tactograph.rules") << "\n";
   const Check with = check_permission(denied, folder / "");
@@ -136,6 +152,14 @@ TEST(Doctor, TheRuleForPermissionIsLookedForWhereUdevDoes) {
   EXPECT_TRUE(is_denied(denied));
   const schema::Error absent{Fault::not_found, "there is no device of ours on USB", "usb:", ""};
   EXPECT_EQ(check_permission(absent, folder / "").health, Health::works);
+}
+
+TEST(Doctor, TheRuleItGivesIsTheOneThatIsInstalled) {
+  std::ifstream rules(TACTO_SOURCE "/firmware-host/usb/60-tactograph.rules");
+  std::string line, last;
+  while (std::getline(rules, line))
+    if (!line.starts_with('#')) last = line;
+  EXPECT_EQ(last, kUdevRule);
 }
 
 TEST(RealtimeLimits, ReadTheKernelsThrottle) {

@@ -18,12 +18,12 @@ COLUMNS = 120
 DEVICE = "sim:surface=flat,paced=1,strokes=20,length=25mm"  # a stroke of 20 mm takes 0.5 s, and 0.1 s of rest
 
 
-def on_a_terminal(arguments, keys):
+def on_a_terminal(arguments, keys, columns=COLUMNS):
     """Runs the command on a terminal of its own, presses keys at their times; (everything shown, exit code)."""
     pid, terminal = pty.fork()
     if pid == 0:
         os.execv(tacto.COMMAND, [tacto.COMMAND, *arguments])
-    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, COLUMNS, 0, 0))
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
     begun, shown = time.monotonic(), b""
     while True:
         now = time.monotonic() - begun
@@ -50,7 +50,7 @@ def redrawn_marked_and_stopped():
     for line in lines:
         first = line.split("\r\n")[0]
         assert len(first) < COLUMNS, first
-        assert re.match(r"\d+\.\d s  finger +\d+ mm/s (ok|FASTER|SLOWER)  load \d\.\d\d N (ok|MORE|LESS)  \d+ strokes  0 lost  ", first), first
+        assert re.match(r"\d+\.\d s   *\d+ mm/s (ok|FASTER|SLOWER)  load \d\.\d\d N (ok|MORE|LESS)  \d+ strokes  0 lost  ", first), first
     times = [float(line.split(" s ")[0]) for line in lines]
     assert times == sorted(times) and times[-1] > 1.5, times
     side = json.loads(pathlib.Path("oak.json").read_text())
@@ -59,6 +59,16 @@ def redrawn_marked_and_stopped():
     assert 0.3 < side["marks"][0]["frame"] / 1e4 < 1.2, side["marks"]
     assert side["data"]["frames"] / 1e4 < 3 and "ended" not in side
     return side
+
+
+def levels_and_clipping_are_seen_in_80_columns():
+    shown, code = on_a_terminal(["record", "-d", DEVICE, "-o", "narrow", "--time", "0.6s"], [], columns=80)
+    lines = [line.split("\r\n")[0] for line in shown.split("\r\x1b[K")[1:-1]]
+    assert code == 0 and lines and max(map(len, lines)) < 80, shown
+    assert any(re.search(r"lost  peaks \d+/\d+/\d+ %  $|lost  peaks \d+/\d+/\d+ %  \d", line) for line in lines), lines
+    loud = "sim:force=sine,force_low=100Hz,force_amplitude=0.5N,paced=1"
+    shown, code = on_a_terminal(["record", "-d", loud, "-o", "loud-line", "--time", "0.6s"], [], columns=80)
+    assert re.search(r"\d s  CLIP tangential_force  ", shown), shown
 
 
 def the_terminal_is_left_as_it_was():
@@ -98,6 +108,28 @@ def loud_strokes_are_counted_as_clipped():
     assert not any(stroke["load_in_band"] for stroke in strokes), strokes
 
 
+def strokes_agree_with_spatial():
+    """README's first recording ends 0.1 s after its second stroke."""
+    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "2s", "-o", "C")
+    counted = tacto.run_json("info", "C")["strokes"]
+    found = tacto.run_json("spatial", "C", "--list")["strokes"]
+    assert len(counted) == len(found) == 2, (counted, found)
+    for one, other in zip(counted, found, strict=True):
+        speed = other.get("mean_speed_mps") or other["length_m"] / (other["to_s"] - other["from_s"])
+        assert abs(one["mean_speed_mps"] / speed - 1) < 0.05, (one, other)
+
+
+def what_is_missing_counts_in_the_duration():
+    tacto.run("record", "-d", "sim:", "--time", "0.4s", "-o", "hole")
+    side = json.loads(pathlib.Path("hole.json").read_text())
+    side["gaps"] = [{"frame": 1000, "device_sequence": 1500, "count": 500}]
+    pathlib.Path("hole.json").write_text(json.dumps(side))
+    told = tacto.run_json("record", "-d", "replay:hole", "-o", "hole2", "--allow-gaps")
+    durations = [told["duration_s"], tacto.run_json("info", "hole2")["duration_s"],
+                 next(row for row in tacto.run_json("list", ".")["list"] if row["name"] == "hole2")["duration_s"]]
+    assert all(abs(duration - 0.45) < 1e-9 for duration in durations), durations
+
+
 def clocks_are_fitted():
     """20 s in emulated time: host and device differ by the asked ppm, and by what a message's place tells."""
     for ppm in (0, 250, -1200):
@@ -118,8 +150,11 @@ def clocks_are_fitted():
 
 def test():
     strokes_are_told_again(redrawn_marked_and_stopped())
+    levels_and_clipping_are_seen_in_80_columns()
     the_terminal_is_left_as_it_was()
     loud_strokes_are_counted_as_clipped()
+    strokes_agree_with_spatial()
+    what_is_missing_counts_in_the_duration()
 
 
 tacto.in_folder(test)

@@ -131,6 +131,14 @@ def takes_count_up_and_are_listed():
     assert [(row["subject"], row["take"], row["name"]) for row in listed] == [
         ("S01", 1, "S01_oak_1"), ("S01", 2, "S01_oak_2"), ("S02", 1, "S02_oak_1")], listed
     assert "S01_oak_2" in tacto.run("list")[0]
+    # One that is removed changes no other's number, and its own is not given again.
+    for ending in (".wav", ".json"):
+        pathlib.Path("S01_oak_1" + ending).unlink()
+    tacto.run("record", "-d", "sim:", "--time", "50ms", "--template", "{subject}_{surface}_{take}", "--subject", "S01", "--surface", "oak")
+    tacto.run("record", "-d", "sim:", "--time", "50ms", "-o", "plain")
+    listed = tacto.run_json("list", ".")["list"]
+    assert [(row.get("take"), row["name"]) for row in listed] == [
+        (None, "plain"), (2, "S01_oak_2"), (3, "S01_oak_3"), (1, "S02_oak_1")], listed
 
 
 if __name__ == "__main__":

@@ -38,6 +38,34 @@ TEST(StrokeCounter, ThereAndBackAreTwo) {
   EXPECT_NEAR(back.mean_normal_n, 0.3, 0.3 * 0.03);
 }
 
+TEST(StrokeCounter, RestsBeforeAndAfterAreNoPartOfTheSpeed) {
+  StrokeCounter counter(kRate_hz);
+  double at_m = 0;
+  go(counter, at_m, 0, 1, 0, 140);  // less than a rest
+  go(counter, at_m, 0.04, 0.05, 0.5);
+  for (int i = 0; i < 140; ++i) counter.add(at_m + i * 0.5e-6, 9);  // creeps by a count
+  go(counter, at_m, 0, 0.05, 0.5, 160);
+  ASSERT_EQ(counter.strokes().size(), 2U);
+  for (const CountedStroke& stroke : counter.strokes()) {
+    EXPECT_NEAR(stroke.mean_speed_mps, 0.05, 1e-9);
+    EXPECT_NEAR(stroke.mean_normal_n, 0.5, 0.02);
+    EXPECT_NEAR(stroke.length_m, 0.04, StrokeCounter::kTurn_m + StrokeCounter::kStill_m);
+  }
+}
+
+TEST(StrokeCounter, TheStreamsEndEndsAStrokeThatHadStopped) {
+  StrokeCounter counter(kRate_hz);
+  double at_m = 0;
+  go(counter, at_m, 0.04, 0.05, 0.5, 30);
+  EXPECT_TRUE(counter.strokes().empty());
+  counter.finish();
+  counter.finish();
+  EXPECT_EQ(counter.strokes().size(), 1U);
+  go(counter, at_m, 0, 0.05, 0.5);  // cut off
+  counter.finish();
+  EXPECT_EQ(counter.strokes().size(), 1U);
+}
+
 TEST(StrokeCounter, AShortHaltDoesNotEndAStroke) {
   StrokeCounter counter(kRate_hz);
   double at_m = 0;

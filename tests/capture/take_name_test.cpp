@@ -22,6 +22,23 @@ TEST(TakeName, CountsUpPastWhatIsThere) {
   EXPECT_EQ(name_of_take(pattern, kParts), folder / "S01_oak--planed-2_4");
 }
 
+TEST(TakeName, ARemovedTakesNumberIsNotGivenAgain) {
+  const tests::TemporaryFolder folder;
+  std::ofstream(folder / "S01_2.wav");
+  std::ofstream(folder / "S01_7.json");
+  std::ofstream(folder / "S01_9.texture.wav");  // no recording
+  EXPECT_EQ(name_of_take(folder / "{subject}_{take}", kParts), folder / "S01_8");
+  std::ofstream(folder / "S01_9999.wav");
+  EXPECT_EQ(name_of_take(folder / "{subject}_{take}", kParts).error().remedy, "choose another template");
+}
+
+TEST(TakeName, AFolderMayCountToo) {
+  const tests::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "3");
+  std::ofstream(folder / "3/oak.wav");
+  EXPECT_EQ(name_of_take(folder / "{take}/oak", kParts), folder / "4/oak");
+}
+
 TEST(TakeName, WithoutATakeItMustBeFree) {
   const tests::TemporaryFolder folder;
   EXPECT_EQ(name_of_take(folder / "{subject}", kParts), folder / "S01");

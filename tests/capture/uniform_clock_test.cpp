@@ -61,10 +61,10 @@ TEST(UniformClock, MissingTicksAreGapsAndDoNotMoveTheRate) {
   EXPECT_EQ(clock->rate_hz, 1000);
   ASSERT_EQ(clock->gaps.size(), 2U);
   EXPECT_EQ(clock->gaps[0].frame, 10U);
-  EXPECT_EQ(clock->gaps[0].device_sequence, 10U);
+  EXPECT_EQ(clock->gaps[0].device_sequence, 11U);
   EXPECT_EQ(clock->gaps[0].count, 1U);
   EXPECT_EQ(clock->gaps[1].frame, 499U);
-  EXPECT_EQ(clock->gaps[1].device_sequence, 500U);
+  EXPECT_EQ(clock->gaps[1].device_sequence, 520U);
   EXPECT_EQ(clock->gaps[1].count, 20U);
 }
 

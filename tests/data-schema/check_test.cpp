@@ -37,7 +37,7 @@ class Check : public testing::Test {
     header.channels[0].unit = "N";
     header.channels[1].name = header.channels[1].quantity = "position";
     header.channels[1].unit = "m";
-    header.gaps = {{1, 10, 2}, {3, 20, 1}};
+    header.gaps = {{1, 3, 2}, {3, 6, 1}};
     auto writer = RecordingWriter::create(folder_ / name, header, true);
     ASSERT_TRUE(writer) << message(writer.error());
     ASSERT_TRUE(writer->write(interleaved));
@@ -111,6 +111,12 @@ TEST_F(Check, FindsUnitsAndGapsThatCannotBe) {
   const auto all = findings(FileKind::recording, "oak.json");
   EXPECT_TRUE(found(all, "#/channels/0/unit", "N"));
   EXPECT_TRUE(found(all, "#/gaps/1/frame", ""));
+}
+
+TEST_F(Check, FindsAGapWhoseNumberSaysOtherwise) {
+  EXPECT_TRUE(findings(FileKind::recording, "oak.json").empty());
+  edit("oak.json", "\"device_sequence\": 6", "\"device_sequence\": 5");
+  EXPECT_TRUE(found(findings(FileKind::recording, "oak.json"), "#/gaps/1/device_sequence", "told twice"));
 }
 
 TEST_F(Check, FindsChangedSamples) {

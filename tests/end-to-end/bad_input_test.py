@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import subprocess
 
 import numpy as np
 
@@ -125,6 +126,21 @@ def the_rest_refuses():
     refused(*render, "wiertlewski2011", "--path", "named.csv", code=MALFORMED, says=["named.csv", "position_m"])
 
 
+def record_says_which_option_and_what_to_do():
+    refused("record", "-d", "sim:", "-o", "x", "--strokes", "0", code=USAGE, says=["--strokes: '0' is no whole number from 1 on"])
+    refused("record", "-d", "sim:", "-o", "nodir/x", "--time", "1s", code=CANNOT_WRITE, says=["nodir", "make it first"])
+    for option, more in (("--subject", ["-o", "x"]), ("-o", [])):
+        done = subprocess.run([tacto.COMMAND, "record", "-d", "sim:", "--time", "1s", option, b"caf\xe9", *more], capture_output=True)
+        assert done.returncode == USAGE and f"{option}: is not UTF-8".encode() in done.stderr, done
+    tacto.run("record", "-d", "sim:", "-o", "loud", "--time", "0.1s", "--notes", "red \x1b[31m and \x9b on, \u00e9\nsecond line")
+    shown, _ = tacto.run("info", "loud")
+    assert "red \\x1b[31m and \\x9b on, \u00e9\nsecond line" in shown and "\x1b" not in shown, shown
+    side = json.loads(pathlib.Path("loud.json").read_text())
+    side["channels"][0]["scale"] = 0
+    pathlib.Path("loud.json").write_text(json.dumps(side))
+    refused("info", "loud", code=MALFORMED, says=["/channels/0/scale", "0 must not stand here"])
+
+
 def dirty_file_warns():
     dirty = tacto.DATA / "dirty" / "T1.csv"
     if not dirty.exists():
@@ -139,5 +155,5 @@ def dirty_file_warns():
 
 if __name__ == "__main__":
     for test in (import_refuses, spatial_refuses, a_file_from_the_future_is_refused, validate_finds_damage,
-                 the_rest_refuses, dirty_file_warns):
+                 the_rest_refuses, record_says_which_option_and_what_to_do, dirty_file_warns):
         tacto.in_folder(test)

@@ -99,6 +99,18 @@ TEST(SimDevice, WhatDivergesIsAnErrorWithItsTime) {
   EXPECT_NE(read.error().what.find("diverged at 0."), std::string::npos) << read.error().what;
 }
 
+TEST(SimDevice, ATransducerThatDivergesAtRestIsNamed) {
+  const auto device = open_device("sim:transducer=wiertlewski2011-as-printed");
+  ASSERT_TRUE((*device)->start());
+  std::vector<std::int32_t> codes(40000);
+  auto read = (*device)->read(codes);
+  if (read) read = (*device)->read(codes);
+  ASSERT_FALSE(read);
+  const std::string said = message(read.error());
+  EXPECT_NE(said.find((*device)->capabilities().transducer->name), std::string::npos) << said;
+  EXPECT_NE(said.find("another transducer"), std::string::npos) << said;
+}
+
 TEST(SimDevice, RatesFromOneToTwoHundredKilohertz) {
   for (const char* uri : {"sim:rate=1kHz", "sim:rate=9.7kHz", "sim:rate=200kHz"}) {
     const auto stream = stream_of(uri, 0.4);

@@ -122,6 +122,15 @@ INSTANTIATE_TEST_SUITE_P(All, SimParametersAgainst,
                                          Refusal{"force=sine,force_low=5kHz", "sim:force_low", "below 5 kHz"},
                                          Refusal{"position=lvdt,length=100mm", "sim:lvdt_range", "100 mm"}));
 
+TEST(SimParameters, TheEndsOfARangeAreInIt) {
+  for (const char* ends :
+       {"period=50um", "period=0.05mm", "period=20mm", "depth=1000um", "length=10mm", "encoder_quantum=1nm",
+        "lvdt_range=10mm,position=lvdt", "speed=1mm/s", "pull=-10N"})
+    EXPECT_TRUE(parse_sim_parameters(ends)) << ends;
+  EXPECT_FALSE(parse_sim_parameters("period=49.999um"));
+  EXPECT_EQ(*parse_sim_parameters("period=50um")->surface.period_m, 50e-6);
+}
+
 TEST(SimParameters, HelpNamesEveryKey) {
   for (const char* key : {"surface", "finger", "speed", "load", "seed", "person", "encoder_quantum",
                           "hysteresis", "second_mode", "finger_load", "position", "lvdt_range", "force_low",

@@ -410,6 +410,20 @@ TEST_F(MakeTexture, RefusesWhatCannotBecomeATexture) {
   EXPECT_NE(with([](auto& o) { o.filter = {FilterMethod::butterworth, {15, 5000}, Edges::none, 4}; }), "");
 }
 
+TEST_F(MakeTexture, RefusesToEqualiseWhatDidNotPassTheTransducer) {
+  const auto load_cell = [](schema::RecordingHeader& header) {
+    header.transducer = *schema::read_transducer("wiertlewski2011");
+    for (schema::Channel& channel : header.channels)
+      if (channel.name == "tangential_force") channel.name = channel.quantity = "normal_force";
+  };
+  const auto recording = record(stroke_path(0, 0.05, 0.05, 0), ridges, 1e-6, load_cell);
+  TextureOptions options;
+  options.channel = "normal_force";
+  EXPECT_FALSE(texture_of(recording, options).source.equalised);
+  options.equalise = Equalise::on;
+  EXPECT_NE(refusal(recording, options).find("normal_force did not pass"), std::string::npos);
+}
+
 TEST_F(MakeTexture, RefusesWhatHasNoPosition) {
   const auto still = record(std::vector<double>(1000, 0.02), ridges, 0);
   EXPECT_NE(refusal(still, {}).find("never moves"), std::string::npos);
