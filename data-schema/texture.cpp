@@ -105,7 +105,6 @@ Result<Texture> read_texture(const std::string& name) {
   const TextureData data = texture_data_from(document->body);
   const std::string wav = (fs::path(path).parent_path() / data.file).string();
   if (const auto fits = check_layout(wav, data, texture.signal.pitch_m); !fits) return forward_error(fits);
-  if (const auto right = check_sum(wav, data.sha256); !right) return forward_error(right);
   auto samples = read_samples(wav, 0);
   if (!samples) return forward_error(samples);
   texture.signal.values = std::move(*samples);
@@ -114,6 +113,7 @@ Result<Texture> read_texture(const std::string& name) {
     if (!spread) return forward_error(spread);
     texture.average->spread = std::move(*spread);
   }
+  if (const auto right = check_sum(wav, data.sha256); !right) return forward_error(right);
   texture.extra_json = unknown_members(document->body, kTextureKind);
   texture.newer_version = document->newer_version;
   return texture;

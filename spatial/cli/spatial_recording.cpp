@@ -204,10 +204,10 @@ Result<Report> Run::on(const std::string& name) {
   auto record = TouchRecord::open(*recording, wanted->channel);
   if (!record) return schema::forward_error(record);
   if (options_.list) return list(*record);
-  if (const std::string lost = rate_warning(*wanted, recording->header.sample_rate_hz); !lost.empty())
-    warn(fmt::format("{}: {}", name, lost));
   auto maker = TextureMaker::open(std::move(*record), *wanted);
   if (!maker) return schema::forward_error(maker);
+  if (const std::string lost = rate_warning(*wanted, recording->header.sample_rate_hz); !lost.empty())
+    warn(fmt::format("{}: {}", name, lost));
   const auto chosen = jobs(maker->record());
   if (!chosen) return schema::forward_error(chosen);
   return options_.average ? averages(*maker, *chosen) : textures(*maker, *chosen);

@@ -45,7 +45,7 @@ class InfoValidate : public testing::Test {
     header.channels[0].scale = -2;
     header.channels[0].offset = 1;
     header.channels[0].calibrated = "2024-02-03";
-    header.gaps = {{2, 2, 6}};
+    header.gaps = {{2, 8, 6}};
     header.simulated = "a test";
     header.warnings = {"the finger slipped"};
     auto writer = RecordingWriter::create(oak_, header);

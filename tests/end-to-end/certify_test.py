@@ -99,13 +99,19 @@ def formants_are_listed_stored_and_drawn():
     assert stored["kind"] == "formants" and len(stored["textures"][0]["formants"]) == 2
     tacto.run("validate", "oak.formants.json")
     assert "formants" in tacto.run("info", "oak.formants.json")[0]
-    tacto.run("formants", "oak", "-o", "oak.csv")
+    tacto.run("formants", "oak", "-o", "oak-formants.csv")
+    tacto.run("formants", "oak", "-o", "oak-formants.csv")  # a table replaces its like
+    raw = pathlib.Path("raw.csv")
+    raw.write_text("time,force\n0,1\n")
+    for verb in ("formants", "describe", "spectrogram"):
+        _, said = tacto.run(verb, "oak", "-o", "raw.csv", code=2)
+        assert "would be lost" in said and raw.read_text() == "time,force\n0,1\n", said
     for verb in ("formants", "describe"):  # nothing that was recorded or made is replaced by a table
         _, said = tacto.run(verb, "oak", "-o", "oak.json", code=2)
         assert "is a recording" in said, said
         _, said = tacto.run(verb, "oak", "-o", "oak.texture.json", code=2)
         assert "is a texture" in said, said
-    assert len(pathlib.Path("oak.csv").read_text().splitlines()) == 3
+    assert len(pathlib.Path("oak-formants.csv").read_text().splitlines()) == 3
     drawn = tacto.run_json("spectrogram", "oak", "-o", "oak.svg", "--formants")["formants_drawn"]
     assert drawn == 2, drawn
     tacto.run("spectrogram", "oak", "-o", "oak.nc", "--formants", code=2)

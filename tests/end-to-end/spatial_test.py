@@ -215,7 +215,7 @@ def a_way_back_is_warned_of():
     bumped = np.concatenate([x[:middle], x[middle] - step * np.arange(60), x[middle] + step * np.arange(-60, 0), x[middle:]])
     import_touch("bumped", np.round(bumped * 1e6) * 1e-6, surface(bumped))
     _, said = tacto.run("spatial", "bumped", "-o", "bumped")
-    assert "the finger went back on its way" in said and "explain 1" in said, said
+    assert "the finger went back on its way" in said and "explain 2 um" in said, said
 
 
 def fingers_up_are_told_by_the_normal_force():

@@ -413,8 +413,6 @@ TEST_F(MakeTexture, RefusesWhatCannotBecomeATexture) {
 TEST_F(MakeTexture, RefusesToEqualiseWhatDidNotPassTheTransducer) {
   const auto load_cell = [](schema::RecordingHeader& header) {
     header.transducer = *schema::read_transducer("wiertlewski2011");
-    for (schema::Channel& channel : header.channels)
-      if (channel.name == "tangential_force") channel.name = channel.quantity = "normal_force";
   };
   const auto recording = record(stroke_path(0, 0.05, 0.05, 0), ridges, 1e-6, load_cell);
   TextureOptions options;

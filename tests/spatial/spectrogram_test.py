@@ -347,8 +347,9 @@ class Spectrogram(unittest.TestCase):
     def test_a_full_disk_is_told_and_leaves_what_was_there(self):
         """A limit on files' sizes fails as a full disk does, netCDF's and HDF5's clearing up included."""
         write_texture(self.stem, chirp_and_noise())
+        before = b"position_mm,N^2 mm at 0/mm,before\n"  # a table replaces its like
         for name in ("oak.nc", "oak.csv", "oak.png"):
-            (self.here / name).write_bytes(b"before")
+            (self.here / name).write_bytes(before)
             done = subprocess.run(
                 [TACTOGRAPH, "spectrogram", self.stem, "-o", self.here / name],
                 capture_output=True, text=True,
@@ -357,7 +358,7 @@ class Spectrogram(unittest.TestCase):
             self.assertEqual(done.returncode, 7, name + done.stderr)
             said = [line for line in done.stderr.splitlines() if "==WARNING: " not in line]  # a sanitizer's own
             self.assertEqual(len(said), 1, done.stderr)
-            self.assertEqual((self.here / name).read_bytes(), b"before")
+            self.assertEqual((self.here / name).read_bytes(), before)
             self.assertEqual([path.name for path in self.here.glob(".*")], [])
 
     def test_memory_does_not_grow_with_textures_or_bins(self):
