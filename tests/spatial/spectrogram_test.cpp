@@ -182,7 +182,7 @@ TEST(Spectrogram, DensitiesBelowSinglePrecisionAreRefusedToo) {
   amplitudes.scaling = schema::Scaling::amplitude;
   const auto shown = spatial_spectrogram(samples::sine(1e-30, 2000, 12000), amplitudes);
   ASSERT_TRUE(shown);
-  EXPECT_NEAR(strongest_peak(*shown, 0).cell / 1e-30, 1, 0.01);
+  EXPECT_NEAR(strongest_peak(*shown, 0).cell / 1e-30, 1, 0.02);  // the line lies beside its bin
   EXPECT_TRUE(spatial_spectrogram(samples::sine(0, 2000, 12000), {}));
 }
 
