@@ -19,7 +19,9 @@ begin() {
   ctl load oak --gain 0.5mm/N
   ctl arm
   ctl play
+  within 20 plays
 }
+plays() { ctl status | grep -q playing; }
 end_daemon() {
   kill -TERM $DAEMON_PID
   wait $DAEMON_PID || fail "tactographd ended with $?"
