@@ -23,7 +23,7 @@ Result<Edge> parse_band(const std::string& text, Dimension dimension) {
     return schema::fail(
         Fault::usage, "is neither 'off' nor two frequencies", where_of_band(text),
         dimension == Dimension::frequency ? "write it like 15Hz..500Hz" : "write it like 0.5/mm..10/mm");
-  const auto end = [&](std::string words) -> Result<double> {
+  const auto end = [&](const std::string& words) -> Result<double> {
     auto value = schema::parse_quantity(words, dimension);
     if (!value) value.error().where = where_of_band(text);
     return value;
