@@ -155,8 +155,8 @@ tl::unexpected<schema::Error> Client::refused(MessageType type, const wire::Answ
 
 tl::unexpected<schema::Error> Client::silent(MessageType type, const Asking& asking) const {
   return fail(Fault::device,
-              fmt::format("the device did not answer {}, asked {} times in {:.1f} s", word_of(type),
-                          asking.times, transport_->now_s() - asking.since_s),
+              fmt::format("the device did not answer {}, asked {} times in {:g} s", word_of(type),
+                          asking.times, asking.times * kAnswerTimeoutS),
               where_, "unplug it and plug it in again");
 }
 

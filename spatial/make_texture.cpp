@@ -20,8 +20,8 @@ namespace {
 
 using schema::Fault;
 
-constexpr double kSlowPart = 0.25;        // of the median speed
-constexpr std::size_t kMostFiner = 4096;  // 1 um of a grid of 4 mm
+constexpr double kSlowPart = 0.25;   // of the median speed
+constexpr double kMostFiner = 4096;  // 1 um of a grid of 4 mm
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -136,18 +136,15 @@ Band TextureMaker::kept_band() const {
 
 // How many times finer than the texture's a grid has to be to hold what the band lets through where the
 // finger goes at a quarter of its usual speed; at its stops no grid does.
-std::size_t TextureMaker::finer_by(const SpeedProfile& profile) const {
+std::size_t TextureMaker::finer_by(double usual_mps) const {
   const Band band = options_.filter.passed(record_.header().sample_rate_hz);
-  const double highest_per_m = band.high_hz / (kSlowPart * median(profile.speed_mps));
-  return std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(2 * options_.pitch_m * highest_per_m)), 1,
-                                 kMostFiner);
+  const double times = std::ceil(2 * options_.pitch_m * band.high_hz / (kSlowPart * usual_mps));
+  return static_cast<std::size_t>(std::clamp(times, 1.0, kMostFiner));
 }
 
 // Samples that far apart would fold what lies beyond half a cycle a sample onto what they can hold.
 schema::Result<std::vector<double>> TextureMaker::on_grid(const Stroke& stroke, const MonotonePath& path,
-                                                          const SpaceGrid& grid,
-                                                          const SpeedProfile& profile) {
-  const std::size_t finer = finer_by(profile);
+                                                          const SpaceGrid& grid, std::size_t finer) {
   const auto times = static_cast<double>(finer);
   const SpaceGrid fine{grid.pitch_m / times, grid.first * times, (grid.count - 1) * finer + 1};
   auto values = resampled(stroke, path, fine);
@@ -157,10 +154,10 @@ schema::Result<std::vector<double>> TextureMaker::on_grid(const Stroke& stroke, 
 }
 
 // A finger that all but rests has its band at frequencies that no grid holds: what came out would be noise.
-schema::Result<void> TextureMaker::check_band(const SpeedProfile& profile) const {
+schema::Result<void> TextureMaker::check_band(double usual_mps) const {
   const Band band = options_.filter.passed(record_.header().sample_rate_hz);
-  const double speed_mps = median(profile.speed_mps), highest_per_m = 1 / (2 * options_.pitch_m);
-  if (band.low_hz <= highest_per_m * speed_mps) return {};
+  const double highest_per_m = 1 / (2 * options_.pitch_m);
+  if (band.low_hz <= highest_per_m * usual_mps) return {};
   const auto text = [](double value, schema::Dimension dimension) {
     return schema::for_people(value, dimension);
   };
@@ -168,8 +165,8 @@ schema::Result<void> TextureMaker::check_band(const SpeedProfile& profile) const
       Fault::unsuitable,
       fmt::format("the finger all but rests: at {} the band from {:g} Hz on lies above {}, and a grid of {} "
                   "ends at {}",
-                  text(speed_mps, schema::Dimension::speed), band.low_hz,
-                  text(band.low_hz / speed_mps, schema::Dimension::spatial_frequency),
+                  text(usual_mps, schema::Dimension::speed), band.low_hz,
+                  text(band.low_hz / usual_mps, schema::Dimension::spatial_frequency),
                   text(options_.pitch_m, schema::Dimension::length),
                   text(highest_per_m, schema::Dimension::spatial_frequency)),
       record_.where(), "ask for a stretch in which it moves; --list shows the strokes");
@@ -182,8 +179,10 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   const auto grid = grid_along(*path, stroke.direction, options_.pitch_m);
   if (!grid) return schema::forward_error(grid);
   const SpeedProfile profile = profile_of(stroke, *path, *grid);
-  if (const auto fine = check_band(profile); !fine) return schema::forward_error(fine);
-  auto values = on_grid(stroke, *path, *grid, profile);
+  const double usual_mps = median(profile.speed_mps);
+  if (const auto fine = check_band(usual_mps); !fine) return schema::forward_error(fine);
+  const std::size_t finer = finer_by(usual_mps);
+  auto values = on_grid(stroke, *path, *grid, finer);
   if (!values) return schema::forward_error(values);
 
   schema::Texture texture;
@@ -194,7 +193,7 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   texture.source.min_speed_mps = slowest;
   texture.source.max_speed_mps = fastest;
   texture.valid_band = valid_band(profile, kept_band());
-  narrow(texture.valid_band, 0, (finer_by(profile) > 1 ? kThinnedPass : 0.5) / options_.pitch_m);
+  narrow(texture.valid_band, 0, (finer > 1 ? kThinnedPass : 0.5) / options_.pitch_m);
   if (options_.space) {
     const auto [low_per_m, high_per_m] = options_.space->kept(options_.pitch_m);
     narrow(texture.valid_band, low_per_m, high_per_m);

@@ -57,14 +57,14 @@ class TextureMaker {
   schema::Result<void> prepare();
   schema::Result<void> choose_equaliser();
   schema::Result<void> check_duration(const Stroke& stroke) const;
-  schema::Result<void> check_band(const SpeedProfile& profile) const;
+  schema::Result<void> check_band(double usual_mps) const;
   schema::Result<MonotonePath> path_of(const Stroke& stroke, double shift_m) const;
   schema::Result<std::vector<double>> resampled(const Stroke& stroke, const MonotonePath& path,
                                                 const SpaceGrid& grid);
   Band kept_band() const;
-  std::size_t finer_by(const SpeedProfile& profile) const;
+  std::size_t finer_by(double usual_mps) const;
   schema::Result<std::vector<double>> on_grid(const Stroke& stroke, const MonotonePath& path,
-                                              const SpaceGrid& grid, const SpeedProfile& profile);
+                                              const SpaceGrid& grid, std::size_t finer);
   SpeedProfile profile_of(const Stroke& stroke, const MonotonePath& path, const SpaceGrid& grid) const;
   void describe(schema::Texture& texture, const Stroke& stroke, int number) const;
   void describe_filter(schema::TextureSource& source) const;

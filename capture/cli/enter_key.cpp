@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capture/cli/enter_key.hpp"
-#include "data-schema/cli/talk.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <cstdio>
+
+#include "data-schema/cli/talk.hpp"
 
 namespace tacto::capture {
 namespace {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/progress.hpp"
-#include "data-schema/cli/talk.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
+
+#include "data-schema/cli/talk.hpp"
 
 namespace tacto::cli {
 

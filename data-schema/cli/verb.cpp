@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/verb.hpp"
-#include "data-schema/cli/talk.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
+
+#include "data-schema/cli/talk.hpp"
 
 namespace tacto::cli {
 namespace {

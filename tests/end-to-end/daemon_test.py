@@ -72,6 +72,15 @@ class Client:
         self.socket.sendall((json.dumps(request) + "\n").encode())
         return json.loads(self.lines.readline())
 
+    def rest_of_events(self):
+        """All that a watcher was told and has not read, until nothing comes for half a second."""
+        events = []
+        self.socket.settimeout(0.5)
+        with contextlib.suppress(TimeoutError, OSError):
+            while True:
+                events.append(json.loads(self.lines.readline()))
+        return events
+
     def must(self, **request):
         answer = self.ask(**request)
         assert answer["ok"], answer
@@ -126,11 +135,7 @@ def from_load_to_a_session_that_replays():
         assert "armed" in ctl("stop")[0]
         assert "idle" in ctl("disarm")[0]
         session = json.loads(ctl("status", "--json")[0])["session"]
-        events = []
-        watcher.socket.settimeout(0.5)
-        with contextlib.suppress(TimeoutError, OSError):
-            while True:
-                events.append(json.loads(watcher.lines.readline()))
+        events = watcher.rest_of_events()
     states = [e["state"] for e in events if e["event"] == "state"]
     assert states == ["armed", "playing", "armed", "idle"], states
     assert sum(e["event"] == "status" for e in events) >= 5 and all("device_s" in e for e in events)
@@ -375,11 +380,7 @@ def a_texture_changed_in_mid_play():
         assert answer["changed"] and answer["fade_s"] == 0.05
         client.must(request="disarm")
         assert not client.must(request="load", file="oak")["changed"]
-        events = []
-        watcher.socket.settimeout(0.5)
-        with contextlib.suppress(TimeoutError, OSError):
-            while True:
-                events.append(json.loads(watcher.lines.readline()))
+        events = watcher.rest_of_events()
     states = [e["state"] for e in events if e["event"] == "state"]
     assert states[:2] == ["armed", "playing"] and states[2:] in (["idle"], ["armed", "idle"]), states  # while the drive falls it is armed
     assert tacto.run_json("replay", session)["same_to_the_bit"]
