@@ -6,12 +6,10 @@ namespace tacto::core {
 using wire::DriveState;
 using wire::FaultCode;
 
-void DriveSupervisor::arm(const wire::Limits& limits, uint32_t rate_millihertz, int32_t encoder) noexcept {
+void DriveSupervisor::arm(const wire::Limits& limits, uint32_t rate_millihertz) noexcept {
   watchdog_ticks_ = static_cast<uint32_t>(1e-6F * limits.watchdog_ms * static_cast<float>(rate_millihertz));
-  counts_per_tick_ = limits.counts_per_tick;
   last_heard_ = heard_.load();
   silent_ticks_ = lacking_ticks_ = 0;
-  last_encoder_ = encoder;
   fault_.store(FaultCode::none);
   aim_.store(Aim::hold);
   state_.store(DriveState::armed);
@@ -32,13 +30,6 @@ void DriveSupervisor::watch_host() noexcept {
   if (silent_ticks_ > watchdog_ticks_) fail(FaultCode::host_silent, silent_ticks_);
 }
 
-void DriveSupervisor::watch_encoder(int32_t encoder) noexcept {
-  const int64_t moved = static_cast<int64_t>(encoder) - last_encoder_;
-  const auto distance = static_cast<uint64_t>(moved < 0 ? -moved : moved);
-  last_encoder_ = encoder;
-  if (distance > counts_per_tick_) fail(FaultCode::encoder_jump, static_cast<uint32_t>(distance));
-}
-
 void DriveSupervisor::watch_drive(bool lacks) noexcept {
   lacking_ticks_ = lacks ? lacking_ticks_ + 1 : 0;
   if (lacking_ticks_ > watchdog_ticks_) fail(FaultCode::drive_underrun, lacking_ticks_);
@@ -48,12 +39,12 @@ bool DriveSupervisor::observe(const TickSights& sights) noexcept {
   if (state_.load() == DriveState::idle) return false;
   watch_host();
   if (!sights.enabled) fail(FaultCode::enable_open, 0);
-  watch_encoder(sights.encoder);
+  if (sights.encoder_jump > 0) fail(FaultCode::encoder_jump, sights.encoder_jump);
   const bool wanted = aim_.load() == Aim::play;
   watch_drive(sights.drive_lacks && wanted);
   if (state_.load() == DriveState::fault) return false;
   state_.store(wanted ? DriveState::playing : DriveState::armed);
-  return wanted && !sights.drive_lacks;
+  return wanted && !sights.drive_lacks && !sights.blind;
 }
 
 void DriveSupervisor::settle(bool sound, bool at_rest) noexcept {

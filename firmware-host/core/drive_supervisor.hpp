@@ -16,9 +16,10 @@ enum class Aim : uint8_t { off, hold, play };
 
 /// What the tick saw.
 struct TickSights {
-  int32_t encoder = 0;
+  uint32_t encoder_jump = 0;  ///< counts; 0: none
   bool enabled = false;
   bool drive_lacks = false;  ///< the host's drive has not come
+  bool blind = false;        ///< nor has the encoder's count: no fault, but the drive falls
 };
 
 /// States and transitions (idle: no output; armed: zero; playing; fault: ramping, or at zero):
@@ -29,7 +30,7 @@ struct TickSights {
 class DriveSupervisor {
  public:
   /// In idle only.
-  void arm(const wire::Limits& limits, uint32_t rate_millihertz, int32_t encoder) noexcept;
+  void arm(const wire::Limits& limits, uint32_t rate_millihertz) noexcept;
   void aim(Aim aim) noexcept { aim_.store(aim); }
   Aim aim() const noexcept { return aim_.load(); }
   /// A sound frame has come from the host.
@@ -46,7 +47,6 @@ class DriveSupervisor {
  private:
   void fail(wire::FaultCode code, uint32_t detail) noexcept;
   void watch_host() noexcept;
-  void watch_encoder(int32_t encoder) noexcept;
   void watch_drive(bool lacks) noexcept;
 
   Shared<wire::DriveState> state_{wire::DriveState::idle};
@@ -54,9 +54,8 @@ class DriveSupervisor {
   Shared<uint32_t> heard_;
   Shared<wire::FaultCode> fault_{wire::FaultCode::none};
   uint32_t detail_ = 0;
-  uint32_t watchdog_ticks_ = 0, counts_per_tick_ = 0;
+  uint32_t watchdog_ticks_ = 0;
   uint32_t last_heard_ = 0, silent_ticks_ = 0, lacking_ticks_ = 0;
-  int32_t last_encoder_ = 0;
 };
 
 }  // namespace tacto::core

@@ -7,12 +7,15 @@
 
 namespace tacto::core {
 
-/// Nine functions; `board` is handed to each. None waits, allocates or throws. Those marked (tick) are called
-/// in the tick's interrupt.
+/// Nine functions, and one that may be absent; `board` is handed to each. None waits, allocates or throws.
+/// Those marked (tick) are called in the tick's interrupt.
 struct Hal {
   void* board = nullptr;
   /// (tick) The encoder's count.
   int32_t (*read_encoder)(void* board) noexcept = nullptr;
+  /// (tick) Periods before this one in which the encoder was not read, where a count comes over a cable;
+  /// absent where the counter is in the hardware.
+  uint32_t (*encoder_unseen)(void* board) noexcept = nullptr;
   /// (tick) One code of each channel, in the order of the board's channels: left-justified in 32 bits, of an
   /// encoder its plain count. False where a converter failed.
   bool (*read_channels)(void* board, int32_t* codes) noexcept = nullptr;

@@ -33,6 +33,8 @@ class TexturePlayer {
   /// Forgets finger, gain and what is leaving.
   void begin(float gain_ticks) noexcept;
   void change(const TextureSetup& texture, float fade_ticks) noexcept;
+  /// The finger is somewhere else, at a speed that nobody knows.
+  void forget_finger() noexcept { tracker_.set(playing().tracker); }
   bool changing() const noexcept { return fade_ > 0; }
   float wanted(int32_t count, float gain) noexcept;
   FingerPlace place() const noexcept { return place_; }

@@ -66,6 +66,8 @@ class TickKernel {
   void change(const TextureSetup& texture, float fade_s) noexcept {
     player_.change(texture, fade_s * rate_hz_);
   }
+  /// What was known of its speed: between ticks, at rest.
+  void forget_finger() noexcept { player_.forget_finger(); }
   bool changing() const noexcept { return player_.changing(); }
 
   /// One tick of the texture.

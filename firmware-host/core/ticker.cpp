@@ -26,7 +26,8 @@ void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_mil
   gain_taken_ = gain_.load();
   change_.store(kNoChange);
   change_taken_ = false;
-  supervisor_.arm(setup.limits, rate_millihertz, hal_.read_encoder(hal_.board));
+  supervisor_.arm(setup.limits, rate_millihertz);
+  watch_.arm(setup.limits.counts_per_tick, setup.rate_hz, hal_.read_encoder(hal_.board));
 }
 
 // What the tick reads is written before the word that sends it there.
@@ -93,9 +94,9 @@ void Ticker::end_change() noexcept {
 }
 
 // The host's drive is for this tick or for none: what was not played in its time is not played later.
-float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
+float Ticker::wanted(int32_t count, bool& lacks) noexcept {
   if (source_ == DriveSource::profile) {
-    const float wanted = kernel_.wanted(encoder, gain_taken_);
+    const float wanted = kernel_.wanted(count, gain_taken_);
     end_change();
     return wanted;
   }
@@ -106,6 +107,15 @@ float Ticker::wanted(int32_t encoder, bool& lacks) noexcept {
   const float drive_v = *next;
   drive_queue_.pop();
   return drive_v;
+}
+
+// The count that is played: not always the one that the encoder shows.
+int32_t Ticker::follow(Record& record) noexcept {
+  const uint32_t unseen = hal_.encoder_unseen != nullptr ? hal_.encoder_unseen(hal_.board) : 0;
+  const int32_t count = watch_.see(record.encoder, unseen, kernel_.at_rest());
+  if (watch_.found()) kernel_.forget_finger();
+  if (watch_.blind()) record.flags |= wire::kTickBlind;
+  return count;
 }
 
 // A converter that gives nothing touches nothing.
@@ -121,8 +131,9 @@ void Ticker::drive(Record& record) noexcept {
   if (!record.driven) return hal_.write_drive(hal_.board, 0);
   take_steering(record);
   const FaultCode before = supervisor_.fault();
-  TickSights sights{record.encoder, (record.flags & wire::kTickEnabled) != 0, false};
-  const float wanted_v = wanted(record.encoder, sights.drive_lacks);
+  const int32_t count = follow(record);
+  TickSights sights{watch_.jump(), (record.flags & wire::kTickEnabled) != 0, false, watch_.blind()};
+  const float wanted_v = wanted(count, sights.drive_lacks);
   const bool raise = supervisor_.observe(sights);
   const TickOutput output = kernel_.drive(wanted_v, raise, normal_force(record));
   record.drive_v = output.drive_v;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "firmware-host/core/drive_supervisor.hpp"
+#include "firmware-host/core/encoder_watch.hpp"
 #include "firmware-host/core/hal.hpp"
 #include "firmware-host/core/record.hpp"
 #include "firmware-host/core/ring.hpp"
@@ -68,7 +69,8 @@ class Ticker {
   void take_steering(Record& record) noexcept;
   void take_change() noexcept;
   void end_change() noexcept;
-  float wanted(int32_t encoder, bool& lacks) noexcept;
+  int32_t follow(Record& record) noexcept;
+  float wanted(int32_t count, bool& lacks) noexcept;
   float normal_force(Record& record) noexcept;
   void count(uint32_t flags) noexcept;
   void keep(bool there, const Record& record) noexcept;
@@ -78,6 +80,7 @@ class Ticker {
   TickKernel kernel_;
   SweepGenerator sweep_;
   DriveSupervisor supervisor_;
+  EncoderWatch watch_;
   Ring<float, kDriveQueue> drive_queue_;
   Ring<Record, kRingRecords> records_;
   Record spare_;

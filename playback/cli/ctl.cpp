@@ -93,8 +93,9 @@ void show_top(const ControlFields& fields) {
   fmt::print("finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"), 1e3 * number("speed_mps"));
   fmt::print("drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V   gain {:g}\n", number("drive_v"),
              number("drive_rms_v"), number("drive_peak_v"), number("gain"));
-  fmt::print("ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}\n", number("ticks"),
-             number("late_ticks"), number("lost_ticks"), number("limited_ticks"));
+  fmt::print("ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}   blind {:.0f}\n",
+             number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
+             number("blind_ticks"));
   if (number("wake_p99_s") > 0)
     fmt::print("late by  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f} us   busy p99 {:.2f} us\n",
                1e6 * number("wake_p50_s"), 1e6 * number("wake_p99_s"), 1e6 * number("wake_p999_s"),

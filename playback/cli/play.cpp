@@ -56,7 +56,9 @@ void declare_chain(CLI::App& app, PlayOptions& o) {
 void add_played(Report& report, const PlayOutcome& outcome) {
   const TickView& ticks = outcome.status.ticks;
   report.add("ticks", outcome.recorder.ticks).add("lost_ticks", ticks.lost());
-  report.add("late_ticks", ticks.late()).add("limited_ticks", ticks.limited());
+  report.add("late_ticks", ticks.late())
+      .add("limited_ticks", ticks.limited())
+      .add("blind_ticks", ticks.blind());
   report.add("drive_peak_v", ticks.drive_peak_v());
   report.add("passes_to_hz", outcome.passes_to_hz).add("delay_left_s", outcome.delay_left_s);
   report.add("inverse_error_db", outcome.inverse_error_db);

@@ -8,7 +8,8 @@
 
 namespace tacto::playback {
 
-HostBoard::HostBoard(const firmware_host::Description& device, double rate_hz) : about_(device) {
+HostBoard::HostBoard(const firmware_host::Description& device, double rate_hz)
+    : about_(device), period_ns_(static_cast<std::int64_t>(1e9 / rate_hz)) {
   wire::Welcome& welcome = about_.welcome;
   welcome.clock_hz = kClockHz;
   welcome.default_rate_millihertz = welcome.least_rate_millihertz = welcome.most_rate_millihertz =
@@ -24,6 +25,7 @@ core::Hal HostBoard::hal() {
   core::Hal hal;
   hal.board = this;
   hal.read_encoder = [](void* b) noexcept { return of(b).encoder_.load(std::memory_order_relaxed); };
+  hal.encoder_unseen = [](void* b) noexcept { return of(b).unseen_; };
   hal.read_channels = [](void*, std::int32_t*) noexcept { return false; };  // the device streams them itself
   hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
   hal.enable_closed = [](void* b) noexcept { return of(b).enabled_.load(std::memory_order_acquire); };
@@ -31,6 +33,7 @@ core::Hal HostBoard::hal() {
   hal.set_rate = [](void* b, std::uint32_t rate) noexcept {
     of(b).ticking_ = rate > 0;
     of(b).ticks_ = 0;
+    of(b).age_ = 0;
   };
   hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
     return of(b).from_player_.take({bytes, size});
@@ -49,12 +52,23 @@ void HostBoard::rest(std::int64_t now_ns) noexcept {
   wants_drive_.store(ticking_, std::memory_order_release);
 }
 
+// A period that this thread slept through is as blind as one in which no count came.
+void HostBoard::look_for_readings(std::int64_t late_ns) noexcept {
+  const std::uint32_t reading = readings_.load(std::memory_order_acquire);
+  if (late_ns >= period_ns_) age_ += static_cast<std::uint32_t>(late_ns / period_ns_);
+  const bool fresh = reading != seen_reading_;
+  seen_reading_ = reading;
+  unseen_ = fresh ? age_ : ++age_;
+  if (fresh) age_ = 0;
+}
+
 // A drive that finds no room is not kept for later.
 void HostBoard::tick(std::int64_t now_ns, std::int64_t late_ns) noexcept {
   now_ns_ = now_ns;
   constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
   lateness_[ticks_++ % kLatenesses].store(static_cast<std::int32_t>(std::min(late_ns, kMost)),
                                           std::memory_order_relaxed);
+  look_for_readings(late_ns);
   firmware_->tick();
   if (TimedDrive* place = drives_.place(); place != nullptr) {
     *place = {now_ns, drive_v_};

@@ -41,6 +41,7 @@ class HostBoard {
   void set_inputs(std::int32_t encoder, bool enabled) noexcept {
     encoder_.store(encoder, std::memory_order_relaxed);
     enabled_.store(enabled, std::memory_order_release);
+    readings_.fetch_add(1, std::memory_order_release);
   }
   void open_enable() noexcept { enabled_.store(false, std::memory_order_release); }
   ByteRing<65536>& from_player() noexcept { return from_player_; }
@@ -58,6 +59,7 @@ class HostBoard {
   static HostBoard& of(void* board) noexcept { return *static_cast<HostBoard*>(board); }
   core::Board board();
   core::Hal hal();
+  void look_for_readings(std::int64_t late_ns) noexcept;
 
   firmware_host::Description about_;
   firmware_host::HostedProfile profile_;
@@ -68,7 +70,10 @@ class HostBoard {
   core::Ring<TimedDrive, 1024> drives_;
   std::array<std::atomic<std::int32_t>, kLatenesses> lateness_{};
   std::atomic<std::uint64_t> drives_lost_{0};
-  std::uint64_t ticks_ = 0;  // since arming
+  std::atomic<std::uint32_t> readings_{0};  // of the encoder
+  std::int64_t period_ns_;
+  std::uint32_t seen_reading_ = 0, age_ = 0, unseen_ = 0;  // in periods
+  std::uint64_t ticks_ = 0;                                // since arming
   std::int64_t now_ns_ = 0, began_ns_ = 0;
   float drive_v_ = 0;
   bool ticking_ = false;

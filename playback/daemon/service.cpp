@@ -63,6 +63,7 @@ void add_ticks(ControlFields& fields, const TickView& view) {
   fields.emplace_back("lost_ticks", count(view.lost()));
   fields.emplace_back("late_ticks", count(view.late()));
   fields.emplace_back("limited_ticks", count(view.limited()));
+  fields.emplace_back("blind_ticks", count(view.blind()));
   fields.emplace_back("played_s", view.span_s());
   fields.emplace_back("device_s", 1e-9 * static_cast<double>(view.last().time_ns));
   fields.emplace_back("encoder_count", std::int64_t{view.last().encoder});

@@ -48,6 +48,7 @@ core::Hal SessionBoard::hal() {
   core::Hal hal;
   hal.board = this;
   hal.read_encoder = [](void* b) noexcept { return of(b).encoder_; };
+  hal.encoder_unseen = [](void* b) noexcept { return of(b).unseen_; };
   hal.read_channels = [](void*, std::int32_t*) noexcept { return true; };
   hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
   hal.enable_closed = [](void* b) noexcept { return of(b).enabled_; };
@@ -96,9 +97,17 @@ std::optional<wire::Answer> SessionBoard::say_frame(std::span<const std::uint8_t
   return answer_;
 }
 
+// How long it was is not recorded, but what came of it is: blindness, a jump that was one, or nothing.
+std::uint32_t SessionBoard::unseen_in(const schema::SessionTick& recorded) const {
+  if ((recorded.flags & wire::kTickBlind) != 0) return UINT32_MAX;
+  const bool fault = (recorded.flags & wire::kTickFault) != 0;
+  return fault ? 0 : core::blind_ticks(static_cast<float>(header_.rate_hz));
+}
+
 float SessionBoard::tick(const schema::SessionTick& recorded) {
   encoder_ = recorded.encoder;
   enabled_ = (recorded.flags & wire::kTickEnabled) != 0;
+  unseen_ = unseen_in(recorded);
   clock_ += static_cast<std::uint64_t>(std::llround(kReplayClockHz / header_.rate_hz));
   firmware_->tick();
   firmware_->poll();

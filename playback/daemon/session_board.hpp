@@ -41,6 +41,7 @@ class SessionBoard {
   core::Board board();
   core::Hal hal();
   void listen();
+  std::uint32_t unseen_in(const schema::SessionTick& recorded) const;
 
   schema::SessionHeader header_;
   std::unique_ptr<float[]> profile_;
@@ -49,6 +50,7 @@ class SessionBoard {
   std::optional<wire::Answer> answer_;
   std::uint32_t sequence_ = 0;
   std::int32_t encoder_ = 0;
+  std::uint32_t unseen_ = 0;
   bool enabled_ = true;
   float drive_v_ = 0;
   std::uint64_t clock_ = 0;

@@ -27,6 +27,7 @@ void TickView::take(const schema::SessionTick& tick) {
   counts_[tick.tick % kPlaces] = tick.encoder;
   ++ticks_;
   late_ += (tick.flags & wire::kTickLate) != 0;
+  blind_ += (tick.flags & wire::kTickBlind) != 0;
   limited_ += (tick.flags & kAnyLimit) != 0;
   const double drive_v = tick.drive_v;
   mean_square_ += share_ * (drive_v * drive_v - mean_square_);

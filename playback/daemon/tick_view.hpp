@@ -24,6 +24,8 @@ class TickView {
   std::uint64_t lost() const { return lost_; }
   std::uint64_t late() const { return late_; }
   std::uint64_t limited() const { return limited_; }
+  /// In which the drive fell because no count came.
+  std::uint64_t blind() const { return blind_; }
   /// Of the last whole second: the part of the ticks that were late.
   double late_part() const { return late_part_; }
   const schema::SessionTick& last() const { return last_; }
@@ -38,7 +40,7 @@ class TickView {
  private:
   static constexpr std::size_t kPlaces = 512;  // 25 ms at 20 kHz
   double rate_hz_ = 1, metres_per_count_ = 0;
-  std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, limited_ = 0;
+  std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, limited_ = 0, blind_ = 0;
   std::uint64_t second_from_ = 0, late_before_ = 0;
   double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0;
   schema::SessionTick last_;

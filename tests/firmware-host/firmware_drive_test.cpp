@@ -160,6 +160,48 @@ TEST(FirmwareDrive, AnEncodersJumpIsAFaultAndZero) {
   }
 }
 
+// Ten counts came no more often than one would: what a finger may go in the meantime is no jump.
+TEST(FirmwareDrive, AfterPeriodsWithoutACountAJumpIsMeasuredByThem) {
+  for (const std::int32_t way : {1000, 1001}) {
+    FirmwareBench bench;
+    bench.play_profile(3);
+    bench.board.encoder += way;
+    bench.board.encoder_unseen = 9;
+    bench.run(1);
+    bench.board.encoder_unseen = 0;
+    bench.run(100);
+    EXPECT_EQ(bench.pulse().state, way > 1000 ? DriveState::fault : DriveState::playing);
+  }
+}
+
+// 0.1 s at 10 kHz: it falls within the release time, waits, takes whatever count comes then, and rises again.
+TEST(FirmwareDrive, WithoutACountTheDriveFallsAndComesBackWithoutAJump) {
+  FirmwareBench bench;
+  bench.play_profile(3);
+  bench.drives.clear();
+  bench.ticks.clear();
+  for (std::uint32_t away = 1; away <= 1000; ++away) {
+    bench.board.encoder_unseen = away;
+    bench.run(1);
+  }
+  bench.board.encoder += 1'000'000;
+  bench.run(1);
+  bench.board.encoder_unseen = 0;
+  bench.run(400);
+  EXPECT_EQ(bench.drives[99], 3.0F);   // 10 ms are borne
+  EXPECT_EQ(bench.drives[160], 0.0F);  // 5 ms to fall in
+  EXPECT_EQ(bench.drives[1000], 0.0F);
+  EXPECT_EQ(bench.drives.back(), 3.0F);
+  float largest_step = 0;
+  for (std::size_t i = 1; i < bench.drives.size(); ++i)
+    largest_step = std::max(largest_step, std::abs(bench.drives[i] - bench.drives[i - 1]));
+  EXPECT_LE(largest_step, 3 * 1.51F / 20);  // an onset of 2 ms: 1.5 is the weight's steepest
+  EXPECT_TRUE(bench.faults.empty());
+  const auto blind = std::ranges::count_if(
+      bench.ticks, [](const wire::Tick& tick) { return (tick.flags & wire::kTickBlind) != 0; });
+  EXPECT_EQ(blind, 901);
+}
+
 // 1e38 is a number; ten times that is none.
 TEST(FirmwareDrive, AFilteredDriveThatIsNoNumberIsAFaultAndZero) {
   FirmwareBench bench;

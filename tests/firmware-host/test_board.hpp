@@ -20,6 +20,7 @@ struct TestBoard {
   std::size_t taken = 0;                                            ///< of from_host
   std::size_t link_room = std::numeric_limits<std::size_t>::max();  ///< bytes that the link still takes
   std::int32_t encoder = 0;
+  std::uint32_t encoder_unseen = 0;  ///< periods
   bool enabled = true, converter_works = true;
   std::uint64_t clock = 0;
   std::uint32_t rate_millihertz = 0, restarts = 0, rates_set = 0;
@@ -35,6 +36,7 @@ struct TestBoard {
     core::Hal hal;
     hal.board = this;
     hal.read_encoder = [](void* b) noexcept { return of(b).encoder; };
+    hal.encoder_unseen = [](void* b) noexcept { return of(b).encoder_unseen; };
     hal.read_channels = [](void* b, std::int32_t* codes) noexcept {
       codes[0] = of(b).encoder * 65536;
       codes[1] = of(b).encoder;

@@ -138,51 +138,95 @@ TEST_F(HostLoopOnSim, ADeviceThatFaultsOpensTheEnableInput) {
   EXPECT_NE(loop_->status().device_fault.find("enable input"), std::string::npos);
 }
 
-TEST(HostBoard, ATickTakesNothingFromTheHeap) {
-  auto device = firmware_host::make_sim_device("sim:", "");
-  ASSERT_TRUE(device);
-  HostBoard board((*device)->client().description(), 2000);
-  const auto say = [&](const auto& message, std::uint32_t sequence) {
-    std::array<std::uint8_t, wire::kMaxFrame> frame;
-    const std::size_t size = wire::encode_frame(message, sequence, frame.data(), frame.size());
-    board.from_player().put(std::span(frame).first(size));
-    board.rest(1'000'000);
-  };
-  say(wire::Hello{}, 0);
-  say(wire::Limits{5, 15708, 0.01F, 0.01F, 1000, 100}, 1);
-  wire::ProfileChunk chunk{};
-  chunk.count = 64;
-  for (int i = 0; i < 64; ++i) chunk.values[i] = 0.5F;
-  std::uint8_t bytes[4];
-  std::uint32_t check = 0;
-  for (int i = 0; i < 64; ++i) {
-    wire::FieldWriter(bytes, sizeof bytes)(chunk.values[i]);
-    check = wire::crc32c(bytes, sizeof bytes, check);
+// Plays 0.5 m everywhere, by ticks that the test gives.
+class HostBoardTicks : public testing::Test {
+ protected:
+  static constexpr std::int64_t kPeriodNs = 500'000;
+  void SetUp() override {
+    auto device = firmware_host::make_sim_device("sim:", "");
+    ASSERT_TRUE(device);
+    board_ = std::make_unique<HostBoard>((*device)->client().description(), 2000);
+    say(wire::Hello{});
+    say(wire::Limits{5, 15708, 0.01F, 0.01F, 1000, 100});
+    wire::ProfileChunk chunk{};
+    chunk.count = 64;
+    for (int i = 0; i < 64; ++i) chunk.values[i] = 0.5F;
+    std::uint8_t bytes[4];
+    std::uint32_t check = 0;
+    for (int i = 0; i < 64; ++i) {
+      wire::FieldWriter(bytes, sizeof bytes)(chunk.values[i]);
+      check = wire::crc32c(bytes, sizeof bytes, check);
+    }
+    say(wire::ProfileBegin{64, 0, 0, std::uint64_t{1} << 30, wire::ProfileEnds::loop});
+    say(chunk);
+    say(wire::ProfileEnd{check});
+    board_->set_inputs(0, true);
+    say(wire::Arm{wire::DriveSource::profile, 2'000'000});
+    say(wire::Play{});
+    ASSERT_TRUE(board_->ticking());
   }
-  say(wire::ProfileBegin{64, 0, 0, std::uint64_t{1} << 30, wire::ProfileEnds::loop}, 2);
-  say(chunk, 3);
-  say(wire::ProfileEnd{check}, 4);
-  board.set_inputs(0, true);
-  say(wire::Arm{wire::DriveSource::profile, 2'000'000}, 5);
-  say(wire::Play{}, 6);
+  template <class Message>
+  void say(const Message& message) {
+    std::array<std::uint8_t, wire::kMaxFrame> frame;
+    const std::size_t size = wire::encode_frame(message, said_++, frame.data(), frame.size());
+    board_->from_player().put(std::span(frame).first(size));
+    board_->rest(1'000'000);
+  }
+  /// The drive of a tick.
+  float tick(std::int64_t late_ns) {
+    board_->tick(1'000'000 + ticked_++ * kPeriodNs, late_ns);
+    while (board_->to_player().take(sink_) > 0) {
+    }
+    const float drive_v = board_->drives().front()->drive_v;
+    board_->drives().pop();
+    return drive_v;
+  }
+  float tick_at(std::int32_t count, std::int64_t late_ns = 0) {
+    board_->set_inputs(count, true);
+    return tick(late_ns);
+  }
+
+  std::unique_ptr<HostBoard> board_;
+  std::uint32_t said_ = 0;
+  std::int64_t ticked_ = 0;
+  std::array<std::uint8_t, 4096> sink_;
+};
+
+TEST_F(HostBoardTicks, TakeNothingFromTheHeap) {
   const long counted = tests::allocations_here();
   ::operator delete(::operator new(8));
   ASSERT_EQ(tests::allocations_here(), counted + 1) << "the hook sees nothing";
-  ASSERT_TRUE(board.ticking());
-  std::array<std::uint8_t, 4096> sink;
   float drive_v = 0;
   const long before = tests::allocations_here();
-  for (int i = 0; i < 1500; ++i) {
-    board.set_inputs(i, true);
-    board.tick(1'000'000 + i * 500'000LL, i);
-    while (board.to_player().take(sink) > 0) {
-    }
-    drive_v = board.drives().front()->drive_v;
-    board.drives().pop();
-  }
+  for (int i = 0; i < 1500; ++i) drive_v = tick_at(i, i);
   EXPECT_EQ(tests::allocations_here(), before);
   EXPECT_NEAR(drive_v, 0.5, 1e-3);
-  EXPECT_EQ(board.lateness_ns(1499), 1499);
+  EXPECT_EQ(board_->lateness_ns(1499), 1499);
+}
+
+// The limits say 100 counts a tick: 1900 counts later it goes on, for it saw nothing meanwhile.
+TEST_F(HostBoardTicks, FallAndRiseAgainWhereNoCountsCome) {
+  for (int i = 0; i < 200; ++i) tick_at(i);
+  float drive_v = 0;
+  for (int i = 0; i < 76; ++i) drive_v = tick(0);
+  EXPECT_EQ(drive_v, 0);
+  for (int i = 0; i < 200; ++i) drive_v = tick_at(2100 + i);
+  EXPECT_NEAR(drive_v, 0.5, 1e-3);
+}
+
+TEST_F(HostBoardTicks, FallAndRiseAgainAfterTheyWereSleptThrough) {
+  for (int i = 0; i < 200; ++i) tick_at(i);
+  float last_v = tick_at(2100, 76 * kPeriodNs);
+  float least_v = last_v, largest_step_v = 0;
+  for (int i = 1; i < 200; ++i) {
+    const float drive_v = tick_at(2100 + i);
+    largest_step_v = std::max(largest_step_v, std::abs(drive_v - last_v));
+    least_v = std::min(least_v, drive_v);
+    last_v = drive_v;
+  }
+  EXPECT_EQ(least_v, 0);
+  EXPECT_NEAR(last_v, 0.5, 1e-3);
+  EXPECT_LE(largest_step_v, 0.5 * 1.5 / 20 * 1.01);  // 10 ms each way: 1.5 is the weight's steepest
 }
 
 }  // namespace
