@@ -22,6 +22,13 @@ Result<Checked> judged(const Error& error) {
   return one_finding(error.where, error.what);
 }
 
+// What no schema can say: read_transducer knows.
+std::vector<Finding> check_transducer(const std::string& path) {
+  const auto transducer = read_transducer(path);
+  if (transducer) return {};
+  return {{transducer.error().where, transducer.error().what}};
+}
+
 Result<Checked> check_document(const StoredFile& file, const Progress& progress) {
   const auto violations = violations_of(file.path);
   if (!violations) return judged(violations.error());
@@ -34,6 +41,7 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   checked.newer_version = document->newer_version;
   if (file.kind == FileKind::recording) checked.findings = check_recording(file.path, *document, progress);
   if (file.kind == FileKind::scene) checked.findings = check_scene(file.path, *document);
+  if (file.kind == FileKind::transducer) checked.findings = check_transducer(file.path);
   if (file.kind == FileKind::texture) checked.findings = check_texture(file.path, *document, progress);
   return checked;
 }

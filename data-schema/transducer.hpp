@@ -4,15 +4,17 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "data-schema/error.hpp"
+#include "data-schema/transducer_extras.hpp"
 
 namespace tacto::schema {
 
-/// Names and symbols are the paper's (Table I, equations 1 to 6). All obligatory.
+/// Names and symbols are the paper's (Table I, equations 1 to 6). All obligatory, but for what is optional.
 struct Transducer {
   std::string name;
   double deflection_m = 0;               ///< delta, largest unloaded deflection
@@ -36,6 +38,9 @@ struct Transducer {
   double displacement_limit_m = 0;  ///< |X|
   double slew_limit_v_per_s = 0;    ///< |dV_a/dt|
   std::string origin;               ///< paper and equation, identification and date
+  std::optional<Hysteresis> hysteresis;
+  std::optional<ModeAbove> second_mode;
+  std::optional<Identification> identification;
   std::string extra_json;
   std::string newer_version;
 };
@@ -48,7 +53,8 @@ double piezo_coefficient_m_per_v(const Transducer& transducer);
 std::complex<double> sensor_response(const Transducer& transducer, double frequency_hz);
 
 /// H_a = 2 beta k_p G_a / ((1 + 2 R_a C_p s)(m s^2 + b_r s + k_r + k_p)) x actuator_scale, m/V. Equations
-/// (5), (6): with the factor 2 that the printed H_a lacks.
+/// (5), (6): with the factor 2 that the printed H_a lacks; a second mode adds its compliance. A hysteresis is
+/// none of it: no transfer function has one.
 std::complex<double> actuator_response(const Transducer& transducer, double frequency_hz);
 
 /// Unit-gain analog Butterworth low-pass of order 3, as the paper's reconstruction filter (600 Hz), 1.
@@ -70,11 +76,15 @@ double actuator_pole_hz(const Transducer& transducer);
 /// The names of the transducers that come with tactograph.
 std::vector<std::string_view> preset_names();
 
-/// By preset name, stem or file (NAME.transducer.json). Errors: not_found (with the presets), malformed,
-/// unsupported_version.
+/// What the schema can't say of a transducer: that the hysteresis is an operator with an inverse, and that
+/// the identified band goes upwards. Errors: malformed, in `where`#/field.
+Result<void> check_extras(const Transducer& transducer, const std::string& where);
+
+/// By preset name, stem or file (NAME.transducer.json). Errors: not_found (with the presets), malformed (also
+/// by check_extras), unsupported_version.
 Result<Transducer> read_transducer(const std::string& name);
 
-/// Errors: cannot_write.
+/// Errors: cannot_write; malformed: by check_extras.
 Result<void> write_transducer(const std::string& stem, const Transducer& transducer);
 
 }  // namespace tacto::schema

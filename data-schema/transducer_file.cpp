@@ -21,10 +21,12 @@ const EmbeddedFile* preset_named(std::string_view name) {
   return found == files.end() ? nullptr : &*found;
 }
 
-Transducer transducer_of(const Document& document) {
-  Transducer transducer = transducer_from(document.body);
-  transducer.extra_json = unknown_members(document.body, kTransducerKind);
-  transducer.newer_version = document.newer_version;
+Result<Transducer> transducer_of(const Result<Document>& document, const std::string& where) {
+  if (!document) return forward_error(document);
+  Transducer transducer = transducer_from(document->body);
+  transducer.extra_json = unknown_members(document->body, kTransducerKind);
+  transducer.newer_version = document->newer_version;
+  if (const auto sound = check_extras(transducer, where); !sound) return forward_error(sound);
   return transducer;
 }
 
@@ -53,17 +55,19 @@ std::vector<std::string_view> preset_names() {
 
 Result<Transducer> read_transducer(const std::string& name) {
   if (const EmbeddedFile* preset = preset_named(name))
-    return parse_document(preset->text, std::string(preset->name), kTransducerKind).map(transducer_of);
+    return transducer_of(parse_document(preset->text, std::string(preset->name), kTransducerKind), name);
   const std::string path = existing_path(name);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     return fail(
         Fault::not_found, "there is no such transducer", name,
         fmt::format("the presets are {}; a file is NAME.transducer.json", fmt::join(preset_names(), ", ")));
-  return open_document(path, kTransducerKind).map(transducer_of);
+  return transducer_of(open_document(path, kTransducerKind), path);
 }
 
 Result<void> write_transducer(const std::string& stem, const Transducer& transducer) {
+  if (const auto sound = check_extras(transducer, path_of(stem_of(stem, kTransducerSuffix))); !sound)
+    return sound;
   const auto text = document_text(kTransducerKind, transducer_body(transducer), transducer.extra_json);
   if (!text) return forward_error(text);
   PendingFiles pending;

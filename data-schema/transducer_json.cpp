@@ -32,6 +32,52 @@ constexpr Parameter kParameters[] = {
     {"slew_limit_v_per_s", &Transducer::slew_limit_v_per_s},
 };
 
+Json hysteresis_body(const Hysteresis& hysteresis) {
+  return {{"thresholds_v", hysteresis.thresholds_v}, {"weights", hysteresis.weights}};
+}
+
+Json second_mode_body(const ModeAbove& mode) {
+  return {{"frequency_hz", mode.frequency_hz},
+          {"damping_ratio", mode.damping_ratio},
+          {"relative_gain", mode.relative_gain}};
+}
+
+Json identification_body(const Identification& found) {
+  Json body = {{"date", found.date}, {"source", found.source}};
+  put_text(body, "conditions", found.conditions);
+  put_text(body, "simulated", found.simulated);
+  body["converged"] = found.converged;
+  body["misfit"] = found.misfit;
+  put_text(body, "words", found.words);
+  body["r_squared"] = found.r_squared;
+  body["low_hz"] = found.low_hz;
+  body["high_hz"] = found.high_hz;
+  return body;
+}
+
+Hysteresis hysteresis_from(const Json& body) {
+  return {body["thresholds_v"].get<std::vector<double>>(), body["weights"].get<std::vector<double>>()};
+}
+
+ModeAbove second_mode_from(const Json& body) {
+  return {body["frequency_hz"], body["damping_ratio"], body["relative_gain"]};
+}
+
+Identification identification_from(const Json& body) {
+  Identification found;
+  found.date = body["date"];
+  found.conditions = text_or(body, "conditions");
+  found.source = body["source"];
+  found.simulated = text_or(body, "simulated");
+  found.converged = body["converged"];
+  found.misfit = body["misfit"];
+  found.words = text_or(body, "words");
+  found.r_squared = body["r_squared"];
+  found.low_hz = body["low_hz"];
+  found.high_hz = body["high_hz"];
+  return found;
+}
+
 }  // namespace
 
 Json transducer_body(const Transducer& transducer) {
@@ -40,6 +86,9 @@ Json transducer_body(const Transducer& transducer) {
   for (const auto& [name, member] : kParameters) body[name] = transducer.*member;
   body["converter_bits"] = transducer.converter_bits;
   put_text(body, "origin", transducer.origin);
+  if (transducer.hysteresis) body["hysteresis"] = hysteresis_body(*transducer.hysteresis);
+  if (transducer.second_mode) body["second_mode"] = second_mode_body(*transducer.second_mode);
+  if (transducer.identification) body["identification"] = identification_body(*transducer.identification);
   return body;
 }
 
@@ -50,6 +99,10 @@ Transducer transducer_from(const Json& body) {
     transducer.*member = number_or(body, name, transducer.*member);
   transducer.converter_bits = static_cast<int>(number_or(body, "converter_bits", transducer.converter_bits));
   transducer.origin = text_or(body, "origin");
+  if (body.contains("hysteresis")) transducer.hysteresis = hysteresis_from(body["hysteresis"]);
+  if (body.contains("second_mode")) transducer.second_mode = second_mode_from(body["second_mode"]);
+  if (body.contains("identification"))
+    transducer.identification = identification_from(body["identification"]);
   return transducer;
 }
 

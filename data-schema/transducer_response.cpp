@@ -22,6 +22,15 @@ Complex mechanics(const Transducer& t, Complex s) {
   return t.mass_kg * s * s + t.damping_n_s_per_m * s + stiffness(t);
 }
 
+// m/N: the first mode's, and what a second one adds.
+Complex compliance(const Transducer& t, Complex s) {
+  const Complex first = 1.0 / mechanics(t, s);
+  if (!t.second_mode) return first;
+  const Complex p = s / (2 * std::numbers::pi * t.second_mode->frequency_hz);
+  return first +
+         t.second_mode->relative_gain / stiffness(t) / (p * p + 2 * t.second_mode->damping_ratio * p + 1.0);
+}
+
 // Two layers of C_p in parallel behind a resistor.
 Complex electrics(double resistance_ohm, double capacitance_f, Complex s) {
   return 1.0 + 2.0 * resistance_ohm * capacitance_f * s;
@@ -49,8 +58,8 @@ Complex sensor_response(const Transducer& t, double frequency_hz) {
 Complex actuator_response(const Transducer& t, double frequency_hz) {
   const Complex s = laplace(frequency_hz);
   const double size = 2 * piezo_coefficient_m_per_v(t) * t.bender_stiffness_n_per_m * t.amplifier_gain;
-  return size * t.actuator_scale /
-         (electrics(t.amplifier_resistance_ohm, t.capacitance_f, s) * mechanics(t, s));
+  return size * t.actuator_scale * compliance(t, s) /
+         electrics(t.amplifier_resistance_ohm, t.capacitance_f, s);
 }
 
 Complex butterworth3_response(double cutoff_hz, double frequency_hz) {

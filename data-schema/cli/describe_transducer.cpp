@@ -36,6 +36,23 @@ void add_electronics(Report& report, const Transducer& t) {
   report.add("noise_n_per_sqrt_hz", t.noise_n_per_sqrt_hz);
 }
 
+void add_extras(Report& report, const Transducer& t) {
+  if (t.hysteresis) report.add("hysteresis_thresholds", t.hysteresis->thresholds_v.size());
+  if (!t.second_mode) return;
+  report.add("second_mode_hz", t.second_mode->frequency_hz);
+  report.add("second_mode_damping_ratio", t.second_mode->damping_ratio);
+  report.add("second_mode_relative_gain", t.second_mode->relative_gain);
+}
+
+void add_identification(Report& report, const Transducer& t) {
+  if (!t.identification) return;
+  const Identification& found = *t.identification;
+  report.add("identified", found.date).add("identified_from", found.source);
+  report.add("identification_usable", found.usable()).add("r_squared", found.r_squared);
+  report.add("valid_from_hz", found.low_hz).add("valid_to_hz", found.high_hz);
+  add_text(report, "identification_words", found.words);
+}
+
 }  // namespace
 
 Result<Report> describe_transducer(const std::string& path) {
@@ -48,6 +65,8 @@ Result<Report> describe_transducer(const std::string& path) {
   add_derived(report, *transducer);
   add_mechanics(report, *transducer);
   add_electronics(report, *transducer);
+  add_extras(report, *transducer);
+  add_identification(report, *transducer);
   add_text(report, "origin", transducer->origin);
   return report;
 }

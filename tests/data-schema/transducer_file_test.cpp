@@ -63,6 +63,43 @@ TEST_F(TransducerFile, ReadsBackToTheBit) {
   }
 }
 
+TEST_F(TransducerFile, KeepsWhatWasIdentified) {
+  Transducer found = preset_;
+  found.hysteresis = Hysteresis{{0, 0.5, 2}, {0.75, 0.2, 0.1}};
+  found.second_mode = ModeAbove{803.5, 0.03, -0.05};
+  found.identification = Identification{
+      "2026-11-22T05:00:00Z", "no load, 0.2 V", "sim:", "test", true, true, "misfit", 0.99, 10, 900};
+  written(found, "found");
+  const auto read = read_transducer(folder_ / "found");
+  ASSERT_TRUE(read) << message(read.error());
+  EXPECT_EQ(read->hysteresis->thresholds_v, found.hysteresis->thresholds_v);
+  EXPECT_EQ(read->hysteresis->weights, found.hysteresis->weights);
+  EXPECT_EQ(read->second_mode->frequency_hz, 803.5);
+  EXPECT_EQ(read->second_mode->relative_gain, -0.05);
+  EXPECT_TRUE(read->identification->misfit);
+  EXPECT_FALSE(read->identification->usable());
+  EXPECT_EQ(read->identification->conditions, "no load, 0.2 V");
+  EXPECT_EQ(read->identification->high_hz, 900);
+  EXPECT_EQ(read->extra_json, "");
+}
+
+TEST_F(TransducerFile, RefusesAHysteresisWithoutAnInverse) {
+  const std::vector<Hysteresis> unfit = {
+      {{0, 1}, {1}}, {{0.1, 1}, {0.5, 0.5}}, {{0, 2, 1}, {0.5, 0.3, 0.2}}, {{0, 1}, {0, 1}}};
+  for (const Hysteresis& hysteresis : unfit) {
+    Transducer transducer = preset_;
+    transducer.hysteresis = hysteresis;
+    const auto saved = write_transducer(folder_ / "unfit", transducer);
+    ASSERT_FALSE(saved);
+    EXPECT_EQ(saved.error().fault, Fault::malformed);
+    EXPECT_NE(saved.error().where.find("#/hysteresis"), std::string::npos);
+  }
+  Transducer band = preset_;
+  band.identification = Identification{"2026-11-22T05:00:00Z", "", "sim:", "", true, false, "", 0.9, 500, 10};
+  EXPECT_FALSE(write_transducer(folder_ / "band", band));
+  EXPECT_EQ(folder_.files(), 0u);
+}
+
 TEST_F(TransducerFile, UnknownNameListsThePresets) {
   const auto read = read_transducer(folder_ / "nobody");
   ASSERT_FALSE(read);

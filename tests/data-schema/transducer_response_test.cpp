@@ -148,6 +148,18 @@ TEST(TransducerResponse, EqualsTheEquationsOfMotionInTime) {
   }
 }
 
+TEST(TransducerResponse, ASecondModeAddsItsOwnResonator) {
+  Transducer t = preset("wiertlewski2011");
+  const auto at_800 = actuator_response(t, 800), at_0 = actuator_response(t, 0);
+  t.second_mode = ModeAbove{800, 0.03, 0.1};
+  // At its own frequency the added mode is relative_gain / (2 i zeta) of the static gain, behind the same
+  // pole.
+  const std::complex<double> pole = 1.0 / std::complex<double>(1, 800 / actuator_pole_hz(t));
+  const auto added = at_0 * pole * 0.1 / std::complex<double>(0, 0.06);
+  EXPECT_LT(std::abs(actuator_response(t, 800) - at_800 - added), 1e-12 * std::abs(at_0));
+  EXPECT_NEAR(std::abs(actuator_response(t, 0) / at_0), 1.1, 1e-12);
+}
+
 TEST(TransducerResponse, ButterworthIsTheTextbooks) {
   EXPECT_NEAR(decibels(std::abs(butterworth3_response(600, 500))), -1.25, 0.005);
   EXPECT_NEAR(std::abs(butterworth3_response(600, 0)), 1, 1e-15);
