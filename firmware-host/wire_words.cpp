@@ -98,6 +98,7 @@ std::string_view word_of(MessageType type) {
       {MessageType::tracking, "tracking"},
       {MessageType::energy, "energy"},
       {MessageType::contact, "contact"},
+      {MessageType::hysteresis, "hysteresis"},
       {MessageType::change, "change"},
   };
   for (const auto& [key, word] : kWords)

@@ -20,9 +20,15 @@ std::complex<double> filter_response(const Chain& chain, double frequency_hz) {
 
 }  // namespace
 
+std::complex<double> lead_response(const Chain& chain, double frequency_hz) {
+  if (!(chain.led_pole_hz > 0)) return 1;
+  const double a = std::exp(-2 * std::numbers::pi * chain.led_pole_hz / chain.sample_rate_hz);
+  return (1.0 - std::polar(a, -2 * std::numbers::pi * frequency_hz / chain.sample_rate_hz)) / (1 - a);
+}
+
 std::complex<double> chain_response(const Chain& chain, double frequency_hz) {
   return schema::actuator_response(chain.transducer, frequency_hz) * filter_response(chain, frequency_hz) *
-         hold_response(chain, frequency_hz);
+         hold_response(chain, frequency_hz) * lead_response(chain, frequency_hz);
 }
 
 std::complex<double> inverse_response(const Chain& chain, Inverse inverse, double frequency_hz) {

@@ -23,12 +23,16 @@ struct Chain {
   double reconstruction_cutoff_hz = 600;  ///< Wiertlewski 2011
   Hold hold = Hold::none;
   double sample_rate_hz = 10e3;
+  /// The pole that a section behind the filter undoes (hysteresis_inverse.hpp), 0: none.
+  double led_pole_hz = 0;
 };
 
 /// Actuator (equations 5 and 6 of Wiertlewski 2011), times the filter's and the hold's response where there
 /// are any, m/V. The hold's is sinc(f / rate) exp(-i pi f / rate); its images above half the rate are not in
 /// it.
 std::complex<double> chain_response(const Chain& chain, double frequency_hz);
+/// Of the section that undoes led_pole_hz, 1; it is a part of chain_response.
+std::complex<double> lead_response(const Chain& chain, double frequency_hz);
 
 /// What a wanted displacement's spectrum is multiplied by to get the drive's, V/m. `full` is 1 /
 /// chain_response, with no delay; `none` knows nothing of the response: the drive's limit for the

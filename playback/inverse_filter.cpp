@@ -35,6 +35,7 @@ class Designer {
     for (std::size_t k = 0; k <= kGrid; ++k) {
       const Complex response = chain_response(chain, frequency_hz(k)) / at_rest;
       responses_.push_back(inverse == Inverse::magnitude ? std::abs(response) : response);
+      leads_.push_back(std::abs(lead_response(chain, frequency_hz(k))));
     }
     for (std::size_t i = 0; i < 2 * kGrid; ++i)
       turns_.push_back(std::polar(1.0, -std::numbers::pi * static_cast<double>(i) / kGrid));
@@ -57,7 +58,7 @@ class Designer {
     for (std::size_t k = 0; k <= kGrid; ++k) {
       const Complex gain = response_of(taps, k);
       const double f = frequency_hz(k);
-      filter.gain_db = std::max(filter.gain_db, decibels(std::abs(gain)));
+      filter.gain_db = std::max(filter.gain_db, decibels(std::abs(gain) * leads_[k]));
       if (f > band_.high_hz && f <= design_.stops_at_hz)
         filter.beyond_band_db = std::max(filter.beyond_band_db, decibels(std::abs(gain * responses_[k])));
       if (!band_.contains(f)) continue;
@@ -92,7 +93,8 @@ class Designer {
   std::vector<double> solved() const {
     std::vector<double> row(count_), right(count_);
     for (std::size_t k = 0; k <= kGrid; ++k) {
-      const double weights = weight(k) * std::norm(responses_[k]) + (kept(k) ? 0 : penalties_[k]);
+      const double weights =
+          weight(k) * std::norm(responses_[k]) + (kept(k) ? 0 : penalties_[k] * leads_[k] * leads_[k]);
       const Complex aim = kept(k) ? weight(k) * std::conj(responses_[k]) * delayed(k) : 0;
       for (std::size_t i = 0; i < count_; ++i) {
         const Complex turn = turns_[k * i % (2 * kGrid)];
@@ -109,7 +111,7 @@ class Designer {
     const double bound = std::pow(10, design_.most_gain_db / 20), aim = kAim * bound;
     bool beyond = false;
     for (std::size_t k = 0; k <= kGrid; ++k) {
-      const double gain = std::abs(response_of(taps, k));
+      const double gain = std::abs(response_of(taps, k)) * leads_[k];
       beyond = beyond || gain > bound;
       if (gain > aim)
         penalties_[k] = std::max(penalties_[k], kLeastRaisedPenalty) * gain * gain / (aim * aim);
@@ -122,7 +124,7 @@ class Designer {
   InverseDesign design_;
   std::size_t count_ = 0;
   std::vector<Complex> responses_, turns_;
-  std::vector<double> penalties_;
+  std::vector<double> leads_, penalties_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "playback/hysteresis_inverse.hpp"
 #include "playback/inverse_filter.hpp"
 #include "playback/pyramid.hpp"
 #include "playback/reference/spatial_content.hpp"
@@ -115,11 +116,29 @@ Result<void> lay_on_counts(Prepared& prepared, double first_m, const PrepareOpti
   return {};
 }
 
-void undo_chain(Prepared& prepared, const schema::Transducer& transducer, const PrepareOptions& o) {
-  const Chain chain{transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz};
+// The transducer's model may be one that no bounded inverse undoes.
+Result<void> check_inverse(const InverseFilter& filter, Inverse inverse, const spatial::Band& band) {
+  const bool shapes = inverse == Inverse::full || inverse == Inverse::magnitude;
+  if (!shapes || filter.error_db <= kMostInverseErrorDb) return {};
+  return fail(
+      Fault::unsuitable,
+      fmt::format("over {:g} to {:.4g} Hz its inverse, within 20 dB of gain, leaves {:.1f} dB of what is "
+                  "wanted",
+                  band.low_hz, band.high_hz, filter.error_db),
+      "transducer", "check its resonance, damping and pole; or play with --inverse gain");
+}
+
+Result<void> undo_chain(Prepared& prepared, const schema::Transducer& transducer, const PrepareOptions& o) {
+  Chain chain{transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz};
+  if (o.undo_hysteresis && transducer.hysteresis) {
+    chain.led_pole_hz = schema::actuator_pole_hz(transducer);
+    prepared.plays = inverse_of(*transducer.hysteresis);
+    prepared.sections = {pole_lead(chain.led_pole_hz, o.rate_hz)};
+  }
   const InverseDesign design{o.delay_s, 20, prepared.stops_at_hz};
   const spatial::Band band{std::min(o.band.low_hz, 0.5 * prepared.passes_to_hz), prepared.passes_to_hz};
   InverseFilter filter = inverse_filter(chain, o.inverse, band, design);
+  if (auto sound = check_inverse(filter, o.inverse, band); !sound) return sound;
   prepared.taps = std::move(filter.taps);
   prepared.delay_s = filter.delay_s;
   prepared.delay_left_s = o.look_ahead ? 0 : filter.delay_s;
@@ -129,6 +148,7 @@ void undo_chain(Prepared& prepared, const schema::Transducer& transducer, const 
   const double ahead_ticks = o.look_ahead ? filter.delay_s * o.rate_hz : 0;
   prepared.tracker = {o.between_counts, static_cast<float>(ahead_ticks),
                       static_cast<float>(kTrackerS * o.rate_hz)};
+  return {};
 }
 
 wire::Limits limits_of(const schema::Transducer& t, const PrepareOptions& o) {
@@ -166,6 +186,9 @@ core::KernelSetup Prepared::setup() const {
   setup.texture = {{samples.data(), scale}, tracker, core::per_full_detail(full_detail_counts_per_tick)};
   setup.taps = taps.data();
   setup.tap_count = static_cast<std::uint16_t>(taps.size());
+  setup.hysteresis = &plays;
+  setup.sections = sections.data();
+  setup.section_count = static_cast<std::uint8_t>(sections.size());
   setup.limits = limits;
   setup.rate_hz = core::rate_of(rate_millihertz());
   setup.energy_rms_v = energy_rms_v;
@@ -183,7 +206,7 @@ Result<Prepared> prepare(std::span<const PlacedTexture> textures, const schema::
   Prepared prepared = settled(transducer, options);
   if (auto filled = fill_levels(prepared, path, options); !filled) return schema::forward_error(filled);
   if (auto laid = lay_on_counts(prepared, path.origin_m, options); !laid) return schema::forward_error(laid);
-  undo_chain(prepared, transducer, options);
+  if (auto undone = undo_chain(prepared, transducer, options); !undone) return schema::forward_error(undone);
   return prepared;
 }
 

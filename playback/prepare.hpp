@@ -44,11 +44,12 @@ struct PrepareOptions {
   Reconstruction reconstruction = Reconstruction::none;
   double reconstruction_cutoff_hz = 600;
   Hold hold = Hold::zero_order;
-  double delay_s = 2e-3;       ///< that the inverse may take (magnitude, full)
-  bool look_ahead = true;      ///< read where the finger will be after that delay
-  bool between_counts = true;  ///< time the encoder's edges
-  double max_speed_mps = 0.5;  ///< up to which nothing folds; beyond, the texture fades to silence
-  double jump_mps = 0;         ///< beyond it the encoder has jumped, a fault; 0: four times max_speed_mps
+  bool undo_hysteresis = true;  ///< of a transducer that says what hysteresis it has
+  double delay_s = 2e-3;        ///< that the inverse may take (magnitude, full)
+  bool look_ahead = true;       ///< read where the finger will be after that delay
+  bool between_counts = true;   ///< time the encoder's edges
+  double max_speed_mps = 0.5;   ///< up to which nothing folds; beyond, the texture fades to silence
+  double jump_mps = 0;          ///< beyond it the encoder has jumped, a fault; 0: four times max_speed_mps
   double onset_s = 0.05, release_s = 0.01;
   std::uint16_t watchdog_ms = 100;
   double energy_rms_v = 0, energy_window_s = 1;     ///< 0: no such limit
@@ -61,6 +62,8 @@ struct Prepared {
   std::vector<float> samples;  ///< of all levels, N
   core::ProfileScale scale;
   std::vector<float> taps;  ///< V for m
+  wire::Hysteresis plays;   ///< that undo the bender's; none: straight 1
+  std::vector<wire::Section> sections;
   core::TrackerSetup tracker;
   wire::Limits limits;
   double rate_hz = 0;
@@ -95,8 +98,14 @@ struct Prepared {
 /// band, |chain g|^2 beyond stops, and |g|^2 with the smallest weight that keeps |g| within 20 dB of its
 /// value at rest.
 ///
-/// Errors: usage, for options out of range; unsuitable, for a texture that isn't force in N, has fewer than 2
-/// samples or one that is no number, or needs more than most_samples (with how many).
+/// Hysteresis: where the transducer's file has it, the filter gives what the bender is to be charged to,
+/// plays undo the hysteresis of that charge, and a section undoes the amplifier's low-pass. Exact for a
+/// bender that is what the file says and has no reconstruction filter before it; with one, the drive's
+/// corners are lost.
+///
+/// Errors: usage, for options out of range; unsuitable, for a transducer whose inverse leaves more than a
+/// tenth (full, magnitude), for a texture that isn't force in N, has fewer than 2 samples or one that is no
+/// number, or needs more than most_samples (with how many).
 schema::Result<Prepared> prepare(std::span<const PlacedTexture> textures,
                                  const schema::Transducer& transducer, const PrepareOptions& options);
 

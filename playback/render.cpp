@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "data-schema/statistics.hpp"
+#include "playback/hysteresis_inverse.hpp"
 #include "playback/kernel_drive.hpp"
 #include "playback/reference/exact_drive.hpp"
 #include "playback/reference/spatial_content.hpp"
@@ -125,7 +126,22 @@ PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
   options.reconstruction_cutoff_hz = o.reconstruction_cutoff_hz;
   options.hold = o.hold;
   options.onset_s = onset_s;
+  options.undo_hysteresis = o.undo_hysteresis;
   return options;
+}
+
+// The model is linear: of a bender with hysteresis it is told what that makes of the drive.
+ExactDrive moved_bender(const std::vector<double>& drive_v, const PaddedSpectrum& wanted,
+                        const Chain& chain) {
+  const schema::Transducer& t = chain.transducer;
+  ExactDrive moved = moved_by(drive_v, wanted, chain);
+  if (!t.hysteresis) return moved;
+  const double pole_hz = schema::actuator_pole_hz(t);
+  ExactDrive linear =
+      moved_by(linear_drive_of(drive_v, *t.hysteresis, pole_hz, chain.sample_rate_hz), wanted, chain);
+  moved.modelled_m = std::move(linear.modelled_m);
+  moved.peaks.displacement_m = linear.peaks.displacement_m;
+  return moved;
 }
 
 // What the kernel's limits took away is told; refused, unless it may.
@@ -143,7 +159,7 @@ Result<ExactDrive> kernels_drive(Rendering& rendering, const schema::Texture& te
                 "drive", "take a smaller --gain; --over-limit clip plays it clipped");
   if (clipped > 0) rendering.clipping = {clipped, 0, drive.tally.removed_db()};
   rendering.delay_s = prepared->delay_left_s;
-  return moved_by(std::move(drive.drive_v), wanted, chain);
+  return moved_bender(drive.drive_v, wanted, chain);
 }
 
 double error_db(const Rendering& rendering, const PaddedSpectrum& wanted, const spatial::Band& band) {
@@ -198,6 +214,10 @@ Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
   const auto wanted = exact_wanted(lookup, path, grid, options.band, options.gain_m_per_n, rendering.onset_s);
   report(0.8);
   const Chain chain = chain_of(transducer, options);
+  if (transducer.hysteresis && options.engine == Engine::reference)
+    rendering.warnings.push_back(
+        "the reference undoes the linear model alone: the bender's hysteresis stays (--engine kernel undoes "
+        "it)");
   auto drive = options.engine == Engine::kernel
                    ? kernels_drive(rendering, texture, path, wanted, chain, options)
                    : limited_drive(rendering, wanted, chain, options);

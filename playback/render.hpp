@@ -36,6 +36,7 @@ struct RenderOptions {
   OverLimit over_limit = OverLimit::refuse;
   Engine engine = Engine::reference;
   double encoder_step_m = 1e-6;  ///< of the kernel's encoder
+  bool undo_hysteresis = true;   ///< by the kernel, of a transducer that says what hysteresis it has
   /// Raised-cosine fade of the force at either end of the path, at most a quarter of it: nothing starts with
   /// a jump where the finger starts inside the texture. What is left is the ringing of the band's edges: on a
   /// real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3 of it.

@@ -22,6 +22,13 @@ bool same_tracker(const core::TrackerSetup& a, const core::TrackerSetup& b) {
          a.smoothing_ticks == b.smoothing_ticks;
 }
 
+bool same_plays(const wire::Hysteresis& a, const wire::Hysteresis& b) {
+  const auto same = [](const wire::HysteresisPlay& x, const wire::HysteresisPlay& y) {
+    return x.threshold == y.threshold && x.weight == y.weight;
+  };
+  return a.straight == b.straight && std::equal(a.plays, a.plays + a.count, b.plays, b.plays + b.count, same);
+}
+
 bool same_limits(const Prepared& a, const Prepared& b) {
   return a.limits.drive_v == b.limits.drive_v && a.limits.slew_v_per_s == b.limits.slew_v_per_s &&
          a.energy_rms_v == b.energy_rms_v && a.energy_window_s == b.energy_window_s &&
@@ -35,7 +42,8 @@ Result<void> check_texture_change(const Prepared& playing, const Prepared& next,
   if (playing.rate_millihertz() != next.rate_millihertz())
     return can_not_change(
         fmt::format("the texture is for {:g} ticks a second, {:g} run", next.rate_hz, playing.rate_hz));
-  if (playing.taps != next.taps || !same_tracker(playing.tracker, next.tracker))
+  if (playing.taps != next.taps || !same_plays(playing.plays, next.plays) ||
+      !same_tracker(playing.tracker, next.tracker))
     return can_not_change("the texture is for another transducer, filter or encoder than the one that plays");
   if (!same_limits(playing, next)) return can_not_change("the texture's limits are not those that hold");
   const std::size_t room = profile_samples - std::min<std::size_t>(profile_samples, playing.samples.size());

@@ -79,7 +79,21 @@ Result<void> send_filters(Client& client, const Prepared& prepared) {
   taps.count = static_cast<std::uint16_t>(prepared.taps.size());
   std::ranges::copy(prepared.taps, taps.taps);
   if (auto sent = client.command(taps); !sent) return sent;
-  return client.command(wire::Filters{});
+  wire::Filters filters{};
+  filters.count = static_cast<std::uint8_t>(prepared.sections.size());
+  std::ranges::copy(prepared.sections, filters.sections);
+  return client.command(filters);
+}
+
+// A device that knows nothing of it is asked only for what is needed.
+Result<void> send_hysteresis(Client& client, const Prepared& prepared) {
+  if (prepared.plays.count == 0) return {};
+  const wire::Welcome& device = client.description().welcome;
+  if ((device.features & wire::kFeatureHysteresis) == 0)
+    return fail(Fault::device,
+                fmt::format("'{}' (firmware {}) does not undo hysteresis", device.name, device.firmware),
+                client.where(), "update its firmware, or play without (--keep-hysteresis)");
+  return client.command(prepared.plays);
 }
 
 Result<void> send_tracking(Client& client, const Prepared& prepared) {
@@ -114,6 +128,7 @@ Result<void> upload(Client& client, const Prepared& prepared) {
   if (auto sent = client.command(prepared.limits); !sent) return sent;
   if (auto sent = send_levels(client, prepared, 1); !sent) return sent;
   if (auto sent = send_filters(client, prepared); !sent) return sent;
+  if (auto sent = send_hysteresis(client, prepared); !sent) return sent;
   if (auto sent = send_tracking(client, prepared); !sent) return sent;
   if (auto sent = client.command(wire::Energy{prepared.energy_rms_v, prepared.energy_window_s}); !sent)
     return sent;

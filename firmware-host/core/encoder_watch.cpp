@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware-host/core/encoder_watch.hpp"
 
+#include "firmware-host/core/counts_between.hpp"
+
 namespace tacto::core {
 
 void EncoderWatch::arm(uint32_t counts_per_tick, float rate_hz, int32_t encoder) noexcept {
@@ -16,7 +18,7 @@ int32_t EncoderWatch::see(int32_t encoder, uint32_t unseen, bool at_rest) noexce
   found_ = was_blind && !blind_;
   jump_ = 0;
   if (blind_) return count_;
-  const int64_t moved = static_cast<int64_t>(encoder) - count_;
+  const int64_t moved = counts_between(count_, encoder);
   const auto distance = static_cast<uint64_t>(moved < 0 ? -moved : moved);
   if (!found_ && distance > counts_per_tick_ * (uint64_t{1} + unseen))
     jump_ = static_cast<uint32_t>(distance);

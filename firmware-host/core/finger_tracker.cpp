@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware-host/core/finger_tracker.hpp"
 
+#include "firmware-host/core/counts_between.hpp"
+
 namespace tacto::core {
 namespace {
 
@@ -90,7 +92,7 @@ void FingerTracker::see(int32_t moved) noexcept {
 
 FingerPlace FingerTracker::track(int32_t count) noexcept {
   if (!begun_) begin(count);
-  const auto moved = static_cast<int32_t>(static_cast<uint32_t>(count) - static_cast<uint32_t>(count_));
+  const int32_t moved = counts_between(count_, count);
   since_ += 1;
   offset_ += speed_;
   count_ = count;

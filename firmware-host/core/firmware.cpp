@@ -12,7 +12,7 @@ Firmware::Firmware(const Board& board, const Hal& hal) noexcept
   wire::Welcome& about = board_.about;
   about.major = wire::kProtocolMajor;
   about.minor = wire::kProtocolMinor;
-  about.features |= wire::kFeatureTextures;
+  about.features |= wire::kFeatureTextures | wire::kFeatureHysteresis;
   about.channels = board.channel_count;
   about.notes = board.note_count;
   about.most_sections = wire::kMaxSections;

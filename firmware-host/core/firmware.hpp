@@ -74,6 +74,7 @@ class Firmware {
   Reply profile_end(const wire::ProfileEnd& message) noexcept { return building().end(message); }
   Reply filters(const wire::Filters& message) noexcept;
   Reply taps(const wire::Taps& message) noexcept;
+  Reply hysteresis(const wire::Hysteresis& message) noexcept;
   Reply tracking(const wire::Tracking& message) noexcept;
   Reply energy(const wire::Energy& message) noexcept;
   Reply contact(const wire::Contact& message) noexcept;
@@ -106,6 +107,7 @@ class Firmware {
   wire::Limits limits_;
   wire::Filters filters_;
   wire::Taps taps_, new_taps_;
+  wire::Hysteresis hysteresis_, new_hysteresis_;
   wire::Tracking tracking_, next_tracking_;
   wire::Energy energy_;
   wire::Contact contact_;

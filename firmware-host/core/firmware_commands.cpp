@@ -15,11 +15,6 @@ constexpr float kLongestOnsetS = 10, kLongestFadeS = 10;
 constexpr uint16_t kLeastWatchdogMs = 10, kMostWatchdogMs = 1000;
 constexpr uint32_t kTickBlockPart = 100000;  // mHz: a ticks message every 10 ms
 constexpr uint32_t kNotGreeted = 255;
-constexpr float kMostTicksAhead = 2000, kLongestWindowS = 3600;
-
-Reply bad_value(uint32_t field) noexcept {
-  return {AnswerCode::bad_value, field};
-}
 
 uint8_t ticks_in_block(uint32_t rate_millihertz) noexcept {
   const uint32_t ticks = rate_millihertz / kTickBlockPart;
@@ -141,6 +136,8 @@ Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
       return in_idle(frame, new_filters, &Firmware::filters);
     case MessageType::taps:
       return in_idle(frame, new_taps_, &Firmware::taps);
+    case MessageType::hysteresis:
+      return in_idle(frame, new_hysteresis_, &Firmware::hysteresis);
     case MessageType::energy:
       return in_idle(frame, new_energy, &Firmware::energy);
     case MessageType::contact:
@@ -183,6 +180,7 @@ Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
 Reply Firmware::profile_begin(const wire::ProfileBegin& message) noexcept {
   if (!idle()) return next_profile_begin(message);
   taps_.count = 0;
+  hysteresis_ = {};
   tracking_ = {};
   energy_ = {};
   contact_ = {};
@@ -239,45 +237,6 @@ Reply Firmware::limits(const wire::Limits& wish) noexcept {
   if (wish.counts_per_tick < 1) return bad_value(5);
   limits_ = wish;
   limited_ = true;
-  return {};
-}
-
-Reply Firmware::filters(const wire::Filters& message) noexcept {
-  for (uint8_t i = 0; i < message.count; ++i)
-    if (!is_stable(message.sections[i])) return bad_value(i);
-  filters_ = message;
-  return {};
-}
-
-Reply Firmware::taps(const wire::Taps& message) noexcept {
-  for (uint16_t i = 0; i < message.count; ++i)
-    if (!is_finite(message.taps[i])) return bad_value(i);
-  taps_ = message;
-  return {};
-}
-
-Reply Firmware::tracking(const wire::Tracking& message) noexcept {
-  if (message.between_counts > 1) return bad_value(0);
-  if (!within(message.look_ahead_ticks, 0, kMostTicksAhead)) return bad_value(2);
-  if (!within(message.smoothing_ticks, 0, kLargestFloat)) return bad_value(3);
-  if (!within(message.full_detail_counts_per_tick, 0, kLargestFloat)) return bad_value(4);
-  (idle() ? tracking_ : next_tracking_) = message;
-  return {};
-}
-
-Reply Firmware::energy(const wire::Energy& message) noexcept {
-  if (!within(message.rms_v, 0, kLargestFloat)) return bad_value(0);
-  if (!within(message.window_s, 0, kLongestWindowS)) return bad_value(1);
-  energy_ = message;
-  return {};
-}
-
-Reply Firmware::contact(const wire::Contact& message) noexcept {
-  if (message.channel >= board_.channel_count) return bad_value(0);
-  if (!within(message.on_n, 0, kLargestFloat)) return bad_value(2);
-  if (!within(message.off_n, 0, message.on_n)) return bad_value(3);
-  if (!is_finite(message.newtons_per_code) || !is_finite(message.offset_n)) return bad_value(4);
-  contact_ = message;
   return {};
 }
 
@@ -352,6 +311,7 @@ KernelSetup Firmware::kernel_setup(const wire::Arm& message) const noexcept {
   setup.texture = texture_setup();
   setup.taps = taps_.taps;
   setup.tap_count = taps_.count;
+  setup.hysteresis = &hysteresis_;
   setup.sections = filters_.sections;
   setup.section_count = filters_.count;
   return setup;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware-host/core/profile.hpp"
 
+#include "firmware-host/core/counts_between.hpp"
+
 namespace tacto::core {
 namespace {
 
@@ -84,7 +86,7 @@ float Profile::read(uint32_t which, int64_t place) const noexcept {
 }
 
 bool Profile::place_of(int32_t count, float offset, int64_t& place) const noexcept {
-  const int64_t away = static_cast<int64_t>(count) - scale_.origin_count;
+  const int64_t away = counts_between(scale_.origin_count, count);
   if (away > reach_ || away < -reach_) return false;
   place = away * static_cast<int64_t>(scale_.samples_per_count_q32) + scale_.at_origin_q32;
   const auto reach = static_cast<float>(reach_);

@@ -15,6 +15,11 @@ struct Reply {
   uint32_t detail = 0;
 };
 
+/// By the field's place in its message.
+inline Reply bad_value(uint32_t field) noexcept {
+  return {wire::AnswerCode::bad_value, field};
+}
+
 /// Keeps the samples in memory that the board gives. Chunks come in order; one that comes again is written
 /// again. Only a profile whose check is right can be armed. The check is taken chunk by chunk: nothing here
 /// takes longer than a chunk does, unless one came again. For the main loop.

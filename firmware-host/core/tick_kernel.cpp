@@ -17,12 +17,15 @@ void TickKernel::set(const wire::Limits& limits, float rate_hz) noexcept {
   gate_.set(0, 0, 1);
   player_.begin(kGainS * rate_hz);
   fir_.rest();
+  plays_.rest();
   sections_.rest();
 }
 
 void TickKernel::set(const KernelSetup& setup) noexcept {
   player_.set(setup.texture, kGainS * setup.rate_hz);
   fir_.set(setup.taps, setup.tap_count);
+  plays_.clear();
+  if (setup.hysteresis != nullptr) plays_.set(*setup.hysteresis);
   sections_.set(setup.sections, setup.section_count);
   set(setup.limits, setup.rate_hz);
   energy_.set(setup.energy_rms_v, setup.energy_window_s * setup.rate_hz);
@@ -35,10 +38,11 @@ TickOutput TickKernel::tick(const TickInput& input) noexcept {
 
 TickOutput TickKernel::drive(float wanted, bool raise, float normal_force_n) noexcept {
   TickOutput output;
-  const float filtered = sections_.filter(fir_.filter(wanted));
+  const float filtered = sections_.filter(plays_.follow(fir_.filter(wanted)));
   output.sound = is_finite(filtered);
   if (!output.sound) {
     fir_.rest();
+    plays_.rest();
     sections_.rest();
   }
   const float touch = gate_.step(normal_force_n);

@@ -6,6 +6,7 @@
 #include "firmware-host/core/drive_limiter.hpp"
 #include "firmware-host/core/energy_limiter.hpp"
 #include "firmware-host/core/fir_filter.hpp"
+#include "firmware-host/core/play_operators.hpp"
 #include "firmware-host/core/section_chain.hpp"
 #include "firmware-host/core/texture_player.hpp"
 
@@ -16,6 +17,7 @@ struct KernelSetup {
   TextureSetup texture;
   const float* taps = nullptr;
   uint16_t tap_count = 0;
+  const wire::Hysteresis* hysteresis = nullptr;
   const wire::Section* sections = nullptr;
   uint8_t section_count = 0;
   wire::Limits limits;
@@ -45,13 +47,13 @@ struct TickOutput {
   bool sound = true;   ///< false where what was wished is no finite number; then the drive falls
 };
 
-/// drive = limits(energy(envelope x gate x sections(taps(wanted)))), where wanted = gain x texture(place of
-/// the finger), or comes from elsewhere. Single precision, no contraction, no libm: the same bits on host and
-/// device (a test holds the two against each other). Against double precision: a texture with levels, taps,
-/// following and limits, 2 kHz to 20 kHz: -105 dB of the drive; eight sections, 20 kHz: -100 dB for an
-/// actuator's inverse (poles of radius 0.99 at most), -65 dB where three of them are high-passes of 15 Hz
-/// (0.9967): such belong into the texture. A drive that is cut at its limits has the error that it has uncut.
-/// Nothing here allocates, locks, throws or calls.
+/// drive = limits(energy(envelope x gate x sections(plays(taps(wanted))))), where wanted = gain x
+/// texture(place of the finger), or comes from elsewhere. Single precision, no contraction, no libm: the same
+/// bits on host and device (a test holds the two against each other). Against double precision: a texture
+/// with levels, taps, following and limits, 2 kHz to 20 kHz: -105 dB of the drive; eight sections, 20 kHz:
+/// -100 dB for an actuator's inverse (poles of radius 0.99 at most), -65 dB where three of them are
+/// high-passes of 15 Hz (0.9967): such belong into the texture. A drive that is cut at its limits has the
+/// error that it has uncut. Nothing here allocates, locks, throws or calls.
 class TickKernel {
  public:
   /// Comes to rest at zero, with all that is to be played.
@@ -93,6 +95,7 @@ class TickKernel {
  private:
   TexturePlayer player_;
   FirFilter fir_;
+  PlayOperators plays_;
   SectionChain sections_;
   ContactGate gate_;
   EnergyLimiter energy_;

@@ -12,6 +12,7 @@
 #include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/control_connection.hpp"
+#include "playback/daemon/time_histogram.hpp"
 
 namespace tacto::playback {
 
@@ -84,6 +85,31 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   return request;
 }
 
+// The parts between the bounds that the status has, as bars: one sign is 2 %, and what is rare shows as a
+// dot.
+void show_lateness(const ControlFields& fields) {
+  const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
+  fmt::print("late by  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f} us   busy p99 {:.2f} us\n",
+             1e6 * number("wake_p50_s"), 1e6 * number("wake_p99_s"), 1e6 * number("wake_p999_s"),
+             1e6 * number("busy_p99_s"));
+  double beyond_lower = 1;
+  const auto show = [&](const std::string& name, double beyond_upper) {
+    const double part = std::max(beyond_lower - beyond_upper, 0.0);
+    const auto signs = static_cast<std::size_t>(50 * part);
+    fmt::print("  {:<8} {:7.3f} % {}\n", name, 100 * part,
+               signs > 0  ? std::string(signs, '#')
+               : part > 0 ? "."
+                          : "");
+    beyond_lower = beyond_upper;
+  };
+  for (const double bound_s : kLateBoundsS)
+    show(fmt::format("< {:g} us", 1e6 * bound_s),
+         number(fmt::format("late_over_{:g}us_part", 1e6 * bound_s)));
+  show("more", 0);
+  fmt::print("edge to drive  p50 {:.2f}  p99 {:.2f} ms\n", 1e3 * number("latency_p50_s"),
+             1e3 * number("latency_p99_s"));
+}
+
 void show_top(const ControlFields& fields) {
   const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
   fmt::print("\033[H\033[2J{:<8} {}\n", schema::control_text(fields, "state"),
@@ -96,10 +122,7 @@ void show_top(const ControlFields& fields) {
   fmt::print("ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}   blind {:.0f}\n",
              number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
              number("blind_ticks"));
-  if (number("wake_p99_s") > 0)
-    fmt::print("late by  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f} us   busy p99 {:.2f} us\n",
-               1e6 * number("wake_p50_s"), 1e6 * number("wake_p99_s"), 1e6 * number("wake_p999_s"),
-               1e6 * number("busy_p99_s"));
+  if (number("wake_p99_s") > 0) show_lateness(fields);
   std::fflush(stdout);
 }
 

@@ -50,6 +50,8 @@ void declare_chain(CLI::App& app, PlayOptions& o) {
       "What of the transducer the drive undoes");
   app.add_flag("!--no-look-ahead", o.prepare.look_ahead,
                "Read the texture where the finger is, not where it will be when the inverse has answered");
+  app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
+               "Do not undo the hysteresis that the transducer's file tells");
   cli::add_quantity(app, "--onset", o.prepare.onset_s, Dimension::time, "In which the drive rises");
 }
 

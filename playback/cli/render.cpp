@@ -69,6 +69,8 @@ void add_model(CLI::App& app, RenderOptions& o) {
       ->needs(reconstruction);
   cli::add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
                         "Whether the converter holds each sample until the next, undone as well");
+  app.add_flag("!--keep-hysteresis", o.undo_hysteresis,
+               "Do not undo the hysteresis that the transducer's file tells (the kernel does)");
   CLI::Option* engine = cli::add_choice<Engine>(
       app, "--engine", o.engine, {{"reference", Engine::reference}, {"kernel", Engine::kernel}},
       "Who computes the drive: the exact reference, or the tick kernel as it runs in real time");

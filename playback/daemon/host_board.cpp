@@ -71,7 +71,7 @@ void HostBoard::tick(std::int64_t now_ns, std::int64_t late_ns) noexcept {
   look_for_readings(late_ns);
   firmware_->tick();
   if (TimedDrive* place = drives_.place(); place != nullptr) {
-    *place = {now_ns, drive_v_};
+    *place = {now_ns, drive_v_, reading_ns_.load(std::memory_order_relaxed)};
     drives_.push();
   } else {
     drives_lost_.store(drives_lost_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);

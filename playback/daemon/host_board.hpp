@@ -19,6 +19,7 @@ namespace tacto::playback {
 struct TimedDrive {
   std::int64_t time_ns = 0;
   float drive_v = 0;
+  std::int64_t reading_ns = 0;  ///< when its count came
 };
 
 /// tick() and rest() are the real-time thread's; inputs and outputs other threads'.
@@ -38,7 +39,8 @@ class HostBoard {
   bool ticking() const noexcept { return ticking_; }
 
   // From other threads.
-  void set_inputs(std::int32_t encoder, bool enabled) noexcept {
+  void set_inputs(std::int32_t encoder, bool enabled, std::int64_t now_ns = 0) noexcept {
+    reading_ns_.store(now_ns, std::memory_order_relaxed);
     encoder_.store(encoder, std::memory_order_relaxed);
     enabled_.store(enabled, std::memory_order_release);
     readings_.fetch_add(1, std::memory_order_release);
@@ -71,6 +73,7 @@ class HostBoard {
   std::array<std::atomic<std::int32_t>, kLatenesses> lateness_{};
   std::atomic<std::uint64_t> drives_lost_{0};
   std::atomic<std::uint32_t> readings_{0};  // of the encoder
+  std::atomic<std::int64_t> reading_ns_{0};
   std::int64_t period_ns_;
   std::uint32_t seen_reading_ = 0, age_ = 0, unseen_ = 0;  // in periods
   std::uint64_t ticks_ = 0;                                // since arming

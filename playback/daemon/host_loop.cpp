@@ -87,9 +87,18 @@ std::unique_ptr<firmware_host::Transport> HostLoop::transport() {
 }
 
 HostLoopStatus HostLoop::status() const {
-  HostLoopStatus status{wake_.quantile_s(0.5),  wake_.quantile_s(0.99), wake_.quantile_s(0.999),
-                        busy_.quantile_s(0.99), missed_.load(),         stale_.load(),
-                        trimmed_.load(),        real_time_.load(),      {}};
+  HostLoopStatus status;
+  status.wake_p50_s = wake_.quantile_s(0.5);
+  status.wake_p99_s = wake_.quantile_s(0.99);
+  status.wake_p999_s = wake_.quantile_s(0.999);
+  status.busy_p99_s = busy_.quantile_s(0.99);
+  std::ranges::transform(kLateBoundsS, status.late_parts.begin(),
+                         [this](double bound_s) { return wake_.part_over(bound_s); });
+  status.latency = latency();
+  status.missed_ticks = missed_.load();
+  status.stale_drives = stale_.load();
+  status.trimmed_drives = trimmed_.load();
+  status.real_time = real_time_.load();
   const std::lock_guard lock(fault_mutex_);
   status.device_fault = fault_;
   return status;
@@ -135,7 +144,8 @@ void HostLoop::take_counts() {
     more = frames > 0;
     if (!more) break;
     last_count_ns_ = TickClock::now_ns();
-    board_->set_inputs(codes_[(frames - 1) * channels + position_channel_], sound_ && enabled_);
+    board_->set_inputs(codes_[(frames - 1) * channels + position_channel_], sound_ && enabled_,
+                       last_count_ns_);
   }
 }
 
@@ -176,7 +186,7 @@ void HostLoop::follow_arming() {
 void HostLoop::send_drives() {
   wire::Drive message;
   for (; to_pad_ > 0; --to_pad_) message.drive_v[message.count++] = last_drive_v_;
-  const std::int64_t oldest_ns = TickClock::now_ns() - kStaleNs;
+  const std::int64_t now_ns = TickClock::now_ns(), oldest_ns = now_ns - kStaleNs;
   for (const TimedDrive* drive = board_->drives().front();
        drive != nullptr && message.count < wire::kMaxChunk; drive = board_->drives().front()) {
     const bool stale = drive->time_ns < oldest_ns;
@@ -186,6 +196,7 @@ void HostLoop::send_drives() {
       trimmed_.fetch_add(1, std::memory_order_relaxed);
     } else if (!stale) {
       message.drive_v[message.count++] = last_drive_v_ = drive->drive_v;
+      latency_.add(now_ns - drive->reading_ns + round_trip_ns_ + queue_ns_);
     }
     board_->drives().pop();
   }
@@ -203,10 +214,13 @@ void HostLoop::beat() {
   const std::int64_t now = TickClock::now_ns();
   if (now < next_beat_ns_) return;
   next_beat_ns_ = now + std::int64_t{options_.watchdog_ms} * 250'000;
+  const std::int64_t asked_ns = TickClock::now_ns();
   const auto pulse = device_.heartbeat();
+  round_trip_ns_ = TickClock::now_ns() - asked_ns;
   if (!pulse) return give_up(schema::message(pulse.error()));
   if (!armed_) return;
   const std::uint32_t target = queue_target(), queued = pulse->drive_queued;
+  queue_ns_ = static_cast<std::int64_t>(1e9 * queued / options_.rate_hz);
   if (queued > 2 * target) to_trim_ = queued - target;
   if (queued < target / 4) to_pad_ = target - queued;
 }

@@ -22,14 +22,22 @@ struct HostLoopOptions {
   std::uint16_t watchdog_ms = 100;
 };
 
+/// From the encoder's edge to the drive that it makes: the age of the count when its drive was sent, the way
+/// there and back, and the device's queue; of each drive that was sent.
+struct EdgeToDrive {
+  double p50_s = 0, p99_s = 0;
+};
+
 struct HostLoopStatus {
   double wake_p50_s = 0, wake_p99_s = 0, wake_p999_s = 0;  ///< behind the tick's time
   double busy_p99_s = 0;                                   ///< of the tick's work
-  std::uint64_t missed_ticks = 0;                          ///< periods that were slept through
-  std::uint64_t stale_drives = 0;                          ///< that were not sent, for they were too old
-  std::uint64_t trimmed_drives = 0;                        ///< left out because the device's clock is slower
-  bool real_time = false;                                  ///< SCHED_FIFO was granted
-  std::string device_fault;  ///< why the drive had to go; empty where nothing is wrong
+  std::array<double, kLateBoundsS.size()> late_parts{};    ///< of the ticks, later than kLateBoundsS
+  EdgeToDrive latency;
+  std::uint64_t missed_ticks = 0;    ///< periods that were slept through
+  std::uint64_t stale_drives = 0;    ///< that were not sent, for they were too old
+  std::uint64_t trimmed_drives = 0;  ///< left out because the device's clock is slower
+  bool real_time = false;            ///< SCHED_FIFO was granted
+  std::string device_fault;          ///< why the drive had to go; empty where nothing is wrong
 };
 
 /// A device as the player sees one (transport()), with this computer's kernel and the other device's encoder
@@ -51,6 +59,7 @@ class HostLoop {
   std::unique_ptr<firmware_host::Transport> transport();
   const HostBoard& board() const { return *board_; }
   HostLoopStatus status() const;
+  EdgeToDrive latency() const { return {latency_.quantile_s(0.5), latency_.quantile_s(0.99)}; }
 
  private:
   HostLoop(firmware_host::Client& device, const HostLoopOptions& options, std::size_t position_channel);
@@ -68,12 +77,13 @@ class HostLoop {
   HostLoopOptions options_;
   std::size_t position_channel_;
   std::unique_ptr<HostBoard> board_;
-  TimeHistogram wake_, busy_;
+  TimeHistogram wake_, busy_, latency_;
   std::atomic<std::uint64_t> missed_{0}, stale_{0}, trimmed_{0};
   std::atomic<bool> ending_{false}, real_time_{false};
   // The carrier's.
   std::vector<std::int32_t> codes_;
   std::int64_t last_count_ns_ = 0, next_beat_ns_ = 0;
+  std::int64_t round_trip_ns_ = 0, queue_ns_ = 0;  // as of the last heartbeat
   std::uint32_t to_trim_ = 0, to_pad_ = 0;
   float last_drive_v_ = 0;
   bool armed_ = false, sound_ = true, enabled_ = true;

@@ -214,8 +214,16 @@ Result<void> Player::disarm() {
   return end_session();
 }
 
+// A device that closes the loop itself reads the encoder and drives in one tick.
+std::string Player::latency_words() const {
+  if (options_.latency) return options_.latency();
+  return fmt::format("from the encoder's edge to the drive: the device's own tick, at most {:g} ms",
+                     1e3 / program_->prepared.rate_hz);
+}
+
 Result<void> Player::end_session() {
   if (!recorder_) return {};
+  if (view_.ticks() > 0) recorder_->event({view_.expected(), steady_ns(), latency_words()});
   const auto closed = recorder_->close();
   last_session_ = recorder_->counts();
   recorder_.reset();

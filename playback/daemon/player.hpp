@@ -30,6 +30,8 @@ struct PlayerOptions {
   std::string loop = "device";  ///< who closes it, for the session
   /// How late a tick was, where somebody measures it.
   std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
+  /// From the encoder's edge to the drive, in words, as it was measured until now: for the session.
+  std::function<std::string()> latency;
 };
 
 struct PlayerStatus {
@@ -109,6 +111,7 @@ class Player {
   void follow(const TickView& view);
   schema::Result<void> lose(const schema::Error& error);
   schema::Result<void> end_session();
+  std::string latency_words() const;
 
   firmware_host::Client& client_;
   std::string uri_;

@@ -85,11 +85,21 @@ void add_loop(ControlFields& fields, const HostLoopStatus& loop) {
   fields.emplace_back("wake_p99_s", loop.wake_p99_s);
   fields.emplace_back("wake_p999_s", loop.wake_p999_s);
   fields.emplace_back("busy_p99_s", loop.busy_p99_s);
+  for (std::size_t i = 0; i < kLateBoundsS.size(); ++i)
+    fields.emplace_back(fmt::format("late_over_{:g}us_part", 1e6 * kLateBoundsS[i]), loop.late_parts[i]);
+  fields.emplace_back("latency_p50_s", loop.latency.p50_s);
+  fields.emplace_back("latency_p99_s", loop.latency.p99_s);
   fields.emplace_back("missed_ticks", static_cast<std::int64_t>(loop.missed_ticks));
   fields.emplace_back("stale_drives", static_cast<std::int64_t>(loop.stale_drives));
   fields.emplace_back("trimmed_drives", static_cast<std::int64_t>(loop.trimmed_drives));
   fields.emplace_back("real_time", loop.real_time);
   if (!loop.device_fault.empty()) fields.emplace_back("device_fault", loop.device_fault);
+}
+
+std::string words_of(const EdgeToDrive& latency) {
+  return fmt::format(
+      "from the encoder's edge to the drive: p50 {:.2f} ms, p99 {:.2f} ms (count's age, queue, round trip)",
+      1e3 * latency.p50_s, 1e3 * latency.p99_s);
 }
 
 }  // namespace
@@ -141,6 +151,7 @@ Result<void> Service::close_loop_here(PlayerOptions& options) {
   loop_client_ = std::move(*connected);
   options.loop = "host";
   options.lateness_ns = [&board = loop_->board()](std::uint64_t tick) { return board.lateness_ns(tick); };
+  options.latency = [&loop = *loop_] { return words_of(loop.latency()); };
   return {};
 }
 

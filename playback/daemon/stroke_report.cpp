@@ -12,6 +12,7 @@
 #include "firmware-host/core/wire/message_types.hpp"
 #include "playback/chain.hpp"
 #include "playback/daemon/session_columns.hpp"
+#include "playback/hysteresis_inverse.hpp"
 #include "playback/reference/spatial_content.hpp"
 #include "playback/reference/wanted.hpp"
 
@@ -110,10 +111,14 @@ struct Judge {
     return sum;
   }
   std::vector<double> received_m() const {
-    const Chain chain{columns.header.transducer, Reconstruction::none, 0, Hold::zero_order,
-                      columns.header.rate_hz};
-    auto drive = spectrum_of(columns.drive_v, columns.header.rate_hz, grid.period);
+    const schema::Transducer& t = columns.header.transducer;
+    const double rate_hz = columns.header.rate_hz;
+    auto drive = spectrum_of(
+        t.hysteresis ? linear_drive_of(columns.drive_v, *t.hysteresis, schema::actuator_pole_hz(t), rate_hz)
+                     : columns.drive_v,
+        rate_hz, grid.period);
     keep_band(drive, band);
+    const Chain chain{t, Reconstruction::none, 0, Hold::zero_order, rate_hz};
     return signal_of(through(drive, [&](double f) { return chain_response(chain, f); }));
   }
 };

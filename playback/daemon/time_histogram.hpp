@@ -10,6 +10,9 @@
 
 namespace tacto::playback {
 
+/// By which a status tells how late ticks were: the part beyond each.
+inline constexpr std::array<double, 5> kLateBoundsS{10e-6, 50e-6, 100e-6, 500e-6, 1e-3};
+
 /// Eight buckets an octave from 16 ns to 4 s: a quantile is told within 12.5 %. Safe in the tick: one store.
 class TimeHistogram {
  public:
@@ -26,6 +29,16 @@ class TimeHistogram {
       if (static_cast<double>(below) >= part * static_cast<double>(total)) return 1e-9 * upper_ns(i);
     }
     return 0;
+  }
+  /// The part that took longer than this, to a bucket; 0 where there is nothing.
+  double part_over(double seconds) const {
+    std::uint64_t total = 0, over = 0;
+    for (std::size_t i = 0; i < kBuckets; ++i) {
+      const std::uint64_t count = counts_[i].load(std::memory_order_relaxed);
+      total += count;
+      if (1e-9 * upper_ns(i) > seconds) over += count;
+    }
+    return total > 0 ? static_cast<double>(over) / static_cast<double>(total) : 0;
   }
 
  private:

@@ -30,6 +30,8 @@ ExactKernel::ExactKernel(const Prepared& prepared)
     : prepared_(prepared),
       rate_hz_(prepared.rate_hz),
       past_(prepared.taps.size()),
+      plays_(prepared.plays.count),
+      sections_(prepared.sections.size()),
       root_v_(prepared.energy_rms_v) {
   std::size_t first = 0;
   for (std::uint8_t level = 0; level < prepared.scale.levels; ++level) {
@@ -138,6 +140,28 @@ double ExactKernel::filtered(double value) {
   return sum;
 }
 
+double ExactKernel::played(double value) {
+  const wire::Hysteresis& plays = prepared_.plays;
+  double sum = plays.straight * value;
+  for (std::size_t i = 0; i < plays_.size(); ++i) {
+    const double threshold = plays.plays[i].threshold;
+    plays_[i] = std::max(value - threshold, std::min(value + threshold, plays_[i]));
+    sum += plays.plays[i].weight * plays_[i];
+  }
+  return sum;
+}
+
+double ExactKernel::sectioned(double value) {
+  for (std::size_t i = 0; i < sections_.size(); ++i) {
+    const wire::Section& h = prepared_.sections[i];
+    auto& [x1, x2, y1, y2] = sections_[i];
+    const double y = h.b0 * value + h.b1 * x1 + h.b2 * x2 - h.a1 * y1 - h.a2 * y2;
+    sections_[i] = {value, x1, y, y1};
+    value = y;
+  }
+  return value;
+}
+
 // The root is followed by Newton's step, which is its definition: the exact one would be reached at once.
 double ExactKernel::energy_limited(double value) {
   const double limit_v = prepared_.energy_rms_v;
@@ -149,7 +173,7 @@ double ExactKernel::energy_limited(double value) {
 
 double ExactKernel::tick(const Input& input) {
   track(input.count);
-  const double wished = filtered(gain(input.gain) * texture_at(place_, speed_));
+  const double wished = sectioned(played(filtered(gain(input.gain) * texture_at(place_, speed_))));
   if (prepared_.gate_on_n > 0) {
     touching_ = input.normal_force_n >= (touching_ ? prepared_.gate_off_n : prepared_.gate_on_n);
     gate_ = ramped(gate_, touching_, 0.02 * rate_hz_, 0.02 * rate_hz_);

@@ -2,6 +2,7 @@
 // The texture's kernel again, in double precision: what single precision costs is measured against it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,11 +10,11 @@
 
 namespace tacto::playback {
 
-/// drive = slew(amplitude(energy(envelope x gate x taps(gain x levels(place))))), as core::TickKernel states
-/// it, written from those formulas and not from its source: places as doubles, fmod for the ends, the filter
-/// by its sum. The samples are the rounded ones. What a kernel may choose is chosen alike: the tracker's
-/// gains and thresholds, the measure of speed by which levels fade, Newton's step a tick. Slow; not for the
-/// tick.
+/// drive = slew(amplitude(energy(envelope x gate x sections(plays(taps(gain x levels(place))))))), as
+/// core::TickKernel states it, written from those formulas and not from its source: places as doubles, fmod
+/// for the ends, the filter by its sum. The samples are the rounded ones. What a kernel may choose is chosen
+/// alike: the tracker's gains and thresholds, the measure of speed by which levels fade, Newton's step a
+/// tick. Slow; not for the tick.
 class ExactKernel {
  public:
   explicit ExactKernel(const Prepared& prepared);
@@ -36,6 +37,8 @@ class ExactKernel {
   void see(double moved);
   double gain(double aim);
   double filtered(double value);
+  double played(double value);
+  double sectioned(double value);
   double energy_limited(double value);
 
   const Prepared& prepared_;
@@ -50,7 +53,8 @@ class ExactKernel {
   bool gained_ = false;
   double gain_ = 0, gain_aim_ = 0, gain_step_ = 0;
   int gain_left_ = 0;
-  std::vector<double> past_;
+  std::vector<double> past_, plays_;
+  std::vector<std::array<double, 4>> sections_;  // x_-1, x_-2, y_-1, y_-2 of each
   double mean_square_ = 0, root_v_ = 0, level_ = 0, gate_ = 0, last_v_ = 0;
   bool touching_ = false;
 };

@@ -145,7 +145,7 @@ Drive example_drive() {
 
 Welcome example_welcome() {
   return {1,  1,         0,        0x12345678, "bench 1", "0007", "1.2.3", 4,    1, 16,
-          15, 168000000, 10000000, 1000000,    20000000,  256,    16384,   1024, 5, 15708};
+          31, 168000000, 10000000, 1000000,    20000000,  256,    16384,   1024, 5, 15708};
 }
 
 Samples example_samples() {
@@ -190,6 +190,7 @@ TEST(WireDocument, HostFramesAreItsBytes) {
   EXPECT_EQ(hex_of(Energy{1.5F, 0.5F}, 20), frames["energy"]);
   EXPECT_EQ(hex_of(Contact{3, {}, 0.5F, 0.25F, 0x1p-27F, -0.125F}, 21), frames["contact"]);
   EXPECT_EQ(hex_of(Change{0.0625F}, 22), frames["change"]);
+  EXPECT_EQ(hex_of(Hysteresis{2, {}, 1.5F, {{0.25F, -0.5F}, {1, -0.125F}}}, 23), frames["hysteresis"]);
 }
 
 TEST(WireDocument, DeviceFramesAreItsBytes) {

@@ -19,7 +19,8 @@ using AllMessages =
                wire::ProfileChunk, wire::ProfileEnd, wire::Filters, wire::Gain, wire::Sweep, wire::Arm,
                wire::Play, wire::Stop, wire::Disarm, wire::Drive, wire::Heartbeat, wire::Reset, wire::Welcome,
                wire::ProfileLevels, wire::Taps, wire::Tracking, wire::Energy, wire::Contact, wire::Change,
-               wire::Channel, wire::Note, wire::Answer, wire::Samples, wire::Ticks, wire::Pulse, wire::Fault>;
+               wire::Hysteresis, wire::Channel, wire::Note, wire::Answer, wire::Samples, wire::Ticks,
+               wire::Pulse, wire::Fault>;
 
 class RandomFields {
  public:

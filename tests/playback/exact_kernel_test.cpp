@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "made_textures.hpp"
+#include "tests/playback/rayleigh_law.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -17,6 +18,7 @@ struct Setting {
   Ends ends;
   double energy_rms_v;
   double gain;
+  bool hysteresis = false;
 };
 
 class ExactKernelSettings : public testing::TestWithParam<Setting> {};
@@ -35,7 +37,9 @@ TEST_P(ExactKernelSettings, TheKernelIsWithinItsStatedError) {
     return 0.02 * (std::sin(kTwoPi * 1.1e3 * x) + 0.6 * std::sin(kTwoPi * 4.3e3 * x) +
                    0.3 * std::sin(kTwoPi * 23e3 * x));
   });
-  const auto prepared = prepare(texture, *schema::read_transducer("wiertlewski2011"), options);
+  auto transducer = *schema::read_transducer("wiertlewski2011");
+  if (setting.hysteresis) transducer.hysteresis = rayleigh(0.16, 5, 16);
+  const auto prepared = prepare(texture, transducer, options);
   ASSERT_TRUE(prepared) << message(prepared.error());
   core::TickKernel kernel;
   kernel.set(prepared->setup());
@@ -65,7 +69,9 @@ INSTANTIATE_TEST_SUITE_P(Settings, ExactKernelSettings,
                                          Setting{"2 kHz, stop, energy", 2e3, Ends::stop, 0.3, 2e-3},
                                          Setting{"10 kHz, mirror", 10e3, Ends::mirror, 0, 2e-3},
                                          Setting{"20 kHz, loop, energy", 20e3, Ends::loop, 0.5, 2e-3},
-                                         Setting{"20 kHz, at the limits", 20e3, Ends::loop, 0, 20e-3}));
+                                         Setting{"20 kHz, at the limits", 20e3, Ends::loop, 0, 20e-3},
+                                         Setting{"2 kHz, hysteresis", 2e3, Ends::loop, 0, 2e-3, true},
+                                         Setting{"20 kHz, hysteresis", 20e3, Ends::loop, 0, 2e-3, true}));
 
 }  // namespace
 }  // namespace tacto::playback

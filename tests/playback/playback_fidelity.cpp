@@ -6,6 +6,7 @@
 #include "firmware-host/sim/random.hpp"
 #include "firmware-host/sim/spline_noise.hpp"
 #include "tests/playback/fidelity.hpp"
+#include "tests/playback/rayleigh_law.hpp"
 
 namespace tacto::tests {
 namespace {
@@ -107,13 +108,27 @@ void worse_model(const schema::Texture& texture) {
 
 void worse_physics(const schema::Texture& texture) {
   FidelityCase c = basic(0.05, 2e3);
-  c.physics.hysteresis = 0.16;
-  print_row(texture, "(e) hysteresis of 16 %, 50 mm/s, 2 kHz", c);
-  c.physics = {};
   c.physics.finger_load.emplace();
   print_row(texture, "(f) a finger's load, 50 mm/s, 2 kHz", c);
   c.physics.second_mode.emplace();
   print_row(texture, "(f) a finger's load and the second mode, 50 mm/s, 2 kHz", c);
+}
+
+// 0.1 mm/N moves the bender by a hundredth of its range, 1 mm/N by a tenth.
+void hysteresis(const schema::Texture& texture) {
+  for (const double gain_m_per_n : {1e-4, 1e-3})
+    for (const double known : {0.0, 0.16, 0.14})
+      for (const double rate_hz : {2e3, 10e3}) {
+        FidelityCase c = basic(0.05, rate_hz);
+        c.options.gain_m_per_n = gain_m_per_n;
+        c.physics.hysteresis = 0.16;
+        if (known > 0) c.model.hysteresis = playback::rayleigh(known, c.model.drive_limit_v, wire::kMaxPlays);
+        const std::string how = known > 0 ? fmt::format("undone as {:g} %", 100 * known) : "not undone";
+        print_row(texture,
+                  fmt::format("(e) hysteresis of 16 %, {}, {:g} mm/N, 50 mm/s, {:g} kHz", how,
+                              1e3 * gain_m_per_n, 1e-3 * rate_hz),
+                  c);
+      }
 }
 
 bool print_table(const char* name) {
@@ -126,6 +141,7 @@ bool print_table(const char* name) {
   const bool good = exact_model(*texture);
   worse_position(*texture);
   worse_model(*texture);
+  hysteresis(*texture);
   worse_physics(*texture);
   return good;
 }

@@ -8,6 +8,7 @@
 #include "firmware-host/core/wire/crc32c.hpp"
 #include "firmware-host/sim/sim_device.hpp"
 #include "made_textures.hpp"
+#include "tests/playback/rayleigh_law.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -62,9 +63,12 @@ std::vector<wire::Tick> play_a_second(
 class Uploaded : public testing::TestWithParam<double> {};
 
 TEST_P(Uploaded, TheDevicesDriveIsTheKernelsToTheBit) {
-  const auto prepared = prepare(two_sines(), uploaded_transducer(), device_options(GetParam()));
+  schema::Transducer bender = uploaded_transducer();
+  bender.hysteresis = rayleigh(0.16, bender.drive_limit_v, 20);
+  const auto prepared = prepare(two_sines(), bender, device_options(GetParam()));
   ASSERT_TRUE(prepared) << message(prepared.error());
   EXPECT_GT(prepared->scale.levels, 4);
+  EXPECT_EQ(prepared->plays.count, wire::kMaxPlays);
   const auto device = sim_device();
   ASSERT_TRUE(device);
   const auto sent = upload(device->client(), *prepared);

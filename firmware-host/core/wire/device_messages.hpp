@@ -13,6 +13,7 @@ enum Feature : uint32_t {
   kFeatureDrive = 2,        ///< it has an output
   kFeatureEnableInput = 4,  ///< it has a hardware enable input
   kFeatureTextures = 8,     ///< it reads levels, and understands taps, tracking, energy and contact
+  kFeatureHysteresis = 16,  ///< it understands hysteresis
 };
 
 /// Everything to `nonce` stays as it is in every version.

@@ -196,6 +196,26 @@ struct Taps {
   }
 };
 
+struct HysteresisPlay {
+  float threshold = 0, weight = 0;
+};
+
+/// Plays between taps and filters that undo the bender's hysteresis.
+struct Hysteresis {
+  static constexpr MessageType kType = MessageType::hysteresis;
+  uint8_t count = 0;
+  uint8_t reserved[3] = {};
+  float straight = 1;  ///< without a threshold
+  HysteresisPlay plays[kMaxPlays];
+  template <class Codec, class Self>
+  static void fields(Codec& codec, Self& self) noexcept {
+    const size_t n = codec.count(self.count, kMaxPlays);
+    codec.array(self.reserved, sizeof self.reserved);
+    codec(self.straight);
+    for (size_t i = 0; i < n; ++i) codec(self.plays[i].threshold, self.plays[i].weight);
+  }
+};
+
 /// How the finger is followed between counts, and ahead.
 struct Tracking {
   static constexpr MessageType kType = MessageType::tracking;

@@ -26,12 +26,13 @@ enum class MessageType : uint8_t {
   drive = 0x0F,
   heartbeat = 0x10,
   reset = 0x11,
-  profile_levels = 0x12,  ///< from 0x12 to 0x17: since protocol 1.1
+  profile_levels = 0x12,  ///< from 0x12 to 0x18: since protocol 1.1
   taps = 0x13,
   tracking = 0x14,
   energy = 0x15,
   contact = 0x16,
   change = 0x17,
+  hysteresis = 0x18,
   welcome = 0x81,
   channel = 0x82,
   note = 0x83,
@@ -97,7 +98,7 @@ enum TickFlag : uint32_t {
   kTickLate = 32,           ///< it began more than half a period late
   kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
   kTickGated = 128,         ///< the finger does not touch: the drive falls
-  kTickBlind = 256,         ///< the encoder was not read for 10 ms: the drive falls, then the count is taken anew
+  kTickBlind = 256,  ///< the encoder was not read for 10 ms: the drive falls, then the count is taken anew
 };
 /// From this bit on: commands that steer, taken since arming, modulo 256.
 inline constexpr uint32_t kTickSteeredShift = 24;
@@ -115,5 +116,6 @@ inline constexpr size_t kMaxChunk = 512;  ///< floats of a profile's or drive's 
 inline constexpr size_t kMaxSections = 16;
 inline constexpr size_t kMaxLevels = 16;  ///< of a profile's pyramid
 inline constexpr size_t kMaxTaps = 128;   ///< of the finite filter; a multiple of 4
+inline constexpr size_t kMaxPlays = 16;   ///< of hysteresis; a multiple of 4
 
 }  // namespace tacto::wire

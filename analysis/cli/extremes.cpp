@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "analysis/cli/verbs.hpp"
+#include "analysis/extremes/extreme.hpp"
+#include "data-schema/cli/progress.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+struct ExtremesOptions {
+  bool all = false;
+};
+
+cli::Report row_of_extreme(const Extreme& extreme) {
+  cli::Report row;
+  row.add("room", extreme.room).add("condition", extreme.condition);
+  row.add("error", extreme.error).add("most", extreme.most).add("holds", extreme.holds());
+  return row.add("reference", extreme.reference).add("note", extreme.breaks);
+}
+
+schema::Result<cli::Report> try_extremes(const ExtremesOptions& options) {
+  cli::Progress progress("extremes");
+  const auto extremes = all_extremes(options.all, [&](double part) { progress.update(part); });
+  std::vector<cli::Report> rows;
+  std::size_t broken = 0;
+  for (const Extreme& extreme : extremes) {
+    rows.push_back(row_of_extreme(extreme));
+    broken += !extreme.holds();
+  }
+  cli::Report report;
+  report.add("extremes", std::move(rows)).add("conditions", extremes.size()).add("broken", broken);
+  if (broken > 0) report.ends_with(schema::Fault::unsuitable);
+  return report;
+}
+
+cli::Action declare_extremes(CLI::App& app) {
+  auto options = std::make_shared<ExtremesOptions>();
+  app.add_flag("--all", options->all, "A stroke of 1e8 samples too (a minute more)");
+  return [options] { return try_extremes(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kExtremesVerb{"extremes",
+                              "Try the methods of all rooms far from the usual, each against something "
+                              "exact, and print what came of it",
+                              "tactograph extremes\n  tactograph extremes --all --json > extremes.json",
+                              declare_extremes};
+
+}  // namespace tacto::analysis

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/extremes/extreme.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace tacto::analysis {
+
+double Extreme::margin_db() const {
+  constexpr double kLeast = 1e-300;  // an error of nothing has a margin all the same
+  return 20 * std::log10(most / std::max(error, kLeast));
+}
+
+std::vector<Extreme> all_extremes(bool all, const ExtremesProgress& progress) {
+  const std::function<std::vector<Extreme>()> rooms[] = {
+      filter_extremes, [all] { return space_extremes(all); }, inverse_extremes, kernel_extremes};
+  std::vector<Extreme> rows;
+  for (std::size_t i = 0; i < std::size(rooms); ++i) {
+    std::ranges::move(rooms[i](), std::back_inserter(rows));
+    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(std::size(rooms)));
+  }
+  return rows;
+}
+
+}  // namespace tacto::analysis

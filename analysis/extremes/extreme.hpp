@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numerical stability far from the usual: each condition against something exact.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tacto::analysis {
+
+/// One condition and what came of it.
+struct Extreme {
+  std::string room;       ///< the folder whose method it is
+  std::string condition;  ///< how far from the usual
+  std::string reference;  ///< what is exact
+  double error = 0;       ///< re the largest (or, where the condition says so, the RMS) of the exact result
+  double most = 0;        ///< it may be: what the method's own text states
+  std::string breaks;     ///< at what value the method ends, and what is said beyond it; empty: nowhere
+
+  bool holds() const { return error <= most; }
+  /// 20 log10(most / error), dB.
+  double margin_db() const;
+};
+
+/// Hears how much of all is done, 0 to 1.
+using ExtremesProgress = std::function<void(double)>;
+
+/// spatial's filters: rates, edges, steps, sizes.
+std::vector<Extreme> filter_extremes();
+/// spatial's resampling: grids, offsets, forces, strokes. `all`: a stroke of 1e8 samples (a minute) instead
+/// of 3e6.
+std::vector<Extreme> space_extremes(bool all);
+/// playback's inverse: transducers that nobody builds.
+std::vector<Extreme> inverse_extremes();
+/// The tick kernel: rates, counts, speeds, gains, silence.
+std::vector<Extreme> kernel_extremes();
+
+/// All rooms.
+std::vector<Extreme> all_extremes(bool all, const ExtremesProgress& progress = {});
+
+}  // namespace tacto::analysis

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each condition keeps what its method states. TACTO_EXTREMES=1 tries the stroke of 1e8 samples too.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "analysis/extremes/extreme.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+TEST(Extremes, HoldWhatTheirMethodsState) {
+  const auto rows = all_extremes(std::getenv("TACTO_EXTREMES") != nullptr);
+  std::set<std::string> conditions;
+  for (const Extreme& row : rows) {
+    std::printf("%-70s error %.1e, at most %.0e  %s\n", row.condition.c_str(), row.error, row.most,
+                row.breaks.c_str());
+    EXPECT_LE(row.error, row.most) << row.condition;
+    EXPECT_FALSE(row.reference.empty()) << row.condition;
+    EXPECT_TRUE(conditions.insert(row.condition).second) << "twice: " << row.condition;
+  }
+  EXPECT_GT(rows.size(), 35U);
+}
+
+TEST(Extremes, ARowThatBreaksSaysSo) {
+  EXPECT_FALSE((Extreme{"spatial", "x", "y", 2e-3, 1e-3, {}}.holds()));
+  EXPECT_NEAR((Extreme{"spatial", "x", "y", 1e-3, 1e-2, {}}.margin_db()), 20, 1e-9);
+}
+
+}  // namespace
+}  // namespace tacto::analysis

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How late the daemon's clock wakes, beside cyclictest (rt-tests) on the same core, by turns.
+
+usage: tick_lateness.py TICK_LATENESS [--rate 2000] [--rounds 10] [--seconds 5] [--priority 50] [--core 0]
+
+Shared machines stall for tens of milliseconds: what counts is the ratio of medians over the rounds, not a figure by itself. The
+daemon's clock spins the last 50 us, cyclictest does not: it sleeps as a daemon would that did not spin.
+"""
+import argparse
+import json
+import shutil
+import statistics
+import subprocess
+
+PARTS = {"p50": 0.5, "p99": 0.99, "p99.9": 0.999}
+MOST_US = 20000
+
+
+def ours(program, o):
+    words = [program, str(o.rate), str(o.seconds), str(o.priority)]
+    said = json.loads(subprocess.run(["taskset", "-c", str(o.core), *words], capture_output=True, text=True, check=True).stdout)
+    return {name: 1e6 * said[key] for name, key in (("p50", "p50_s"), ("p99", "p99_s"), ("p99.9", "p999_s"))}, said
+
+
+def quantiles(lines):
+    """Of `cyclictest -h`: a line for each microsecond, and how many were beyond."""
+    rows = [line.split() for line in lines if line and not line.startswith("#")]
+    counts = [(int(us), int(count)) for us, count in rows]
+    beyond = next((int(line.split(":")[1].split()[0]) for line in lines if line.startswith("# Histogram Overflows")), 0)
+    total = sum(count for _, count in counts) + beyond
+
+    def at(part):
+        below = 0
+        for us, count in counts:
+            below += count
+            if below >= part * total:
+                return us + 1.0
+        return float(MOST_US)
+
+    return {name: at(part) for name, part in PARTS.items()}
+
+
+def theirs(o):
+    words = ["cyclictest", "-q", "-m", "-t1", "-a", str(o.core), "-i", str(round(1e6 / o.rate)), "-D", str(o.seconds), "-h", str(MOST_US)]
+    words += ["-p", str(o.priority)] if o.priority else ["--policy=other"]
+    return quantiles(subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("--rate", type=int, default=2000)
+    parser.add_argument("--rounds", type=int, default=10)
+    parser.add_argument("--seconds", type=int, default=5)
+    parser.add_argument("--priority", type=int, default=50)
+    parser.add_argument("--core", type=int, default=0)
+    o = parser.parse_args()
+    if shutil.which("cyclictest") is None:
+        parser.error("cyclictest is not installed: ./bootstrap bench installs it (Debian's rt-tests)")
+    rounds = []
+    for i in range(o.rounds):
+        mine, said = ours(o.program, o)
+        rounds.append((mine, theirs(o), said))
+        print(f"round {i + 1}: ours p99 {mine['p99']:.1f} us, cyclictest {rounds[-1][1]['p99']:.1f} us", flush=True)
+    print(f"\n{o.rate} Hz, SCHED_FIFO {'granted' if rounds[0][2]['real_time'] else 'refused'}, medians of {o.rounds} rounds of {o.seconds} s")
+    print("| late by, us | daemon's clock | cyclictest | ratio |\n|---|---|---|---|")
+    for name in PARTS:
+        mine, other = (statistics.median(r[k][name] for r in rounds) for k in (0, 1))
+        print(f"| {name} | {mine:.1f} | {other:.1f} | {mine / other:.2f} |")
+    work = [statistics.median(r[2][key] for r in rounds) for key in ("work_p50_s", "work_p99_s")]
+    print(f"a tick of the kernel after the sleep: p50 {1e6 * work[0]:.2f} us, p99 {1e6 * work[1]:.2f} us; "
+          f"missed {sum(r[2]['missed'] for r in rounds)} of {o.rounds * o.seconds * o.rate} ticks")
+
+
+if __name__ == "__main__":
+    main()

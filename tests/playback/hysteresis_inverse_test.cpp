@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/hysteresis_inverse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "firmware-host/core/play_operators.hpp"
+#include "firmware-host/sim/bender_hysteresis.hpp"
+#include "firmware-host/sim/random.hpp"
+#include "tests/playback/made_textures.hpp"
+#include "tests/playback/rayleigh_law.hpp"
+
+namespace tacto::playback {
+namespace {
+
+// A walk that turns at all sizes, within +-4 V.
+std::vector<double> walk(std::size_t count) {
+  firmware_host::Random random(7, 1);
+  std::vector<double> values;
+  double x = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    x += 0.15 * random.normal();
+    if (std::abs(x) > 4) x *= 0.9;
+    values.push_back(x);
+  }
+  return values;
+}
+
+// Single precision: 1e-6 of 4 V, a few roundings of 6e-8.
+TEST(HysteresisInverse, UndoesTheOperatorFromRest) {
+  const schema::Hysteresis law = rayleigh(0.16, 5, wire::kMaxPlays);
+  core::PlayOperators inverse;
+  inverse.set(inverse_of(law));
+  std::vector<double> plays(law.weights.size());
+  double largest = 0, moved = 0;
+  for (const double wanted : walk(20000)) {
+    const double v = inverse.follow(static_cast<float>(wanted));
+    double u = 0;
+    for (std::size_t i = 0; i < plays.size(); ++i) {
+      plays[i] = std::max(v - law.thresholds_v[i], std::min(v + law.thresholds_v[i], plays[i]));
+      u += law.weights[i] * plays[i];
+    }
+    largest = std::max(largest, std::abs(u - wanted));
+    moved = std::max(moved, std::abs(v - wanted));
+  }
+  EXPECT_LT(largest, 4e-6);
+  EXPECT_GT(moved, 0.5) << "an inverse that does nothing proves nothing";
+}
+
+// The emulated bender has 32 plays: twice as many as the kernel holds. What merging costs, re the hysteresis.
+TEST(HysteresisInverse, MergesPlaysThatAreTooMany) {
+  const wire::Hysteresis few = inverse_of(rayleigh(0.16, 5, 32));
+  EXPECT_EQ(few.count, wire::kMaxPlays);
+  core::PlayOperators inverse;
+  inverse.set(few);
+  firmware_host::BenderHysteresis bender(0.16, 5);
+  double error = 0, hysteresis = 0;
+  for (const double wanted : walk(20000)) {
+    const double v = inverse.follow(static_cast<float>(wanted));
+    bender.settle(v);
+    error += std::pow(bender.at(v) - wanted, 2);
+    hysteresis += std::pow(v - wanted, 2);
+  }
+  EXPECT_LT(std::sqrt(error / hysteresis), 0.03);
+}
+
+TEST(HysteresisInverse, OfNoHysteresisIsNothing) {
+  const wire::Hysteresis none = inverse_of({{0}, {1}});
+  EXPECT_EQ(none.count, 0);
+  EXPECT_EQ(none.straight, 1.0F);
+}
+
+// A held drive charges by 1 - a in a tick: the section takes that back.
+TEST(HysteresisInverse, TheLeadUndoesTheAmplifiersLowPass) {
+  const wire::Section lead = pole_lead(143, 2000);
+  const double a = std::exp(-kTwoPi * 143 / 2000);
+  double charge = 0, before = 0;
+  for (const double wanted : walk(200)) {
+    const double drive = lead.b0 * wanted + lead.b1 * before;
+    before = wanted;
+    charge = a * charge + (1 - a) * drive;
+    EXPECT_NEAR(charge, wanted, 1e-5);
+  }
+}
+
+TEST(HysteresisInverse, WhatADriveDoesIsWhatItUndoes) {
+  const schema::Hysteresis law = rayleigh(0.16, 5, 12);
+  core::PlayOperators inverse;
+  inverse.set(inverse_of(law));
+  const wire::Section lead = pole_lead(143, 2000);
+  const std::vector<double> wanted = walk(5000);
+  std::vector<double> drive;
+  double before = 0;
+  for (const double charge : wanted) {
+    const double v = inverse.follow(static_cast<float>(charge));
+    drive.push_back(lead.b0 * v + lead.b1 * before);
+    before = v;
+  }
+  const std::vector<double> linear = linear_drive_of(drive, law, 143, 2000);
+  const double a = std::exp(-kTwoPi * 143 / 2000);
+  double charge = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    charge = a * charge + (1 - a) * linear[i];
+    ASSERT_NEAR(charge, wanted[i], 3e-5);
+  }
+}
+
+}  // namespace
+}  // namespace tacto::playback

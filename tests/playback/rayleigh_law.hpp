@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The hysteresis that the emulated bender has, as a transducer's file would tell it.
+#pragma once
+
+#include <algorithm>
+
+#include "data-schema/transducer.hpp"
+
+namespace tacto::playback {
+
+/// Rayleigh's law between +-limit: plays of equal weight, evenly spread, that open the loop by `opening`.
+inline schema::Hysteresis rayleigh(double opening, double limit_v, int plays) {
+  schema::Hysteresis law{{0}, {0}};
+  double ends = 0, apart = 0;
+  for (int i = 0; i < plays; ++i) {
+    const double threshold_v = limit_v * (i + 0.5) / plays;
+    law.thresholds_v.push_back(threshold_v);
+    ends += limit_v - threshold_v;
+    apart += std::min(threshold_v, limit_v - threshold_v);
+  }
+  const double weight = opening * limit_v / apart;
+  law.weights.assign(law.thresholds_v.size(), weight);
+  law.weights[0] = 1 - weight * ends / limit_v;
+  return law;
+}
+
+}  // namespace tacto::playback
