@@ -6,6 +6,7 @@
 
 namespace tacto::analysis {
 
+extern const cli::Verb kCompareVerb;
 extern const cli::Verb kDemoVerb;
 
 }  // namespace tacto::analysis
