@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 namespace tacto::analysis {
 namespace {
@@ -41,11 +43,11 @@ double BandSums::residual_db(double gain) const {
   return ratio_db(bb + gain * gain * aa - 2 * gain * real_ab, bb);
 }
 
-BandSums band_sums(const CrossSpectrum& mean, const SegmentSpectra& spectra, double low, double high) {
+BandSums band_sums(const CrossSpectrum& mean, double low, double high) {
   BandSums sums;
   sums.paired = !mean.ab.empty();
-  for (std::size_t k = 0; k < spectra.bins; ++k) {
-    const double width = spectra.width(k, low, high);
+  for (std::size_t k = 0; k < mean.frequency.size(); ++k) {
+    const double width = mean.width(k, low, high);
     sums.aa += mean.aa[k] * width;
     sums.bb += mean.bb[k] * width;
     if (!sums.paired) continue;
@@ -53,6 +55,25 @@ BandSums band_sums(const CrossSpectrum& mean, const SegmentSpectra& spectra, dou
     sums.coherent_share += mean.aa[k] * mean.coherence[k] * width;
   }
   return sums;
+}
+
+ShiftedError shifted_error(const CrossSpectrum& mean, double low, double high, double range) {
+  const BandSums sums = band_sums(mean, low, high);
+  const auto common = [&](double shift) {
+    double sum = 0;
+    for (std::size_t k = 0; k < mean.frequency.size(); ++k)
+      sum += mean.width(k, low, high) *
+             (mean.ab[k] * std::polar(1.0, 2 * std::numbers::pi * mean.frequency[k] * shift)).real();
+    return sum;
+  };
+  constexpr int kSteps = 100;
+  double best = 0, most = common(0);
+  for (const double step : {range / kSteps, range / (kSteps * kSteps)}) {
+    const double middle = best;
+    for (int i = -kSteps; i <= kSteps; ++i)
+      if (const double sum = common(middle + i * step); sum > most) most = sum, best = middle + i * step;
+  }
+  return {best, ratio_db(sums.aa + sums.bb - 2 * most, sums.aa)};
 }
 
 void add_band(BandPowers& powers, const SegmentSpectra& spectra, double low, double high) {

@@ -23,7 +23,18 @@ struct BandSums {
   double coherence() const { return coherent_share / aa; }
 };
 
-BandSums band_sums(const CrossSpectrum& mean, const SegmentSpectra& spectra, double low, double high);
+BandSums band_sums(const CrossSpectrum& mean, double low, double high);
+
+/// Power of B, shifted back by the shift that makes it smallest, less A; over A's, in the band.
+struct ShiftedError {
+  double shift = 0;  ///< of B behind A, in the unit of 1 / frequency
+  double error_db = 0;
+};
+
+/// Within +- `range`, to a ten-thousandth of it, by the spectra's phase. Segments are not moved with the
+/// shift: that leaves an error of some pi shift / window (-50 dB at a thousandth of a window). Precondition:
+/// paired, power.
+ShiftedError shifted_error(const CrossSpectrum& mean, double low, double high, double range);
 
 /// Appends a band's powers, segment by segment: a column.
 void add_band(BandPowers& powers, const SegmentSpectra& spectra, double low, double high);

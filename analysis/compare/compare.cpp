@@ -89,7 +89,7 @@ void compare_bands(Comparison& comparison, const SegmentSpectra& spectra,
   for (const auto& band : bands) {
     const double low = std::max(band.low_per_m, comparison.low_per_m);
     const double high = std::min(band.high_per_m, comparison.high_per_m);
-    const BandSums sums = band_sums(comparison.spectra, spectra, low, high);
+    const BandSums sums = band_sums(comparison.spectra, low, high);
     comparison.bands.push_back(compared_band(band, sums, comparison.gain.value_or(0)));
     add_band(powers, spectra, low, high);
   }
@@ -111,7 +111,7 @@ Result<void> compare_spectra(Comparison& comparison, std::size_t window) {
   comparison.spectra = mean_of(spectra);
   comparison.chance_coherence =
       chance_coherence(independent_segments(std::min(spectra.segments_a, spectra.segments_b)));
-  const BandSums whole = band_sums(comparison.spectra, spectra, comparison.low_per_m, comparison.high_per_m);
+  const BandSums whole = band_sums(comparison.spectra, comparison.low_per_m, comparison.high_per_m);
   if (!(whole.aa > 0 && whole.bb > 0))
     return schema::fail(
         Fault::unsuitable,

@@ -68,8 +68,8 @@ std::vector<Value> mean_rows(const std::vector<Value>& rows, std::size_t bins) {
 
 }  // namespace
 
-double SegmentSpectra::width(std::size_t k, double low, double high) const {
-  return std::max(0.0, std::min(high, frequency(k) + 0.5 * step) - std::max(low, frequency(k) - 0.5 * step));
+double width_of_bin(double frequency, double step, double low, double high) {
+  return std::max(0.0, std::min(high, frequency + 0.5 * step) - std::max(low, frequency - 0.5 * step));
 }
 
 SegmentSpectra segment_spectra(std::span<const double> a, std::span<const double> b, bool paired,

@@ -10,6 +10,9 @@
 
 namespace tacto::analysis {
 
+/// Width of what a bin has of [low, high].
+double width_of_bin(double frequency, double step, double low, double high);
+
 /// Welch's spectra (Welch 1967: half-overlapping Hann windows, each without its mean; one-sided) of the bins
 /// that meet [low, high]. In unit^2 per unit of frequency; one row a segment. The mean over the rows is
 /// scipy.signal.welch and csd(x, y, 1 / pitch, 'hann', W). Bin k stands for [k - 1/2, k + 1/2] steps.
@@ -22,8 +25,9 @@ struct SegmentSpectra {
   std::vector<std::complex<double>> ab;        ///< conj(A) B; empty where the signals are not paired
 
   double frequency(std::size_t k) const { return static_cast<double>(first + k) * step; }
-  /// Width of a bin within [low, high].
-  double width(std::size_t k, double low, double high) const;
+  double width(std::size_t k, double low, double high) const {
+    return width_of_bin(frequency(k), step, low, high);
+  }
 };
 
 /// Preconditions: 8 <= window <= both sizes; equal sizes where `paired`; 0 <= low < high.
@@ -36,6 +40,10 @@ struct CrossSpectrum {
   std::vector<double> frequency, aa, bb;
   std::vector<std::complex<double>> ab;
   std::vector<double> coherence;  ///< |ab|^2 / (aa bb), magnitude-squared; 0 where there is no power
+
+  double width(std::size_t k, double low, double high) const {
+    return width_of_bin(frequency[k], step, low, high);
+  }
 };
 CrossSpectrum mean_of(const SegmentSpectra& spectra);
 
