@@ -14,7 +14,7 @@
 namespace {
 
 // In the order of the work: get data, look at it, make textures, see them, play them.
-constexpr std::array<const tacto::cli::Verb*, 23> kVerbs = {
+constexpr std::array<const tacto::cli::Verb*, 24> kVerbs = {
     &tacto::firmware_host::kScanVerb, &tacto::capture::kDoctorVerb,      &tacto::capture::kCalibrateVerb,
     &tacto::capture::kImportVerb,     &tacto::capture::kRecordVerb,      &tacto::capture::kRecoverVerb,
     &tacto::capture::kListVerb,       &tacto::schema::kInfoVerb,         &tacto::schema::kValidateVerb,
@@ -22,7 +22,7 @@ constexpr std::array<const tacto::cli::Verb*, 23> kVerbs = {
     &tacto::spatial::kFormantsVerb,   &tacto::spatial::kDescribeVerb,    &tacto::spatial::kCertifyVerb,
     &tacto::playback::kRenderVerb,    &tacto::playback::kPlayVerb,       &tacto::playback::kCtlVerb,
     &tacto::playback::kSessionVerb,   &tacto::playback::kReplayVerb,     &tacto::analysis::kCompareVerb,
-    &tacto::analysis::kFidelityVerb,  &tacto::analysis::kDemoVerb,
+    &tacto::analysis::kFidelityVerb,  &tacto::analysis::kReportVerb,     &tacto::analysis::kDemoVerb,
 };
 
 }  // namespace

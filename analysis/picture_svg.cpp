@@ -30,9 +30,13 @@ spatial::LineFigure figure_of(const schema::ResultPicture& picture, const std::s
   figure.y_label = picture.y_label;
   figure.simulated = simulated;
   if (picture.logarithmic_x) figure.x_scale = spatial::AxisScale::logarithmic;
-  for (const schema::ResultCurve& curve : picture.curves)
+  std::size_t colour = 0;
+  for (const schema::ResultCurve& curve : picture.curves) {
+    // A curve without a name goes with the one before it.
+    if (!curve.name.empty() && !figure.series.empty()) ++colour;
     figure.series.push_back(
-        {curve.name, curve.x, curve.y, spatial::series_colour(figure.series.size()), 1.2, curve.dashed});
+        {curve.name, curve.x, curve.y, spatial::series_colour(colour), 1.2, curve.dashed});
+  }
   return figure;
 }
 

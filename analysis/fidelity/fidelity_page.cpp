@@ -37,11 +37,8 @@ std::string taken_words(const FidelitySpeed& s) {
 }
 
 ResultPicture error_picture(const FidelitySpeed& speed) {
-  ResultPicture picture{"Error of what was felt, by band, at " + speed_words(speed),
-                        "spatial frequency (1/mm)",
-                        "error re wanted (dB)",
-                        true,
-                        {}};
+  ResultPicture picture{
+      "Error by band, " + speed_words(speed), "spatial frequency (1/mm)", "error re wanted (dB)", true, {}};
   for (const FidelityRow& row : speed.rows) {
     ResultCurve curve{row.tray, {}, {}, false};
     for (const BandComparison& band : row.comparison.bands) {
@@ -69,11 +66,8 @@ ResultCurve stretch_curve(const std::string& name, const Comparison& c, const st
 ResultPicture stretch_picture(const FidelitySpeed& speed) {
   const FidelityRow& first = speed.rows.front();
   const FidelityRow& last = speed.rows.back();
-  ResultPicture picture{"Displacement, the middle of the way, at " + speed_words(speed),
-                        "way (mm)",
-                        "displacement (µm)",
-                        false,
-                        {}};
+  ResultPicture picture{
+      "The middle of the way, " + speed_words(speed), "way (mm)", "displacement (µm)", false, {}};
   picture.curves.push_back(stretch_curve("wanted", first.comparison, first.comparison.pair.a, false));
   picture.curves.push_back(
       stretch_curve("felt: " + first.tray, first.comparison, first.comparison.pair.b, true));

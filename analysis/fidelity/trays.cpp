@@ -35,9 +35,9 @@ std::vector<Tray> usual_trays(const schema::Transducer& transducer) {
   load.finger_load.emplace();
   all.finger_load.emplace();
   return {{"ideal", {}, false},
-          {"ideal, re-recorded by a sensor", {}, true},
+          {"ideal, re-recorded", {}, true},
           {fmt::format("hysteresis {:g} %", 100 * kPaperHysteresis), hysteresis, false},
-          {fmt::format("second mode, {:.0f} Hz", mode.second_mode->frequency_hz), mode, false},
+          {fmt::format("mode at {:.0f} Hz", mode.second_mode->frequency_hz), mode, false},
           {"finger's load", load, false},
           {"all three", all, false}};
 }
