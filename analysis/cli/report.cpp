@@ -52,6 +52,8 @@ Result<void> write_page(const Project& project, const std::string& output) {
 }
 
 Result<Report> run_report(const ReportVerbOptions& o) {
+  if (!o.output.ends_with(".html"))
+    return schema::fail(schema::Fault::usage, "doesn't end in .html", o.output, "a report is a page");
   if (const auto free = check_outputs({o.output}); !free) return schema::forward_error(free);
   cli::Progress progress("reading");
   const auto project = read_project(o.folder, o.output, [&](double part) { progress.update(part); });

@@ -28,7 +28,7 @@ Result<void> check(const schema::StoredFile& file) {
   const std::size_t more = checked->findings.size() - 1;
   return schema::fail(schema::Fault::malformed,
                       more == 0 ? what : fmt::format("{}, and {} more faults", what, more), where,
-                      "'tactograph validate' lists them");
+                      "'tactograph validate' says more");
 }
 
 }  // namespace
