@@ -7,7 +7,6 @@
 
 #include "analysis/fidelity/scratch_folder.hpp"
 #include "data-schema/files.hpp"
-#include "firmware-host/core/wire/message_types.hpp"
 #include "playback/kernel_drive.hpp"
 
 namespace tacto::analysis {
@@ -51,23 +50,18 @@ Result<void> check_counts(const EmulatedPass& pass) {
 }
 
 // The same kernel once more, beside the device, for what it wished before the limits.
-Result<double> removed_by_limits(const playback::PlayOptions& options, const EmulatedPass& pass,
-                                 const FingerPath& path) {
+Result<void> count_limits(const playback::PlayOptions& options, const FingerPath& path, EmulatedPass& pass) {
   playback::PrepareOptions prepare = options.prepare;
   prepare.metres_per_count = pass.columns.header.metres_per_count;
   const auto& transducer =
       options.transducer.empty() ? pass.columns.header.transducer.name : options.transducer;
   const auto program = playback::make_program(options.program, transducer, prepare);
   if (!program) return schema::forward_error(program);
-  return playback::kernel_drive(program->prepared, path, prepare, pass.columns.tick.size())
-      .tally.removed_db();
-}
-
-void count_limits(EmulatedPass& pass) {
-  for (const std::uint32_t flags : pass.columns.flags) {
-    pass.amplitude_limited += (flags & wire::kTickAmplitudeLimited) != 0;
-    pass.slew_limited += (flags & wire::kTickSlewLimited) != 0;
-  }
+  const auto drive = playback::kernel_drive(program->prepared, path, prepare, pass.columns.tick.size());
+  pass.removed_db = drive.tally.removed_db();
+  pass.amplitude_limited = drive.tally.amplitude_limited();
+  pass.slew_limited = drive.tally.slew_limited();
+  return {};
 }
 
 Result<void> check_played(const EmulatedPass& pass, const std::string& device) {
@@ -100,10 +94,7 @@ Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::Pla
       true_positions(path, pass.columns.header.rate_hz, std::min(along, pass.columns.tick.size()));
   if (const auto played = check_played(pass, options.device_uri); !played)
     return schema::forward_error(played);
-  const auto removed = removed_by_limits(options, pass, path);
-  if (!removed) return schema::forward_error(removed);
-  pass.removed_db = *removed;
-  count_limits(pass);
+  if (const auto counted = count_limits(options, path, pass); !counted) return schema::forward_error(counted);
   return pass;
 }
 

@@ -19,8 +19,8 @@ def write_texture(stem, values, pitch=PITCH, **more):
     import hashlib
     path = pathlib.Path(f"{stem}.texture.wav")
     soundfile.write(path, np.asarray(values, dtype=np.float32), round(1 / pitch), subtype="FLOAT", format="WAV")
-    side = {"kind": "texture", "version": "1.0", "wav": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest(),
-            **TEMPLATE, "samples": len(values), "pitch_m": pitch, **more}
+    data = {**TEMPLATE["data"], "file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest(), "samples": len(values)}
+    side = {**TEMPLATE, "data": data, "pitch_m": pitch, **more}
     pathlib.Path(f"{stem}.texture.json").write_text(json.dumps(side))
 
 
@@ -30,8 +30,6 @@ def make_template():
     tacto.run("record", "-d", "sim:surface=A,speed=50mm/s,seed=77", "--strokes", "1", "-o", "model", "--no-calibration")
     tacto.run("spatial", "model", "-o", "model")
     side = json.loads(pathlib.Path("model.texture.json").read_text())
-    for key in ("kind", "version", "wav", "sha256", "samples", "pitch_m", "valid_band"):
-        side.pop(key, None)
     side["valid_band"] = [{"position_m": 0.0, "low_per_m": 100.0, "high_per_m": 40000.0}]
     TEMPLATE = side
 
@@ -149,7 +147,7 @@ def real_fingers_verdicts():
     assert verdict("down", "up") == "different"
     x, values, side = tacto.texture("down")
     global TEMPLATE
-    TEMPLATE = {k: v for k, v in side.items() if k not in ("kind", "version", "wav", "sha256", "samples", "pitch_m")}
+    TEMPLATE = side
     write_texture("gain", 2 * values, pitch=side["pitch_m"])
     assert verdict("down", "gain") == "louder" and verdict("gain", "down") == "quieter"
 
