@@ -26,7 +26,7 @@ using schema::Fault;
 using schema::Result;
 using schema::Texture;
 
-constexpr double kSettleS = 0.05, kFadeM = 1e-3;  // left out at either end of the texture
+constexpr double kLeftOutS = 0.05, kFadeM = 1e-3;  // left out at either end of the texture
 constexpr double kFarthestShiftM = 50e-6;
 constexpr double kUsualFidelityGain = 1e-3;
 
@@ -49,7 +49,7 @@ Result<Stretch> judged_stretch(const EmulatedPass& pass, const Texture& texture,
   const auto path = playback::finger_path_of({pass.columns.header.rate_hz, 0, pass.position_m});
   const std::size_t samples = (pass.position_m.size() - 1) * fine;
   const auto all = playback::positions_along(path, stretch.rate_hz, samples);
-  const double margin_m = kFadeM + kSettleS * speed_mps;
+  const double margin_m = kFadeM + kLeftOutS * speed_mps;
   const auto first = std::ranges::lower_bound(all, at_m + margin_m);
   const auto last = std::ranges::upper_bound(all, at_m + texture.signal.length_m() - margin_m);
   if (last <= first)
