@@ -14,10 +14,10 @@ namespace {
 using Spectrum = std::vector<std::complex<double>>;
 
 // Shifts and compares two signals through one planned transform.
-class Comparison {
+class ReplayComparison {
  public:
-  Comparison(const schema::TimeSignal& came, const schema::TimeSignal& wanted, const spatial::Band& band,
-             double settle_s)
+  ReplayComparison(const schema::TimeSignal& came, const schema::TimeSignal& wanted,
+                   const spatial::Band& band, double settle_s)
       : rate_hz_(came.sample_rate_hz),
         settle_(static_cast<std::size_t>(settle_s * rate_hz_)),
         length_(came.values.size()),
@@ -73,7 +73,7 @@ class Comparison {
 constexpr double kStepS = 2.5e-4;
 constexpr double kResolutionS = 1e-7;
 
-double coarse_delay(Comparison& comparison, double max_delay_s) {
+double coarse_delay(ReplayComparison& comparison, double max_delay_s) {
   double best = 0, smallest = comparison.error_rms(0);
   for (double delay = -max_delay_s; delay <= max_delay_s; delay += kStepS) {
     const double error = comparison.error_rms(delay);
@@ -82,7 +82,7 @@ double coarse_delay(Comparison& comparison, double max_delay_s) {
   return best;
 }
 
-double best_delay(Comparison& comparison, double max_delay_s) {
+double best_delay(ReplayComparison& comparison, double max_delay_s) {
   constexpr double kGolden = 1 / std::numbers::phi;
   const double start = coarse_delay(comparison, max_delay_s);
   double low = start - kStepS, high = start + kStepS;
@@ -99,7 +99,7 @@ double best_delay(Comparison& comparison, double max_delay_s) {
 ReplayError replay_error(const schema::TimeSignal& came, const schema::TimeSignal& wanted,
                          const spatial::Band& band, double settle_s, double max_delay_s) {
   assert(came.values.size() == wanted.values.size() && came.duration_s() > 2 * settle_s);
-  Comparison comparison(came, wanted, band, settle_s);
+  ReplayComparison comparison(came, wanted, band, settle_s);
   ReplayError found;
   found.delay_s =
       std::round(best_delay(comparison, max_delay_s) / kResolutionS) * kResolutionS + 0.0;  // no -0

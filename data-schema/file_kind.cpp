@@ -13,9 +13,9 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 9> kNames = {"recording",   "texture",  "transducer",
-                                                    "spectrogram", "formants", "descriptions",
-                                                    "calibration", "scene",    "session"};
+constexpr std::array<std::string_view, 10> kNames = {
+    "recording",    "texture",     "transducer", "spectrogram", "formants",
+    "descriptions", "calibration", "scene",      "session",     "results"};
 
 struct Ending {
   FileKind kind;
@@ -32,6 +32,7 @@ constexpr Ending kEndings[] = {
     {FileKind::calibration, ".calibration.json"},
     {FileKind::scene, ".scene.json"},
     {FileKind::session, ".session"},
+    {FileKind::results, ".results.json"},
 };
 
 Result<StoredFile> by_content(const std::string& path) {

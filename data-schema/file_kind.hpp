@@ -19,7 +19,8 @@ enum class FileKind {
   descriptions,
   calibration,
   scene,
-  session
+  session,
+  results
 };
 
 /// "recording", "texture", ... as in the files' own member `kind`.

@@ -10,6 +10,7 @@
 #include "data-schema/quantity.hpp"
 #include "spatial/make_texture.hpp"
 #include "spatial/steady_part.hpp"
+#include "spatial/third_octaves.hpp"
 #include "spatial/valid_band.hpp"
 #include "spatial/welch.hpp"
 
@@ -23,10 +24,6 @@ using schema::Fault;
 using schema::Result;
 using schema::Texture;
 using schema::ThirdOctaveBand;
-
-// IEC 61260-1:2014, 5.2 and 5.5: G^(1/6) to each side of the middle, with G = 10^(3/10).
-const double kHalfBand = std::pow(10, 0.05);
-constexpr double kReference_per_m = 1000;
 
 BandPoint valid_band_of(const Texture& texture) {
   if (texture.valid_band.empty()) return {0, 0, INFINITY};
@@ -60,32 +57,13 @@ Result<std::size_t> window_samples(const Texture& texture, const DescriptionOpti
                   schema::for_people(static_cast<double>(have) * pitch_m, Dimension::length)));
 }
 
-ThirdOctaveBand whole_band(int number) {
-  ThirdOctaveBand band;
-  band.number = number;
-  band.centre_per_m = kReference_per_m * std::pow(10, number / 10.0);
-  band.low_per_m = band.centre_per_m / kHalfBand;
-  band.high_per_m = band.centre_per_m * kHalfBand;
-  return band;
-}
-
-// The edge of band n is 10^((n - 0.5) / 10): the band in which a frequency lies.
-int band_of(double frequency_per_m) {
-  return static_cast<int>(std::lround(10 * std::log10(frequency_per_m / kReference_per_m)));
-}
-
 std::vector<ThirdOctaveBand> bands_of(const WelchSpectrum& spectrum, double low_per_m, double high_per_m) {
-  std::vector<ThirdOctaveBand> bands;
-  for (int number = band_of(low_per_m); number <= band_of(high_per_m); ++number) {
-    ThirdOctaveBand band = whole_band(number);
+  auto bands = third_octaves(low_per_m, high_per_m);
+  for (ThirdOctaveBand& band : bands) {
     const double from = std::max(band.low_per_m, low_per_m), to = std::min(band.high_per_m, high_per_m);
-    if (!(from < to)) continue;
-    constexpr double kRounding = 1e-9;
-    band.partial = from > band.low_per_m * (1 + kRounding) || to < band.high_per_m * (1 - kRounding);
     const double power = spectrum.power(from, to);
     band.rms = std::sqrt(power);
     band.density = power / (to - from);
-    bands.push_back(band);
   }
   return bands;
 }

@@ -6,7 +6,10 @@
 
 namespace tacto::analysis {
 
+extern const cli::Verb kCompareVerb;
+extern const cli::Verb kFidelityVerb;
 extern const cli::Verb kDemoVerb;
 extern const cli::Verb kExtremesVerb;
+extern const cli::Verb kReportVerb;
 
 }  // namespace tacto::analysis

@@ -29,6 +29,8 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_scene(file.path);
     case FileKind::session:
       return describe_session(file.path);
+    case FileKind::results:
+      return describe_results(file.path);
   }
   return fail(Fault::internal, "a kind of file that nobody describes", file.path);
 }

@@ -26,41 +26,8 @@ using schema::Result;
 constexpr double kShortestStrokeM = 5e-3;
 constexpr double kTurnM = 0.2e-3;  // a finger that goes back by less has not turned
 
-struct StrokeRange {
-  std::size_t first = 0, last = 0;
-};
-
 bool plays(const SessionColumns& columns, std::size_t i) {
   return (columns.flags[i] & wire::kTickPlaying) != 0;
-}
-
-// The farthest place so far in a direction ends a stroke once the finger has gone back from it.
-std::vector<StrokeRange> stroke_ranges(const SessionColumns& columns) {
-  const std::vector<double>& x = columns.position_m;
-  std::vector<StrokeRange> ranges;
-  std::size_t start = 0, farthest = 0;
-  int direction = 0;
-  const auto end_stroke = [&](std::size_t next) {
-    if (std::abs(x[farthest] - x[start]) >= kShortestStrokeM) ranges.push_back({start, farthest});
-    start = next;
-  };
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!plays(columns, i)) {
-      if (direction != 0) end_stroke(i);
-      direction = 0, start = farthest = i;
-      continue;
-    }
-    const double ahead = x[i] - x[farthest];
-    if (direction == 0 && std::abs(x[i] - x[start]) > kTurnM) direction = x[i] > x[start] ? 1 : -1;
-    if (direction == 0 || direction * ahead >= 0) {
-      farthest = direction == 0 ? farthest : i;
-    } else if (-direction * ahead > kTurnM) {
-      end_stroke(farthest);
-      direction = -direction, farthest = i;
-    }
-  }
-  if (direction != 0) end_stroke(farthest);
-  return ranges;
 }
 
 FingerPath path_of(const SessionColumns& columns) {
@@ -87,13 +54,8 @@ struct Judge {
   const SessionColumns& columns;
   spatial::Band band;
   FingerPath path;
-  ReadingGrid grid;
-
   explicit Judge(const SessionColumns& session)
-      : columns(session),
-        band{session.header.low_hz, session.header.high_hz},
-        path(path_of(session)),
-        grid(reading_grid(path.duration_s(), session.header.rate_hz, band, 0)) {}
+      : columns(session), band{session.header.low_hz, session.header.high_hz}, path(path_of(session)) {}
 
   Result<std::vector<double>> wanted_m() {
     std::vector<double> sum(columns.tick.size(), 0.0);
@@ -109,17 +71,6 @@ struct Judge {
         sum[i] += columns.gain[i] * values[i];
     }
     return sum;
-  }
-  std::vector<double> received_m() const {
-    const schema::Transducer& t = columns.header.transducer;
-    const double rate_hz = columns.header.rate_hz;
-    auto drive = spectrum_of(
-        t.hysteresis ? linear_drive_of(columns.drive_v, *t.hysteresis, schema::actuator_pole_hz(t), rate_hz)
-                     : columns.drive_v,
-        rate_hz, grid.period);
-    keep_band(drive, band);
-    const Chain chain{t, Reconstruction::none, 0, Hold::zero_order, rate_hz};
-    return signal_of(through(drive, [&](double f) { return chain_response(chain, f); }));
   }
 };
 
@@ -156,6 +107,51 @@ std::string note_of_change(const SessionColumns& columns) {
 
 }  // namespace
 
+// The farthest place so far in a direction ends a stroke once the finger has gone back from it.
+std::vector<StrokeRange> stroke_ranges(const SessionColumns& columns) {
+  const std::vector<double>& x = columns.position_m;
+  std::vector<StrokeRange> ranges;
+  std::size_t start = 0, farthest = 0;
+  int direction = 0;
+  const auto end_stroke = [&](std::size_t next) {
+    if (std::abs(x[farthest] - x[start]) >= kShortestStrokeM) ranges.push_back({start, farthest});
+    start = next;
+  };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!plays(columns, i)) {
+      if (direction != 0) end_stroke(i);
+      direction = 0, start = farthest = i;
+      continue;
+    }
+    const double ahead = x[i] - x[farthest];
+    if (direction == 0 && std::abs(x[i] - x[start]) > kTurnM) direction = x[i] > x[start] ? 1 : -1;
+    if (direction == 0 || direction * ahead >= 0) {
+      farthest = direction == 0 ? farthest : i;
+    } else if (-direction * ahead > kTurnM) {
+      end_stroke(farthest);
+      direction = -direction, farthest = i;
+    }
+  }
+  if (direction != 0) end_stroke(farthest);
+  return ranges;
+}
+
+std::vector<double> received_displacement_m(const SessionColumns& columns) {
+  const schema::SessionHeader& header = columns.header;
+  const spatial::Band band{header.low_hz, header.high_hz};
+  const double duration_s = path_of(columns).duration_s();
+  const ReadingGrid grid = reading_grid(duration_s, header.rate_hz, band, 0);
+  const Chain chain{header.transducer, Reconstruction::none, 0, Hold::zero_order, header.rate_hz};
+  const schema::Transducer& t = header.transducer;
+  const std::vector<double> linear =
+      t.hysteresis
+          ? linear_drive_of(columns.drive_v, *t.hysteresis, schema::actuator_pole_hz(t), header.rate_hz)
+          : columns.drive_v;
+  auto drive = spectrum_of(linear, header.rate_hz, grid.period);
+  keep_band(drive, band);
+  return signal_of(through(drive, [&](double f) { return chain_response(chain, f); }));
+}
+
 Result<StrokeReport> report_strokes(const std::string& name) {
   const auto columns = read_session_columns(name);
   if (!columns) return schema::forward_error(columns);
@@ -171,7 +167,7 @@ Result<StrokeReport> report_strokes(const std::string& name) {
   Judge judge(*columns);
   const auto wanted = judge.wanted_m();
   if (!wanted) report.notes.push_back(schema::message(wanted.error()));
-  const auto received = judge.received_m();
+  const auto received = received_displacement_m(*columns);
   for (const StrokeRange& range : ranges) {
     const bool judged = wanted && is_of_first_texture(*columns, range);
     report.strokes.push_back(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data-schema/session_reader.hpp"
+#include "playback/daemon/session_columns.hpp"
 
 namespace tacto::playback {
 
@@ -24,6 +25,15 @@ struct StrokeReport {
   double low_hz = 0, high_hz = 0;  ///< the band in which both are taken
   std::vector<std::string> notes;  ///< what could not be judged, and why
 };
+
+/// Rows of a session that are one stroke, both included.
+struct StrokeRange {
+  std::size_t first = 0, last = 0;
+};
+std::vector<StrokeRange> stroke_ranges(const SessionColumns& columns);
+
+/// What the model makes of the recorded drive, in the session's band: displacement in m, one a row.
+std::vector<double> received_displacement_m(const SessionColumns& columns);
 
 /// Wanted: gain x texture at the recorded positions, through the exact reference (reference/wanted.hpp), with
 /// the gain of the commands. Received: the recorded drive, held between ticks, through the transducer's

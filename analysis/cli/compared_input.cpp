@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/cli/compared_input.hpp"
+
+#include <fmt/format.h>
+
+#include "data-schema/file_kind.hpp"
+#include "data-schema/files.hpp"
+#include "spatial/cli/texture_inputs.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+bool names_a_session(const std::string& name) {
+  if (name.ends_with(".session")) return true;
+  const auto files = schema::stored_files(name);
+  return files && files->front().kind == schema::FileKind::session;
+}
+
+Result<ComparedInput> session_input(const std::string& name, std::size_t stroke) {
+  auto played = played_texture(name, stroke);
+  if (!played) return schema::forward_error(played);
+  ComparedInput input{fmt::format("{}, stroke {}", name, played->stroke), "", played->texture, {}};
+  input.played = std::move(*played);
+  return input;
+}
+
+Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, const std::string& name,
+                                             std::size_t stroke) {
+  const std::size_t there = inputs.expected();
+  if (stroke == 0 && there > 1)
+    return schema::fail(Fault::usage, fmt::format("stands for {} textures", there), name,
+                        "name one of them, or choose with --stroke-a or --stroke-b");
+  if (stroke > there)
+    return schema::fail(Fault::usage, fmt::format("stands for {}, and there is no {}th", there, stroke),
+                        name);
+  for (std::size_t i = 1;; ++i) {
+    auto next = inputs.next();
+    if (!next) return schema::forward_error(next);
+    if (!*next) return schema::fail(Fault::unsuitable, "makes no such texture", name);
+    if (i >= stroke) return std::move(**next);
+  }
+}
+
+}  // namespace
+
+Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke) {
+  if (names_a_session(name)) return session_input(name, stroke);
+  auto inputs = spatial::TextureInputs::find({name}, {});
+  if (!inputs) return schema::forward_error(inputs);
+  auto texture = chosen_texture(*inputs, name, stroke);
+  if (!texture) return schema::forward_error(texture);
+  return ComparedInput{texture->name, texture->stored ? texture->path : "", std::move(texture->texture), {}};
+}
+
+Result<void> match_session(ComparedInput& a, ComparedInput& b) {
+  if (a.played.has_value() == b.played.has_value()) return {};
+  ComparedInput& texture = a.played ? b : a;
+  const ComparedInput& session = a.played ? a : b;
+  if (texture.file.empty())
+    return schema::fail(Fault::unsuitable,
+                        "is no stored texture: a session is compared with the one it played", texture.name);
+  const std::string stem = schema::stem_of(texture.file, ".texture");
+  auto wanted = wanted_of(texture.texture, stem, *session.played);
+  if (!wanted) return schema::forward_error(wanted);
+  texture.texture = std::move(*wanted);
+  texture.name += " as wanted";
+  return {};
+}
+
+}  // namespace tacto::analysis

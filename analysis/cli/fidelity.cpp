@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "analysis/cli/results_output.hpp"
+#include "analysis/cli/verbs.hpp"
+#include "analysis/fidelity/fidelity_page.hpp"
+#include "data-schema/cli/progress.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using cli::Report;
+using schema::Dimension;
+using schema::Result;
+
+struct FidelityVerbOptions {
+  FidelityOptions fidelity;
+  std::vector<std::string> speeds = {"50mm/s"}, outputs;
+};
+
+Report tray_row(const FidelitySpeed& speed, const FidelityRow& row, bool simulated) {
+  Report report;
+  if (speed.speed_mps > 0) report.add("speed_mps", speed.speed_mps);
+  report.add("tray", row.tray).add("error_db", row.error_db).add("error_in_place_db", row.error_in_place_db);
+  report.add("shift_m", row.shift_m).add("level_db", row.level_db);
+  report.add("wanted_rms_m", row.wanted_rms_m).add("felt_rms_m", row.felt_rms_m);
+  return report.add("displacement", simulated ? "simulated" : "modelled");
+}
+
+Report taken_row(const FidelitySpeed& speed) {
+  Report report;
+  if (speed.speed_mps > 0) report.add("speed_mps", speed.speed_mps);
+  report.add("low_hz", speed.low_hz).add("high_hz", speed.high_hz);
+  report.add("band_kept_percent", speed.band_kept_percent).add("drive_peak_v", speed.drive_peak_v);
+  report.add("drive_limit_v", speed.drive_limit_v).add("ticks", speed.ticks);
+  report.add("amplitude_limited_ticks", speed.amplitude_limited)
+      .add("slew_limited_ticks", speed.slew_limited);
+  if (speed.removed_db && *speed.removed_db > -300) report.add("removed_db", *speed.removed_db);
+  return report.add("delay_left_s", speed.delay_left_s).add("inverse_error_db", speed.inverse_error_db);
+}
+
+Report fidelity_report(const Fidelity& fidelity) {
+  Report report;
+  report.add("texture", fidelity.texture).add("device", fidelity.device);
+  if (!fidelity.simulated.empty()) report.add("simulated", fidelity.simulated);
+  report.add("displacement", fidelity.displacement).add("gain_m_per_n", fidelity.gain_m_per_n);
+  report.add("rate_hz", fidelity.rate_hz);
+  std::vector<Report> rows, taken;
+  for (const FidelitySpeed& speed : fidelity.speeds) {
+    taken.push_back(taken_row(speed));
+    for (const FidelityRow& row : speed.rows)
+      rows.push_back(tray_row(speed, row, !fidelity.simulated.empty()));
+  }
+  return report.add("fidelity", std::move(rows)).add("taken_away", std::move(taken));
+}
+
+schema::Results fidelity_results(const Fidelity& fidelity) {
+  schema::Results results;
+  results.verb = "fidelity";
+  results.inputs = {fidelity.texture};
+  results.device = fidelity.device;
+  results.simulated = fidelity.simulated;
+  results.figures = fidelity_figures(fidelity);
+  results.pictures = fidelity_pictures(fidelity);
+  return results;
+}
+
+Result<void> read_speeds(FidelityVerbOptions& o) {
+  o.fidelity.speeds_mps.clear();
+  for (const std::string& text : o.speeds) {
+    const auto speed = schema::parse_quantity(text, Dimension::speed);
+    if (!speed)
+      return schema::fail(schema::Fault::usage, speed.error().what, "--speed " + text, speed.error().remedy);
+    o.fidelity.speeds_mps.push_back(*speed);
+  }
+  return {};
+}
+
+Result<Report> run_fidelity(FidelityVerbOptions o) {
+  if (const auto free = check_outputs(o.outputs); !free) return schema::forward_error(free);
+  if (const auto read = read_speeds(o); !read) return schema::forward_error(read);
+  cli::Progress progress("fidelity");
+  const auto found = fidelity(o.fidelity, [&](double part) { progress.update(part); });
+  if (!found) return schema::forward_error(found);
+  for (const FidelitySpeed& speed : found->speeds)
+    for (const std::string& note : speed.notes) cli::warn(note);
+  Report report = fidelity_report(*found);
+  const auto written =
+      write_outputs(o.outputs, fidelity_results(*found), report, [&] { return fidelity_page(*found); });
+  if (!written) return schema::forward_error(written);
+  if (!o.outputs.empty()) report.add("written", o.outputs);
+  return report;
+}
+
+cli::Action declare_fidelity(CLI::App& app) {
+  auto options = std::make_shared<FidelityVerbOptions>();
+  playback::PlayOptions& play = options->fidelity.play;
+  play.device_uri = "sim:";
+  play.prepare.onset_s = 0.02;
+  app.add_option("TEXTURE", play.program.file, "Texture of force: stem or file name")->required();
+  app.add_option("-d,--device", play.device_uri, "Device: sim:, sim:hysteresis=0.16 ..., usb:")
+      ->capture_default_str();
+  app.add_option(
+      "--transducer", play.transducer,
+      "The model that is inverted: a preset or NAME.transducer.json; the device's own unless told");
+  app.add_option("--speed", options->speeds, "Of an emulated finger: one, or several between commas [50mm/s]")
+      ->delimiter(',');
+  cli::add_quantity(app, "--time", play.time_s, Dimension::time, "On a real device: how long [10 s]");
+  cli::add_quantity(app, "--gain", play.program.gain_m_per_n, Dimension::compliance,
+                    "Displacement for force, 1mm/N unless told");
+  cli::add_quantity(app, "--rate", play.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
+  app.add_option("-o,--output,--page", options->outputs,
+                 "What to write: a page (.html), results for 'report' (.results.json); may be given again");
+  return [options] { return run_fidelity(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kFidelityVerb{"fidelity",
+                              "Play a texture on a device, record what the tray does, and hold it against "
+                              "what was wanted: one number a tray and speed",
+                              "tactograph fidelity oak -o oak-fidelity.html\n  tactograph fidelity oak -d "
+                              "sim:hysteresis=0.16 --speed 25mm/s,100mm/s",
+                              declare_fidelity};
+
+}  // namespace tacto::analysis

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <memory>
+
+#include "analysis/cli/results_output.hpp"
+#include "analysis/cli/verbs.hpp"
+#include "analysis/report/project.hpp"
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/files.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using cli::Report;
+using schema::Result;
+
+struct ReportVerbOptions {
+  std::string folder, output;
+};
+
+Report file_row(const ProjectFile& file) {
+  Report row;
+  row.add("file", file.path).add("kind", schema::kind_name(file.kind)).add("date", file.date);
+  return row.add("source", file.origin)
+      .add("simulated", !file.simulated.empty())
+      .add("sha256", file.checksum);
+}
+
+Report project_report(const Project& project, const std::string& output) {
+  Report report;
+  std::vector<Report> rows, broken;
+  for (const ProjectFile& file : project.files) rows.push_back(file_row(file));
+  report.add("files", std::move(rows)).add("page", output);
+  for (const BrokenFile& file : project.broken)
+    broken.push_back(Report().add("file", file.path).add("fault", schema::message(file.error)));
+  if (project.broken.empty()) return report;
+  report.add("broken", std::move(broken)).ends_with(project.broken.front().error.fault);
+  return report;
+}
+
+void tell(const Project& project) {
+  for (const BrokenFile& file : project.broken) cli::warn("left out: " + schema::message(file.error));
+  for (const std::string& path : project.foreign) cli::warn(path + ": is no file of tactograph; only named");
+}
+
+Result<void> write_page(const Project& project, const std::string& output) {
+  const auto page = project_page(project);
+  if (!page) return schema::forward_error(page);
+  schema::PendingFiles files;
+  if (auto written = files.write(output, *page); !written) return written;
+  return files.commit();
+}
+
+Result<Report> run_report(const ReportVerbOptions& o) {
+  if (!o.output.ends_with(".html"))
+    return schema::fail(schema::Fault::usage, "doesn't end in .html", o.output, "a report is a page");
+  if (const auto free = check_outputs({o.output}); !free) return schema::forward_error(free);
+  cli::Progress progress("reading");
+  const auto project = read_project(o.folder, o.output, [&](double part) { progress.update(part); });
+  if (!project) return schema::forward_error(project);
+  tell(*project);
+  if (const auto written = write_page(*project, o.output); !written) return schema::forward_error(written);
+  return project_report(*project, o.output);
+}
+
+cli::Action declare_report(CLI::App& app) {
+  auto options = std::make_shared<ReportVerbOptions>();
+  options->output = "report.html";
+  app.add_option("FOLDER", options->folder,
+                 "A project: recordings, textures, transducers, sessions, results ...")
+      ->required();
+  app.add_option("-o,--output", options->output, "The page: NAME.html")->capture_default_str();
+  return [options] { return run_report(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kReportVerb{
+    "report", "Gather a folder's files into one page: what was measured where, with figures and pictures",
+    "tactograph report study -o study.html", declare_report};
+
+}  // namespace tacto::analysis

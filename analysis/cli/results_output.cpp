@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/cli/results_output.hpp"
+
+#include "data-schema/creation_time.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+bool is_page(const std::string& path) {
+  return path.ends_with(".html");
+}
+
+Result<void> check_output(const std::string& path) {
+  if (is_page(path))
+    return schema::check_table_free(
+        path, [](std::string_view line) { return line.starts_with("<!DOCTYPE html>"); });
+  if (path.ends_with(".json")) return schema::check_results_free(path);
+  return schema::fail(Fault::usage, "ends neither in .html nor in .json", path,
+                      "name a page (NAME.html) or results (NAME.results.json)");
+}
+
+}  // namespace
+
+Result<void> check_outputs(const std::vector<std::string>& outputs) {
+  for (const std::string& path : outputs)
+    if (const auto free = check_output(path); !free) return free;
+  return {};
+}
+
+Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Results results,
+                           const cli::Report& details, const std::function<Result<std::string>()>& page) {
+  results.details_json = details.json();
+  results.created = schema::creation_time();
+  results.creator = kCreator;
+  schema::PendingFiles files;
+  for (const std::string& path : outputs) {
+    const auto text = is_page(path) ? page() : schema::results_json(results);
+    if (!text) return schema::forward_error(text);
+    if (auto written = files.write(path, *text); !written) return written;
+  }
+  return files.commit();
+}
+
+}  // namespace tacto::analysis

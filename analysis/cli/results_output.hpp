@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where verbs of this folder put what they found: NAME.results.json, NAME.html.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "data-schema/cli/report.hpp"
+#include "data-schema/error.hpp"
+#include "data-schema/results.hpp"
+
+namespace tacto::analysis {
+
+/// That each may be written: .html (a file that begins with a doctype may be replaced) or .json (results
+/// may). Errors: usage, for another ending or a file that would be lost.
+schema::Result<void> check_outputs(const std::vector<std::string>& outputs);
+
+/// All of them together, or none. `details` is what the verb prints with --json; verb, figures, pictures and
+/// inputs are the caller's. Errors: those of `page`; cannot_write.
+schema::Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Results results,
+                                   const cli::Report& details,
+                                   const std::function<schema::Result<std::string>()>& page);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/compare/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/compare/band_sums.hpp"
+#include "data-schema/quantity.hpp"
+#include "spatial/spectrogram.hpp"
+#include "spatial/third_octaves.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Dimension;
+using schema::Fault;
+using schema::for_people;
+using schema::Result;
+
+constexpr double kShortestCompareWindow = 16;  // samples
+constexpr double kHannBandwidth = 1.5;         // bins
+constexpr double kParts = 8, kWavelengths = 8;
+
+double usual_window(const TexturePair& pair) {
+  const auto shorter = static_cast<double>(std::min(pair.a.size(), pair.b.size()));
+  const double longest = pair.low_per_m > 0 ? kWavelengths / (pair.low_per_m * pair.pitch_m) : INFINITY;
+  return std::max(kShortestCompareWindow, std::min(shorter / kParts, longest));
+}
+
+Result<std::size_t> compare_window(const TexturePair& pair, const CompareOptions& options) {
+  const auto shorter = static_cast<double>(std::min(pair.a.size(), pair.b.size()));
+  const double window = options.window_m ? *options.window_m / pair.pitch_m : usual_window(pair);
+  if (std::isfinite(window) && window >= kShortestCompareWindow - 0.5 && window * 1.5 < shorter + 0.5)
+    return static_cast<std::size_t>(std::llround(window));
+  return schema::fail(
+      options.window_m ? Fault::usage : Fault::unsuitable,
+      fmt::format("a window of {} can't be used on {}", for_people(window * pair.pitch_m, Dimension::length),
+                  for_people(shorter * pair.pitch_m, Dimension::length)),
+      "window", "two windows, half overlapping, have to fit, of 16 samples or more");
+}
+
+Result<void> set_band(Comparison& comparison) {
+  comparison.low_per_m = std::max(comparison.pair.low_per_m, kHannBandwidth / comparison.window_m);
+  comparison.high_per_m = comparison.pair.high_per_m;
+  if (comparison.low_per_m < comparison.high_per_m) return {};
+  return schema::fail(Fault::unsuitable,
+                      fmt::format("a window of {} sees nothing below {}, where what both know ends",
+                                  for_people(comparison.window_m, Dimension::length),
+                                  for_people(comparison.low_per_m, Dimension::spatial_frequency)),
+                      "A and B", "take longer textures");
+}
+
+BandComparison compared_band(const schema::ThirdOctaveBand& band, const BandSums& sums, double gain) {
+  BandComparison out{band.centre_per_m,
+                     band.low_per_m,
+                     band.high_per_m,
+                     band.partial,
+                     std::sqrt(sums.aa),
+                     std::sqrt(sums.bb),
+                     0,
+                     0,
+                     {},
+                     {},
+                     {}};
+  if (!sums.paired) return out;
+  out.error_db = sums.error_db();
+  out.residual_db = sums.residual_db(gain);
+  out.coherence = sums.coherence();
+  return out;
+}
+
+void compare_whole(Comparison& comparison, const BandSums& whole) {
+  comparison.a_rms = std::sqrt(whole.aa);
+  comparison.b_rms = std::sqrt(whole.bb);
+  comparison.power_level_db = 10 * std::log10(whole.bb / whole.aa);
+  if (!whole.paired) return;
+  comparison.gain = whole.gain();
+  comparison.error_db = whole.error_db();
+  comparison.residual_db = whole.residual_db(*comparison.gain);
+  comparison.coherence = whole.coherence();
+  comparison.point_by_point = *comparison.coherence > comparison.chance_coherence;
+}
+
+void compare_bands(Comparison& comparison, const SegmentSpectra& spectra,
+                   const std::vector<schema::ThirdOctaveBand>& bands) {
+  BandPowers powers{bands.size(), comparison.pair.paired, {}, {}};
+  for (const auto& band : bands) {
+    const double low = std::max(band.low_per_m, comparison.low_per_m);
+    const double high = std::min(band.high_per_m, comparison.high_per_m);
+    const BandSums sums = band_sums(comparison.spectra, low, high);
+    comparison.bands.push_back(compared_band(band, sums, comparison.gain.value_or(0)));
+    add_band(powers, spectra, low, high);
+  }
+  by_segment(powers);
+  comparison.evidence = evidence_of(powers, comparison.tolerance_db);
+  double squares = 0;
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    comparison.bands[i].level_db = comparison.evidence.band_db[i];
+    comparison.bands[i].scatter_db = comparison.evidence.scatter_db[i];
+    squares += std::pow(comparison.bands[i].level_db, 2);
+  }
+  comparison.spectral_distance_db = std::sqrt(squares / static_cast<double>(bands.size()));
+}
+
+Result<void> compare_spectra(Comparison& comparison, std::size_t window) {
+  const TexturePair& pair = comparison.pair;
+  const SegmentSpectra spectra = segment_spectra(pair.a, pair.b, pair.paired, pair.pitch_m, window,
+                                                 comparison.low_per_m, comparison.high_per_m);
+  comparison.spectra = mean_of(spectra);
+  comparison.chance_coherence =
+      chance_coherence(independent_segments(std::min(spectra.segments_a, spectra.segments_b)));
+  const BandSums whole = band_sums(comparison.spectra, comparison.low_per_m, comparison.high_per_m);
+  if (!(whole.aa > 0 && whole.bb > 0))
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("is silent from {} to {}", for_people(comparison.low_per_m, Dimension::spatial_frequency),
+                    for_people(comparison.high_per_m, Dimension::spatial_frequency)),
+        whole.aa > 0 ? "B" : "A", "nothing can be compared with silence");
+  compare_whole(comparison, whole);
+  compare_bands(comparison, spectra, spatial::third_octaves(comparison.low_per_m, comparison.high_per_m));
+  return {};
+}
+
+Result<std::vector<schema::Formant>> formants_in(const std::vector<double>& values,
+                                                 const Comparison& comparison,
+                                                 const CompareOptions& options) {
+  schema::Texture texture;
+  texture.signal = {comparison.pair.pitch_m, 0, values};
+  texture.quantity = comparison.pair.quantity;
+  texture.unit = comparison.pair.unit;
+  texture.valid_band = {{0, comparison.pair.low_per_m, comparison.pair.high_per_m}};
+  const auto spectrogram = spatial::spatial_spectrogram(texture, options.spectrogram);
+  if (!spectrogram) return schema::forward_error(spectrogram);
+  return spatial::find_formants(*spectrogram, options.formant);
+}
+
+void compare_formants(Comparison& comparison, const CompareOptions& options) {
+  if (!options.formants) return;
+  auto of_a = formants_in(comparison.pair.a, comparison, options);
+  auto of_b = formants_in(comparison.pair.b, comparison, options);
+  if (!of_a || !of_b) {
+    comparison.notes.push_back("formants are not compared: " +
+                               schema::message(of_a ? of_b.error() : of_a.error()));
+    return;
+  }
+  constexpr double kBlackmanResolution = 1.7268;  // as spatial/formants links points
+  comparison.a_formants = std::move(*of_a);
+  comparison.b_formants = std::move(*of_b);
+  comparison.formant_resolution_per_m = kBlackmanResolution / options.spectrogram.window_m;
+  comparison.formants = match_formants(comparison.a_formants, comparison.b_formants,
+                                       comparison.formant_resolution_per_m, comparison.pair.paired);
+}
+
+void note_likeness(Comparison& comparison) {
+  if (!comparison.point_by_point) return;
+  if (*comparison.gain < 0) comparison.notes.emplace_back("B is A upside down: the gain is negative");
+}
+
+}  // namespace
+
+Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b,
+                           const CompareOptions& options) {
+  if (!(options.tolerance_db > 0 && std::isfinite(options.tolerance_db)))
+    return schema::fail(Fault::usage, "the tolerance has to be above 0 dB", "tolerance");
+  auto pair = pair_textures(a, b, options.pair);
+  if (!pair) return schema::forward_error(pair);
+  const auto window = compare_window(*pair, options);
+  if (!window) return schema::forward_error(window);
+  Comparison comparison;
+  comparison.pair = std::move(*pair);
+  comparison.notes = comparison.pair.notes;
+  comparison.window_m = static_cast<double>(*window) * comparison.pair.pitch_m;
+  comparison.tolerance_db = options.tolerance_db;
+  comparison.a_simulated = a.simulated;
+  comparison.b_simulated = b.simulated;
+  if (const auto band = set_band(comparison); !band) return schema::forward_error(band);
+  if (const auto done = compare_spectra(comparison, *window); !done) return schema::forward_error(done);
+  comparison.verdict = verdict_of(comparison.evidence, comparison.tolerance_db);
+  compare_formants(comparison, options);
+  note_likeness(comparison);
+  return comparison;
+}
+
+}  // namespace tacto::analysis

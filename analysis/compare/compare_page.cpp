@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/compare/compare_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/html.hpp"
+#include "analysis/picture_svg.hpp"
+#include "data-schema/quantity.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Dimension;
+using schema::for_people;
+using schema::ResultCurve;
+using schema::ResultPicture;
+
+constexpr std::size_t kMostPoints = 2000;
+constexpr double kPerMm = 1e-3;  // 1/m as 1/mm
+constexpr const char* kFrequencyLabel = "spatial frequency (1/mm)";
+
+std::string signal_label(const TexturePair& pair) {
+  if (pair.unit == "N") return "force (mN)";
+  if (pair.unit == "m") return pair.quantity + " (µm)";
+  return fmt::format("{} ({})", pair.quantity, pair.unit);
+}
+
+double shown_scale(const std::string& unit) {
+  if (unit == "N") return 1e3;
+  return unit == "m" ? 1e6 : 1;
+}
+
+// Densities as the mean over bins that fall into one of so many steps of a logarithmic axis.
+ResultCurve density_curve(const Comparison& c, const std::string& name, const std::vector<double>& density) {
+  ResultCurve curve{name, {}, {}, false};
+  const double scale = std::pow(shown_scale(c.pair.unit), 2) * kPerMm;
+  constexpr double kStepsADecade = 200;
+  double sum = 0, frequencies = 0, count = 0;
+  long step = 0;
+  const auto flush = [&] {
+    if (count > 0 && sum > 0) {
+      curve.x.push_back(kPerMm * frequencies / count);
+      curve.y.push_back(10 * std::log10(scale * sum / count));
+    }
+    sum = frequencies = count = 0;
+  };
+  for (std::size_t k = 0; k < density.size(); ++k) {
+    const double frequency = c.spectra.frequency[k];
+    if (frequency < c.low_per_m || frequency > c.high_per_m) continue;
+    const long next = std::lround(std::floor(kStepsADecade * std::log10(frequency)));
+    if (next != step) flush();
+    step = next;
+    sum += density[k], frequencies += frequency, count += 1;
+  }
+  flush();
+  return curve;
+}
+
+// A step curve: each band's value from its lower to its upper edge.
+template <class Value>
+ResultCurve band_curve(const Comparison& c, const std::string& name, bool dashed, Value value) {
+  ResultCurve curve{name, {}, {}, dashed};
+  for (const BandComparison& band : c.bands)
+    for (const double edge :
+         {std::max(band.low_per_m, c.low_per_m), std::min(band.high_per_m, c.high_per_m)}) {
+      curve.x.push_back(kPerMm * edge);
+      curve.y.push_back(value(band));
+    }
+  return curve;
+}
+
+ResultPicture spectra_picture(const Comparison& c, const ComparedNames& names) {
+  const std::string unit = c.pair.unit == "N"   ? "mN² mm"
+                           : c.pair.unit == "m" ? "µm² mm"
+                                                : c.pair.unit + "² mm";
+  return {"Spectra (Welch)",
+          kFrequencyLabel,
+          fmt::format("density (dB re 1 {})", unit),
+          true,
+          {density_curve(c, names.a, c.spectra.aa), density_curve(c, names.b, c.spectra.bb)}};
+}
+
+ResultPicture difference_picture(const Comparison& c) {
+  ResultPicture picture{
+      "Difference by one-third-octave band: B over A", kFrequencyLabel, "level (dB)", true, {}};
+  picture.curves.push_back(band_curve(c, "level", false, [](const auto& b) { return b.level_db; }));
+  picture.curves.push_back(band_curve(c, "± 2 standard errors", true,
+                                      [](const auto& b) { return b.level_db + 2 * b.scatter_db; }));
+  picture.curves.push_back(
+      band_curve(c, "", true, [](const auto& b) { return b.level_db - 2 * b.scatter_db; }));
+  if (c.pair.paired)
+    picture.curves.push_back(
+        band_curve(c, "error of B re A", false, [](const auto& b) { return b.error_db.value_or(NAN); }));
+  return picture;
+}
+
+ResultPicture coherence_picture(const Comparison& c) {
+  ResultCurve coherence{"coherence", {}, {}, false};
+  const std::size_t step = c.spectra.frequency.size() / kMostPoints + 1;
+  for (std::size_t k = 0; k < c.spectra.frequency.size(); k += step) {
+    if (c.spectra.frequency[k] < c.low_per_m || c.spectra.frequency[k] > c.high_per_m) continue;
+    coherence.x.push_back(kPerMm * c.spectra.frequency[k]);
+    coherence.y.push_back(c.spectra.coherence[k]);
+  }
+  ResultCurve chance{"chance, once in 20", {kPerMm * c.low_per_m, kPerMm * c.high_per_m}, {}, true};
+  chance.y.assign(2, c.chance_coherence);
+  return {"Coherence, magnitude-squared",
+          kFrequencyLabel,
+          "coherence",
+          true,
+          {std::move(coherence), std::move(chance)}};
+}
+
+// The middle of the stretch, so long that single waves show.
+ResultPicture signal_picture(const Comparison& c, const ComparedNames& names) {
+  const std::size_t size = std::min(c.pair.a.size(), c.pair.b.size());
+  const double wave_m = 40 / std::sqrt(c.low_per_m * c.high_per_m);
+  const auto shown = std::min(size, static_cast<std::size_t>(wave_m / c.pair.pitch_m) + 2);
+  const std::size_t first = (size - shown) / 2, step = shown / kMostPoints + 1;
+  ResultPicture picture{"The middle of the stretch that is compared",
+                        "position in A (mm)",
+                        signal_label(c.pair),
+                        false,
+                        {{names.a, {}, {}, false}, {names.b, {}, {}, true}}};
+  const double scale = shown_scale(c.pair.unit);
+  for (std::size_t i = first; i < first + shown; i += step) {
+    const double position_mm = 1e3 * (c.pair.a_from_m + static_cast<double>(i) * c.pair.pitch_m);
+    for (ResultCurve& curve : picture.curves) curve.x.push_back(position_mm);
+    picture.curves[0].y.push_back(scale * c.pair.a[i]);
+    picture.curves[1].y.push_back(scale * c.pair.b[i]);
+  }
+  return picture;
+}
+
+std::string optional_db(const std::optional<double>& value) {
+  return value ? fmt::format("{:.1f} dB", *value) : "";
+}
+
+std::string bands_table(const Comparison& c) {
+  std::vector<std::vector<std::string>> rows = {
+      {"band (1/mm)", "B over A", "± standard error", "error re A", "residual after the gain", "coherence"}};
+  for (const BandComparison& band : c.bands)
+    rows.push_back({fmt::format("{:.3g}{}", kPerMm * band.centre_per_m, band.partial ? " (part)" : ""),
+                    fmt::format("{:+.1f} dB", band.level_db), fmt::format("{:.1f} dB", band.scatter_db),
+                    optional_db(band.error_db), optional_db(band.residual_db),
+                    band.coherence ? fmt::format("{:.2f}", *band.coherence) : ""});
+  return html_table(rows);
+}
+
+std::string formants_table(const Comparison& c) {
+  std::vector<std::vector<std::string>> rows = {{"formant", "A (1/mm)", "B (1/mm)", "level, B over A"}};
+  const auto place = [](const schema::Formant& f) {
+    return fmt::format("{:.3f}", kPerMm * f.frequency_per_m);
+  };
+  for (const auto& [i, j] : c.formants.matched)
+    rows.push_back({"matched", place(c.a_formants[i]), place(c.b_formants[j]),
+                    fmt::format("{:+.1f} dB", c.b_formants[j].level_db - c.a_formants[i].level_db)});
+  for (const std::size_t i : c.formants.missed)
+    rows.push_back({"missed in B", place(c.a_formants[i]), "", ""});
+  for (const std::size_t j : c.formants.extra) rows.push_back({"extra in B", "", place(c.b_formants[j]), ""});
+  return rows.size() == 1 ? "<p>Neither has formants.</p>\n" : html_table(rows);
+}
+
+std::string simulated_of(const Comparison& c) {
+  if (c.a_simulated.empty() || c.b_simulated.empty()) {
+    if (c.a_simulated.empty() && c.b_simulated.empty()) return "";
+    return c.a_simulated.empty() ? "B " + c.b_simulated : "A " + c.a_simulated;
+  }
+  return c.a_simulated;
+}
+
+}  // namespace
+
+std::vector<ResultPicture> comparison_pictures(const Comparison& c, const ComparedNames& names) {
+  std::vector<ResultPicture> pictures = {spectra_picture(c, names), difference_picture(c)};
+  if (!c.pair.paired) return pictures;
+  pictures.push_back(coherence_picture(c));
+  pictures.push_back(signal_picture(c, names));
+  return pictures;
+}
+
+std::vector<schema::ResultFigure> comparison_figures(const Comparison& c) {
+  std::vector<schema::ResultFigure> figures = {
+      {"verdict", fmt::format("{}: {}", word_of(c.verdict.likeness), c.verdict.because)},
+      {"compared",
+       fmt::format("{} from {} on in A, {} to {}", for_people(c.pair.length_m(), Dimension::length),
+                   for_people(c.pair.a_from_m, Dimension::length),
+                   for_people(c.low_per_m, Dimension::spatial_frequency),
+                   for_people(c.high_per_m, Dimension::spatial_frequency))},
+      {"level, B over A", fmt::format("{:+.2f} dB", c.evidence.level_db)},
+      {"spectral distance",
+       fmt::format("{:.2f} dB RMS over {} bands", c.spectral_distance_db, c.bands.size())},
+      {"formants", fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),
+                               c.formants.missed.size(), c.formants.extra.size())}};
+  if (!c.pair.paired) return figures;
+  figures.push_back(
+      {"coherence", fmt::format("{:.2f}; chance {:.2f}: {}", *c.coherence, c.chance_coherence,
+                                c.point_by_point ? "one place, point by point" : "not point by point")});
+  figures.push_back({"gain, least squares", fmt::format("{:.3g}", *c.gain)});
+  figures.push_back({"error of B re A", optional_db(c.error_db)});
+  figures.push_back({"what no gain takes away, re B", optional_db(c.residual_db)});
+  return figures;
+}
+
+schema::Result<std::string> comparison_page(const Comparison& c, const ComparedNames& names) {
+  const std::string simulated = simulated_of(c);
+  const auto pictures = pictures_html(comparison_pictures(c, names), simulated);
+  if (!pictures) return schema::forward_error(pictures);
+  std::string body = fmt::format("<h1>{}</h1>\n<p>A is {}, B is {}.</p>\n", word_of(c.verdict.likeness),
+                                 escaped(names.a), escaped(names.b));
+  if (!simulated.empty())
+    body += fmt::format("<p class=\"simulated\"><strong>Simulated</strong> {}.</p>\n", escaped(simulated));
+  body += figures_html(comparison_figures(c));
+  for (const std::string& note : c.notes) body += fmt::format("<p class=\"note\">{}</p>\n", escaped(note));
+  body += *pictures + "<h2>By band</h2>\n" + bands_table(c) + "<h2>Formants</h2>\n" + formants_table(c);
+  return html_document(fmt::format("{} against {}: {}", names.b, names.a, word_of(c.verdict.likeness)), body);
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a session's finger received, as a texture, and what it was to receive.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "data-schema/error.hpp"
+#include "data-schema/session.hpp"
+#include "data-schema/texture.hpp"
+
+namespace tacto::analysis {
+
+/// One stroke of a session: the displacement that the recorded drive makes of the transducer's model (no
+/// finger's load, no hysteresis: playback::received_displacement_m), m, against the encoder's position.
+struct PlayedTexture {
+  schema::Texture texture;
+  schema::SessionHeader header;
+  std::size_t stroke = 0, strokes = 0;  ///< 1-based, of so many
+  double gain = 1;                      ///< factor on the textures' own gains
+};
+
+/// `stroke` is 1-based; 0 takes the longest. Errors: as read_session_columns, texture_along; usage: no such
+/// stroke; unsuitable: no stroke of 5 mm, ticks missing, a gain or texture that changes within the stroke.
+schema::Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke);
+
+/// A texture as the session's finger was to feel it: force times gain, where it lay. `file` names it, by stem
+/// or in full. Errors: unsuitable: not the samples that were played (by SHA-256); not_found.
+schema::Result<schema::Texture> wanted_of(const schema::Texture& texture, const std::string& file,
+                                          const PlayedTexture& played);
+
+}  // namespace tacto::analysis

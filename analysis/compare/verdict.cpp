@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/compare/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <span>
+
+namespace tacto::analysis {
+namespace {
+
+constexpr std::size_t kDraws = 1000;
+constexpr std::uint64_t kDrawSeed = 6;
+constexpr double kFloorDb = 60;  // below it lies what windows and converters leave, not the texture
+
+double db_of(double ratio) {
+  return 10 * std::log10(ratio);
+}
+
+// One-sided 95 % of Student's t: the normal's quantile and its expansion (Abramowitz and Stegun 26.7.5);
+// within 0.5 % from 5 degrees on.
+double student_t(double degrees) {
+  constexpr double z = 1.644854, z3 = z * z * z, z5 = z3 * z * z;
+  return z + (z3 + z) / (4 * degrees) + (5 * z5 + 16 * z3 + 3 * z) / (96 * degrees * degrees);
+}
+
+using Bands = std::vector<double>;
+
+Bands summed(std::span<const double> rows, std::size_t bands, std::span<const std::size_t> drawn) {
+  Bands sum(bands, 0.0);
+  for (const std::size_t row : drawn)
+    for (std::size_t b = 0; b < bands; ++b) sum[b] += rows[row * bands + b];
+  const double least = *std::ranges::max_element(sum) * std::pow(10, -kFloorDb / 10);
+  for (double& power : sum) power = std::max(power, least) / static_cast<double>(drawn.size());
+  return sum;
+}
+
+Bands differences_db(const Bands& a, const Bands& b) {
+  Bands out(a.size());
+  std::ranges::transform(a, b, out.begin(), [](double x, double y) { return db_of(y / x); });
+  return out;
+}
+
+std::vector<std::size_t> all_rows(std::size_t rows) {
+  std::vector<std::size_t> all(rows);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+std::vector<std::size_t> some_rows(std::size_t rows, std::mt19937_64& random) {
+  std::vector<std::size_t> drawn(rows);
+  for (std::size_t& row : drawn) row = random() % rows;
+  return drawn;
+}
+
+// Deviations of the bands' differences from what was seen, a draw a row.
+std::vector<Bands> drawn_deviations(const BandPowers& powers, const Bands& seen) {
+  std::mt19937_64 random(kDrawSeed);
+  const std::size_t rows_a = powers.a.size() / powers.bands, rows_b = powers.b.size() / powers.bands;
+  const auto n = static_cast<double>(std::min(rows_a, rows_b));
+  const double widened = std::sqrt(n / (n - 1) * 19.0 / 18);
+  std::vector<Bands> draws(kDraws);
+  for (Bands& draw : draws) {
+    const auto of_a = some_rows(rows_a, random);
+    const auto of_b = powers.paired ? of_a : some_rows(rows_b, random);
+    draw = differences_db(summed(powers.a, powers.bands, of_a), summed(powers.b, powers.bands, of_b));
+    for (std::size_t b = 0; b < draw.size(); ++b) draw[b] = widened * (draw[b] - seen[b]);
+  }
+  return draws;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  const double sum = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double weighted_mean(const Bands& values, const Bands& weights) {
+  return std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
+}
+
+// About the weighted mean; weights sum to 1.
+double shape_of(const Bands& values, const Bands& weights) {
+  const double mean = weighted_mean(values, weights);
+  double sum = 0;
+  for (std::size_t b = 0; b < values.size(); ++b) sum += weights[b] * std::pow(values[b] - mean, 2);
+  return std::sqrt(sum);
+}
+
+Bands scatter_of(const std::vector<Bands>& draws, std::size_t bands) {
+  Bands scatter(bands);
+  for (std::size_t b = 0; b < bands; ++b) {
+    std::vector<double> column;
+    for (const Bands& draw : draws) column.push_back(draw[b]);
+    scatter[b] = root_mean_square(column);
+  }
+  return scatter;
+}
+
+Bands weights_of(const Bands& scatter, double tolerance_db) {
+  Bands weights;
+  for (const double s : scatter) weights.push_back(1 / (s * s + tolerance_db * tolerance_db));
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
+void judge_level(Evidence& evidence, const std::vector<Bands>& draws, const Bands& weights) {
+  std::vector<double> levels;
+  for (const Bands& draw : draws) levels.push_back(weighted_mean(draw, weights));
+  const double reach = student_t(static_cast<double>(evidence.segments - 1)) * root_mean_square(levels);
+  evidence.level_db = weighted_mean(evidence.band_db, weights);
+  evidence.level_low_db = evidence.level_db - reach;
+  evidence.level_high_db = evidence.level_db + reach;
+}
+
+void judge_shape(Evidence& evidence, const std::vector<Bands>& draws, const Bands& weights) {
+  std::vector<double> shapes;
+  for (const Bands& draw : draws) shapes.push_back(shape_of(draw, weights));
+  const double mean_square = std::pow(root_mean_square(shapes), 2);
+  std::ranges::sort(shapes);
+  evidence.shape_db = shape_of(evidence.band_db, weights);
+  evidence.shape_chance_db = shapes[kDraws * 95 / 100];
+  evidence.shape_excess_db = std::sqrt(std::max(0.0, std::pow(evidence.shape_db, 2) - mean_square));
+  evidence.finest_shape_db = std::sqrt(std::max(0.0, std::pow(evidence.shape_chance_db, 2) - mean_square));
+}
+
+std::string level_words(const Evidence& e) {
+  return fmt::format("level {:+.1f} dB ({:+.1f} to {:+.1f})", e.level_db, e.level_low_db, e.level_high_db);
+}
+
+Verdict by_level(const Evidence& e, double tolerance_db) {
+  const std::string shape =
+      fmt::format("shape alike ({:.1f} dB, chance up to {:.1f} dB)", e.shape_db, e.shape_chance_db);
+  const std::string words = shape + ", " + level_words(e);
+  const bool certain = e.level_low_db > 0 || e.level_high_db < 0;
+  if (certain && std::abs(e.level_db) > tolerance_db)
+    return {e.level_db > 0 ? Likeness::louder : Likeness::quieter, words};
+  if (e.level_low_db >= -tolerance_db && e.level_high_db <= tolerance_db)
+    return {Likeness::same, fmt::format("{}, within {:g} dB", words, tolerance_db)};
+  return {Likeness::undecided,
+          fmt::format("{}: it reaches beyond {:g} dB, but may be 0 or within it", words, tolerance_db)};
+}
+
+}  // namespace
+
+std::string_view word_of(Likeness likeness) {
+  constexpr std::array<std::string_view, 5> kWords = {"same", "louder", "quieter", "different", "undecided"};
+  return kWords[static_cast<std::size_t>(likeness)];
+}
+
+Evidence evidence_of(const BandPowers& powers, double tolerance_db) {
+  const std::size_t rows_a = powers.a.size() / powers.bands, rows_b = powers.b.size() / powers.bands;
+  Evidence evidence;
+  evidence.bands = powers.bands;
+  evidence.segments = std::min(rows_a, rows_b);
+  evidence.band_db = differences_db(summed(powers.a, powers.bands, all_rows(rows_a)),
+                                    summed(powers.b, powers.bands, all_rows(rows_b)));
+  const auto draws = drawn_deviations(powers, evidence.band_db);
+  evidence.scatter_db = scatter_of(draws, powers.bands);
+  const Bands weights = weights_of(evidence.scatter_db, tolerance_db);
+  judge_level(evidence, draws, weights);
+  judge_shape(evidence, draws, weights);
+  return evidence;
+}
+
+Verdict verdict_of(const Evidence& e, double tolerance_db) {
+  if (e.segments < kFewestSegments)
+    return {Likeness::undecided, fmt::format("too short: {} segments of the window, {} are the fewest",
+                                             e.segments, kFewestSegments)};
+  if (e.bands < kFewestBands)
+    return {Likeness::undecided,
+            fmt::format("too little in common: {} one-third-octave bands, an octave ({}) is the least",
+                        e.bands, kFewestBands)};
+  if (e.shape_db > e.shape_chance_db && e.shape_excess_db > tolerance_db)
+    return {Likeness::different, fmt::format("the bands differ by {:.1f} dB RMS about their mean; the "
+                                             "scatter of the parts makes up to {:.1f} dB; {}",
+                                             e.shape_db, e.shape_chance_db, level_words(e))};
+  if (e.finest_shape_db > tolerance_db)
+    return {Likeness::undecided, fmt::format("too noisy: only differences in shape above {:.1f} dB would "
+                                             "show over the scatter of the parts; {}",
+                                             e.finest_shape_db, level_words(e))};
+  return by_level(e, tolerance_db);
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/fidelity/emulated_pass.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "analysis/fidelity/scratch_folder.hpp"
+#include "data-schema/files.hpp"
+#include "playback/kernel_drive.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using playback::FingerPath;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kBesideS = 0.25;  // in which the drive rises before the texture begins
+
+FingerPath straight_path(const schema::Texture& texture, double at_m, double speed_mps) {
+  const double way_m = texture.signal.length_m() + 2 * kBesideS * speed_mps;
+  const double from_m = at_m - kBesideS * speed_mps;
+  return {{0, way_m / speed_mps}, {from_m, from_m + way_m}};
+}
+
+Result<void> write_path(const std::string& file, const FingerPath& path) {
+  std::string text = "time_s,position_m\n";
+  for (std::size_t i = 0; i < path.time_s.size(); ++i)
+    text += fmt::format("{},{}\n", path.time_s[i], path.position_m[i]);
+  schema::PendingFiles files;
+  if (auto written = files.write(file, text); !written) return written;
+  return files.commit();
+}
+
+// Tick i is (i + 1) periods after arming, when the emulated finger set out.
+std::vector<double> true_positions(const FingerPath& path, double rate_hz, std::size_t ticks) {
+  auto positions = playback::positions_along(path, rate_hz, ticks + 1);
+  positions.erase(positions.begin());
+  return positions;
+}
+
+Result<void> check_counts(const EmulatedPass& pass) {
+  const double step_m = pass.columns.header.metres_per_count;
+  for (std::size_t i = 0; i < pass.position_m.size(); ++i)
+    if (std::abs(pass.columns.position_m[i] - pass.position_m[i]) > 1.01 * step_m)
+      return schema::fail(Fault::internal, "the emulated finger was not where its path is",
+                          fmt::format("tick {}", pass.columns.tick[i]));
+  return {};
+}
+
+// The same kernel once more, beside the device, for what it wished before the limits.
+Result<void> count_limits(const playback::PlayOptions& options, const FingerPath& path, EmulatedPass& pass) {
+  playback::PrepareOptions prepare = options.prepare;
+  prepare.metres_per_count = pass.columns.header.metres_per_count;
+  const auto& transducer =
+      options.transducer.empty() ? pass.columns.header.transducer.name : options.transducer;
+  const auto program = playback::make_program(options.program, transducer, prepare);
+  if (!program) return schema::forward_error(program);
+  const auto drive = playback::kernel_drive(program->prepared, path, prepare, pass.columns.tick.size());
+  pass.removed_db = drive.tally.removed_db();
+  pass.amplitude_limited = drive.tally.amplitude_limited();
+  pass.slew_limited = drive.tally.slew_limited();
+  return {};
+}
+
+Result<void> check_played(const EmulatedPass& pass, const std::string& device) {
+  if (pass.outcome.status.state == playback::PlayerState::fault)
+    return schema::fail(Fault::device, "playing ended in a fault: " + pass.outcome.status.fault, device);
+  if (pass.columns.lost_at)
+    return schema::fail(Fault::device, fmt::format("{} ticks were lost", pass.columns.lost), device);
+  return check_counts(pass);
+}
+
+}  // namespace
+
+Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::PlayOptions options,
+                                   double speed_mps) {
+  const auto scratch = ScratchFolder::make();
+  if (!scratch) return schema::forward_error(scratch);
+  const FingerPath path = straight_path(texture, options.program.at_m.value_or(0), speed_mps);
+  options.finger_path = *scratch / "path.csv";
+  options.session = *scratch / "pass.session";
+  if (const auto written = write_path(options.finger_path, path); !written)
+    return schema::forward_error(written);
+  auto outcome = playback::play_once(options, [] { return false; });
+  if (!outcome) return schema::forward_error(outcome);
+  auto columns = playback::read_session_columns(options.session);
+  if (!columns) return schema::forward_error(columns);
+  EmulatedPass pass{std::move(*columns), std::move(*outcome), {}, -300, 0, 0};
+  // The ramp at the end outlasts the path, where the finger rests.
+  const auto along = static_cast<std::size_t>(path.duration_s() * pass.columns.header.rate_hz);
+  pass.position_m =
+      true_positions(path, pass.columns.header.rate_hz, std::min(along, pass.columns.tick.size()));
+  if (const auto played = check_played(pass, options.device_uri); !played)
+    return schema::forward_error(played);
+  if (const auto counted = count_limits(options, path, pass); !counted) return schema::forward_error(counted);
+  return pass;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One pass over a texture on the emulated device, at one speed, through the whole way of playback.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "data-schema/error.hpp"
+#include "data-schema/texture.hpp"
+#include "playback/daemon/play.hpp"
+#include "playback/daemon/session_columns.hpp"
+
+namespace tacto::analysis {
+
+struct EmulatedPass {
+  playback::SessionColumns columns;  ///< the drive as it was sent, tick by tick
+  playback::PlayOutcome outcome;
+  std::vector<double>
+      position_m;            ///< where the finger was at each tick, exactly: the encoder knows it to a count
+  double removed_db = -300;  ///< RMS of what the limits took from the drive, re the drive that was wished
+  std::uint64_t amplitude_limited = 0, slew_limited = 0;  ///< ticks
+};
+
+/// Texture, upload over the wire, the firmware's kernel on the emulated encoder's counts, session: as
+/// `tactograph play`. The finger goes at `speed_mps` from 0.25 s before the texture to 0.25 s behind it.
+/// `options` names program, device and preparation; path, time and session are filled in. Errors: as
+/// play_once; internal: the session's counts are not the path's.
+schema::Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::PlayOptions options,
+                                           double speed_mps);
+
+}  // namespace tacto::analysis

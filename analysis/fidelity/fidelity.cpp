@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/fidelity/fidelity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/compare/along_path.hpp"
+#include "analysis/compare/band_sums.hpp"
+#include "analysis/compare/played_texture.hpp"
+#include "analysis/fidelity/emulated_pass.hpp"
+#include "analysis/fidelity/felt.hpp"
+#include "analysis/fidelity/scratch_folder.hpp"
+#include "analysis/fidelity/trays.hpp"
+#include "data-schema/quantity.hpp"
+#include "playback/finger_path.hpp"
+#include "spatial/steady_part.hpp"
+#include "spatial/valid_band.hpp"
+#include "spatial/welch.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+using schema::Texture;
+
+constexpr double kLeftOutS = 0.05, kFadeM = 1e-3;  // left out at either end of the texture
+constexpr double kFarthestShiftM = 50e-6;
+constexpr double kUsualFidelityGain = 1e-3;
+
+double gain_of(const FidelityOptions& options) {
+  return options.play.program.gain_m_per_n.value_or(kUsualFidelityGain);
+}
+
+// A stretch of samples over time, and where the finger was.
+struct Stretch {
+  std::vector<double> position_m;
+  std::size_t first = 0, count = 0;
+  double rate_hz = 0;
+};
+
+Result<Stretch> judged_stretch(const EmulatedPass& pass, const Texture& texture, double at_m,
+                               double speed_mps) {
+  const std::size_t fine = samples_a_tick(pass.columns.header.rate_hz);
+  Stretch stretch;
+  stretch.rate_hz = pass.columns.header.rate_hz * static_cast<double>(fine);
+  const auto path = playback::finger_path_of({pass.columns.header.rate_hz, 0, pass.position_m});
+  const std::size_t samples = (pass.position_m.size() - 1) * fine;
+  const auto all = playback::positions_along(path, stretch.rate_hz, samples);
+  const double margin_m = kFadeM + kLeftOutS * speed_mps;
+  const auto first = std::ranges::lower_bound(all, at_m + margin_m);
+  const auto last = std::ranges::upper_bound(all, at_m + texture.signal.length_m() - margin_m);
+  if (last <= first)
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("is {} long, too short for {}",
+                                    schema::for_people(texture.signal.length_m(), schema::Dimension::length),
+                                    schema::for_people(speed_mps, schema::Dimension::speed)),
+                        "texture", "play it slower");
+  stretch.first = static_cast<std::size_t>(first - all.begin());
+  stretch.count = static_cast<std::size_t>(last - first);
+  stretch.position_m.assign(first, last);
+  return stretch;
+}
+
+Result<Texture> along_stretch(const std::vector<double>& values, const Stretch& stretch,
+                              const spatial::Band& band) {
+  SignalAlongPath signal;
+  signal.values = std::span(values).subspan(stretch.first, stretch.count);
+  signal.position_m = stretch.position_m;
+  signal.rate_hz = stretch.rate_hz;
+  signal.band = band;
+  signal.quantity = "displacement";
+  signal.unit = "m";
+  return texture_along(signal);
+}
+
+void judge(FidelityRow& row) {
+  const Comparison& c = row.comparison;
+  const ShiftedError shifted = shifted_error(c.spectra, c.low_per_m, c.high_per_m, kFarthestShiftM);
+  row.error_db = shifted.error_db;
+  row.shift_m = shifted.shift;
+  row.error_in_place_db = *c.error_db;
+  row.level_db = c.power_level_db;
+  row.wanted_rms_m = c.a_rms;
+  row.felt_rms_m = c.b_rms;
+}
+
+Result<FidelityRow> compared_row(const std::string& tray, const Texture& wanted, const Texture& felt) {
+  CompareOptions options;
+  options.formants = false;
+  auto comparison = compare(wanted, felt, options);
+  if (!comparison) return schema::forward_error(comparison);
+  FidelityRow row;
+  row.tray = tray;
+  row.comparison = std::move(*comparison);
+  judge(row);
+  return row;
+}
+
+// How much of the texture's power, in what it knows, lies within the band at a speed.
+double kept_percent(const Texture& texture, double speed_mps, const spatial::Band& band) {
+  const auto part = spatial::steady_part(texture).texture;
+  const std::size_t window = part.signal.values.size() / 4;
+  if (window < spatial::kShortestWelchWindow) return 100;
+  const spatial::WelchSpectrum spectrum(part.signal.values, part.signal.pitch_m, window);
+  schema::BandPoint known{0, 0, INFINITY};
+  if (!part.valid_band.empty()) known = spatial::band_throughout(part.valid_band);
+  const double low = std::max(known.low_per_m, spectrum.step());
+  const double high = std::min(known.high_per_m, 0.5 / part.signal.pitch_m);
+  if (!(low < high)) return 100;
+  const double from = std::clamp(band.low_hz / speed_mps, low, high);
+  const double to = std::clamp(band.high_hz / speed_mps, low, high);
+  const double all = spectrum.power(low, high);
+  return all > 0 ? 100 * spectrum.power(from, to) / all : 100;
+}
+
+FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double speed_mps) {
+  FidelitySpeed speed;
+  speed.speed_mps = speed_mps;
+  speed.low_hz = pass.columns.header.low_hz;
+  speed.high_hz = pass.columns.header.high_hz;
+  speed.band_kept_percent = kept_percent(texture, speed_mps, {speed.low_hz, speed.high_hz});
+  speed.drive_peak_v = pass.outcome.status.ticks.drive_peak_v();
+  speed.drive_limit_v = pass.columns.header.transducer.drive_limit_v;
+  speed.ticks = pass.columns.tick.size();
+  speed.amplitude_limited = pass.amplitude_limited;
+  speed.slew_limited = pass.slew_limited;
+  speed.removed_db = pass.removed_db;
+  speed.delay_left_s = pass.outcome.delay_left_s;
+  speed.inverse_error_db = pass.outcome.inverse_error_db;
+  speed.notes = pass.outcome.notes;
+  return speed;
+}
+
+// Wanted once, felt once for each tray.
+Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Texture& texture,
+                                     const Trays& trays, double speed_mps) {
+  const auto pass = emulated_pass(texture, options.play, speed_mps);
+  if (!pass) return schema::forward_error(pass);
+  FidelitySpeed speed = speed_of(*pass, texture, speed_mps);
+  const spatial::Band band{speed.low_hz, speed.high_hz};
+  const double at_m = options.play.program.at_m.value_or(0);
+  const auto stretch = judged_stretch(*pass, texture, at_m, speed_mps);
+  if (!stretch) return schema::forward_error(stretch);
+  const auto wanted_m = wanted_displacement_m(*pass, texture, at_m, gain_of(options), band);
+  const auto wanted = along_stretch(wanted_m, *stretch, band);
+  if (!wanted) return schema::forward_error(wanted);
+  for (const Tray& tray : trays.trays) {
+    auto felt_m = felt_displacement_m(*pass, trays.transducer, tray.physics);
+    if (tray.sensor) felt_m = through_sensor(felt_m, stretch->rate_hz, trays.transducer);
+    const auto felt = along_stretch(in_band(felt_m, stretch->rate_hz, band), *stretch, band);
+    if (!felt) return schema::forward_error(felt);
+    auto row = compared_row(tray.name, *wanted, *felt);
+    if (!row) return schema::forward_error(row);
+    speed.rows.push_back(std::move(*row));
+  }
+  return speed;
+}
+
+Result<Fidelity> emulated_fidelity(const FidelityOptions& options, const Texture& texture,
+                                   const std::function<void(double)>& progress) {
+  const auto trays = trays_of(options.play.device_uri);
+  if (!trays) return schema::forward_error(trays);
+  Fidelity whole;
+  whole.simulated = trays->simulated;
+  whole.displacement =
+      "the emulated tray's, integrated from its equations of motion under the session's drive";
+  for (const double speed_mps : options.speeds_mps) {
+    if (progress)
+      progress(static_cast<double>(whole.speeds.size()) / static_cast<double>(options.speeds_mps.size()));
+    auto speed = emulated_speed(options, texture, *trays, speed_mps);
+    if (!speed) return schema::forward_error(speed);
+    whole.speeds.push_back(std::move(*speed));
+  }
+  return whole;
+}
+
+// Of a real device: what its recorded drive would do to the model, in somebody's longest stroke.
+Result<Fidelity> modelled_fidelity(const FidelityOptions& options, const Texture& texture,
+                                   const std::function<void(double)>& progress) {
+  const auto scratch = ScratchFolder::make();
+  if (!scratch) return schema::forward_error(scratch);
+  playback::PlayOptions play = options.play;
+  play.session = *scratch / "pass.session";
+  const auto outcome = playback::play_once(
+      play, [] { return false; }, progress);
+  if (!outcome) return schema::forward_error(outcome);
+  const auto played = played_texture(play.session, 0);
+  if (!played) return schema::forward_error(played);
+  const auto wanted = wanted_of(texture, play.program.file, *played);
+  if (!wanted) return schema::forward_error(wanted);
+  auto row = compared_row("the model: no load, no hysteresis", *wanted, played->texture);
+  if (!row) return schema::forward_error(row);
+  FidelitySpeed speed;
+  speed.low_hz = played->header.low_hz;
+  speed.high_hz = played->header.high_hz;
+  speed.drive_peak_v = outcome->status.ticks.drive_peak_v();
+  speed.drive_limit_v = played->header.transducer.drive_limit_v;
+  speed.ticks = outcome->recorder.ticks;
+  speed.amplitude_limited = outcome->status.ticks.limited();
+  speed.delay_left_s = outcome->delay_left_s;
+  speed.inverse_error_db = outcome->inverse_error_db;
+  speed.notes = outcome->notes;
+  speed.rows.push_back(std::move(*row));
+  Fidelity whole;
+  whole.simulated = outcome->simulated;
+  whole.displacement = "not measured: what the recorded drive makes of the transducer's model";
+  whole.speeds.push_back(std::move(speed));
+  return whole;
+}
+
+Result<void> check_speeds(const FidelityOptions& options) {
+  for (const double speed : options.speeds_mps)
+    if (!(speed > 0 && std::isfinite(speed)))
+      return schema::fail(Fault::usage, "a speed has to be above 0", "speed");
+  if (options.speeds_mps.empty()) return schema::fail(Fault::usage, "there is no speed", "speed");
+  return {};
+}
+
+}  // namespace
+
+Result<Fidelity> fidelity(const FidelityOptions& options, const std::function<void(double)>& progress) {
+  if (const auto fine = check_speeds(options); !fine) return schema::forward_error(fine);
+  const auto texture = schema::read_texture(options.play.program.file);
+  if (!texture) return schema::forward_error(texture);
+  const bool emulated = options.play.device_uri.starts_with("sim:");
+  auto whole = emulated ? emulated_fidelity(options, *texture, progress)
+                        : modelled_fidelity(options, *texture, progress);
+  if (!whole) return whole;
+  whole->texture = options.play.program.file;
+  whole->device = options.play.device_uri;
+  whole->gain_m_per_n = gain_of(options);
+  whole->rate_hz = options.play.prepare.rate_hz;
+  return whole;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All that a folder holds, and the page about it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "analysis/report/project_file.hpp"
+#include "data-schema/error.hpp"
+
+namespace tacto::analysis {
+
+/// A file that could not be read, or that is faulty.
+struct BrokenFile {
+  std::string path;
+  schema::Error error;
+};
+
+struct Project {
+  std::string folder;
+  std::vector<ProjectFile> files;    ///< by kind, then by name
+  std::vector<BrokenFile> broken;    ///< files of ours, or that should be
+  std::vector<std::string> foreign;  ///< other programs': named, not read
+};
+
+/// Looks into the folder and those within it (hidden ones and links to folders are passed over). A file of
+/// ours is a .json that says a kind, a .nc, a .session; a .wav goes with its sidecar. One that cannot be read
+/// does not stop the rest. `leave_out` is a path that is not looked at: the page itself. `progress` hears 0
+/// to 1. Errors: not_found, where there is no such folder; unsuitable, where it holds no file of ours.
+schema::Result<Project> read_project(const std::string& folder, const std::string& leave_out,
+                                     const std::function<void(double)>& progress = {});
+
+/// One page that needs nothing beside it: what was measured where as a table, then each file with its figures
+/// and pictures. Errors: of drawing.
+schema::Result<std::string> project_page(const Project& project);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/report/project_file.hpp"
+
+#include <fmt/format.h>
+
+#include "analysis/report/project_readers.hpp"
+#include "data-schema/check.hpp"
+#include "data-schema/files.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::FileKind;
+using schema::Result;
+
+// Of recordings and textures the samples, of other kinds the file itself.
+std::string data_path(const schema::StoredFile& file) {
+  const bool has_wav = file.kind == FileKind::recording || file.kind == FileKind::texture;
+  if (!has_wav || !file.path.ends_with(".json")) return file.path;
+  return file.path.substr(0, file.path.size() - 5) + ".wav";
+}
+
+Result<void> check(const schema::StoredFile& file) {
+  const auto checked = schema::check_file(file);
+  if (!checked) return schema::forward_error(checked);
+  if (checked->findings.empty()) return {};
+  const auto& [where, what] = checked->findings.front();
+  const std::size_t more = checked->findings.size() - 1;
+  return schema::fail(schema::Fault::malformed,
+                      more == 0 ? what : fmt::format("{}, and {} more faults", what, more), where,
+                      "'tactograph validate' says more");
+}
+
+}  // namespace
+
+Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file) {
+  switch (kind) {
+    case FileKind::recording:
+      return add_recording(path, file);
+    case FileKind::texture:
+      return add_texture_file(path, file);
+    case FileKind::transducer:
+      return add_transducer(path, file);
+    case FileKind::spectrogram:
+      return add_spectrogram(path, file);
+    case FileKind::formants:
+      return add_formants(path, file);
+    case FileKind::descriptions:
+      return add_descriptions(path, file);
+    case FileKind::calibration:
+      return add_calibration(path, file);
+    case FileKind::scene:
+      return add_scene(path, file);
+    case FileKind::session:
+      return add_session(path, file);
+    case FileKind::results:
+      break;
+  }
+  return add_results(path, file);
+}
+
+Result<ProjectFile> project_file(const schema::StoredFile& stored) {
+  if (const auto sound = check(stored); !sound) return schema::forward_error(sound);
+  ProjectFile file;
+  file.path = stored.path;
+  file.kind = stored.kind;
+  if (const auto sum = schema::sha256_of_file(data_path(stored))) file.checksum = sum->substr(0, 12);
+  if (const auto read = read_into(stored.path, stored.kind, file); !read) return schema::forward_error(read);
+  return file;
+}
+
+}  // namespace tacto::analysis

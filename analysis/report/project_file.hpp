@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One file of a project, as a report shows it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "data-schema/error.hpp"
+#include "data-schema/file_kind.hpp"
+#include "data-schema/results.hpp"
+
+namespace tacto::analysis {
+
+struct ProjectFile {
+  std::string path;
+  schema::FileKind kind = schema::FileKind::recording;
+  std::string date;       ///< of the measurement where it is known, else of the file's making; ISO 8601
+  std::string origin;     ///< device or source file
+  std::string simulated;  ///< by what; empty for real data
+  std::string checksum;   ///< first 12 digits of the SHA-256 of its data
+  std::vector<schema::ResultFigure> figures;
+  std::vector<schema::ResultPicture> pictures;
+  std::vector<std::string> drawings;  ///< SVG, where a picture is more than curves
+};
+
+/// Checks a file (schema, samples, checksum) and reads what is said of it. Errors: of reading; malformed,
+/// with the first finding of schema::check_file.
+schema::Result<ProjectFile> project_file(const schema::StoredFile& file);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts of project_file, one for each kind. Internal to this folder.
+#pragma once
+
+#include "analysis/report/project_file.hpp"
+
+namespace tacto::analysis {
+
+/// Each fills in what the kind knows. Errors: of reading.
+schema::Result<void> read_into(const std::string& path, schema::FileKind kind, ProjectFile& file);
+
+schema::Result<void> add_recording(const std::string& path, ProjectFile& file);
+schema::Result<void> add_texture_file(const std::string& path, ProjectFile& file);
+schema::Result<void> add_transducer(const std::string& path, ProjectFile& file);
+schema::Result<void> add_spectrogram(const std::string& path, ProjectFile& file);
+schema::Result<void> add_formants(const std::string& path, ProjectFile& file);
+schema::Result<void> add_descriptions(const std::string& path, ProjectFile& file);
+schema::Result<void> add_calibration(const std::string& path, ProjectFile& file);
+schema::Result<void> add_scene(const std::string& path, ProjectFile& file);
+schema::Result<void> add_session(const std::string& path, ProjectFile& file);
+schema::Result<void> add_results(const std::string& path, ProjectFile& file);
+
+/// A signal as smallest and largest values of at most 1,000 pieces: what a page can show of any length.
+class Envelope {
+ public:
+  explicit Envelope(std::size_t samples);
+  void add(double x, double y);
+  schema::ResultCurve curve(const std::string& name) const;
+
+ private:
+  struct Piece {
+    double x = 0, low = 0, high = 0;
+  };
+  std::size_t per_piece_, in_piece_ = 0;
+  std::vector<Piece> pieces_;
+};
+
+}  // namespace tacto::analysis

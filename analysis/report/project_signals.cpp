@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Recordings, textures, spectrograms and sessions: what has samples.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "analysis/report/project_readers.hpp"
+#include "data-schema/quantity.hpp"
+#include "data-schema/recording_frames.hpp"
+#include "data-schema/spectrogram.hpp"
+#include "data-schema/texture.hpp"
+#include "playback/daemon/session_columns.hpp"
+#include "spatial/make_texture.hpp"
+#include "spatial/picture/spectrogram_figure.hpp"
+#include "spatial/spectrogram.hpp"
+#include "spatial/valid_band.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Dimension;
+using schema::for_people;
+using schema::Result;
+using schema::ResultCurve;
+
+constexpr std::size_t kMostPieces = 1000;
+constexpr std::size_t kChunk = 1 << 16;
+
+struct ShownUnit {
+  double scale;
+  const char* symbol;
+};
+
+ShownUnit shown_unit(const std::string& unit) {
+  if (unit == "N") return {1e3, "mN"};
+  if (unit == "m") return {1e3, "mm"};
+  return {1, unit.c_str()};
+}
+
+std::string name_of_file(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+std::string missing_words(const schema::RecordingHeader& header) {
+  std::uint64_t missing = 0;
+  for (const schema::Gap& gap : header.gaps) missing += gap.count;
+  return header.gaps.empty() ? "none" : fmt::format("{} frames in {} gaps", missing, header.gaps.size());
+}
+
+Result<ResultCurve> channel_curve(const schema::Recording& recording, std::size_t channel, double scale) {
+  auto frames = schema::RecordingFrames::open(recording);
+  if (!frames) return schema::forward_error(frames);
+  Envelope envelope(recording.header.frames);
+  std::vector<double> values;
+  for (std::uint64_t at = 0; at < recording.header.frames; at += values.size()) {
+    values.resize(std::min<std::uint64_t>(kChunk, recording.header.frames - at));
+    if (const auto read = frames->read(channel, at, values); !read) return schema::forward_error(read);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      envelope.add(schema::frame_time_s(recording.header, at + i), scale * values[i]);
+  }
+  return envelope.curve(recording.header.channels[channel].name);
+}
+
+// What was felt, or else the first channel.
+std::size_t main_channel(const schema::RecordingHeader& header) {
+  const auto force = schema::find_channel(header, "tangential_force");
+  return force.value_or(0);
+}
+
+std::string channels_words(const schema::RecordingHeader& header) {
+  std::string words;
+  for (const schema::Channel& channel : header.channels)
+    words += fmt::format("{}{} ({})", words.empty() ? "" : ", ", channel.name, channel.unit);
+  return words;
+}
+
+std::string band_words(const schema::Texture& texture) {
+  if (texture.valid_band.empty()) return "not said";
+  const schema::BandPoint band = spatial::band_throughout(texture.valid_band);
+  if (!(band.low_per_m < band.high_per_m)) return "none that is known all along";
+  return fmt::format("{} to {} all along", for_people(band.low_per_m, Dimension::spatial_frequency),
+                     for_people(band.high_per_m, Dimension::spatial_frequency));
+}
+
+std::string in_unit(double value, const std::string& unit) {
+  if (unit == "N") return for_people(value, Dimension::force);
+  if (unit == "m") return for_people(value, Dimension::length);
+  return fmt::format("{:.4g} {}", value, unit);
+}
+
+// A texture too short for a window has its curve alone.
+Result<void> draw_texture(const schema::Texture& texture, const std::string& name, ProjectFile& file) {
+  auto spectrogram = spatial::spatial_spectrogram(texture, {});
+  if (!spectrogram) {
+    const ShownUnit unit = shown_unit(texture.unit);
+    Envelope envelope(texture.signal.values.size());
+    for (std::size_t i = 0; i < texture.signal.values.size(); ++i)
+      envelope.add(1e3 * texture.signal.position_m(i), unit.scale * texture.signal.values[i]);
+    file.pictures.push_back({name,
+                             "position (mm)",
+                             fmt::format("{} ({})", texture.quantity, unit.symbol),
+                             false,
+                             {envelope.curve("")}});
+    return {};
+  }
+  spectrogram->name = name;
+  auto svg = spatial::to_svg(spatial::SpectrogramFigure({{&texture, &*spectrogram}}));
+  if (!svg) return schema::forward_error(svg);
+  file.drawings.push_back(std::move(*svg));
+  return {};
+}
+
+void add_drive_picture(const playback::SessionColumns& columns, ProjectFile& file) {
+  Envelope drive(columns.tick.size()), position(columns.tick.size());
+  for (std::size_t i = 0; i < columns.tick.size(); ++i) {
+    drive.add(columns.time_s[i], columns.drive_v[i]);
+    position.add(columns.time_s[i], 1e3 * columns.position_m[i]);
+  }
+  file.pictures.push_back({"Drive", "time (s)", "drive (V)", false, {drive.curve("")}});
+  file.pictures.push_back({"Finger", "time (s)", "position (mm)", false, {position.curve("")}});
+}
+
+}  // namespace
+
+Envelope::Envelope(std::size_t samples) : per_piece_(samples / kMostPieces + 1) {}
+
+void Envelope::add(double x, double y) {
+  if (in_piece_ == 0)
+    pieces_.push_back({x, y, y});
+  else
+    pieces_.back() = {pieces_.back().x, std::min(pieces_.back().low, y), std::max(pieces_.back().high, y)};
+  in_piece_ = (in_piece_ + 1) % per_piece_;
+}
+
+ResultCurve Envelope::curve(const std::string& name) const {
+  ResultCurve curve{name, {}, {}, false};
+  for (const Piece& piece : pieces_) {
+    curve.x.push_back(piece.x);
+    curve.y.push_back(piece.low);
+    if (piece.high == piece.low) continue;
+    curve.x.push_back(piece.x);
+    curve.y.push_back(piece.high);
+  }
+  return curve;
+}
+
+Result<void> add_recording(const std::string& path, ProjectFile& file) {
+  const auto recording = schema::open_recording(path);
+  if (!recording) return schema::forward_error(recording);
+  const schema::RecordingHeader& header = recording->header;
+  file.date = header.recorded.empty() ? header.created : header.recorded;
+  file.origin = header.device.empty() ? header.source_file : header.device;
+  file.simulated = header.simulated;
+  file.figures = {{"duration", for_people(schema::duration_s(header), Dimension::time)},
+                  {"rate", for_people(header.sample_rate_hz, Dimension::frequency)},
+                  {"channels", channels_words(header)},
+                  {"missing", missing_words(header)}};
+  if (!header.surface.empty()) file.figures.push_back({"surface", header.surface});
+  if (header.channels.empty() || header.frames == 0) return {};
+  const std::size_t channel = main_channel(header);
+  const schema::Channel& shown = header.channels[channel];
+  const ShownUnit unit = shown_unit(shown.unit);
+  auto curve = channel_curve(*recording, channel, unit.scale);
+  if (!curve) return schema::forward_error(curve);
+  curve->name.clear();
+  file.pictures.push_back({name_of_file(path),
+                           "time (s)",
+                           fmt::format("{} ({})", shown.name, unit.symbol),
+                           false,
+                           {std::move(*curve)}});
+  return {};
+}
+
+Result<void> add_texture_file(const std::string& path, ProjectFile& file) {
+  const auto texture = schema::read_texture(path);
+  if (!texture) return schema::forward_error(texture);
+  file.date = texture->created;
+  file.origin = texture->source.recording;
+  file.simulated = texture->simulated;
+  file.figures = {{"length", for_people(texture->signal.length_m(), Dimension::length)},
+                  {"grid", for_people(texture->signal.pitch_m, Dimension::length)},
+                  {texture->quantity + ", RMS", in_unit(spatial::rms_of(*texture), texture->unit)},
+                  {"valid band", band_words(*texture)}};
+  if (texture->source.mean_speed_mps > 0)
+    file.figures.push_back({"mean speed", for_people(texture->source.mean_speed_mps, Dimension::speed)});
+  if (texture->average)
+    file.figures.push_back({"mean of", fmt::format("{} strokes", texture->average->strokes.size())});
+  return draw_texture(*texture, name_of_file(path), file);
+}
+
+Result<void> add_spectrogram(const std::string& path, ProjectFile& file) {
+  const auto spectrogram = schema::read_spectrogram_nc(path);
+  if (!spectrogram) return schema::forward_error(spectrogram);
+  file.origin = spectrogram->name;
+  file.simulated = spectrogram->simulated;
+  file.figures = {{"strokes", std::to_string(spectrogram->strokes)},
+                  {"positions", std::to_string(spectrogram->position_m.size())},
+                  {"window", for_people(spectrogram->window_m, Dimension::length)}};
+  if (spectrogram->bins > 0)
+    file.figures.push_back({"up to", for_people(spectrogram->frequency_per_m(spectrogram->bins - 1),
+                                                Dimension::spatial_frequency)});
+  return {};
+}
+
+Result<void> add_session(const std::string& path, ProjectFile& file) {
+  const auto columns = playback::read_session_columns(path);
+  if (!columns) return schema::forward_error(columns);
+  const schema::SessionHeader& header = columns->header;
+  file.date = header.created;
+  file.origin = header.device_uri;
+  file.simulated = header.simulated;
+  const double peak_v =
+      std::abs(*std::ranges::max_element(columns->drive_v, {}, [](double volts) { return std::abs(volts); }));
+  file.figures = {{"played", for_people(columns->time_s.back(), Dimension::time)},
+                  {"ticks", fmt::format("{}, {} lost, at {}", columns->tick.size(), columns->lost,
+                                        for_people(header.rate_hz, Dimension::frequency))},
+                  {"drive, peak", for_people(peak_v, Dimension::voltage)},
+                  {"transducer", header.transducer.name}};
+  for (const schema::SessionTexture& texture : header.textures)
+    file.figures.push_back({"texture", name_of_file(texture.file)});
+  add_drive_picture(*columns, file);
+  return {};
+}
+
+}  // namespace tacto::analysis

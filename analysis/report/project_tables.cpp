@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Transducers, tables, calibrations, scenes and results: what has no samples.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "analysis/report/project_readers.hpp"
+#include "data-schema/calibration.hpp"
+#include "data-schema/description.hpp"
+#include "data-schema/formants.hpp"
+#include "data-schema/quantity.hpp"
+#include "data-schema/scene.hpp"
+#include "data-schema/transducer.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::Dimension;
+using schema::for_people;
+using schema::Result;
+using schema::ResultCurve;
+
+// 10 Hz to 1 kHz, the band in which the paper identified it.
+ResultCurve response_curve(const std::string& name, bool phase,
+                           const std::function<std::complex<double>(double)>& response) {
+  ResultCurve curve{name, {}, {}, false};
+  constexpr int kPoints = 200;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double frequency_hz = 10 * std::pow(100, static_cast<double>(i) / kPoints);
+    const std::complex<double> value = response(frequency_hz);
+    curve.x.push_back(frequency_hz);
+    curve.y.push_back(phase ? std::arg(value) * 180 / std::numbers::pi : 20 * std::log10(std::abs(value)));
+  }
+  return curve;
+}
+
+void add_bode(const schema::Transducer& transducer, ProjectFile& file) {
+  constexpr double kMicrometres = 1e6;
+  const auto actuator = [&](double f) { return kMicrometres * schema::actuator_response(transducer, f); };
+  const auto sensor = [&](double f) { return schema::sensor_response(transducer, f); };
+  file.pictures.push_back(
+      {"Amplitude",
+       "frequency (Hz)",
+       "dB re 1 µm/V, 1 V/N",
+       true,
+       {response_curve("actuator", false, actuator), response_curve("sensor", false, sensor)}});
+  file.pictures.push_back(
+      {"Phase",
+       "frequency (Hz)",
+       "degrees",
+       true,
+       {response_curve("actuator", true, actuator), response_curve("sensor", true, sensor)}});
+}
+
+ResultCurve bands_curve(const schema::Description& description) {
+  ResultCurve curve{description.texture, {}, {}, false};
+  for (const schema::ThirdOctaveBand& band : description.bands) {
+    curve.x.push_back(1e-3 * band.centre_per_m);
+    curve.y.push_back(20 * std::log10(band.rms));
+  }
+  return curve;
+}
+
+}  // namespace
+
+Result<void> add_transducer(const std::string& path, ProjectFile& file) {
+  const auto transducer = schema::read_transducer(path);
+  if (!transducer) return schema::forward_error(transducer);
+  file.origin = transducer->name;
+  file.figures = {{"resonance", for_people(schema::resonance_hz(*transducer), Dimension::frequency)},
+                  {"damping ratio", fmt::format("{:.3g}", schema::damping_ratio(*transducer))},
+                  {"actuator at rest",
+                   fmt::format("{:.3g} µm/V", 1e6 * std::abs(schema::actuator_response(*transducer, 0)))},
+                  {"drive limit", for_people(transducer->drive_limit_v, Dimension::voltage)},
+                  {"from", transducer->origin}};
+  add_bode(*transducer, file);
+  return {};
+}
+
+Result<void> add_formants(const std::string& path, ProjectFile& file) {
+  const auto formants = schema::read_formants(path);
+  if (!formants) return schema::forward_error(formants);
+  file.date = formants->created;
+  for (const schema::FormantTable& table : formants->tables) {
+    if (!table.simulated.empty()) file.simulated = table.simulated;
+    std::string value = fmt::format("{} formants", table.formants.size());
+    if (!table.formants.empty())
+      value += ", the strongest at " +
+               for_people(table.formants.front().frequency_per_m, Dimension::spatial_frequency);
+    file.figures.push_back({table.texture, value});
+  }
+  return {};
+}
+
+Result<void> add_descriptions(const std::string& path, ProjectFile& file) {
+  const auto descriptions = schema::read_descriptions(path);
+  if (!descriptions) return schema::forward_error(descriptions);
+  file.date = descriptions->created;
+  schema::ResultPicture picture{
+      "One-third-octave bands", "spatial frequency (1/mm)", "RMS (dB re 1 unit)", true, {}};
+  for (const schema::Description& each : descriptions->textures) {
+    if (!each.simulated.empty()) file.simulated = each.simulated;
+    file.figures.push_back(
+        {each.texture, fmt::format("RMS {:.4g} {}, centroid {}", each.rms, each.unit,
+                                   for_people(each.centroid_per_m, Dimension::spatial_frequency))});
+    picture.curves.push_back(bands_curve(each));
+  }
+  if (!picture.curves.empty()) file.pictures.push_back(std::move(picture));
+  return {};
+}
+
+Result<void> add_calibration(const std::string& path, ProjectFile& file) {
+  const auto calibration = schema::read_calibration(path);
+  if (!calibration) return schema::forward_error(calibration);
+  file.origin = calibration->serial;
+  file.simulated = calibration->simulated;
+  for (const schema::CalibrationEntry& entry : calibration->entries) {
+    file.date = entry.date;
+    std::string value = fmt::format("{}, {}", entry.method, entry.date);
+    if (entry.scale) value += fmt::format(", {:.4g} of nominal", *entry.scale / entry.nominal_scale);
+    file.figures.push_back({entry.channel, value});
+  }
+  return {};
+}
+
+Result<void> add_scene(const std::string& path, ProjectFile& file) {
+  const auto scene = schema::read_scene(path);
+  if (!scene) return schema::forward_error(scene);
+  file.date = scene->created;
+  file.origin = scene->name;
+  for (const schema::Layer& layer : scene->layers)
+    if (const auto* texture = std::get_if<schema::TextureLayer>(&layer))
+      file.figures.push_back(
+          {texture->texture, fmt::format("at {}, {}", for_people(texture->at_m, Dimension::length),
+                                         for_people(texture->gain_m_per_n, Dimension::compliance))});
+  return {};
+}
+
+Result<void> add_results(const std::string& path, ProjectFile& file) {
+  auto results = schema::read_results(path);
+  if (!results) return schema::forward_error(results);
+  file.date = results->created;
+  file.origin = results->verb;
+  for (const std::string& input : results->inputs) file.origin += " " + input;
+  if (!results->device.empty()) file.origin += " on " + results->device;
+  file.simulated = results->simulated;
+  file.figures = std::move(results->figures);
+  file.pictures = std::move(results->pictures);
+  return {};
+}
+
+}  // namespace tacto::analysis

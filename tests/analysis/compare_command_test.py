@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`tactograph compare` as a user runs it: its figures against SciPy's, its verdicts on a real finger, and bad input."""
+import json
+import pathlib
+import sys
+
+import numpy as np
+import soundfile
+from scipy import signal
+
+import tacto
+
+PITCH = 10e-6
+
+
+def write_texture(stem, values, pitch=PITCH, **more):
+    """A texture by hand: the sidecar's checksum is the WAV's."""
+    import hashlib
+    path = pathlib.Path(f"{stem}.texture.wav")
+    soundfile.write(path, np.asarray(values, dtype=np.float32), round(1 / pitch), subtype="FLOAT", format="WAV")
+    data = {**TEMPLATE["data"], "file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest(), "samples": len(values)}
+    side = {**TEMPLATE, "data": data, "pitch_m": pitch, **more}
+    pathlib.Path(f"{stem}.texture.json").write_text(json.dumps(side))
+
+
+def make_template():
+    """What a sidecar has beside the samples: from one that the command made."""
+    global TEMPLATE
+    tacto.run("record", "-d", "sim:surface=A,speed=50mm/s,seed=77", "--strokes", "1", "-o", "model", "--no-calibration")
+    tacto.run("spatial", "model", "-o", "model")
+    side = json.loads(pathlib.Path("model.texture.json").read_text())
+    side["valid_band"] = [{"position_m": 0.0, "low_per_m": 100.0, "high_per_m": 40000.0}]
+    TEMPLATE = side
+
+
+def pair(ratio=0.3, count=9000):
+    random = np.random.default_rng(1)
+    a = signal.lfilter([0.02], [1, -0.8], random.normal(size=count))
+    b = 1.5 * a + np.sqrt(ratio) * np.std(a) * random.normal(size=count)
+    return a.astype(np.float32).astype(float), b.astype(np.float32).astype(float)
+
+
+def figures_agree_with_scipy():
+    make_template()
+    a, b = pair()
+    write_texture("a", a)
+    write_texture("b", b)
+    found = tacto.run_json("compare", "a", "b")
+    window = round(found["window_m"] / PITCH)
+    options = dict(fs=1 / PITCH, window="hann", nperseg=window, noverlap=window // 2, detrend="constant")
+    k, aa = signal.welch(a, **options)
+    _, bb = signal.welch(b, **options)
+    _, ab = signal.csd(a, b, **options)
+    _, ee = signal.welch(b - a, **options)
+    _, coherence = signal.coherence(a, b, **options)
+    low, high = found["low_per_m"], found["high_per_m"]
+
+    def integral(density, lower, upper):
+        width = np.minimum(upper, k + k[1] / 2) - np.maximum(lower, k - k[1] / 2)
+        return np.sum(density * np.maximum(0, width))
+
+    worst = 0
+    for band in found["bands"]:
+        edges = max(low, band["centre_per_m"] / 10**0.05), min(high, band["centre_per_m"] * 10**0.05)
+        wanted = 10 * np.log10(integral(bb, *edges) / integral(aa, *edges))
+        error = 10 * np.log10(integral(ee, *edges) / integral(aa, *edges))
+        shared = integral(aa * coherence, *edges) / integral(aa, *edges)
+        worst = max(worst, abs(band["level_db"] - wanted), abs(band["error_db"] - error), abs(band["coherence"] - shared))
+    gain = integral(ab.real, low, high) / integral(aa, low, high)
+    whole = integral(aa * coherence, low, high) / integral(aa, low, high)
+    print(f"{len(found['bands'])} bands, worst difference from SciPy {worst:.1e} (dB, or of coherence); gain {gain:.4f}")
+    assert worst < 1e-6 and abs(found["gain"] - gain) < 1e-9 and abs(found["coherence"] - whole) < 1e-9
+    distance = np.sqrt(np.mean([band["level_db"]**2 for band in found["bands"]]))
+    assert abs(found["spectral_distance_db"] - distance) < 1e-9
+
+
+def files_come_together():
+    make_template()
+    a, b = pair()
+    write_texture("a", a)
+    write_texture("b", 2 * a)
+    report = tacto.run_json("compare", "a", "b", "--page", "ab.html", "-o", "ab.results.json")
+    assert report["verdict"] == "louder" and abs(report["level_db"] - 20 * np.log10(2)) < 1e-5
+    page = pathlib.Path("ab.html").read_text()
+    assert page.count("data:image/svg+xml") == 4 and "http" not in page and "simulated" in page.lower()
+    tacto.run("validate", "ab.results.json")
+    stored = json.loads(pathlib.Path("ab.results.json").read_text())
+    assert stored["details"]["level_db"] == report["level_db"] and stored["kind"] == "results"
+    tacto.run("compare", "a", "b", "-o", "ab.html", "-o", "ab.results.json")  # both may be replaced
+    _, said = tacto.run("compare", "a", "b", "-o", "a.texture.json", code=2)
+    assert "would be lost" in said
+    tacto.run("compare", "a", "b", "-o", "ab.txt", code=2)
+
+
+def a_session_is_held_against_its_texture():
+    make_template()
+    write_texture("a", pair()[0])
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0\n1.2,0.085\n")
+    tacto.run("play", "a", "-d", "sim:seed=78", "--finger-path", "path.csv", "--gain", "0.2mm/N", "-o", "first")
+    found = tacto.run_json("compare", "first.session", "a")
+    print(f"session against its texture: {found['verdict']}, error {found['error_db']:.1f} dB, gain {found['gain']:.3f}")
+    assert found["verdict"] == "same" and found["point_by_point"] and abs(found["gain"] - 1) < 0.05
+    write_texture("other", pair()[1])
+    _, said = tacto.run("compare", "first.session", "other", code=5)
+    assert "is not what the session played" in said
+
+
+def bad_input_is_refused():
+    make_template()
+    a, b = pair()
+    write_texture("a", a)
+    poisoned = b.copy()
+    poisoned[1234] = np.nan
+    write_texture("nan", poisoned)
+    _, said = tacto.run("compare", "a", "nan", code=4)
+    assert "1234" in said, said
+    write_texture("heights", b, quantity="height", unit="m")
+    _, said = tacto.run("compare", "a", "heights", code=5)
+    assert "height" in said and "tangential_force" in said, said
+    write_texture("short", b[:40])
+    assert "fewest" in tacto.run("compare", "a", "short", code=5)[1]
+    write_texture("slow", b, valid_band=[{"position_m": 0, "low_per_m": 10, "high_per_m": 90}])
+    assert "no band in common" in tacto.run("compare", "a", "slow", code=5)[1]
+    write_texture("coarse", signal.resample_poly(a, 2, 5), pitch=25e-6)
+    _, said = tacto.run("compare", "a", "coarse")
+    assert "onto the coarser one" in said, said
+    tacto.run("compare", "a", "nothing", code=3)
+    tacto.run("compare", "a", code=2)
+    tacto.run("compare", "a", "a", "--tolerance", "2", code=2)
+    tacto.run("compare", "a", "a", "--max-shift", "3s", code=2)
+
+
+def real_fingers_verdicts():
+    if not tacto.BARE_FINGER.exists():
+        print("skipped: no real data")
+        return
+    tacto.run(*tacto.IMPORT_BARE_FINGER)
+    for name, start, end in [("first", 4.55, 5.2), ("second", 5.2, 5.85), ("rough", 5.95, 6.85), ("down", 4.55, 6.85), ("up", 0.3, 2.3)]:
+        tacto.run("spatial", "finger", "-o", name, "--from", f"{start}s", "--to", f"{end}s", "--force")
+    def verdict(a, b):
+        found = tacto.run_json("compare", a, b)
+        print(f"{a} against {b}: {found['verdict']}: {found['because']}")
+        return found["verdict"]
+    assert verdict("first", "second") == "same", "both lie before the plate gets rougher at 5.9 s"
+    assert verdict("first", "rough") == "different" and verdict("second", "rough") == "different"
+    assert verdict("down", "up") == "different"
+    x, values, side = tacto.texture("down")
+    global TEMPLATE
+    TEMPLATE = side
+    write_texture("gain", 2 * values, pitch=side["pitch_m"])
+    assert verdict("down", "gain") == "louder" and verdict("gain", "down") == "quieter"
+
+
+if __name__ == "__main__":
+    for test in (figures_agree_with_scipy, files_come_together, a_session_is_held_against_its_texture, bad_input_is_refused,
+                 real_fingers_verdicts):
+        tacto.in_folder(test)
+    sys.exit(0)

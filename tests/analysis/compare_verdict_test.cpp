@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How often the verdict is right, over many draws; and each branch of its rule.
+#include <gtest/gtest.h>
+
+#include "analysis/compare/compare.hpp"
+#include "spatial/make_texture.hpp"
+#include "tests/analysis/compare_textures.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+Verdict judged(const schema::Texture& a, const schema::Texture& b, PairAlign align = PairAlign::position) {
+  CompareOptions options;
+  options.formants = false;
+  options.pair.align = align;
+  const auto found = compare(a, b, options);
+  EXPECT_TRUE(found) << schema::message(found.error());
+  return found->verdict;
+}
+
+// One-pole low-pass: another shape.
+schema::Texture smoothed(schema::Texture texture, double part) {
+  double state = 0;
+  for (double& value : texture.signal.values) value = state += part * (value - state);
+  return texture;
+}
+
+constexpr std::size_t kLength = 6000;
+
+TEST(CompareVerdict, TwoPiecesOfOneKindAreSeldomCalledDifferent) {
+  constexpr int kPairs = 200;
+  int same = 0, wrong = 0;
+  for (unsigned i = 0; i < kPairs; ++i) {
+    const auto likeness = judged(white_texture(1000 + 2 * i, kLength), white_texture(1001 + 2 * i, kLength),
+                                 i % 2 == 0 ? PairAlign::position : PairAlign::none)
+                              .likeness;
+    same += likeness == Likeness::same;
+    wrong += likeness != Likeness::same && likeness != Likeness::undecided;
+  }
+  // Both conditions of 'different' and of 'louder' have to fail by chance: once in 20 at most, and in fact
+  // less.
+  EXPECT_LE(wrong, kPairs / 20);
+  EXPECT_GE(same, kPairs * 8 / 10);
+}
+
+TEST(CompareVerdict, OtherShapesAndLevelsAreFound) {
+  constexpr int kPairs = 40;
+  int different = 0, louder = 0;
+  for (unsigned i = 0; i < kPairs; ++i) {
+    const auto a = white_texture(3000 + 2 * i, kLength), b = white_texture(3001 + 2 * i, kLength);
+    different += judged(a, smoothed(b, 0.3)).likeness == Likeness::different;
+    louder += judged(a, scaled(b, 2)).likeness == Likeness::louder;
+  }
+  EXPECT_GE(different, kPairs * 95 / 100);
+  EXPECT_GE(louder, kPairs * 95 / 100);
+}
+
+// The interval of the level holds the truth 90 times in 100.
+TEST(CompareVerdict, IntervalCovers) {
+  constexpr int kPairs = 300;
+  int covered = 0;
+  for (unsigned i = 0; i < kPairs; ++i) {
+    CompareOptions options;
+    options.formants = false;
+    const auto found = compare(white_texture(5000 + 2 * i, 3000), white_texture(5001 + 2 * i, 3000), options);
+    covered += found->evidence.level_low_db <= 0 && 0 <= found->evidence.level_high_db;
+  }
+  // Binomial: 0.9 +- 0.017; the bands' logarithms and 15 segments leave some more.
+  EXPECT_NEAR(covered / static_cast<double>(kPairs), 0.9, 0.05);
+}
+
+TEST(CompareVerdict, SaysWhenItCannotTell) {
+  CompareOptions options;
+  options.formants = false;
+  options.window_m = 3000 * 50e-6;
+  const auto a = white_texture(1, kLength), b = white_texture(2, kLength);
+  const auto few = compare(a, b, options);
+  EXPECT_EQ(few->verdict.likeness, Likeness::undecided);
+  EXPECT_NE(few->verdict.because.find("too short"), std::string::npos) << few->verdict.because;
+  auto narrow = a;
+  narrow.valid_band = {{0, 1000, 1400}};
+  EXPECT_NE(judged(narrow, b).because.find("too little in common"), std::string::npos);
+  // A texture whose parts differ wildly among themselves tells nothing finer.
+  auto uneven = b;
+  for (std::size_t i = 0; i < kLength; ++i)
+    uneven.signal.values[i] *= std::pow(10, 1.2 * std::sin(static_cast<double>(i) / 450));
+  const Verdict verdict = judged(a, scaled(uneven, 1 / spatial::rms_of(uneven)));
+  EXPECT_EQ(verdict.likeness, Likeness::undecided) << verdict.because;
+}
+
+TEST(CompareVerdict, RuleByNumbers) {
+  Evidence e;
+  e.bands = 10;
+  e.segments = 15;
+  e.shape_db = 1, e.shape_chance_db = 1.5, e.finest_shape_db = 1;
+  e.level_db = 1, e.level_low_db = 0.5, e.level_high_db = 1.5;
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::same);
+  e.level_high_db = 2.5;
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::undecided);
+  e.level_db = 3, e.level_low_db = 0.5, e.level_high_db = 5.5;
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::louder);
+  e.level_low_db = -0.5;
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::undecided);
+  e.level_db = -3, e.level_low_db = -4, e.level_high_db = -2;
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::quieter);
+  e.finest_shape_db = 2.5;
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::undecided);
+  e.shape_db = 4, e.shape_excess_db = 3.5;
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::different);
+  e.shape_excess_db = 1;
+  EXPECT_EQ(verdict_of(e, 2).likeness, Likeness::undecided) << "certain, but too small to count";
+}
+
+}  // namespace
+}  // namespace tacto::analysis

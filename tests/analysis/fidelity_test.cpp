@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The closed loop on the emulated device: as good as the kernel is where the tray is the model, worse by what
+// it has beside it, and honest about what limits take.
+#include "analysis/fidelity/fidelity.hpp"
+
+#include <gtest/gtest.h>
+
+#include "analysis/fidelity/fidelity_page.hpp"
+#include "tests/analysis/compare_textures.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+class FidelityOfATexture : public testing::Test {
+ protected:
+  // 0.3 to 6 /mm: 15 to 310 Hz at 51.7 mm/s, a speed of no whole number of counts a tick.
+  void SetUp() override {
+    const RandomSurface surface(4, 300, 6000, 100);
+    ASSERT_TRUE(schema::write_texture(folder_ / "made",
+                                      made_texture(5e-6, 8000, [&](double x) { return 3e-3 * surface(x); })));
+    options_.play.program.file = folder_ / "made";
+    options_.play.device_uri = "sim:seed=4711";
+    options_.play.prepare.onset_s = 0.02;
+    options_.speeds_mps = {51.7e-3};
+  }
+  Fidelity measured() {
+    auto found = fidelity(options_);
+    EXPECT_TRUE(found) << schema::message(found.error());
+    return found ? std::move(*found) : Fidelity{};
+  }
+  static const FidelityRow& row(const Fidelity& fidelity, const std::string& tray) {
+    for (const FidelityRow& each : fidelity.speeds.at(0).rows)
+      if (each.tray.starts_with(tray)) return each;
+    throw std::out_of_range(tray);
+  }
+
+  tests::TemporaryFolder folder_;
+  FidelityOptions options_;
+};
+
+// playback's own table (tests/playback/fidelity_table.py, row b: 1 um encoder, 26-197 mm/s): -58 to -70 dB;
+// other textures and the ends of a short one are worth 4 dB.
+TEST_F(FidelityOfATexture, RowsAreInTheOrderOfWhatTheTrayHasBesideTheModel) {
+  const Fidelity found = measured();
+  ASSERT_EQ(found.speeds.size(), 1U);
+  EXPECT_FALSE(found.simulated.empty());
+  const double ideal_db = row(found, "ideal").error_db;
+  EXPECT_LT(ideal_db, -54);
+  EXPECT_GT(ideal_db, -75);
+  EXPECT_NEAR(row(found, "ideal").level_db, 0, 0.01);
+  EXPECT_GT(row(found, "ideal, re-recorded").error_db, ideal_db);
+  EXPECT_LT(row(found, "ideal, re-recorded").error_db, -40);
+  EXPECT_GT(row(found, "mode").error_db, ideal_db + 10);
+  EXPECT_GT(row(found, "finger").error_db, ideal_db + 10);
+  EXPECT_GT(row(found, "hysteresis").error_db, ideal_db + 30);
+  EXPECT_GT(row(found, "all").error_db, ideal_db + 30);
+  // A small swing sees the gain 1 - 2 x 0.16 to 1/32 (BenderHysteresis): -3.3 dB; a larger one more of it.
+  EXPECT_GT(row(found, "hysteresis").level_db, -3.5);
+  EXPECT_LT(row(found, "hysteresis").level_db, -1);
+  const FidelitySpeed& speed = found.speeds.front();
+  EXPECT_EQ(speed.amplitude_limited + speed.slew_limited, 0U);
+  EXPECT_LT(*speed.removed_db, -200);
+  EXPECT_GT(speed.band_kept_percent, 97);
+}
+
+TEST_F(FidelityOfATexture, TellsWhatTheLimitsTookAway) {
+  options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
+  options_.play.program.gain_m_per_n = 0.05;  // 150 um RMS: beyond the transducer's 5 V
+  const Fidelity found = measured();
+  ASSERT_EQ(found.speeds.front().rows.size(), 1U) << "the URI says which tray it is";
+  EXPECT_GT(found.speeds.front().amplitude_limited, 100U);
+  EXPECT_GT(*found.speeds.front().removed_db, -20);
+  EXPECT_NEAR(found.speeds.front().drive_peak_v, found.speeds.front().drive_limit_v, 1e-3);
+  EXPECT_GT(found.speeds.front().rows.front().error_db, -12);
+}
+
+TEST_F(FidelityOfATexture, TheBandTakesWhatIsTooFast) {
+  options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
+  options_.speeds_mps = {0.2};  // 6 /mm at 1.2 kHz: 500 Hz is 2.5 /mm
+  const Fidelity found = measured();
+  EXPECT_NEAR(found.speeds.front().band_kept_percent, 100 * (2500.0 - 300) / (6000 - 300), 4)
+      << "of an even spectrum";
+}
+
+TEST_F(FidelityOfATexture, PageSaysSimulatedAtEveryFigure) {
+  const Fidelity found = measured();
+  const auto page = fidelity_page(found);
+  ASSERT_TRUE(page) << schema::message(page.error());
+  std::size_t said = 0;
+  for (auto at = page->find("<td>simulated</td>"); at != page->npos;
+       at = page->find("<td>simulated</td>", at + 1))
+    ++said;
+  EXPECT_EQ(said, found.speeds.front().rows.size());
+  for (const auto& figure : fidelity_figures(found))
+    EXPECT_TRUE(figure.value.find("simulated") != figure.value.npos ||
+                figure.name.find("taken") != figure.name.npos);
+  EXPECT_EQ(page->find("http"), page->npos);
+}
+
+TEST_F(FidelityOfATexture, RefusesWhatCannotBePlayed) {
+  const auto fault = [&] {
+    const auto found = fidelity(options_);
+    EXPECT_FALSE(found);
+    return found ? schema::Fault::internal : found.error().fault;
+  };
+  options_.speeds_mps = {-0.05};
+  EXPECT_EQ(fault(), schema::Fault::usage);
+  options_.speeds_mps = {};
+  EXPECT_EQ(fault(), schema::Fault::usage);
+  options_.speeds_mps = {0.45};
+  EXPECT_EQ(fault(), schema::Fault::unsuitable) << "40 mm pass before the tray has settled";
+  options_.speeds_mps = {0.05};
+  options_.play.device_uri = "sim:nonsense=1";
+  EXPECT_EQ(fault(), schema::Fault::usage);
+  options_.play.device_uri = "sim:";
+  options_.play.program.file = folder_ / "absent";
+  EXPECT_EQ(fault(), schema::Fault::not_found);
+}
+
+}  // namespace
+}  // namespace tacto::analysis

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`tactograph report`: a project with every kind of file, some of them broken, on one page."""
+import hashlib
+import html.parser
+import json
+import pathlib
+import shutil
+
+import tacto
+
+KINDS = {"recording", "texture", "transducer", "spectrogram", "formants", "descriptions", "scene", "session", "results"}
+
+
+class Page(html.parser.HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.pictures, self.rows, self.tags = [], [], 0, set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        values = dict(attributes)
+        self.tags.add(tag)
+        self.rows += tag == "tr"
+        if tag == "img":
+            self.pictures.append(values["src"])
+        self.links += [v for k, v in attributes if k in ("src", "href", "srcset", "data", "action") and not v.startswith(("data:", "#"))]
+
+
+def make_project(folder):
+    root = pathlib.Path(folder)
+    root.mkdir()
+    (root / "more").mkdir()
+    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=79", "--strokes", "1", "-o", root / "C", "--no-calibration")
+    tacto.run("spatial", root / "C", "-o", root / "C")
+    tacto.run("spectrogram", root / "C", "-o", root / "C.nc", "-o", root / "C.png")
+    tacto.run("describe", root / "C", "-o", root / "C")
+    tacto.run("formants", root / "C", "-o", root / "C")
+    (root / "path.csv").write_text("time_s,position_m\n0,0\n0.7,0.035\n")
+    tacto.run("play", root / "C", "-d", "sim:seed=79", "--finger-path", root / "path.csv", "--gain", "0.3mm/N", "-o", root / "more/first")
+    tacto.run("compare", root / "C", root / "C", "-o", root / "more/CC.results.json")
+    tacto.run("fidelity", root / "C", "-d", "sim:seed=79,hysteresis=0.1", "-o", root / "more/fidelity.results.json")
+    (root / "both.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": [
+        {"type": "texture", "texture": "C", "at_m": 0, "gain_m_per_n": 1e-3, "ends": "stop"}]}))
+    preset = pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json"
+    shutil.copy(preset, root / "bench.transducer.json")
+    return root
+
+
+def a_project_on_one_page():
+    root = make_project("study")
+    out, said = tacto.run("report", root, "-o", "study/study.html", "--json")
+    report = json.loads(out)
+    assert {row["kind"] for row in report["files"]} == KINDS, report["files"]
+    text = pathlib.Path("study/study.html").read_text()
+    page = Page(text)
+    assert not page.links and "http" not in text and "script" not in page.tags
+    assert len(page.pictures) >= 10 and all(src.startswith("data:image/svg+xml;base64,") for src in page.pictures)
+    for row in report["files"]:
+        assert pathlib.Path(row["file"]).name in text and row["sha256"] in text
+        if row["kind"] in ("recording", "texture"):
+            data = pathlib.Path(row["file"]).with_suffix(".wav").read_bytes()
+            assert hashlib.sha256(data).hexdigest().startswith(row["sha256"])
+    simulated = sum(row["simulated"] for row in report["files"])
+    assert simulated >= 6 and text.count('class="simulated"') == simulated
+    assert "path.csv" in said and "C.png" in said, "other programs' files are named"
+    tacto.run("report", root, "-o", "study/study.html")  # the page itself may be replaced, and is not a file of the project
+    assert "study.html" not in tacto.run("report", root, "-o", "study/study.html")[1]
+
+
+def broken_files_do_not_stop_the_rest():
+    root = make_project("study")
+    odd = '<img src=x onerror=alert(1)> & "odd".json'
+    (root / odd).write_text('{"kind": "recording"')
+    (root / "future.json").write_text('{"kind": "oracle", "version": "1.0"}')
+    (root / "more/unclosed.events.jsonl").write_text("{}\n")
+    samples = (root / "C.texture.wav").read_bytes()
+    shutil.copy(root / "C.texture.json", root / "more/torn.texture.json")
+    (root / "more/C.texture.wav").write_bytes(samples[:3000])
+    out, said = tacto.run("report", root, "-o", "page.html", "--json", code=4)
+    report = json.loads(out)
+    assert len(report["broken"]) == 4 and {row["kind"] for row in report["files"]} == KINDS
+    text = pathlib.Path("page.html").read_text()
+    assert "<img src=x" not in text and "&lt;img src=x" in text
+    for name in ("onerror", "future.json", "unclosed.events.jsonl", "torn.texture.json"):
+        assert name in text, name
+        assert name in said or name == "torn.texture.json" and "C.texture.wav" in said, (name, said)
+
+
+def folders_that_are_none_are_refused():
+    pathlib.Path("empty").mkdir()
+    assert "no file of tactograph" in tacto.run("report", "empty", code=5)[1]
+    tacto.run("report", "absent", code=3)
+    tacto.run("report", "empty", "-o", "page.pdf", code=2)
+    assert not list(pathlib.Path(".").glob("*.html"))
+
+
+if __name__ == "__main__":
+    for test in (a_project_on_one_page, broken_files_do_not_stop_the_rest, folders_that_are_none_are_refused):
+        tacto.in_folder(test)
