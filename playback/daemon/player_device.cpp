@@ -8,9 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "firmware-host/sim/sim_device.hpp"
+#include "spatial/dsp/hermite.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -20,7 +22,6 @@ using schema::Fault;
 using schema::Result;
 
 constexpr std::string_view kSimScheme = "sim:";
-constexpr double kScriptRateHz = 20e3;  // read linearly between: 3 nm off at 10 m/s^2
 constexpr mode_t kForAll = 0666;
 
 std::string lock_path(const std::string& device_name) {
@@ -31,27 +32,26 @@ std::string lock_path(const std::string& device_name) {
   return (usual ? "/run/lock/tactograph-" : "/tmp/tactograph-") + name.substr(0, 100) + ".lock";
 }
 
-// Positions along a path at any time.
+// Positions along a path at any time: the knots alone are kept, for a path may last for hours.
 class Script {
  public:
   explicit Script(const FingerScript& script)
-      : repeated_(script.repeated),
-        positions_(positions_along(
-            script.path, kScriptRateHz,
-            2 + static_cast<std::size_t>(std::ceil(script.path.duration_s() * kScriptRateHz)))) {}
+      : repeated_(script.repeated), knots_(std::make_shared<const Knots>(script.path)) {}
 
   double operator()(double time_s) const {
-    const double last = static_cast<double>(positions_.size() - 1);
-    double place = time_s * kScriptRateHz;
-    if (repeated_) place = last - std::abs(std::fmod(place, 2 * last) - last);
-    place = std::clamp(place, 0.0, last);
-    const auto i = std::min(static_cast<std::size_t>(place), positions_.size() - 2);
-    return std::lerp(positions_[i], positions_[i + 1], place - static_cast<double>(i));
+    const double whole_s = knots_->path.duration_s();
+    if (repeated_) time_s = whole_s - std::abs(std::fmod(time_s, 2 * whole_s) - whole_s);
+    return knots_->curve(knots_->path.time_s.front() + std::clamp(time_s, 0.0, whole_s));
   }
 
  private:
+  struct Knots {
+    explicit Knots(FingerPath along) : path(std::move(along)), curve(path.time_s, path.position_m) {}
+    FingerPath path;
+    spatial::HermiteCurve curve;
+  };
   bool repeated_;
-  std::vector<double> positions_;
+  std::shared_ptr<const Knots> knots_;
 };
 
 Result<std::unique_ptr<firmware_host::Device>> open_scripted(const std::string& uri,
