@@ -14,7 +14,7 @@
 namespace {
 
 // In the order of the work: get data, look at it, make textures, see them, play them.
-constexpr std::array<const tacto::cli::Verb*, 21> kVerbs = {
+constexpr std::array<const tacto::cli::Verb*, 22> kVerbs = {
     &tacto::firmware_host::kScanVerb, &tacto::capture::kDoctorVerb,      &tacto::capture::kCalibrateVerb,
     &tacto::capture::kImportVerb,     &tacto::capture::kRecordVerb,      &tacto::capture::kRecoverVerb,
     &tacto::capture::kListVerb,       &tacto::schema::kInfoVerb,         &tacto::schema::kValidateVerb,
@@ -22,6 +22,7 @@ constexpr std::array<const tacto::cli::Verb*, 21> kVerbs = {
     &tacto::spatial::kFormantsVerb,   &tacto::spatial::kDescribeVerb,    &tacto::spatial::kCertifyVerb,
     &tacto::playback::kRenderVerb,    &tacto::playback::kPlayVerb,       &tacto::playback::kCtlVerb,
     &tacto::playback::kSessionVerb,   &tacto::playback::kReplayVerb,     &tacto::analysis::kDemoVerb,
+    &tacto::analysis::kIdentifyVerb,
 };
 
 }  // namespace

@@ -7,5 +7,6 @@
 namespace tacto::analysis {
 
 extern const cli::Verb kDemoVerb;
+extern const cli::Verb kIdentifyVerb;
 
 }  // namespace tacto::analysis
