@@ -14,7 +14,7 @@
 namespace {
 
 // In the order of the work: get data, look at it, make textures, see them, play them.
-constexpr std::array<const tacto::cli::Verb*, 25> kVerbs = {
+constexpr std::array<const tacto::cli::Verb*, 26> kVerbs = {
     &tacto::firmware_host::kScanVerb, &tacto::capture::kDoctorVerb,      &tacto::capture::kCalibrateVerb,
     &tacto::capture::kImportVerb,     &tacto::capture::kRecordVerb,      &tacto::capture::kRecoverVerb,
     &tacto::capture::kListVerb,       &tacto::schema::kInfoVerb,         &tacto::schema::kValidateVerb,
@@ -23,7 +23,7 @@ constexpr std::array<const tacto::cli::Verb*, 25> kVerbs = {
     &tacto::playback::kRenderVerb,    &tacto::playback::kPlayVerb,       &tacto::playback::kCtlVerb,
     &tacto::playback::kSessionVerb,   &tacto::playback::kReplayVerb,     &tacto::analysis::kCompareVerb,
     &tacto::analysis::kFidelityVerb,  &tacto::analysis::kReportVerb,     &tacto::analysis::kExtremesVerb,
-    &tacto::analysis::kDemoVerb,
+    &tacto::analysis::kIdentifyVerb,  &tacto::analysis::kDemoVerb,
 };
 
 }  // namespace

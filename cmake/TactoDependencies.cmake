@@ -25,6 +25,11 @@ add_library(tacto_opencv INTERFACE)
 target_include_directories(tacto_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE_DIR})
 target_link_libraries(tacto_opencv INTERFACE ${OPENCV_IMGPROC} ${OPENCV_CORE})
 
+# Eigen is headers only, and not held to our warnings.
+find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
+add_library(tacto_eigen INTERFACE)
+target_include_directories(tacto_eigen SYSTEM INTERFACE ${EIGEN_INCLUDE_DIR})
+
 # Valijson is headers only.
 find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp REQUIRED)
 add_library(tacto_valijson INTERFACE)

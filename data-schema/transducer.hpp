@@ -80,6 +80,10 @@ std::vector<std::string_view> preset_names();
 /// the identified band goes upwards. Errors: malformed, in `where`#/field.
 Result<void> check_extras(const Transducer& transducer, const std::string& where);
 
+/// Whether something may be played through it: errors: unsuitable, where its own identification says that it
+/// did not converge or that the model is wrong, and nobody forces it.
+Result<void> check_usable(const Transducer& transducer, bool forced);
+
 /// By preset name, stem or file (NAME.transducer.json). Errors: not_found (with the presets), malformed (also
 /// by check_extras), unsupported_version.
 Result<Transducer> read_transducer(const std::string& name);

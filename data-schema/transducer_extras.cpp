@@ -33,4 +33,13 @@ Result<void> check_extras(const Transducer& transducer, const std::string& where
   return checked_hysteresis(*transducer.hysteresis, where + "#/hysteresis");
 }
 
+Result<void> check_usable(const Transducer& transducer, bool forced) {
+  const auto& found = transducer.identification;
+  if (forced || !found || found->usable()) return {};
+  return fail(Fault::unsuitable,
+              found->converged ? "its identification says that the model does not fit: " + found->words
+                               : "its identification did not converge: " + found->words,
+              fmt::format("transducer '{}'", transducer.name), "identify it anew, or force it with --force");
+}
+
 }  // namespace tacto::schema

@@ -19,11 +19,12 @@ struct Hysteresis {
   std::vector<double> thresholds_v, weights;
 };
 
-/// A mode above the first, added to the compliance 1 / (m s^2 + b_r s + k) as relative_gain / k over
-/// (s/w)^2 + 2 damping_ratio s/w + 1; k = k_r + k_p, w = 2 pi frequency_hz.
+/// A second mode: a resonance and the anti-resonance that belongs to it multiply the compliance
+/// 1 / (m s^2 + b_r s + k) by q(zero) / q(resonance), where q is (s/w)^2 + 2 damping s/w + 1 and w = 2 pi f.
+/// The gain at rest stays. Exact for a second mass on a spring and a damper, however it is damped.
 struct ModeAbove {
   double frequency_hz = 0, damping_ratio = 0;
-  double relative_gain = 0;  ///< of the static gain; may be negative, 0 is no mode
+  double zero_hz = 0, zero_damping_ratio = 0;  ///< where they equal the resonance's there is no mode
 };
 
 /// How the numbers of a file were found, and how far they can be believed.

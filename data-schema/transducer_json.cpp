@@ -39,7 +39,8 @@ Json hysteresis_body(const Hysteresis& hysteresis) {
 Json second_mode_body(const ModeAbove& mode) {
   return {{"frequency_hz", mode.frequency_hz},
           {"damping_ratio", mode.damping_ratio},
-          {"relative_gain", mode.relative_gain}};
+          {"zero_hz", mode.zero_hz},
+          {"zero_damping_ratio", mode.zero_damping_ratio}};
 }
 
 Json identification_body(const Identification& found) {
@@ -60,7 +61,7 @@ Hysteresis hysteresis_from(const Json& body) {
 }
 
 ModeAbove second_mode_from(const Json& body) {
-  return {body["frequency_hz"], body["damping_ratio"], body["relative_gain"]};
+  return {body["frequency_hz"], body["damping_ratio"], body["zero_hz"], body["zero_damping_ratio"]};
 }
 
 Identification identification_from(const Json& body) {

@@ -22,13 +22,18 @@ Complex mechanics(const Transducer& t, Complex s) {
   return t.mass_kg * s * s + t.damping_n_s_per_m * s + stiffness(t);
 }
 
-// m/N: the first mode's, and what a second one adds.
+Complex quadratic(double frequency_hz, double damping_ratio, Complex s) {
+  const Complex p = s / (2 * std::numbers::pi * frequency_hz);
+  return p * p + 2 * damping_ratio * p + 1.0;
+}
+
+// m/N, with a second mode where there is one.
 Complex compliance(const Transducer& t, Complex s) {
   const Complex first = 1.0 / mechanics(t, s);
   if (!t.second_mode) return first;
-  const Complex p = s / (2 * std::numbers::pi * t.second_mode->frequency_hz);
-  return first +
-         t.second_mode->relative_gain / stiffness(t) / (p * p + 2 * t.second_mode->damping_ratio * p + 1.0);
+  const ModeAbove& mode = *t.second_mode;
+  return first * quadratic(mode.zero_hz, mode.zero_damping_ratio, s) /
+         quadratic(mode.frequency_hz, mode.damping_ratio, s);
 }
 
 // Two layers of C_p in parallel behind a resistor.

@@ -11,5 +11,6 @@ extern const cli::Verb kFidelityVerb;
 extern const cli::Verb kDemoVerb;
 extern const cli::Verb kExtremesVerb;
 extern const cli::Verb kReportVerb;
+extern const cli::Verb kIdentifyVerb;
 
 }  // namespace tacto::analysis

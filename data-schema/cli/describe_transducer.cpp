@@ -41,7 +41,7 @@ void add_extras(Report& report, const Transducer& t) {
   if (!t.second_mode) return;
   report.add("second_mode_hz", t.second_mode->frequency_hz);
   report.add("second_mode_damping_ratio", t.second_mode->damping_ratio);
-  report.add("second_mode_relative_gain", t.second_mode->relative_gain);
+  report.add("second_mode_zero_hz", t.second_mode->zero_hz);
 }
 
 void add_identification(Report& report, const Transducer& t) {

@@ -104,6 +104,7 @@ void SimBoard::set_rate(std::uint32_t rate_millihertz) {
   diverged_s_ = -1;
   source_ = source_at(parameters_at(rate_millihertz));
   tray_.reset();
+  if (parameters_.watches_tray()) tray_sensor_.emplace(parameters_);
 }
 
 void SimBoard::step() {
@@ -113,6 +114,7 @@ void SimBoard::step() {
   if (!tray_ && drive_v_ != 0)
     tray_ = std::make_unique<ActuatedTray>(transducer_, 1 / period_s(), std::nullopt, parameters_.tray());
   if (tray_) tray_->tick(drive_v_);
+  if (tray_sensor_) frame_[channels_.size() - 1] = tray_sensor_->step(displacement_m());
   firmware_->tick();
 }
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "firmware-host/core/firmware.hpp"
@@ -12,6 +13,7 @@
 #include "firmware-host/sim/frame_source.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
 #include "firmware-host/sim/surface.hpp"
+#include "firmware-host/sim/tray_sensor.hpp"
 
 namespace tacto::firmware_host {
 
@@ -72,6 +74,7 @@ class SimBoard {
   std::size_t link_bytes_ = static_cast<std::size_t>(-1);
   std::unique_ptr<FrameSource> source_;
   std::unique_ptr<ActuatedTray> tray_;
+  std::optional<TraySensor> tray_sensor_;
   std::int32_t frame_[wire::kMaxChannels] = {};
   std::uint32_t rate_millihertz_ = 0;
   std::uint64_t steps_ = 0, clock_before_ = 0;

@@ -7,6 +7,7 @@
 
 #include "data-schema/quantity.hpp"
 #include "data-schema/version.hpp"
+#include "firmware-host/sim/tray_sensor.hpp"
 #include "firmware-host/wire_fields.hpp"
 
 namespace tacto::firmware_host {
@@ -96,10 +97,14 @@ wire::Channel position_channel(const SimRun& run, const SimParameters& p) {
 }  // namespace
 
 std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& parameters) {
-  return numbered<wire::Channel>(
-      {converted("tangential_force", "V", run.converter(), "transducer, piezo sensor"),
-       position_channel(run, parameters), load_channel("normal_force", run.normal_cell()),
-       load_channel("net_force", run.net_cell())});
+  std::vector<wire::Channel> channels = {
+      converted("tangential_force", "V", run.converter(), "transducer, piezo sensor"),
+      position_channel(run, parameters), load_channel("normal_force", run.normal_cell()),
+      load_channel("net_force", run.net_cell())};
+  if (parameters.watches_tray())
+    channels.push_back(
+        converted("displacement", "m", TraySensor(parameters).converter(), "vibrometer on the driven tray"));
+  return numbered(std::move(channels));
 }
 
 std::vector<wire::Channel> counter_channels(int count) {

@@ -89,6 +89,7 @@ constexpr Detail kDetails[] = {
     {"force_", [](const SimParameters& p) { return p.known_force; }, "add force=multisine, or another"},
     {"lvdt_", [](const SimParameters& p) { return p.has_lvdt; }, "add position=lvdt"},
     {"second_mode_", [](const SimParameters& p) { return p.has_second_mode; }, "add second_mode=800Hz"},
+    {"tray_sensor_", [](const SimParameters& p) { return p.has_tray_sensor; }, "add tray_sensor=on"},
     {"finger_load_", [](const SimParameters& p) { return p.has_finger_load; }, "add finger_load=on"},
     {"channels", [](const SimParameters& p) { return p.counter; }, "add source=counter"},
     {"link_buffer", [](const SimParameters& p) { return p.paced; }, "add paced=1"},

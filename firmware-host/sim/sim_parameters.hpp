@@ -53,7 +53,11 @@ struct SimParameters {
   SecondMode second_mode;
   FingerLoad finger_load;
   double hysteresis = 0;
+
+  bool has_tray_sensor = false;  ///< a channel `displacement`: where the driven tray is
+  double tray_sensor_noise_m = 20e-9;
   TrayPhysics tray() const;
+  bool watches_tray() const { return has_tray_sensor && !counter; }
 };
 
 /// Reads key=value pairs between commas; a quantity has its unit. Keys that are absent keep their defaults.

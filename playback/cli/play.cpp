@@ -21,6 +21,8 @@ void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_option("-o,--output", o.session, "The session: NAME.session")->required();
   app.add_option("--transducer", o.transducer,
                  "A preset or NAME.transducer.json; the device's own unless told");
+  app.add_flag("--force", o.program.force,
+               "Take a transducer file that says of itself that its model does not fit");
   app.add_option("--finger-path", o.finger_path,
                  "Where an emulated device's finger goes: CSV with the columns time_s,position_m");
   cli::add_quantity(app, "--time", o.time_s, Dimension::time,

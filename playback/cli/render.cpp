@@ -20,6 +20,7 @@ namespace {
 
 struct RenderVerbOptions {
   std::string texture, path, transducer, drive, displacement, wanted;
+  bool force = false;
   RenderOptions render;
 };
 
@@ -30,6 +31,7 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
                  "Finger path: CSV with the columns time_s,position_m; between its points by monotone cubics")
       ->required();
   app.add_option("--transducer", o.transducer, "Transducer: a preset or NAME.transducer.json")->required();
+  app.add_flag("--force", o.force, "Take a transducer file that says of itself that its model does not fit");
   app.add_option("-o,--output", o.drive, "The drive: float WAV in volts at the amplifier's input")
       ->required();
   app.add_option("--displacement", o.displacement,
@@ -151,6 +153,8 @@ Result<Report> run_render(const RenderVerbOptions& o) {
   if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
   const auto transducer = schema::read_transducer(o.transducer);
   if (!transducer) return schema::forward_error(transducer);
+  if (const auto usable = schema::check_usable(*transducer, o.force); !usable)
+    return schema::forward_error(usable);
   const auto rendering = rendered(o, *transducer);
   if (!rendering) return schema::forward_error(rendering);
   if (const auto written = write_signal_files(files_of(o, *rendering)); !written)

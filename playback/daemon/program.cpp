@@ -156,6 +156,8 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
   if (!laid) return schema::forward_error(laid);
   const auto transducer = schema::read_transducer(transducer_name);
   if (!transducer) return schema::forward_error(transducer);
+  if (const auto usable = schema::check_usable(*transducer, request.force); !usable)
+    return schema::forward_error(usable);
   options.gain_m_per_n = laid->gain();
   options.ends = ends_of(laid->layers.front().ends);
   auto prepared = prepare(placed(*laid), *transducer, options);

@@ -15,6 +15,7 @@ struct ProgramRequest {
   std::string file;  ///< stem or file of a texture or scene
   std::optional<double> at_m, gain_m_per_n;
   std::optional<schema::TextureEnds> ends;
+  bool force = false;  ///< take a transducer that says of itself that its model does not fit
 };
 
 /// Ready to upload. `session` lacks only what the player knows: device, clock, initial state.
@@ -29,8 +30,8 @@ struct Program {
 };
 
 /// Reads the files, and prepares. `options`: rate, encoder, limits; gain and ends are taken from the request
-/// or the scene. Errors: as read_texture, read_scene, read_transducer, prepare; unsuitable: a scene of
-/// several textures whose ends are not `stop`; usage: a place or gain for a scene.
+/// or the scene. Errors: as read_texture, read_scene, read_transducer, prepare; unsuitable: as check_usable;
+/// a scene of several textures whose ends are not `stop`; usage: a place or gain for a scene.
 schema::Result<Program> make_program(const ProgramRequest& request, const std::string& transducer,
                                      PrepareOptions options);
 

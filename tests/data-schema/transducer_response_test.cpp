@@ -148,16 +148,28 @@ TEST(TransducerResponse, EqualsTheEquationsOfMotionInTime) {
   }
 }
 
-TEST(TransducerResponse, ASecondModeAddsItsOwnResonator) {
+// A mass on a spring and a damper of its own, by Newton: x (m_1 s^2 + k + m_2 s^2 k_2 / (m_2 s^2 + k_2)) = f.
+// Undamped, so that the poles have closed forms.
+TEST(TransducerResponse, ASecondModeIsAMassOnASpring) {
   Transducer t = preset("wiertlewski2011");
-  const auto at_800 = actuator_response(t, 800), at_0 = actuator_response(t, 0);
-  t.second_mode = ModeAbove{800, 0.03, 0.1};
-  // At its own frequency the added mode is relative_gain / (2 i zeta) of the static gain, behind the same
-  // pole.
-  const std::complex<double> pole = 1.0 / std::complex<double>(1, 800 / actuator_pole_hz(t));
-  const auto added = at_0 * pole * 0.1 / std::complex<double>(0, 0.06);
-  EXPECT_LT(std::abs(actuator_response(t, 800) - at_800 - added), 1e-12 * std::abs(at_0));
-  EXPECT_NEAR(std::abs(actuator_response(t, 0) / at_0), 1.1, 1e-12);
+  const double k = t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m;
+  const double inner_kg = 1e-3, inner_n_per_m = 2e4, tray_kg = t.mass_kg;
+  const double sum = (k + inner_n_per_m) / tray_kg + inner_n_per_m / inner_kg;
+  const double product = k * inner_n_per_m / (tray_kg * inner_kg);
+  const double root = std::sqrt(sum * sum / 4 - product);
+  const double low = std::sqrt(sum / 2 - root), high = std::sqrt(sum / 2 + root);
+  t.damping_n_s_per_m = 1e-9;
+  Transducer two = t;
+  two.mass_kg = k / (low * low);
+  two.second_mode =
+      ModeAbove{high / (2 * kPi), 1e-12, std::sqrt(inner_n_per_m / inner_kg) / (2 * kPi), 1e-12};
+  for (const double hz : {10.0, 300.0, 650.0, 800.0, 1500.0}) {
+    const std::complex<double> s(0, 2 * kPi * hz);
+    const auto tray = tray_kg * s * s + k, inner = inner_kg * s * s;
+    const auto exact = (inner + inner_n_per_m) / (tray * (inner + inner_n_per_m) + inner * inner_n_per_m);
+    const auto one = actuator_response(t, hz) * (t.mass_kg * s * s + k);  // all but the mechanics
+    EXPECT_LT(std::abs(actuator_response(two, hz) / (one * exact) - 1.0), 1e-6) << hz;
+  }
 }
 
 TEST(TransducerResponse, ButterworthIsTheTextbooks) {

@@ -33,6 +33,7 @@ WALLS = {
     r"nettle/": ["data-schema", "analysis"],
     r"opencv2/|cairo|pango": ["spatial/picture"],
     r"pugixml": ["capture"],
+    r"Eigen/|unsupported/Eigen": ["analysis/identify"],
     r"CLI/": ["data-schema/cli"],
 }
 

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "analysis/cli/identify_report.hpp"
+#include "analysis/cli/verbs.hpp"
+#include "analysis/identify/bode_figure.hpp"
+#include "analysis/identify/measured_tables.hpp"
+#include "analysis/identify/plausibility.hpp"
+#include "analysis/identify/response_estimate.hpp"
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/cli/stop_signals.hpp"
+#include "data-schema/files.hpp"
+#include "playback/daemon/player_device.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using cli::Report;
+using schema::Dimension;
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr const char* kUsualBase = "wiertlewski2011";
+
+struct IdentifyOptions {
+  std::string file, device_uri, stem, base, picture;
+  IdentifyMethod method = IdentifyMethod::sweep;
+  ModelChoice model;
+  TableUnits units;
+  ExcitationPlan plan;
+  std::optional<double> amplitude_v, rate_hz;
+  std::string input = "drive", output = "displacement";
+  int phase_sign = 1;
+  std::size_t taps_fitted = 0;
+  bool invert = false, force = false;
+};
+
+void declare_source(CLI::App& app, IdentifyOptions& o) {
+  app.add_option(
+      "FILE", o.file,
+      "A response (frequency_hz,amplitude_um_per_v,phase_deg), loops (drive_v,displacement_um), taps, or a "
+      "recording with both channels");
+  app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:tray_sensor=on ...");
+  app.add_option("-o,--output", o.stem, "What is written: NAME.transducer.json")->required();
+  app.add_option("--start-from", o.base,
+                 "Preset or file that the fit begins from, and that what can't be told apart is held at");
+  app.add_option("--picture", o.picture, "Bode plot: .svg or .png");
+  cli::add_choice<IdentifyMethod>(
+      app, "--method", o.method,
+      {{"sweep", IdentifyMethod::sweep},
+       {"multisine", IdentifyMethod::multisine},
+       {"chirp", IdentifyMethod::chirp},
+       {"loop", IdentifyMethod::loop},
+       {"taps", IdentifyMethod::taps}},
+      "How: a sine at each frequency, all at once, or a chirp (nine times 1 s); loop: the "
+      "hysteresis; taps: a sensor's ringing");
+}
+
+void declare_model(CLI::App& app, IdentifyOptions& o) {
+  app.add_flag("--second-mode", o.model.second_mode,
+               "The model has a second resonance, and its anti-resonance");
+  app.add_flag("--lag", o.model.lag, "The model lags by the same angle at all frequencies, for a hysteresis");
+  app.add_flag("--finger", o.model.finger,
+               "A finger rests on the tray of a transducer that is known (--start-from): find what it adds");
+  app.add_flag("--force", o.force, "Take a gain that is hundreds of times off what the base says");
+}
+
+void declare_measuring(CLI::App& app, IdentifyOptions& o) {
+  cli::add_quantity(app, "--amplitude", o.amplitude_v, Dimension::voltage,
+                    "Peak of the drive; 0.5V, and for loops as far as the limits go");
+  cli::add_quantity(app, "--low", o.plan.low_hz, Dimension::frequency, "Lowest frequency");
+  cli::add_quantity(app, "--high", o.plan.high_hz, Dimension::frequency, "Highest frequency");
+  app.add_option("--frequencies", o.plan.frequencies, "How many, evenly by octaves")->check(cli::from_one());
+  cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency,
+                    "Of taps, or of loops without a time column");
+  app.add_option("--fit-on", o.taps_fitted,
+                 "Of taps: how many of the first to fit on and hold the others against; half")
+      ->check(cli::from_one());
+}
+
+void declare_tables(CLI::App& app, IdentifyOptions& o) {
+  app.add_option("--amplitude-unit", o.units.amplitude,
+                 "Of a table without it in the header: um/V, V/N, \"dB m/V\"");
+  app.add_option("--phase-unit", o.units.phase, "Likewise: deg or rad");
+  app.add_option("--phase-sign", o.phase_sign, "-1: the table's lags are positive")
+      ->check(CLI::IsMember({-1, 1}));
+  app.add_flag("--invert", o.invert, "The answer was measured upside down");
+  app.add_option("--input", o.input, "Of a recording: the channel that drives; net_force for a sensor");
+  app.add_option("--output-channel", o.output,
+                 "Of a recording: the channel that answers; tangential_force for a sensor");
+}
+
+Result<schema::Transducer> base_of(const IdentifyOptions& o, const firmware_host::Device* device) {
+  if (!o.base.empty()) return schema::read_transducer(o.base);
+  if (device != nullptr && device->capabilities().transducer) return *device->capabilities().transducer;
+  return schema::read_transducer(kUsualBase);
+}
+
+// What is asked of: a device, or a file.
+struct Asked {
+  playback::PlayerDevice device;
+  schema::Transducer base;
+  bool has_device() const { return device.device != nullptr; }
+};
+
+Result<Asked> asked_of(const IdentifyOptions& o) {
+  if (o.file.empty() == o.device_uri.empty())
+    return fail(Fault::usage, "name either a file or a device", "identify", "-d sim:tray_sensor=on, or FILE");
+  if (o.plan.frequencies < kLeastFrequencies || !(o.plan.low_hz < o.plan.high_hz))
+    return fail(Fault::usage, "a band needs eight frequencies that grow", "--frequencies", "leave it to 60");
+  if (o.model.finger && (o.model.second_mode || o.base.empty()))
+    return fail(Fault::usage, "a finger's load is found on a transducer that is known", "--finger",
+                "name it with --start-from; its second mode is taken from there");
+  Asked asked;
+  if (!o.device_uri.empty()) {
+    auto opened = playback::open_player_device(o.device_uri, std::nullopt);
+    if (!opened) return schema::forward_error(opened);
+    asked.device = std::move(*opened);
+  }
+  auto base = base_of(o, asked.device.device.get());
+  if (!base) return schema::forward_error(base);
+  asked.base = std::move(*base);
+  return asked;
+}
+
+ExcitationPlan plan_of(const IdentifyOptions& o, const firmware_host::Device& device) {
+  ExcitationPlan plan = o.plan;
+  plan.rate_hz = drive_rate_hz(device);
+  plan.amplitude_v = o.amplitude_v.value_or(plan.amplitude_v);
+  return plan;
+}
+
+bool is_table(const std::string& file) {
+  return file.ends_with(".csv") || file.ends_with(".txt") || file.ends_with(".tsv");
+}
+
+Result<BodeData> recorded_response(const IdentifyOptions& o) {
+  auto pair = read_recorded_pair(o.file, o.input, o.output);
+  if (!pair) return schema::forward_error(pair);
+  auto data =
+      response_of_record(pair->input, pair->output, pair->rate_hz, o.plan.low_hz, o.plan.high_hz, o.file);
+  if (!data) return data;
+  data->direction = pair->direction;
+  data->simulated = pair->simulated;
+  data->conditions = "recorded " + o.input + " and " + o.output;
+  return data;
+}
+
+Result<BodeData> tabled_response(const IdentifyOptions& o) {
+  const auto bode = is_bode_table(o.file);
+  if (!bode) return schema::forward_error(bode);
+  if (*bode) return read_bode_table(o.file, o.units);
+  const auto tray = read_driven_table(o.file);
+  if (!tray) return schema::forward_error(tray);
+  const double rate_hz = tray->rate_hz > 0 ? tray->rate_hz : o.rate_hz.value_or(0);
+  if (!(rate_hz > 0))
+    return fail(Fault::usage, "nobody says how fast it was sampled", o.file,
+                "give --rate, or a column time_s");
+  return response_of_record(tray->drive_v, tray->displacement_m, rate_hz, o.plan.low_hz, o.plan.high_hz,
+                            o.file);
+}
+
+Result<BodeData> response_of(const IdentifyOptions& o, Asked& asked) {
+  if (asked.has_device()) {
+    const cli::StopSignals signals;
+    cli::Progress progress("identifying");
+    firmware_host::Device& device = *asked.device.device;
+    return measured_on(
+        device, o.method, plan_of(o, device), asked.base, [&] { return signals.stop_asked(); },
+        [&](double part) { progress.update(part); });
+  }
+  auto data = is_table(o.file) ? tabled_response(o) : recorded_response(o);
+  if (!data) return data;
+  for (auto& value : data->response)
+    value = (o.invert ? -1.0 : 1.0) * (o.phase_sign < 0 ? std::conj(value) : value);
+  if (data->conditions.empty()) data->conditions = "measured elsewhere";
+  return data;
+}
+
+std::string name_of(const IdentifyOptions& o) {
+  return std::filesystem::path(schema::stem_of(o.stem, ".transducer")).filename().string();
+}
+
+std::string file_of(const IdentifyOptions& o) {
+  return schema::stem_of(o.stem, ".transducer") + ".transducer.json";
+}
+
+void add_conditions(const IdentifyOptions& o, BodeData& data) {
+  if (o.model.lag) data.conditions += ", with a constant lag";
+  if (o.model.finger) data.conditions += ", a finger on the tray";
+  if (o.model.second_mode) data.conditions += ", with a second mode";
+}
+
+Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
+  auto data = response_of(o, asked);
+  if (!data) return schema::forward_error(data);
+  add_conditions(o, *data);
+  ModelChoice choice = o.model;
+  choice.direction = data->direction;
+  if (const auto sound = check_bode(*data); !sound) return schema::forward_error(sound);
+  if (const auto sound = check_phases(*data, choice, asked.base); !sound) return schema::forward_error(sound);
+  const ResponseFit fit = fit_response(*data, choice, asked.base);
+  if (const auto sized = o.force ? Result<void>() : check_size(fit, asked.base); !sized)
+    return schema::forward_error(sized);
+  const schema::Transducer found = identified(fit, name_of(o));
+  if (const auto written = schema::write_transducer(o.stem, found); !written)
+    return schema::forward_error(written);
+  Report report = response_report(fit, choice, asked.base, found, file_of(o));
+  if (o.picture.empty()) return report;
+  if (const auto drawn = spatial::write_figure(o.picture, BodeFigure(fit)); !drawn)
+    return schema::forward_error(drawn);
+  report.add("picture", o.picture);
+  return report;
+}
+
+Result<DrivenTray> loops_of(const IdentifyOptions& o, Asked& asked, schema::Identification& about) {
+  if (!asked.has_device()) {
+    about.source = o.file;
+    auto tray = read_driven_table(o.file);
+    if (tray && !(tray->rate_hz > 0)) tray->rate_hz = o.rate_hz.value_or(0);
+    return tray;
+  }
+  firmware_host::Device& device = *asked.device.device;
+  const double amplitude_v = o.amplitude_v.value_or(loop_amplitude_v(asked.base));
+  about.source = device.capabilities().uri;
+  about.simulated = device.capabilities().simulated;
+  about.conditions = "loops of " + schema::for_people(amplitude_v, Dimension::voltage) + " at 1 Hz";
+  const cli::StopSignals signals;
+  cli::Progress progress("identifying");
+  return drive_tray(
+      device, slow_loops(drive_rate_hz(device), amplitude_v), [&] { return signals.stop_asked(); },
+      [&](double part) { progress.update(part); });
+}
+
+Result<Report> identify_loops(const IdentifyOptions& o, Asked& asked) {
+  schema::Identification about;
+  about.conditions = "loops measured elsewhere";
+  const auto& before = asked.base.identification;
+  about.low_hz = before ? before->low_hz : 0;
+  about.high_hz = before ? before->high_hz : kLoopHz;
+  const auto tray = loops_of(o, asked, about);
+  if (!tray) return schema::forward_error(tray);
+  if (!(tray->rate_hz > 0))
+    cli::warn("no rate is known: the linear model's own lag is counted as hysteresis");
+  if (tray->limited > 0)
+    cli::warn("the device held the drive to a limit: see what was driven, not what was asked");
+  const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz, delay_at_rest_s(asked.base),
+                             asked.base.drive_limit_v);
+  if (!fit) return schema::forward_error(fit);
+  const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);
+  if (const auto written = schema::write_transducer(o.stem, found); !written)
+    return schema::forward_error(written);
+  return loop_report(*fit, found, file_of(o));
+}
+
+Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
+  if (o.file.empty() || !o.rate_hz)
+    return fail(Fault::usage, "taps come from a table and need its rate", "--method taps",
+                "identify taps.csv --rate 100kHz");
+  const auto taps = read_taps(o.file, *o.rate_hz);
+  if (!taps) return schema::forward_error(taps);
+  const auto fit = fit_taps(*taps);
+  if (!fit) return schema::forward_error(fit);
+  const std::size_t fitted = o.taps_fitted > 0 ? o.taps_fitted : taps->taps.size() / 2;
+  if (fitted < 2 || fitted + 2 > taps->taps.size())
+    return fail(Fault::usage, "two taps at least on either side", "--fit-on", "leave it to half of them");
+  const auto foretold = foretell_taps(*taps, fitted);
+  if (!foretold) return schema::forward_error(foretold);
+  schema::Identification about;
+  about.source = o.file;
+  about.conditions = "ringing after taps";
+  const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);
+  if (const auto written = schema::write_transducer(o.stem, found); !written)
+    return schema::forward_error(written);
+  return taps_report(*fit, *foretold, found, file_of(o));
+}
+
+Result<Report> run_identify(const IdentifyOptions& o) {
+  auto asked = asked_of(o);
+  if (!asked) return schema::forward_error(asked);
+  if (o.method == IdentifyMethod::taps) return identify_taps(o, *asked);
+  if (o.method == IdentifyMethod::loop) return identify_loops(o, *asked);
+  return identify_response(o, *asked);
+}
+
+cli::Action declare_identify(CLI::App& app) {
+  auto options = std::make_shared<IdentifyOptions>();
+  declare_source(app, *options);
+  declare_model(app, *options);
+  declare_measuring(app, *options);
+  declare_tables(app, *options);
+  return [options] { return run_identify(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kIdentifyVerb{
+    "identify", "Find a transducer's parameters, with their uncertainty, from a device or measured data",
+    "tactograph identify -d sim:tray_sensor=on -o bench --picture bench.svg\n"
+    "  tactograph identify -d sim:tray_sensor=on,hysteresis=0.16 --method loop --start-from bench -o "
+    "bench-loop\n"
+    "  tactograph identify response.csv --start-from wiertlewski2011 -o mine\n"
+    "  tactograph identify impacts.csv --method taps --rate 100kHz -o sensor",
+    declare_identify};
+
+}  // namespace tacto::analysis

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/cli/identify_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "analysis/identify/paper_words.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using cli::Report;
+
+constexpr double kDegreesOf = 180 / std::numbers::pi;
+
+std::string verdict_word(const schema::Identification& found) {
+  if (!found.converged) return "DID NOT CONVERGE: nothing plays through it unless forced";
+  return found.misfit ? "MISFIT: nothing plays through it unless forced" : "fits";
+}
+
+void add_head(Report& report, const schema::Transducer& found, const std::string& file) {
+  const schema::Identification& about = *found.identification;
+  report.add("transducer", file).add("source", about.source);
+  if (!about.simulated.empty()) report.add("simulated", about.simulated);
+  report.add("conditions", about.conditions).add("verdict", verdict_word(about)).add("words", about.words);
+  if (!about.usable()) report.ends_with(schema::Fault::unsuitable);
+}
+
+std::vector<Report> parameter_rows(const ResponseFit& fit) {
+  std::vector<Report> rows;
+  for (const FittedParameter& p : fit.parameters) {
+    Report row;
+    row.add("parameter", p.name).add("value", p.value);
+    const bool claimed = fit.claims_intervals() && !p.held;
+    row.add("low_of_95", claimed ? p.low : std::nan("")).add("high_of_95", claimed ? p.high : std::nan(""));
+    row.add("held", p.held);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void add_quality(Report& report, const ResponseFit& fit) {
+  report.add("r_squared", fit.r_squared)
+      .add("iterations", fit.iterations)
+      .add("condition_number", fit.condition);
+  if (fit.data.has_noise())
+    report.add("reduced_chi_squared", fit.misfit.reduced_chi_squared)
+        .add("reduced_chi_squared_limit", fit.misfit.chi_squared_limit);
+  report.add("residual_phase_correlation", fit.misfit.phase_correlation)
+      .add("residual_amplitude_correlation", fit.misfit.amplitude_correlation)
+      .add("residual_correlation_limit", fit.misfit.correlation_limit)
+      .add("third_harmonic_percent", 100 * fit.data.third_harmonic)
+      .add("frequencies", fit.data.size());
+}
+
+void add_found(Report& report, const schema::Transducer& found) {
+  report.add("mass_kg", found.mass_kg).add("damping_n_s_per_m", found.damping_n_s_per_m);
+  report.add("amplifier_resistance_ohm", found.amplifier_resistance_ohm);
+  report.add("sensor_resistance_ohm", found.sensor_resistance_ohm);
+  report.add("actuator_scale", found.actuator_scale).add("sensor_scale", found.sensor_scale);
+}
+
+void add_paper(Report& report, const schema::Transducer& found) {
+  const auto figures = paper_figures(found);
+  if (!figures) return;
+  std::vector<Report> rows;
+  for (const PaperFigure& f : *figures) {
+    Report row;
+    row.add("figure", f.what).add("reported", f.reported).add("by_table_i", f.by_table);
+    row.add("identified", f.identified).add("remark", f.remark);
+    rows.push_back(std::move(row));
+  }
+  report.add("paper_against_itself", std::move(rows));
+}
+
+}  // namespace
+
+Report response_report(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                       const schema::Transducer& found, const std::string& file) {
+  Report report;
+  add_head(report, found, file);
+  report.add("parameters", parameter_rows(fit));
+  std::vector<std::string> held = held_words(choice, base);
+  held.insert(held.end(), fit.notes.begin(), fit.notes.end());
+  report.add("not_told_apart", std::move(held));
+  if (!fit.suggestion.empty()) report.add("model_one_mode_short", fit.one_mode_short);
+  add_quality(report, fit);
+  add_found(report, found);
+  if (is_the_papers(base)) add_paper(report, found);
+  return report;
+}
+
+Report loop_report(const LoopFit& fit, const schema::Transducer& found, const std::string& file) {
+  Report report;
+  add_head(report, found, file);
+  report.add("loop_opening_percent", 100 * fit.opening).add("loop_amplitude_v", fit.amplitude_v);
+  report.add("lag_degrees", kDegreesOf * fit.lag_rad)
+      .add("lag_of_an_ellipse_degrees", kDegreesOf * fit.ellipse_lag_rad);
+  report.add("gain_of_a_full_swing_m_per_v", fit.gain_m_per_v).add("r_squared", fit.r_squared);
+  report.add("left_by_the_operator_percent", 100 * fit.residual_part)
+      .add("left_by_a_line_percent", 100 * fit.linear_residual_part);
+  std::vector<Report> rows;
+  for (std::size_t i = 0; i < fit.hysteresis.weights.size(); ++i) {
+    Report row;
+    row.add("threshold_v", fit.hysteresis.thresholds_v[i]).add("weight", fit.hysteresis.weights[i]);
+    rows.push_back(std::move(row));
+  }
+  report.add("operator", std::move(rows));
+  return report;
+}
+
+Report taps_report(const TapsFit& fit, const TapsPrediction& foretold, const schema::Transducer& found,
+                   const std::string& file) {
+  Report report;
+  add_head(report, found, file);
+  report.add("resonance_hz", fit.resonance_hz.median).add("resonance_spread_hz", fit.resonance_hz.spread);
+  report.add("damping_ratio", fit.damping_ratio.median).add("damping_ratio_spread", fit.damping_ratio.spread);
+  report.add("fitted_taps", foretold.fitted).add("foretold_taps", foretold.foretold);
+  report.add("foretold_resonance_error_percent", 100 * foretold.resonance_error)
+      .add("foretold_damping_error_percent", 100 * foretold.damping_error)
+      .add("foretold_waveform_error_percent", 100 * foretold.waveform_error)
+      .add("foretold_waveform_worst_percent", 100 * foretold.worst_waveform_error);
+  std::vector<Report> rows;
+  for (const RingingTap& tap : fit.taps) {
+    Report row;
+    row.add("tap", tap.name).add("resonance_hz", tap.modes.front().frequency_hz);
+    row.add("damping_ratio", tap.modes.front().damping_ratio);
+    row.add("energy_percent", 100 * tap.modes.front().energy_part).add("left_percent", 100 * tap.left);
+    rows.push_back(std::move(row));
+  }
+  report.add("taps", std::move(rows));
+  return report;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `identify` says of what it found.
+#pragma once
+
+#include "analysis/identify/identification.hpp"
+#include "data-schema/cli/report.hpp"
+
+namespace tacto::analysis {
+
+/// Each gives the report of one kind of identification; `file` is what was written.
+cli::Report response_report(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                            const schema::Transducer& found, const std::string& file);
+cli::Report loop_report(const LoopFit& fit, const schema::Transducer& found, const std::string& file);
+cli::Report taps_report(const TapsFit& fit, const TapsPrediction& foretold, const schema::Transducer& found,
+                        const std::string& file);
+
+}  // namespace tacto::analysis

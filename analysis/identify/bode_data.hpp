@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A measured frequency response, with what it was measured to be uncertain by.
+#pragma once
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "data-schema/error.hpp"
+
+namespace tacto::analysis {
+
+/// One direction of the transducer: m/V as an actuator, V/N as a sensor.
+enum class Direction { actuator, sensor };
+
+/// All vectors of equal length, frequencies growing. Phase convention: exp(+2 pi i f t), so a lag is
+/// negative.
+struct BodeData {
+  Direction direction = Direction::actuator;
+  std::vector<double> frequency_hz;
+  std::vector<std::complex<double>> response;  ///< m/V or V/N
+  /// Standard deviation of the real and of the imaginary part alone, from scatter; empty: nobody measured it.
+  std::vector<double> noise;
+  /// The drive was held from sample to sample at this rate, and the answer sampled with it; 0: continuous.
+  double held_rate_hz = 0;
+  std::string source, conditions, simulated;
+  /// The third harmonic of the answer over its fundamental, the largest; what only a nonlinear device makes.
+  double third_harmonic = 0;
+
+  std::size_t size() const { return frequency_hz.size(); }
+  bool has_noise() const { return !noise.empty(); }
+};
+
+inline constexpr std::size_t kLeastFrequencies = 8;  // twice the parameters of the model
+
+/// Whether a model can be fitted at all. Errors: unsuitable: fewer than kLeastFrequencies, a value that is
+/// not finite (with its line), frequencies that do not grow, an amplitude of nothing, noise only: the median
+/// of amplitude over noise is below 2, or (where none was measured) neighbours have nothing to do with each
+/// other.
+schema::Result<void> check_bode(const BodeData& data);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/identify/hysteresis_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+
+#include "analysis/identify/least_squares.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::size_t kFewestLoopSamples = 100;
+constexpr double kNearZero = 0.1;    // of the amplitude: where a branch is taken for straight
+constexpr double kFullSwing = 0.98;  // of the amplitude: a loop that counts as the largest
+constexpr double kSmallResidual = 0.01;
+
+std::vector<double> play_of(std::span<const double> v, double threshold) {
+  std::vector<double> y(v.size());
+  double state = 0;
+  for (std::size_t i = 0; i < v.size(); ++i)
+    y[i] = state = std::max(v[i] - threshold, std::min(v[i] + threshold, state));
+  return y;
+}
+
+std::vector<double> delayed(std::span<const double> v, double samples) {
+  std::vector<double> out(v.size());
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const double at = std::max(0.0, static_cast<double>(i) - samples);
+    const auto before = std::min(static_cast<std::size_t>(at), v.size() - 1);
+    const std::size_t after = std::min(before + 1, v.size() - 1);
+    out[i] = std::lerp(v[before], v[after], at - static_cast<double>(before));
+  }
+  return out;
+}
+
+double rms(std::span<const double> x) {
+  return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size()));
+}
+
+std::vector<double> centred(std::span<const double> x) {
+  const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+  std::vector<double> out(x.begin(), x.end());
+  for (double& value : out) value -= mean;
+  return out;
+}
+
+// The stretch from one passage upwards through zero to the next that swings farthest.
+struct Stretch {
+  std::size_t first = 0, end = 0;
+};
+
+Stretch largest_loop(std::span<const double> v, double amplitude_v) {
+  std::vector<std::size_t> upward;
+  for (std::size_t i = 1; i < v.size(); ++i)
+    if (v[i - 1] < 0 && v[i] >= 0) upward.push_back(i);
+  for (std::size_t n = upward.size(); n-- > 1;) {
+    const auto part = v.subspan(upward[n - 1], upward[n] - upward[n - 1]);
+    const auto [low, high] = std::ranges::minmax(part);
+    if (high > kFullSwing * amplitude_v && -low > kFullSwing * amplitude_v) return {upward[n - 1], upward[n]};
+  }
+  return {};
+}
+
+// Where the branch of this direction crosses no drive, by a straight line through what is near.
+double branch_at_zero(std::span<const double> v, std::span<const double> x, double amplitude_v,
+                      int direction) {
+  double n = 0, sv = 0, sx = 0, svv = 0, svx = 0;
+  for (std::size_t i = 1; i < v.size(); ++i) {
+    if (std::abs(v[i]) > kNearZero * amplitude_v || (v[i] - v[i - 1]) * direction <= 0) continue;
+    ++n, sv += v[i], sx += x[i], svv += v[i] * v[i], svx += v[i] * x[i];
+  }
+  const double slope = (n * svx - sv * sx) / (n * svv - sv * sv);
+  return n < 3 ? std::nan("") : (sx - slope * sv) / n;
+}
+
+std::complex<double> fundamental(std::span<const double> x) {
+  std::complex<double> sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum += x[i] *
+           std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(x.size()));
+  return sum;
+}
+
+void put_loop(std::span<const double> v, std::span<const double> x, Stretch loop, LoopFit& fit) {
+  const auto lv = v.subspan(loop.first, loop.end - loop.first),
+             lx = x.subspan(loop.first, loop.end - loop.first);
+  const auto [low, high] = std::ranges::minmax(lx);
+  const double up = branch_at_zero(lv, lx, fit.amplitude_v, 1),
+               down = branch_at_zero(lv, lx, fit.amplitude_v, -1);
+  fit.opening = std::abs(down - up) / (high - low);
+  fit.ellipse_lag_rad = std::asin(std::min(1.0, fit.opening));
+  fit.lag_rad = std::arg(fundamental(lv) / fundamental(lx));
+}
+
+// Weights and gain from what the non-negative fit gave; the first weight keeps a thousandth, for the inverse.
+void put_operator(const std::vector<double>& thresholds_v, std::vector<double> weights, double limit_v,
+                  LoopFit& fit) {
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  weights[0] = std::max(weights[0], 1e-3 * sum);
+  double at_limit = 0, at_amplitude = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    at_limit += weights[i] * std::max(0.0, limit_v - thresholds_v[i]);
+    at_amplitude += weights[i] * std::max(0.0, fit.amplitude_v - thresholds_v[i]);
+  }
+  fit.gain_m_per_v = at_limit / limit_v;
+  for (double& weight : weights) weight *= limit_v / at_limit;
+  fit.hysteresis = {thresholds_v, std::move(weights)};
+}
+
+Result<void> check_loops(std::span<const double> v, std::span<const double> x) {
+  if (v.size() < kFewestLoopSamples || v.size() != x.size())
+    return fail(Fault::unsuitable, fmt::format("{} samples are too few for a loop", v.size()), "loop");
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (!std::isfinite(v[i]) || !std::isfinite(x[i]))
+      return fail(Fault::unsuitable, "a value is not a number", fmt::format("loop, sample {}", i + 1));
+  return {};
+}
+
+}  // namespace
+
+std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v) {
+  std::vector<double> sum(drive_v.size(), 0.0);
+  for (std::size_t i = 0; i < hysteresis.weights.size(); ++i) {
+    const auto play = play_of(drive_v, hysteresis.thresholds_v[i]);
+    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += hysteresis.weights[i] * play[n];
+  }
+  return sum;
+}
+
+double delay_at_rest_s(const schema::Transducer& t) {
+  return 2 * t.amplifier_resistance_ohm * t.capacitance_f +
+         t.damping_n_s_per_m / (t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m);
+}
+
+Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const double> displacement_m,
+                          double rate_hz, double delay_s, double drive_limit_v) {
+  if (const auto sound = check_loops(drive_v, displacement_m); !sound) return schema::forward_error(sound);
+  const std::vector<double> v = delayed(drive_v, delay_s * rate_hz);
+  LoopFit fit;
+  fit.amplitude_v = std::abs(*std::ranges::max_element(v, {}, [](double value) { return std::abs(value); }));
+  const Stretch loop = largest_loop(v, fit.amplitude_v);
+  if (loop.end <= loop.first)
+    return fail(Fault::unsuitable, "the drive makes no whole loop between its largest values, both ways",
+                "loop",
+                "drive it slowly with a sine or a triangle about 0, two periods at the largest swing first");
+  // Only what comes after a full swing knows its past.
+  const auto past =
+      std::ranges::find_if(v, [&](double value) { return -value > kFullSwing * fit.amplitude_v; });
+  const auto from = static_cast<std::size_t>(past - v.begin());
+  std::vector<double> thresholds_v;
+  std::vector<std::vector<double>> columns;
+  for (std::size_t i = 0; i < kThresholds; ++i) {
+    thresholds_v.push_back(fit.amplitude_v * static_cast<double>(i) / static_cast<double>(kThresholds));
+    const auto play = play_of(v, thresholds_v.back());
+    columns.emplace_back(play.begin() + static_cast<std::ptrdiff_t>(from), play.end());
+  }
+  columns.emplace_back(v.size() - from, 1.0);
+  const auto compared = displacement_m.subspan(from);
+  const double sign =
+      std::inner_product(compared.begin(), compared.end(), columns[0].begin(), 0.0) < 0 ? -1 : 1;
+  std::vector<double> x(compared.begin(), compared.end());
+  for (double& value : x) value *= sign;
+  std::vector<double> weights = non_negative_least_squares(columns, x, 1);
+  std::vector<double> rest = x;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= weights[i] * columns[i][n];
+  const auto line = non_negative_least_squares({columns.front(), columns.back()}, x, 1);
+  std::vector<double> off_line = x;
+  for (std::size_t n = 0; n < x.size(); ++n) off_line[n] -= line[0] * columns.front()[n] + line[1];
+  const double size = rms(centred(x));
+  fit.residual_part = rms(rest) / size;
+  fit.linear_residual_part = rms(off_line) / size;
+  fit.r_squared = 1 - fit.residual_part * fit.residual_part;
+  fit.usable = fit.residual_part < std::max(kSmallResidual, fit.linear_residual_part / 3);
+  weights.pop_back();
+  put_operator(thresholds_v, std::move(weights), drive_limit_v, fit);
+  fit.gain_m_per_v *= sign;
+  put_loop(v, displacement_m, loop, fit);
+  return fit;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A hysteresis found from slow loops of drive against displacement.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "data-schema/error.hpp"
+#include "data-schema/transducer.hpp"
+
+namespace tacto::analysis {
+
+/// What slow loops say. `opening`: the largest loop's height at no drive over its whole height.
+struct LoopFit {
+  schema::Hysteresis hysteresis;
+  double gain_m_per_v = 0;     ///< of the swing between +-amplitude
+  double amplitude_v = 0;      ///< of the largest loop
+  double opening = 0;          ///< a part, measured
+  double lag_rad = 0;          ///< of the fundamental, on the largest loop
+  double ellipse_lag_rad = 0;  ///< that an ellipse of this opening would have: asin(opening)
+  double r_squared = 0;
+  double residual_part = 0;         ///< RMS of what the operator leaves, over the RMS displacement
+  double linear_residual_part = 0;  ///< the same of a straight line: what there was to explain
+  bool usable = false;  ///< the operator leaves at most a third of what the line leaves, or both are small
+};
+
+/// Prandtl-Ishlinskii by non-negative least squares: displacement = offset + gain x sum_i w_i
+/// play_{r_i}(drive), at kThresholds thresholds evenly from 0 to the amplitude. The weights are scaled so
+/// that the swing between
+/// +-drive_limit_v keeps its size (schema::Hysteresis). The plays begin at the first sample; what comes
+/// before the drive has first reached its largest values both ways is not compared. `delay_s` is taken off
+/// the drive's time: what the linear model lags at low frequencies, which is no hysteresis. Errors:
+/// unsuitable: too few samples, no swing, NaN, a drive that never turns round.
+schema::Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const double> displacement_m,
+                                  double rate_hz, double delay_s, double drive_limit_v);
+
+inline constexpr std::size_t kThresholds = 12;
+
+/// Of a slow drive: -d(phase) / d(omega) of the actuator at rest, 2 R_a C_p + b_r / (k_r + k_p).
+double delay_at_rest_s(const schema::Transducer& transducer);
+
+/// The operator's output, from rest.
+std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v);
+
+}  // namespace tacto::analysis

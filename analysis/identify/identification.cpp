@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/identify/identification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/identify/response_estimate.hpp"
+#include "data-schema/creation_time.hpp"
+#include "data-schema/quantity.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// What the base says the drive will do. A first identification of something unknown may be wrong about that:
+// the device keeps its own limits.
+Result<void> check_amplitude(const ExcitationPlan& plan, const schema::Transducer& base) {
+  double most_m = 0;
+  for (double hz = plan.low_hz; hz < plan.high_hz; hz *= 1.02)
+    most_m = std::max(most_m, plan.amplitude_v * std::abs(schema::actuator_response(base, hz)));
+  const char* const remedy = "give a smaller --amplitude";
+  if (plan.amplitude_v > base.drive_limit_v)
+    return fail(Fault::unsuitable,
+                fmt::format("{:g} V pass the drive's limit of {:g} V", plan.amplitude_v, base.drive_limit_v),
+                "--amplitude", remedy);
+  if (most_m > base.displacement_limit_m)
+    return fail(Fault::unsuitable,
+                fmt::format("the tray would go {} far, its limit is {}", schema::length_for_people(most_m),
+                            schema::length_for_people(base.displacement_limit_m)),
+                "--amplitude", remedy);
+  if (kTurn * plan.high_hz * plan.amplitude_v > base.slew_limit_v_per_s)
+    return fail(Fault::unsuitable, "the drive would be faster than its limit", "--amplitude", remedy);
+  return {};
+}
+
+std::string method_words(IdentifyMethod method) {
+  constexpr const char* kWords[] = {"stepped sine", "multisine", "repeated chirp", "slow loops", "taps"};
+  return kWords[static_cast<std::size_t>(method)];
+}
+
+std::string verdict_of(const ResponseFit& fit) {
+  if (!fit.converged) return fit.ended;
+  if (!fit.misfit.found) return "the residuals are noise";
+  return fit.misfit.words + "; " + fit.suggestion;
+}
+
+schema::Transducer named(schema::Transducer t, const std::string& name, const schema::Identification& about,
+                         const std::string& base) {
+  t.name = name;
+  t.identification = about;
+  t.identification->date = schema::creation_time();
+  t.origin = fmt::format("identified {} from {} ({}), begun from '{}'", t.identification->date, about.source,
+                         about.conditions, base);
+  return t;
+}
+
+}  // namespace
+
+Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod method, const ExcitationPlan& plan,
+                             const schema::Transducer& base, const std::function<bool()>& stop_asked,
+                             const std::function<void(double)>& progress) {
+  if (const auto sound = check_amplitude(plan, base); !sound) return schema::forward_error(sound);
+  BodeData data;
+  if (method == IdentifyMethod::sweep) {
+    const SteppedSine stepped = stepped_sine(plan);
+    const auto tray = drive_tray(device, stepped.drive_v, stop_asked, progress);
+    if (!tray) return schema::forward_error(tray);
+    data = response_of_steps(*tray, stepped);
+  } else {
+    const PeriodicDrive drive = method == IdentifyMethod::chirp ? periodic_chirp(plan) : multisine(plan);
+    const auto tray = drive_tray(device, drive.drive_v, stop_asked, progress);
+    if (!tray) return schema::forward_error(tray);
+    data = response_of_periods(*tray, drive);
+  }
+  data.source = device.capabilities().uri;
+  data.simulated = device.capabilities().simulated;
+  data.conditions = fmt::format("{} of {} from {} to {}", method_words(method),
+                                schema::for_people(plan.amplitude_v, schema::Dimension::voltage),
+                                schema::for_people(plan.low_hz, schema::Dimension::frequency),
+                                schema::for_people(plan.high_hz, schema::Dimension::frequency));
+  return data;
+}
+
+double loop_amplitude_v(const schema::Transducer& base) {
+  return std::min(base.drive_limit_v,
+                  base.displacement_limit_m / std::abs(schema::actuator_response(base, 0)));
+}
+
+schema::Transducer identified(const ResponseFit& fit, const std::string& name) {
+  schema::Identification about;
+  about.source = fit.data.source;
+  about.simulated = fit.data.simulated;
+  about.conditions = fit.data.conditions;
+  about.converged = fit.converged;
+  about.misfit = fit.misfit.found;
+  about.words = verdict_of(fit);
+  about.r_squared = fit.r_squared;
+  about.low_hz = fit.data.frequency_hz.front();
+  about.high_hz = fit.data.frequency_hz.back();
+  return named(fit.transducer, name, about, fit.transducer.name);
+}
+
+schema::Transducer identified(const LoopFit& fit, const schema::Transducer& base, const std::string& name,
+                              const schema::Identification& about) {
+  schema::Transducer t = base;
+  t.hysteresis = fit.hysteresis;
+  t.actuator_scale *= std::abs(fit.gain_m_per_v) / std::abs(schema::actuator_response(base, 0));
+  schema::Identification found = about;
+  found.converged = true;
+  found.misfit = !fit.usable;
+  found.r_squared = fit.r_squared;
+  found.words = fmt::format("a loop of {:.3g} %; the operator leaves {:.2g} % of it{}", 100 * fit.opening,
+                            100 * fit.residual_part, fit.usable ? "" : ": it is no such hysteresis");
+  return named(t, name, found, base.name);
+}
+
+schema::Transducer identified(const TapsFit& fit, const schema::Transducer& base, const std::string& name,
+                              const schema::Identification& about) {
+  schema::Transducer t = base;
+  const double k = t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m,
+               w = kTurn * fit.resonance_hz.median;
+  t.mass_kg = k / (w * w);
+  t.damping_n_s_per_m = 2 * fit.damping_ratio.median * std::sqrt(k * t.mass_kg);
+  schema::Identification found = about;
+  found.converged = true;
+  found.words = fmt::format("{} taps; gains and stiffnesses are the base's", fit.taps.size());
+  found.low_hz = fit.resonance_hz.median / 2;
+  found.high_hz = fit.resonance_hz.median * 2;
+  return named(t, name, found, base.name);
+}
+
+}  // namespace tacto::analysis

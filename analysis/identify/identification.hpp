@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From what was found to the transducer's file.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "analysis/identify/device_drive.hpp"
+#include "analysis/identify/excitation.hpp"
+#include "analysis/identify/hysteresis_loop.hpp"
+#include "analysis/identify/response_fit.hpp"
+#include "analysis/identify/taps.hpp"
+
+namespace tacto::analysis {
+
+enum class IdentifyMethod { sweep, multisine, chirp, loop, taps };
+
+/// Measures the actuator's response on a device by one of the first three. Errors: as drive_tray();
+/// unsuitable: an amplitude that the base says would pass its limits.
+schema::Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod method,
+                                     const ExcitationPlan& plan, const schema::Transducer& base,
+                                     const std::function<bool()>& stop_asked,
+                                     const std::function<void(double)>& progress);
+
+/// The drive that loops are made with where nobody says another: as far as the limits of drive and
+/// displacement go.
+double loop_amplitude_v(const schema::Transducer& base);
+
+/// The base with what was found in it, under a name of its own, dated, with validity and what the fit says of
+/// itself.
+schema::Transducer identified(const ResponseFit& fit, const std::string& name);
+/// With the hysteresis, and the gain of the loops.
+schema::Transducer identified(const LoopFit& fit, const schema::Transducer& base, const std::string& name,
+                              const schema::Identification& about);
+/// With mass and damping from the ringing; stiffnesses and gains are held.
+schema::Transducer identified(const TapsFit& fit, const schema::Transducer& base, const std::string& name,
+                              const schema::Identification& about);
+
+}  // namespace tacto::analysis

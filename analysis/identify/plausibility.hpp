@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faults of measuring and of writing down that a fit would hide.
+#pragma once
+
+#include "analysis/identify/response_fit.hpp"
+
+namespace tacto::analysis {
+
+/// Before a fit. Errors: unsuitable, with what would put it right: phases that grow where they must fall (the
+/// other sign convention), a response upside down, a step of half a turn between neighbours where the
+/// amplitude does not fall (phases unwrapped as if they had a period of 180 degrees): each only where the
+/// data, so changed, leave less than a quarter of what they leave as they are. Jumps of whole turns do not
+/// matter: values are complex.
+schema::Result<void> check_phases(const BodeData& data, const ModelChoice& choice,
+                                  const schema::Transducer& base);
+
+/// After it. Errors: unsuitable: a gain more than 200 times the base's or less than a 200th, with the unit
+/// that would explain it.
+schema::Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The model fitted to a measured response, and what the fit says about itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/identify/bode_data.hpp"
+#include "analysis/identify/misfit.hpp"
+#include "analysis/identify/response_model.hpp"
+
+namespace tacto::analysis {
+
+struct FittedParameter {
+  std::string name;  ///< ends in its unit
+  double value = 0;
+  double low = 0, high = 0;  ///< 95 %; the value itself where no interval is claimed
+  bool held = false;         ///< the data say too little of it: it stays what the base says
+};
+
+struct ResponseFit {
+  std::vector<FittedParameter> parameters;
+  bool converged = false;
+  std::string ended;  ///< how, in words
+  int iterations = 0;
+  double r_squared = 0;  ///< of complex values, unweighted
+  double condition = 0;  ///< of the Jacobian with columns of length 1
+  Misfit misfit;
+  bool one_mode_short =
+      false;               ///< a second mode takes at least half of what a misfit leaves, and more than a lag
+  std::string suggestion;  ///< what the model lacks, where there is a misfit
+  std::vector<std::string> notes;
+  schema::Transducer transducer;  ///< the base with the values in it
+  BodeData data;                  ///< without the hold
+  std::vector<std::complex<double>> modelled;
+  std::vector<double>
+      band;  ///< 95 % of |model|, relative, at the data's frequencies; empty where none is claimed
+
+  bool claims_intervals() const { return converged && !misfit.found; }
+  const FittedParameter* find(std::string_view name) const;
+};
+
+/// Weighted non-linear least squares of complex values (Levenberg-Marquardt), weights 1 / noise^2, or
+/// relative ones where nobody measured it. Started from the data (starting_values), the hold taken out with
+/// the model itself. A parameter whose standard error is more than a factor e is held at the base's value,
+/// and said. Intervals: from the Jacobian, normal where the noise is known, else with the residuals' own
+/// variance and Student's t; none where the fit did not converge or misfit_of() says that the model is wrong.
+/// Precondition: check_bode(data).
+ResponseFit fit_response(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base);
+
+/// What no frequency response can tell apart, and what was done about it: one line each.
+std::vector<std::string> held_words(const ModelChoice& choice, const schema::Transducer& base);
+
+/// Student's t, two-sided 95 %: within 0.5 % from 4 degrees of freedom on (Cornish and Fisher's expansion).
+double student_95(double freedom);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`identify` by command, on emulated devices and on tables; SciPy's least_squares is the oracle of the fit."""
+import json
+import pathlib
+
+import numpy as np
+from scipy import optimize
+
+import tacto
+
+RNG = np.random.default_rng(5)
+SWEEP = ["--frequencies", "24", "--low", "20Hz"]
+
+
+def response(f, gain=20e-6, resonance=547.7, damping=0.096, pole=143.0):
+    """Wiertlewski 2011, equations (5), (6), in the four numbers a response depends on."""
+    r = f / resonance
+    return gain / ((1 + 1j * f / pole) * (1 - r**2 + 2j * damping * r))
+
+
+def write_table(name, f, h, noise=None, amplitude="amplitude_um_per_v", times=1e6, phase="phase_deg"):
+    angle = np.unwrap(np.angle(h)) * (180 / np.pi if phase.endswith("deg") else 1)
+    columns = [f, np.abs(h) * times, angle] + ([] if noise is None else [np.full(len(f), noise * times)])
+    head = ["frequency_hz", amplitude, phase] + ([] if noise is None else ["noise_um_per_v"])
+    np.savetxt(name, np.column_stack(columns), delimiter=",", header=",".join(head), comments="", fmt="%.12g")
+
+
+def values(report):
+    return {row["parameter"]: row for row in report["parameters"]}
+
+
+def table_one_comes_back():
+    """The emulated device's own sweep gives Table I, and every other verb takes the file."""
+    said = tacto.run_json("identify", "-d", "sim:tray_sensor=on", "-o", "bench", "--picture", "bench.svg")
+    assert "fits" == said["verdict"], said
+    for key, truth, tolerance in [("mass_kg", 6.8e-3, 2e-3), ("damping_n_s_per_m", 4.49, 5e-3),
+                                  ("amplifier_resistance_ohm", 680, 5e-3)]:
+        assert abs(said[key] / truth - 1) < tolerance, (key, said[key])
+    found = values(said)
+    for key, truth in [("resonance_hz", 547.73), ("damping_ratio", 0.09596), ("pole_hz", 143.06),
+                       ("gain_m_per_v", 20e-6)]:
+        row = found[key]
+        # Five times as wide as the 95 % interval: with four parameters a miss in a million.
+        half = 2.6 * (row["high_of_95"] - row["low_of_95"]) / 2 + 1e-4 * truth
+        assert abs(row["value"] - truth) < half, (key, row)
+    figures = {row["figure"]: row for row in said["paper_against_itself"]}
+    assert figures["resonance_hz"]["reported"] == 500 and abs(figures["resonance_hz"]["by_table_i"] - 547.7) < 0.1
+    assert "simulated" in said and "SIMULATED" in pathlib.Path("bench.svg").read_text()
+    assert json.load(open("bench.transducer.json"))["identification"]["misfit"] is False
+    assert tacto.run_json("info", "bench.transducer.json")["identification_usable"] is True
+    assert tacto.run_json("validate", "bench.transducer.json")["valid"] is True
+
+
+def quick_methods_agree():
+    for method in ("multisine", "chirp"):
+        said = tacto.run_json("identify", "-d", "sim:tray_sensor=on,seed=3", "--method", method, "-o", method)
+        assert said["verdict"] == "fits", said
+        assert abs(values(said)["resonance_hz"]["value"] / 547.73 - 1) < 2e-3
+
+
+def scipy_finds_the_same():
+    f = np.geomspace(10, 1000, 50)
+    noise = 2e-8
+    h = response(f, 17e-6, 470, 0.13, 190) + noise * (RNG.standard_normal(50) + 1j * RNG.standard_normal(50))
+    write_table("mine.csv", f, h, noise)
+
+    def residuals(p):
+        left = (h - response(f, *np.exp(p))) / noise
+        return np.concatenate([left.real, left.imag])
+
+    oracle = optimize.least_squares(residuals, np.log([20e-6, 500, 0.1, 143]), xtol=1e-14, ftol=1e-14)
+    errors = np.sqrt(np.diag(np.linalg.inv(oracle.jac.T @ oracle.jac)))
+    found = values(tacto.run_json("identify", "mine.csv", "-o", "mine"))
+    for i, key in enumerate(["gain_m_per_v", "resonance_hz", "damping_ratio", "pole_hz"]):
+        row, value = found[key], np.exp(oracle.x[i])
+        assert abs(row["value"] / value - 1) < 1e-6, (key, row["value"], value)
+        # The table holds 12 digits; SciPy's Jacobian is of two points.
+        assert abs(np.log(row["high_of_95"] / row["low_of_95"]) / (2 * 1.959964 * errors[i]) - 1) < 1e-3, key
+
+
+def a_misfit_is_refused_unless_forced():
+    said = json.loads(tacto.run("identify", "-d", "sim:tray_sensor=on,hysteresis=0.16", "--amplitude", "2V", *SWEEP,
+                                "-o", "wrong", "--json", code=5)[0])
+    assert said["verdict"].startswith("MISFIT") and said["r_squared"] > 0.99
+    assert all(np.isnan(row["low_of_95"]) if row["low_of_95"] is not None else True for row in said["parameters"])
+    tacto.run("record", "-d", "sim:surface=C,strokes=1", "-o", "c", "--time", "1.5s")
+    tacto.run("spatial", "c", "-o", "c")
+    texture = sorted(pathlib.Path(".").glob("c*.texture.json"))[0]
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.005\n0.5,0.02\n")
+    render = ["render", texture, "--path", "path.csv", "--transducer", "wrong", "-o", "drive.wav", "--over-limit", "clip"]
+    out, err = tacto.run(*render, code=5)
+    assert "does not fit" in err and "--force" in err, err
+    tacto.run(*render, "--force")
+    play = ["play", texture, "-d", "sim:", "--transducer", "wrong", "-o", "s", "--time", "0.2s"]
+    assert "--force" in tacto.run(*play, code=5)[1]
+    tacto.run(*play, "--force")
+
+
+def hysteresis_is_written():
+    said = tacto.run_json("identify", "-d", "sim:tray_sensor=on,hysteresis=0.16", "--method", "loop", "-o", "loop")
+    assert abs(said["loop_opening_percent"] - 16) < 0.3 and abs(said["lag_degrees"] - 7.7) < 0.3, said
+    stored = json.load(open("loop.transducer.json"))
+    limit, operator = stored["drive_limit_v"], stored["hysteresis"]
+    kept = sum(w * (limit - r) for r, w in zip(operator["thresholds_v"], operator["weights"]))
+    assert abs(kept / limit - 1) < 1e-9
+
+
+def second_mode_is_told_and_found():
+    args = ["identify", "-d", "sim:tray_sensor=on,second_mode=800Hz", *SWEEP]
+    said = json.loads(tacto.run(*args, "-o", "one", "--json", code=5)[0])
+    assert said["model_one_mode_short"] is True and "one mode short" in said["words"], said
+    two = tacto.run_json(*args, "--second-mode", "-o", "two")
+    assert two["verdict"] == "fits" and abs(values(two)["second_mode_hz"]["value"] / 800 - 1) < 0.02, two
+    assert "second_mode" in json.load(open("two.transducer.json"))
+
+
+def bad_input_is_one_clear_error():
+    f = np.geomspace(10, 1000, 40)
+    h = response(f)
+
+    def refused(words, *options, name="bad.csv", code=5):
+        err = tacto.run("identify", name, "-o", "bad", *options, code=code)[1]
+        assert words in err and not pathlib.Path("bad.transducer.json").exists(), err
+
+    write_table("bad.csv", f[:5], h[:5])
+    refused("too few")
+    write_table("bad.csv", f, RNG.standard_normal(40) + 1j * RNG.standard_normal(40))
+    refused("noise")
+    write_table("bad.csv", f, np.conj(h))
+    refused("--phase-sign")
+    tacto.run("identify", "bad.csv", "-o", "turned", "--phase-sign", "-1")
+    write_table("bad.csv", f, h * np.where(np.arange(40) > 17, -1, 1))
+    refused("unwrapped wrongly")
+    write_table("bad.csv", f, h, times=1e9)  # nanometres, said to be micrometres
+    refused("unit")
+    tacto.run("identify", "bad.csv", "-o", "thousand", "--force")
+    write_table("bad.csv", f, h, amplitude="amplitude")
+    refused("unit", code=2)
+    tacto.run("identify", "bad.csv", "-o", "named", "--amplitude-unit", "um/V")
+    text = pathlib.Path("bad.csv").read_text().splitlines()
+    text[7] = text[7].replace(text[7].split(",")[2], "nan")
+    pathlib.Path("bad.csv").write_text("\n".join(text))
+    refused("line 8", code=4)
+    err = tacto.run("identify", "-d", "sim:", "-o", "bad", code=5)[1]
+    assert "tray_sensor=on" in err, err
+    # Whole turns too many are no harm: values are complex.
+    write_table("turns.csv", f, h)
+    table = np.loadtxt("turns.csv", delimiter=",", skiprows=1)
+    table[20:, 2] += 360
+    np.savetxt("turns.csv", table, delimiter=",", header="frequency_hz,amplitude_um_per_v,phase_deg", comments="", fmt="%.12g")
+    found = values(tacto.run_json("identify", "turns.csv", "-o", "turns"))
+    assert abs(found["resonance_hz"]["value"] / 547.7 - 1) < 1e-6
+
+
+for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,
+             hysteresis_is_written, second_mode_is_told_and_found, bad_input_is_one_clear_error):
+    tacto.in_folder(test)

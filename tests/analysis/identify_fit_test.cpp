@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The fit's parts against closed forms, and what it refuses.
+#include <gtest/gtest.h>
+
+#include "analysis/identify/hold.hpp"
+#include "analysis/identify/least_squares.hpp"
+#include "analysis/identify/plausibility.hpp"
+#include "analysis/identify/response_fit.hpp"
+#include "firmware-host/sim/actuated_tray.hpp"
+#include "tests/analysis/identify_plants.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+schema::Transducer preset() {
+  return schema::read_transducer("wiertlewski2011").value();
+}
+
+BodeData exact(const schema::Transducer& t, Direction direction = Direction::actuator) {
+  std::mt19937_64 random(1);
+  BodeData data = measured(t, direction, octaves(10, 1000, 60), 1e-12, random);
+  data.noise.clear();
+  return data;
+}
+
+TEST(IdentifyFit, ClosedFormComesBack) {
+  std::mt19937_64 random(4);
+  for (int draw = 0; draw < 20; ++draw) {
+    const schema::Transducer truth = varied(preset(), random);
+    const ResponseFit fit = fit_response(exact(truth), {}, preset());
+    ASSERT_TRUE(fit.converged) << fit.ended;
+    // Noise of 1e-12, times the condition number (below 20).
+    EXPECT_NEAR(fit.transducer.mass_kg / truth.mass_kg, 1, 1e-8);
+    EXPECT_NEAR(fit.transducer.damping_n_s_per_m / truth.damping_n_s_per_m, 1, 1e-8);
+    EXPECT_NEAR(fit.transducer.amplifier_resistance_ohm / truth.amplifier_resistance_ohm, 1, 1e-8);
+    EXPECT_NEAR(fit.transducer.actuator_scale / truth.actuator_scale, 1, 1e-8);
+    EXPECT_LT(fit.condition, 50);
+  }
+}
+
+TEST(IdentifyFit, ASensorComesBack) {
+  std::mt19937_64 random(6);
+  const schema::Transducer truth = varied(preset(), random);
+  const ResponseFit fit =
+      fit_response(exact(truth, Direction::sensor), {.direction = Direction::sensor}, preset());
+  EXPECT_NEAR(fit.transducer.sensor_scale / truth.sensor_scale, 1, 1e-8);
+  EXPECT_NEAR(fit.transducer.sensor_resistance_ohm / truth.sensor_resistance_ohm, 1, 1e-8);
+  EXPECT_NEAR(fit.transducer.mass_kg / truth.mass_kg, 1, 1e-8);
+  EXPECT_EQ(fit.transducer.actuator_scale, preset().actuator_scale);
+}
+
+TEST(IdentifyFit, WhatTheBandDoesNotShowIsHeldAndSaid) {
+  schema::Transducer fast = preset();
+  fast.amplifier_resistance_ohm = 0.01;  // a pole at 10 MHz: nothing of it up to 1 kHz
+  std::mt19937_64 random(8);
+  const BodeData data = measured(fast, Direction::actuator, octaves(10, 1000, 60), 0.005, random);
+  const ResponseFit fit = fit_response(data, {}, fast);
+  ASSERT_TRUE(fit.find("pole_hz")->held);
+  EXPECT_NEAR(fit.find("resonance_hz")->value / schema::resonance_hz(fast), 1, 0.005);
+  ASSERT_FALSE(fit.notes.empty());
+  EXPECT_NE(fit.notes.front().find("pole_hz"), std::string::npos);
+}
+
+// The sum over images against the tray integrated between held samples.
+TEST(IdentifyFit, TheHoldIsWhatTheIntegratedTrayShows) {
+  const schema::Transducer t = preset();
+  const double rate_hz = 4e3, hz = 800;
+  firmware_host::ActuatedTray tray(t, rate_hz);
+  std::complex<double> drive = 0, answer = 0;
+  for (int i = 0; i < 8000; ++i) {
+    const double v = 0.5 * std::sin(2 * 3.14159265358979323846 * hz * i / rate_hz);
+    const double x = tray.tick(v);
+    if (i < 4000) continue;
+    const auto turn = std::polar(1.0, -2 * 3.14159265358979323846 * hz * i / rate_hz);
+    drive += v * turn, answer += x * turn;
+  }
+  const auto held = schema::actuator_response(t, hz) *
+                    hold_factor([&](double f) { return schema::actuator_response(t, f); }, hz, rate_hz);
+  // The integration is exact to 1e-6; images beyond the third are (3 fs / f)^-4 = 2e-5 of the fundamental.
+  EXPECT_LT(std::abs(answer / drive / held - 1.0), 5e-5);
+}
+
+TEST(IdentifyFit, NonNegativeLeastSquaresKeepsToItsSide) {
+  // Columns e1, e1 + e2, e3 free: b = (1, -1, -2) wants x2 = -1, which is not allowed; then x1 = 1 alone.
+  const std::vector<std::vector<double>> columns = {{1, 0, 0}, {1, 1, 0}, {0, 0, 1}};
+  const std::vector<double> b = {1, -1, -2};
+  const auto x = non_negative_least_squares(columns, b, 1);
+  EXPECT_NEAR(x[0], 1, 1e-12);
+  EXPECT_NEAR(x[1], 0, 1e-12);
+  EXPECT_NEAR(x[2], -2, 1e-12);
+}
+
+TEST(IdentifyFit, StudentsTIsTheTables) {
+  EXPECT_NEAR(student_95(5), 2.5706, 0.006);  // Abramowitz and Stegun, table 26.10
+  EXPECT_NEAR(student_95(20), 2.0860, 0.0005);
+  EXPECT_NEAR(student_95(120), 1.9799, 0.0001);
+}
+
+std::string refusal(const schema::Result<void>& result) {
+  return result ? "" : schema::message(result.error());
+}
+
+TEST(IdentifyFit, RefusesTooFewAllNoiseAndNoNumber) {
+  BodeData few = exact(preset());
+  few.frequency_hz.resize(5), few.response.resize(5);
+  EXPECT_NE(refusal(check_bode(few)).find("5 frequencies are too few"), std::string::npos);
+
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  BodeData noise = exact(preset());
+  for (auto& value : noise.response) value = {normal(random), normal(random)};
+  EXPECT_NE(refusal(check_bode(noise)).find("noise"), std::string::npos);
+  BodeData loud = exact(preset());
+  for (const auto& value : loud.response) loud.noise.push_back(std::abs(value));
+  EXPECT_NE(refusal(check_bode(loud)).find("noise"), std::string::npos);
+
+  BodeData broken = exact(preset());
+  broken.response[17] = {std::nan(""), 0};
+  EXPECT_NE(refusal(check_bode(broken)).find("frequency 18"), std::string::npos);
+  BodeData unsorted = exact(preset());
+  std::swap(unsorted.frequency_hz[3], unsorted.frequency_hz[4]);
+  EXPECT_NE(refusal(check_bode(unsorted)).find("does not grow"), std::string::npos);
+  EXPECT_EQ(refusal(check_bode(exact(preset()))), "");
+}
+
+TEST(IdentifyFit, NoticesPhasesThatCannotBe) {
+  const BodeData sound = exact(preset());
+  EXPECT_EQ(refusal(check_phases(sound, {}, preset())), "");
+  BodeData other = sound, upside = sound, half = sound;
+  for (auto& value : other.response) value = std::conj(value);
+  for (auto& value : upside.response) value = -value;
+  for (std::size_t i = 25; i < half.size(); ++i) half.response[i] = -half.response[i];
+  EXPECT_NE(refusal(check_phases(other, {}, preset())).find("sign convention"), std::string::npos);
+  EXPECT_NE(refusal(check_phases(upside, {}, preset())).find("upside down"), std::string::npos);
+  EXPECT_NE(refusal(check_phases(half, {}, preset())).find("unwrapped wrongly"), std::string::npos);
+}
+
+TEST(IdentifyFit, NoticesAUnitThatIsAThousandOff) {
+  for (const double times : {1e3, 1e-3, 1e6}) {
+    BodeData data = exact(preset());
+    for (auto& value : data.response) value *= times;
+    const ResponseFit fit = fit_response(data, {}, preset());
+    EXPECT_NEAR(fit.find("resonance_hz")->value / schema::resonance_hz(preset()), 1, 1e-6);
+    EXPECT_NE(refusal(check_size(fit, preset())).find("unit"), std::string::npos) << times;
+  }
+  EXPECT_EQ(refusal(check_size(fit_response(exact(preset()), {}, preset()), preset())), "");
+}
+
+}  // namespace
+}  // namespace tacto::analysis
