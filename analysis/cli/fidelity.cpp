@@ -103,7 +103,7 @@ cli::Action declare_fidelity(CLI::App& app) {
   app.add_option(
       "--transducer", play.transducer,
       "The model that is inverted: a preset or NAME.transducer.json; the device's own unless told");
-  app.add_option("--speed", options->speeds, "Of an emulated finger: one, or several between commas [50mm/s]")
+  app.add_option("--speed", options->speeds, "Of an emulated finger: one, or several between commas")
       ->delimiter(',');
   cli::add_quantity(app, "--time", play.time_s, Dimension::time, "On a real device: how long [10 s]");
   cli::add_quantity(app, "--gain", play.program.gain_m_per_n, Dimension::compliance,
