@@ -247,8 +247,9 @@ Result<Report> identify_loops(const IdentifyOptions& o, Asked& asked) {
     cli::warn("no rate is known: the linear model's own lag is counted as hysteresis");
   if (tray->limited > 0)
     cli::warn("the device held the drive to a limit: see what was driven, not what was asked");
-  const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz, delay_at_rest_s(asked.base),
-                             asked.base.drive_limit_v);
+  const double held_s = asked.has_device() ? 0.5 / tray->rate_hz : 0;
+  const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz,
+                             delay_at_rest_s(asked.base) + held_s, asked.base.drive_limit_v);
   if (!fit) return schema::forward_error(fit);
   const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);
   if (const auto written = schema::write_transducer(o.stem, found); !written)

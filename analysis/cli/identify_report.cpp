@@ -121,6 +121,7 @@ Report taps_report(const TapsFit& fit, const TapsPrediction& foretold, const sch
   report.add("foretold_resonance_error_percent", 100 * foretold.resonance_error)
       .add("foretold_damping_error_percent", 100 * foretold.damping_error)
       .add("foretold_waveform_error_percent", 100 * foretold.waveform_error)
+      .add("shape_error_percent", 100 * foretold.shape_error)
       .add("foretold_waveform_worst_percent", 100 * foretold.worst_waveform_error);
   std::vector<Report> rows;
   for (const RingingTap& tap : fit.taps) {

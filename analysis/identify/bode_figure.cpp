@@ -39,42 +39,53 @@ std::vector<double> carried_phase(const std::vector<std::complex<double>>& value
   double turns = 0;
   for (const auto& value : values) {
     const double plain = std::arg(value) * kDegrees;
-    if (!phase.empty()) turns += 360 * std::round((phase.back() - plain - turns) / 360);
+    if (!phase.empty()) turns = 360 * std::round((phase.back() - plain) / 360);
     phase.push_back(plain + turns);
   }
   return phase;
 }
 
 struct Curves {
-  std::vector<double> model_db, low_db, high_db, inverse_db, data_db, model_deg, data_deg, along, across;
-  std::vector<double> inverse_deg;
+  std::vector<double> model_db, low_db, high_db, inverse_db, model_deg, inverse_deg;  // along curve_hz
+  std::vector<double> data_db, data_deg, along, across;  // at the data's frequencies
 };
 
 double reference_of(const ResponseFit& fit) {
   if (const FittedParameter* gain = fit.find("gain_m_per_v")) return gain->value;
-  const auto largest = std::ranges::max_element(fit.modelled, {}, [](auto h) { return std::abs(h); });
-  return fit.data.direction == Direction::actuator ? std::abs(fit.modelled.front()) : std::abs(*largest);
+  const auto largest = std::ranges::max_element(fit.curve, {}, [](auto h) { return std::abs(h); });
+  return fit.data.direction == Direction::actuator ? std::abs(fit.curve.front()) : std::abs(*largest);
+}
+
+void put_model(const ResponseFit& fit, double reference, Curves& c) {
+  c.model_deg = carried_phase(fit.curve);
+  for (std::size_t i = 0; i < fit.curve.size(); ++i) {
+    c.model_db.push_back(decibels(std::abs(fit.curve[i]) / reference));
+    c.inverse_db.push_back(-c.model_db.back());
+    c.inverse_deg.push_back(-c.model_deg[i]);
+    if (fit.band.empty()) continue;
+    c.low_db.push_back(c.model_db.back() - decibels(1 + fit.band[i]));
+    c.high_db.push_back(c.model_db.back() + decibels(1 + fit.band[i]));
+  }
+}
+
+void put_data(const ResponseFit& fit, double reference, Curves& c) {
+  const std::vector<double> model_deg = carried_phase(fit.modelled);
+  for (std::size_t i = 0; i < fit.data.size(); ++i) {
+    const auto model = fit.modelled[i], measured = fit.data.response[i];
+    c.data_db.push_back(decibels(std::abs(measured) / reference));
+    c.data_deg.push_back(model_deg[i] + std::arg(measured / model) * kDegrees);
+    const double sigma = fit.data.has_noise() ? fit.data.noise[i] : std::abs(measured);
+    const auto residual = (measured - model) / sigma * std::polar(1.0, -std::arg(model));
+    c.along.push_back(residual.real());
+    c.across.push_back(residual.imag());
+  }
 }
 
 Curves curves_of(const ResponseFit& fit) {
   Curves c;
   const double reference = reference_of(fit);
-  c.model_deg = carried_phase(fit.modelled);
-  for (std::size_t i = 0; i < fit.data.size(); ++i) {
-    const auto model = fit.modelled[i], measured = fit.data.response[i];
-    c.model_db.push_back(decibels(std::abs(model) / reference));
-    c.inverse_db.push_back(-c.model_db.back());
-    c.inverse_deg.push_back(-c.model_deg[i]);
-    c.data_db.push_back(decibels(std::abs(measured) / reference));
-    c.data_deg.push_back(c.model_deg[i] + std::arg(measured / model) * kDegrees);
-    const double sigma = fit.data.has_noise() ? fit.data.noise[i] : std::abs(measured);
-    const auto residual = (measured - model) / sigma * std::polar(1.0, -std::arg(model));
-    c.along.push_back(residual.real());
-    c.across.push_back(residual.imag());
-    if (fit.band.empty()) continue;
-    c.low_db.push_back(c.model_db.back() - decibels(1 + fit.band[i]));
-    c.high_db.push_back(c.model_db.back() + decibels(1 + fit.band[i]));
-  }
+  put_model(fit, reference, c);
+  put_data(fit, reference, c);
   return c;
 }
 
@@ -105,18 +116,20 @@ struct Panel {
                        spatial::ticks_of(y, std::max(2, static_cast<int>(box.height / 36))));
     canvas.clip(box);
   }
-  void curve(const std::vector<double>& values, std::size_t colour, bool dashed = false) const {
-    for (const auto& piece : spatial::trace(hz, values, x, y))
+  void curve(const std::vector<double>& at_hz, const std::vector<double>& values, std::size_t colour,
+             bool dashed = false) const {
+    for (const auto& piece : spatial::trace(at_hz, values, x, y))
       canvas.polyline(piece, {spatial::series_colour(colour), 1.25, dashed});
   }
   void dots(const std::vector<double>& values, const spatial::Colour& colour) const {
     for (std::size_t i = 0; i < hz.size(); ++i)
       canvas.fill({x.place(hz[i]) - kDot, y.place(values[i]) - kDot, 2 * kDot, 2 * kDot}, colour);
   }
-  void band(const std::vector<double>& low, const std::vector<double>& high) const {
+  void band(const std::vector<double>& at_hz, const std::vector<double>& low,
+            const std::vector<double>& high) const {
     std::vector<Point> outline;
-    for (std::size_t i = 0; i < low.size(); ++i) outline.push_back({x.place(hz[i]), y.place(high[i])});
-    for (std::size_t i = low.size(); i-- > 0;) outline.push_back({x.place(hz[i]), y.place(low[i])});
+    for (std::size_t i = 0; i < low.size(); ++i) outline.push_back({x.place(at_hz[i]), y.place(high[i])});
+    for (std::size_t i = low.size(); i-- > 0;) outline.push_back({x.place(at_hz[i]), y.place(low[i])});
     spatial::Colour shade = spatial::series_colour(4);
     shade.alpha = 0.45;
     if (!outline.empty()) canvas.polygon(outline, shade);
@@ -184,22 +197,22 @@ schema::Result<void> BodeFigure::draw(Canvas& canvas) const {
   draw_bode_legend(canvas, !fit.band.empty());
   const Panel amplitude(canvas, hz, 0, {&c.model_db, &c.data_db, &c.inverse_db, &c.low_db, &c.high_db});
   amplitude.grid();
-  amplitude.band(c.low_db, c.high_db);
-  amplitude.curve(c.inverse_db, 1, true);
-  amplitude.curve(c.model_db, 0);
+  amplitude.band(fit.curve_hz, c.low_db, c.high_db);
+  amplitude.curve(fit.curve_hz, c.inverse_db, 1, true);
+  amplitude.curve(fit.curve_hz, c.model_db, 0);
   amplitude.dots(c.data_db, spatial::kInk);
   amplitude.frame("amplitude (dB re rest)", false);
   const Panel phase(canvas, hz, 1, {&c.model_deg, &c.data_deg, &c.inverse_deg});
   phase.grid();
-  phase.curve(c.inverse_deg, 1, true);
-  phase.curve(c.model_deg, 0);
+  phase.curve(fit.curve_hz, c.inverse_deg, 1, true);
+  phase.curve(fit.curve_hz, c.model_deg, 0);
   phase.dots(c.data_deg, spatial::kInk);
   phase.frame("phase (degrees)", false);
   const std::vector<double> near(hz.size(), kNearResidual), below(hz.size(), -kNearResidual);
   const Panel residual(canvas, hz, 2, {&c.along, &c.across, &near, &below});
   residual.grid();
-  residual.curve(near, 4, true);
-  residual.curve(below, 4, true);
+  residual.curve(hz, near, 4, true);
+  residual.curve(hz, below, 4, true);
   residual.dots(c.along, spatial::series_colour(2));
   residual.dots(c.across, spatial::series_colour(3));
   residual.frame("residual / sigma", true);

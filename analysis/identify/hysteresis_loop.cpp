@@ -106,11 +106,9 @@ void put_operator(const std::vector<double>& thresholds_v, std::vector<double> w
                   LoopFit& fit) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   weights[0] = std::max(weights[0], 1e-3 * sum);
-  double at_limit = 0, at_amplitude = 0;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
+  double at_limit = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
     at_limit += weights[i] * std::max(0.0, limit_v - thresholds_v[i]);
-    at_amplitude += weights[i] * std::max(0.0, fit.amplitude_v - thresholds_v[i]);
-  }
   fit.gain_m_per_v = at_limit / limit_v;
   for (double& weight : weights) weight *= limit_v / at_limit;
   fit.hysteresis = {thresholds_v, std::move(weights)};
@@ -141,6 +139,61 @@ double delay_at_rest_s(const schema::Transducer& t) {
          t.damping_n_s_per_m / (t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m);
 }
 
+namespace {
+
+// What the non-negative fit works on: plays of the drive and a constant, from the first full swing on.
+struct LoopTable {
+  std::vector<double> thresholds_v;
+  std::vector<std::vector<double>> columns;
+  std::vector<double> answer;
+  double sign = 1;  // of the answer to a positive drive
+};
+
+// Only what comes after a full swing knows its past.
+std::ptrdiff_t first_known(std::span<const double> v, double amplitude_v) {
+  return std::ranges::find_if(v, [&](double value) { return -value > kFullSwing * amplitude_v; }) - v.begin();
+}
+
+LoopTable loop_table(std::span<const double> v, std::span<const double> x, double amplitude_v) {
+  LoopTable table;
+  const std::ptrdiff_t from = first_known(v, amplitude_v);
+  for (std::size_t i = 0; i < kThresholds; ++i) {
+    table.thresholds_v.push_back(amplitude_v * static_cast<double>(i) / static_cast<double>(kThresholds));
+    const auto play = play_of(v, table.thresholds_v.back());
+    table.columns.emplace_back(play.begin() + from, play.end());
+  }
+  table.answer.assign(x.begin() + from, x.end());
+  table.columns.emplace_back(table.answer.size(), 1.0);
+  const auto& drive = table.columns.front();
+  const std::vector<double> about_mean = centred(table.answer);
+  if (std::inner_product(drive.begin(), drive.end(), about_mean.begin(), 0.0) < 0) table.sign = -1;
+  for (double& value : table.answer) value *= table.sign;
+  return table;
+}
+
+std::vector<double> left_of(const LoopTable& table, std::span<const std::size_t> which,
+                            std::span<const double> weights) {
+  std::vector<double> rest = table.answer;
+  for (std::size_t i = 0; i < which.size(); ++i)
+    for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= weights[i] * table.columns[which[i]][n];
+  return rest;
+}
+
+void put_quality(const LoopTable& table, std::span<const double> weights, LoopFit& fit) {
+  std::vector<std::size_t> all(table.columns.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::size_t line[] = {0, table.columns.size() - 1};
+  const auto straight =
+      non_negative_least_squares({table.columns.front(), table.columns.back()}, table.answer, 1);
+  const double size = rms(centred(table.answer));
+  fit.residual_part = rms(left_of(table, all, weights)) / size;
+  fit.linear_residual_part = rms(left_of(table, line, straight)) / size;
+  fit.r_squared = 1 - fit.residual_part * fit.residual_part;
+  fit.usable = fit.residual_part < std::max(kSmallResidual, fit.linear_residual_part / 3);
+}
+
+}  // namespace
+
 Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const double> displacement_m,
                           double rate_hz, double delay_s, double drive_limit_v) {
   if (const auto sound = check_loops(drive_v, displacement_m); !sound) return schema::forward_error(sound);
@@ -152,38 +205,12 @@ Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const doubl
     return fail(Fault::unsuitable, "the drive makes no whole loop between its largest values, both ways",
                 "loop",
                 "drive it slowly with a sine or a triangle about 0, two periods at the largest swing first");
-  // Only what comes after a full swing knows its past.
-  const auto past =
-      std::ranges::find_if(v, [&](double value) { return -value > kFullSwing * fit.amplitude_v; });
-  const auto from = static_cast<std::size_t>(past - v.begin());
-  std::vector<double> thresholds_v;
-  std::vector<std::vector<double>> columns;
-  for (std::size_t i = 0; i < kThresholds; ++i) {
-    thresholds_v.push_back(fit.amplitude_v * static_cast<double>(i) / static_cast<double>(kThresholds));
-    const auto play = play_of(v, thresholds_v.back());
-    columns.emplace_back(play.begin() + static_cast<std::ptrdiff_t>(from), play.end());
-  }
-  columns.emplace_back(v.size() - from, 1.0);
-  const auto compared = displacement_m.subspan(from);
-  const double sign =
-      std::inner_product(compared.begin(), compared.end(), columns[0].begin(), 0.0) < 0 ? -1 : 1;
-  std::vector<double> x(compared.begin(), compared.end());
-  for (double& value : x) value *= sign;
-  std::vector<double> weights = non_negative_least_squares(columns, x, 1);
-  std::vector<double> rest = x;
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= weights[i] * columns[i][n];
-  const auto line = non_negative_least_squares({columns.front(), columns.back()}, x, 1);
-  std::vector<double> off_line = x;
-  for (std::size_t n = 0; n < x.size(); ++n) off_line[n] -= line[0] * columns.front()[n] + line[1];
-  const double size = rms(centred(x));
-  fit.residual_part = rms(rest) / size;
-  fit.linear_residual_part = rms(off_line) / size;
-  fit.r_squared = 1 - fit.residual_part * fit.residual_part;
-  fit.usable = fit.residual_part < std::max(kSmallResidual, fit.linear_residual_part / 3);
+  const LoopTable table = loop_table(v, displacement_m, fit.amplitude_v);
+  std::vector<double> weights = non_negative_least_squares(table.columns, table.answer, 1);
+  put_quality(table, weights, fit);
   weights.pop_back();
-  put_operator(thresholds_v, std::move(weights), drive_limit_v, fit);
-  fit.gain_m_per_v *= sign;
+  put_operator(table.thresholds_v, std::move(weights), drive_limit_v, fit);
+  fit.gain_m_per_v *= table.sign;
   put_loop(v, displacement_m, loop, fit);
   return fit;
 }

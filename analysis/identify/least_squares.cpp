@@ -171,37 +171,52 @@ bool is_negative(const VectorXd& x, const std::vector<bool>& used, Index bounded
 
 }  // namespace
 
-std::vector<double> non_negative_least_squares(const std::vector<std::vector<double>>& columns,
-                                               std::span<const double> b, std::size_t free_columns) {
-  const auto rows = static_cast<Index>(b.size()), count = static_cast<Index>(columns.size());
-  const Index bounded = count - static_cast<Index>(free_columns);
-  MatrixXd a(rows, count);
-  for (Index i = 0; i < count; ++i)
-    a.col(i) = Eigen::Map<const VectorXd>(columns[static_cast<std::size_t>(i)].data(), rows);
-  // The same minimum from a triangle of the columns' own size: A = Q R.
-  const Eigen::HouseholderQR<MatrixXd> qr(a);
-  const VectorXd y = (qr.householderQ().transpose() * Eigen::Map<const VectorXd>(b.data(), rows)).head(count);
-  const MatrixXd r = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
-  std::vector<bool> used(columns.size(), false);
-  for (Index i = bounded; i < count; ++i) used[static_cast<std::size_t>(i)] = true;
-  VectorXd x = solved(r, y, used);
-  const double tolerance = 1e-12 * (r.transpose() * y).cwiseAbs().maxCoeff();
-  for (Index round = 0; round < 3 * count; ++round) {
+namespace {
+
+// The same minimum from a triangle of the columns' own size: A = Q R.
+struct Triangle {
+  MatrixXd r;
+  VectorXd y;
+
+  Triangle(const std::vector<std::vector<double>>& columns, std::span<const double> b) {
+    const auto rows = static_cast<Index>(b.size()), count = static_cast<Index>(columns.size());
+    MatrixXd a(rows, count);
+    for (Index i = 0; i < count; ++i)
+      a.col(i) = Eigen::Map<const VectorXd>(columns[static_cast<std::size_t>(i)].data(), rows);
+    const Eigen::HouseholderQR<MatrixXd> qr(a);
+    const VectorXd turned = qr.householderQ().transpose() * Eigen::Map<const VectorXd>(b.data(), rows);
+    y = turned.head(count);
+    r = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+  }
+  // The unused column that would help most; -1 where none would.
+  Index most_wanted(const VectorXd& x, const std::vector<bool>& used, Index bounded) const {
     const VectorXd gradient = r.transpose() * (y - r * x);
     Index best = -1;
+    double most = 1e-12 * (r.transpose() * y).cwiseAbs().maxCoeff();
     for (Index i = 0; i < bounded; ++i)
-      if (!used[static_cast<std::size_t>(i)] && gradient[i] > tolerance &&
-          (best < 0 || gradient[i] > gradient[best]))
-        best = i;
+      if (!used[static_cast<std::size_t>(i)] && gradient[i] > most) best = i, most = gradient[i];
+    return best;
+  }
+};
+
+}  // namespace
+
+std::vector<double> non_negative_least_squares(const std::vector<std::vector<double>>& columns,
+                                               std::span<const double> b, std::size_t free_columns) {
+  const Triangle triangle(columns, b);
+  const auto count = static_cast<Index>(columns.size());
+  const Index bounded = count - static_cast<Index>(free_columns);
+  std::vector<bool> used(columns.size(), false);
+  for (Index i = bounded; i < count; ++i) used[static_cast<std::size_t>(i)] = true;
+  VectorXd x = solved(triangle.r, triangle.y, used);
+  for (Index round = 0; round < 3 * count; ++round) {
+    const Index best = triangle.most_wanted(x, used, bounded);
     if (best < 0) break;
     used[static_cast<std::size_t>(best)] = true;
-    for (VectorXd wanted = solved(r, y, used);; wanted = solved(r, y, used)) {
-      if (!is_negative(wanted, used, bounded)) {
-        x = wanted;
-        break;
-      }
+    VectorXd wanted = solved(triangle.r, triangle.y, used);
+    for (; is_negative(wanted, used, bounded); wanted = solved(triangle.r, triangle.y, used))
       go_back(x, wanted, used, bounded);
-    }
+    x = wanted;
   }
   return {x.data(), x.data() + x.size()};
 }

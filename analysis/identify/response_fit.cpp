@@ -17,6 +17,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
+constexpr int kCurvePoints = 101;
 constexpr double kNormal95 = 1.959964;
 constexpr double kVague = 1;         // standard error of a logarithm: a factor e
 constexpr double kNowhere = 0.5;     // of a pole's range
@@ -154,6 +155,16 @@ std::vector<Complex> turned_residuals(const BodeData& data, std::span<const Comp
   return list;
 }
 
+void put_curve(const Fitter& fitter, const ResponseModel& model, double times, ResponseFit& fit) {
+  const double low_hz = fit.data.frequency_hz.front(), high_hz = fit.data.frequency_hz.back();
+  for (int i = 0; i < kCurvePoints; ++i) {
+    const double hz = low_hz * std::pow(high_hz / low_hz, i / (kCurvePoints - 1.0));
+    fit.curve_hz.push_back(hz);
+    fit.curve.push_back(model.at(fitter.values(), hz));
+    if (fit.claims_intervals()) fit.band.push_back(times * fitter.spread(hz));
+  }
+}
+
 void put_parameters(const Fitter& fitter, const ResponseModel& model, ResponseFit& fit) {
   const double freedom = 2 * static_cast<double>(fit.data.size()) - static_cast<double>(fitter.free_count());
   const double times = fit.data.has_noise() ? kNormal95 : student_95(freedom);
@@ -171,8 +182,7 @@ void put_parameters(const Fitter& fitter, const ResponseModel& model, ResponseFi
           "{} can't be told from the other parameters in this band: held at {:.4g}", p.name, fitted.value));
     fit.parameters.push_back(std::move(fitted));
   }
-  if (!fit.claims_intervals()) return;
-  for (const double hz : fit.data.frequency_hz) fit.band.push_back(times * fitter.spread(hz));
+  put_curve(fitter, model, times, fit);
 }
 
 // Of a starting point, the fit with everything but what it suggests.

@@ -33,8 +33,10 @@ struct ResponseFit {
   schema::Transducer transducer;  ///< the base with the values in it
   BodeData data;                  ///< without the hold
   std::vector<std::complex<double>> modelled;
-  std::vector<double>
-      band;  ///< 95 % of |model|, relative, at the data's frequencies; empty where none is claimed
+  /// The model from the lowest to the highest frequency, evenly by octaves, and its 95 % band: relative, of
+  /// the amplitude; empty where none is claimed.
+  std::vector<double> curve_hz, band;
+  std::vector<std::complex<double>> curve;
 
   bool claims_intervals() const { return converged && !misfit.found; }
   const FittedParameter* find(std::string_view name) const;

@@ -23,11 +23,11 @@ using Complex = std::complex<double>;
 
 constexpr double kAfterPeakS = 1e-3, kRingingS = 12e-3;
 constexpr std::size_t kDecimation = 4, kLeastRinging = 100;
-constexpr Index kPoles = 16;
+constexpr Index kPoles = 16, kSharedPoles = 20;
 constexpr double kLowestModeHz = 50;
 constexpr double kSameMode = 0.03;
+constexpr double kOfWeight = 0.2;   // of the strongest mode's energy
 constexpr double kLoudRinging = 5;  // RMS over that of the quiet before the tap
-constexpr std::size_t kModesForetelling = 3;
 constexpr double kMadToSigma = 1.4826;
 
 double median_of_values(std::vector<double> values) {
@@ -76,15 +76,22 @@ Result<VectorXd> ringing_of(const Tap& tap, double rate_hz) {
               "leave it out");
 }
 
-// The signal poles z of y[n] = sum c z^n, by the pencil of the Hankel matrix's right singular vectors.
-VectorXcd pencil_poles(const VectorXd& y) {
-  const Index columns = y.size() / 2, rows = y.size() - columns;
-  MatrixXd hankel(rows, columns + 1);
-  for (Index i = 0; i < rows; ++i) hankel.row(i) = y.segment(i, columns + 1).transpose();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> vectors(hankel.transpose() * hankel);
-  const MatrixXd v = vectors.eigenvectors().rightCols(kPoles);
+// The signal poles z of y[n] = sum c z^n, shared by all ringings: by the pencil of the right singular vectors
+// of their Hankel matrices, one above the other. What would grow is no ringing and is left out.
+VectorXcd pencil_poles(const std::vector<VectorXd>& ringings, Index poles) {
+  const Index columns = ringings.front().size() / 2;
+  MatrixXd gram = MatrixXd::Zero(columns + 1, columns + 1);
+  for (const VectorXd& y : ringings)
+    for (Index i = 0; i + columns < y.size(); ++i)
+      gram.selfadjointView<Eigen::Lower>().rankUpdate(y.segment(i, columns + 1));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> vectors(gram);
+  const MatrixXd v = vectors.eigenvectors().rightCols(poles);
   const MatrixXd shift = v.topRows(columns).colPivHouseholderQr().solve(v.bottomRows(columns));
-  return Eigen::EigenSolver<MatrixXd>(shift).eigenvalues();
+  const VectorXcd all = Eigen::EigenSolver<MatrixXd>(shift).eigenvalues();
+  std::vector<Complex> kept;
+  for (const Complex& z : all)
+    if (std::abs(z) < 1) kept.push_back(z);
+  return Eigen::Map<const VectorXcd>(kept.data(), static_cast<Index>(kept.size()));
 }
 
 MatrixXcd powers_of(const VectorXcd& z, Index from, Index count) {
@@ -94,55 +101,66 @@ MatrixXcd powers_of(const VectorXcd& z, Index from, Index count) {
   return basis;
 }
 
-// Poles that ring, with how strongly; a mode is a pair of them, or several that can't be told apart.
 struct Ringing {
   std::vector<RingingMode> modes;
   double left = 0;
 };
 
-void merge(std::vector<RingingMode>& modes, RingingMode mode) {
-  const auto same = std::ranges::find_if(modes, [&](const RingingMode& other) {
-    return std::abs(other.frequency_hz / mode.frequency_hz - 1) < kSameMode;
+// A mode is a pole, or several that can't be told apart, and what they make of the signal together.
+struct ModeGroup {
+  RingingMode mode;
+  double weight = 0;
+  VectorXd part;
+};
+
+void add_to_groups(std::vector<ModeGroup>& groups, const RingingMode& mode, const VectorXd& part) {
+  const double weight = part.squaredNorm();
+  const auto same = std::ranges::find_if(groups, [&](const ModeGroup& group) {
+    return std::abs(group.mode.frequency_hz / mode.frequency_hz - 1) < kSameMode;
   });
-  if (same == modes.end()) return modes.push_back(mode);
-  const double whole = same->energy_part + mode.energy_part;
-  const auto mean = [&](double a, double b) {
-    return (a * same->energy_part + b * mode.energy_part) / whole;
-  };
-  same->frequency_hz = mean(same->frequency_hz, mode.frequency_hz);
-  same->damping_ratio = mean(same->damping_ratio, mode.damping_ratio);
-  same->energy_part = whole;
+  if (same == groups.end()) return groups.push_back({mode, weight, part});
+  const double share = weight / (weight + same->weight);
+  same->mode.frequency_hz = std::lerp(same->mode.frequency_hz, mode.frequency_hz, share);
+  same->mode.damping_ratio = std::lerp(same->mode.damping_ratio, mode.damping_ratio, share);
+  same->weight += weight;
+  same->part += part;
+}
+
+VectorXcd amplitudes_of(const VectorXcd& z, const VectorXd& y) {
+  return powers_of(z, 0, y.size()).colPivHouseholderQr().solve(y.cast<Complex>());
 }
 
 Ringing modes_of(const VectorXd& y, double rate_hz) {
-  const VectorXcd z = pencil_poles(y);
+  const VectorXcd z = pencil_poles({y}, kPoles);
   const MatrixXcd basis = powers_of(z, 0, y.size());
-  const VectorXcd c = basis.colPivHouseholderQr().solve(y.cast<Complex>());
-  Ringing ringing;
+  const VectorXcd c = amplitudes_of(z, y);
+  std::vector<ModeGroup> groups;
   for (Index k = 0; k < z.size(); ++k) {
     const Complex s = std::log(z[k]) * rate_hz;
     if (s.imag() < 2 * std::numbers::pi * kLowestModeHz) continue;
-    const double energy = 2 * (basis.col(k) * c[k]).squaredNorm() / y.squaredNorm();
-    merge(ringing.modes, {std::abs(s) / (2 * std::numbers::pi), -s.real() / std::abs(s), energy});
+    const RingingMode mode{std::abs(s) / (2 * std::numbers::pi), -s.real() / std::abs(s), 0};
+    add_to_groups(groups, mode, 2 * (basis.col(k) * c[k]).real());
+  }
+  Ringing ringing;
+  for (ModeGroup& group : groups) {
+    group.mode.energy_part = group.part.squaredNorm() / y.squaredNorm();
+    ringing.modes.push_back(group.mode);
   }
   std::ranges::sort(ringing.modes, std::greater{}, &RingingMode::energy_part);
   ringing.left = (y - (basis * c).real()).norm() / y.norm();
   return ringing;
 }
 
-// What the first taps' modes say of another's ringing, once they know its beginning.
-double miss_of(const VectorXd& y, const std::vector<RingingMode>& modes, double rate_hz) {
-  VectorXcd z(static_cast<Index>(2 * modes.size()));
-  for (std::size_t i = 0; i < modes.size(); ++i) {
-    const double w = 2 * std::numbers::pi * modes[i].frequency_hz, d = modes[i].damping_ratio;
-    const Complex s(-d * w, w * std::sqrt(std::max(0.0, 1 - d * d)));
-    z[static_cast<Index>(2 * i)] = std::exp(s / rate_hz);
-    z[static_cast<Index>(2 * i + 1)] = std::conj(z[static_cast<Index>(2 * i)]);
-  }
+// What poles of other taps say of a ringing once they know its first quarter, and once they know all of it.
+struct Miss {
+  double foretold = 0, shaped = 0;
+};
+
+Miss miss_of(const VectorXd& y, const VectorXcd& z) {
   const Index known = y.size() / 4, rest = y.size() - known;
-  const VectorXcd c = powers_of(z, 0, known).colPivHouseholderQr().solve(y.head(known).cast<Complex>());
-  const VectorXd foretold = (powers_of(z, known, rest) * c).real();
-  return (y.tail(rest) - foretold).norm() / y.tail(rest).norm();
+  const VectorXd ahead = (powers_of(z, known, rest) * amplitudes_of(z, y.head(known))).real();
+  const VectorXd whole = (powers_of(z, 0, y.size()) * amplitudes_of(z, y)).real();
+  return {(y.tail(rest) - ahead).norm() / y.tail(rest).norm(), (y - whole).norm() / y.norm()};
 }
 
 TapsFit summed_up(std::vector<RingingTap> taps) {
@@ -154,26 +172,33 @@ TapsFit summed_up(std::vector<RingingTap> taps) {
   return {std::move(taps), spread_of(frequencies), spread_of(dampings)};
 }
 
-// Of the modes that most of the taps have, the medians.
-std::vector<RingingMode> common_modes(const std::vector<RingingTap>& taps) {
-  std::vector<RingingMode> common;
-  for (const RingingMode& seed : taps[taps.size() / 2].modes) {
-    std::vector<double> frequencies, dampings;
-    for (const RingingTap& tap : taps)
-      for (const RingingMode& mode : tap.modes)
-        if (std::abs(mode.frequency_hz / seed.frequency_hz - 1) < kSameMode) {
-          frequencies.push_back(mode.frequency_hz);
-          dampings.push_back(mode.damping_ratio);
-        }
-    if (2 * frequencies.size() > taps.size() && common.size() < kModesForetelling)
-      common.push_back({median_of_values(frequencies), median_of_values(dampings), seed.energy_part});
-  }
-  return common;
+// Modes of all taps, energies added.
+std::vector<RingingMode> shared_modes(const std::vector<RingingTap>& taps) {
+  std::vector<RingingMode> all;
+  for (const RingingTap& tap : taps)
+    for (const RingingMode& mode : tap.modes) {
+      const auto same = std::ranges::find_if(all, [&](const RingingMode& other) {
+        return std::abs(other.frequency_hz / mode.frequency_hz - 1) < kSameMode;
+      });
+      if (same != all.end())
+        same->energy_part += mode.energy_part;
+      else
+        all.push_back(mode);
+    }
+  return all;
+}
+
+// The first resonance ends a sensor's band, though a hard tap may excite a higher one more.
+double first_resonance_hz(const std::vector<RingingTap>& taps) {
+  std::vector<RingingMode> all = shared_modes(taps);
+  const double most = std::ranges::max_element(all, {}, &RingingMode::energy_part)->energy_part;
+  std::erase_if(all, [&](const RingingMode& mode) { return mode.energy_part < kOfWeight * most; });
+  return std::ranges::min_element(all, {}, &RingingMode::frequency_hz)->frequency_hz;
 }
 
 }  // namespace
 
-// Which mode rings loudest depends on how the tap was made: all are asked for the one that is loudest in sum.
+// Which mode rings loudest depends on how the tap was made: the one that is looked for is the same in all.
 Result<TapsFit> fit_taps(const Taps& taps) {
   if (taps.taps.size() < 2)
     return fail(Fault::unsuitable, "one tap has no spread", "taps", "tap ten times or more");
@@ -185,10 +210,7 @@ Result<TapsFit> fit_taps(const Taps& taps) {
     if (found.modes.empty()) return fail(Fault::unsuitable, "nothing rings in it", "tap " + tap.name);
     list.push_back({tap.name, std::move(found.modes), found.left});
   }
-  std::vector<RingingMode> all;
-  for (const RingingTap& tap : list)
-    for (const RingingMode& mode : tap.modes) merge(all, mode);
-  const double usual_hz = std::ranges::max_element(all, {}, &RingingMode::energy_part)->frequency_hz;
+  const double usual_hz = first_resonance_hz(list);
   for (RingingTap& tap : list) {
     const auto nearest = std::ranges::min_element(tap.modes, {}, [&](const RingingMode& mode) {
       return std::abs(std::log(mode.frequency_hz / usual_hz));
@@ -204,17 +226,26 @@ Result<TapsPrediction> foretell_taps(const Taps& taps, std::size_t fitted) {
   if (!known) return schema::forward_error(known);
   const auto others = fit_taps({taps.rate_hz, {split, taps.taps.end()}});
   if (!others) return schema::forward_error(others);
-  const std::vector<RingingMode> modes = common_modes(known->taps);
-  std::vector<double> misses;
-  for (auto tap = split; tap != taps.taps.end(); ++tap)
-    misses.push_back(miss_of(*ringing_of(*tap, taps.rate_hz), modes, taps.rate_hz / kDecimation));
+  std::vector<VectorXd> ringings;
+  for (auto tap = taps.taps.begin(); tap != split; ++tap) ringings.push_back(*ringing_of(*tap, taps.rate_hz));
+  const auto same_length = [&](const VectorXd& y) { return y.size() == ringings.front().size(); };
+  if (!std::ranges::all_of(ringings, same_length))
+    return fail(Fault::unsuitable, "the taps are not equally long", "taps", "cut them alike");
+  const VectorXcd poles = pencil_poles(ringings, kSharedPoles);
+  std::vector<double> foretold, shaped;
+  for (auto tap = split; tap != taps.taps.end(); ++tap) {
+    const Miss miss = miss_of(*ringing_of(*tap, taps.rate_hz), poles);
+    foretold.push_back(miss.foretold);
+    shaped.push_back(miss.shaped);
+  }
   TapsPrediction prediction;
   prediction.fitted = fitted;
-  prediction.foretold = misses.size();
+  prediction.foretold = foretold.size();
   prediction.resonance_error = others->resonance_hz.median / known->resonance_hz.median - 1;
   prediction.damping_error = others->damping_ratio.median / known->damping_ratio.median - 1;
-  prediction.waveform_error = median_of_values(misses);
-  prediction.worst_waveform_error = std::ranges::max(misses);
+  prediction.worst_waveform_error = std::ranges::max(foretold);
+  prediction.waveform_error = median_of_values(std::move(foretold));
+  prediction.shape_error = median_of_values(std::move(shaped));
   return prediction;
 }
 

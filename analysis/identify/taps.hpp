@@ -29,7 +29,7 @@ struct RingingMode {
 
 struct RingingTap {
   std::string name;
-  std::vector<RingingMode> modes;  ///< the one that is strongest in all taps first, then by energy
+  std::vector<RingingMode> modes;  ///< the first resonance (see TapsFit) first, then by energy
   double left = 0;                 ///< RMS of what the modes leave, over the ringing's own
 };
 
@@ -40,7 +40,8 @@ struct Spread {
 
 struct TapsFit {
   std::vector<RingingTap> taps;
-  Spread resonance_hz, damping_ratio;  ///< of the mode that is strongest in all taps together
+  Spread resonance_hz,
+      damping_ratio;  ///< of the lowest mode with a fifth of the strongest's energy, over all taps
 };
 
 /// The rest of a set of taps, foretold by the first ones.
@@ -48,9 +49,11 @@ struct TapsPrediction {
   std::size_t fitted = 0, foretold = 0;  ///< taps
   double resonance_error = 0;            ///< part: the others' median over the first ones', less 1
   double damping_error = 0;
-  /// The first ones' modes (medians), with amplitudes and phases from the first quarter of each other tap's
-  /// ringing: RMS of what they miss in its remaining three quarters, over the RMS there; median and largest.
+  /// 20 poles shared by the first taps, with amplitudes from the first quarter of each other tap's ringing:
+  /// RMS of what they miss in its remaining three quarters, over the RMS there; median and largest.
   double waveform_error = 0, worst_waveform_error = 0;
+  double shape_error =
+      0;  ///< the same poles with amplitudes from the whole ringing: what they leave of it, median
 };
 
 /// Reads `impact,sample_index,lateral_V` (any first column that numbers the taps, any last one that holds the

@@ -15,6 +15,11 @@ namespace tacto::analysis {
 namespace {
 
 constexpr double kRateHz = 2e3;
+// The tray's own, and that of a drive that is held for a sample.
+double delay_s() {
+  return delay_at_rest_s(schema::read_transducer("wiertlewski2011").value()) + 0.5 / kRateHz;
+}
+
 constexpr double kTurns = 6.283185307179586;
 
 schema::Transducer preset() {
@@ -46,7 +51,7 @@ double part_left(const std::vector<double>& wanted, const std::vector<double>& i
 TEST(IdentifyLoop, TheEmulatedBendersSixteenPercent) {
   const auto drive = drive_of(5);
   const auto x = tray_under(drive, 0.16);
-  const LoopFit fit = fit_loops(drive, x, kRateHz, delay_at_rest_s(preset()), 5).value();
+  const LoopFit fit = fit_loops(drive, x, kRateHz, delay_s(), 5).value();
   EXPECT_NEAR(fit.opening, 0.16, 0.002);              // its own definition; 32 plays round it by 1/1000
   EXPECT_NEAR(fit.lag_rad * 360 / kTurns, 7.7, 0.2);  // firmware-host/README.md: the same loop's fundamental
   EXPECT_NEAR(fit.gain_m_per_v / 20e-6, 1, 0.005);    // a full swing keeps the linear gain
@@ -73,7 +78,7 @@ TEST(IdentifyLoop, TheEmulatedBendersSixteenPercent) {
 
 TEST(IdentifyLoop, ATrayWithoutOneHasNone) {
   const auto drive = drive_of(5);
-  const LoopFit fit = fit_loops(drive, tray_under(drive, 0), kRateHz, delay_at_rest_s(preset()), 5).value();
+  const LoopFit fit = fit_loops(drive, tray_under(drive, 0), kRateHz, delay_s(), 5).value();
   EXPECT_LT(fit.opening, 0.001);
   EXPECT_TRUE(fit.usable);
   EXPECT_NEAR(fit.hysteresis.weights.front(), 1, 0.002);
