@@ -108,6 +108,8 @@ cli::Action declare_fidelity(CLI::App& app) {
   cli::add_quantity(app, "--time", play.time_s, Dimension::time, "On a real device: how long [10 s]");
   cli::add_quantity(app, "--gain", play.program.gain_m_per_n, Dimension::compliance,
                     "Displacement for force, 1mm/N unless told");
+  app.add_flag("--force", play.program.force,
+               "Take a transducer that says of itself that its model does not fit");
   cli::add_quantity(app, "--rate", play.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
   app.add_option("-o,--output,--page", options->outputs,
                  "What to write: a page (.html), results for 'report' (.results.json); may be given again");

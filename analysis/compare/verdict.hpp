@@ -25,10 +25,10 @@ struct Evidence {
   double level_db = 0;                         ///< weighted mean over the bands
   double level_low_db = 0, level_high_db = 0;  ///< its 90 % interval: each end is passed once in 20 times
   double shape_db = 0;                         ///< weighted RMS of band_db - level_db
-  double shape_chance_db =
-      0;  ///< what shape_db exceeds once in 20 times where only the parts' scatter is at work
-  double shape_excess_db =
-      0;  ///< shape_db without the scatter's mean share: sqrt(shape^2 - mean chance^2), 0 at least
+  /// What shape_db exceeds once in 20 times where only the parts' scatter is at work.
+  double shape_chance_db = 0;
+  /// shape_db without the scatter's mean share: sqrt(shape^2 - mean chance^2), 0 at least.
+  double shape_excess_db = 0;
   double finest_shape_db = 0;  ///< the least excess that would be seen over the scatter
 };
 
@@ -40,14 +40,14 @@ struct Evidence {
 /// band less 60 dB. Preconditions: 2 segments, 1 band, some power in both.
 Evidence evidence_of(const BandPowers& powers, double tolerance_db);
 
-/// The rule, in this order.
-///   undecided: fewer than 8 segments, or less than an octave (3 bands) in common.
-///   different: shape_db above shape_chance_db, and shape_excess_db above the tolerance.
-///   undecided: finest_shape_db above the tolerance: a difference that counts would not show over the
-///   scatter. louder, quieter: the level beyond the tolerance, and its interval does not hold 0. same: the
-///   level's interval lies within the tolerance (two one-sided tests, Schuirmann 1987, J.
-///     Pharmacokin. Biopharm. 15).
-///   undecided: else.
+/// The rule, in this order:
+/// - undecided: fewer than 8 segments, or less than an octave (3 bands) in common.
+/// - different: shape_db above shape_chance_db, and shape_excess_db above the tolerance.
+/// - undecided: finest_shape_db above the tolerance: a difference that counts would not show.
+/// - louder, quieter: the level beyond the tolerance, and its interval does not hold 0.
+/// - same: the level's interval lies within the tolerance: two one-sided tests (Schuirmann 1987, J.
+///   Pharmacokinetics and Biopharmaceutics 15).
+/// - undecided: else.
 struct Verdict {
   Likeness likeness = Likeness::undecided;
   std::string because;  ///< with the numbers that decided

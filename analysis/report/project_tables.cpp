@@ -54,6 +54,22 @@ void add_bode(const schema::Transducer& transducer, ProjectFile& file) {
        {response_curve("actuator", true, actuator), response_curve("sensor", true, sensor)}});
 }
 
+void add_identification(const schema::Identification& identification, ProjectFile& file) {
+  file.date = identification.date;
+  file.origin = identification.source;
+  file.simulated = identification.simulated;
+  const char* believed = identification.usable()    ? ""
+                         : identification.converged ? ", misfit"
+                                                    : ", not converged";
+  file.figures.insert(file.figures.begin(),
+                      {"identified", fmt::format("R² {:.5f}{}", identification.r_squared, believed)});
+  file.figures.push_back(
+      {"valid", fmt::format("{} to {}", for_people(identification.low_hz, Dimension::frequency),
+                            for_people(identification.high_hz, Dimension::frequency))});
+  file.figures.push_back({"conditions", identification.conditions});
+  file.figures.push_back({"what the fit says", identification.words});
+}
+
 ResultCurve bands_curve(const schema::Description& description) {
   ResultCurve curve{description.texture, {}, {}, false};
   for (const schema::ThirdOctaveBand& band : description.bands) {
@@ -75,6 +91,7 @@ Result<void> add_transducer(const std::string& path, ProjectFile& file) {
                    fmt::format("{:.3g} µm/V", 1e6 * std::abs(schema::actuator_response(*transducer, 0)))},
                   {"drive limit", for_people(transducer->drive_limit_v, Dimension::voltage)},
                   {"from", transducer->origin}};
+  if (transducer->identification) add_identification(*transducer->identification, file);
   add_bode(*transducer, file);
   return {};
 }
