@@ -19,17 +19,18 @@ DEVICE = "sim:surface=flat,paced=1,strokes=20,length=25mm"  # a stroke of 20 mm 
 
 
 def on_a_terminal(arguments, keys, columns=COLUMNS):
-    """Runs the command on a terminal of its own, presses keys at their times; (everything shown, exit code)."""
+    """Runs the command on a terminal of its own, presses keys so long after the first line; (everything shown, exit code)."""
     pid, terminal = pty.fork()
     if pid == 0:
         os.execv(tacto.COMMAND, [tacto.COMMAND, *arguments])
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-    begun, shown = time.monotonic(), b""
+    begun, line, shown = time.monotonic(), None, b""
     while True:
-        now = time.monotonic() - begun
-        while keys and keys[0][0] <= now:
+        now = time.monotonic()
+        line = now if line is None and b"\r\x1b[K" in shown else line
+        while keys and line is not None and keys[0][0] <= now - line:
             os.write(terminal, keys.pop(0)[1])
-        assert now < 60, shown
+        assert now - begun < 60, shown
         if not select.select([terminal], [], [], 0.05)[0]:
             continue
         try:
@@ -43,10 +44,10 @@ def on_a_terminal(arguments, keys, columns=COLUMNS):
 
 
 def redrawn_marked_and_stopped():
-    shown, code = on_a_terminal(["record", "-d", DEVICE, "-o", "oak"], [(1.0, b"m"), (1.5, b"x"), (2.4, b"q")])
+    shown, code = on_a_terminal(["record", "-d", DEVICE, "-o", "oak"], [(0.8, b"m"), (1.3, b"x"), (2.2, b"q")])
     assert code == 0, shown
     lines = shown.split("\r\x1b[K")[1:-1]  # before the first there is nothing, after the last the report
-    assert 12 <= len(lines) <= 60, (len(lines), shown)
+    assert 8 <= len(lines) <= 80, (len(lines), shown)
     for line in lines:
         first = line.split("\r\n")[0]
         assert len(first) < COLUMNS, first
@@ -55,9 +56,9 @@ def redrawn_marked_and_stopped():
     assert times == sorted(times) and times[-1] > 1.5, times
     side = json.loads(pathlib.Path("oak.json").read_text())
     assert [mark["label"] for mark in side["marks"]] == ["mark"], side["marks"]
-    # The clock here starts before the device's: the mark is where the key was, or a little before.
-    assert 0.3 < side["marks"][0]["frame"] / 1e4 < 1.2, side["marks"]
-    assert side["data"]["frames"] / 1e4 < 3 and "ended" not in side
+    # The first line comes some tenths after the device's first frame; a busy machine sees both, and the key, later.
+    assert 0.5 < side["marks"][0]["frame"] / 1e4 < 2.5, side["marks"]
+    assert side["data"]["frames"] / 1e4 < 6 and "ended" not in side
     return side
 
 
