@@ -153,6 +153,22 @@ def bad_input_is_one_clear_error():
     assert abs(found["resonance_hz"]["value"] / 547.7 - 1) < 1e-6
 
 
+def what_is_identified_is_undone():
+    """From slow loops to a finger that feels the texture: the operator is found, stored, inverted and played."""
+    tacto.run("identify", "-d", "sim:hysteresis=0.16,tray_sensor=on", "--method", "loop", "-o", "bench")
+    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "2s", "-o", "c")
+    tacto.run("spatial", "c", "-o", "c")
+    errors = {}
+    for transducer in ("wiertlewski2011", "bench"):
+        rows = tacto.run_json("fidelity", "c-01", "--transducer", transducer, "--speed", "51.7mm/s")["fidelity"]
+        errors[transducer] = {row["tray"]: row["error_db"] for row in rows}
+    tray = "hysteresis 16 %"
+    print(f"{tray}: {errors['wiertlewski2011'][tray]:.1f} dB as it is, {errors['bench'][tray]:.1f} dB undone")
+    assert errors["wiertlewski2011"][tray] > -15 and errors["bench"][tray] < -40, errors
+    assert errors["bench"]["all three"] < errors["wiertlewski2011"]["all three"] - 10, errors
+    assert errors["bench"]["ideal"] > -15, errors  # a hysteresis undone that is not there
+
+
 for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,
-             hysteresis_is_written, second_mode_is_told_and_found, bad_input_is_one_clear_error):
+             hysteresis_is_written, what_is_identified_is_undone, second_mode_is_told_and_found, bad_input_is_one_clear_error):
     tacto.in_folder(test)
