@@ -4,16 +4,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "analysis/identify/angles.hpp"
 #include "analysis/identify/paper_words.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 using cli::Report;
-
-constexpr double kDegreesOf = 180 / std::numbers::pi;
 
 std::string verdict_word(const schema::Identification& found) {
   if (!found.converged) return "DID NOT CONVERGE: nothing plays through it unless forced";
@@ -96,8 +94,8 @@ Report loop_report(const LoopFit& fit, const schema::Transducer& found, const st
   Report report;
   add_head(report, found, file);
   report.add("loop_opening_percent", 100 * fit.opening).add("loop_amplitude_v", fit.amplitude_v);
-  report.add("lag_degrees", kDegreesOf * fit.lag_rad)
-      .add("lag_of_an_ellipse_degrees", kDegreesOf * fit.ellipse_lag_rad);
+  report.add("lag_degrees", kDegrees * fit.lag_rad)
+      .add("lag_of_an_ellipse_degrees", kDegrees * fit.ellipse_lag_rad);
   report.add("gain_of_a_full_swing_m_per_v", fit.gain_m_per_v).add("r_squared", fit.r_squared);
   report.add("left_by_the_operator_percent", 100 * fit.residual_part)
       .add("left_by_a_line_percent", 100 * fit.linear_residual_part);

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "analysis/identify/angles.hpp"
 #include "spatial/picture/axes.hpp"
 #include "spatial/picture/canvas.hpp"
 #include "spatial/picture/heading.hpp"
@@ -21,7 +21,6 @@ using spatial::Box;
 using spatial::Canvas;
 using spatial::Point;
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr spatial::Size kBodePage{720, 640};
 constexpr double kMargin = 14, kLeft = 66, kWidth = 630, kTop = 76;
 constexpr double kHeights[] = {230, 150, 80};

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/identify/angles.hpp"
+
 namespace tacto::analysis {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kSettleS = 0.05, kMeasureS = 0.2, kSilenceS = 0.05;
 constexpr double kMeasuredPeriods = 5;
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "analysis/identify/angles.hpp"
 #include "analysis/identify/response_estimate.hpp"
 #include "data-schema/creation_time.hpp"
 #include "data-schema/quantity.hpp"
@@ -17,8 +17,6 @@ namespace {
 using schema::fail;
 using schema::Fault;
 using schema::Result;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // What the base says the drive will do. A first identification of something unknown may be wrong about that:
 // the device keeps its own limits.

@@ -2,7 +2,8 @@
 #include "analysis/identify/paper_words.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "analysis/identify/angles.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -12,7 +13,6 @@ constexpr double kReportedGain = 20e-6;       // ibid., m/V quasi-static
 constexpr double kReportedSensor = 26;        // ibid., V/N over 10-500 Hz
 constexpr double kReportedOpening = 0.16;     // ibid., III-C and Figure 7
 constexpr double kReportedLagDeg = 8;         // ibid.
-constexpr double kDegrees = 180 / std::numbers::pi;
 
 double gain_by_theory(schema::Transducer t) {
   t.actuator_scale = 1;

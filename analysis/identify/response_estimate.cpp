@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
+
+#include "analysis/identify/angles.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -14,7 +15,6 @@ using schema::fail;
 using schema::Fault;
 using schema::Result;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kHarmonics = 5;
 constexpr std::ptrdiff_t kNeighbours = 4;  // on either side
 constexpr std::size_t kMostFrequencies = 80;

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "analysis/identify/angles.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kTurn = 2 * std::numbers::pi;
 
 double stiffness_of(const schema::Transducer& t) {
   return t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m;
