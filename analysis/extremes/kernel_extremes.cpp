@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -134,7 +133,7 @@ SettledChain settled(core::SectionChain chain, float input, double wanted) {
   for (std::uint64_t power = 1, since = 0; end.ticks < kMostTicks; ++end.ticks) {
     (void)chain.filter(input);
     ++since;
-    if (std::memcmp(&saved, &chain, sizeof chain) == 0) {
+    if (chain.is_where(saved)) {
       end.cycle = since;
       break;
     }

@@ -105,7 +105,7 @@ void add_uncertainty(const Problem& problem, const VectorXd& c, Solution& soluti
   solution.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   const MatrixXd scaled = j.array().rowwise() / j.colwise().norm().array().max(1e-300);
   const Eigen::JacobiSVD<MatrixXd> svd(scaled.transpose() * scaled);
-  const auto values = svd.singularValues();
+  const auto& values = svd.singularValues();
   const double least = std::max(values[values.size() - 1], std::numeric_limits<double>::min());
   solution.condition = std::sqrt(values[0] / least);
 }

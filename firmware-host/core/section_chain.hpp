@@ -20,6 +20,13 @@ class SectionChain {
   void rest() noexcept {
     for (State& state : states_) state = {};
   }
+  /// Of a chain with the same sections: whatever comes in next, both give the same.
+  bool is_where(const SectionChain& other) const noexcept {
+    bool same = true;
+    for (uint8_t i = 0; i < count_; ++i)
+      same = same && states_[i].s1 == other.states_[i].s1 && states_[i].s2 == other.states_[i].s2;
+    return same;
+  }
   float filter(float x) noexcept {
     for (uint8_t i = 0; i < count_; ++i) x = step(sections_[i], states_[i], x);
     return x;
