@@ -14,16 +14,17 @@
 namespace {
 
 // In the order of the work: get data, look at it, make textures, see them, play them.
-constexpr std::array<const tacto::cli::Verb*, 26> kVerbs = {
+constexpr std::array<const tacto::cli::Verb*, 28> kVerbs = {
     &tacto::firmware_host::kScanVerb, &tacto::capture::kDoctorVerb,      &tacto::capture::kCalibrateVerb,
     &tacto::capture::kImportVerb,     &tacto::capture::kRecordVerb,      &tacto::capture::kRecoverVerb,
     &tacto::capture::kListVerb,       &tacto::schema::kInfoVerb,         &tacto::schema::kValidateVerb,
     &tacto::spatial::kSpatialVerb,    &tacto::spatial::kSpectrogramVerb, &tacto::spatial::kSheetVerb,
     &tacto::spatial::kFormantsVerb,   &tacto::spatial::kDescribeVerb,    &tacto::spatial::kCertifyVerb,
-    &tacto::playback::kRenderVerb,    &tacto::playback::kPlayVerb,       &tacto::playback::kCtlVerb,
-    &tacto::playback::kSessionVerb,   &tacto::playback::kReplayVerb,     &tacto::analysis::kCompareVerb,
-    &tacto::analysis::kFidelityVerb,  &tacto::analysis::kReportVerb,     &tacto::analysis::kExtremesVerb,
-    &tacto::analysis::kIdentifyVerb,  &tacto::analysis::kDemoVerb,
+    &tacto::playback::kRenderVerb,    &tacto::playback::kExplainVerb,    &tacto::playback::kPlayVerb,
+    &tacto::playback::kCtlVerb,       &tacto::playback::kSessionVerb,    &tacto::playback::kReplayVerb,
+    &tacto::analysis::kCompareVerb,   &tacto::analysis::kFidelityVerb,   &tacto::analysis::kReportVerb,
+    &tacto::analysis::kExtremesVerb,  &tacto::analysis::kIdentifyVerb,   &tacto::analysis::kTradeVerb,
+    &tacto::analysis::kDemoVerb,
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <nettle/base64.h>
 
+#include <algorithm>
+
 namespace tacto::analysis {
 namespace {
 
@@ -30,21 +32,35 @@ std::string table_row(const std::vector<std::string>& cells, std::string_view ta
   return row + "</tr>\n";
 }
 
+std::string entity(char c) {
+  if (c == '<') return "&lt;";
+  if (c == '>') return "&gt;";
+  if (c == '&') return "&amp;";
+  return c == '"' ? "&quot;" : std::string(1, c);
+}
+
+// How long the first sign of UTF-8 is; 0 where it is none (names of files may be any bytes).
+std::size_t sign_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return 1;
+  const std::size_t bytes = byte(0) >= 0xF0 && byte(0) < 0xF5   ? 4
+                            : byte(0) >= 0xE0 && byte(0) < 0xF0 ? 3
+                            : byte(0) >= 0xC2 && byte(0) < 0xE0 ? 2
+                                                                : 0;
+  if (bytes == 0 || text.size() < bytes) return 0;
+  for (std::size_t i = 1; i < bytes; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  return bytes;
+}
+
 }  // namespace
 
 std::string escaped(std::string_view text) {
   std::string safe;
-  for (const char c : text) {
-    if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else if (c == '&')
-      safe += "&amp;";
-    else if (c == '"')
-      safe += "&quot;";
-    else
-      safe += c;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t bytes = sign_bytes(text.substr(i));
+    safe += bytes == 0 ? "\uFFFD" : bytes == 1 ? entity(text[i]) : std::string(text.substr(i, bytes));
+    i += std::max<std::size_t>(1, bytes);
   }
   return safe;
 }

@@ -8,7 +8,7 @@
 
 namespace tacto::analysis {
 
-/// Text with <, >, & and quotes written as entities.
+/// Text with <, >, & and quotes written as entities; bytes that are no UTF-8 as U+FFFD.
 std::string escaped(std::string_view text);
 
 /// An <img> that holds its SVG as a data: URI; `alternative` is read where pictures can't be seen.

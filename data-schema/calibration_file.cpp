@@ -2,23 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <system_error>
 
 #include "data-schema/calibration_json.hpp"
+#include "data-schema/config_folder.hpp"
 #include "data-schema/files.hpp"
 
 namespace tacto::schema {
 namespace {
 
 constexpr std::string_view kCalibrationKind = "calibration";
-
-std::string variable(const char* name) {
-  const char* const text = std::getenv(name);
-  return text == nullptr ? "" : text;
-}
 
 bool fits_a_file_name(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
@@ -28,14 +22,6 @@ std::string file_name_of(std::string serial) {
   std::ranges::replace_if(
       serial, [](char c) { return !fits_a_file_name(c); }, '_');
   return serial + ".calibration.json";
-}
-
-Result<void> make_folder_of(const std::string& path) {
-  const auto folder = std::filesystem::path(path).parent_path();
-  std::error_code failed;
-  if (!folder.empty()) std::filesystem::create_directories(folder, failed);
-  if (failed) return fail(Fault::cannot_write, "can't be made: " + failed.message(), folder.string());
-  return {};
 }
 
 const CalibrationEntry* newest(const CalibrationFile& file, std::string_view channel,
@@ -61,13 +47,9 @@ Result<std::string> calibration_path(const std::string& serial) {
   if (serial.empty())
     return fail(Fault::unsuitable, "the device has no serial number to keep a calibration under", {},
                 "name a file with --calibration FILE");
-  const std::string config = variable("XDG_CONFIG_HOME"), home = variable("HOME");
-  if (config.empty() && home.empty())
-    return fail(Fault::not_found, "neither XDG_CONFIG_HOME nor HOME says where calibrations are kept", {},
-                "name a file with --calibration FILE");
-  const std::filesystem::path base =
-      config.empty() ? std::filesystem::path(home) / ".config" : std::filesystem::path(config);
-  return (base / "tactograph" / "calibrations" / file_name_of(serial)).string();
+  return config_folder("calibrations").map([&](const std::filesystem::path& folder) {
+    return (folder / "calibrations" / file_name_of(serial)).string();
+  });
 }
 
 Result<CalibrationFile> read_calibration(const std::string& path) {

@@ -2,6 +2,7 @@
 #include "data-schema/check.hpp"
 
 #include "data-schema/check_parts.hpp"
+#include "data-schema/session_netcdf.hpp"
 #include "data-schema/transducer.hpp"
 
 namespace tacto::schema {
@@ -58,6 +59,10 @@ Result<Checked> check_file(const StoredFile& file, const Progress& progress) {
   if (file.kind == FileKind::session) {
     auto checked = check_session(file.path);
     return checked ? checked : judged(checked.error());
+  }
+  if (file.kind == FileKind::session_table) {
+    const auto table = read_session_table(file.path);
+    return table ? Checked{} : judged(table.error());
   }
   if (file.kind != FileKind::spectrogram) return check_document(file, progress);
   auto checked = check_spectrogram(file.path);

@@ -41,6 +41,17 @@ tl::unexpected<Error> bad_member(const char* member, std::string what, std::stri
               std::move(remedy));
 }
 
+// A member says what it is; without one the request itself is wrong.
+std::string remedy_for(const std::string& pointer, const Json& rules) {
+  const std::string member = pointer.empty() ? "" : pointer.substr(1);
+  const Json rule = rules["properties"].value(member, Json::object());
+  if (!rule.contains("description"))
+    return fmt::format("the requests are {}", fmt::join(kControlVerbs, ", "));
+  const std::string meaning = rule["description"];
+  if (!rule.contains("minimum")) return meaning;
+  return fmt::format("{}; from {} to {}", meaning, rule["minimum"].dump(), rule["maximum"].dump());
+}
+
 Result<void> check_version_of(const std::string& version) {
   const auto major = [](std::string_view text) { return text.substr(0, text.find('.')); };
   if (major(version) == major(kControlVersion)) return {};
@@ -143,7 +154,7 @@ Result<ControlRequest> parse_control_request(std::string_view line, std::string*
   if (!faults.empty())
     return fail(Fault::malformed, faults.front().what,
                 fmt::format("{}#{}", kRequestWhere, faults.front().pointer),
-                fmt::format("the requests are {}", fmt::join(kControlVerbs, ", ")));
+                remedy_for(faults.front().pointer, *kRules));
   ControlRequest request = request_of(*body);
   if (const auto sound = check_members(request); !sound) return forward_error(sound);
   return request;

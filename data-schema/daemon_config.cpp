@@ -4,6 +4,22 @@
 #include "data-schema/json_document.hpp"
 
 namespace tacto::schema {
+namespace {
+
+std::optional<double> number_in(const Json& body, const char* name) {
+  if (!body.contains(name)) return std::nullopt;
+  return body[name].get<double>();
+}
+
+// One of three words, as the schema has it.
+std::optional<Quality> quality_in(const Json& body) {
+  const std::string word = text_or(body, "quality");
+  if (word.empty()) return std::nullopt;
+  if (word == "fast") return Quality::fast;
+  return word == "balanced" ? Quality::balanced : Quality::exact;
+}
+
+}  // namespace
 
 Result<DaemonConfig> read_daemon_config(const std::string& path) {
   const auto document = open_document(path, "daemon");
@@ -26,6 +42,9 @@ Result<DaemonConfig> read_daemon_config(const std::string& path) {
                                      std::pair{"real_time_priority", &DaemonConfig::real_time_priority},
                                      std::pair{"watchdog_ms", &DaemonConfig::watchdog_ms}})
     config.*member = static_cast<int>(number_or(body, name, config.*member));
+  config.undo_hysteresis = body.value("undo_hysteresis", config.undo_hysteresis);
+  config.budget = {quality_in(body), number_in(body, "max_error")};
+  config.max_tick_ns = number_in(body, "max_tick_ns");
   return config;
 }
 

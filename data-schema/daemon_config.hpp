@@ -2,8 +2,10 @@
 // tactographd's configuration, one JSON file: schemas/daemon.schema.json says what each member means.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "data-schema/budget.hpp"
 #include "data-schema/error.hpp"
 
 namespace tacto::schema {
@@ -21,6 +23,9 @@ struct DaemonConfig {
   double onset_s = 0.02;
   double most_late_percent = 20;
   std::string finger_path;
+  bool undo_hysteresis = true;
+  Budget budget;  ///< of what is loaded
+  std::optional<double> max_tick_ns;
 };
 
 /// Errors: not_found; malformed, by JSON pointer, also for a member that does not exist; unsupported_version.

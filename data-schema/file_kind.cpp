@@ -8,14 +8,15 @@
 
 #include "data-schema/files.hpp"
 #include "data-schema/json_document.hpp"
+#include "data-schema/session_netcdf.hpp"
 #include "data-schema/transducer.hpp"
 
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 10> kNames = {
-    "recording",    "texture",     "transducer", "spectrogram", "formants",
-    "descriptions", "calibration", "scene",      "session",     "results"};
+constexpr std::array<std::string_view, 12> kNames = {
+    "recording",   "texture", "transducer", "spectrogram", "formants", "descriptions",
+    "calibration", "scene",   "session",    "results",     "trade",    "session_table"};
 
 struct Ending {
   FileKind kind;
@@ -33,6 +34,7 @@ constexpr Ending kEndings[] = {
     {FileKind::scene, ".scene.json"},
     {FileKind::session, ".session"},
     {FileKind::results, ".results.json"},
+    {FileKind::trade, ".trade.json"},
 };
 
 Result<StoredFile> by_content(const std::string& path) {
@@ -45,6 +47,11 @@ Result<StoredFile> by_content(const std::string& path) {
   return StoredFile{static_cast<FileKind>(found - kNames.begin()), path};
 }
 
+// What can't be read is taken for a spectrogram: reading that says what is wrong.
+FileKind netcdf_kind(const std::string& path) {
+  return is_session_netcdf(path) ? FileKind::session_table : FileKind::spectrogram;
+}
+
 // "oak.wav" stands for "oak.json", "oak.texture.wav" for "oak.texture.json".
 Result<StoredFile> by_wav(const std::string& path) {
   const std::string sidecar = path.substr(0, path.size() - 4) + ".json";
@@ -54,7 +61,7 @@ Result<StoredFile> by_wav(const std::string& path) {
 }
 
 Result<StoredFile> named_in_full(const std::string& path) {
-  if (path.ends_with(".nc")) return StoredFile{FileKind::spectrogram, path};
+  if (path.ends_with(".nc")) return StoredFile{netcdf_kind(path), path};
   if (path.ends_with(".session")) return StoredFile{FileKind::session, path};
   if (path.ends_with(".wav")) return by_wav(path);
   if (path.ends_with(".json")) return by_content(path);
@@ -65,7 +72,9 @@ Result<StoredFile> named_in_full(const std::string& path) {
 std::vector<StoredFile> under_stem(const std::string& stem) {
   std::vector<StoredFile> files;
   for (const auto& [kind, ending] : kEndings)
-    if (const std::string path = stem + std::string(ending); is_file(path))
+    if (const std::string path = stem + std::string(ending); kind == FileKind::spectrogram && is_file(path))
+      files.push_back({netcdf_kind(path), path});
+    else if (is_file(path))
       // The stem may itself end in ".texture"; a file too broken to say its kind has the kind of its name.
       files.push_back(kind == FileKind::recording ? by_content(path).value_or(StoredFile{kind, path})
                                                   : StoredFile{kind, path});

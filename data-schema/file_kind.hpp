@@ -20,7 +20,9 @@ enum class FileKind {
   calibration,
   scene,
   session,
-  results
+  results,
+  trade,
+  session_table  ///< a session as netCDF
 };
 
 /// "recording", "texture", ... as in the files' own member `kind`.

@@ -40,12 +40,26 @@ tl::unexpected<Error> unreadable(const std::string& path, int error_number) {
   return fail(Fault::not_found, what, path);
 }
 
-Result<OpenFile> opened(const std::string& path) {
+// A pipe, a terminal or a device may never end, or be silent for ever: it is not even opened.
+Result<void> check_regular(const std::string& path) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return fail(Fault::not_found, "is a folder, not a file", path);
-  OpenFile file(std::fopen(path.c_str(), "rbe"));
-  if (!file) return unreadable(path, errno);
-  return file;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_directory(status)) return fail(Fault::not_found, "is a folder, not a file", path);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return fail(Fault::not_found, "is no regular file", path, "write it to a file first");
+  return {};
+}
+
+// Nor is one waited for that takes the name in between.
+Result<OpenFile> opened(const std::string& path) {
+  if (const auto regular = check_regular(path); !regular) return forward_error(regular);
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0) return unreadable(path, errno);
+  OpenFile file(fdopen(descriptor, "rb"));
+  if (file) return file;
+  const int why = errno;
+  close(descriptor);
+  return unreadable(path, why);
 }
 
 // Gives the file to `take` piece by piece.

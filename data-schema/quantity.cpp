@@ -57,6 +57,8 @@ constexpr Unit kUnits[] = {
     {"mg", Dimension::mass, 1e-6},
     {"g", Dimension::mass, 1e-3},
     {"kg", Dimension::mass, 1},
+    {"ppm", Dimension::share, 1e-6},
+    {"%", Dimension::share, 1e-2},
 };
 
 // Units that are read but never chosen to write with: "cm" would surprise where "12 mm" is expected.
@@ -139,8 +141,8 @@ Result<Unit> parse_unit(std::string_view symbol) {
 }
 
 std::string_view si_symbol(Dimension dimension) {
-  constexpr std::array<std::string_view, 12> kSymbols = {"m", "s", "Hz",  "1/m", "m/s", "m/s^2",
-                                                         "N", "V", "m/N", "1",   "dB",  "kg"};
+  constexpr std::array<std::string_view, 13> kSymbols = {"m", "s",   "Hz", "1/m", "m/s", "m/s^2", "N",
+                                                         "V", "m/N", "1",  "dB",  "kg",  "1"};
   return kSymbols[static_cast<std::size_t>(dimension)];
 }
 

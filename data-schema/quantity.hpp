@@ -23,6 +23,7 @@ enum class Dimension {
   none,               ///< 1: a plain number, for counts and signals without a unit
   level,              ///< dB
   mass,               ///< kg
+  share,              ///< 1, of a whole: for errors
 };
 
 /// A unit and its worth in the SI unit of its dimension: "mm" is {length, 1e-3}.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
 #include "data-schema/json_document.hpp"
+#include "data-schema/json_schema.hpp"
 #include "data-schema/session.hpp"
 #include "data-schema/transducer_json.hpp"
 
@@ -98,6 +101,18 @@ void read_played(const Json& body, SessionHeader& header) {
   header.scene_sha256 = text_or(body["scene"], "sha256");
 }
 
+// It says neither kind nor version, and fits the transducer's schema in all else.
+Result<void> check_transducer_in(const Json& body, const std::string& where) {
+  Json transducer = body["transducer"];
+  transducer["kind"] = "transducer";
+  if (!transducer.contains("version")) transducer["version"] = "1.0";
+  static const auto kRules = schema_of("transducer");
+  const auto faults = breaches(transducer, *kRules);
+  if (faults.empty()) return {};
+  return fail(Fault::malformed, faults.front().what,
+              fmt::format("{}#/transducer{}", where, faults.front().pointer), "bring the right file back");
+}
+
 SessionHeader session_from(const Json& body) {
   SessionHeader header;
   for (const auto& [name, member] : kSessionTexts) header.*member = text_or(body, name);
@@ -120,6 +135,7 @@ Result<std::string> session_header_text(const SessionHeader& header) {
 Result<SessionHeader> parse_session_header(std::string_view text, const std::string& where) {
   const auto document = parse_document(text, where, kSessionKind);
   if (!document) return forward_error(document);
+  if (const auto sound = check_transducer_in(document->body, where); !sound) return forward_error(sound);
   SessionHeader header = session_from(document->body);
   header.extra_json = unknown_members(document->body, kSessionKind);
   header.newer_version = document->newer_version;

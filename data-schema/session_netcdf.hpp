@@ -23,4 +23,19 @@ Result<void> write_session_netcdf(const std::string& path, const SessionHeader& 
                                   const std::vector<SessionVariable>& variables,
                                   const std::vector<double>& time_s);
 
+/// What such a file says of itself.
+struct SessionTable {
+  std::string created, creator, device, transducer, simulated;
+  std::vector<std::string> textures;
+  double rate_hz = 0;
+  std::size_t times = 0;
+  double duration_s = 0;  ///< from the first time to the last
+};
+
+/// Whether it is netCDF of that kind.
+bool is_session_netcdf(const std::string& path);
+
+/// Errors: malformed: no netCDF, of another kind, no times or times that do not grow.
+Result<SessionTable> read_session_table(const std::string& path);
+
 }  // namespace tacto::schema

@@ -11,6 +11,7 @@
 #include "data-schema/files.hpp"
 #include "data-schema/json_document.hpp"
 #include "data-schema/texture_json.hpp"
+#include "data-schema/texture_wav.hpp"
 #include "data-schema/wav.hpp"
 
 namespace tacto::schema {
@@ -117,6 +118,14 @@ Result<Texture> read_texture(const std::string& name) {
   texture.extra_json = unknown_members(document->body, kTextureKind);
   texture.newer_version = document->newer_version;
   return texture;
+}
+
+Result<TextureWav> texture_wav(const std::string& name) {
+  const std::string path = stem_of(name, kTextureSuffix) + ".texture.json";
+  const auto document = open_document(path, kTextureKind);
+  if (!document) return forward_error(document);
+  const TextureData data = texture_data_from(document->body);
+  return TextureWav{(fs::path(path).parent_path() / data.file).string(), data.sha256};
 }
 
 Result<void> add_texture(PendingFiles& pending, const std::string& name, const Texture& texture) {

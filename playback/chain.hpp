@@ -31,6 +31,8 @@ struct Chain {
 /// are any, m/V. The hold's is sinc(f / rate) exp(-i pi f / rate); its images above half the rate are not in
 /// it.
 std::complex<double> chain_response(const Chain& chain, double frequency_hz);
+/// What a low-pass with this pole keeps of its charge in a tick: exp(-2 pi pole / rate).
+double kept_in_a_tick(double pole_hz, double rate_hz);
 /// Of the section that undoes led_pole_hz, 1; it is a part of chain_response.
 std::complex<double> lead_response(const Chain& chain, double frequency_hz);
 

@@ -2,9 +2,10 @@
 #include "playback/hysteresis_inverse.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <utility>
 #include <vector>
+
+#include "playback/chain.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -34,11 +35,6 @@ void merge_nearest(std::vector<Play>& plays) {
   plays.erase(plays.begin() + static_cast<std::ptrdiff_t>(best) + 1);
 }
 
-// Of a charge, by the low-pass.
-double kept_in_a_tick(double pole_hz, double rate_hz) {
-  return std::exp(-2 * std::numbers::pi * pole_hz / rate_hz);
-}
-
 }  // namespace
 
 wire::Hysteresis inverse_of(const schema::Hysteresis& hysteresis) {
@@ -66,22 +62,33 @@ wire::Section pole_lead(double pole_hz, double rate_hz) {
   return {static_cast<float>(1 / (1 - a)), static_cast<float>(-a / (1 - a)), 0, 0, 0};
 }
 
-std::vector<double> linear_drive_of(const std::vector<double>& drive_v, const schema::Hysteresis& hysteresis,
-                                    double pole_hz, double rate_hz) {
-  const double a = kept_in_a_tick(pole_hz, rate_hz);
-  std::vector<double> plays(hysteresis.weights.size()), linear;
-  linear.reserve(drive_v.size());
-  double charge_v = 0, before_v = 0;
+std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v) {
+  std::vector<double> plays(hysteresis.weights.size()), out;
+  out.reserve(drive_v.size());
   for (const double v : drive_v) {
-    charge_v = a * charge_v + (1 - a) * v;
     double sum = 0;
     for (std::size_t i = 0; i < plays.size(); ++i) {
       const double r = hysteresis.thresholds_v[i];
-      plays[i] = std::max(charge_v - r, std::min(charge_v + r, plays[i]));
+      plays[i] = std::max(v - r, std::min(v + r, plays[i]));
       sum += hysteresis.weights[i] * plays[i];
     }
-    linear.push_back((sum - a * before_v) / (1 - a));
-    before_v = sum;
+    out.push_back(sum);
+  }
+  return out;
+}
+
+std::vector<double> linear_drive_of(const std::vector<double>& drive_v, const schema::Hysteresis& hysteresis,
+                                    double pole_hz, double rate_hz) {
+  const double a = kept_in_a_tick(pole_hz, rate_hz);
+  std::vector<double> charge_v;
+  charge_v.reserve(drive_v.size());
+  for (const double v : drive_v)
+    charge_v.push_back(a * (charge_v.empty() ? 0 : charge_v.back()) + (1 - a) * v);
+  std::vector<double> linear = played_through(hysteresis, charge_v);
+  double before_v = 0;
+  for (double& v : linear) {
+    const double last_v = std::exchange(before_v, v);
+    v = (v - a * last_v) / (1 - a);
   }
   return linear;
 }

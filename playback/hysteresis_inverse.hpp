@@ -2,6 +2,7 @@
 // The bender's hysteresis undone, tick by tick.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "data-schema/transducer.hpp"
@@ -21,6 +22,9 @@ wire::Hysteresis inverse_of(const schema::Hysteresis& hysteresis);
 /// it is the charge at the end of the tick: y = (x - a x_-1) / (1 - a), a = exp(-2 pi pole / rate). Exact for
 /// a held drive.
 wire::Section pole_lead(double pole_hz, double rate_hz);
+
+/// The operator itself, from rest: sum_i weights[i] play_{thresholds_v[i]}(drive_v), volts.
+std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v);
 
 /// The drive that would do to the linear model what `drive_v`, held for a tick each, does to a bender with
 /// this hysteresis, from rest: charge, its hysteresis, and the drive that charges so. Double precision;

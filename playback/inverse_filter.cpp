@@ -44,7 +44,8 @@ class Designer {
   /// Of the normalised chain.
   std::vector<double> taps() {
     const double wished = 4 * std::ceil(kFilterS * rate_hz_ / 4);
-    count_ = static_cast<std::size_t>(std::clamp(wished, kLeastTaps, kMostTaps));
+    count_ =
+        design_.taps > 0 ? design_.taps : static_cast<std::size_t>(std::clamp(wished, kLeastTaps, kMostTaps));
     penalties_.assign(kGrid + 1, kFirstPenalty);
     std::vector<double> taps = solved();
     for (int round = 0; round < kMostLawsonRounds && raise_penalties(taps); ++round) taps = solved();
@@ -52,7 +53,7 @@ class Designer {
   }
 
   InverseFilter judged(const std::vector<float>& taps) const {
-    InverseFilter filter{taps, design_.delay_s, 0, -300, -300};
+    InverseFilter filter{taps, solutions_, design_.delay_s, 0, -300, -300};
     double error = 0;
     std::size_t bins = 0;
     for (std::size_t k = 0; k <= kGrid; ++k) {
@@ -90,7 +91,8 @@ class Designer {
   }
 
   // The normal equations: symmetric and Toeplitz.
-  std::vector<double> solved() const {
+  std::vector<double> solved() {
+    ++solutions_;
     std::vector<double> row(count_), right(count_);
     for (std::size_t k = 0; k <= kGrid; ++k) {
       const double weights =
@@ -122,7 +124,7 @@ class Designer {
   double rate_hz_;
   spatial::Band band_;
   InverseDesign design_;
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, solutions_ = 0;
   std::vector<Complex> responses_, turns_;
   std::vector<double> leads_, penalties_;
 };
@@ -133,7 +135,7 @@ InverseFilter inverse_filter(const Chain& chain, Inverse inverse, const spatial:
                              const InverseDesign& design) {
   const bool single = inverse == Inverse::gain || inverse == Inverse::none;
   Designer designer(chain, inverse, band,
-                    single ? InverseDesign{0, design.most_gain_db, design.stops_at_hz} : design);
+                    single ? InverseDesign{0, design.most_gain_db, design.stops_at_hz, 1} : design);
   const double per_metre = inverse == Inverse::none ? inverse_response(chain, inverse, 0).real()
                                                     : 1 / std::abs(chain_response(chain, 0));
   const std::vector<double> taps = single ? std::vector<double>{1} : designer.taps();

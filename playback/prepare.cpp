@@ -7,11 +7,12 @@
 #include <cmath>
 
 #include "playback/hysteresis_inverse.hpp"
-#include "playback/inverse_filter.hpp"
 #include "playback/pyramid.hpp"
+#include "playback/pyramid_shape.hpp"
 #include "playback/reference/spatial_content.hpp"
 #include "playback/texture_check.hpp"
 #include "playback/texture_layout.hpp"
+#include "playback/undone_chain.hpp"
 
 namespace tacto::playback {
 
@@ -21,20 +22,12 @@ using schema::Result;
 
 namespace {
 
-// Between two levels, half an octave apart each, content reaches twice the band's edge before it is faded
-// out.
-constexpr double kStopOverBand = 2 * kStopOverPass;
 constexpr double kLeastRateHz = 100, kMostRateHz = 100e3;
 // core::half_octaves() may say 0.02 too much: levels are chosen that much finer.
 constexpr double kSpeedMargin = 1.01;
 constexpr double kTrackerS = 2e-3;
 constexpr double kMostSamplesPerCount = 1024;
 constexpr double kQ32 = 4294967296.0;
-
-double samples_per_period(wire::Interpolation kind) {
-  if (kind == wire::Interpolation::hermite) return 16;
-  return kind == wire::Interpolation::sinc ? 6 : 64;
-}
 
 Result<void> check_prepare_options(const PrepareOptions& o) {
   const auto wrong = [](std::string what, std::string remedy) {
@@ -49,6 +42,11 @@ Result<void> check_prepare_options(const PrepareOptions& o) {
   if (!(o.band.low_hz > 0 && o.band.low_hz < o.band.high_hz && o.band.high_hz < kMostRateHz))
     return wrong("the band is empty or reaches 0 Hz", "0 < low < high");
   if (!(o.delay_s >= 0 && o.delay_s <= 0.02)) return wrong("a delay beyond 0 to 20 ms", "2ms is usual");
+  if (!(o.samples_per_period == 0 || (o.samples_per_period > 2 && o.samples_per_period <= 1000)))
+    return wrong("samples a period beyond 2 to 1000", "16 are usual");
+  if (o.inverse_taps > wire::kMaxTaps)
+    return wrong(fmt::format("{} taps, the kernel has room for {}", o.inverse_taps, wire::kMaxTaps),
+                 "take fewer");
   if (!(o.max_speed_mps > 0 && o.max_speed_mps <= 10))
     return wrong("a largest speed beyond 0 to 10 m/s", "a finger goes at up to 0.5 m/s");
   if (!(o.onset_s >= 0 && o.release_s >= 0 && o.seam_m >= 0 && std::isfinite(o.onset_s + o.release_s)))
@@ -70,26 +68,18 @@ Result<void> check_placed(std::span<const PlacedTexture> textures, const Prepare
   return {};
 }
 
-PyramidShape shape_of(const schema::SpaceSignal& path, const Prepared& prepared, const PrepareOptions& o) {
-  PyramidShape shape{o.ends, 1, 0, samples_per_period(o.interpolation)};
-  const double per_m = prepared.passes_to_hz / o.max_speed_mps;  // what passes at the greatest speed
-  const double coarsest = std::exp2(0.5 * (wire::kMaxLevels - 1)) * per_m;
-  shape.finest_per_m = std::min(std::max(highest_spatial_frequency(path), per_m), coarsest);
-  const double steps = std::ceil(2 * std::log2(shape.finest_per_m / per_m));
-  shape.levels = std::min(static_cast<int>(steps) + 1, static_cast<int>(wire::kMaxLevels));
-  return shape;
-}
-
 Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, const PrepareOptions& o) {
-  const PyramidShape shape = shape_of(path, prepared, o);
+  const PyramidShape shape = pyramid_shape(highest_spatial_frequency(path), prepared.passes_to_hz, o);
   const std::size_t size = pyramid_size(path, shape);
   if (size > o.most_samples)
     return fail(Fault::unsuitable,
                 fmt::format("the texture takes {} samples in {} levels, there is room for {}", size,
                             shape.levels, o.most_samples),
-                "texture", "play a shorter part, let the host close the loop, or interpolate by sinc");
+                "texture", "play a shorter part, or on a device that holds more");
   Pyramid pyramid = make_pyramid(path, shape);
   prepared.samples = std::move(pyramid.samples);
+  prepared.built.levels = pyramid.levels;
+  prepared.built.sample_bytes = prepared.samples.size() * sizeof(float);
   prepared.scale.samples = static_cast<std::uint32_t>(pyramid.first_level_samples);
   prepared.scale.levels = static_cast<std::uint8_t>(shape.levels);
   prepared.finest_per_m = shape.finest_per_m;
@@ -128,17 +118,19 @@ Result<void> check_inverse(const InverseFilter& filter, Inverse inverse, const s
       "transducer", "check its resonance, damping and pole; or play with --inverse gain");
 }
 
-Result<void> undo_chain(Prepared& prepared, const schema::Transducer& transducer, const PrepareOptions& o) {
-  Chain chain{transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz};
-  if (o.undo_hysteresis && transducer.hysteresis) {
-    chain.led_pole_hz = schema::actuator_pole_hz(transducer);
+Result<void> undo_chain(Prepared& prepared, const schema::Transducer& transducer, const UndoneChain& undone,
+                        const PrepareOptions& o) {
+  if (undoes_hysteresis(transducer, o)) {
     prepared.plays = inverse_of(*transducer.hysteresis);
-    prepared.sections = {pole_lead(chain.led_pole_hz, o.rate_hz)};
+    prepared.sections = {pole_lead(undone.chain.led_pole_hz, o.rate_hz)};
+    ++prepared.built.hysteresis;
+    prepared.built.plays = prepared.plays.count;
+    prepared.built.sections = prepared.sections.size();
   }
-  const InverseDesign design{o.delay_s, 20, prepared.stops_at_hz};
-  const spatial::Band band{std::min(o.band.low_hz, 0.5 * prepared.passes_to_hz), prepared.passes_to_hz};
-  InverseFilter filter = inverse_filter(chain, o.inverse, band, design);
-  if (auto sound = check_inverse(filter, o.inverse, band); !sound) return sound;
+  InverseFilter filter = inverse_of(undone, o);
+  if (auto sound = check_inverse(filter, o.inverse, undone.band); !sound) return sound;
+  prepared.built.filters += filter.solutions > 0;
+  prepared.built.taps = filter.taps.size();
   prepared.taps = std::move(filter.taps);
   prepared.delay_s = filter.delay_s;
   prepared.delay_left_s = o.look_ahead ? 0 : filter.delay_s;
@@ -148,6 +140,7 @@ Result<void> undo_chain(Prepared& prepared, const schema::Transducer& transducer
   const double ahead_ticks = o.look_ahead ? filter.delay_s * o.rate_hz : 0;
   prepared.tracker = {o.between_counts, static_cast<float>(ahead_ticks),
                       static_cast<float>(kTrackerS * o.rate_hz)};
+  prepared.built.following = (o.between_counts ? 1U : 0U) + (ahead_ticks > 0 ? 1U : 0U);
   return {};
 }
 
@@ -162,17 +155,28 @@ wire::Limits limits_of(const schema::Transducer& t, const PrepareOptions& o) {
           static_cast<std::uint16_t>(std::clamp(counts, 10.0, 65535.0))};
 }
 
-Prepared settled(const schema::Transducer& transducer, const PrepareOptions& o) {
+// Only those that are named.
+void add_guards(Prepared& prepared, const PrepareOptions& o) {
+  if (o.energy_rms_v > 0) {
+    prepared.energy_rms_v = static_cast<float>(o.energy_rms_v);
+    ++prepared.built.energy_limits;
+  }
+  if (o.contact_on_n > 0) {
+    prepared.gate_on_n = static_cast<float>(o.contact_on_n);
+    prepared.gate_off_n = static_cast<float>(o.contact_off_n);
+    ++prepared.built.touch_gates;
+  }
+}
+
+Prepared settled(const schema::Transducer& transducer, const UndoneChain& undone, const PrepareOptions& o) {
   Prepared prepared;
   prepared.rate_hz = o.rate_hz;
   prepared.limits = limits_of(transducer, o);
   prepared.gain_m_per_n = static_cast<float>(o.gain_m_per_n);
-  prepared.energy_rms_v = static_cast<float>(o.energy_rms_v);
   prepared.energy_window_s = static_cast<float>(o.energy_window_s);
-  prepared.gate_on_n = static_cast<float>(o.contact_on_n);
-  prepared.gate_off_n = static_cast<float>(o.contact_off_n);
-  prepared.passes_to_hz = std::min(o.band.high_hz, o.rate_hz / (1 + kStopOverBand));
-  prepared.stops_at_hz = kStopOverBand * prepared.passes_to_hz;
+  add_guards(prepared, o);
+  prepared.passes_to_hz = undone.band.high_hz;
+  prepared.stops_at_hz = undone.stops_at_hz;
   if (prepared.passes_to_hz < o.band.high_hz)
     prepared.notes.push_back(
         fmt::format("at {:g} ticks a second the band ends at {:.4g} Hz", o.rate_hz, prepared.passes_to_hz));
@@ -198,15 +202,21 @@ core::KernelSetup Prepared::setup() const {
   return setup;
 }
 
+Result<void> check_prepare(std::span<const PlacedTexture> textures, const PrepareOptions& options) {
+  if (auto sound = check_prepare_options(options); !sound) return sound;
+  return check_placed(textures, options);
+}
+
 Result<Prepared> prepare(std::span<const PlacedTexture> textures, const schema::Transducer& transducer,
                          const PrepareOptions& options) {
-  if (auto sound = check_prepare_options(options); !sound) return schema::forward_error(sound);
-  if (auto sound = check_placed(textures, options); !sound) return schema::forward_error(sound);
-  const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m);
-  Prepared prepared = settled(transducer, options);
+  if (auto sound = check_prepare(textures, options); !sound) return schema::forward_error(sound);
+  const UndoneChain undone = undone_chain(transducer, options);
+  Prepared prepared = settled(transducer, undone, options);
+  const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m, prepared.built);
   if (auto filled = fill_levels(prepared, path, options); !filled) return schema::forward_error(filled);
   if (auto laid = lay_on_counts(prepared, path.origin_m, options); !laid) return schema::forward_error(laid);
-  if (auto undone = undo_chain(prepared, transducer, options); !undone) return schema::forward_error(undone);
+  if (auto done = undo_chain(prepared, transducer, undone, options); !done)
+    return schema::forward_error(done);
   return prepared;
 }
 

@@ -14,6 +14,7 @@
 #include "data-schema/transducer.hpp"
 #include "firmware-host/core/tick_kernel.hpp"
 #include "playback/chain.hpp"
+#include "playback/construction_tally.hpp"
 #include "spatial/dsp/band.hpp"
 
 namespace tacto::playback {
@@ -40,16 +41,18 @@ struct PrepareOptions {
   Ends ends = Ends::stop;
   double seam_m = 1e-3;  ///< of a loop; 0 where the texture is a loop already
   wire::Interpolation interpolation = wire::Interpolation::hermite;
+  double samples_per_period = 0;  ///< of the finest content; 0: usual for the interpolation (pyramid_shape)
   Inverse inverse = Inverse::full;
   Reconstruction reconstruction = Reconstruction::none;
   double reconstruction_cutoff_hz = 600;
   Hold hold = Hold::zero_order;
-  bool undo_hysteresis = true;  ///< of a transducer that says what hysteresis it has
-  double delay_s = 2e-3;        ///< that the inverse may take (magnitude, full)
-  bool look_ahead = true;       ///< read where the finger will be after that delay
-  bool between_counts = true;   ///< time the encoder's edges
-  double max_speed_mps = 0.5;   ///< up to which nothing folds; beyond, the texture fades to silence
-  double jump_mps = 0;          ///< beyond it the encoder has jumped, a fault; 0: four times max_speed_mps
+  bool undo_hysteresis = true;     ///< of a transducer that says what hysteresis it has
+  double delay_s = 2e-3;           ///< that the inverse may take (magnitude, full)
+  std::uint16_t inverse_taps = 0;  ///< of it; 0: 3.2 ms of them, 24 to 128
+  bool look_ahead = true;          ///< read where the finger will be after that delay
+  bool between_counts = true;      ///< time the encoder's edges
+  double max_speed_mps = 0.5;      ///< up to which nothing folds; beyond, the texture fades to silence
+  double jump_mps = 0;             ///< beyond it the encoder has jumped, a fault; 0: four times max_speed_mps
   double onset_s = 0.05, release_s = 0.01;
   std::uint16_t watchdog_ms = 100;
   double energy_rms_v = 0, energy_window_s = 1;     ///< 0: no such limit
@@ -81,6 +84,7 @@ struct Prepared {
   double finest_per_m = 0;      ///< the texture's highest spatial frequency that is kept
   double pitch_m = 0;           ///< of the first level
   std::vector<std::string> notes;
+  ConstructionTally built;
 
   std::uint32_t rate_millihertz() const { return static_cast<std::uint32_t>(std::llround(1e3 * rate_hz)); }
   /// Pointers into this: it must stay where it is, and outlive the kernel's use.
@@ -108,6 +112,9 @@ struct Prepared {
 /// number, or needs more than most_samples (with how many).
 schema::Result<Prepared> prepare(std::span<const PlacedTexture> textures,
                                  const schema::Transducer& transducer, const PrepareOptions& options);
+
+/// What prepare() asks of its arguments by themselves. Errors: as of prepare().
+schema::Result<void> check_prepare(std::span<const PlacedTexture> textures, const PrepareOptions& options);
 
 /// One texture at a place.
 inline schema::Result<Prepared> prepare(const schema::Texture& texture, const schema::Transducer& transducer,

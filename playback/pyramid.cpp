@@ -96,13 +96,14 @@ Pyramid make_pyramid(const schema::SpaceSignal& signal, const PyramidShape& shap
   std::vector<std::complex<double>> spectrum(fft.bins());
   fft.forward(values, spectrum);
   const double per_m_per_bin = 1 / (static_cast<double>(values.size()) * signal.pitch_m);
-  Pyramid pyramid{{}, grid.kept, grid.pitch_m};
+  Pyramid pyramid{{}, grid.kept, grid.pitch_m, 0};
   for (int level = 0; level < shape.levels; ++level) {
     const double pass_per_m = shape.finest_per_m * std::exp2(-0.5 * level);
     const auto copy =
         level_of(spectrum, values.size(), per_m_per_bin, pass_per_m, grid.period >> (level / 2));
     const auto kept = core::level_samples(scale, static_cast<std::uint8_t>(level));
     for (std::size_t i = 0; i < kept; ++i) pyramid.samples.push_back(static_cast<float>(copy[i]));
+    ++pyramid.levels;
   }
   return pyramid;
 }

@@ -24,7 +24,8 @@ struct PyramidShape {
 struct Pyramid {
   std::vector<float> samples;
   std::size_t first_level_samples = 0;
-  double pitch_m = 0;  ///< of the first level, whose first sample is the signal's
+  double pitch_m = 0;      ///< of the first level, whose first sample is the signal's
+  std::size_t levels = 0;  ///< as they were made
 };
 
 /// How many samples it will have.

@@ -144,10 +144,26 @@ ExactDrive moved_bender(const std::vector<double>& drive_v, const PaddedSpectrum
   return moved;
 }
 
+// What the budget chooses goes into the options.
+Result<void> decide_kernel(Rendering& rendering, const schema::Texture& texture, const Chain& chain,
+                           const RenderOptions& o, PrepareOptions& options) {
+  if (!o.budget.asked()) return {};
+  const auto table = schema::find_trade_table();
+  if (!table) return schema::forward_error(table);
+  const PlacedTexture placed{&texture, o.at_m, 1};
+  auto decision = decide(std::span(&placed, 1), chain.transducer, options, o.budget, *table);
+  if (!decision) return schema::forward_error(decision);
+  options = decision->chosen.in(options);
+  rendering.decision = std::move(*decision);
+  return {};
+}
+
 // What the kernel's limits took away is told; refused, unless it may.
 Result<ExactDrive> kernels_drive(Rendering& rendering, const schema::Texture& texture, const FingerPath& path,
                                  const PaddedSpectrum& wanted, const Chain& chain, const RenderOptions& o) {
-  const PrepareOptions options = kernel_options(o, rendering.onset_s);
+  PrepareOptions options = kernel_options(o, rendering.onset_s);
+  if (auto chosen = decide_kernel(rendering, texture, chain, o, options); !chosen)
+    return schema::forward_error(chosen);
   const auto prepared = prepare(texture, chain.transducer, options, o.at_m);
   if (!prepared) return schema::forward_error(prepared);
   rendering.warnings.insert(rendering.warnings.end(), prepared->notes.begin(), prepared->notes.end());
@@ -192,6 +208,78 @@ Chain chain_of(const schema::Transducer& transducer, const RenderOptions& o) {
   return {transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz};
 }
 
+// Both engines, offline: the kernel's error is measured against what the reference computes anyway.
+Engine engine_for(const RenderOptions& o, const schema::Transducer& transducer,
+                  std::vector<std::string>& reasons) {
+  if (!o.budget.asked() || o.keep_engine) return o.engine;
+  if (o.budget.max_tick_ns) {
+    reasons.emplace_back("the kernel: the reference has no ticks");
+    return Engine::kernel;
+  }
+  if (transducer.hysteresis && o.undo_hysteresis) {
+    reasons.emplace_back("the kernel: the reference does not undo the bender's hysteresis");
+    return Engine::kernel;
+  }
+  reasons.emplace_back(
+      "the reference: exact, and cheaper offline than the kernel, whose error would be measured against it");
+  return Engine::reference;
+}
+
+bool keeps_budget(const Rendering& rendering, const RenderOptions& o) {
+  return o.budget.by_error() || rendering.error_db <= level_db(o.budget.error.most_error());
+}
+
+std::string words_of_miss(const Rendering& rendering, const RenderOptions& o) {
+  return fmt::format("error is {:.3g} %, asked: {:.3g} %", 100 * std::pow(10, rendering.error_db / 20),
+                     100 * o.budget.error.most_error());
+}
+
+/// What both engines are given.
+struct RenderJob {
+  const schema::Texture& texture;
+  const FingerPath& path;
+  const PaddedSpectrum& wanted;
+  Chain chain;
+  const RenderOptions& options;
+};
+
+Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job) {
+  auto drive = engine == Engine::kernel
+                   ? kernels_drive(rendering, job.texture, job.path, job.wanted, job.chain, job.options)
+                   : limited_drive(rendering, job.wanted, job.chain, job.options);
+  if (!drive) return schema::forward_error(drive);
+  const double start_s = job.path.time_s.front(), rate_hz = job.options.rate_hz;
+  rendering.engine = engine;
+  rendering.drive_v = {rate_hz, start_s, std::move(drive->drive_v)};
+  rendering.modelled_m = {rate_hz, start_s, std::move(drive->modelled_m)};
+  rendering.peaks = drive->peaks;
+  rendering.error_db = error_db(rendering, job.wanted, job.options.band);
+  return {};
+}
+
+// Of a hysteresis the reference knows nothing: it can't take over.
+Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
+  if (keeps_budget(rendering, job.options)) return {};
+  if (rendering.engine == Engine::kernel && !job.chain.transducer.hysteresis) {
+    rendering.warnings.push_back("the reference takes over: the kernel's " +
+                                 words_of_miss(rendering, job.options));
+    rendering.clipping.reset();
+    rendering.decision.reset();
+    rendering.delay_s = 0;
+    if (auto driven = drive_by(Engine::reference, rendering, job); !driven) return driven;
+  }
+  if (keeps_budget(rendering, job.options)) return {};
+  return fail(Fault::unsuitable, "the rendering's " + words_of_miss(rendering, job.options), "error budget",
+              "allow more, or name less: --inverse full, a smaller --gain within the limits");
+}
+
+void warn_of_hysteresis(Rendering& rendering, const schema::Transducer& transducer, Engine engine) {
+  if (transducer.hysteresis && engine == Engine::reference)
+    rendering.warnings.push_back(
+        "the reference undoes the linear model alone: the bender's hysteresis stays (--engine kernel undoes "
+        "it)");
+}
+
 }  // namespace
 
 Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
@@ -213,21 +301,12 @@ Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
   report(0.1);
   const auto wanted = exact_wanted(lookup, path, grid, options.band, options.gain_m_per_n, rendering.onset_s);
   report(0.8);
-  const Chain chain = chain_of(transducer, options);
-  if (transducer.hysteresis && options.engine == Engine::reference)
-    rendering.warnings.push_back(
-        "the reference undoes the linear model alone: the bender's hysteresis stays (--engine kernel undoes "
-        "it)");
-  auto drive = options.engine == Engine::kernel
-                   ? kernels_drive(rendering, texture, path, wanted, chain, options)
-                   : limited_drive(rendering, wanted, chain, options);
-  if (!drive) return schema::forward_error(drive);
-  const double start_s = path.time_s.front();
-  rendering.wanted_m = {options.rate_hz, start_s, signal_of(wanted)};
-  rendering.drive_v = {options.rate_hz, start_s, std::move(drive->drive_v)};
-  rendering.modelled_m = {options.rate_hz, start_s, std::move(drive->modelled_m)};
-  rendering.peaks = drive->peaks;
-  rendering.error_db = error_db(rendering, wanted, options.band);
+  const Engine engine = engine_for(options, transducer, rendering.reasons);
+  warn_of_hysteresis(rendering, transducer, engine);
+  const RenderJob job{texture, path, wanted, chain_of(transducer, options), options};
+  rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};
+  if (auto driven = drive_by(engine, rendering, job); !driven) return schema::forward_error(driven);
+  if (auto kept = keep_budget(rendering, job); !kept) return schema::forward_error(kept);
   report(1);
   return rendering;
 }

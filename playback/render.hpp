@@ -11,6 +11,7 @@
 #include "data-schema/signal.hpp"
 #include "data-schema/texture.hpp"
 #include "data-schema/transducer.hpp"
+#include "playback/budget.hpp"
 #include "playback/chain.hpp"
 #include "playback/finger_path.hpp"
 #include "playback/limits.hpp"
@@ -37,6 +38,8 @@ struct RenderOptions {
   Engine engine = Engine::reference;
   double encoder_step_m = 1e-6;  ///< of the kernel's encoder
   bool undo_hysteresis = true;   ///< by the kernel, of a transducer that says what hysteresis it has
+  TickBudget budget;             ///< what the rendering has to keep, see render()
+  bool keep_engine = false;      ///< the engine was named: it stays
   /// Raised-cosine fade of the force at either end of the path, at most a quarter of it: nothing starts with
   /// a jump where the finger starts inside the texture. What is left is the ringing of the band's edges: on a
   /// real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3 of it.
@@ -68,15 +71,24 @@ struct Rendering {
   double fade_m = 0;                 ///< TextureLookup::fade_m
   double onset_s = 0;                ///< as used
   std::vector<std::string> warnings;
+  Engine engine = Engine::reference;     ///< that made the drive
+  std::vector<std::string> reasons;      ///< why it was chosen, where a budget asked for it
+  std::optional<TickDecision> decision;  ///< of the kernel's budget
 };
 
 /// Renders in double precision, or (engine) by the tick kernel, as it would run: single precision, position
 /// from an encoder, limits held. All signals share the path's time axis. `progress` hears 0 to 1.
 ///
+/// A budget is kept as measured, by error_db: the reference is exact, and cheaper than the kernel, whose
+/// error is measured against it, so it is taken unless the engine is named, max_tick_ns asks for ticks, or a
+/// hysteresis is to be undone. The kernel's reading and inverse are decide()'s; where its measured error is
+/// beyond the asked one (the finger's encoder, its turns), the reference takes over, with a warning.
+///
 /// Errors: usage, for options out of range (rate <= 2 band.high_hz, 0 < low < high, gain, onset not finite);
 /// unsuitable, for a texture that isn't force in N, a path that check_finger_path() refuses, that never meets
 /// the texture, that is shorter than one period of the band's lowest frequency or too long to render at once,
-/// for displacement or drive beyond a limit (see check_limits). Not for the tick: allocates, and plans
+/// for displacement or drive beyond a limit (see check_limits), for an error that
+/// is not kept; and as decide(). Not for the tick: allocates, and plans
 /// Fourier transforms. Source: Wiertlewski, Lozada, Hayward 2011, equations (5), (6) inverted in the
 /// frequency domain.
 schema::Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,

@@ -20,11 +20,12 @@ schema::SpaceSignal scaled_texture(const PlacedTexture& placed) {
   return signal;
 }
 
-schema::SpaceSignal without_seam(schema::SpaceSignal signal, double seam_m) {
+schema::SpaceSignal without_seam(schema::SpaceSignal signal, double seam_m, ConstructionTally& built) {
   auto& values = signal.values;
   const auto longest = values.size() / 2;
   const std::size_t seam = std::min(static_cast<std::size_t>(std::llround(seam_m / signal.pitch_m)), longest);
   const std::size_t left = values.size() - seam;
+  if (seam > 0) ++built.seams;
   for (std::size_t i = 0; i < seam; ++i) {
     const double u = static_cast<double>(i) / static_cast<double>(seam);
     const double weight = 0.5 - 0.5 * std::cos(std::numbers::pi * u);
@@ -34,7 +35,7 @@ schema::SpaceSignal without_seam(schema::SpaceSignal signal, double seam_m) {
   return signal;
 }
 
-schema::SpaceSignal beside_each_other(std::span<const PlacedTexture> textures) {
+schema::SpaceSignal beside_each_other(std::span<const PlacedTexture> textures, ConstructionTally& built) {
   double pitch_m = textures.front().texture->signal.pitch_m, from_m = textures.front().at_m, to_m = from_m;
   for (const PlacedTexture& placed : textures) {
     pitch_m = std::min(pitch_m, placed.texture->signal.pitch_m);
@@ -45,6 +46,7 @@ schema::SpaceSignal beside_each_other(std::span<const PlacedTexture> textures) {
   path.values.resize(static_cast<std::size_t>(std::ceil((to_m - from_m + 2 * kMarginM) / pitch_m)) + 1);
   for (const PlacedTexture& placed : textures) {
     const TextureLookup lookup(placed.texture->signal, placed.at_m);
+    ++built.textures_laid;
     for (std::size_t i = 0; i < path.values.size(); ++i)
       path.values[i] += placed.weight * lookup(path.position_m(i));
   }
@@ -53,10 +55,17 @@ schema::SpaceSignal beside_each_other(std::span<const PlacedTexture> textures) {
 
 }  // namespace
 
-schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m) {
-  if (ends == Ends::stop) return beside_each_other(textures);
+schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m,
+                             ConstructionTally& built) {
+  if (ends == Ends::stop) return beside_each_other(textures, built);
+  ++built.textures_laid;
   if (ends == Ends::mirror) return scaled_texture(textures.front());
-  return without_seam(scaled_texture(textures.front()), seam_m);
+  return without_seam(scaled_texture(textures.front()), seam_m, built);
+}
+
+schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m) {
+  ConstructionTally uncounted;
+  return laid_out(textures, ends, seam_m, uncounted);
 }
 
 }  // namespace tacto::playback

@@ -14,5 +14,8 @@ namespace tacto::playback {
 /// them, added where they lie over each other. loop: without its last seam_m, which fades into the first.
 /// mirror: as it is.
 schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m);
+/// The same, counted.
+schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m,
+                             ConstructionTally& built);
 
 }  // namespace tacto::playback

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "firmware-host/core/wire/crc32c.hpp"
 
@@ -139,6 +140,9 @@ Result<void> upload(Client& client, const Prepared& prepared) {
 Result<void> upload_change(Client& client, const Prepared& prepared, double device_gain_m_per_n,
                            double fade_s) {
   const double times = prepared.gain_m_per_n / device_gain_m_per_n;
+  if (!std::isfinite(times))
+    return fail(Fault::unsuitable, "plays with a gain of 0, which no texture can be scaled to",
+                client.where(), "disarm, and load it again");
   if (auto sent = send_levels(client, prepared, times); !sent) return sent;
   if (auto sent = send_tracking(client, prepared); !sent) return sent;
   return client.command(wire::Change{static_cast<float>(fade_s)});

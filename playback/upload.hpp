@@ -17,8 +17,8 @@ schema::Result<void> upload(firmware_host::Client& client, const Prepared& prepa
 /// Sends another texture to a device that is armed with one by upload(), and has it cross-fade over fade_s (0
 /// to 10): levels, samples, full detail. All else stays as it is; so does the device's gain (m/N, not 0),
 /// which is one number for both: samples go out times prepared.gain_m_per_n / device_gain_m_per_n.
-/// Precondition: check_texture_change(). Errors: device, as of Client::command(); the texture that plays then
-/// plays on.
+/// Precondition: check_texture_change(). Errors: unsuitable, for a device's gain of 0; device, as of
+/// Client::command(); the texture that plays then plays on.
 schema::Result<void> upload_change(firmware_host::Client& client, const Prepared& prepared,
                                    double device_gain_m_per_n, double fade_s);
 

@@ -134,14 +134,6 @@ Band TextureMaker::kept_band() const {
   return band;
 }
 
-// How many times finer than the texture's a grid has to be to hold what the band lets through where the
-// finger goes at a quarter of its usual speed; at its stops no grid does.
-std::size_t TextureMaker::finer_by(double usual_mps) const {
-  const Band band = options_.filter.passed(record_.header().sample_rate_hz);
-  const double times = std::ceil(2 * options_.pitch_m * band.high_hz / (kSlowPart * usual_mps));
-  return static_cast<std::size_t>(std::clamp(times, 1.0, kMostFiner));
-}
-
 // Samples that far apart would fold what lies beyond half a cycle a sample onto what they can hold.
 schema::Result<std::vector<double>> TextureMaker::on_grid(const Stroke& stroke, const MonotonePath& path,
                                                           const SpaceGrid& grid, std::size_t finer) {
@@ -181,7 +173,8 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   const SpeedProfile profile = profile_of(stroke, *path, *grid);
   const double usual_mps = median(profile.speed_mps);
   if (const auto fine = check_band(usual_mps); !fine) return schema::forward_error(fine);
-  const std::size_t finer = finer_by(usual_mps);
+  const std::size_t finer = finer_grid(
+      options_.pitch_m, options_.filter.passed(record_.header().sample_rate_hz).high_hz, usual_mps);
   auto values = on_grid(stroke, *path, *grid, finer);
   if (!values) return schema::forward_error(values);
 
@@ -251,6 +244,11 @@ void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int 
   texture.notes = header.notes;
   texture.created = schema::creation_time();
   texture.creator = kCreator;
+}
+
+std::size_t finer_grid(double pitch_m, double highest_hz, double usual_mps) {
+  const double times = std::ceil(2 * pitch_m * highest_hz / (kSlowPart * usual_mps));
+  return static_cast<std::size_t>(std::clamp(times, 1.0, kMostFiner));
 }
 
 double rms_of(const schema::Texture& texture) {

@@ -62,7 +62,6 @@ class TextureMaker {
   schema::Result<std::vector<double>> resampled(const Stroke& stroke, const MonotonePath& path,
                                                 const SpaceGrid& grid);
   Band kept_band() const;
-  std::size_t finer_by(double usual_mps) const;
   schema::Result<std::vector<double>> on_grid(const Stroke& stroke, const MonotonePath& path,
                                               const SpaceGrid& grid, std::size_t finer);
   SpeedProfile profile_of(const Stroke& stroke, const MonotonePath& path, const SpaceGrid& grid) const;
@@ -76,6 +75,10 @@ class TextureMaker {
   std::optional<FilteredTrack> filtered_;
   Resampler resampler_;
 };
+
+/// How many times finer than the texture's a grid is resampled on, before it is thinned: to hold what lies up
+/// to `highest_hz` where the finger goes at a quarter of its usual speed. At its stops no grid does.
+std::size_t finer_grid(double pitch_m, double highest_hz, double usual_mps);
 
 /// Root of the mean square of a texture's values, in their unit.
 double rms_of(const schema::Texture& texture);

@@ -24,12 +24,12 @@ struct CompareVerbOptions {
 constexpr const char* kRule =
     "The verdict, by this rule, in this order (T is --tolerance; all from 1,000 bootstrap draws of the "
     "segments, so that "
-    "the textures' own parts say what chance does):\n"
+    "the textures' own parts say what chance does; louder and quieter are said of B):\n"
     "  undecided        fewer than 8 segments, or less than an octave in common\n"
     "  different        the bands differ about their mean by more than the scatter of the parts makes once "
     "in 20 times, "
-    "and by more than T beyond it\n"
-    "  undecided        the parts scatter so much that T would not show\n"
+    "and by more than T beyond it (shape_db over shape_chance_db, and shape_excess_db over T)\n"
+    "  undecided        the parts scatter so much that T would not show (finest_shape_db over T)\n"
     "  louder, quieter  the mean level is off by more than T, and its 90 % interval does not hold 0 dB\n"
     "  same             the whole interval lies within T\n"
     "  undecided        else\n"
@@ -80,6 +80,7 @@ void add_evidence(Report& report, const Comparison& c) {
   report.add("segments", e.segments).add("level_db", e.level_db);
   report.add("level_low_db", e.level_low_db).add("level_high_db", e.level_high_db);
   report.add("shape_db", e.shape_db).add("shape_chance_db", e.shape_chance_db);
+  report.add("shape_excess_db", e.shape_excess_db).add("finest_shape_db", e.finest_shape_db);
   report.add("power_level_db", c.power_level_db).add("spectral_distance_db", c.spectral_distance_db);
   if (!c.pair.paired) return;
   report.add("gain", *c.gain).add("error_db", *c.error_db).add("residual_db", *c.residual_db);

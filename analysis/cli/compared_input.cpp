@@ -34,7 +34,7 @@ Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, con
     return schema::fail(Fault::usage, fmt::format("stands for {} textures", there), name,
                         "name one of them, or choose with --stroke-a or --stroke-b");
   if (stroke > there)
-    return schema::fail(Fault::usage, fmt::format("stands for {}, and there is no {}th", there, stroke),
+    return schema::fail(Fault::usage, fmt::format("stands for {}, and there is no stroke {}", there, stroke),
                         name);
   for (std::size_t i = 1;; ++i) {
     auto next = inputs.next();

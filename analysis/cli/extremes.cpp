@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
 #include <memory>
 
 #include "analysis/cli/verbs.hpp"
@@ -12,11 +13,17 @@ struct ExtremesOptions {
   bool all = false;
 };
 
+// Without an error there is no margin in dB.
+double margin_of(const Extreme& extreme) {
+  return extreme.error > 0 && extreme.most > 0 ? extreme.margin_db() : std::nan("");
+}
+
 cli::Report row_of_extreme(const Extreme& extreme) {
   cli::Report row;
   row.add("room", extreme.room).add("condition", extreme.condition);
-  row.add("error", extreme.error).add("most", extreme.most).add("holds", extreme.holds());
-  return row.add("reference", extreme.reference).add("note", extreme.breaks);
+  row.add("error", extreme.error).add("most", extreme.most).add("margin_db", margin_of(extreme));
+  row.add("holds", extreme.holds());
+  return row.add("reference", extreme.reference).add("note", extreme.note);
 }
 
 schema::Result<cli::Report> try_extremes(const ExtremesOptions& options) {

@@ -2,9 +2,11 @@
 #include <memory>
 
 #include "analysis/cli/results_output.hpp"
+#include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/fidelity/fidelity_page.hpp"
 #include "data-schema/cli/progress.hpp"
+#include "data-schema/cli/stop_signals.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -76,11 +78,21 @@ Result<void> read_speeds(FidelityVerbOptions& o) {
   return {};
 }
 
+Result<Fidelity> found_until_stopped(FidelityVerbOptions& o, bool& stopped) {
+  const cli::StopSignals signals;
+  cli::Progress progress("fidelity");
+  o.fidelity.stop_asked = [&] { return signals.stop_asked(); };
+  auto found = fidelity(o.fidelity, [&](double part) { progress.update(part); });
+  stopped = signals.stop_asked();
+  return found;
+}
+
 Result<Report> run_fidelity(FidelityVerbOptions o) {
   if (const auto free = check_outputs(o.outputs); !free) return schema::forward_error(free);
   if (const auto read = read_speeds(o); !read) return schema::forward_error(read);
-  cli::Progress progress("fidelity");
-  const auto found = fidelity(o.fidelity, [&](double part) { progress.update(part); });
+  bool stopped = false;
+  const auto found = found_until_stopped(o, stopped);
+  if (!found && stopped) end_as_stopped();
   if (!found) return schema::forward_error(found);
   for (const FidelitySpeed& speed : found->speeds)
     for (const std::string& note : speed.notes) cli::warn(note);

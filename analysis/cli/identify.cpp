@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include "analysis/cli/identify_report.hpp"
+#include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/identify/bode_figure.hpp"
+#include "analysis/identify/loop_figure.hpp"
 #include "analysis/identify/measured_tables.hpp"
 #include "analysis/identify/plausibility.hpp"
-#include "analysis/identify/response_estimate.hpp"
+#include "analysis/identify/record_response.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/stop_signals.hpp"
 #include "data-schema/files.hpp"
@@ -35,7 +39,7 @@ struct IdentifyOptions {
   std::string input = "drive", output = "displacement";
   int phase_sign = 1;
   std::size_t taps_fitted = 0;
-  bool invert = false, force = false;
+  bool invert = false, force = false, replace = false;
 };
 
 void declare_source(CLI::App& app, IdentifyOptions& o) {
@@ -47,7 +51,7 @@ void declare_source(CLI::App& app, IdentifyOptions& o) {
   app.add_option("-o,--output", o.stem, "What is written: NAME.transducer.json")->required();
   app.add_option("--start-from", o.base,
                  "Preset or file that the fit begins from, and that what can't be told apart is held at");
-  app.add_option("--picture", o.picture, "Bode plot: .svg or .png");
+  app.add_option("--picture", o.picture, "Bode plot, or the loops: .svg or .png");
   cli::add_choice<IdentifyMethod>(
       app, "--method", o.method,
       {{"sweep", IdentifyMethod::sweep},
@@ -65,7 +69,8 @@ void declare_model(CLI::App& app, IdentifyOptions& o) {
   app.add_flag("--lag", o.model.lag, "The model lags by the same angle at all frequencies, for a hysteresis");
   app.add_flag("--finger", o.model.finger,
                "A finger rests on the tray of a transducer that is known (--start-from): find what it adds");
-  app.add_flag("--force", o.force, "Take a gain that is hundreds of times off what the base says");
+  app.add_flag("--force", o.force, "Take a gain or a resonance that is far from what the base says");
+  app.add_flag("--replace", o.replace, "Replace a transducer or a picture of that name");
 }
 
 void declare_measuring(CLI::App& app, IdentifyOptions& o) {
@@ -103,14 +108,28 @@ Result<schema::Transducer> base_of(const IdentifyOptions& o, const firmware_host
 struct Asked {
   playback::PlayerDevice device;
   schema::Transducer base;
+  bool stopped = false;  // by a signal, while it was measured
   bool has_device() const { return device.device != nullptr; }
 };
+
+Result<void> check_band(const IdentifyOptions& o) {
+  constexpr std::size_t kMostFrequencies = 1000;
+  if (o.plan.frequencies < kLeastFrequencies || o.plan.frequencies > kMostFrequencies)
+    return fail(Fault::usage,
+                fmt::format("{} to {} frequencies make a sweep", kLeastFrequencies, kMostFrequencies),
+                "--frequencies", "leave it to 60");
+  if (!(o.plan.low_hz > 0 && o.plan.low_hz < o.plan.high_hz))
+    return fail(Fault::usage, "the lowest frequency has to be above 0 and below the highest",
+                "--low and --high", "leave them to 10Hz and 1kHz");
+  if (o.amplitude_v && !(*o.amplitude_v > 0))
+    return fail(Fault::usage, "the drive has to be above 0 V", "--amplitude", "leave it to 0.5V");
+  return {};
+}
 
 Result<Asked> asked_of(const IdentifyOptions& o) {
   if (o.file.empty() == o.device_uri.empty())
     return fail(Fault::usage, "name either a file or a device", "identify", "-d sim:tray_sensor=on, or FILE");
-  if (o.plan.frequencies < kLeastFrequencies || !(o.plan.low_hz < o.plan.high_hz))
-    return fail(Fault::usage, "a band needs eight frequencies that grow", "--frequencies", "leave it to 60");
+  if (const auto sound = check_band(o); !sound) return schema::forward_error(sound);
   if (o.model.finger && (o.model.second_mode || o.base.empty()))
     return fail(Fault::usage, "a finger's load is found on a transducer that is known", "--finger",
                 "name it with --start-from; its second mode is taken from there");
@@ -168,9 +187,11 @@ Result<BodeData> response_of(const IdentifyOptions& o, Asked& asked) {
     const cli::StopSignals signals;
     cli::Progress progress("identifying");
     firmware_host::Device& device = *asked.device.device;
-    return measured_on(
+    auto measured = measured_on(
         device, o.method, plan_of(o, device), asked.base, [&] { return signals.stop_asked(); },
         [&](double part) { progress.update(part); });
+    asked.stopped = signals.stop_asked();
+    return measured;
   }
   auto data = is_table(o.file) ? tabled_response(o) : recorded_response(o);
   if (!data) return data;
@@ -194,6 +215,13 @@ void add_conditions(const IdentifyOptions& o, BodeData& data) {
   if (o.model.second_mode) data.conditions += ", with a second mode";
 }
 
+Result<void> draw(const std::string& picture, const spatial::Figure& figure, Report& report) {
+  if (picture.empty()) return {};
+  if (auto drawn = spatial::write_figure(picture, figure); !drawn) return drawn;
+  report.add("picture", picture);
+  return {};
+}
+
 Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
   auto data = response_of(o, asked);
   if (!data) return schema::forward_error(data);
@@ -205,14 +233,14 @@ Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
   const ResponseFit fit = fit_response(*data, choice, asked.base);
   if (const auto sized = o.force ? Result<void>() : check_size(fit, asked.base); !sized)
     return schema::forward_error(sized);
-  const schema::Transducer found = identified(fit, name_of(o));
+  if (const auto placed = o.force ? Result<void>() : check_frequencies(fit, asked.base); !placed)
+    return schema::forward_error(placed);
+  const schema::Transducer found = identified(fit, asked.base, name_of(o));
   if (const auto written = schema::write_transducer(o.stem, found); !written)
     return schema::forward_error(written);
   Report report = response_report(fit, choice, asked.base, found, file_of(o));
-  if (o.picture.empty()) return report;
-  if (const auto drawn = spatial::write_figure(o.picture, BodeFigure(fit)); !drawn)
+  if (const auto drawn = draw(o.picture, BodeFigure(fit), report); !drawn)
     return schema::forward_error(drawn);
-  report.add("picture", o.picture);
   return report;
 }
 
@@ -221,6 +249,8 @@ Result<DrivenTray> loops_of(const IdentifyOptions& o, Asked& asked, schema::Iden
     about.source = o.file;
     auto tray = read_driven_table(o.file);
     if (tray && !(tray->rate_hz > 0)) tray->rate_hz = o.rate_hz.value_or(0);
+    if (tray && o.invert)
+      for (double& value : tray->displacement_m) value = -value;
     return tray;
   }
   firmware_host::Device& device = *asked.device.device;
@@ -230,17 +260,16 @@ Result<DrivenTray> loops_of(const IdentifyOptions& o, Asked& asked, schema::Iden
   about.conditions = "loops of " + schema::for_people(amplitude_v, Dimension::voltage) + " at 1 Hz";
   const cli::StopSignals signals;
   cli::Progress progress("identifying");
-  return drive_tray(
+  auto tray = drive_tray(
       device, slow_loops(drive_rate_hz(device), amplitude_v), [&] { return signals.stop_asked(); },
       [&](double part) { progress.update(part); });
+  asked.stopped = signals.stop_asked();
+  return tray;
 }
 
 Result<Report> identify_loops(const IdentifyOptions& o, Asked& asked) {
   schema::Identification about;
   about.conditions = "loops measured elsewhere";
-  const auto& before = asked.base.identification;
-  about.low_hz = before ? before->low_hz : 0;
-  about.high_hz = before ? before->high_hz : kLoopHz;
   const auto tray = loops_of(o, asked, about);
   if (!tray) return schema::forward_error(tray);
   if (!(tray->rate_hz > 0))
@@ -251,13 +280,21 @@ Result<Report> identify_loops(const IdentifyOptions& o, Asked& asked) {
   const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz,
                              delay_at_rest_s(asked.base) + held_s, asked.base.drive_limit_v);
   if (!fit) return schema::forward_error(fit);
+  if (const auto upright = check_upright(*fit, about.source); !upright) return schema::forward_error(upright);
+  if (const auto sized = o.force ? Result<void>() : check_size(*fit, asked.base, about.source); !sized)
+    return schema::forward_error(sized);
   const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);
   if (const auto written = schema::write_transducer(o.stem, found); !written)
     return schema::forward_error(written);
-  return loop_report(*fit, found, file_of(o));
+  Report report = loop_report(*fit, found, file_of(o));
+  if (const auto drawn = draw(o.picture, loop_figure(*fit, found), report); !drawn)
+    return schema::forward_error(drawn);
+  return report;
 }
 
 Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
+  if (!o.picture.empty())
+    return fail(Fault::usage, "taps have no picture", "--picture", "leave it out; the table has each tap");
   if (o.file.empty() || !o.rate_hz)
     return fail(Fault::usage, "taps come from a table and need its rate", "--method taps",
                 "identify taps.csv --rate 100kHz");
@@ -279,12 +316,30 @@ Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
   return taps_report(*fit, *foretold, found, file_of(o));
 }
 
+Result<Report> identify_by(const IdentifyOptions& o, Asked& asked) {
+  if (o.method == IdentifyMethod::taps) return identify_taps(o, asked);
+  if (o.method == IdentifyMethod::loop) return identify_loops(o, asked);
+  return identify_response(o, asked);
+}
+
+// A transducer that was measured is not lost to one that does not fit.
+Result<void> check_names_free(const IdentifyOptions& o) {
+  for (const std::string& path : {file_of(o), o.picture})
+    if (!o.replace && schema::is_file(path))
+      return fail(Fault::usage, "is there already, and would be lost", path,
+                  "choose another name, or give --replace");
+  return {};
+}
+
 Result<Report> run_identify(const IdentifyOptions& o) {
+  if (const auto free = check_names_free(o); !free) return schema::forward_error(free);
   auto asked = asked_of(o);
   if (!asked) return schema::forward_error(asked);
-  if (o.method == IdentifyMethod::taps) return identify_taps(o, *asked);
-  if (o.method == IdentifyMethod::loop) return identify_loops(o, *asked);
-  return identify_response(o, *asked);
+  auto report = identify_by(o, *asked);
+  const bool stopped = !report && asked->stopped;
+  asked->device = {};
+  if (stopped) end_as_stopped();
+  return report;
 }
 
 cli::Action declare_identify(CLI::App& app) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "analysis/identify/angles.hpp"
 #include "analysis/identify/paper_words.hpp"
@@ -48,9 +49,9 @@ void add_quality(Report& report, const ResponseFit& fit) {
         .add("reduced_chi_squared_limit", fit.misfit.chi_squared_limit);
   report.add("residual_phase_correlation", fit.misfit.phase_correlation)
       .add("residual_amplitude_correlation", fit.misfit.amplitude_correlation)
-      .add("residual_correlation_limit", fit.misfit.correlation_limit)
-      .add("third_harmonic_percent", 100 * fit.data.third_harmonic)
-      .add("frequencies", fit.data.size());
+      .add("residual_correlation_limit", fit.misfit.correlation_limit);
+  if (fit.data.third_harmonic) report.add("third_harmonic_percent", 100 * *fit.data.third_harmonic);
+  report.add("frequencies", fit.data.size());
 }
 
 void add_found(Report& report, const schema::Transducer& found) {
@@ -60,14 +61,15 @@ void add_found(Report& report, const schema::Transducer& found) {
   report.add("actuator_scale", found.actuator_scale).add("sensor_scale", found.sensor_scale);
 }
 
-void add_paper(Report& report, const schema::Transducer& found) {
-  const auto figures = paper_figures(found);
+void add_paper(Report& report, const schema::Transducer& found, std::optional<double> lag_rad) {
+  const auto figures = paper_figures(found, lag_rad);
   if (!figures) return;
   std::vector<Report> rows;
   for (const PaperFigure& f : *figures) {
     Report row;
     row.add("figure", f.what).add("reported", f.reported).add("by_table_i", f.by_table);
-    row.add("identified", f.identified).add("remark", f.remark);
+    if (std::isfinite(f.identified)) row.add("identified", f.identified);
+    row.add("remark", f.remark);
     rows.push_back(std::move(row));
   }
   report.add("paper_against_itself", std::move(rows));
@@ -86,7 +88,8 @@ Report response_report(const ResponseFit& fit, const ModelChoice& choice, const 
   if (!fit.suggestion.empty()) report.add("model_one_mode_short", fit.one_mode_short);
   add_quality(report, fit);
   add_found(report, found);
-  if (is_the_papers(base)) add_paper(report, found);
+  const FittedParameter* const lag = fit.find("lag_rad");
+  if (is_the_papers(base)) add_paper(report, found, lag ? std::optional(lag->value) : std::nullopt);
   return report;
 }
 
@@ -114,7 +117,14 @@ Report taps_report(const TapsFit& fit, const TapsPrediction& foretold, const sch
   Report report;
   add_head(report, found, file);
   report.add("resonance_hz", fit.resonance_hz.median).add("resonance_spread_hz", fit.resonance_hz.spread);
+  report.add("resonance_standard_deviation_hz", fit.resonance_hz.standard_deviation);
+  report.add("lowest_resonance_hz", fit.resonance_hz.least)
+      .add("highest_resonance_hz", fit.resonance_hz.most);
   report.add("damping_ratio", fit.damping_ratio.median).add("damping_ratio_spread", fit.damping_ratio.spread);
+  report.add("damping_ratio_standard_deviation", fit.damping_ratio.standard_deviation);
+  report.add("lowest_damping_ratio", fit.damping_ratio.least)
+      .add("highest_damping_ratio", fit.damping_ratio.most)
+      .add("r_squared", fit.r_squared);
   report.add("fitted_taps", foretold.fitted).add("foretold_taps", foretold.foretold);
   report.add("foretold_resonance_error_percent", 100 * foretold.resonance_error)
       .add("foretold_damping_error_percent", 100 * foretold.damping_error)

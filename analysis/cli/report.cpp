@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -40,7 +42,8 @@ Report project_report(const Project& project, const std::string& output) {
 
 void tell(const Project& project) {
   for (const BrokenFile& file : project.broken) cli::warn("left out: " + schema::message(file.error));
-  for (const std::string& path : project.foreign) cli::warn(path + ": is no file of tactograph; only named");
+  if (!project.foreign.empty())
+    cli::warn(fmt::format("not described on the page, only named: {}", fmt::join(project.foreign, ", ")));
 }
 
 Result<void> write_page(const Project& project, const std::string& output) {

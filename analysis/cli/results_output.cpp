@@ -15,31 +15,42 @@ bool is_page(const std::string& path) {
   return path.ends_with(".html");
 }
 
-Result<void> check_output(const std::string& path) {
+const OutputKind* kind_of(const std::string& path, std::span<const OutputKind> more) {
+  for (const OutputKind& kind : more)
+    if (path.ends_with(kind.ending)) return &kind;
+  return nullptr;
+}
+
+Result<void> check_output(const std::string& path, std::span<const OutputKind> more) {
+  if (const OutputKind* kind = kind_of(path, more)) return schema::check_table_free(path, kind->ours);
   if (is_page(path))
     return schema::check_table_free(
         path, [](std::string_view line) { return line.starts_with("<!DOCTYPE html>"); });
   if (path.ends_with(".json")) return schema::check_results_free(path);
-  return schema::fail(Fault::usage, "ends neither in .html nor in .json", path,
-                      "name a page (NAME.html) or results (NAME.results.json)");
+  std::string endings;
+  for (const OutputKind& kind : more) endings += ", NAME" + kind.ending;
+  return schema::fail(Fault::usage, "has an ending that this verb does not write", path,
+                      "name a page (NAME.html) or results (NAME.results.json)" + endings);
 }
 
 }  // namespace
 
-Result<void> check_outputs(const std::vector<std::string>& outputs) {
+Result<void> check_outputs(const std::vector<std::string>& outputs, std::span<const OutputKind> more) {
   for (const std::string& path : outputs)
-    if (const auto free = check_output(path); !free) return free;
+    if (const auto free = check_output(path, more); !free) return free;
   return {};
 }
 
 Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Results results,
-                           const cli::Report& details, const std::function<Result<std::string>()>& page) {
+                           const cli::Report& details, const std::function<Result<std::string>()>& page,
+                           std::span<const OutputKind> more) {
   results.details_json = details.json();
   results.created = schema::creation_time();
   results.creator = kCreator;
   schema::PendingFiles files;
   for (const std::string& path : outputs) {
-    const auto text = is_page(path) ? page() : schema::results_json(results);
+    const OutputKind* kind = kind_of(path, more);
+    const auto text = kind ? kind->make() : is_page(path) ? page() : schema::results_json(results);
     if (!text) return schema::forward_error(text);
     if (auto written = files.write(path, *text); !written) return written;
   }

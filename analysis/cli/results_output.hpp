@@ -3,7 +3,9 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data-schema/cli/report.hpp"
@@ -12,14 +14,24 @@
 
 namespace tacto::analysis {
 
+/// A further kind of file that a verb can write: told by its ending; `ours` says of how a file begins whether
+/// it may be replaced.
+struct OutputKind {
+  std::string ending;
+  std::function<bool(std::string_view beginning)> ours;
+  std::function<schema::Result<std::string>()> make;
+};
+
 /// That each may be written: .html (a file that begins with a doctype may be replaced) or .json (results
-/// may). Errors: usage, for another ending or a file that would be lost.
-schema::Result<void> check_outputs(const std::vector<std::string>& outputs);
+/// may), or one of `more`. Errors: usage, for another ending or a file that would be lost.
+schema::Result<void> check_outputs(const std::vector<std::string>& outputs,
+                                   std::span<const OutputKind> more = {});
 
 /// All of them together, or none. `details` is what the verb prints with --json; verb, figures, pictures and
 /// inputs are the caller's. Errors: those of `page`; cannot_write.
 schema::Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Results results,
                                    const cli::Report& details,
-                                   const std::function<schema::Result<std::string>()>& page);
+                                   const std::function<schema::Result<std::string>()>& page,
+                                   std::span<const OutputKind> more = {});
 
 }  // namespace tacto::analysis

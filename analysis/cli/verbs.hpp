@@ -12,5 +12,6 @@ extern const cli::Verb kDemoVerb;
 extern const cli::Verb kExtremesVerb;
 extern const cli::Verb kReportVerb;
 extern const cli::Verb kIdentifyVerb;
+extern const cli::Verb kTradeVerb;
 
 }  // namespace tacto::analysis

@@ -21,6 +21,7 @@ using schema::Result;
 
 constexpr double kShortestCompareWindow = 16;  // samples
 constexpr double kHannBandwidth = 1.5;         // bins
+constexpr double kExplained = 0.5;             // correlation at the places as they are
 constexpr double kParts = 8, kWavelengths = 8;
 
 double usual_window(const TexturePair& pair) {
@@ -153,9 +154,15 @@ void compare_formants(Comparison& comparison, const CompareOptions& options) {
                                        comparison.formant_resolution_per_m, comparison.pair.paired);
 }
 
+// Coherence does not mind a shift, the gain does: moved by half a wave it is negative, and explains little.
 void note_likeness(Comparison& comparison) {
   if (!comparison.point_by_point) return;
-  if (*comparison.gain < 0) comparison.notes.emplace_back("B is A upside down: the gain is negative");
+  const double correlation = *comparison.gain * comparison.a_rms / comparison.b_rms;
+  if (correlation < -kExplained)
+    comparison.notes.emplace_back("B is A upside down: the gain is negative");
+  else if (correlation < kExplained * std::sqrt(*comparison.coherence))
+    comparison.notes.emplace_back(
+        "B follows A, but not at the same places: --align correlation finds the shift");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "analysis/compare/along_path.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/texture_wav.hpp"
 #include "playback/daemon/session_columns.hpp"
 #include "playback/daemon/stroke_report.hpp"
 
@@ -29,7 +29,7 @@ Result<std::size_t> chosen(const SessionColumns& columns, const std::vector<Stro
   if (ranges.empty())
     return schema::fail(Fault::unsuitable, "holds no stroke of 5 mm while it plays", session);
   if (stroke > ranges.size())
-    return schema::fail(Fault::usage, fmt::format("has {} strokes, and no {}th", ranges.size(), stroke),
+    return schema::fail(Fault::usage, fmt::format("has {} strokes, and no stroke {}", ranges.size(), stroke),
                         session);
   if (stroke > 0) return stroke - 1;
   const auto longest = std::ranges::max_element(
@@ -87,9 +87,9 @@ Result<PlayedTexture> played_texture(const std::string& session, std::size_t str
 
 Result<schema::Texture> wanted_of(const schema::Texture& texture, const std::string& file,
                                   const PlayedTexture& played) {
-  const auto sum = schema::sha256_of_file(schema::stem_of(file, ".texture") + ".texture.wav");
-  if (!sum) return schema::forward_error(sum);
-  const auto row = std::ranges::find(played.header.textures, *sum, &schema::SessionTexture::sha256);
+  const auto wav = schema::texture_wav(file);
+  if (!wav) return schema::forward_error(wav);
+  const auto row = std::ranges::find(played.header.textures, wav->sha256, &schema::SessionTexture::sha256);
   if (row == played.header.textures.end())
     return schema::fail(
         Fault::unsuitable,

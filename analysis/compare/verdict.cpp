@@ -129,7 +129,8 @@ void judge_shape(Evidence& evidence, const std::vector<Bands>& draws, const Band
 }
 
 std::string level_words(const Evidence& e) {
-  return fmt::format("level {:+.1f} dB ({:+.1f} to {:+.1f})", e.level_db, e.level_low_db, e.level_high_db);
+  return fmt::format("level of B over A {:+.1f} dB ({:+.1f} to {:+.1f})", e.level_db, e.level_low_db,
+                     e.level_high_db);
 }
 
 Verdict by_level(const Evidence& e, double tolerance_db) {
@@ -176,9 +177,11 @@ Verdict verdict_of(const Evidence& e, double tolerance_db) {
             fmt::format("too little in common: {} one-third-octave bands, an octave ({}) is the least",
                         e.bands, kFewestBands)};
   if (e.shape_db > e.shape_chance_db && e.shape_excess_db > tolerance_db)
-    return {Likeness::different, fmt::format("the bands differ by {:.1f} dB RMS about their mean; the "
-                                             "scatter of the parts makes up to {:.1f} dB; {}",
-                                             e.shape_db, e.shape_chance_db, level_words(e))};
+    return {Likeness::different,
+            fmt::format("the bands differ by {:.1f} dB RMS about their mean; the "
+                        "scatter of the parts makes up to {:.1f} dB; {:.2f} dB are "
+                        "beyond it, {:g} dB are tolerated; {}",
+                        e.shape_db, e.shape_chance_db, e.shape_excess_db, tolerance_db, level_words(e))};
   if (e.finest_shape_db > tolerance_db)
     return {Likeness::undecided, fmt::format("too noisy: only differences in shape above {:.1f} dB would "
                                              "show over the scatter of the parts; {}",

@@ -15,7 +15,7 @@ struct Extreme {
   std::string reference;  ///< what is exact
   double error = 0;       ///< re the largest (or, where the condition says so, the RMS) of the exact result
   double most = 0;        ///< it may be: what the method's own text states
-  std::string breaks;     ///< at what value the method ends, and what is said beyond it; empty: nowhere
+  std::string note;       ///< where the method ends and what is said beyond it, or what else was seen
 
   bool holds() const { return error <= most; }
   /// 20 log10(most / error), dB.

@@ -15,15 +15,16 @@ namespace {
 using playback::Chain;
 using schema::Transducer;
 
-constexpr double kInverseRateHz = 10e3, kInverseDelayS = 2e-3;
+// The rows' own rate; where a method ends is told for the usual rate of `play` too.
+constexpr double kInverseRateHz = 10e3, kPlayRateHz = 2e3, kInverseDelayS = 2e-3;
 constexpr spatial::Band kInverseBand{15, 500};
 
-Chain chain_of(const Transducer& t) {
-  return {t, playback::Reconstruction::none, 600, playback::Hold::zero_order, kInverseRateHz, 0};
+Chain chain_of(const Transducer& t, double rate_hz = kInverseRateHz) {
+  return {t, playback::Reconstruction::none, 600, playback::Hold::zero_order, rate_hz, 0};
 }
 
-playback::InverseFilter undone(const Transducer& t) {
-  return playback::inverse_filter(chain_of(t), playback::Inverse::full, kInverseBand,
+playback::InverseFilter undone(const Transducer& t, double rate_hz = kInverseRateHz) {
+  return playback::inverse_filter(chain_of(t, rate_hz), playback::Inverse::full, kInverseBand,
                                   {kInverseDelayS, 20, 2.5 * kInverseBand.high_hz});
 }
 
@@ -71,22 +72,22 @@ Transducer with_pole(double frequency_hz) {
 // Where the inverse leaves more than is played: by halves of the interval, from a value that works to one
 // that does not.
 template <class Make>
-double breaks_at(Make make, double works, double fails) {
+double breaks_at(Make make, double works, double fails, double rate_hz) {
   for (int i = 0; i < 12; ++i) {
     const double middle = std::sqrt(works * fails);
-    const bool good = undone(make(middle)).error_db <= playback::kMostInverseErrorDb;
+    const bool good = undone(make(middle), rate_hz).error_db <= playback::kMostInverseErrorDb;
     (good ? works : fails) = middle;
   }
   return works;
 }
 
-Extreme undone_row(std::string condition, const Transducer& t, double most, std::string breaks) {
+Extreme undone_row(std::string condition, const Transducer& t, double most, std::string note) {
   return {"playback", std::move(condition), "the chain's response in closed form", left_by(undone(t), t),
-          most,       std::move(breaks)};
+          most,       std::move(note)};
 }
 
 // What can't be undone is not played: what is asked is that the design says so, and by how much.
-Extreme refused_row(std::string condition, const Transducer& t, std::string breaks) {
+Extreme refused_row(std::string condition, const Transducer& t, std::string note) {
   const auto filter = undone(t);
   const bool said = filter.error_db > playback::kMostInverseErrorDb;
   const double stated = std::pow(10, filter.error_db / 20);
@@ -95,25 +96,27 @@ Extreme refused_row(std::string condition, const Transducer& t, std::string brea
           "what is left, in closed form, against what the design says",
           said ? std::abs(left_by(filter, t) / stated - 1) : 1,
           0.02,
-          std::move(breaks)};
+          std::move(note)};
 }
 
 }  // namespace
 
 std::vector<Extreme> inverse_extremes() {
-  const double slowest_hz = breaks_at(with_resonance, 547, 5);
-  const double most_damped = breaks_at(with_damping, 0.1, 100);
-  return {
-      undone_row("inverse of a damping ratio of 0.001", with_damping(0.001), 1e-2, {}),
-      undone_row("inverse of a damping ratio of 1", with_damping(1), 1e-2, {}),
-      refused_row("inverse of a damping ratio of 10", with_damping(10),
-                  fmt::format("a ratio above {:.3g}: refused, it takes more than 20 dB", most_damped)),
-      refused_row("inverse of a resonance at 5 Hz", with_resonance(5),
-                  fmt::format("a resonance below {:.3g} Hz: refused, it takes more than 20 dB", slowest_hz)),
-      undone_row("inverse of a resonance at 0.9 of half the rate", with_resonance(0.45 * kInverseRateHz),
-                 1e-3, {}),
-      undone_row("inverse of an electrical pole on the mechanical one",
-                 with_pole(schema::resonance_hz(*schema::read_transducer("wiertlewski2011"))), 1e-3, {})};
+  const auto ends = [](const char* words, auto make, double works, double fails) {
+    return fmt::format("{} {:.3g} at {:g} Hz of ticks, {:.3g} at {:g} Hz: refused, it takes more than 20 dB",
+                       words, breaks_at(make, works, fails, kInverseRateHz), kInverseRateHz,
+                       breaks_at(make, works, fails, kPlayRateHz), kPlayRateHz);
+  };
+  return {undone_row("inverse of a damping ratio of 0.001", with_damping(0.001), 1e-2, {}),
+          undone_row("inverse of a damping ratio of 1", with_damping(1), 1e-2, {}),
+          refused_row("inverse of a damping ratio of 10", with_damping(10),
+                      ends("a ratio above", with_damping, 0.1, 100)),
+          refused_row("inverse of a resonance at 5 Hz", with_resonance(5),
+                      ends("a resonance in Hz below", with_resonance, 547, 5)),
+          undone_row("inverse of a resonance at 0.9 of half the rate", with_resonance(0.45 * kInverseRateHz),
+                     1e-3, {}),
+          undone_row("inverse of an electrical pole on the mechanical one",
+                     with_pole(schema::resonance_hz(*schema::read_transducer("wiertlewski2011"))), 1e-3, {})};
 }
 
 }  // namespace tacto::analysis

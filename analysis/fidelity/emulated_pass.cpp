@@ -75,16 +75,18 @@ Result<void> check_played(const EmulatedPass& pass, const std::string& device) {
 }  // namespace
 
 Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::PlayOptions options,
-                                   double speed_mps) {
+                                   double speed_mps, const std::function<bool()>& stop_asked) {
   const auto scratch = ScratchFolder::make();
   if (!scratch) return schema::forward_error(scratch);
   const FingerPath path = straight_path(texture, options.program.at_m.value_or(0), speed_mps);
   options.finger_path = *scratch / "path.csv";
   options.session = *scratch / "pass.session";
+  options.program.any_displacement = options.device_uri.starts_with("sim:");
   if (const auto written = write_path(options.finger_path, path); !written)
     return schema::forward_error(written);
-  auto outcome = playback::play_once(options, [] { return false; });
+  auto outcome = playback::play_once(options, stop_asked);
   if (!outcome) return schema::forward_error(outcome);
+  if (stop_asked()) return schema::fail(Fault::usage, "stopped before the end", "fidelity");
   auto columns = playback::read_session_columns(options.session);
   if (!columns) return schema::forward_error(columns);
   EmulatedPass pass{std::move(*columns), std::move(*outcome), {}, -300, 0, 0};

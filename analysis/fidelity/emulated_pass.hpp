@@ -25,8 +25,8 @@ struct EmulatedPass {
 /// Texture, upload over the wire, the firmware's kernel on the emulated encoder's counts, session: as
 /// `tactograph play`. The finger goes at `speed_mps` from 0.25 s before the texture to 0.25 s behind it.
 /// `options` names program, device and preparation; path, time and session are filled in. Errors: as
-/// play_once; internal: the session's counts are not the path's.
+/// play_once; usage: stopped; internal: the session's counts are not the path's.
 schema::Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::PlayOptions options,
-                                           double speed_mps);
+                                           double speed_mps, const std::function<bool()>& stop_asked);
 
 }  // namespace tacto::analysis

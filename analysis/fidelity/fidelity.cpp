@@ -29,6 +29,7 @@ using schema::Texture;
 constexpr double kLeftOutS = 0.05, kFadeM = 1e-3;  // left out at either end of the texture
 constexpr double kFarthestShiftM = 50e-6;
 constexpr double kUsualFidelityGain = 1e-3;
+constexpr double kFastestMps = 10, kLeastKeptPercent = 1;
 
 double gain_of(const FidelityOptions& options) {
   return options.play.program.gain_m_per_n.value_or(kUsualFidelityGain);
@@ -131,13 +132,21 @@ FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double 
   speed.delay_left_s = pass.outcome.delay_left_s;
   speed.inverse_error_db = pass.outcome.inverse_error_db;
   speed.notes = pass.outcome.notes;
+  if (speed.band_kept_percent < kLeastKeptPercent)
+    speed.notes.push_back(fmt::format(
+        "at {:g} mm/s only {:.2g} % of the texture's power lie in {:g}-{:g} Hz: what is judged is hardly it",
+        1e3 * speed_mps, speed.band_kept_percent, speed.low_hz, speed.high_hz));
   return speed;
+}
+
+tl::unexpected<schema::Error> fidelity_stopped() {
+  return schema::fail(Fault::usage, "stopped before the end", "fidelity");
 }
 
 // Wanted once, felt once for each tray.
 Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Texture& texture,
                                      const Trays& trays, double speed_mps) {
-  const auto pass = emulated_pass(texture, options.play, speed_mps);
+  const auto pass = emulated_pass(texture, options.play, speed_mps, options.stop_asked);
   if (!pass) return schema::forward_error(pass);
   FidelitySpeed speed = speed_of(*pass, texture, speed_mps);
   const spatial::Band band{speed.low_hz, speed.high_hz};
@@ -148,6 +157,7 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
   const auto wanted = along_stretch(wanted_m, *stretch, band);
   if (!wanted) return schema::forward_error(wanted);
   for (const Tray& tray : trays.trays) {
+    if (options.stop_asked()) return fidelity_stopped();
     auto felt_m = felt_displacement_m(*pass, trays.transducer, tray.physics);
     if (tray.sensor) felt_m = through_sensor(felt_m, stretch->rate_hz, trays.transducer);
     const auto felt = along_stretch(in_band(felt_m, stretch->rate_hz, band), *stretch, band);
@@ -184,8 +194,7 @@ Result<Fidelity> modelled_fidelity(const FidelityOptions& options, const Texture
   if (!scratch) return schema::forward_error(scratch);
   playback::PlayOptions play = options.play;
   play.session = *scratch / "pass.session";
-  const auto outcome = playback::play_once(
-      play, [] { return false; }, progress);
+  const auto outcome = playback::play_once(play, options.stop_asked, progress);
   if (!outcome) return schema::forward_error(outcome);
   const auto played = played_texture(play.session, 0);
   if (!played) return schema::forward_error(played);
@@ -213,8 +222,12 @@ Result<Fidelity> modelled_fidelity(const FidelityOptions& options, const Texture
 
 Result<void> check_speeds(const FidelityOptions& options) {
   for (const double speed : options.speeds_mps)
-    if (!(speed > 0 && std::isfinite(speed)))
-      return schema::fail(Fault::usage, "a speed has to be above 0", "speed");
+    if (!(speed > 0 && speed <= kFastestMps))
+      return schema::fail(
+          Fault::usage,
+          fmt::format("{:g} m/s is no finger's speed: it has to be above 0, and at most {:g} m/s", speed,
+                      kFastestMps),
+          "speed", "fingers slide with 10 to 500 mm/s");
   if (options.speeds_mps.empty()) return schema::fail(Fault::usage, "there is no speed", "speed");
   return {};
 }

@@ -16,6 +16,7 @@ namespace tacto::analysis {
 struct FidelityOptions {
   playback::PlayOptions play;  ///< texture, device, transducer, gain, preparation; of a real device the time
   std::vector<double> speeds_mps = {50e-3};  ///< of an emulated finger
+  std::function<bool()> stop_asked = [] { return false; };
 };
 
 /// One kind of tray under one drive.
@@ -56,7 +57,8 @@ struct Fidelity {
 /// three. Where the URI names one of them, there is one row: what it names. Judged within the texture, 50 ms
 /// and its fading millimetre from either end. On a real device the finger is somebody's, for `play.time_s`;
 /// its longest stroke is judged by what the recorded drive makes of the transducer's model, which knows none
-/// of these: the row says so. Errors: as play_once and compare; usage: no speed, or one that is not above 0;
+/// of these: the row says so. Errors: as play_once and compare; usage: no speed, one that is not
+/// above 0 or above 10 m/s, or stopped;
 /// unsuitable: a texture too short for the speed.
 schema::Result<Fidelity> fidelity(const FidelityOptions& options,
                                   const std::function<void(double)>& progress = {});

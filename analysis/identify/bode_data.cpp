@@ -40,18 +40,21 @@ double signal_to_noise(const BodeData& data) {
 }
 
 Result<void> check_values(const BodeData& data) {
+  const char* const remedy =
+      data.of_device ? "give another --amplitude or band, and see that the sensor looks at the tray"
+                     : "leave the line out";
   for (std::size_t i = 0; i < data.size(); ++i) {
     const std::string where = fmt::format("{}, frequency {}", data.source, i + 1);
     const auto value = data.response[i];
     const bool finite = std::isfinite(value.real()) && std::isfinite(value.imag());
     if (!finite || !std::isfinite(data.frequency_hz[i]))
-      return fail(Fault::unsuitable, "a value is not a number", where, "leave the line out");
+      return fail(Fault::unsuitable, "a value is not a number", where, remedy);
     if (!(data.frequency_hz[i] > 0) || (i > 0 && !(data.frequency_hz[i] > data.frequency_hz[i - 1])))
       return fail(Fault::unsuitable, fmt::format("{:g} Hz does not grow from above 0", data.frequency_hz[i]),
                   where, "sort the lines by frequency, one line for each");
     if (data.has_noise() && !(data.noise[i] > 0))
       return fail(Fault::unsuitable, "the noise is not above 0", where);
-    if (value == 0.0) return fail(Fault::unsuitable, "the amplitude is 0", where, "leave the line out");
+    if (value == 0.0) return fail(Fault::unsuitable, "the amplitude is 0", where, remedy);
   }
   return {};
 }
@@ -66,8 +69,10 @@ Result<void> check_bode(const BodeData& data) {
   if (const auto sound = check_values(data); !sound) return sound;
   const bool loud = !data.has_noise() || signal_to_noise(data) >= kLeastSignalToNoise;
   if (loud && smoothness(data) >= kLeastSmoothness) return {};
-  return fail(Fault::unsuitable, "this is noise: there is no response in it", data.source,
-              "drive it with more, measure longer, and see that the sensor looks at the tray");
+  return fail(
+      Fault::unsuitable, "this is noise: there is no response in it", data.source,
+      "drive it with more, measure longer, and see that the sensor looks at the tray; slow loops take "
+      "--method loop");
 }
 
 }  // namespace tacto::analysis

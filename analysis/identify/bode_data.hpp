@@ -3,6 +3,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,9 @@ struct BodeData {
   double held_rate_hz = 0;
   std::string source, conditions, simulated;
   /// The third harmonic of the answer over its fundamental, the largest; what only a nonlinear device makes.
-  double third_harmonic = 0;
+  /// None where it was not looked at: it takes one sine at a time.
+  std::optional<double> third_harmonic;
+  bool of_device = false;  ///< measured just now, not read from a file
 
   std::size_t size() const { return frequency_hz.size(); }
   bool has_noise() const { return !noise.empty(); }

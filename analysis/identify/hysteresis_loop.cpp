@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "analysis/identify/least_squares.hpp"
+#include "playback/hysteresis_inverse.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -22,14 +23,6 @@ constexpr std::size_t kFewestLoopSamples = 100;
 constexpr double kNearZero = 0.1;    // of the amplitude: where a branch is taken for straight
 constexpr double kFullSwing = 0.98;  // of the amplitude: a loop that counts as the largest
 constexpr double kSmallResidual = 0.01;
-
-std::vector<double> play_of(std::span<const double> v, double threshold) {
-  std::vector<double> y(v.size());
-  double state = 0;
-  for (std::size_t i = 0; i < v.size(); ++i)
-    y[i] = state = std::max(v[i] - threshold, std::min(v[i] + threshold, state));
-  return y;
-}
 
 std::vector<double> delayed(std::span<const double> v, double samples) {
   std::vector<double> out(v.size());
@@ -93,6 +86,8 @@ std::complex<double> fundamental(std::span<const double> x) {
 void put_loop(std::span<const double> v, std::span<const double> x, Stretch loop, LoopFit& fit) {
   const auto lv = v.subspan(loop.first, loop.end - loop.first),
              lx = x.subspan(loop.first, loop.end - loop.first);
+  fit.loop_v.assign(lv.begin(), lv.end());
+  fit.loop_m.assign(lx.begin(), lx.end());
   const auto [low, high] = std::ranges::minmax(lx);
   const double up = branch_at_zero(lv, lx, fit.amplitude_v, 1),
                down = branch_at_zero(lv, lx, fit.amplitude_v, -1);
@@ -125,15 +120,6 @@ Result<void> check_loops(std::span<const double> v, std::span<const double> x) {
 
 }  // namespace
 
-std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v) {
-  std::vector<double> sum(drive_v.size(), 0.0);
-  for (std::size_t i = 0; i < hysteresis.weights.size(); ++i) {
-    const auto play = play_of(drive_v, hysteresis.thresholds_v[i]);
-    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += hysteresis.weights[i] * play[n];
-  }
-  return sum;
-}
-
 double delay_at_rest_s(const schema::Transducer& t) {
   return 2 * t.amplifier_resistance_ohm * t.capacitance_f +
          t.damping_n_s_per_m / (t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m);
@@ -159,7 +145,7 @@ LoopTable loop_table(std::span<const double> v, std::span<const double> x, doubl
   const std::ptrdiff_t from = first_known(v, amplitude_v);
   for (std::size_t i = 0; i < kThresholds; ++i) {
     table.thresholds_v.push_back(amplitude_v * static_cast<double>(i) / static_cast<double>(kThresholds));
-    const auto play = play_of(v, table.thresholds_v.back());
+    const auto play = playback::played_through({{table.thresholds_v.back()}, {1}}, v);
     table.columns.emplace_back(play.begin() + from, play.end());
   }
   table.answer.assign(x.begin() + from, x.end());
@@ -169,6 +155,15 @@ LoopTable loop_table(std::span<const double> v, std::span<const double> x, doubl
   if (std::inner_product(drive.begin(), drive.end(), about_mean.begin(), 0.0) < 0) table.sign = -1;
   for (double& value : table.answer) value *= table.sign;
   return table;
+}
+
+// What the table makes of the largest loop, in the answer's own sign; the last weight is the offset's.
+void put_loop_model(const LoopTable& table, std::span<const double> v, Stretch loop,
+                    std::span<const double> weights, LoopFit& fit) {
+  schema::Hysteresis made{table.thresholds_v, {weights.begin(), weights.end() - 1}};
+  const auto whole = playback::played_through(made, v);
+  for (std::size_t i = loop.first; i < loop.end; ++i)
+    fit.loop_model_m.push_back(table.sign * (whole[i] + weights.back()));
 }
 
 std::vector<double> left_of(const LoopTable& table, std::span<const std::size_t> which,
@@ -208,10 +203,16 @@ Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const doubl
   const LoopTable table = loop_table(v, displacement_m, fit.amplitude_v);
   std::vector<double> weights = non_negative_least_squares(table.columns, table.answer, 1);
   put_quality(table, weights, fit);
+  put_loop_model(table, v, loop, weights, fit);
   weights.pop_back();
   put_operator(table.thresholds_v, std::move(weights), drive_limit_v, fit);
   fit.gain_m_per_v *= table.sign;
   put_loop(v, displacement_m, loop, fit);
+  if (!std::isfinite(fit.opening))
+    return fail(Fault::unsuitable,
+                "the drive passes zero too fast: fewer than three samples of a branch there", "loop",
+                "drive it slowly: 1 Hz");
+  fit.loop_hz = rate_hz / static_cast<double>(loop.end - loop.first);
   return fit;
 }
 

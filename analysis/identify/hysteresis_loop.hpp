@@ -21,6 +21,8 @@ struct LoopFit {
   double r_squared = 0;
   double residual_part = 0;         ///< RMS of what the operator leaves, over the RMS displacement
   double linear_residual_part = 0;  ///< the same of a straight line: what there was to explain
+  double loop_hz = 0;               ///< of the largest loop; 0 where no rate is known
+  std::vector<double> loop_v, loop_m, loop_model_m;  ///< the largest loop, and what the operator makes of it
   bool usable = false;  ///< the operator leaves at most a third of what the line leaves, or both are small
 };
 
@@ -30,7 +32,8 @@ struct LoopFit {
 /// +-drive_limit_v keeps its size (schema::Hysteresis). The plays begin at the first sample; what comes
 /// before the drive has first reached its largest values both ways is not compared. `delay_s` is taken off
 /// the drive's time: what the linear model lags at low frequencies, which is no hysteresis. Errors:
-/// unsuitable: too few samples, no swing, NaN, a drive that never turns round.
+/// unsuitable: too few samples, no swing, NaN, a drive that never turns round, or that passes zero so fast
+/// that no branch can be seen there.
 schema::Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const double> displacement_m,
                                   double rate_hz, double delay_s, double drive_limit_v);
 
@@ -38,8 +41,5 @@ inline constexpr std::size_t kThresholds = 12;
 
 /// Of a slow drive: -d(phase) / d(omega) of the actuator at rest, 2 R_a C_p + b_r / (k_r + k_p).
 double delay_at_rest_s(const schema::Transducer& transducer);
-
-/// The operator's output, from rest.
-std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v);
 
 }  // namespace tacto::analysis

@@ -18,9 +18,16 @@ using schema::fail;
 using schema::Fault;
 using schema::Result;
 
+constexpr double kMostOfRate = 0.45;
+
 // What the base says the drive will do. A first identification of something unknown may be wrong about that:
 // the device keeps its own limits.
 Result<void> check_amplitude(const ExcitationPlan& plan, const schema::Transducer& base) {
+  if (plan.high_hz > kMostOfRate * plan.rate_hz)
+    return fail(
+        Fault::unsuitable,
+        fmt::format("{:g} Hz are too near half the device's rate of {:g} Hz", plan.high_hz, plan.rate_hz),
+        "--high", fmt::format("at most {:g} Hz", kMostOfRate * plan.rate_hz));
   double most_m = 0;
   for (double hz = plan.low_hz; hz < plan.high_hz; hz *= 1.02)
     most_m = std::max(most_m, plan.amplitude_v * std::abs(schema::actuator_response(base, hz)));
@@ -60,6 +67,16 @@ schema::Transducer named(schema::Transducer t, const std::string& name, const sc
   return t;
 }
 
+// What the base's own identification leaves in doubt, where its linear model is kept.
+void carry_over(const schema::Transducer& base, schema::Identification& found) {
+  if (!base.identification || base.identification->usable()) return;
+  found.converged &= base.identification->converged;
+  found.misfit |= base.identification->misfit;
+  found.words += fmt::format("; it keeps the linear model of '{}', which {}: {}", base.name,
+                             base.identification->converged ? "does not fit" : "did not converge",
+                             base.identification->words);
+}
+
 }  // namespace
 
 Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod method, const ExcitationPlan& plan,
@@ -78,6 +95,7 @@ Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod metho
     if (!tray) return schema::forward_error(tray);
     data = response_of_periods(*tray, drive);
   }
+  data.of_device = true;
   data.source = device.capabilities().uri;
   data.simulated = device.capabilities().simulated;
   data.conditions = fmt::format("{} of {} from {} to {}", method_words(method),
@@ -92,7 +110,8 @@ double loop_amplitude_v(const schema::Transducer& base) {
                   base.displacement_limit_m / std::abs(schema::actuator_response(base, 0)));
 }
 
-schema::Transducer identified(const ResponseFit& fit, const std::string& name) {
+schema::Transducer identified(const ResponseFit& fit, const schema::Transducer& base,
+                              const std::string& name) {
   schema::Identification about;
   about.source = fit.data.source;
   about.simulated = fit.data.simulated;
@@ -103,7 +122,8 @@ schema::Transducer identified(const ResponseFit& fit, const std::string& name) {
   about.r_squared = fit.r_squared;
   about.low_hz = fit.data.frequency_hz.front();
   about.high_hz = fit.data.frequency_hz.back();
-  return named(fit.transducer, name, about, fit.transducer.name);
+  if (fit.find("added_mass_kg") != nullptr) carry_over(base, about);
+  return named(fit.transducer, name, about, base.name);
 }
 
 schema::Transducer identified(const LoopFit& fit, const schema::Transducer& base, const std::string& name,
@@ -117,6 +137,14 @@ schema::Transducer identified(const LoopFit& fit, const schema::Transducer& base
   found.r_squared = fit.r_squared;
   found.words = fmt::format("a loop of {:.3g} %; the operator leaves {:.2g} % of it{}", 100 * fit.opening,
                             100 * fit.residual_part, fit.usable ? "" : ": it is no such hysteresis");
+  if (base.identification) {
+    found.low_hz = base.identification->low_hz;
+    found.high_hz = base.identification->high_hz;
+    found.words += fmt::format("; the band is that of '{}', the loops say nothing of it", base.name);
+  } else {
+    found.high_hz = fit.loop_hz;
+  }
+  carry_over(base, found);
   return named(t, name, found, base.name);
 }
 
@@ -130,8 +158,10 @@ schema::Transducer identified(const TapsFit& fit, const schema::Transducer& base
   schema::Identification found = about;
   found.converged = true;
   found.words = fmt::format("{} taps; gains and stiffnesses are the base's", fit.taps.size());
+  found.r_squared = fit.r_squared;
   found.low_hz = fit.resonance_hz.median / 2;
   found.high_hz = fit.resonance_hz.median * 2;
+  carry_over(base, found);
   return named(t, name, found, base.name);
 }
 

@@ -27,9 +27,11 @@ schema::Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMeth
 double loop_amplitude_v(const schema::Transducer& base);
 
 /// The base with what was found in it, under a name of its own, dated, with validity and what the fit says of
-/// itself.
-schema::Transducer identified(const ResponseFit& fit, const std::string& name);
-/// With the hysteresis, and the gain of the loops.
+/// itself. Where the base's linear model is kept (a finger, loops, taps) so is what its own identification
+/// says against it.
+schema::Transducer identified(const ResponseFit& fit, const schema::Transducer& base,
+                              const std::string& name);
+/// With the hysteresis, and the gain of the loops. The band is the base's, or up to the loops' frequency.
 schema::Transducer identified(const LoopFit& fit, const schema::Transducer& base, const std::string& name,
                               const schema::Identification& about);
 /// With mass and damping from the ringing; stiffnesses and gains are held.

@@ -91,12 +91,12 @@ const char* words_of(Status status) {
   }
 }
 
-bool at_bound(const Problem& problem, const VectorXd& c) {
+std::optional<std::size_t> at_bound(const Problem& problem, const VectorXd& c) {
   for (Index i = 0; i < c.size(); ++i) {
     const double part = (c[i] - problem.low(i)) / problem.range(i);
-    if (part < kNearBound || part > 1 - kNearBound) return true;
+    if (part < kNearBound || part > 1 - kNearBound) return static_cast<std::size_t>(i);
   }
-  return false;
+  return std::nullopt;
 }
 
 void add_uncertainty(const Problem& problem, const VectorXd& c, Solution& solution) {
@@ -129,8 +129,9 @@ Solution least_squares(const Residuals& residuals, std::size_t residual_count, s
   solution.squares = problem.at(c).squaredNorm();
   solution.iterations = static_cast<int>(solver.iterations());
   solution.ended = words_of(status);
-  solution.converged = solution.ended.starts_with("no step") && !at_bound(problem, c);
-  if (at_bound(problem, c)) solution.ended = "a parameter ran into its bound";
+  solution.at_bound = at_bound(problem, c);
+  solution.converged = solution.ended.starts_with("no step") && !solution.at_bound;
+  if (solution.at_bound) solution.ended = "a parameter ran into its bound";
   add_uncertainty(problem, c, solution);
   return solution;
 }

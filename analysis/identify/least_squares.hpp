@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ struct Solution {
   std::vector<double> coordinates;
   double squares = 0;  ///< sum of the squared residuals
   bool converged = false;
-  std::string ended;  ///< in words
+  std::string ended;                    ///< in words
+  std::optional<std::size_t> at_bound;  ///< the coordinate that stands at one
   int iterations = 0;
   /// Inverse of J^T J at the solution, row by row; for residuals of variance 1 the coordinates' covariance.
   std::vector<double> covariance;

@@ -28,6 +28,7 @@ struct UnitWorth {
 constexpr UnitWorth kActuatorUnits[] = {{"m/v", 1}, {"mm/v", 1e-3}, {"um/v", 1e-6}, {"nm/v", 1e-9}};
 constexpr UnitWorth kSensorUnits[] = {{"v/n", 1}, {"mv/n", 1e-3}, {"v/mn", 1e3}, {"mv/mn", 1}};
 constexpr UnitWorth kLengthUnits[] = {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
+constexpr UnitWorth kFrequencyUnits[] = {{"hz", 1}, {"", 1}, {"khz", 1e3}, {"rad/s", 0.5 / std::numbers::pi}};
 constexpr UnitWorth kVoltUnits[] = {{"v", 1}, {"mv", 1e-3}};
 
 std::optional<double> worth(std::span<const UnitWorth> units, std::string_view unit) {
@@ -143,7 +144,10 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
   if (!radians) return schema::forward_error(radians);
   if (const auto sound = *radians == 1 ? check_radians(*table, phase->index, path) : Result<void>(); !sound)
     return schema::forward_error(sound);
-  const double hertz = frequency->unit == "khz" ? 1e3 : 1;
+  const auto hertz = worth(kFrequencyUnits, frequency->unit);
+  if (!hertz)
+    return fail(Fault::usage, fmt::format("'{}' is no unit of frequency", frequency->unit), path,
+                "write frequency_hz, frequency_khz or frequency_rad_per_s into the header");
   const auto noise = column(*table, {"noise", "sigma"});
   BodeData data;
   data.direction = unit->direction;
@@ -151,7 +155,7 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
   for (std::size_t row = 0; row < table->rows(); ++row) {
     const double value = table->at(row, amplitude->index);
     const double size = unit->si * (unit->decibels ? std::pow(10, value / 20) : value);
-    data.frequency_hz.push_back(hertz * table->at(row, frequency->index));
+    data.frequency_hz.push_back(*hertz * table->at(row, frequency->index));
     data.response.push_back(size * std::polar(1.0, *radians * table->at(row, phase->index)));
     if (noise && !unit->decibels) data.noise.push_back(unit->si * table->at(row, noise->index));
   }

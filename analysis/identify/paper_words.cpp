@@ -25,7 +25,8 @@ double sensor_at(const schema::Transducer& t, double hz) {
 
 }  // namespace
 
-schema::Result<std::vector<PaperFigure>> paper_figures(const schema::Transducer& found) {
+schema::Result<std::vector<PaperFigure>> paper_figures(const schema::Transducer& found,
+                                                       std::optional<double> lag_rad) {
   const auto paper = schema::read_transducer("wiertlewski2011");
   if (!paper) return schema::forward_error(paper);
   const auto printed = schema::read_transducer("wiertlewski2011-as-printed");
@@ -46,7 +47,8 @@ schema::Result<std::vector<PaperFigure>> paper_figures(const schema::Transducer&
        "as printed; half of it is near what was reported"},
       {"sensor_at_500_over_100_hz", 1, sensor_at(*paper, 500) / sensor_at(*paper, 100),
        sensor_at(found, 500) / sensor_at(found, 100), "called flat from 10 to 500 Hz"},
-      {"hysteresis_lag_degrees", kReportedLagDeg, std::asin(kReportedOpening) * kDegrees, std::nan(""),
+      {"hysteresis_lag_degrees", kReportedLagDeg, std::asin(kReportedOpening) * kDegrees,
+       lag_rad ? *lag_rad * kDegrees : std::nan(""),
        "a loop that opens by 16 % is an ellipse of 9.2 degrees, 8 degrees one of 13.9 %"},
   };
 }

@@ -2,6 +2,7 @@
 // Where Wiertlewski, Lozada and Hayward 2011 contradict themselves, in numbers beside what was identified.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,10 @@ struct PaperFigure {
 };
 
 /// Computed from the presets, not copied: resonance, static gain, loop and lag. `identified` is what the
-/// given transducer says. Errors: as read_transducer of the presets, which are built in.
-schema::Result<std::vector<PaperFigure>> paper_figures(const schema::Transducer& identified);
+/// given transducer says, and the lag that was fitted; NaN where none was. Errors: as read_transducer of the
+/// presets, which are built in.
+schema::Result<std::vector<PaperFigure>> paper_figures(const schema::Transducer& identified,
+                                                       std::optional<double> lag_rad = {});
 
 /// Whether a transducer is the paper's, by its name.
 bool is_the_papers(const schema::Transducer& transducer);

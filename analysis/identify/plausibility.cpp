@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/identify/angles.hpp"
 #include "analysis/identify/hold.hpp"
 #include "analysis/identify/starting_values.hpp"
 
@@ -22,6 +23,7 @@ constexpr double kHalfTurn =
     2.2;                      // rad: a step between neighbours that is nearer to a half turn than to none
 constexpr double kLevel = 2;  // amplitudes of neighbours within this factor
 constexpr double kOtherUnit = 200;
+constexpr double kOtherFrequency = 3.5;  // below 2 pi, with room for a resonance of half the base's
 
 template <class Change>
 BodeData changed(BodeData data, Change change) {
@@ -52,11 +54,20 @@ BodeData without_half_turns(BodeData data, std::size_t& first_step) {
   return data;
 }
 
+constexpr const char* kTurnRound = "turn the sensor's polarity round, or give --invert";
+
 std::string unit_words(double times) {
   const double powers = std::round(std::log10(times) / 3) * 3;
   return fmt::format(
       "{:.3g} times what '{{}}' gives; if the values are in a unit 10^{:g} times {} than was said, name it",
       times, std::abs(powers), times > 1 ? "smaller" : "larger");
+}
+
+Result<void> check_times(double times, const schema::Transducer& base, const std::string& source,
+                         const char* remedy) {
+  if (times < kOtherUnit && times > 1 / kOtherUnit) return {};
+  return fail(Fault::unsuitable, "the gain is " + fmt::format(fmt::runtime(unit_words(times)), base.name),
+              source, remedy);
 }
 
 }  // namespace
@@ -83,18 +94,48 @@ Result<void> check_phases(const BodeData& measured, const ModelChoice& choice,
     return fail(Fault::unsuitable, "the phase grows where a lag must fall: it has the other sign convention",
                 data.source, "give --phase-sign -1");
   if (left_by_grid(model, changed(data, [](auto h) { return -h; })) < kClearly * left)
-    return fail(Fault::unsuitable, "the response is upside down: a positive drive gives a negative answer",
-                data.source, "turn the sensor's polarity round, or give --invert");
+    return fail(
+        Fault::unsuitable,
+        data.direction == Direction::actuator
+            ? "the response is upside down: a positive drive gives a negative answer"
+            : "the response is upside down: its volts have the other sign than the transducer's for the "
+              "same force",
+        data.source, kTurnRound);
   return {};
 }
 
 Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base) {
   const bool actuator = fit.data.direction == Direction::actuator;
-  const double times = actuator ? fit.transducer.actuator_scale / base.actuator_scale
-                                : fit.transducer.sensor_scale / base.sensor_scale;
-  if (times < kOtherUnit && times > 1 / kOtherUnit) return {};
-  return fail(Fault::unsuitable, "the gain is " + fmt::format(fmt::runtime(unit_words(times)), base.name),
-              fit.data.source, "give --amplitude-unit, or --force where the gain is right");
+  return check_times(actuator ? fit.transducer.actuator_scale / base.actuator_scale
+                              : fit.transducer.sensor_scale / base.sensor_scale,
+                     base, fit.data.source, "give --amplitude-unit, or --force where the gain is right");
+}
+
+Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer& base) {
+  const FittedParameter* const resonance = fit.find("resonance_hz");
+  if (resonance == nullptr || !fit.claims_intervals()) return {};
+  const double times = resonance->value / schema::resonance_hz(base);
+  if (times < kOtherFrequency && times > 1 / kOtherFrequency) return {};
+  const bool in_khz = times < 1;
+  return fail(
+      Fault::unsuitable,
+      fmt::format("the resonance is {:.4g} Hz, {:.3g} times what '{}' has; if the frequencies are in {} "
+                  "it is {:.4g} Hz",
+                  resonance->value, times, base.name, in_khz ? "kHz" : "rad/s",
+                  resonance->value * (in_khz ? 1e3 : 1 / kTurn)),
+      fit.data.source,
+      "write frequency_khz or frequency_rad_per_s into the header, or give --force where they are right");
+}
+
+Result<void> check_size(const LoopFit& fit, const schema::Transducer& base, const std::string& source) {
+  return check_times(std::abs(fit.gain_m_per_v) / std::abs(schema::actuator_response(base, 0)), base, source,
+                     "put the unit into the table's first line, or give --force where the gain is right");
+}
+
+Result<void> check_upright(const LoopFit& fit, const std::string& source) {
+  if (fit.gain_m_per_v > 0) return {};
+  return fail(Fault::unsuitable, "the loops are upside down: a positive drive gives a negative answer",
+              source, kTurnRound);
 }
 
 }  // namespace tacto::analysis

@@ -2,6 +2,7 @@
 // Faults of measuring and of writing down that a fit would hide.
 #pragma once
 
+#include "analysis/identify/hysteresis_loop.hpp"
 #include "analysis/identify/response_fit.hpp"
 
 namespace tacto::analysis {
@@ -17,5 +18,13 @@ schema::Result<void> check_phases(const BodeData& data, const ModelChoice& choic
 /// After it. Errors: unsuitable: a gain more than 200 times the base's or less than a 200th, with the unit
 /// that would explain it.
 schema::Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base);
+/// A resonance more than 3.5 times the base's or less than that below it (a bender of this kind has none
+/// there), with the unit of frequency that would explain it. Of a finger's load nothing is
+/// said, nor of a fit that claims nothing.
+schema::Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer& base);
+/// Of loops, against the base at rest, likewise; and a negative gain: the answer is upside down.
+schema::Result<void> check_size(const LoopFit& fit, const schema::Transducer& base,
+                                const std::string& source);
+schema::Result<void> check_upright(const LoopFit& fit, const std::string& source);
 
 }  // namespace tacto::analysis

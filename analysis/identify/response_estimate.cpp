@@ -11,15 +11,9 @@ namespace tacto::analysis {
 namespace {
 
 using Complex = std::complex<double>;
-using schema::fail;
-using schema::Fault;
-using schema::Result;
 
 constexpr int kHarmonics = 5;
 constexpr std::ptrdiff_t kNeighbours = 4;  // on either side
-constexpr std::size_t kMostFrequencies = 80;
-constexpr double kLeastCoherence = 0.5;
-constexpr std::size_t kFewestSamples = 1024;
 
 // (2 / n) sum x exp(-i w t), the amplitude of a sine of `turns` in the window; the turning factor by
 // recurrence, set right every 256 samples: exact to 1e-13.
@@ -62,12 +56,13 @@ StepAnswer answer_of(std::span<const double> x, double turns_per_sample) {
   return answer;
 }
 
-// Noise of no power (an answer without any) still has the rounding of doubles.
-double no_less(double noise, Complex response) {
+}  // namespace
+
+double noise_no_less(double noise, Complex response) {
   return std::max(noise, 1e-9 * std::abs(response));
 }
 
-std::vector<double> smoothed(const std::vector<double>& squares) {
+std::vector<double> mean_of_neighbours(const std::vector<double>& squares) {
   std::vector<double> smooth;
   const auto count = static_cast<std::ptrdiff_t>(squares.size());
   for (std::ptrdiff_t i = 0; i < count; ++i) {
@@ -77,8 +72,6 @@ std::vector<double> smoothed(const std::vector<double>& squares) {
   }
   return smooth;
 }
-
-}  // namespace
 
 BodeData response_of_steps(const DrivenTray& tray, const SteppedSine& plan) {
   BodeData data;
@@ -91,8 +84,9 @@ BodeData response_of_steps(const DrivenTray& tray, const SteppedSine& plan) {
     data.frequency_hz.push_back(step.frequency_hz);
     data.response.push_back(answer.fundamental / drive);
     const double noise = std::sqrt(2 * answer.noise_power / static_cast<double>(count)) / std::abs(drive);
-    data.noise.push_back(no_less(noise, data.response.back()));
-    data.third_harmonic = std::max(data.third_harmonic, answer.third / std::abs(answer.fundamental));
+    data.noise.push_back(noise_no_less(noise, data.response.back()));
+    data.third_harmonic =
+        std::max(data.third_harmonic.value_or(0), answer.third / std::abs(answer.fundamental));
   }
   return data;
 }
@@ -119,74 +113,10 @@ BodeData response_of_periods(const DrivenTray& tray, const PeriodicDrive& plan) 
     data.frequency_hz.push_back(turns * tray.rate_hz);
     data.response.push_back(sum / periods / drive);
   }
-  squares = smoothed(squares);
+  squares = mean_of_neighbours(squares);
   for (std::size_t i = 0; i < data.size(); ++i)
-    data.noise.push_back(no_less(std::sqrt(std::max(squares[i], 0.0)) / drives[i], data.response[i]));
+    data.noise.push_back(noise_no_less(std::sqrt(std::max(squares[i], 0.0)) / drives[i], data.response[i]));
   return data;
-}
-
-namespace {
-
-struct Spectra {
-  Complex cross;
-  double input = 0, output = 0;
-};
-
-std::vector<double> windowed(std::span<const double> x) {
-  const auto n = static_cast<double>(x.size());
-  const double mean = std::accumulate(x.begin(), x.end(), 0.0) / n;
-  std::vector<double> out;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    out.push_back((x[i] - mean) * (0.5 - 0.5 * std::cos(kTurn * static_cast<double>(i) / n)));
-  return out;
-}
-
-// Multiples of 1 / window in the band, evenly by octaves.
-std::vector<double> turns_in(std::size_t window, double rate_hz, double low_hz, double high_hz) {
-  std::vector<double> list;
-  const double n = static_cast<double>(window);
-  for (std::size_t i = 0; i < kMostFrequencies; ++i) {
-    const double part = static_cast<double>(i) / (kMostFrequencies - 1);
-    const double line = std::max(2.0, std::round(low_hz * std::pow(high_hz / low_hz, part) * n / rate_hz));
-    if (line < n / 2 && (list.empty() || line / n > list.back())) list.push_back(line / n);
-  }
-  return list;
-}
-
-}  // namespace
-
-Result<BodeData> response_of_record(std::span<const double> input, std::span<const double> output,
-                                    double rate_hz, double low_hz, double high_hz,
-                                    const std::string& source) {
-  if (input.size() < kFewestSamples)
-    return fail(Fault::unsuitable, "the recording is too short for a frequency response", source);
-  const std::size_t window = std::min(input.size() / 8, static_cast<std::size_t>(rate_hz));
-  const std::vector<double> turns = turns_in(window, rate_hz, low_hz, high_hz);
-  std::vector<Spectra> spectra(turns.size());
-  double count = 0;
-  for (std::size_t at = 0; at + window <= input.size(); at += window / 2, ++count) {
-    const auto in = windowed(input.subspan(at, window)), out = windowed(output.subspan(at, window));
-    for (std::size_t i = 0; i < turns.size(); ++i) {
-      const Complex u = amplitude_of(in, turns[i]), x = amplitude_of(out, turns[i]);
-      spectra[i].cross += x * std::conj(u);
-      spectra[i].input += std::norm(u);
-      spectra[i].output += std::norm(x);
-    }
-  }
-  BodeData data;
-  data.source = source;
-  const double averages = 0.95 * count;  // Hann, half overlap: Welch 1967
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    const double coherence = std::norm(spectra[i].cross) / (spectra[i].input * spectra[i].output);
-    if (!(coherence >= kLeastCoherence)) continue;
-    data.frequency_hz.push_back(turns[i] * rate_hz);
-    data.response.push_back(spectra[i].cross / spectra[i].input);
-    const double part = std::sqrt((1 - std::min(coherence, 1.0)) / (2 * coherence * averages));
-    data.noise.push_back(no_less(part * std::abs(data.response.back()), data.response.back()));
-  }
-  if (!data.frequency_hz.empty()) return data;
-  return fail(Fault::unsuitable, "output and input have nothing to do with each other (coherence below 0.5)",
-              source, "name the channels with --input and --output");
 }
 
 }  // namespace tacto::analysis

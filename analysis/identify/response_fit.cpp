@@ -8,8 +8,10 @@
 #include <numeric>
 #include <optional>
 
+#include "analysis/identify/angles.hpp"
 #include "analysis/identify/hold.hpp"
 #include "analysis/identify/least_squares.hpp"
+#include "analysis/identify/outlier.hpp"
 #include "analysis/identify/starting_values.hpp"
 
 namespace tacto::analysis {
@@ -22,6 +24,7 @@ constexpr double kNormal95 = 1.959964;
 constexpr double kVague = 1;         // standard error of a logarithm: a factor e
 constexpr double kNowhere = 0.5;     // of a pole's range
 constexpr double kExplains = 0.5;    // of what a misfit leaves
+constexpr double kApart = 0.05;      // of two resonances that are two
 constexpr double kNonlinear = 5e-3;  // third harmonic: above what a 16-bit converter makes of itself
 
 // One fit: the model, its data, and which parameters are free.
@@ -59,6 +62,15 @@ class Fitter {
     return std::sqrt(std::max(0.0, variance() * sum));
   }
   bool held(std::size_t i) const { return held_[i]; }
+  std::string ended() const {
+    if (!solution_.at_bound) return solution_.ended;
+    std::size_t which = 0;
+    for (std::size_t free = *solution_.at_bound; held_[which] || free > 0; ++which)
+      if (!held_[which]) --free;
+    const ModelParameter& p = model_.parameters()[which];
+    return fmt::format("{} ran to the end of its range, {:.3g}: this model is not what was measured", p.name,
+                       values_[which]);
+  }
   const std::vector<double>& values() const { return values_; }
   const Solution& solution() const { return solution_; }
 
@@ -193,7 +205,7 @@ ResponseFit fitted_from(const BodeData& data, const ResponseModel& model, std::v
   fitter.run();
   for (const double hz : data.frequency_hz) fit.modelled.push_back(model.at(fitter.values(), hz));
   fit.converged = fitter.solution().converged;
-  fit.ended = fitter.solution().ended;
+  fit.ended = fitter.ended();
   fit.iterations = fitter.solution().iterations;
   fit.condition = fitter.solution().condition;
   fit.r_squared = r_squared_of(data, fit.modelled);
@@ -250,6 +262,12 @@ ResponseFit fit_once(const BodeData& data, const ModelChoice& choice, const sche
   return fitted_from(nearer, model, values);
 }
 
+// What was claimed before the fit turned out to be none.
+void claim_nothing(ResponseFit& fit) {
+  fit.band.clear();
+  for (FittedParameter& p : fit.parameters) p.low = p.high = p.value;
+}
+
 struct Extension {
   ResponseFit fit;
   double left = 1;  // of what the plain model leaves
@@ -268,25 +286,35 @@ std::string percent(double part) {
   return fmt::format("{:.3g} %", 100 * part);
 }
 
+// Whether what was found as a second mode is one: between the ends of the band, and not the first's resonance
+// once more, as it is where the first is bent to explain something else.
+bool is_a_mode(const Extension& mode, const ResponseFit& plain) {
+  const double second_hz = mode.fit.find("second_mode_hz")->value,
+               apart = std::abs(std::log(second_hz / plain.find("resonance_hz")->value));
+  return mode.fit.converged && second_hz < mode.fit.data.frequency_hz.back() && apart > kApart;
+}
+
 // What would explain the misfit: tried, not guessed.
 void suggest(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
              ResponseFit& fit) {
   const auto mode = extended(data, fit, choice, &ModelChoice::second_mode, base);
   const auto lag = extended(data, fit, choice, &ModelChoice::lag, base);
-  const double by_mode = mode ? mode->left : 1, by_lag = lag ? lag->left : 1;
+  const double by_mode = mode && is_a_mode(*mode, fit) ? mode->left : 1, by_lag = lag ? lag->left : 1;
   fit.one_mode_short = by_mode < kExplains && by_mode < by_lag;
   if (fit.one_mode_short)
     fit.suggestion = fmt::format(
         "the model is one mode short: one at {:.4g} Hz leaves {} of the residuals (--second-mode)",
         mode->fit.find("second_mode_hz")->value, percent(by_mode));
   else if (by_lag < kExplains)
-    fit.suggestion = fmt::format("a lag of {:.2g} degrees leaves {} of the residuals: a hysteresis (--lag)",
-                                 57.29578 * lag->fit.find("lag_rad")->value, percent(by_lag));
+    fit.suggestion = fmt::format(
+        "a lag of {:.2g} degrees leaves {} of the residuals: a hysteresis (--lag, or --method loop)",
+        kDegrees * lag->fit.find("lag_rad")->value, percent(by_lag));
   else
     fit.suggestion = "neither a second mode nor a lag explains it";
-  if (data.third_harmonic > kNonlinear)
-    fit.suggestion += fmt::format("; the answer has a third harmonic of {}: the device is not linear",
-                                  percent(data.third_harmonic));
+  if (data.third_harmonic.value_or(0) > kNonlinear)
+    fit.suggestion += fmt::format("; the answer has a third harmonic of {}: the device is not linear{}",
+                                  percent(*data.third_harmonic),
+                                  by_lag < kExplains ? "" : " (--method loop finds a hysteresis)");
 }
 
 }  // namespace
@@ -303,9 +331,47 @@ double student_95(double freedom) {
          (3 * std::pow(z, 7) + 19 * std::pow(z, 5) + 17 * std::pow(z, 3) - 15 * z) / (384 * n * n * n);
 }
 
+namespace {
+
+std::vector<double> shares_of(const ResponseFit& fit) {
+  std::vector<double> shares;
+  for (const Complex& r : turned_residuals(fit.data, fit.modelled)) shares.push_back(std::norm(r));
+  return shares;
+}
+
+// One value that holds most of what is left, whether or not that looked like noise.
+bool finds_outlier(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
+                   ResponseFit& fit) {
+  const std::vector<double> shares = shares_of(fit);
+  const double left = left_by(fit);
+  if (!fit.misfit.found && *std::ranges::max_element(shares) < kExplains * left) return false;
+  const auto found = outlier_of(data, shares, left,
+                                [&](const BodeData& rest) { return left_by(fit_once(rest, choice, base)); });
+  if (!found) return false;
+  fit.misfit.found = true;
+  fit.misfit.words = fmt::format("frequency {} ({:.4g} Hz) is off: without it {} of the residuals are left",
+                                 found->index + 1, data.frequency_hz[found->index], percent(found->left));
+  fit.suggestion = "measure it again, or leave its line out";
+  return true;
+}
+
+// Relative residuals of values far too large are small: R^2 tells those.
+void distrust(ResponseFit& fit) {
+  if (fit.misfit.found || fit.data.has_noise() || fit.r_squared > kExplains) return;
+  fit.misfit.found = true;
+  fit.misfit.words = fmt::format("R^2 is {:.3g}: some values are far from the rest", fit.r_squared);
+}
+
+}  // namespace
+
 ResponseFit fit_response(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base) {
   ResponseFit fit = fit_once(data, choice, base);
-  if (fit.misfit.found) suggest(data, choice, base, fit);
+  const bool sound = fit.claims_intervals();
+  if (!finds_outlier(data, choice, base, fit)) {
+    distrust(fit);
+    if (fit.misfit.found) suggest(data, choice, base, fit);
+  }
+  if (sound && fit.misfit.found) claim_nothing(fit);
   return fit;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace tacto::analysis {
 namespace {
@@ -40,7 +41,13 @@ Spread spread_of(const std::vector<double>& values) {
   const double median = median_of_values(values);
   std::vector<double> distances;
   for (const double value : values) distances.push_back(std::abs(value - median));
-  return {median, kMadToSigma * median_of_values(std::move(distances))};
+  const auto count = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const auto [least, most] = std::ranges::minmax(values);
+  return {median, kMadToSigma * median_of_values(std::move(distances)), std::sqrt(squares / (count - 1)),
+          least, most};
 }
 
 double rms_of(const VectorXd& x) {
@@ -164,12 +171,14 @@ Miss miss_of(const VectorXd& y, const VectorXcd& z) {
 }
 
 TapsFit summed_up(std::vector<RingingTap> taps) {
-  std::vector<double> frequencies, dampings;
+  std::vector<double> frequencies, dampings, explained;
   for (const RingingTap& tap : taps) {
+    explained.push_back(1 - tap.left * tap.left);
     frequencies.push_back(tap.modes.front().frequency_hz);
     dampings.push_back(tap.modes.front().damping_ratio);
   }
-  return {std::move(taps), spread_of(frequencies), spread_of(dampings)};
+  return {median_of_values(std::move(explained)), std::move(taps), spread_of(frequencies),
+          spread_of(dampings)};
 }
 
 // Modes of all taps, energies added.

@@ -33,12 +33,16 @@ struct RingingTap {
   double left = 0;                 ///< RMS of what the modes leave, over the ringing's own
 };
 
-/// Median and spread (1.4826 x the median distance from it: of Gaussian scatter the standard deviation).
+/// Median and spread (1.4826 x the median distance from it: of Gaussian scatter the standard deviation), and
+/// the plain standard deviation and ends: where they say more, the values stand in groups.
 struct Spread {
   double median = 0, spread = 0;
+  double standard_deviation = 0, least = 0, most = 0;
 };
 
 struct TapsFit {
+  /// Of the ringing, what the modes explain: 1 - (left)^2, median of the taps.
+  double r_squared = 0;
   std::vector<RingingTap> taps;
   Spread resonance_hz,
       damping_ratio;  ///< of the lowest mode with a fifth of the strongest's energy, over all taps

@@ -19,9 +19,10 @@ struct BrokenFile {
 
 struct Project {
   std::string folder;
-  std::vector<ProjectFile> files;    ///< by kind, then by name
-  std::vector<BrokenFile> broken;    ///< files of ours, or that should be
-  std::vector<std::string> foreign;  ///< other programs': named, not read
+  std::vector<ProjectFile> files;  ///< by kind, then by name
+  std::vector<BrokenFile> broken;  ///< files of ours, or that should be
+  std::vector<std::string>
+      foreign;  ///< what can't be described (other programs' files, our pictures and drives): named
 };
 
 /// Looks into the folder and those within it (hidden ones and links to folders are passed over). A file of

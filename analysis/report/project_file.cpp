@@ -53,6 +53,10 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
       return add_scene(path, file);
     case FileKind::session:
       return add_session(path, file);
+    case FileKind::session_table:
+      return add_session_table(path, file);
+    case FileKind::trade:
+      return add_trade_table(path, file);
     case FileKind::results:
       break;
   }

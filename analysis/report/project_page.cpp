@@ -56,7 +56,7 @@ std::string broken_list(const Project& project) {
 std::string foreign_list(const Project& project) {
   if (project.foreign.empty()) return "";
   std::string html =
-      fmt::format("<p class=\"note\">Files of other programs, not looked into ({}):", project.foreign.size());
+      fmt::format("<p class=\"note\">Also there, not described here ({}):", project.foreign.size());
   for (const std::string& path : project.foreign) html += fmt::format(" {};", escaped(within(project, path)));
   html.back() = '.';
   return html + "</p>\n";

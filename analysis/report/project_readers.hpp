@@ -18,7 +18,9 @@ schema::Result<void> add_descriptions(const std::string& path, ProjectFile& file
 schema::Result<void> add_calibration(const std::string& path, ProjectFile& file);
 schema::Result<void> add_scene(const std::string& path, ProjectFile& file);
 schema::Result<void> add_session(const std::string& path, ProjectFile& file);
+schema::Result<void> add_session_table(const std::string& path, ProjectFile& file);
 schema::Result<void> add_results(const std::string& path, ProjectFile& file);
+schema::Result<void> add_trade_table(const std::string& path, ProjectFile& file);
 
 /// A signal as smallest and largest values of at most 1,000 pieces: what a page can show of any length.
 class Envelope {

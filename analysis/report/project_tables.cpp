@@ -12,6 +12,8 @@
 #include "data-schema/formants.hpp"
 #include "data-schema/quantity.hpp"
 #include "data-schema/scene.hpp"
+#include "data-schema/session_netcdf.hpp"
+#include "data-schema/trade_table.hpp"
 #include "data-schema/transducer.hpp"
 
 namespace tacto::analysis {
@@ -152,6 +154,31 @@ Result<void> add_scene(const std::string& path, ProjectFile& file) {
       file.figures.push_back(
           {texture->texture, fmt::format("at {}, {}", for_people(texture->at_m, Dimension::length),
                                          for_people(texture->gain_m_per_n, Dimension::compliance))});
+  return {};
+}
+
+Result<void> add_trade_table(const std::string& path, ProjectFile& file) {
+  const auto table = schema::read_trade_table(path);
+  if (!table) return schema::forward_error(table);
+  file.date = table->created;
+  file.origin = table->machine;
+  for (const schema::MeasuredChoice& choice : table->choices)
+    file.figures.push_back(
+        {choice.stage + ", " + choice.name, fmt::format("{:.3g} ns a {}", choice.cost_ns, choice.per)});
+  return {};
+}
+
+Result<void> add_session_table(const std::string& path, ProjectFile& file) {
+  const auto table = schema::read_session_table(path);
+  if (!table) return schema::forward_error(table);
+  file.date = table->created;
+  file.origin = table->device;
+  file.simulated = table->simulated;
+  file.figures = {
+      {"played", for_people(table->duration_s, Dimension::time)},
+      {"ticks", fmt::format("{} at {}", table->times, for_people(table->rate_hz, Dimension::frequency))},
+      {"transducer", table->transducer}};
+  for (const std::string& texture : table->textures) file.figures.push_back({"texture", texture});
   return {};
 }
 

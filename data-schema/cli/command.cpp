@@ -9,6 +9,7 @@
 #include <exception>
 #include <memory>
 
+#include "data-schema/cli/harmless.hpp"
 #include "data-schema/cli/talk.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/version.hpp"
@@ -36,7 +37,7 @@ Entry declare(CLI::App& parent, const Verb& verb) {
 }
 
 int print_error(const schema::Error& error) {
-  talk(fmt::format("tactograph: {}\n", schema::message(error)));
+  talk(fmt::format("tactograph: {}\n", on_one_line(schema::message(error))));
   return schema::exit_code(error.fault);
 }
 

@@ -20,7 +20,9 @@ Result<cli::Report> describe_descriptions(const std::string& path);
 Result<cli::Report> describe_calibration(const std::string& path);
 Result<cli::Report> describe_scene(const std::string& path);
 Result<cli::Report> describe_session(const std::string& path);
+Result<cli::Report> describe_session_table(const std::string& path);
 Result<cli::Report> describe_results(const std::string& path);
+Result<cli::Report> describe_trade(const std::string& path);
 
 /// The report's first lines: file, kind, and by what it was simulated where it was.
 cli::Report report_of(FileKind kind, const std::string& path, const std::string& simulated);

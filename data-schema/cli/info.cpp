@@ -31,6 +31,10 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_session(file.path);
     case FileKind::results:
       return describe_results(file.path);
+    case FileKind::trade:
+      return describe_trade(file.path);
+    case FileKind::session_table:
+      return describe_session_table(file.path);
   }
   return fail(Fault::internal, "a kind of file that nobody describes", file.path);
 }

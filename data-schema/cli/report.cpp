@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "data-schema/cli/harmless.hpp"
 #include "data-schema/quantity.hpp"
 
 namespace tacto::cli {
@@ -67,23 +68,6 @@ std::string number_for_people(std::string_view key, double value) {
   if (suffix == nullptr) return fmt::format("{:.4g}", value);
   if (suffix->dimension) return schema::for_people(value, *suffix->dimension);
   return fmt::format("{:.4g} {}", value, suffix->unit);
-}
-
-// Text of files as it may be shown: what steers a terminal (ASCII's control signs and the C1 set in UTF-8)
-// as "\\x1b". Line ends and tabs stay.
-std::string harmless(const std::string& text) {
-  std::string shown;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
-    if ((byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7F)
-      shown += fmt::format("\\x{:02x}", byte);
-    else if (byte == 0xC2 && next >= 0x80 && next < 0xA0)
-      shown += fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(text[++i])));
-    else
-      shown += text[i];
-  }
-  return shown;
 }
 
 // Columns by display width: UTF-8 continuation bytes take no room.

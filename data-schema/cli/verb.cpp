@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "data-schema/cli/harmless.hpp"
 #include "data-schema/cli/talk.hpp"
 
 namespace tacto::cli {
@@ -68,7 +69,7 @@ const CLI::Validator& from_one() {
 }
 
 void warn(const std::string& text) {
-  talk(fmt::format("tactograph: warning: {}\n", text));
+  talk(fmt::format("tactograph: warning: {}\n", on_one_line(text)));
 }
 
 }  // namespace tacto::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "firmware-host/sim/known_force.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -43,7 +44,15 @@ double KnownForce::chirp_turns(double time_s) const {
   return before + s * (begin_hz + (back ? -growth_hz : growth_hz) * s / 2);
 }
 
+// Hung so slowly that the sensor, which forgets what is below 8 Hz, hears the cut alone.
+double KnownForce::pull_n(double time_s) const {
+  if (time_s >= plan_.sweep_s) return 0;
+  const double hung = std::min(1.0, time_s / (0.75 * plan_.sweep_s));
+  return plan_.amplitude_n * (1 - sine_of_turns(0.25 + hung / 2)) / 2;
+}
+
 double KnownForce::at(double time_s) const {
+  if (plan_.shape == ForceShape::release) return pull_n(time_s);
   if (plan_.shape == ForceShape::chirp) return plan_.amplitude_n * sine_of_turns(chirp_turns(time_s));
   double sum = 0;
   for (const Tone& tone : tones_) sum += sine_of_turns(tone.frequency_hz * time_s + tone.phase_turns);

@@ -52,7 +52,7 @@ core::Hal SimBoard::hal() {
     return of(b).diverged_s_ < 0;
   };
   hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
-  hal.enable_closed = [](void* b) noexcept { return of(b).enabled_; };
+  hal.enable_closed = [](void* b) noexcept { return of(b).enabled_.load(); };
   hal.clock = [](void* b) noexcept { return of(b).clock(); };
   hal.set_rate = [](void* b, std::uint32_t rate) noexcept { of(b).set_rate(rate); };
   hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {

@@ -2,6 +2,7 @@
 // The emulated device's board: the firmware's own core, with physics behind its hardware layer.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -36,7 +37,7 @@ class SimBoard {
 
   std::vector<std::uint8_t>& from_host() { return from_host_; }
   std::vector<std::uint8_t>& to_host() { return to_host_; }
-  void set_enabled(bool enabled) { enabled_ = enabled; }
+  void set_enabled(bool enabled) { enabled_.store(enabled); }  // from any thread
   /// From the next time the rate is set, the encoder goes where this says (m, against seconds since then),
   /// and there is no other physics of the finger: channels that are no encoder's read zero.
   void set_script(std::function<double(double time_s)> position_m) { script_ = std::move(position_m); }
@@ -78,7 +79,7 @@ class SimBoard {
   std::int32_t frame_[wire::kMaxChannels] = {};
   std::uint32_t rate_millihertz_ = 0;
   std::uint64_t steps_ = 0, clock_before_ = 0;
-  bool enabled_ = true;
+  std::atomic<bool> enabled_{true};
   double drive_v_ = 0, diverged_s_ = -1;
   std::string surface_words_;
   std::unique_ptr<core::Firmware> firmware_;

@@ -56,6 +56,9 @@ std::string force_words(const ForcePlan& force) {
   const std::string size = for_people(force.amplitude_n, Dimension::force);
   if (force.shape == ForceShape::sine)
     return fmt::format("known force, a sine of {} at {}", size, hz(force.low_hz));
+  if (force.shape == ForceShape::release)
+    return fmt::format("a weight of {} on a thread that is cut after {}", size,
+                       for_people(force.sweep_s, Dimension::time));
   const std::string band = fmt::format("{} to {}", hz(force.low_hz), hz(force.high_hz));
   if (force.shape == ForceShape::chirp)
     return fmt::format("known force, a chirp of {}, {} in {}", size, band,

@@ -66,8 +66,8 @@ constexpr NumberKey kNumbers[] = {
      [](P& p, double v) { p.force.high_hz = v; }},
     {"force_tones", "of a multisine, evenly by octaves, 16", Dimension::none, 2, 256, true,
      [](P& p, double v) { p.force.tones = static_cast<int>(v); }},
-    {"force_sweep", "of a chirp, from low to high (and back), 1s", Dimension::time, 0.01, 3600, false,
-     [](P& p, double v) { p.force.sweep_s = v; }},
+    {"force_sweep", "of a chirp, from low to high (and back); of a release, until the cut; 1s",
+     Dimension::time, 0.01, 3600, false, [](P& p, double v) { p.force.sweep_s = v; }},
     {"hysteresis", "of the driven bender: its loop's opening over its height, 0 (paper: 0.16)",
      Dimension::none, 0, 0.3, false, [](P& p, double v) { p.hysteresis = v; }},
     {"second_mode", "of the tray, its frequency; none (paper: 800Hz)", Dimension::frequency, 100, 5e3, false,
@@ -92,9 +92,10 @@ constexpr NumberKey kNumbers[] = {
 
 void store_force(P& p, std::string_view word) {
   p.known_force = word != "finger";
-  p.force.shape = word == "sine"    ? ForceShape::sine
-                  : word == "chirp" ? ForceShape::chirp
-                                    : ForceShape::multisine;
+  p.force.shape = word == "sine"      ? ForceShape::sine
+                  : word == "chirp"   ? ForceShape::chirp
+                  : word == "release" ? ForceShape::release
+                                      : ForceShape::multisine;
 }
 
 }  // namespace
@@ -127,8 +128,9 @@ std::span<const WordKey> sim_word_keys() {
        {"encoder", "lvdt"},
        [](P& p, std::string_view v) { p.has_lvdt = v == "lvdt"; }},
       {"force",
-       "what pulls on the tray: finger, or a known sine, multisine or chirp; finger",
-       {"finger", "sine", "multisine", "chirp"},
+       "what pulls on the tray: finger, or a known sine, multisine or chirp, or a weight on a thread that is "
+       "cut (release); finger",
+       {"finger", "sine", "multisine", "chirp", "release"},
        store_force},
       {"finger_load",
        "on or off: a resting finger on the driven tray; off",

@@ -105,7 +105,7 @@ Result<void> check_details(const SimParameters& parameters, const std::set<std::
 }
 
 Result<void> check_force(const SimParameters& p) {
-  if (!p.known_force) return {};
+  if (!p.known_force || p.force.shape == ForceShape::release) return {};
   const bool sine = p.force.shape == ForceShape::sine;
   if (!sine && p.force.low_hz > p.force.high_hz)
     return schema::fail(Fault::usage, "the force's band is upside down", where("force_low"),

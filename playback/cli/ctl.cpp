@@ -67,6 +67,9 @@ Result<double> gain_in(const std::string& text) {
 }
 
 Result<ControlRequest> request_of(const CtlOptions& o) {
+  if (!o.what.empty() && o.action != "load" && o.action != "gain")
+    return schema::fail(schema::Fault::usage, fmt::format("'{}' takes no '{}'", o.action, o.what),
+                        "command line", "only load and gain are told what");
   ControlRequest request;
   const auto index = std::ranges::find(kCtlActions, o.action) - kCtlActions.begin();
   request.verb = o.action == "top" ? ControlVerb::watch : static_cast<ControlVerb>(index);
@@ -103,8 +106,7 @@ void show_lateness(const ControlFields& fields) {
     beyond_lower = beyond_upper;
   };
   for (const double bound_s : kLateBoundsS)
-    show(fmt::format("< {:g} us", 1e6 * bound_s),
-         number(fmt::format("late_over_{:g}us_part", 1e6 * bound_s)));
+    show(fmt::format("< {:g} us", 1e6 * bound_s), number(late_part_name(bound_s)));
   show("more", 0);
   fmt::print("edge to drive  p50 {:.2f}  p99 {:.2f} ms\n", 1e3 * number("latency_p50_s"),
              1e3 * number("latency_p99_s"));

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/daemon/play.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/stop_signals.hpp"
+#include "playback/cli/budget_report.hpp"
 #include "playback/cli/verbs.hpp"
 
 namespace tacto::playback {
@@ -14,6 +17,11 @@ using schema::Dimension;
 using schema::Result;
 
 namespace {
+
+struct PlayVerbOptions {
+  PlayOptions play;
+  AskedBudget budget;
+};
 
 void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
@@ -44,9 +52,10 @@ void declare_texture(CLI::App& app, PlayOptions& o) {
       ->type_name("stop|mirror|loop");
 }
 
-void declare_chain(CLI::App& app, PlayOptions& o) {
+// Gives the option that names the inverse.
+CLI::Option* declare_chain(CLI::App& app, PlayOptions& o) {
   cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
-  cli::add_choice<Inverse>(
+  CLI::Option* inverse = cli::add_choice<Inverse>(
       app, "--inverse", o.prepare.inverse,
       {{"full", Inverse::full}, {"magnitude", Inverse::magnitude}, {"gain", Inverse::gain}},
       "What of the transducer the drive undoes");
@@ -55,11 +64,12 @@ void declare_chain(CLI::App& app, PlayOptions& o) {
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
                "Do not undo the hysteresis that the transducer's file tells");
   cli::add_quantity(app, "--onset", o.prepare.onset_s, Dimension::time, "In which the drive rises");
+  return inverse;
 }
 
 void add_played(Report& report, const PlayOutcome& outcome) {
   const TickView& ticks = outcome.status.ticks;
-  report.add("ticks", outcome.recorder.ticks).add("lost_ticks", ticks.lost());
+  report.add("ticks", outcome.recorder.ticks).add("lost_ticks", ticks.lost() + outcome.recorder.lost());
   report.add("late_ticks", ticks.late())
       .add("limited_ticks", ticks.limited())
       .add("blind_ticks", ticks.blind());
@@ -68,36 +78,45 @@ void add_played(Report& report, const PlayOutcome& outcome) {
   report.add("inverse_error_db", outcome.inverse_error_db);
 }
 
-Report play_report(const PlayOptions& o, const PlayOutcome& outcome) {
+Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explain) {
   Report report;
   report.add("session", o.session).add("device", outcome.device);
   if (!outcome.simulated.empty()) report.add("simulated", outcome.simulated);
   report.add("played_s", outcome.status.ticks.span_s());
   add_played(report, outcome);
+  if (outcome.decision) add_decision(report, *outcome.decision, explain);
   for (const std::string& note : outcome.notes) cli::warn(note);
-  if (!outcome.recorder.failure.empty()) cli::warn("the session is incomplete: " + outcome.recorder.failure);
+  if (!outcome.recorder.failure.empty()) {
+    cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
+                          outcome.recorder.failure));
+    report.ends_with(schema::Fault::cannot_write);
+  }
   if (outcome.status.state != PlayerState::fault) return report;
   cli::warn("playing ended in a fault: " + outcome.status.fault);
   report.add("fault", outcome.status.fault).ends_with(schema::Fault::device);
   return report;
 }
 
-Result<Report> run_play(PlayOptions o) {
+Result<Report> run_play(const PlayVerbOptions& asked) {
+  const auto budget = asked.budget.budget();
+  if (!budget) return schema::forward_error(budget);
+  PlayOptions o = asked.play;
+  o.program.budget = *budget;
   o.session = schema::session_path(o.session);
   const cli::StopSignals signals;
   cli::Progress progress("playing");
   const auto outcome = play_once(
       o, [&] { return signals.stop_asked(); }, [&](double part) { progress.update(part); });
   if (!outcome) return schema::forward_error(outcome);
-  return play_report(o, *outcome);
+  return play_report(o, *outcome, asked.budget.options.explain);
 }
 
 cli::Action declare_play(CLI::App& app) {
-  auto options = std::make_shared<PlayOptions>();
-  options->prepare.onset_s = 0.02;
-  declare_what(app, *options);
-  declare_texture(app, *options);
-  declare_chain(app, *options);
+  auto options = std::make_shared<PlayVerbOptions>();
+  options->play.prepare.onset_s = 0.02;
+  declare_what(app, options->play);
+  declare_texture(app, options->play);
+  declare_tick_budget(app, options->budget, declare_chain(app, options->play));
   return [options] { return run_play(*options); };
 }
 
@@ -105,7 +124,8 @@ cli::Action declare_play(CLI::App& app) {
 
 const cli::Verb kPlayVerb{"play", "Play a texture or scene on a device, live, and keep the session",
                           "tactograph play oak -d usb: --time 60s -o first\n"
-                          "  tactograph play oak -d sim: --finger-path path.csv -o first",
+                          "  tactograph play oak -d sim: --finger-path path.csv -o first\n"
+                          "  tactograph play oak -d usb: -o first --max-error 0.2% --explain",
                           declare_play};
 
 }  // namespace tacto::playback

@@ -6,6 +6,7 @@
 
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/statistics.hpp"
+#include "playback/cli/budget_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/drive_files.hpp"
 #include "playback/render.hpp"
@@ -22,6 +23,8 @@ struct RenderVerbOptions {
   std::string texture, path, transducer, drive, displacement, wanted;
   bool force = false;
   RenderOptions render;
+  AskedBudget budget;
+  CLI::Option* engine = nullptr;
 };
 
 void add_files(CLI::App& app, RenderVerbOptions& o) {
@@ -54,14 +57,16 @@ void add_quantities(CLI::App& app, RenderOptions& o) {
                     "Fade at either end of the path, for a finger that starts inside the texture");
 }
 
-void add_model(CLI::App& app, RenderOptions& o) {
-  cli::add_choice<Inverse>(app, "--inverse", o.inverse,
-                           {{"full", Inverse::full},
-                            {"magnitude", Inverse::magnitude},
-                            {"gain", Inverse::gain},
-                            {"none", Inverse::none}},
-                           "What of the transducer the drive undoes: amplitude and phase, amplitude, the "
-                           "gain at rest, or nothing");
+void add_model(CLI::App& app, RenderVerbOptions& verb) {
+  RenderOptions& o = verb.render;
+  CLI::Option* inverse =
+      cli::add_choice<Inverse>(app, "--inverse", o.inverse,
+                               {{"full", Inverse::full},
+                                {"magnitude", Inverse::magnitude},
+                                {"gain", Inverse::gain},
+                                {"none", Inverse::none}},
+                               "What of the transducer the drive undoes: amplitude and phase, amplitude, the "
+                               "gain at rest, or nothing");
   CLI::Option* reconstruction = cli::add_choice<Reconstruction>(
       app, "--reconstruction", o.reconstruction,
       {{"none", Reconstruction::none}, {"butterworth3", Reconstruction::butterworth3}},
@@ -73,7 +78,7 @@ void add_model(CLI::App& app, RenderOptions& o) {
                         "Whether the converter holds each sample until the next, undone as well");
   app.add_flag("!--keep-hysteresis", o.undo_hysteresis,
                "Do not undo the hysteresis that the transducer's file tells (the kernel does)");
-  CLI::Option* engine = cli::add_choice<Engine>(
+  CLI::Option* engine = verb.engine = cli::add_choice<Engine>(
       app, "--engine", o.engine, {{"reference", Engine::reference}, {"kernel", Engine::kernel}},
       "Who computes the drive: the exact reference, or the tick kernel as it runs in real time");
   cli::add_quantity(app, "--encoder-step", o.encoder_step_m, Dimension::length,
@@ -82,6 +87,7 @@ void add_model(CLI::App& app, RenderOptions& o) {
   cli::add_choice<OverLimit>(app, "--over-limit", o.over_limit,
                              {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
                              "What to do with a drive that passes a limit of the transducer");
+  declare_tick_budget(app, verb.budget, inverse);
 }
 
 std::vector<SignalFile> files_of(const RenderVerbOptions& o, const Rendering& rendering) {
@@ -121,6 +127,9 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
   report.add("drive_rms_v", schema::statistics_of(r.drive_v.values).rms())
       .add("wanted_rms_m", schema::statistics_of(r.wanted_m.values).rms());
   report.add("displacement_error_db", r.error_db).add("delay_s", r.delay_s);
+  if (o.render.budget.asked()) report.add("engine", r.engine == Engine::kernel ? "kernel" : "reference");
+  if (r.decision) add_decision(report, *r.decision, o.budget.options.explain);
+  if (o.budget.options.explain && !r.reasons.empty()) report.add("why_this_engine", r.reasons);
   add_limits(report, r);
   add_way(report, r);
   return report;
@@ -149,7 +158,11 @@ Result<Rendering> rendered(const RenderVerbOptions& o, const schema::Transducer&
   return render(*texture, *path, transducer, o.render, [&](double fraction) { progress.update(fraction); });
 }
 
-Result<Report> run_render(const RenderVerbOptions& o) {
+Result<Report> run_render(RenderVerbOptions o) {
+  const auto budget = o.budget.budget();
+  if (!budget) return schema::forward_error(budget);
+  o.render.budget = *budget;
+  o.render.keep_engine = o.engine->count() > 0;
   if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
   const auto transducer = schema::read_transducer(o.transducer);
   if (!transducer) return schema::forward_error(transducer);
@@ -167,7 +180,7 @@ cli::Action declare_render(CLI::App& app) {
   auto options = std::make_shared<RenderVerbOptions>();
   add_files(app, *options);
   add_quantities(app, options->render);
-  add_model(app, options->render);
+  add_model(app, *options);
   return [options] { return run_render(*options); };
 }
 

@@ -24,18 +24,28 @@ Result<Report> run_replay(const ReplayVerbOptions& o) {
   if (!outcome) return schema::forward_error(outcome);
   Report report;
   report.add("session", schema::session_path(o.session)).add("ticks_compared", outcome->ticks);
-  report.add("same_to_the_bit", !outcome->first_difference && !outcome->lost_at);
-  if (outcome->ending != schema::SessionEnding::closed && !outcome->first_difference && !outcome->lost_at)
+  report.add("same_to_the_bit", outcome->same());
+  if (outcome->ending == schema::SessionEnding::unclosed)
     cli::warn("the session was never closed: what is in it was compared");
+  if (outcome->damaged_at) {
+    cli::warn(
+        fmt::format("the session is damaged from byte {} on: what stands before it was compared, and may "
+                    "lack a command that stood behind",
+                    *outcome->damaged_at));
+    report.add("damaged_at_byte", *outcome->damaged_at).ends_with(schema::Fault::malformed);
+  }
+  if (outcome->lost > 0) report.add("lost_ticks", outcome->lost);
   if (outcome->lost_at) {
     cli::warn(fmt::format("ticks are missing from {} on: the drive after them can't be replayed",
                           *outcome->lost_at));
-    report.add("lost_at_tick", *outcome->lost_at).ends_with(schema::Fault::unsuitable);
+    report.add("lost_at_tick", *outcome->lost_at);
+    if (!outcome->damaged_at) report.ends_with(schema::Fault::unsuitable);
   }
   if (!outcome->first_difference) return report;
   const Difference& first = *outcome->first_difference;
   report.add("first_difference_tick", first.tick).add("recorded_v", double{first.recorded_v});
-  report.add("replayed_v", double{first.replayed_v}).ends_with(schema::Fault::unsuitable);
+  report.add("replayed_v", double{first.replayed_v});
+  if (!outcome->damaged_at) report.ends_with(schema::Fault::unsuitable);
   return report;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "playback/cli/verbs.hpp"
@@ -30,8 +32,11 @@ Report stroke_row(const PlayedStroke& stroke) {
 }
 
 Result<Report> run_session(const SessionVerbOptions& o) {
-  for (const std::string& output : o.outputs)
-    if (const auto done = export_session(o.session, output); !done) return schema::forward_error(done);
+  for (const std::string& output : o.outputs) {
+    const auto said = export_session(o.session, output);
+    if (!said) return schema::forward_error(said);
+    if (!said->empty()) cli::warn(fmt::format("{}: {}", output, *said));
+  }
   const auto strokes = report_strokes(o.session);
   if (!strokes) return schema::forward_error(strokes);
   for (const std::string& note : strokes->notes) cli::warn(note);
@@ -41,7 +46,9 @@ Result<Report> run_session(const SessionVerbOptions& o) {
   report.add("band_low_hz", strokes->low_hz).add("band_high_hz", strokes->high_hz);
   std::vector<Report> rows;
   for (const PlayedStroke& stroke : strokes->strokes) rows.push_back(stroke_row(stroke));
-  return report.add("strokes", std::move(rows));
+  report.add("strokes", std::move(rows));
+  if (strokes->damaged) report.ends_with(schema::Fault::malformed);
+  return report;
 }
 
 cli::Action declare_session(CLI::App& app) {

@@ -7,6 +7,7 @@
 namespace tacto::playback {
 
 extern const cli::Verb kRenderVerb;
+extern const cli::Verb kExplainVerb;
 extern const cli::Verb kPlayVerb;
 extern const cli::Verb kCtlVerb;
 extern const cli::Verb kSessionVerb;

@@ -21,17 +21,21 @@ ControlClient::ControlClient(ControlClient&& other) noexcept
     : greeted(other.greeted),
       watching(other.watching),
       dropped_events(other.dropped_events),
+      waits_with_id(std::move(other.waits_with_id)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       in_(std::move(other.in_)),
-      out_(std::move(other.out_)) {}
+      out_(std::move(other.out_)),
+      silent_(other.silent_) {}
 
 ControlClient& ControlClient::operator=(ControlClient&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(in_, other.in_);
   std::swap(out_, other.out_);
+  silent_ = other.silent_;
   greeted = other.greeted;
   watching = other.watching;
   dropped_events = other.dropped_events;
+  std::swap(waits_with_id, other.waits_with_id);
   return *this;
 }
 
@@ -39,11 +43,30 @@ ControlClient::~ControlClient() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-bool ControlClient::receive() {
+void ControlClient::receive() {
   char bytes[4096];
   const ssize_t got = recv(descriptor_, bytes, sizeof bytes, MSG_DONTWAIT);
   if (got > 0) in_.append(bytes, static_cast<std::size_t>(got));
-  return got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR));
+  silent_ = got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR);
+}
+
+bool ControlClient::has_line() const {
+  const auto end = in_.find('\n');
+  return end != std::string::npos && end < schema::kMostControlLine;
+}
+
+bool ControlClient::has_room() const {
+  return in_.size() < schema::kMostControlLine;
+}
+
+std::vector<std::string> ControlClient::lines() const {
+  std::vector<std::string> lines;
+  std::size_t from = 0;
+  for (auto end = in_.find('\n'); end != std::string::npos; end = in_.find('\n', from)) {
+    lines.push_back(in_.substr(from, end - from));
+    from = end + 1;
+  }
+  return lines;
 }
 
 std::optional<std::string> ControlClient::take_line() {

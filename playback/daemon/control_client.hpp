@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tacto::playback {
 
@@ -18,10 +19,17 @@ class ControlClient {
   ~ControlClient();
 
   int descriptor() const { return descriptor_; }
-  /// Takes in what has come. False where the client is gone.
-  bool receive();
+  /// Takes in what has come.
+  void receive();
+  /// Nothing more comes: the client has closed its side, or is gone.
+  bool silent() const { return silent_; }
   /// The next whole line without its newline, if there is one.
   std::optional<std::string> take_line();
+  bool has_line() const;
+  /// All whole lines that are here; none is taken.
+  std::vector<std::string> lines() const;
+  /// Less than a longest line is here.
+  bool has_room() const;
   /// More than a line may have, and still no end.
   bool is_endless() const;
   /// Sends as much as the socket takes; keeps the rest. False where the client is gone, or has not taken
@@ -34,10 +42,12 @@ class ControlClient {
 
   bool greeted = false, watching = false;
   std::uint64_t dropped_events = 0;
+  std::optional<std::string> waits_with_id;  ///< for an answer that comes later: the request's id
 
  private:
   int descriptor_;
   std::string in_, out_;
+  bool silent_ = false;
 };
 
 }  // namespace tacto::playback

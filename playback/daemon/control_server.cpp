@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "playback/daemon/control_socket.hpp"
 
@@ -16,7 +17,8 @@ using schema::ControlVerb;
 using schema::Fault;
 using schema::Result;
 
-constexpr int kLinesAtOnce = 16, kAcceptAtOnce = 128;
+constexpr int kLinesAtOnce = 2, kAcceptAtOnce = 128;  // few: between two serve() the device is looked after
+constexpr short kSomethingCame = POLLIN | POLLHUP | POLLERR;
 constexpr std::size_t kMostEvents = 1000;  // between two serve(): ten a second are usual
 
 const schema::Error kTooLong{Fault::malformed,
@@ -25,6 +27,11 @@ const schema::Error kTooLong{Fault::malformed,
 const schema::Error kNotGreeted{Fault::usage, "the first request must be hello", "request",
                                 R"(send {"request":"hello","version":"1.0"} first)"};
 const schema::Error kOnlyWatches{Fault::usage, "who watches can't ask", "request", "open another connection"};
+
+// Of who waits for an answer more is looked at, for a `stop` may be in it.
+bool wants_more(const ControlClient& client) {
+  return !client.silent() && (client.waits_with_id ? client.has_room() : !client.has_line());
+}
 
 }  // namespace
 
@@ -63,37 +70,66 @@ void ControlServer::accept_all() {
   }
 }
 
-std::string ControlServer::answer_to(ControlClient& client, const std::string& line, const Handler& handler) {
+// None where the answer comes later.
+std::optional<std::string> ControlServer::answer_to(ControlClient& client, const std::string& line,
+                                                    const Handler& handler) {
   std::string id;
   const auto request = schema::parse_control_request(line, &id);
   if (!request) return schema::control_error_line(id, request.error());
   if (client.watching) return schema::control_error_line(id, kOnlyWatches);
   if (!client.greeted && request->verb != ControlVerb::hello)
     return schema::control_error_line(id, kNotGreeted);
-  const auto fields = handler(*request);
-  if (!fields) return schema::control_error_line(id, fields.error());
+  const Answer fields = handler(*request);
+  if (!fields) {
+    client.waits_with_id = id;
+    return std::nullopt;
+  }
+  if (!*fields) return schema::control_error_line(id, fields->error());
   client.greeted = client.greeted || request->verb == ControlVerb::hello;
   client.watching = client.watching || request->verb == ControlVerb::watch;
-  return schema::control_reply_line(id, *fields);
+  return schema::control_reply_line(id, **fields);
+}
+
+void ControlServer::answer_late(const Result<schema::ControlFields>& fields) {
+  const auto client =
+      std::ranges::find_if(clients_, [](const ControlClient& one) { return one.waits_with_id.has_value(); });
+  if (client == clients_.end()) return;
+  const std::string id = *std::exchange(client->waits_with_id, std::nullopt);
+  const bool here = client->send(fields ? schema::control_reply_line(id, *fields)
+                                        : schema::control_error_line(id, fields.error()));
+  if (!here) clients_.erase(client);
+}
+
+bool ControlServer::stop_waits() const {
+  const auto stops = [](const std::string& line) {
+    const auto request = schema::parse_control_request(line);
+    return request && (request->verb == ControlVerb::stop || request->verb == ControlVerb::disarm);
+  };
+  return std::ranges::any_of(clients_, [&](const ControlClient& client) {
+    return client.waits_with_id && std::ranges::any_of(client.lines(), stops);
+  });
 }
 
 bool ControlServer::answer_lines(ControlClient& client, const Handler& handler) {
-  for (int i = 0; i < kLinesAtOnce; ++i) {
+  for (int i = 0; i < kLinesAtOnce && !client.waits_with_id; ++i) {
     const auto line = client.take_line();
     if (!line) break;
-    if (!client.send(answer_to(client, *line, handler))) return false;
+    const auto answer = answer_to(client, *line, handler);
+    if (answer && !client.send(*answer)) return false;
   }
   if (!client.is_endless()) return true;
   client.send(schema::control_error_line("", kTooLong));
   return false;
 }
 
-// False where the client is to go.
+// False where the client is to go. Who says no more is answered all the same, as far as he takes it. More is
+// received only once the lines that are here are answered: so little is kept of anybody.
 bool ControlServer::attend(ControlClient& client, short events, const Handler& handler) {
-  if ((events & POLLOUT) != 0 && !client.flush()) return false;
-  if ((events & (POLLIN | POLLHUP | POLLERR)) == 0) return true;
-  const bool here = client.receive();
-  return answer_lines(client, handler) && here;
+  if ((events & (POLLOUT | POLLHUP | POLLERR)) != 0 && !client.flush()) return false;
+  if ((events & POLLHUP) != 0 && client.waits_with_id) return false;
+  if ((events & kSomethingCame) != 0 && wants_more(client)) client.receive();
+  if (!answer_lines(client, handler)) return false;
+  return !client.silent() || client.has_line() || client.wants_to_send() || client.waits_with_id;
 }
 
 void ControlServer::attend_all(const std::vector<pollfd>& waiting, const Handler& handler) {
@@ -104,12 +140,17 @@ void ControlServer::attend_all(const std::vector<pollfd>& waiting, const Handler
   clients_ = std::move(staying);
 }
 
+// What a client has sent already, poll() knows nothing of.
 void ControlServer::serve(int timeout_ms, const Handler& handler) {
   std::vector<pollfd> waiting{{descriptor_, POLLIN, 0}};
-  for (const ControlClient& client : clients_)
-    waiting.push_back(
-        {client.descriptor(), static_cast<short>(client.wants_to_send() ? POLLIN | POLLOUT : POLLIN), 0});
-  if (poll(waiting.data(), waiting.size(), timeout_ms) > 0) {
+  for (const ControlClient& client : clients_) {
+    const int in = wants_more(client) ? POLLIN : 0;
+    const int out = client.wants_to_send() ? POLLOUT : 0;
+    waiting.push_back({client.descriptor(), static_cast<short>(in | out), 0});
+  }
+  const bool ready = std::ranges::any_of(
+      clients_, [](const ControlClient& one) { return one.has_line() && !one.waits_with_id; });
+  if (poll(waiting.data(), waiting.size(), ready ? 0 : timeout_ms) > 0 || ready) {
     attend_all(waiting, handler);
     if ((waiting.front().revents & POLLIN) != 0) accept_all();
   }

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,9 @@ struct SocketPlace {
 /// read. One thread.
 class ControlServer {
  public:
-  using Handler = std::function<schema::Result<schema::ControlFields>(const schema::ControlRequest&)>;
+  /// None: it comes later, by answer_late(); until then that client's next lines wait. One at a time.
+  using Answer = std::optional<schema::Result<schema::ControlFields>>;
+  using Handler = std::function<Answer(const schema::ControlRequest&)>;
 
   /// A socket that a dead daemon left is replaced. Errors: usage: a path that no socket can have, a group
   /// that does not exist; unsuitable: another daemon listens there; cannot_write.
@@ -33,8 +36,13 @@ class ControlServer {
   ControlServer& operator=(const ControlServer&) = delete;
   ~ControlServer();
 
-  /// Waits at most `timeout_ms` for something to do, and does it; at most 16 lines of each client.
+  /// Waits at most `timeout_ms` for something to do, and does it; at most 2 lines of each client.
+  /// Who has more lines here gets them answered by the next serve(), which does not wait then.
   void serve(int timeout_ms, const Handler& handler);
+  /// To the client who waits for it, if he is still there.
+  void answer_late(const schema::Result<schema::ControlFields>& fields);
+  /// Whether a `stop` or `disarm` is among the lines of the client who waits: it must not wait with them.
+  bool stop_waits() const;
   /// To all who watch, at the end of the next serve(): requests publish while clients are attended.
   void publish(std::string_view event, const schema::ControlFields& fields);
   std::size_t clients() const { return clients_.size(); }
@@ -48,7 +56,8 @@ class ControlServer {
   void refuse(int descriptor) const;
   bool attend(ControlClient& client, short events, const Handler& handler);
   bool answer_lines(ControlClient& client, const Handler& handler);
-  std::string answer_to(ControlClient& client, const std::string& line, const Handler& handler);
+  std::optional<std::string> answer_to(ControlClient& client, const std::string& line,
+                                       const Handler& handler);
 
   SocketPlace place_;
   int descriptor_;

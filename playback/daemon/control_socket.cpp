@@ -81,8 +81,12 @@ Result<void> permit(const std::string& path, const std::string& group) {
 
 Result<void> bind_and_listen(int descriptor, const sockaddr_un& address, const std::string& path,
                              const std::string& group) {
-  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    return fail(Fault::cannot_write, "the socket can't be made: " + system_words(errno), path);
+  const bool bound = bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const int why = errno;
+  if (!bound)
+    return fail(Fault::cannot_write, "the socket can't be made: " + system_words(why), path,
+                why == EADDRINUSE ? "something else has that name: remove it, or name another socket"
+                                  : "name a folder that the daemon's user may write in");
   if (const auto permitted = permit(path, group); !permitted) {
     unlink(path.c_str());
     return permitted;

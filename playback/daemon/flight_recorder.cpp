@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/daemon/flight_recorder.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -18,7 +20,14 @@ constexpr auto kWriteEvery = std::chrono::milliseconds(20);
 constexpr auto kSyncEvery = std::chrono::milliseconds(100);
 constexpr auto kRoomAgain = std::chrono::microseconds(200);
 constexpr std::size_t kBatch = 4096;
-constexpr std::size_t kMostOwed = 1000;  // disjoint losses; later ones are only counted
+constexpr std::int64_t kMostBlockNs = 4'000'000'000;  // a block counts 32 bits of ns
+constexpr std::size_t kMostOwed = 1000;               // disjoint losses; later ones are only counted
+
+// Whether a tick may stand in the block that begins with another: without a hole, and not for too long.
+bool follows(const SessionTick& next, const std::vector<SessionTick>& batch) {
+  return batch.empty() ||
+         (next.tick == batch.back().tick + 1 && next.time_ns - batch.front().time_ns < kMostBlockNs);
+}
 
 }  // namespace
 
@@ -107,18 +116,26 @@ void FlightRecorder::write_run(std::span<const SessionTick> ticks) {
 }
 
 // A block holds ticks that follow each other.
-void FlightRecorder::write_ticks() {
-  for (bool more = true; more;) {
+void FlightRecorder::write_ticks(std::uint32_t most) {
+  while (most > 0) {
     batch_.clear();
-    for (const SessionTick* next = queue_.front(); next != nullptr && batch_.size() < kBatch;
+    for (const SessionTick* next = queue_.front(); most > 0 && next != nullptr && batch_.size() < kBatch;
          next = queue_.front()) {
-      if (!batch_.empty() && next->tick != batch_.back().tick + 1) break;
+      if (!follows(*next, batch_)) break;
       batch_.push_back(*next);
       queue_.pop();
+      --most;
     }
-    if (!batch_.empty()) write_run(batch_);
-    more = queue_.front() != nullptr;
+    write_run(batch_);
   }
+}
+
+// What was sent before a tick stands before it: of the ticks only those that were here before the notes were
+// taken are written after them.
+void FlightRecorder::write_queued() {
+  const std::uint32_t here = queue_.size();
+  write_notes();
+  write_ticks(here);
 }
 
 void FlightRecorder::write_notes() {
@@ -143,8 +160,7 @@ void FlightRecorder::run() {
   std::uint64_t synced = 0;
   while (!ending_.load()) {
     std::this_thread::sleep_for(kWriteEvery);
-    write_notes();
-    write_ticks();
+    write_queued();
     if (std::chrono::steady_clock::now() < sync_due) continue;
     sync_due = std::chrono::steady_clock::now() + kSyncEvery;
     if (written_.load() == std::exchange(synced, written_.load())) continue;
@@ -152,11 +168,15 @@ void FlightRecorder::run() {
   }
 }
 
+void FlightRecorder::discard() {
+  stop();
+  unlink(path_.c_str());
+}
+
 Result<void> FlightRecorder::close() {
   stop();
   if (missing_ > 0) confess();
-  write_notes();
-  write_ticks();
+  write_queued();
   return writer_.close(
       {written_.load(), queue_lost_.load() + disk_lost_.load() + link_lost_.load(), late_.load()});
 }

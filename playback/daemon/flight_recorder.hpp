@@ -24,6 +24,8 @@ struct RecorderCounts {
   std::uint64_t disk_lost = 0;   ///< the disk took nothing
   std::uint64_t late = 0;        ///< of the written, late ones
   std::string failure;           ///< the disk's last words; empty while it works
+
+  std::uint64_t lost() const { return queue_lost + disk_lost; }
 };
 
 /// tick() puts into a queue of 65,536 (3 s at 20 kHz, 2 MB), without a lock, allocation or system call (but
@@ -48,6 +50,8 @@ class FlightRecorder {
 
   RecorderCounts counts() const;
   const std::string& path() const { return path_; }
+  /// Removes the file: nothing has happened that was worth it. Nothing may be recorded after it.
+  void discard();
   /// Writes what is left and the last block. Errors: cannot_write.
   schema::Result<void> close();
 
@@ -61,7 +65,8 @@ class FlightRecorder {
   FlightRecorder(schema::SessionWriter writer, FullQueue full);
   void run();
   void stop();
-  void write_ticks();
+  void write_queued();
+  void write_ticks(std::uint32_t most);
   void write_run(std::span<const schema::SessionTick> ticks);
   void write_notes();
   void failed(const schema::Error& error);

@@ -24,7 +24,7 @@ core::Board HostBoard::board() {
 core::Hal HostBoard::hal() {
   core::Hal hal;
   hal.board = this;
-  hal.read_encoder = [](void* b) noexcept { return of(b).encoder_.load(std::memory_order_relaxed); };
+  hal.read_encoder = [](void* b) noexcept { return of(b).encoder_; };
   hal.encoder_unseen = [](void* b) noexcept { return of(b).unseen_; };
   hal.read_channels = [](void*, std::int32_t*) noexcept { return false; };  // the device streams them itself
   hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
@@ -48,17 +48,30 @@ core::Hal HostBoard::hal() {
 void HostBoard::rest(std::int64_t now_ns) noexcept {
   if (began_ns_ == 0) began_ns_ = now_ns;
   now_ns_ = now_ns;
+  take_reading();
   firmware_->poll();
   wants_drive_.store(ticking_, std::memory_order_release);
 }
 
-// A period that this thread slept through is as blind as one in which no count came.
+// The device's periods since the last reading that was taken.
+std::uint32_t HostBoard::take_reading() noexcept {
+  const std::uint64_t reading = reading_.load(std::memory_order_relaxed);
+  encoder_ = static_cast<std::int32_t>(static_cast<std::uint32_t>(reading));
+  const auto period = static_cast<std::uint32_t>(reading >> 32U);
+  const std::uint32_t passed = period - seen_period_;
+  seen_period_ = period;
+  return passed;
+}
+
+// A period that this thread slept through is as blind as one in which no count came, and so is one that the
+// device made and of which only a later count was taken.
 void HostBoard::look_for_readings(std::int64_t late_ns) noexcept {
   const std::uint32_t reading = readings_.load(std::memory_order_acquire);
   if (late_ns >= period_ns_) age_ += static_cast<std::uint32_t>(late_ns / period_ns_);
   const bool fresh = reading != seen_reading_;
   seen_reading_ = reading;
-  unseen_ = fresh ? age_ : ++age_;
+  const std::uint32_t passed = take_reading();
+  unseen_ = std::max(fresh ? age_ : ++age_, passed > 0 ? passed - 1 : 0);
   if (fresh) age_ = 0;
 }
 
@@ -66,8 +79,10 @@ void HostBoard::look_for_readings(std::int64_t late_ns) noexcept {
 void HostBoard::tick(std::int64_t now_ns, std::int64_t late_ns) noexcept {
   now_ns_ = now_ns;
   constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
-  lateness_[ticks_++ % kLatenesses].store(static_cast<std::int32_t>(std::min(late_ns, kMost)),
-                                          std::memory_order_relaxed);
+  const std::size_t slot = ticks_++ % kLatenesses;
+  lateness_[slot].store(static_cast<std::int32_t>(std::min(late_ns, kMost)), std::memory_order_relaxed);
+  // Periods that were slept through are passed over: the tick belongs to the last of them.
+  dues_[slot].store(now_ns - began_ns_ - late_ns % period_ns_, std::memory_order_relaxed);
   look_for_readings(late_ns);
   firmware_->tick();
   if (TimedDrive* place = drives_.place(); place != nullptr) {

@@ -38,10 +38,13 @@ class HostBoard {
   void rest(std::int64_t now_ns) noexcept;
   bool ticking() const noexcept { return ticking_; }
 
-  // From other threads.
-  void set_inputs(std::int32_t encoder, bool enabled, std::int64_t now_ns = 0) noexcept {
+  // From other threads. `period` numbers the device's periods: counts of a device that hands over what it has
+  // kept come faster than they were made.
+  void set_inputs(std::int32_t encoder, bool enabled, std::int64_t now_ns = 0,
+                  std::uint32_t period = 0) noexcept {
     reading_ns_.store(now_ns, std::memory_order_relaxed);
-    encoder_.store(encoder, std::memory_order_relaxed);
+    const auto count = static_cast<std::uint32_t>(encoder);
+    reading_.store(std::uint64_t{period} << 32U | count, std::memory_order_relaxed);
     enabled_.store(enabled, std::memory_order_release);
     readings_.fetch_add(1, std::memory_order_release);
   }
@@ -54,6 +57,10 @@ class HostBoard {
   std::int32_t lateness_ns(std::uint64_t tick) const noexcept {
     return lateness_[tick % kLatenesses].load(std::memory_order_relaxed);
   }
+  /// When that tick was due, by the clock of kClockHz.
+  std::int64_t due_ns(std::uint64_t tick) const noexcept {
+    return dues_[tick % kLatenesses].load(std::memory_order_relaxed);
+  }
   std::uint64_t drives_lost() const noexcept { return drives_lost_.load(std::memory_order_relaxed); }
 
  private:
@@ -62,21 +69,25 @@ class HostBoard {
   core::Board board();
   core::Hal hal();
   void look_for_readings(std::int64_t late_ns) noexcept;
+  std::uint32_t take_reading() noexcept;
 
   firmware_host::Description about_;
   firmware_host::HostedProfile profile_;
-  std::atomic<std::int32_t> encoder_{0};
+  std::atomic<std::uint64_t> reading_{0};  // the device's period, and the encoder's count in it
   std::atomic<bool> enabled_{false}, wants_drive_{false};
   ByteRing<65536> from_player_;
   ByteRing<262144> to_player_;
   core::Ring<TimedDrive, 1024> drives_;
   std::array<std::atomic<std::int32_t>, kLatenesses> lateness_{};
+  std::array<std::atomic<std::int64_t>, kLatenesses> dues_{};
   std::atomic<std::uint64_t> drives_lost_{0};
   std::atomic<std::uint32_t> readings_{0};  // of the encoder
   std::atomic<std::int64_t> reading_ns_{0};
   std::int64_t period_ns_;
   std::uint32_t seen_reading_ = 0, age_ = 0, unseen_ = 0;  // in periods
-  std::uint64_t ticks_ = 0;                                // since arming
+  std::uint32_t seen_period_ = 0;                          // the device's
+  std::int32_t encoder_ = 0;
+  std::uint64_t ticks_ = 0;  // since arming
   std::int64_t now_ns_ = 0, began_ns_ = 0;
   float drive_v_ = 0;
   bool ticking_ = false;

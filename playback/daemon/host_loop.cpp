@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <optional>
 
+#include "firmware-host/awake_cores.hpp"
 #include "firmware-host/realtime_priority.hpp"
 #include "firmware-host/wire_fields.hpp"
 #include "firmware-host/wire_words.hpp"
@@ -108,17 +110,22 @@ HostLoopStatus HostLoop::status() const {
 void HostLoop::tick_forever() {
   const firmware_host::RealtimePriority priority(options_.priority);
   real_time_.store(priority.granted());
+  std::optional<firmware_host::AwakeCores> awake;
   TickClock clock;
   std::uint64_t missed = 0;
   bool ticked = false;
   while (!ending_.load(std::memory_order_relaxed)) {
     if (!board_->ticking()) {
       ticked = false;
+      awake.reset();
       std::this_thread::sleep_for(std::chrono::nanoseconds(kRestNs));
       board_->rest(TickClock::now_ns());
       continue;
     }
-    if (!ticked) clock.begin(options_.rate_hz);
+    if (!ticked) {
+      awake.emplace();
+      clock.begin(options_.rate_hz);
+    }
     ticked = true;
     const std::int64_t late_ns = clock.wait(missed);
     const std::int64_t began_ns = TickClock::now_ns();
@@ -139,13 +146,14 @@ void HostLoop::take_counts() {
   const std::size_t channels = device_.description().channels.size();
   auto& queue = device_.samples();
   for (bool more = true; more;) {
-    while (queue.at_gap()) (void)queue.take_gap();
+    while (queue.at_gap()) periods_ += static_cast<std::uint32_t>(queue.take_gap().count);
     const std::size_t frames = queue.take(codes_);
     more = frames > 0;
     if (!more) break;
     last_count_ns_ = TickClock::now_ns();
+    periods_ += static_cast<std::uint32_t>(frames);
     board_->set_inputs(codes_[(frames - 1) * channels + position_channel_], sound_ && enabled_,
-                       last_count_ns_);
+                       last_count_ns_, periods_);
   }
 }
 

@@ -84,6 +84,7 @@ class HostLoop {
   std::vector<std::int32_t> codes_;
   std::int64_t last_count_ns_ = 0, next_beat_ns_ = 0;
   std::int64_t round_trip_ns_ = 0, queue_ns_ = 0;  // as of the last heartbeat
+  std::uint32_t periods_ = 0;                      // of the device's stream
   std::uint32_t to_trim_ = 0, to_pad_ = 0;
   float last_drive_v_ = 0;
   bool armed_ = false, sound_ = true, enabled_ = true;

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <string_view>
 
 #include "data-schema/cli/talk.hpp"
@@ -22,7 +24,7 @@ using playback::ControlServer;
 using playback::Service;
 using playback::ServiceManager;
 
-constexpr int kIdleMs = 100;
+constexpr int kIdleMs = 100, kLoadingMs = 5;
 constexpr double kStepS = 2e-3;
 constexpr const char* kHelp =
     "tactographd --config FILE\n\n"
@@ -50,6 +52,9 @@ double steady_s() {
 void tell(ControlServer& server, const ServiceManager& manager, std::string_view event,
           const schema::ControlFields& fields) {
   server.publish(event, fields);
+  if (event == "recorder")
+    cli::talk(fmt::format("tactographd: {:.0f} ticks are not in the session: {}\n",
+                          schema::control_number(fields, "lost_ticks"), schema::control_text(fields, "why")));
   if (event != "state") return;
   const std::string state = schema::control_text(fields, "state"), why = schema::control_text(fields, "why");
   cli::talk(fmt::format("tactographd: {}{}{}\n", state, why.empty() ? "" : ": ", why));
@@ -60,9 +65,18 @@ void serve_until_asked(ControlServer& server, Service& service, ServiceManager& 
   const auto handle = [&](const schema::ControlRequest& request) { return service.handle(request); };
   while (stop_asked == 0) {
     const bool busy = service.step(kStepS);
-    server.serve(busy ? 0 : kIdleMs, handle);
+    if (const auto answer = service.finished_load()) server.answer_late(*answer);
+    server.serve(busy ? 0 : service.loading() ? kLoadingMs : kIdleMs, handle);
+    if (server.stop_waits()) service.give_up_load();
     manager.feed_watchdog(steady_s());
   }
+}
+
+// What is still being prepared is wanted by nobody, and can't be interrupted.
+void end_without_loading(std::unique_ptr<ControlServer>& server) {
+  server.reset();  // the socket goes
+  std::fflush(nullptr);
+  std::_Exit(0);
 }
 
 int run(const char* config_path) {
@@ -82,6 +96,7 @@ int run(const char* config_path) {
   serve_until_asked(**server, **service, manager);
   manager.tell("STOPPING=1");
   (*service)->end();
+  if ((*service)->loading()) end_without_loading(*server);
   return 0;
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/daemon/play.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
+#include "data-schema/files.hpp"
 #include "playback/daemon/player_device.hpp"
 
 namespace tacto::playback {
@@ -17,6 +20,12 @@ constexpr double kUsualS = 10, kPlayStepS = 0.01, kReleaseWaitS = 0.05;
 double time_of(const PlayOptions& options, const std::optional<FingerScript>& script) {
   if (options.time_s) return *options.time_s;
   return script ? script->path.duration_s() : kUsualS;
+}
+
+Result<void> check_play_options(const PlayOptions& options) {
+  if (options.time_s && !(*options.time_s > 0))
+    return fail(Fault::usage, fmt::format("a time of {:g} s", *options.time_s), {}, "a time above 0 s");
+  return schema::check_stem(schema::stem_of("/" + options.session, ".session").substr(1));
 }
 
 Result<std::string> transducer_for(const PlayOptions& options, const firmware_host::Capabilities& about) {
@@ -54,8 +63,10 @@ Result<void> ramp_down(Player& player) {
   return {};
 }
 
-PlayOutcome outcome_of(const Prepared& made) {
+PlayOutcome outcome_of(const Program& program) {
+  const Prepared& made = program.prepared;
   PlayOutcome outcome;
+  outcome.decision = program.decision;
   outcome.passes_to_hz = made.passes_to_hz;
   outcome.delay_s = made.delay_s;
   outcome.delay_left_s = made.delay_left_s;
@@ -81,6 +92,7 @@ Result<void> play_through(Player& player, const PlayOptions& options, double tim
 
 Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                               const std::function<void(double)>& progress) {
+  if (const auto sound = check_play_options(options); !sound) return schema::forward_error(sound);
   const auto script = read_finger_script(options.finger_path, false);
   if (!script) return schema::forward_error(script);
   auto device = open_player_device(options.device_uri, *script);
@@ -92,7 +104,7 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   if (!player) return schema::forward_error(player);
   auto program = program_for(options, *device, (*player)->metres_per_count());
   if (!program) return schema::forward_error(program);
-  PlayOutcome outcome = outcome_of(program->prepared);
+  PlayOutcome outcome = outcome_of(*program);
   outcome.device = device->uri;
   outcome.simulated = device->device->capabilities().simulated;
   outcome.asked_s = time_of(options, *script);

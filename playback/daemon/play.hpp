@@ -27,6 +27,7 @@ struct PlayOutcome {
   double asked_s = 0;
   double passes_to_hz = 0, delay_s = 0, delay_left_s = 0, inverse_error_db = 0;
   std::vector<std::string> notes;
+  std::optional<TickDecision> decision;  ///< of the program's budget
 };
 
 /// Emulated devices play as fast as they can, or paced; `stop_asked` ends it early, by a ramp. A fault ends

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -10,6 +11,7 @@
 
 #include "firmware-host/wire_fields.hpp"
 #include "firmware-host/wire_words.hpp"
+#include "playback/displacement_limit.hpp"
 #include "playback/texture_change.hpp"
 #include "playback/upload.hpp"
 
@@ -45,6 +47,11 @@ Result<double> encoder_step(const firmware_host::Description& about, const std::
       return channel.scale;
   return fail(Fault::device, "the device does not say what its encoder counts", uri,
               "it lacks a channel of the quantity position");
+}
+
+// By a factor on the program's gains.
+Result<void> within_reach(const Program& program, double peak_m, double factor) {
+  return check_displacement(peak_m, factor, program.prepared.gain_m_per_n, program.session.transducer);
 }
 
 }  // namespace
@@ -97,6 +104,8 @@ Result<void> Player::may_load() const {
 
 Result<void> Player::load(Program program, double fade_s) {
   if (const auto may = may_load(); !may) return may;
+  const double factor = runs(state_) ? gain_ : 1;
+  if (const auto near = within_reach(program, program.tray_peak_m, factor); !near) return near;
   const wire::Welcome& about = client_.description().welcome;
   wire::Limits& limits = program.prepared.limits;
   limits.drive_v = std::min(limits.drive_v, about.drive_limit_v);
@@ -122,6 +131,7 @@ Result<void> Player::change(Program program, double fade_s) {
   take_ticks();
   take_faults();
   if (!done) return done;
+  leaving_peak_m_ = program_->tray_peak_m;
   program_ = std::move(program);
   faded_at_ = view_.expected() + static_cast<std::uint64_t>((fade_s + kBehindS) * program_->prepared.rate_hz);
   recorder_->event({view_.expected(), steady_ns(), "texture changed to " + program_->name()});
@@ -146,12 +156,12 @@ schema::SessionHeader Player::session_header() const {
 Result<void> Player::arm(const std::string& session_path) {
   if (const auto may = require(state_ == PlayerState::idle, "arm", "disarm first"); !may) return may;
   if (const auto may = require(loaded(), "arm", "load a texture or scene first"); !may) return may;
+  if (const auto may = may_gain(gain_); !may) return may;
   // Another program may have been killed in mid-play: the device is then still on its way to rest.
   if (const auto rests = wait_for_idle(); !rests) return rests;
   auto recorder = FlightRecorder::begin(session_path, session_header(), options_.full_queue);
   if (!recorder) return schema::forward_error(recorder);
   recorder_ = std::move(*recorder);
-  session_path_ = session_path;
   fault_.clear();
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
   device_gain_m_per_n_ = program_->prepared.gain_m_per_n;
@@ -162,12 +172,14 @@ Result<void> Player::arm(const std::string& session_path) {
   client_.take_ticks();  // of an earlier run, be it another program's that was killed
   if (done) done = client_.command(arm);
   if (!done) {
-    recorder_->event({0, steady_ns(), "not armed: " + schema::message(done.error())});
-    (void)end_session();
+    recorder_->discard();
+    recorder_.reset();
     return done;
   }
+  session_path_ = session_path;
+  const auto beaten = beat();
   enter(PlayerState::armed, "");
-  return beat();
+  return beaten;
 }
 
 Result<void> Player::play() {
@@ -182,8 +194,16 @@ Result<void> Player::stop() {
   return steer(wire::Stop{});
 }
 
-Result<void> Player::gain(double gain) {
+Result<void> Player::may_gain(double gain) const {
   if (!std::isfinite(gain)) return fail(Fault::usage, "the gain is no finite number", uri_);
+  if (!program_) return {};
+  const bool fades = recorder_ != nullptr && view_.expected() < faded_at_;
+  const double peak_m = std::max(program_->tray_peak_m, fades ? leaving_peak_m_ : 0);
+  return within_reach(*program_, peak_m, gain);
+}
+
+Result<void> Player::gain(double gain) {
+  if (const auto may = may_gain(gain); !may) return may;
   gain_ = gain;
   if (!recorder_) return {};
   return steer(device_gain());
@@ -242,6 +262,7 @@ Result<void> Player::beat() {
   const auto pulse = client_.heartbeat();
   if (!pulse) return schema::forward_error(pulse);
   round_trip_s_ = client_.transport().now_s() - asked_s;
+  pulse_s_ = static_cast<double>(pulse->device_ticks) / std::max(1U, client_.description().welcome.clock_hz);
   next_beat_s_ = client_.transport().now_s() + options_.heartbeat_s;
   return {};
 }
@@ -269,13 +290,14 @@ void Player::take(const wire::Ticks& message) {
   const double period_ns = 1e9 / program_->prepared.rate_hz;
   for (std::uint8_t i = 0; i < message.count; ++i) {
     const wire::Tick& tick = message.ticks[i];
-    const schema::SessionTick row{message.first_tick + i,
-                                  time_ns + std::llround(i * period_ns),
-                                  tick.encoder,
-                                  tick.drive_v,
-                                  tick.flags,
-                                  options_.lateness_ns ? options_.lateness_ns(message.first_tick + i)
-                                                       : schema::SessionTick::kLatenessUnknown};
+    const std::uint64_t number = message.first_tick + i;
+    const schema::SessionTick row{
+        number,
+        options_.due_ns ? options_.due_ns(number) : time_ns + std::llround(i * period_ns),
+        tick.encoder,
+        tick.drive_v,
+        tick.flags,
+        options_.lateness_ns ? options_.lateness_ns(number) : schema::SessionTick::kLatenessUnknown};
     view_.take(row);
     recorder_->tick(row);
   }
@@ -320,12 +342,14 @@ void Player::enter(PlayerState state, const std::string& why) {
   if (state == PlayerState::lost) fault_ = why;
   const std::string words = fmt::format("{}{}{}", word_of(state), why.empty() ? "" : ": ", why);
   if (recorder_) recorder_->event({view_.expected(), steady_ns(), words});
-  if (listener_) listener_(state, why, 1e-9 * static_cast<double>(view_.last().time_ns));
+  // Before the first tick has come the heartbeat's answer knows the time.
+  const double device_s = view_.ticks() > 0 ? 1e-9 * static_cast<double>(view_.last().time_ns) : pulse_s_;
+  if (listener_) listener_(state, why, device_s);
 }
 
 PlayerStatus Player::status() const {
   PlayerStatus status{state_, fault_, gain_, view_, std::nullopt, session_path_, round_trip_s_};
-  if (recorder_) status.recorder = recorder_->counts();
+  status.recorder = recorded();
   return status;
 }
 

@@ -30,6 +30,8 @@ struct PlayerOptions {
   std::string loop = "device";  ///< who closes it, for the session
   /// How late a tick was, where somebody measures it.
   std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
+  /// When a tick was due, by the device's clock, where somebody knows it better than its message.
+  std::function<std::int64_t(std::uint64_t tick)> due_ns;
   /// From the encoder's edge to the drive, in words, as it was measured until now: for the session.
   std::function<std::string()> latency;
 };
@@ -64,7 +66,8 @@ class Player {
 
   /// In idle: kept for arm(), which uploads it. Armed or playing: the texture changes to it, over `fade_s` (0
   /// to 10 s); gain() goes on from what it is. Errors: usage, in another state, while an earlier change still
-  /// fades, or for another fade; as of check_texture_change(); device. After an error the texture that played
+  /// fades, or for another fade; unsuitable, where the tray would go beyond its limit; as of
+  /// check_texture_change(); device. After an error the texture that played
   /// plays on.
   schema::Result<void> load(Program program, double fade_s = kUsualFadeS);
   /// Whether it may be loaded in this state. Errors: usage.
@@ -75,8 +78,11 @@ class Player {
   schema::Result<void> arm(const std::string& session_path);
   schema::Result<void> play();
   schema::Result<void> stop();
-  /// At any time; kept for the next session. Errors: usage, for a gain that is no number; device.
+  /// At any time; kept for the next session. Errors: as may_gain; device.
   schema::Result<void> gain(double gain);
+  /// Errors: usage, for a gain that is no number; unsuitable, for one that would move the tray beyond its
+  /// limit, with the largest that fits.
+  schema::Result<void> may_gain(double gain) const;
   /// Ramps to zero, waits for idle (a second at most), and closes the session. Errors: device; cannot_write.
   schema::Result<void> disarm();
 
@@ -85,6 +91,10 @@ class Player {
   schema::Result<void> step(double timeout_s);
 
   PlayerState state() const { return state_; }
+  /// Counts of the session that is being written; none where none is.
+  std::optional<RecorderCounts> recorded() const {
+    return recorder_ ? std::optional(recorder_->counts()) : std::nullopt;
+  }
   /// Counts of the session that was closed last.
   const RecorderCounts& last_session() const { return last_session_; }
   PlayerStatus status() const;
@@ -125,9 +135,11 @@ class Player {
   PlayerState state_ = PlayerState::idle;
   std::string fault_;
   double gain_ = 1;
+  double leaving_peak_m_ = 0;       // of the tray, by the texture that the last change left
   double device_gain_m_per_n_ = 0;  // that gain_ is a factor of; since arming
   std::uint64_t faded_at_ = 0;      // the tick by which the last change is through
   TickView view_;
+  double pulse_s_ = 0;  // the device's clock at the last heartbeat
   double next_beat_s_ = 0, round_trip_s_ = 0;
 };
 

@@ -104,9 +104,12 @@ Result<PlayerDevice> open_player_device(const std::string& uri, const std::optio
   if (client == nullptr)
     return fail(Fault::unsuitable, "nothing can be played on a replay", uri, "play on sim: or usb:");
   const firmware_host::Capabilities& about = (*device)->capabilities();
+  PlayerDevice player{std::move(*device), client, about.uri, {}};
+  if (uri.starts_with(kSimScheme)) return player;  // an emulation of this process alone
   auto lock = DeviceLock::take(about.simulated.empty() ? about.serial : about.uri);
   if (!lock) return schema::forward_error(lock);
-  return PlayerDevice{std::move(*device), client, about.uri, std::move(*lock)};
+  player.lock = std::move(*lock);
+  return player;
 }
 
 }  // namespace tacto::playback

@@ -43,8 +43,9 @@ struct PlayerDevice {
   DeviceLock lock;
 };
 
-/// Opens by URI (see open_device). A script is for `sim:` alone. Errors: as open_device; unsuitable: a device
-/// that nothing can be played on (a replay), a script for a real one; another program plays on it.
+/// Opens by URI (see open_device), and locks what other programs could open too. A script is for `sim:`
+/// alone. Errors: as open_device; unsuitable: a device that nothing can be played on (a replay), a script for
+/// a real one; another program plays on it.
 schema::Result<PlayerDevice> open_player_device(const std::string& uri,
                                                 const std::optional<FingerScript>& script);
 

@@ -5,10 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <map>
+#include <system_error>
 
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
+#include "data-schema/texture_wav.hpp"
 #include "data-schema/version.hpp"
+#include "playback/displacement_limit.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -18,7 +23,10 @@ using schema::Fault;
 using schema::Result;
 using schema::TextureLayer;
 
-constexpr double kUsualGain = 1e-3;  // of a texture that nobody gave one: a fingertip has about 1e3 N/m
+constexpr double kUsualGain = 1e-3;    // of a texture that nobody gave one: a fingertip has about 1e3 N/m
+constexpr double kLongestOnsetS = 10;  // the wire's
+constexpr double kFarthestSamples = 1 << 29;  // from the encoder's zero: the wire's 2^61, in 2^32 a sample
+constexpr double kMostPathSamples = 1 << 24;  // 168 m at 10 um; as many as all levels together may have
 
 bool names_a_scene(const std::string& file) {
   if (file.ends_with(".scene.json") || file.ends_with(".scene")) return true;
@@ -44,38 +52,75 @@ Ends ends_of(schema::TextureEnds ends) {
   return ends == schema::TextureEnds::mirror ? Ends::mirror : Ends::stop;
 }
 
+// A session is read in other folders too.
+std::string full_path(const std::string& path) {
+  std::error_code ignored;
+  const auto full = std::filesystem::absolute(path, ignored);
+  return ignored ? path : full.lexically_normal().string();
+}
+
 // The textures of a scene, and what is said of them.
 struct Laid {
-  std::vector<schema::Texture> textures;
+  struct File {
+    schema::Texture texture;
+    std::string sum;
+  };
+  std::map<std::string, File> files;  // by stem: layers that share one share it here
   std::vector<TextureLayer> layers;
-  std::vector<schema::SessionTexture> rows;
+  std::vector<schema::SessionTexture> rows;  // of the layers
+  std::vector<std::string> stems;
 
-  Result<void> add(const TextureLayer& layer, const std::string& file) {
+  const schema::Texture& texture(std::size_t layer) const { return files.at(stems[layer]).texture; }
+
+  Result<const File*> read(const std::string& file, const std::string& stem) {
+    if (const auto known = files.find(stem); known != files.end()) return &known->second;
     auto texture = schema::read_texture(file);
     if (!texture) return schema::forward_error(texture);
+    const auto wav = schema::texture_wav(file);
+    if (!wav) return schema::forward_error(wav);
+    return &files.emplace(stem, File{std::move(*texture), wav->sha256}).first->second;
+  }
+  Result<void> add(const TextureLayer& layer, const std::string& file) {
     const std::string stem = schema::stem_of(file, ".texture") + ".texture";
-    const auto sum = schema::sha256_of_file(stem + ".wav");
-    if (!sum) return schema::forward_error(sum);
-    textures.push_back(std::move(*texture));
+    const auto known = read(file, stem);
+    if (!known) return schema::forward_error(known);
+    stems.push_back(stem);
     layers.push_back(layer);
-    rows.push_back({stem + ".json", *sum, layer.at_m, layer.gain_m_per_n, layer.ends});
+    rows.push_back({full_path(stem + ".json"), (*known)->sum, layer.at_m, layer.gain_m_per_n, layer.ends});
     return {};
   }
   double end_m() const {
     double end = layers.front().at_m;
     for (std::size_t i = 0; i < layers.size(); ++i)
-      end = std::max(end, layers[i].at_m + textures[i].signal.length_m());
+      end = std::max(end, layers[i].at_m + texture(i).signal.length_m());
     return end;
   }
   double start_m() const { return std::ranges::min(layers, {}, &TextureLayer::at_m).at_m; }
-  /// The gain that all share: weights are the layers' parts of it.
+  /// The gain that all share: weights are the layers' parts of it, with their signs.
   double gain() const {
     double most = 0;
-    for (const TextureLayer& layer : layers)
-      if (std::abs(layer.gain_m_per_n) > std::abs(most)) most = layer.gain_m_per_n;
+    for (const TextureLayer& layer : layers) most = std::max(most, std::abs(layer.gain_m_per_n));
     return most;
   }
 };
+
+// Before memory is taken for all that lies between the textures.
+Result<void> check_reach(const Laid& laid, const std::string& scene_path) {
+  double pitch_m = laid.texture(0).signal.pitch_m, start_m = laid.layers.front().at_m, end_m = start_m;
+  for (std::size_t i = 0; i < laid.layers.size(); ++i) {
+    pitch_m = std::min(pitch_m, laid.texture(i).signal.pitch_m);
+    start_m = std::min(start_m, laid.layers[i].at_m);
+    end_m = std::max(end_m, laid.layers[i].at_m + laid.texture(i).signal.length_m());
+    const double reach_m = end_m - start_m;
+    if (reach_m / pitch_m <= kMostPathSamples) continue;
+    const std::string layer = fmt::format("{}#/layers/{}/at_m", scene_path, i);
+    return fail(Fault::unsuitable,
+                fmt::format("the textures reach over {:g} m, at a pitch of {:g} um: over {:.0f} samples",
+                            reach_m, 1e6 * pitch_m, kMostPathSamples),
+                scene_path.empty() ? laid.rows[i].file : layer, "lay them closer, or play a shorter part");
+  }
+  return {};
+}
 
 Result<Laid> laid_out(const schema::Scene& scene, const std::string& scene_path) {
   Laid laid;
@@ -94,6 +139,7 @@ Result<Laid> laid_out(const schema::Scene& scene, const std::string& scene_path)
     if (laid.layers[i].ends != schema::TextureEnds::stop)
       return fail(Fault::unsuitable, "one of several textures can't go on beyond its ends",
                   fmt::format("{}#/layers/{}/ends", scene_path, i), "make it \"stop\"");
+  if (const auto near = check_reach(laid, scene_path); !near) return schema::forward_error(near);
   if (laid.gain() == 0) return fail(Fault::unsuitable, "every gain is 0", scene_path, "give one a gain");
   return laid;
 }
@@ -101,7 +147,7 @@ Result<Laid> laid_out(const schema::Scene& scene, const std::string& scene_path)
 std::vector<PlacedTexture> placed(const Laid& laid) {
   std::vector<PlacedTexture> list;
   for (std::size_t i = 0; i < laid.layers.size(); ++i)
-    list.push_back({&laid.textures[i], laid.layers[i].at_m, laid.layers[i].gain_m_per_n / laid.gain()});
+    list.push_back({&laid.texture(i), laid.layers[i].at_m, laid.layers[i].gain_m_per_n / laid.gain()});
   return list;
 }
 
@@ -137,11 +183,48 @@ void describe(schema::SessionHeader& session, const Prepared& prepared, const Pr
   session.high_hz = prepared.passes_to_hz;
 }
 
+// What the budget chooses goes into the options.
+Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& textures,
+                                            const schema::Transducer& transducer, const TickBudget& budget,
+                                            PrepareOptions& options) {
+  if (!budget.asked()) return std::nullopt;
+  const auto table = schema::find_trade_table();
+  if (!table) return schema::forward_error(table);
+  auto decision = decide(textures, transducer, options, budget, *table);
+  if (!decision) return schema::forward_error(decision);
+  options = decision->chosen.in(options);
+  return std::move(*decision);
+}
+
 void name_files(Program& program, const Laid& laid) {
   program.session.textures = laid.rows;
-  program.session.scene_file = program.scene_path;
   if (program.scene_path.empty()) return;
+  program.session.scene_file = full_path(program.scene_path);
   program.session.scene_sha256 = schema::sha256_of_file(program.scene_path).value_or("");
+}
+
+// What the device would refuse by numbers of its own.
+Result<void> check_onset(const PrepareOptions& options) {
+  if (options.onset_s <= kLongestOnsetS) return {};
+  return fail(
+      Fault::usage, fmt::format("an onset of {:g} s", options.onset_s), {},
+      fmt::format("0 s to {:g} s (--onset, or onset_s in the daemon's configuration)", kLongestOnsetS));
+}
+
+Result<void> check_place(const Laid& laid, const Prepared& prepared) {
+  const double farthest_m = kFarthestSamples * prepared.pitch_m;
+  const double at_m = std::max(std::abs(laid.start_m()), std::abs(laid.end_m()));
+  if (at_m < farthest_m) return {};
+  return fail(Fault::usage, fmt::format("lies as far as {:g} m from the encoder's zero", at_m),
+              laid.rows.front().file,
+              fmt::format("lay it within {:.4g} m (--at, or at_m in the scene)", farthest_m));
+}
+
+// Of a texture by itself the file is known.
+schema::Error naming_the_file(schema::Error error, const Laid& laid) {
+  if (laid.rows.size() == 1 && error.where.starts_with("texture"))
+    error.where = laid.rows.front().file + error.where.substr(std::string_view("texture").size());
+  return error;
 }
 
 }  // namespace
@@ -160,9 +243,17 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
     return schema::forward_error(usable);
   options.gain_m_per_n = laid->gain();
   options.ends = ends_of(laid->layers.front().ends);
+  if (const auto soft = check_onset(options); !soft) return schema::forward_error(soft);
+  auto decision = decided(placed(*laid), *transducer, request.budget, options);
+  if (!decision) return schema::forward_error(decision);
+  program.decision = std::move(*decision);
   auto prepared = prepare(placed(*laid), *transducer, options);
-  if (!prepared) return schema::forward_error(prepared);
+  if (!prepared) return tl::unexpected(naming_the_file(prepared.error(), *laid));
+  if (const auto near = check_place(*laid, *prepared); !near) return schema::forward_error(near);
   program.prepared = std::move(*prepared);
+  program.prepared.built.texture_files = laid->files.size();
+  program.tray_peak_m = request.any_displacement ? 0 : tray_peak_m(program.prepared, *transducer, options);
+  program.gain_m_per_n = laid->gain();
   program.length_m = laid->end_m() - laid->start_m();
   program.session.transducer = *transducer;
   program.session.transducer_sha256 = transducer_sum(transducer_name);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "data-schema/session.hpp"
+#include "playback/budget.hpp"
 #include "playback/prepare.hpp"
 
 namespace tacto::playback {
@@ -15,23 +16,31 @@ struct ProgramRequest {
   std::string file;  ///< stem or file of a texture or scene
   std::optional<double> at_m, gain_m_per_n;
   std::optional<schema::TextureEnds> ends;
-  bool force = false;  ///< take a transducer that says of itself that its model does not fit
+  bool force = false;      ///< take a transducer that says of itself that its model does not fit
+  TickBudget budget = {};  ///< chooses reading and inverse, where something is asked
+  /// Also what could move the tray beyond its limit: on an emulated one, to see what the other limits take
+  /// away.
+  bool any_displacement = false;
 };
 
 /// Ready to upload. `session` lacks only what the player knows: device, clock, initial state.
 struct Program {
   Prepared prepared;
   schema::SessionHeader session;
-  std::string scene_path;  ///< empty for a texture by itself
-  double length_m = 0;     ///< from the first texture's start to the last one's end
+  std::string scene_path;   ///< empty for a texture by itself
+  double tray_peak_m = 0;   ///< the furthest that the tray goes, at a factor of 1 (displacement_limit.hpp)
+  double gain_m_per_n = 0;  ///< the largest of its textures, without sign
+  double length_m = 0;      ///< from the first texture's start to the last one's end
+  std::optional<TickDecision> decision;  ///< of the request's budget
 
   /// The scene's file, or the texture's.
   const std::string& name() const { return scene_path.empty() ? session.textures.front().file : scene_path; }
 };
 
 /// Reads the files, and prepares. `options`: rate, encoder, limits; gain and ends are taken from the request
-/// or the scene. Errors: as read_texture, read_scene, read_transducer, prepare; unsuitable: as check_usable;
-/// a scene of several textures whose ends are not `stop`; usage: a place or gain for a scene.
+/// or the scene. Errors: as read_texture, read_scene, read_transducer, prepare, decide, find_trade_table;
+/// unsuitable: as check_usable; a scene of several textures whose ends are not `stop`; usage: a place or gain
+/// for a scene.
 schema::Result<Program> make_program(const ProgramRequest& request, const std::string& transducer,
                                      PrepareOptions options);
 

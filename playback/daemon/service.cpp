@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <ctime>
 #include <filesystem>
-#include <future>
 
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
@@ -33,8 +31,6 @@ namespace fs = std::filesystem;
 constexpr double kStatusEveryS = 0.1;
 constexpr double kReleaseS = 0.01;
 constexpr double kObeyedS = 0.2, kLookS = 0.01;  // a device's ticks come every 10 ms, and a ramp takes 20 ms
-constexpr auto kLookEvery = std::chrono::milliseconds(1);
-constexpr double kBesideS = 5e-3;
 
 // An emulated device that runs ahead of the clock would play to nobody.
 std::string paced(const std::string& uri) {
@@ -42,25 +38,35 @@ std::string paced(const std::string& uri) {
   return uri + (uri == "sim:" ? "paced=1" : ",paced=1");
 }
 
+void add_decision(ControlFields& fields, const TickDecision& decision) {
+  fields.emplace_back("chosen", words_of(decision.chosen));
+  fields.emplace_back("promised_error", decision.chosen.error);
+  fields.emplace_back("tick_s", 1e-9 * decision.chosen.tick_ns);
+  fields.emplace_back("by_table", decision.table);
+  for (std::size_t i = 0; i < decision.reasons.size(); ++i)
+    fields.emplace_back(fmt::format("why_{}", i + 1), decision.reasons[i]);
+}
+
 ControlFields fields_of(const std::string& file, const Program& program) {
   const Prepared& made = program.prepared;
   ControlFields fields{{"file", file},
                        {"length_m", program.length_m},
-                       {"gain_m_per_n", double{made.gain_m_per_n}},
+                       {"gain_m_per_n", program.gain_m_per_n},
                        {"rate_hz", made.rate_hz},
                        {"passes_to_hz", made.passes_to_hz},
                        {"delay_s", made.delay_s},
                        {"delay_left_s", made.delay_left_s},
                        {"inverse_error_db", made.inverse_error_db}};
+  if (program.decision) add_decision(fields, *program.decision);
   for (std::size_t i = 0; i < made.notes.size(); ++i)
     fields.emplace_back(fmt::format("note_{}", i + 1), made.notes[i]);
   return fields;
 }
 
-void add_ticks(ControlFields& fields, const TickView& view) {
+void add_ticks(ControlFields& fields, const TickView& view, std::uint64_t not_recorded) {
   const auto count = [](std::uint64_t n) { return static_cast<std::int64_t>(n); };
   fields.emplace_back("ticks", count(view.ticks()));
-  fields.emplace_back("lost_ticks", count(view.lost()));
+  fields.emplace_back("lost_ticks", count(view.lost() + not_recorded));
   fields.emplace_back("late_ticks", count(view.late()));
   fields.emplace_back("limited_ticks", count(view.limited()));
   fields.emplace_back("blind_ticks", count(view.blind()));
@@ -76,7 +82,7 @@ void add_ticks(ControlFields& fields, const TickView& view) {
 
 void add_recorder(ControlFields& fields, const RecorderCounts& counts) {
   fields.emplace_back("recorded_ticks", static_cast<std::int64_t>(counts.ticks));
-  fields.emplace_back("recorder_lost_ticks", static_cast<std::int64_t>(counts.queue_lost + counts.disk_lost));
+  fields.emplace_back("recorder_lost_ticks", static_cast<std::int64_t>(counts.lost()));
   if (!counts.failure.empty()) fields.emplace_back("recorder_failure", counts.failure);
 }
 
@@ -86,7 +92,7 @@ void add_loop(ControlFields& fields, const HostLoopStatus& loop) {
   fields.emplace_back("wake_p999_s", loop.wake_p999_s);
   fields.emplace_back("busy_p99_s", loop.busy_p99_s);
   for (std::size_t i = 0; i < kLateBoundsS.size(); ++i)
-    fields.emplace_back(fmt::format("late_over_{:g}us_part", 1e6 * kLateBoundsS[i]), loop.late_parts[i]);
+    fields.emplace_back(late_part_name(kLateBoundsS[i]), loop.late_parts[i]);
   fields.emplace_back("latency_p50_s", loop.latency.p50_s);
   fields.emplace_back("latency_p99_s", loop.latency.p99_s);
   fields.emplace_back("missed_ticks", static_cast<std::int64_t>(loop.missed_ticks));
@@ -109,6 +115,8 @@ Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& confi
   std::error_code failed;
   fs::create_directories(config.sessions, failed);
   if (failed) return fail(Fault::cannot_write, "can't be made: " + failed.message(), config.sessions);
+  if (!config.files.empty() && !fs::is_directory(config.files, failed))
+    return fail(Fault::not_found, "there is no such folder", config.files, "name one in files, or none");
   if (const auto sound = schema::read_transducer(config.transducer); !sound)
     return schema::forward_error(sound);
   if (const auto connected = service->connect(); !connected) return schema::forward_error(connected);
@@ -151,6 +159,7 @@ Result<void> Service::close_loop_here(PlayerOptions& options) {
   loop_client_ = std::move(*connected);
   options.loop = "host";
   options.lateness_ns = [&board = loop_->board()](std::uint64_t tick) { return board.lateness_ns(tick); };
+  options.due_ns = [&board = loop_->board()](std::uint64_t tick) { return board.due_ns(tick); };
   options.latency = [&loop = *loop_] { return words_of(loop.latency()); };
   return {};
 }
@@ -159,6 +168,7 @@ PrepareOptions Service::options() {
   PrepareOptions options;
   options.rate_hz = config_.rate_hz;
   options.metres_per_count = player_->metres_per_count();
+  options.undo_hysteresis = config_.undo_hysteresis;
   options.onset_s = config_.onset_s;
   options.release_s = kReleaseS;
   options.watchdog_ms = static_cast<std::uint16_t>(config_.watchdog_ms);
@@ -167,41 +177,62 @@ PrepareOptions Service::options() {
   return options;
 }
 
+// While one plays its filter stays, as the device has one for both.
+TickBudget Service::budget() const {
+  TickBudget budget{config_.budget, config_.max_tick_ns, false, {}};
+  if (player_->state() != PlayerState::idle) budget.filter = filter_;
+  return budget;
+}
+
 std::string Service::resolved(const std::string& file) const {
   return config_.files.empty() ? file : (fs::path(config_.files) / file).string();
 }
 
+Result<void> Service::may_begin(const char* what) const {
+  if (!loader_.busy()) return {};
+  return fail(Fault::usage, fmt::format("can't {} while a texture is being prepared", what),
+              load_request_.file, "wait for the answer to that load");
+}
+
 // A lost device may be back by the time somebody loads.
-Result<ControlFields> Service::load(const ControlRequest& request) {
+Result<void> Service::begin_load(const ControlRequest& request) {
+  if (const auto may = may_begin("load"); !may) return may;
   if (player_->state() == PlayerState::lost)
-    if (const auto connected = connect(); !connected) return schema::forward_error(connected);
-  if (const auto may = player_->may_load(); !may) return schema::forward_error(may);
-  auto program = prepared_program({resolved(request.file), request.at_m, request.gain_m_per_n, request.ends});
-  if (!program) return schema::forward_error(program);
-  ControlFields fields = fields_of(request.file, *program);
-  const std::string scene_path = program->scene_path;
+    if (const auto connected = connect(); !connected) return connected;
+  if (const auto may = player_->may_load(); !may) return may;
+  load_request_ = request;
+  const ProgramRequest wanted{resolved(request.file), request.at_m, request.gain_m_per_n,
+                              request.ends,           false,        budget()};
+  loader_.begin([wanted, transducer = config_.transducer, options = options()] {
+    return make_program(wanted, transducer, options);
+  });
+  return {};
+}
+
+std::optional<Result<ControlFields>> Service::finished_load() {
+  auto program = loader_.take();
+  if (!program) return std::nullopt;
+  if (!*program) return schema::forward_error(*program);
+  return load(std::move(**program));
+}
+
+Result<ControlFields> Service::load(Program program) {
+  const std::string& file = load_request_.file;
+  ControlFields fields = fields_of(file, program);
+  const std::string scene_path = program.scene_path;
+  const auto filter = program.decision ? std::optional(program.decision->chosen.inverse) : std::nullopt;
   const bool changes = player_->state() != PlayerState::idle;
-  const double fade_s = request.fade_s.value_or(kUsualFadeS);
-  if (const auto kept = player_->load(std::move(*program), fade_s); !kept) return schema::forward_error(kept);
-  loaded_ = request.file;
+  const double fade_s = load_request_.fade_s.value_or(kUsualFadeS);
+  if (const auto kept = player_->load(std::move(program), fade_s); !kept) return schema::forward_error(kept);
+  loaded_ = file;
   scene_path_ = scene_path;
+  filter_ = filter;
   saved_gain_ = 1;
   fields.emplace_back("changed", changes);
   if (changes) fields.emplace_back("fade_s", fade_s);
   if (changes) return fields;
   if (const auto fresh = player_->gain(1); !fresh) return schema::forward_error(fresh);
   return fields;
-}
-
-// Preparing may take longer than a device's watchdog waits: while one plays, the player goes on beside it.
-Result<Program> Service::prepared_program(const ProgramRequest& request) {
-  const auto make = [this, &request, options = options()] {
-    return make_program(request, config_.transducer, options);
-  };
-  if (player_->state() == PlayerState::idle) return make();
-  auto made = std::async(std::launch::async, make);
-  while (made.wait_for(kLookEvery) != std::future_status::ready) (void)step(kBesideS);
-  return made.get();
 }
 
 std::string Service::next_session() const {
@@ -217,9 +248,29 @@ std::string Service::next_session() const {
 }
 
 Result<ControlFields> Service::arm() {
+  if (const auto may = may_begin("arm"); !may) return schema::forward_error(may);
   const std::string path = next_session();
   if (const auto armed = player_->arm(path); !armed) return schema::forward_error(armed);
+  told_lost_.reset();
   return ControlFields{{"state", std::string(word_of(player_->state()))}, {"session", path}};
+}
+
+// When it begins, and how much it was in the end.
+void Service::tell_losses(const RecorderCounts& counts, bool last) {
+  const bool wrong = counts.lost() > 0 || !counts.failure.empty();
+  if (!wrong || (told_lost_ && (!last || *told_lost_ == counts.lost()))) return;
+  told_lost_ = counts.lost();
+  const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
+  publish_("recorder", {{"lost_ticks", static_cast<std::int64_t>(counts.lost())},
+                        {"why", counts.failure.empty() ? "the queue to the disk was full" : counts.failure},
+                        {"device_s", device_s}});
+}
+
+Result<ControlFields> Service::disarm() {
+  const bool recorded = player_->recorded().has_value();
+  const auto disarmed = player_->disarm();
+  if (recorded && !player_->recorded()) tell_losses(player_->last_session(), true);
+  return done(disarmed, PlayerState::idle);
 }
 
 // G_psi as it was felt to be right, with who and when: the gains that were loaded times the factor, however
@@ -244,10 +295,12 @@ Result<void> Service::save_gain(double factor) {
   return written;
 }
 
+// What is refused changes nothing: neither the file nor what is felt.
 Result<ControlFields> Service::gain(const ControlRequest& request) {
-  if (const auto set = player_->gain(*request.gain); !set) return schema::forward_error(set);
+  if (const auto may = player_->may_gain(*request.gain); !may) return schema::forward_error(may);
   if (request.save)
     if (const auto saved = save_gain(*request.gain); !saved) return schema::forward_error(saved);
+  if (const auto set = player_->gain(*request.gain); !set) return schema::forward_error(set);
   const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
   publish_("gain", {{"gain", *request.gain}, {"device_s", device_s}});
   return ControlFields{{"gain", *request.gain}, {"saved", request.save}};
@@ -285,19 +338,20 @@ ControlFields Service::status() const {
   if (!loaded_.empty()) fields.emplace_back("loaded", loaded_);
   if (!status.session.empty()) fields.emplace_back("session", status.session);
   fields.emplace_back("round_trip_s", status.round_trip_s);
-  add_ticks(fields, status.ticks);
+  add_ticks(fields, status.ticks, status.recorder ? status.recorder->lost() : 0);
   if (status.recorder) add_recorder(fields, *status.recorder);
   fields.emplace_back("period_s", 1 / config_.rate_hz);
   if (loop_) add_loop(fields, loop_->status());
   return fields;
 }
 
-Result<ControlFields> Service::handle(const ControlRequest& request) {
+std::optional<Result<ControlFields>> Service::handle(const ControlRequest& request) {
   switch (request.verb) {
     case ControlVerb::hello:
       return hello();
     case ControlVerb::load:
-      return load(request);
+      if (const auto begun = begin_load(request); !begun) return schema::forward_error(begun);
+      return std::nullopt;
     case ControlVerb::arm:
       return arm();
     case ControlVerb::play:
@@ -305,7 +359,7 @@ Result<ControlFields> Service::handle(const ControlRequest& request) {
     case ControlVerb::stop:
       return done(player_->stop(), PlayerState::armed);
     case ControlVerb::disarm:
-      return done(player_->disarm(), PlayerState::idle);
+      return disarm();
     case ControlVerb::gain:
       return gain(request);
     case ControlVerb::status:
@@ -321,6 +375,7 @@ bool Service::step(double timeout_s) {
   (void)player_->step(timeout_s);  // a device that is gone is told as a state
   if (const double now_s = client().transport().now_s(); now_s >= next_status_s_) {
     next_status_s_ = now_s + kStatusEveryS;
+    if (const auto counts = player_->recorded()) tell_losses(*counts, false);
     publish_("status", status());
   }
   return true;
@@ -328,7 +383,7 @@ bool Service::step(double timeout_s) {
 
 void Service::end() {
   (void)player_->stop();
-  (void)player_->disarm();
+  (void)disarm();
 }
 
 }  // namespace tacto::playback

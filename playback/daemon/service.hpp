@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "data-schema/control.hpp"
@@ -10,6 +11,7 @@
 #include "playback/daemon/host_loop.hpp"
 #include "playback/daemon/player.hpp"
 #include "playback/daemon/player_device.hpp"
+#include "playback/daemon/program_loader.hpp"
 
 namespace tacto::playback {
 
@@ -22,8 +24,14 @@ class Service {
   /// transducer, finger path, or folder of sessions.
   static schema::Result<std::unique_ptr<Service>> open(const schema::DaemonConfig& config, Publish publish);
 
-  /// Errors: of what was asked for, with what to do.
-  schema::Result<schema::ControlFields> handle(const schema::ControlRequest& request);
+  /// None: the answer comes by finished_load(). Errors: of what was asked for, with what to do.
+  std::optional<schema::Result<schema::ControlFields>> handle(const schema::ControlRequest& request);
+  /// A `load` whose texture has been prepared meanwhile: its answer, once.
+  std::optional<schema::Result<schema::ControlFields>> finished_load();
+  /// Its answer is then an error, and what plays plays on.
+  void give_up_load() { loader_.give_up(); }
+  /// A texture is being prepared, on another thread that can't be waited for.
+  bool loading() const { return loader_.busy(); }
   /// Supervises for about `timeout_s`. False where nothing is under way, and nothing was waited for.
   bool step(double timeout_s);
   /// Ramps to zero and closes the session.
@@ -36,17 +44,21 @@ class Service {
   schema::Result<void> connect();
   schema::Result<void> close_loop_here(PlayerOptions& options);
   firmware_host::Client& client() { return loop_client_ ? *loop_client_ : *device_.client; }
-  schema::Result<schema::ControlFields> load(const schema::ControlRequest& request);
-  schema::Result<Program> prepared_program(const ProgramRequest& request);
+  schema::Result<void> begin_load(const schema::ControlRequest& request);
+  schema::Result<schema::ControlFields> load(Program program);
+  schema::Result<void> may_begin(const char* what) const;
   schema::Result<schema::ControlFields> arm();
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
   schema::Result<void> save_gain(double factor);
+  void tell_losses(const RecorderCounts& counts, bool last);
+  schema::Result<schema::ControlFields> disarm();
   schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState wanted);
   schema::ControlFields hello() const;
   schema::ControlFields status() const;
   std::string resolved(const std::string& file) const;
   std::string next_session() const;
   PrepareOptions options();
+  TickBudget budget() const;
 
   schema::DaemonConfig config_;
   Publish publish_;
@@ -54,9 +66,13 @@ class Service {
   std::unique_ptr<HostLoop> loop_;  // where the host closes it
   std::unique_ptr<firmware_host::Client> loop_client_;
   std::unique_ptr<Player> player_;
+  ProgramLoader loader_;
+  schema::ControlRequest load_request_;  // that is being prepared
   std::string loaded_, scene_path_;
-  double saved_gain_ = 1;  // that the scene's file holds, of the gains that were loaded
+  std::optional<InverseChoice> filter_;  // that a budget chose for what is loaded: a change keeps it
+  double saved_gain_ = 1;                // that the scene's file holds, of the gains that were loaded
   double next_status_s_ = 0;
+  std::optional<std::uint64_t> told_lost_;  // of the session; none where nothing went wrong
 };
 
 }  // namespace tacto::playback

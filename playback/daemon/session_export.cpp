@@ -47,7 +47,7 @@ std::string lines_of(const std::vector<SessionTick>& ticks, const schema::Sessio
   return text;
 }
 
-Result<void> write_csv(const std::string& session, const std::string& temporary) {
+Result<std::string> write_csv(const std::string& session, const std::string& temporary) {
   auto reader = schema::SessionReader::open(session);
   if (!reader) return schema::forward_error(reader);
   std::ofstream out(temporary, std::ios::binary);
@@ -56,32 +56,41 @@ Result<void> write_csv(const std::string& session, const std::string& temporary)
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
       out << lines_of(*ticks, reader->header());
   out.flush();
-  return out ? Result<void>() : fail(Fault::cannot_write, "can't be written", temporary, "is the disk full?");
+  return out ? Result<std::string>()
+             : fail(Fault::cannot_write, "can't be written", temporary, "is the disk full?");
 }
 
-Result<void> write_wav(const std::string& session, const std::string& temporary) {
+Result<std::string> write_wav(const std::string& session, const std::string& temporary) {
   const auto columns = read_session_columns(session);
   if (!columns) return schema::forward_error(columns);
   if (columns->lost_at)
     return fail(Fault::unsuitable,
                 fmt::format("ticks are missing from {} on, which a WAV can't show", *columns->lost_at),
                 session, "export CSV or netCDF, which carry the time");
+  const auto even = evened(*columns);
+  if (!even) return schema::forward_error(even);
   auto wav = schema::WavWriter::create(temporary, columns->header.rate_hz, 2, schema::SampleFormat::float64);
   if (!wav) return schema::forward_error(wav);
   std::vector<double> frames;
-  for (std::size_t i = 0; i < columns->tick.size(); ++i)
-    frames.insert(frames.end(), {columns->drive_v[i], columns->position_m[i]});
-  if (const auto written = wav->write(frames); !written) return written;
-  return wav->close();
+  for (std::size_t i = 0; i < even->columns.tick.size(); ++i)
+    frames.insert(frames.end(), {even->columns.drive_v[i], even->columns.position_m[i]});
+  auto written = wav->write(frames);
+  if (written) written = wav->close();
+  if (!written) return schema::forward_error(written);
+  return even->added == 0 ? std::string()
+                          : fmt::format(
+                                "{} ticks were never made, for the computer stood still: the WAV goes "
+                                "straight from one neighbour to the other",
+                                even->added);
 }
 
-Result<void> write_netcdf(const std::string& session, const std::string& temporary) {
+Result<std::string> write_netcdf(const std::string& session, const std::string& temporary) {
   auto columns = read_session_columns(session);
   if (!columns) return schema::forward_error(columns);
   const std::vector<double> ticks(columns->tick.begin(), columns->tick.end());
   const std::vector<double> encoder(columns->encoder.begin(), columns->encoder.end());
   const std::vector<double> flags(columns->flags.begin(), columns->flags.end());
-  return schema::write_session_netcdf(
+  const auto written = schema::write_session_netcdf(
       temporary, columns->header,
       {{"tick", "1", "tick since arming", &ticks},
        {"encoder_count", "1", "encoder's count", &encoder},
@@ -90,27 +99,31 @@ Result<void> write_netcdf(const std::string& session, const std::string& tempora
        {"gain", "1", "factor on the textures' gains", &columns->gain},
        {"flags", "1", "flags of the wire's ticks", &flags}},
       columns->time_s);
+  return written ? Result<std::string>() : schema::forward_error(written);
 }
 
 struct Format {
   std::string_view ending;
-  Result<void> (*write)(const std::string& session, const std::string& temporary);
+  Result<std::string> (*write)(const std::string& session, const std::string& temporary);
 };
 constexpr Format kFormats[] = {{".csv", write_csv}, {".wav", write_wav}, {".nc", write_netcdf}};
 
 }  // namespace
 
-Result<void> export_session(const std::string& session, const std::string& file) {
+Result<std::string> export_session(const std::string& session, const std::string& file) {
   for (const Format& format : kFormats) {
     if (!file.ends_with(format.ending)) continue;
     const bool table = format.ending == ".csv";
     if (table)
-      if (const auto free = schema::check_table_free(file, is_session_table); !free) return free;
+      if (const auto free = schema::check_table_free(file, is_session_table); !free)
+        return schema::forward_error(free);
     PendingFiles pending;
     const auto temporary = pending.add(file);
     if (!temporary) return schema::forward_error(temporary);
-    if (const auto written = format.write(session, *temporary); !written) return written;
-    return pending.commit(table ? schema::Existing::replace : schema::Existing::keep);
+    auto said = format.write(session, *temporary);
+    if (!said) return said;
+    const auto kept = pending.commit(table ? schema::Existing::replace : schema::Existing::keep);
+    return kept ? said : schema::forward_error(kept);
   }
   return fail(Fault::usage, fmt::format("'{}' is no format that a session can be exported to", file),
               "output", "name a file that ends in .csv, .wav or .nc");

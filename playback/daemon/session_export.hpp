@@ -9,8 +9,10 @@
 namespace tacto::playback {
 
 /// By the file's ending: `.csv`, a line a tick, any length; `.wav`, 64-bit float at the ticks' rate, drive in
-/// volts and position in metres; `.nc`, netCDF-4 with units. Errors: as reading; usage: another ending;
-/// unsuitable: a WAV of a session with ticks missing, which it could not show; cannot_write.
-schema::Result<void> export_session(const std::string& session, const std::string& file);
+/// volts and position in metres; `.nc`, netCDF-4 with units. Gives what there is to say of it, empty or a
+/// sentence: that a WAV holds periods in which there was no tick, on a line between their neighbours. Errors:
+/// as reading; usage: another ending; unsuitable: a WAV of a session with ticks missing, which it could not
+/// show; cannot_write.
+schema::Result<std::string> export_session(const std::string& session, const std::string& file);
 
 }  // namespace tacto::playback

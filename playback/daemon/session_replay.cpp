@@ -10,6 +10,7 @@
 
 #include "firmware-host/wire_words.hpp"
 #include "playback/daemon/session_board.hpp"
+#include "playback/daemon/session_columns.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -44,12 +45,23 @@ struct FirstFault {
   }
 };
 
-Result<FirstFault> first_fault(const std::string& name) {
+// What has to be known of the whole before its first tick.
+struct Overview {
+  FirstFault fault;
+  std::uint64_t lost = 0;
+  schema::SessionEnding ending = schema::SessionEnding::unread;
+  std::optional<std::uint64_t> damaged_at;
+};
+
+Result<Overview> overview_of(const std::string& name) {
   auto reader = schema::SessionReader::open(name);
   if (!reader) return schema::forward_error(reader);
-  FirstFault fault;
+  Overview seen;
+  FirstFault& fault = seen.fault;
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) fault.see(*ticks);
+    if (const auto* loss = std::get_if<schema::SessionLoss>(&*block)) seen.lost += loss->count;
+    if (const auto* end = std::get_if<schema::SessionEnd>(&*block)) seen.lost = end->lost_ticks;
     const auto* command = std::get_if<SessionCommand>(&*block);
     if (command == nullptr) continue;
     if (!is_frame(command->frame))
@@ -61,7 +73,9 @@ Result<FirstFault> first_fault(const std::string& name) {
       fault.watchdog_ticks = static_cast<std::uint32_t>(1e-6F * limits.watchdog_ms *
                                                         static_cast<float>(1e3 * reader->header().rate_hz));
   }
-  return fault;
+  seen.ending = reader->ending();
+  if (seen.ending == schema::SessionEnding::damaged) seen.damaged_at = reader->sound_bytes();
+  return seen;
 }
 
 class SessionPlayer {
@@ -156,23 +170,28 @@ Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) 
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress) {
-  const auto fault = first_fault(name);
-  if (!fault) return schema::forward_error(fault);
+  const auto seen = overview_of(name);
+  if (!seen) return schema::forward_error(seen);
   auto reader = schema::SessionReader::open(name);
   if (!reader) return schema::forward_error(reader);
   std::error_code ignored;
   const auto size = static_cast<double>(std::filesystem::file_size(reader->path(), ignored));
-  SessionPlayer player(reader->header(), *fault);
+  SessionPlayer player(reader->header(), seen->fault);
   if (const auto handed = hand_over_commands(name, player); !handed) return schema::forward_error(handed);
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) player.play(*ticks);
     if (player.is_over()) break;
     if (progress) progress(static_cast<double>(reader->sound_bytes()) / size);
   }
-  if (player.refused())
+  if (player.refused() && !seen->damaged_at)
     return fail(Fault::unsuitable, *player.refused(), reader->path(), "was it made by a newer version?");
   ReplayOutcome outcome = player.outcome();
-  outcome.ending = reader->ending();
+  if (outcome.ticks == 0 && !outcome.lost_at)
+    return tl::unexpected(no_ticks_in(reader->path(), seen->damaged_at));
+  outcome.lost = seen->lost;
+  outcome.ending = seen->ending;
+  outcome.damaged_at = seen->damaged_at;
+  if (!player.is_over() && outcome.lost > 0) outcome.lost_at = outcome.ticks;  // after the last one
   return outcome;
 }
 

@@ -22,15 +22,21 @@ struct ReplayOutcome {
   /// Ticks that are missing in the session: what comes after them can't be replayed, for the filters' past is
   /// not known.
   std::optional<std::uint64_t> lost_at;
+  std::uint64_t lost = 0;  ///< ticks that are missing, by the session's own words
   schema::SessionEnding ending = schema::SessionEnding::unread;
+  /// The byte from which on the file is damaged: what comes after it was not read.
+  std::optional<std::uint64_t> damaged_at;
+
+  /// All of it is there, and the same.
+  bool same() const { return !first_difference && !lost_at && !damaged_at; }
 };
 
 /// The recorded commands go to a device of this program's core in the ticks that took them, the recorded
 /// counts to its encoder (a texture that it changes to, in the tick of the change); its drive has to be the
 /// recorded one to the bit. A fault is met again where its
 /// cause is in the ticks (enable input, jump, no number) or in the silence of the host. Nothing but the
-/// session is read. Errors: malformed, where a command in it is no frame; unsuitable, where the core refuses
-/// one, with its reason. `progress` hears fractions.
+/// session is read. Errors: unsuitable, where there are no ticks; malformed, where a command in it is no
+/// frame; unsuitable, where the core refuses one, with its reason. `progress` hears fractions.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
                                              const std::function<void(double)>& progress = {});
 

@@ -9,6 +9,7 @@
 #include "data-schema/files.hpp"
 #include "data-schema/statistics.hpp"
 #include "data-schema/texture.hpp"
+#include "data-schema/texture_wav.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 #include "playback/chain.hpp"
 #include "playback/daemon/session_columns.hpp"
@@ -30,12 +31,23 @@ bool plays(const SessionColumns& columns, std::size_t i) {
   return (columns.flags[i] & wire::kTickPlaying) != 0;
 }
 
+double duration_s(const SessionColumns& columns) {
+  return static_cast<double>(columns.tick.size() - 1) / columns.header.rate_hz;
+}
+
+// Where the count changes the finger is between the two, half a tick ago; until the next change it goes on
+// from there. The counts themselves are a staircase, which nobody wanted to be felt.
 FingerPath path_of(const SessionColumns& columns) {
-  FingerPath path;
-  path.position_m = columns.position_m;
-  path.time_s.resize(columns.tick.size());
-  for (std::size_t i = 0; i < path.time_s.size(); ++i)
-    path.time_s[i] = static_cast<double>(i) / columns.header.rate_hz;
+  const std::vector<double>& x = columns.position_m;
+  FingerPath path{{0}, {x.front()}};
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    if (x[i] == x[i - 1]) continue;
+    path.time_s.push_back((static_cast<double>(i) - 0.5) / columns.header.rate_hz);
+    path.position_m.push_back(0.5 * (x[i - 1] + x[i]));
+  }
+  path.time_s.push_back(std::max(duration_s(columns), 0.5 / columns.header.rate_hz));
+  path.position_m.push_back(path.position_m.back());
+  if (path.position_m.size() > 2) path.position_m.front() = path.position_m[1];
   return path;
 }
 
@@ -45,8 +57,8 @@ Result<schema::Texture> same_texture(const schema::SessionTexture& played) {
                 played.file);
   auto texture = schema::read_texture(played.file);
   if (!texture) return texture;
-  const auto sum = schema::sha256_of_file(schema::stem_of(played.file, ".texture") + ".texture.wav");
-  if (sum && *sum == played.sha256) return texture;
+  const auto wav = schema::texture_wav(played.file);
+  if (wav && wav->sha256 == played.sha256) return texture;
   return fail(Fault::unsuitable, "is not what was played any more", played.file);
 }
 
@@ -100,6 +112,13 @@ bool is_of_first_texture(const SessionColumns& columns, const StrokeRange& range
   return !columns.changed_at || range.last < *columns.changed_at;
 }
 
+std::string note_of_stops(const EvenColumns& even) {
+  return fmt::format(
+      "{} ticks were never made, for the computer stood still; {} stops were longer than 10 ms: "
+      "strokes end there",
+      even.added, even.stops);
+}
+
 std::string note_of_change(const SessionColumns& columns) {
   return fmt::format("the texture changes at {:.3f} s: strokes that reach beyond are not judged",
                      columns.time_s[*columns.changed_at]);
@@ -139,8 +158,7 @@ std::vector<StrokeRange> stroke_ranges(const SessionColumns& columns) {
 std::vector<double> received_displacement_m(const SessionColumns& columns) {
   const schema::SessionHeader& header = columns.header;
   const spatial::Band band{header.low_hz, header.high_hz};
-  const double duration_s = path_of(columns).duration_s();
-  const ReadingGrid grid = reading_grid(duration_s, header.rate_hz, band, 0);
+  const ReadingGrid grid = reading_grid(duration_s(columns), header.rate_hz, band, 0);
   const Chain chain{header.transducer, Reconstruction::none, 0, Hold::zero_order, header.rate_hz};
   const schema::Transducer& t = header.transducer;
   const std::vector<double> linear =
@@ -152,27 +170,41 @@ std::vector<double> received_displacement_m(const SessionColumns& columns) {
   return signal_of(through(drive, [&](double f) { return chain_response(chain, f); }));
 }
 
+void judge_strokes(const SessionColumns& columns, StrokeReport& report) {
+  if (columns.changed_at) report.notes.push_back(note_of_change(columns));
+  const auto ranges = stroke_ranges(columns);
+  if (ranges.empty()) return;
+  Judge judge(columns);
+  const auto wanted = judge.wanted_m();
+  if (!wanted) report.notes.push_back(schema::message(wanted.error()));
+  const auto received = received_displacement_m(columns);
+  for (const StrokeRange& range : ranges) {
+    const bool judged = wanted && is_of_first_texture(columns, range);
+    report.strokes.push_back(
+        stroke_of(columns, range, judged ? std::span(*wanted) : std::span<const double>(), received));
+  }
+}
+
 Result<StrokeReport> report_strokes(const std::string& name) {
   const auto columns = read_session_columns(name);
   if (!columns) return schema::forward_error(columns);
   StrokeReport report;
   report.low_hz = columns->header.low_hz, report.high_hz = columns->header.high_hz;
+  report.damaged = columns->damaged_at.has_value();
+  if (!columns->closed && !report.damaged)
+    report.notes.emplace_back("the session was never closed: what is in it is told");
+  if (report.damaged)
+    report.notes.push_back(
+        fmt::format("{} is damaged from byte {} on: what comes after it is not in the report",
+                    schema::session_path(name), *columns->damaged_at));
   if (columns->lost_at) {
     report.notes.push_back(fmt::format("{} ticks are missing: strokes are not judged", columns->lost));
     return report;
   }
-  if (columns->changed_at) report.notes.push_back(note_of_change(*columns));
-  const auto ranges = stroke_ranges(*columns);
-  if (ranges.empty()) return report;
-  Judge judge(*columns);
-  const auto wanted = judge.wanted_m();
-  if (!wanted) report.notes.push_back(schema::message(wanted.error()));
-  const auto received = received_displacement_m(*columns);
-  for (const StrokeRange& range : ranges) {
-    const bool judged = wanted && is_of_first_texture(*columns, range);
-    report.strokes.push_back(
-        stroke_of(*columns, range, judged ? std::span(*wanted) : std::span<const double>(), received));
-  }
+  const auto even = evened(*columns);
+  if (!even) return schema::forward_error(even);
+  if (even->added > 0) report.notes.push_back(note_of_stops(*even));
+  judge_strokes(even->columns, report);
   return report;
 }
 

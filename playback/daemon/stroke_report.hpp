@@ -24,6 +24,7 @@ struct StrokeReport {
   std::vector<PlayedStroke> strokes;
   double low_hz = 0, high_hz = 0;  ///< the band in which both are taken
   std::vector<std::string> notes;  ///< what could not be judged, and why
+  bool damaged = false;            ///< the file: what comes after the damage is not in the report
 };
 
 /// Rows of a session that are one stroke, both included.
@@ -35,13 +36,15 @@ std::vector<StrokeRange> stroke_ranges(const SessionColumns& columns);
 /// What the model makes of the recorded drive, in the session's band: displacement in m, one a row.
 std::vector<double> received_displacement_m(const SessionColumns& columns);
 
-/// Wanted: gain x texture at the recorded positions, through the exact reference (reference/wanted.hpp), with
-/// the gain of the commands. Received: the recorded drive, held between ticks, through the transducer's
-/// model: what the actuator would do without a finger on it, hysteresis or a second mode. The delay that the
-/// session was prepared with and did not look ahead by is part of the error. A stroke is at least 5 mm long.
-/// Errors: as SessionReader::open; unsuitable: no ticks, or over 30 minutes of them (memory); a texture that
-/// is gone or is another one by now leaves the wanted side out, with a note; so does a change of texture, of
-/// the strokes that reach beyond it.
+/// Wanted: gain x texture along the path between the recorded counts (monotone cubics through the places
+/// where the count changed, half a count and half a tick off at most), through the exact reference
+/// (reference/wanted.hpp), with the gain of the commands. Periods without a tick (evened()) are filled in.
+/// Received: the recorded drive, held between ticks, through the transducer's model: what the actuator would
+/// do without a finger on it, hysteresis or a second mode. The delay that the session was prepared with and
+/// did not look ahead by is part of the error. A stroke is at least 5 mm long. Errors: as
+/// SessionReader::open; unsuitable: no ticks, or over 30 minutes of them (memory); a texture that is gone or
+/// is another one by now leaves the wanted side out, with a note; so does a change of texture, of the strokes
+/// that reach beyond it.
 schema::Result<StrokeReport> report_strokes(const std::string& name);
 
 }  // namespace tacto::playback

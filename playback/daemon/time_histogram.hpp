@@ -7,11 +7,14 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <string>
 
 namespace tacto::playback {
 
 /// By which a status tells how late ticks were: the part beyond each.
 inline constexpr std::array<double, 5> kLateBoundsS{10e-6, 50e-6, 100e-6, 500e-6, 1e-3};
+/// What a status calls the part beyond one of them: "late_over_10us_part".
+std::string late_part_name(double bound_s);
 
 /// Eight buckets an octave from 16 ns to 4 s: a quantile is told within 12.5 %. Safe in the tick: one store.
 class TimeHistogram {

@@ -114,17 +114,19 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
   declare_stretch(app, options);
   declare_average(app, options);
   declare_filter(app, options);
-  cli::add_quantity(app, "--grid", options.texture.pitch_m, Dimension::length,
-                    "Distance of the texture's samples");
-  cli::add_choice<ResampleMethod>(
-      app, "--method", options.texture.method,
+  cli::add_quantity(app, "--grid", options.pitch_m, Dimension::length,
+                    "Distance of the texture's samples [1um, or by --quality]");
+  cli::add_choice<std::optional<ResampleMethod>>(
+      app, "--method", options.method,
       {{"hermite", ResampleMethod::hermite},
        {"linear", ResampleMethod::linear},
        {"swapped", ResampleMethod::swapped},
        {"sinc", ResampleMethod::sinc}},
       "How values go to space: monotone cubics and their true inverse, straight lines, cubics with "
       "the axes swapped, or a windowed sinc at the true inverse (exact to 3e-7 up to 0.3 of the "
-      "recording's rate, ten times the work; the cubics keep nine tenths up to 0.24 of it)");
+      "recording's rate, ten times the work; the cubics keep nine tenths up to 0.24 of it) [hermite, or by "
+      "--quality]");
+  cli::declare_budget(app, options.chosen_by, "method and grid");
   cli::add_choice<Equalise>(
       app, "--equalise", options.texture.equalise,
       {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
@@ -134,6 +136,8 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
 // --band, --low and --high, --filter none: all say the same thing, the filter.
 Result<TextureOptions> texture_options(const SpatialOptions& options) {
   TextureOptions texture = options.texture;
+  texture.method = options.method.value_or(texture.method);
+  texture.pitch_m = options.pitch_m.value_or(texture.pitch_m);
   if (options.band == "off") {
     texture.filter.method = FilterMethod::none;
   } else if (options.band_in == BandIn::space) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/cli/budget_options.hpp"
 #include "data-schema/cli/verb.hpp"
 #include "spatial/make_texture.hpp"
 
@@ -18,6 +19,9 @@ struct SpatialOptions {
   std::vector<std::string> recordings;
   std::string output;
   TextureOptions texture;
+  std::optional<ResampleMethod> method;  ///< where they are named
+  std::optional<double> pitch_m;
+  cli::BudgetOptions chosen_by;
   std::string band;
   BandIn band_in = BandIn::time;
   std::optional<double> low_hz, high_hz, from_s, to_s;

@@ -7,6 +7,7 @@
 #include "data-schema/files.hpp"
 #include "data-schema/recording.hpp"
 #include "data-schema/texture.hpp"
+#include "spatial/cli/chosen_texture.hpp"
 #include "spatial/cli/spatial_average.hpp"
 #include "spatial/cli/spatial_report.hpp"
 #include "spatial/cli/texture_names.hpp"
@@ -35,6 +36,8 @@ class Run {
   Result<std::vector<StrokeJob>> one_job(const Result<Stroke>& stroke, int number) const;
   Result<std::vector<StrokeJob>> found_strokes(const TouchRecord& record);
   std::vector<StrokeJob> down_only(const TouchRecord& record, std::vector<StrokeJob> jobs);
+  Result<ChosenTexture> texture_choice(const TextureOptions& wanted, const TouchRecord& record,
+                                       const std::vector<StrokeJob>& jobs);
   Result<Report> textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
   Result<Report> averages(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
   Result<void> check_names(const std::vector<std::string>& stems);
@@ -192,6 +195,16 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
   return std::move(*head);
 }
 
+// By the budget, where there is one.
+Result<ChosenTexture> Run::texture_choice(const TextureOptions& wanted, const TouchRecord& record,
+                                          const std::vector<StrokeJob>& jobs) {
+  if (options_.chosen_by.budget.asked()) return choose_texture(options_, wanted, record, jobs);
+  if (options_.chosen_by.explain)
+    return schema::fail(Fault::usage, "there is nothing to explain: nothing was chosen", "--explain",
+                        "add --quality or --max-error");
+  return ChosenTexture{wanted, {}};
+}
+
 Result<Report> Run::on(const std::string& name) {
   const auto wanted = texture_options(options_);
   if (!wanted) return schema::forward_error(wanted);
@@ -204,13 +217,21 @@ Result<Report> Run::on(const std::string& name) {
   auto record = TouchRecord::open(*recording, wanted->channel);
   if (!record) return schema::forward_error(record);
   if (options_.list) return list(*record);
-  auto maker = TextureMaker::open(std::move(*record), *wanted);
-  if (!maker) return schema::forward_error(maker);
-  if (const std::string lost = rate_warning(*wanted, recording->header.sample_rate_hz); !lost.empty())
-    warn(fmt::format("{}: {}", name, lost));
-  const auto chosen = jobs(maker->record());
+  const std::size_t said = warnings_.size();
+  const auto chosen = jobs(*record);
   if (!chosen) return schema::forward_error(chosen);
-  return options_.average ? averages(*maker, *chosen) : textures(*maker, *chosen);
+  const auto choice = texture_choice(*wanted, *record, *chosen);
+  if (!choice) return schema::forward_error(choice);
+  auto maker = TextureMaker::open(std::move(*record), choice->options);
+  if (!maker) {
+    warnings_.resize(said);  // what was said of strokes that nothing comes of
+    return schema::forward_error(maker);
+  }
+  if (const std::string lost = rate_warning(choice->options, recording->header.sample_rate_hz); !lost.empty())
+    warn(fmt::format("{}: {}", name, lost));
+  auto report = options_.average ? averages(*maker, *chosen) : textures(*maker, *chosen);
+  if (report && options_.chosen_by.budget.asked()) report->add("chosen", std::vector<Report>{choice->report});
+  return report;
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/cli/budget_options.hpp"
+#include "spatial/budget.hpp"
 #include "spatial/cli/spectrogram_files.hpp"
 #include "spatial/cli/spectrogram_run.hpp"
 #include "spatial/cli/texture_inputs.hpp"
@@ -29,6 +31,8 @@ struct SpectrogramVerbOptions {
   std::vector<std::string> names, outputs;
   SpectrogramOptions spectrogram;
   SpectrogramPictureOptions picture;
+  std::optional<Resolution> resolution;  // where it is named
+  cli::BudgetOptions chosen_by;
   bool compress = false;
   bool formants = false;
 };
@@ -123,8 +127,47 @@ Result<void> check_options(const SpectrogramVerbOptions& options) {
   return check_outputs(options.outputs);
 }
 
-Result<Report> run_spectrogram(const SpectrogramVerbOptions& options) {
+// What --explain says of the choice.
+Report explained(const ResolutionChoice& taken, const std::vector<ResolutionChoice>& all,
+                 const schema::FoundTradeTable& found) {
+  std::vector<Report> rows;
+  for (const ResolutionChoice& choice : all)
+    rows.push_back(Report()
+                       .add("resolution", choice.resolution == Resolution::whole ? "whole" : "auto")
+                       .add("error_percent", 100 * choice.error)
+                       .add("cost_ns_per_cell", choice.cost_ns_per_cell)
+                       .add("taken", choice.resolution == taken.resolution));
+  return Report()
+      .add("by_table", found.origin)
+      .add("counts",
+           "|X - exact X| re the largest |X|; window, hop and padding say what is asked for, and are "
+           "never chosen")
+      .add("tried", std::move(rows));
+}
+
+// The resolution by the budget, where there is one and none was named.
+Result<std::optional<Report>> choose_resolution(SpectrogramVerbOptions& options) {
+  if (options.resolution) options.spectrogram.resolution = *options.resolution;
+  const schema::Budget& budget = options.chosen_by.budget;
+  if (!budget.asked() && options.chosen_by.explain)
+    return schema::fail(Fault::usage, "there is nothing to explain: nothing was chosen", "--explain",
+                        "add --quality or --max-error");
+  if (!budget.asked()) return std::nullopt;
+  const auto found = schema::find_trade_table();
+  if (!found) return schema::forward_error(found);
+  const auto all = resolutions_of(found->table);
+  if (!all) return schema::forward_error(all);
+  const auto taken = choose_resolution(found->table, options.resolution, budget);
+  if (!taken) return schema::forward_error(taken);
+  options.spectrogram.resolution = taken->resolution;
+  if (!options.chosen_by.explain) return std::nullopt;
+  return explained(*taken, *all, *found);
+}
+
+Result<Report> run_spectrogram(SpectrogramVerbOptions options) {
   if (auto checked = check_options(options); !checked) return schema::forward_error(checked);
+  const auto chosen = choose_resolution(options);
+  if (!chosen) return schema::forward_error(chosen);
   auto inputs = TextureInputs::find(options.names, {});
   if (!inputs) return schema::forward_error(inputs);
   SpectrogramFiles files;
@@ -143,10 +186,12 @@ Result<Report> run_spectrogram(const SpectrogramVerbOptions& options) {
     return schema::forward_error(written);
   Report report = report_of(run, run.lowest_per_m(), options);
   if (options.formants) report.add("formants_drawn", count_of(*formants));
+  if (*chosen) report.add("chosen", std::vector<Report>{**chosen});
   return report;
 }
 
-void declare_windows(CLI::App& app, SpectrogramOptions& options) {
+void declare_windows(CLI::App& app, SpectrogramVerbOptions& verb) {
+  SpectrogramOptions& options = verb.spectrogram;
   cli::add_quantity(app, "--window", options.window_m, Dimension::length, "Length of the Blackman window");
   cli::add_quantity(app, "--hop", options.hop_m, Dimension::length, "Distance from one window to the next");
   cli::add_quantity(app, "--padding", options.padded_m, Dimension::length,
@@ -158,10 +203,11 @@ void declare_windows(CLI::App& app, SpectrogramOptions& options) {
       app, "--scaling", options.scaling,
       {{"density", schema::Scaling::density}, {"amplitude", schema::Scaling::amplitude}},
       "Power spectral density (unit^2 mm), or the amplitude (unit) that a sine would have");
-  cli::add_choice<Resolution>(
-      app, "--resolution", options.resolution,
-      {{"auto", Resolution::automatic}, {"whole", Resolution::whole}},
-      "Transform on the coarsest grid that keeps the bins (auto), or on the texture's (whole)");
+  cli::add_choice<std::optional<Resolution>>(
+      app, "--resolution", verb.resolution, {{"auto", Resolution::automatic}, {"whole", Resolution::whole}},
+      "Transform on the coarsest grid that keeps the bins (auto), or on the texture's (whole) [auto, or by "
+      "--quality]");
+  cli::declare_budget(app, verb.chosen_by, "the resolution");
 }
 
 void declare_options(CLI::App& app, SpectrogramVerbOptions& options) {
@@ -171,7 +217,7 @@ void declare_options(CLI::App& app, SpectrogramVerbOptions& options) {
                  "What to write: .png, .svg, .nc (netCDF-4) or .csv; may be repeated")
       ->required()
       ->allow_extra_args(false);
-  declare_windows(app, options.spectrogram);
+  declare_windows(app, options);
   cli::add_quantity(app, "--max-frequency", options.spectrogram.max_frequency_per_m,
                     Dimension::spatial_frequency, "Highest spatial frequency that is kept");
   cli::add_quantity(

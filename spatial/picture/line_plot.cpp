@@ -87,10 +87,52 @@ void draw_legend(Canvas& canvas, const LineFigure& figure, const Box& box) {
 }
 
 void draw_series(Canvas& canvas, const LineFigure& figure, const Axis& x_axis, const Axis& y_axis) {
-  for (const Series& series : figure.series)
+  for (const Series& series : figure.series) {
+    if (series.marks) continue;
     for (const auto& piece : trace(series.x, series.y, x_axis, y_axis))
       canvas.polyline(piece, {series.colour, series.width, series.dashed});
+  }
 }
+
+bool boxes_overlap(const Box& a, const Box& b) {
+  return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
+}
+
+// Marks, and as many of their labels as find room beside those before them: above and to the right, in the
+// plot's right part to the left.
+class Marks {
+ public:
+  Marks(Canvas& canvas, const Axis& x_axis, const Axis& y_axis, const Box& box)
+      : canvas_(canvas), x_axis_(x_axis), y_axis_(y_axis), box_(box) {}
+
+  void draw(const Series& series) {
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const bool shown = x_axis_.scale == AxisScale::linear || series.x[i] > 0;
+      if (!shown || !std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
+      const Point at{x_axis_.place(series.x[i]), y_axis_.place(series.y[i])};
+      canvas_.fill({at.x - kHalf, at.y - kHalf, 2 * kHalf, 2 * kHalf}, series.colour);
+      if (i < series.labels.size() && !series.labels[i].empty()) label(at, series.labels[i]);
+    }
+  }
+
+ private:
+  void label(Point at, const std::string& text) {
+    const bool left = at.x > box_.x + 0.7 * box_.width;
+    const TextStyle style{.size = 7.5, .align_x = left ? 1.0 : 0.0};
+    const Size size = canvas_.text_size(text, style);
+    const double x = at.x + (left ? -kBeside : kBeside), y = at.y - kBeside;
+    const Box place{left ? x - size.width : x, y - size.height / 2, size.width, size.height};
+    if (std::ranges::any_of(taken_, [&](const Box& other) { return boxes_overlap(place, other); })) return;
+    taken_.push_back(place);
+    canvas_.text({x, y}, text, style);
+  }
+
+  static constexpr double kHalf = 2.2, kBeside = 5;
+  Canvas& canvas_;
+  const Axis &x_axis_, &y_axis_;
+  const Box& box_;
+  std::vector<Box> taken_;
+};
 
 }  // namespace
 
@@ -121,6 +163,9 @@ Result<void> LineFigure::draw(Canvas& canvas) const {
   canvas.clip(box);
   draw_series(canvas, *this, x_axis, y_axis);
   canvas.release();
+  Marks marks(canvas, x_axis, y_axis, box);
+  for (const Series& each : series)
+    if (each.marks) marks.draw(each);
   canvas.frame(box, {});
   draw_axis(canvas, box, Side::bottom, x_axis, x_ticks);
   draw_axis(canvas, box, Side::left, y_axis, y_ticks);

@@ -17,6 +17,9 @@ struct Series {
   Colour colour;
   double width = 1;
   bool dashed = false;
+  bool marks = false;  ///< a mark at each point, in place of a curve
+  std::vector<std::string> labels =
+      {};  ///< beside the marks, where there is room; as many as points, or fewer
 };
 
 /// Colours that stay apart for colour-blind people and in grey (Okabe and Ito 2008): blue, vermilion, green,

@@ -56,6 +56,27 @@ TEST(Compare, GainsGiveTheVerdict) {
   EXPECT_LT(*compare(a, scaled(a, -2), no_formants())->gain, -1.99) << "upside down";
 }
 
+// Moved by half a millimetre, within windows of 50 mm: coherent, and the gain may well be below 0.
+TEST(Compare, AShiftIsNotUpsideDown) {
+  const RandomSurface surface(3, 300, 1100);
+  const auto moved = [&](double by_m) {
+    return made_texture(50e-6, 8000, [&](double x) { return surface(x + by_m); });
+  };
+  const auto said = [&](const schema::Texture& b) {
+    const auto found = compare(moved(0), b, no_formants());
+    std::string notes;
+    for (const std::string& note : found->notes) notes += note + "\n";
+    return notes;
+  };
+  for (const double by_m : {0.2e-3, 0.5e-3, 1e-3, 1.5e-3}) {
+    EXPECT_EQ(said(moved(by_m)).find("upside down"), std::string::npos) << by_m;
+    // The highest wave is 0.9 mm long: moved by 0.2 mm most of it still lies on itself.
+    EXPECT_EQ(said(moved(by_m)).find("--align correlation") == std::string::npos, by_m < 0.3e-3) << by_m;
+  }
+  EXPECT_NE(said(scaled(moved(0), -1.3)).find("upside down"), std::string::npos);
+  EXPECT_EQ(said(moved(0)), "");
+}
+
 // Independent noise n of power r times A's: error r, coherence 1 / (1 + r), residual r / (1 + r).
 TEST(Compare, NoiseOfKnownPowerIsErrorAndLostCoherence) {
   const auto a = white_texture(1, 200000), n = white_texture(2, 200000);

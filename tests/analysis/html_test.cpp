@@ -13,6 +13,11 @@ TEST(Html, TextCannotBecomeMarkup) {
   EXPECT_EQ(html_table({{"a"}, {"<"}}), "<table>\n<tr><th>a</th></tr>\n<tr><td>&lt;</td></tr>\n</table>\n");
 }
 
+TEST(Html, BytesThatAreNoTextAreReplaced) {
+  EXPECT_EQ(escaped("\u00e4\u2192\U0001F600"), "\u00e4\u2192\U0001F600");
+  EXPECT_EQ(escaped("a\xff<\xe2\x86"), "a\uFFFD&lt;\uFFFD\uFFFD");
+}
+
 TEST(Html, PicturesAreInside) {
   EXPECT_EQ(inline_svg("<svg/>", "a \"line\""),
             "<img alt=\"a &quot;line&quot;\" src=\"data:image/svg+xml;base64,PHN2Zy8+\">\n");

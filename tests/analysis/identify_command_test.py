@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`identify` by command, on emulated devices and on tables; SciPy's least_squares is the oracle of the fit."""
 import json
+import os
 import pathlib
+import signal
+import subprocess
+import time
 
 import numpy as np
 from scipy import optimize
@@ -55,7 +59,7 @@ def table_one_comes_back():
 def quick_methods_agree():
     for method in ("multisine", "chirp"):
         said = tacto.run_json("identify", "-d", "sim:tray_sensor=on,seed=3", "--method", method, "-o", method)
-        assert said["verdict"] == "fits", said
+        assert said["verdict"] == "fits" and "third_harmonic_percent" not in said, said
         assert abs(values(said)["resonance_hz"]["value"] / 547.73 - 1) < 2e-3
 
 
@@ -83,6 +87,10 @@ def a_misfit_is_refused_unless_forced():
     said = json.loads(tacto.run("identify", "-d", "sim:tray_sensor=on,hysteresis=0.16", "--amplitude", "2V", *SWEEP,
                                 "-o", "wrong", "--json", code=5)[0])
     assert said["verdict"].startswith("MISFIT") and said["r_squared"] > 0.99
+    assert "--method loop" in said["words"] and said["model_one_mode_short"] is False, said["words"]
+    followed = json.loads(tacto.run("identify", "-d", "sim:tray_sensor=on,hysteresis=0.16", "--second-mode", "-o", "two",
+                                    "--json", code=5)[0])
+    assert followed["verdict"].startswith("DID NOT") and "second_mode_zero" in followed["words"], followed["words"]
     assert all(np.isnan(row["low_of_95"]) if row["low_of_95"] is not None else True for row in said["parameters"])
     tacto.run("record", "-d", "sim:surface=C,strokes=1", "-o", "c", "--time", "1.5s")
     tacto.run("spatial", "c", "-o", "c")
@@ -104,6 +112,67 @@ def hysteresis_is_written():
     limit, operator = stored["drive_limit_v"], stored["hysteresis"]
     kept = sum(w * (limit - r) for r, w in zip(operator["thresholds_v"], operator["weights"]))
     assert abs(kept / limit - 1) < 1e-9
+
+
+def loop_table(name, drive, times=1.0):
+    """Displacement by an operator of three plays, 20 um/V, 2 nm of noise."""
+    x = np.zeros(len(drive))
+    for weight, r in [(0.8, 0), (0.15, 1), (0.1, 2)]:
+        y = 0.0
+        for i, v in enumerate(drive):
+            y = max(v - r, min(v + r, y))
+            x[i] += weight * y
+    x = times * (20e-6 * x + 2e-9 * RNG.standard_normal(len(drive)))
+    np.savetxt(name, np.column_stack([np.arange(len(drive)) / 1e3, drive, x * 1e6]), delimiter=",", comments="",
+               header="time_s,drive_v,displacement_um")
+
+
+def loops_are_held_to_what_a_sweep_is():
+    drive = 5 * np.sin(2 * np.pi * np.arange(3000) / 1e3)
+    loop_table("loop.csv", drive)
+    said = tacto.run_json("identify", "loop.csv", "--method", "loop", "-o", "loop", "--picture", "loop.svg")
+    assert said["verdict"] == "fits" and "<svg" in pathlib.Path("loop.svg").read_text(), said
+    assert json.load(open("loop.transducer.json"))["identification"]["high_hz"] < 1.1  # what loops of 1 Hz know
+    kept = pathlib.Path("loop.transducer.json").read_bytes()
+    for again in (["-o", "loop"], ["-o", "other", "--picture", "loop.svg"]):
+        assert "--replace" in tacto.run("identify", "loop.csv", "--method", "loop", *again, code=2)[1]
+    assert pathlib.Path("loop.transducer.json").read_bytes() == kept and not pathlib.Path("other.transducer.json").exists()
+    tacto.run("identify", "loop.csv", "--method", "loop", "-o", "loop", "--replace")
+    loop_table("thousand.csv", drive, 1e3)
+    assert "unit" in tacto.run("identify", "thousand.csv", "--method", "loop", "-o", "bad", code=5)[1]
+    loop_table("down.csv", drive, -1)
+    assert "--invert" in tacto.run("identify", "down.csv", "--method", "loop", "-o", "bad", code=5)[1]
+    tacto.run("identify", "down.csv", "--method", "loop", "-o", "turned", "--invert")
+    loop_table("fast.csv", 5 * np.sin(2 * np.pi * 249 * np.arange(3000) / 1e3))
+    assert "too fast" in tacto.run("identify", "fast.csv", "--method", "loop", "-o", "bad", code=5)[1]
+    assert not pathlib.Path("bad.transducer.json").exists()
+    # What is wrong with the linear model stays wrong, whatever the loops say.
+    f = np.geomspace(10, 1000, 40)
+    h = response(f) * np.exp(-0.1j)
+    write_table("lag.csv", f, h, 1e-9)
+    tacto.run("identify", "lag.csv", "-o", "wrong", code=5)
+    said = json.loads(tacto.run("identify", "loop.csv", "--method", "loop", "--start-from", "wrong", "-o", "still", "--json",
+                                code=5)[0])
+    about = json.load(open("still.transducer.json"))["identification"]
+    assert about["misfit"] and "'wrong'" in said["words"] and abs(about["high_hz"] - 1000) < 1, said
+    assert "--picture" in tacto.run("identify", "taps.csv", "--method", "taps", "--rate", "100kHz", "-o", "t", "--picture",
+                                    "t.svg", code=2)[1]
+
+
+def stopped_leaving_nothing(*arguments):
+    """A signal once it measures: the process dies by it, and no file of its own stays."""
+    scratch = pathlib.Path("scratch")
+    scratch.mkdir(exist_ok=True)
+    work = subprocess.Popen([tacto.COMMAND, *arguments], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
+                            env={**os.environ, "TMPDIR": str(scratch.resolve())})
+    while not list(scratch.iterdir()) and arguments[0] == "fidelity":
+        time.sleep(0.02)
+    if arguments[0] == "identify":
+        work.stderr.readline()  # its progress
+    work.send_signal(signal.SIGTERM)
+    said = work.communicate()[1]
+    assert work.returncode == -signal.SIGINT and "stopped" in said, (work.returncode, said)
+    assert not list(scratch.iterdir()), list(scratch.iterdir())
 
 
 def second_mode_is_told_and_found():
@@ -135,6 +204,19 @@ def bad_input_is_one_clear_error():
     write_table("bad.csv", f, h, times=1e9)  # nanometres, said to be micrometres
     refused("unit")
     tacto.run("identify", "bad.csv", "-o", "thousand", "--force")
+    write_table("bad.csv", f / 1e3, h)
+    refused("kHz")
+    write_table("bad.csv", f * 2 * np.pi, h)
+    refused("rad/s")
+    for unit in ("khz", "rad_per_s"):
+        write_table("unit.csv", f / 1e3 if unit == "khz" else f * 2 * np.pi, h)
+        pathlib.Path("unit.csv").write_text(pathlib.Path("unit.csv").read_text().replace("frequency_hz", "frequency_" + unit))
+        found = values(tacto.run_json("identify", "unit.csv", "-o", "unit-" + unit))
+        assert abs(found["resonance_hz"]["value"] / 547.7 - 1) < 1e-6
+    write_table("bad.csv", f, np.where(np.arange(40) == 22, 1000, 1) * h)
+    said = json.loads(tacto.run("identify", "bad.csv", "-o", "off", "--json", code=5)[0])
+    assert "frequency 23 (" in said["words"] and all(row["low_of_95"] is None or np.isnan(row["low_of_95"])
+                                                     for row in said["parameters"]), said
     write_table("bad.csv", f, h, amplitude="amplitude")
     refused("unit", code=2)
     tacto.run("identify", "bad.csv", "-o", "named", "--amplitude-unit", "um/V")
@@ -144,6 +226,10 @@ def bad_input_is_one_clear_error():
     refused("line 8", code=4)
     err = tacto.run("identify", "-d", "sim:", "-o", "bad", code=5)[1]
     assert "tray_sensor=on" in err, err
+    for words, *options in (["--low", "--low", "100Hz", "--high", "50Hz"], ["--amplitude", "--amplitude", "0V"],
+                            ["--frequencies", "--frequencies", "100000"]):
+        assert words in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", *options, code=2)[1]
+    assert "half the device's rate" in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--high", "5kHz", code=5)[1]
     # Whole turns too many are no harm: values are complex.
     write_table("turns.csv", f, h)
     table = np.loadtxt("turns.csv", delimiter=",", skiprows=1)
@@ -167,8 +253,13 @@ def what_is_identified_is_undone():
     assert errors["wiertlewski2011"][tray] > -15 and errors["bench"][tray] < -40, errors
     assert errors["bench"]["all three"] < errors["wiertlewski2011"]["all three"] - 10, errors
     assert errors["bench"]["ideal"] > -15, errors  # a hysteresis undone that is not there
+    stopped_leaving_nothing("fidelity", "c-01", "--speed", "10mm/s,11mm/s,12mm/s")
+    stopped_leaving_nothing("identify", "-d", "sim:tray_sensor=on,paced=1", "-o", "never")
+    assert not pathlib.Path("never.transducer.json").exists()
+    assert "finger's speed" in tacto.run("fidelity", "c-01", "--speed", "1e9mm/s", code=2)[1]
+    assert "hardly it" in tacto.run("fidelity", "c-01", "-d", "sim:hysteresis=0.1", "--speed", "1.5mm/s")[1]
 
 
 for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,
-             hysteresis_is_written, what_is_identified_is_undone, second_mode_is_told_and_found, bad_input_is_one_clear_error):
+             hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, second_mode_is_told_and_found, bad_input_is_one_clear_error):
     tacto.in_folder(test)

@@ -80,15 +80,19 @@ TEST(IdentifyDevice, FindsThePapersTrayAsItIs) {
 
 TEST(IdentifyDevice, FlagsAHysteresisThatNobodyModelled) {
   std::mt19937_64 random(11);
-  int flagged = 0, draws = 0;
+  int flagged = 0, draws = 0, short_of_a_mode = 0, lag = 0;
   double least_r_squared = 1;
   for (const Drawn& drawn : with_hysteresis())
     for (int noise = 0; noise < kNoises; ++noise, ++draws) {
       const ResponseFit fit = fit_response(with_noise(drawn.clean, random), {}, base());
       flagged += fit.misfit.found && !fit.claims_intervals();
+      short_of_a_mode += fit.one_mode_short;
+      lag += fit.suggestion.find("--lag") != std::string::npos;
       least_r_squared = std::min(least_r_squared, fit.r_squared);
     }
-  std::printf("  flagged %d of %d, R^2 at least %.4f\n", flagged, draws, least_r_squared);
+  std::printf("  flagged %d of %d, R^2 at least %.4f; a lag suggested in %d, a second mode in %d\n", flagged,
+              draws, least_r_squared, lag, short_of_a_mode);
+  EXPECT_EQ(short_of_a_mode, 0);  // a second resonance at the first's is none
   EXPECT_GE(flagged, 0.95 * draws);
   EXPECT_GT(least_r_squared, 0.98);  // what would have let it pass
 }

@@ -146,5 +146,29 @@ TEST(IdentifyFit, NoticesAUnitThatIsAThousandOff) {
   EXPECT_EQ(refusal(check_size(fit_response(exact(preset()), {}, preset()), preset())), "");
 }
 
+TEST(IdentifyFit, NamesTheOneValueThatIsOff) {
+  for (const double times : {1e3, 1e-3, 10.0, -1.0})
+    for (const std::size_t at : {0U, 17U, 44U, 59U}) {
+      std::mt19937_64 random(at);
+      BodeData data = measured(preset(), Direction::actuator, octaves(10, 1000, 60), 0.005, random);
+      data.noise.clear();
+      data.response[at] *= times;
+      const ResponseFit fit = fit_response(data, {}, preset());
+      EXPECT_FALSE(fit.claims_intervals());
+      const std::string named = "frequency " + std::to_string(at + 1) + " (";
+      EXPECT_NE(fit.misfit.words.find(named), std::string::npos)
+          << times << " at " << at << ": " << fit.misfit.words;
+      EXPECT_EQ(fit.find("resonance_hz")->low, fit.find("resonance_hz")->high);
+    }
+}
+
+TEST(IdentifyFit, SeveralValuesThatAreOffAreAMisfit) {
+  std::mt19937_64 random(3);
+  BodeData data = measured(preset(), Direction::actuator, octaves(10, 1000, 60), 0.005, random);
+  data.noise.clear();
+  for (const std::size_t at : {12U, 30U, 41U}) data.response[at] *= 1000;
+  EXPECT_TRUE(fit_response(data, {}, preset()).misfit.found);
+}
+
 }  // namespace
 }  // namespace tacto::analysis

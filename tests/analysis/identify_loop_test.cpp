@@ -10,6 +10,7 @@
 #include "analysis/identify/excitation.hpp"
 #include "analysis/identify/hysteresis_loop.hpp"
 #include "firmware-host/sim/actuated_tray.hpp"
+#include "playback/hysteresis_inverse.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -64,7 +65,7 @@ TEST(IdentifyLoop, TheEmulatedBendersSixteenPercent) {
     const double t = i / kRateHz;
     other.push_back(std::min(1.0, t) * (3.5 * std::sin(kTurns * 0.9 * t) + 1.4 * std::sin(kTurns * 3.1 * t)));
   }
-  const auto played = played_through(fit.hysteresis, other);
+  const auto played = playback::played_through(fit.hysteresis, other);
   std::vector<double> by_operator, by_line;
   for (std::size_t i = 0; i < played.size(); ++i) {
     by_operator.push_back(20e-6 * played[i]);
@@ -91,7 +92,7 @@ TEST(IdentifyLoop, AnOperatorOfItsKindComesBack) {
     truth.thresholds_v.push_back(4.0 * static_cast<double>(i) / kThresholds);
     truth.weights.push_back(i == 0 ? 0.7 : 0.02 * static_cast<double>(i % 4));
   }
-  auto x = played_through(truth, drive);
+  auto x = playback::played_through(truth, drive);
   for (double& value : x) value = 3e-6 + 17e-6 * value;
   const LoopFit fit = fit_loops(drive, x, kRateHz, 0, 4).value();
   const double scale = fit.gain_m_per_v / 17e-6;

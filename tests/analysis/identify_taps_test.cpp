@@ -47,8 +47,11 @@ TEST(IdentifyTaps, TheFirstTenForetellTheOthers) {
   ASSERT_EQ(taps.taps.size(), 20U);
   const TapsFit fit = fit_taps(taps).value();
   const TapsPrediction foretold = foretell_taps(taps, 10).value();
-  std::printf("  resonance %.1f Hz +- %.1f, damping ratio %.4f +- %.4f\n", fit.resonance_hz.median,
-              fit.resonance_hz.spread, fit.damping_ratio.median, fit.damping_ratio.spread);
+  std::printf(
+      "  resonance %.1f Hz +- %.1f (SD %.1f), damping ratio %.4f +- %.4f (SD %.4f, %.4f to %.4f), R^2 %.4f\n",
+      fit.resonance_hz.median, fit.resonance_hz.spread, fit.resonance_hz.standard_deviation,
+      fit.damping_ratio.median, fit.damping_ratio.spread, fit.damping_ratio.standard_deviation,
+      fit.damping_ratio.least, fit.damping_ratio.most, fit.r_squared);
   std::printf(
       "  taps 1-10 foretell 11-20: resonance %.2f %%, damping %.1f %%, waveform %.1f %% (worst %.1f %%), "
       "shape %.1f %%\n",
@@ -57,6 +60,10 @@ TEST(IdentifyTaps, TheFirstTenForetellTheOthers) {
   // The largest line of its spectrum lies at 1627 Hz in each tap (SciPy, Hann window of 45 ms, 1 Hz apart).
   EXPECT_NEAR(fit.resonance_hz.median, 1627, 8);
   EXPECT_LT(fit.resonance_hz.spread, 0.01 * 1627);
+  // The dampings stand in two groups: the median distance says less of them than their standard deviation.
+  EXPECT_GT(fit.damping_ratio.standard_deviation, 1.5 * fit.damping_ratio.spread);
+  EXPECT_LT(fit.damping_ratio.least, 0.035);
+  EXPECT_GT(fit.r_squared, 0.9);
   EXPECT_GT(fit.damping_ratio.median, 0.02);
   EXPECT_LT(fit.damping_ratio.median, 0.06);
   EXPECT_LT(std::abs(foretold.resonance_error), 0.005);

@@ -4,12 +4,15 @@
 import hashlib
 import html.parser
 import json
+import os
 import pathlib
 import shutil
+import subprocess
 
 import tacto
 
-KINDS = {"recording", "texture", "transducer", "spectrogram", "formants", "descriptions", "scene", "session", "results"}
+KINDS = {"recording", "texture", "transducer", "spectrogram", "formants", "descriptions", "scene", "session", "results",
+         "session_table"}
 
 
 class Page(html.parser.HTMLParser):
@@ -38,6 +41,7 @@ def make_project(folder):
     tacto.run("formants", root / "C", "-o", root / "C")
     (root / "path.csv").write_text("time_s,position_m\n0,0\n0.7,0.035\n")
     tacto.run("play", root / "C", "-d", "sim:seed=79", "--finger-path", root / "path.csv", "--gain", "0.3mm/N", "-o", root / "more/first")
+    tacto.run("session", root / "more/first", "-o", root / "more/first.nc")
     tacto.run("compare", root / "C", root / "C", "-o", root / "more/CC.results.json")
     tacto.run("fidelity", root / "C", "-d", "sim:seed=79,hysteresis=0.1", "-o", root / "more/fidelity.results.json")
     (root / "both.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": [
@@ -56,6 +60,8 @@ def a_project_on_one_page():
     page = Page(text)
     assert not page.links and "http" not in text and "script" not in page.tags
     assert len(page.pictures) >= 10 and all(src.startswith("data:image/svg+xml;base64,") for src in page.pictures)
+    assert tacto.run_json("validate", root / "more/first.nc")["valid"] and tacto.run_json("validate", root / "more/first")
+    assert tacto.run_json("info", root / "more/first.nc")["kind"] == "session_table"
     for row in report["files"]:
         assert pathlib.Path(row["file"]).name in text and row["sha256"] in text
         if row["kind"] in ("recording", "texture"):
@@ -74,12 +80,15 @@ def broken_files_do_not_stop_the_rest():
     (root / odd).write_text('{"kind": "recording"')
     (root / "future.json").write_text('{"kind": "oracle", "version": "1.0"}')
     (root / "more/unclosed.events.jsonl").write_text("{}\n")
+    pathlib.Path(os.fsdecode(b"study/two\nlines\xff.json")).write_text("{")
     samples = (root / "C.texture.wav").read_bytes()
     shutil.copy(root / "C.texture.json", root / "more/torn.texture.json")
     (root / "more/C.texture.wav").write_bytes(samples[:3000])
-    out, said = tacto.run("report", root, "-o", "page.html", "--json", code=4)
-    report = json.loads(out)
-    assert len(report["broken"]) == 4 and {row["kind"] for row in report["files"]} == KINDS
+    done = subprocess.run([tacto.COMMAND, "report", root, "-o", "page.html", "--json"], capture_output=True)
+    assert done.returncode == 4
+    report, said = json.loads(done.stdout), done.stderr.decode(errors="replace")
+    assert all(line.startswith("tactograph: warning:") for line in said.splitlines() if " %" not in line and not line.startswith("==")), said
+    assert len(report["broken"]) == 5 and {row["kind"] for row in report["files"]} == KINDS
     text = pathlib.Path("page.html").read_text()
     assert "<img src=x" not in text and "&lt;img src=x" in text
     for name in ("onerror", "future.json", "unclosed.events.jsonl", "torn.texture.json"):

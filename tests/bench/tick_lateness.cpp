@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "firmware-host/awake_cores.hpp"
 #include "firmware-host/realtime_priority.hpp"
 #include "playback/daemon/tick_clock.hpp"
 #include "playback/daemon/time_histogram.hpp"
@@ -17,13 +18,15 @@ namespace {
 struct Lateness {
   TimeHistogram late, work;
   std::uint64_t missed = 0;
-  bool real_time = false;
+  bool real_time = false, awake = false;
 };
 
 void measure(double rate_hz, double seconds, int priority, Lateness& into) {
   static tests::TextureWorkload kernel;
   const firmware_host::RealtimePriority real_time(priority);
+  const firmware_host::AwakeCores awake;
   into.real_time = real_time.granted();
+  into.awake = awake.granted();
   TickClock clock;
   clock.begin(rate_hz);
   float sum = 0;
@@ -44,9 +47,10 @@ int main(int count, char** words) {
   tacto::playback::Lateness measured;
   tacto::playback::measure(std::atof(words[1]), std::atof(words[2]), std::atoi(words[3]), measured);
   fmt::print(
-      R"({{"p50_s": {}, "p99_s": {}, "p999_s": {}, "work_p50_s": {}, "work_p99_s": {}, "missed": {}, "real_time": {}}})"
+      R"({{"p50_s": {}, "p99_s": {}, "p999_s": {}, "work_p50_s": {}, "work_p99_s": {}, "missed": {}, "real_time": {}, "awake": {}}})"
       "\n",
       measured.late.quantile_s(0.5), measured.late.quantile_s(0.99), measured.late.quantile_s(0.999),
-      measured.work.quantile_s(0.5), measured.work.quantile_s(0.99), measured.missed, measured.real_time);
+      measured.work.quantile_s(0.5), measured.work.quantile_s(0.99), measured.missed, measured.real_time,
+      measured.awake);
   return 0;
 }

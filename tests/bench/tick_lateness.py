@@ -5,21 +5,31 @@
 usage: tick_lateness.py TICK_LATENESS [--rate 2000] [--rounds 10] [--seconds 5] [--priority 50] [--core 0]
 
 Shared machines stall for tens of milliseconds: what counts is the ratio of medians over the rounds, not a figure by itself. The
-daemon's clock spins the last 50 us, cyclictest does not: it sleeps as a daemon would that did not spin.
+daemon's clock spins the last 50 us, cyclictest does not: it sleeps as a daemon would that did not spin. Both keep the cores from deep idle
+(/dev/cpu_dma_latency) where they may.
 """
 import argparse
 import json
+import os
 import shutil
 import statistics
 import subprocess
+import sys
 
 PARTS = {"p50": 0.5, "p99": 0.99, "p99.9": 0.999}
 MOST_US = 20000
 
 
+def printed(words):
+    done = subprocess.run(words, capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"tick_lateness: '{' '.join(words)}' failed with {done.returncode}: {done.stderr.strip() or 'it said nothing'}")
+    return done.stdout
+
+
 def ours(program, o):
     words = [program, str(o.rate), str(o.seconds), str(o.priority)]
-    said = json.loads(subprocess.run(["taskset", "-c", str(o.core), *words], capture_output=True, text=True, check=True).stdout)
+    said = json.loads(printed(["taskset", "-c", str(o.core), *words]))
     return {name: 1e6 * said[key] for name, key in (("p50", "p50_s"), ("p99", "p99_s"), ("p99.9", "p999_s"))}, said
 
 
@@ -44,7 +54,7 @@ def quantiles(lines):
 def theirs(o):
     words = ["cyclictest", "-q", "-m", "-t1", "-a", str(o.core), "-i", str(round(1e6 / o.rate)), "-D", str(o.seconds), "-h", str(MOST_US)]
     words += ["-p", str(o.priority)] if o.priority else ["--policy=other"]
-    return quantiles(subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines())
+    return quantiles(printed(words).splitlines())
 
 
 def main():
@@ -58,12 +68,14 @@ def main():
     o = parser.parse_args()
     if shutil.which("cyclictest") is None:
         parser.error("cyclictest is not installed: ./bootstrap bench installs it (Debian's rt-tests)")
+    if not os.access(o.program, os.X_OK):
+        parser.error(f"{o.program}: no such program; './bootstrap bench' builds it")
     rounds = []
     for i in range(o.rounds):
         mine, said = ours(o.program, o)
         rounds.append((mine, theirs(o), said))
         print(f"round {i + 1}: ours p99 {mine['p99']:.1f} us, cyclictest {rounds[-1][1]['p99']:.1f} us", flush=True)
-    print(f"\n{o.rate} Hz, SCHED_FIFO {'granted' if rounds[0][2]['real_time'] else 'refused'}, medians of {o.rounds} rounds of {o.seconds} s")
+    print(f"\n{o.rate} Hz, SCHED_FIFO {'granted' if rounds[0][2]['real_time'] else 'refused'}, deep idle {'kept off' if rounds[0][2]['awake'] else 'allowed'}, medians of {o.rounds} rounds of {o.seconds} s")
     print("| late by, us | daemon's clock | cyclictest | ratio |\n|---|---|---|---|")
     for name in PARTS:
         mine, other = (statistics.median(r[k][name] for r in rounds) for k in (0, 1))

@@ -88,6 +88,23 @@ def against_the_reference():
     expect_scale(report, 1 / 0.93)
 
 
+def released_weights():
+    """Five threads cut at other moments and other weights: the piezo's scale, within what is stated."""
+    for k in range(5):
+        record(f"r{k}", f"force=release,force_amplitude={0.05 + 0.02 * k}N,force_sweep={0.5 + 0.037 * k}s", time="1.3s")
+    cut = [f"--release={0.05 + 0.02 * k}N=r{k}" for k in range(5)]
+    report = tacto.run_json("calibrate", "force", *cut)
+    assert report["channel"] == "tangential_force" and report["releases"] == 5, report
+    expect_scale(report, 1 / 0.93)
+    assert report["interval_of_95_percent"] < 3, report
+    assert entries()[-1]["method"] == "released weight"
+    # Nothing was cut; a weight that was not said; both ways at once.
+    _, error = tacto.run("calibrate", "force", "--release", "0.05N=r0@0s..0.4s", code=5)
+    assert "release" in error, error
+    _, error = tacto.run("calibrate", "force", "--release", "0.05N=r0", "--reference", "net_force", code=2)
+    assert "needs weights, or a reference, or releases" in error, error
+
+
 def travel():
     for k in range(3):
         record(f"t{k}", f"surface=flat,strokes={k % 2 + 1}", "1.3s" if k % 2 == 0 else "2.5s")
@@ -126,7 +143,7 @@ def a_recording_takes_it_along():
         assert told["name"] == channel and told["calibration"]["scale_method"] == "weights", told
         force = codes[1000:, number].mean() * told["scale"] + told["offset"]
         assert abs(force - truth) < 1e-3, (channel, force)
-    assert side["channels"][0]["calibration"]["scale_method"] == "reference net_force"
+    assert side["channels"][0]["calibration"]["scale_method"] == "released weight"
     assert side["channels"][1]["calibration"]["scale_method"] == "travel"
     assert side["serial"] == "sim-7" and "warnings" not in side, side.get("warnings")
     shown = tacto.run_json("info", "known")
@@ -202,7 +219,7 @@ def doctor():
 
 def test():
     os.environ["XDG_CONFIG_HOME"] = str(pathlib.Path("config").absolute())
-    for step in (tare, a_finger_is_refused, weights, weights_hung_when_asked_for, against_the_reference, travel,
+    for step in (tare, a_finger_is_refused, weights, weights_hung_when_asked_for, against_the_reference, released_weights, travel,
                  what_cannot_be_right_is_refused, a_recording_takes_it_along, a_stale_one_is_warned_of, another_devices_is_refused,
                  the_file_is_one_of_ours, wrong_words, doctor):
         step()

@@ -3,6 +3,7 @@
 #include "data-schema/files.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -122,6 +123,19 @@ TEST(Files, SayWhyTheyCantBeRead) {
 }
 
 // The vectors of FIPS 180-4's examples: "", "abc" and a million times "a".
+// Nobody writes into the pipe: who opened it would wait for ever.
+TEST(Files, APipeIsNotWaitedFor) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "oak.texture.json").c_str(), 0600), 0);
+  for (const std::string& path : {folder / "oak.texture.json", std::string("/dev/zero")}) {
+    const auto read = read_file(path);
+    ASSERT_FALSE(read) << path;
+    EXPECT_EQ(read.error().what, "is no regular file");
+    EXPECT_FALSE(check_readable(path));
+    EXPECT_FALSE(sha256_of_file(path));
+  }
+}
+
 TEST(Sha256, MatchesTheStandard) {
   EXPECT_EQ(sha256_of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");

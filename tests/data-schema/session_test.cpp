@@ -180,6 +180,22 @@ TEST_F(Session, AFullDiskLeavesWholeBlocksAndLaterOnesAreTaken) {
   EXPECT_EQ(totals.lost_ticks, 100U);
 }
 
+TEST_F(Session, AHeaderWithNumbersThatCanNotBeIsNone) {
+  const auto refused = [](auto change, const std::string& field) {
+    SessionHeader header = made_header();
+    change(header);
+    const auto text = session_header_text(header);
+    const auto parsed = text ? parse_session_header(*text, "one") : forward_error(text);
+    ASSERT_FALSE(parsed) << field;
+    EXPECT_EQ(parsed.error().fault, text ? Fault::malformed : Fault::unsuitable);
+    EXPECT_NE(parsed.error().where.find(field), std::string::npos) << parsed.error().where;
+  };
+  for (const double metres : {0.0, 1e30, -1e-6})
+    refused([=](SessionHeader& h) { h.metres_per_count = metres; }, "metres_per_count");
+  refused([](SessionHeader& h) { h.transducer.mass_kg = -1; }, "transducer/mass_kg");
+  EXPECT_TRUE(parse_session_header(session_header_text(made_header()).value(), "one"));
+}
+
 TEST_F(Session, NoHeaderIsNoSession) {
   std::ofstream(path_) << "nothing of the kind";
   const auto reader = SessionReader::open(path_);

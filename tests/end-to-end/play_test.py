@@ -3,6 +3,9 @@
 """play, replay and session as a user runs them; ten minutes of emulated time at 10 kHz."""
 import json
 import pathlib
+import resource
+import subprocess
+import sys
 
 import numpy as np
 import soundfile
@@ -50,18 +53,30 @@ def plays_what_was_wanted():
     np.testing.assert_allclose(np.diff(table["time_s"]), 1 / 2000, atol=1.1e-6)  # the emulated clock counts microseconds
 
 
+def a_slow_finger_on_a_coarse_encoder():
+    """What was wanted goes along the finger's way, not up the encoder's staircase: 20 Hz at 1 mm/s, five counts a period."""
+    x = np.arange(20000) * 1e-6
+    write_texture("fine", 0.02 * np.sin(2 * np.pi * 20000 * x), 1e-6)
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.002\n6.5,0.0085\n")
+    tacto.run("play", "fine", "-d", "sim:encoder_quantum=10um", "--finger-path", "path.csv", "--gain", "0.5mm/N", "-o", "slow")
+    stroke, = tacto.run_json("session", "slow")["strokes"]
+    print(f"a slow finger: {stroke['error_db']:.1f} dB")
+    assert stroke["error_db"] < -20 and abs(stroke["wanted_rms_m"] / 7.07e-6 - 1) < 0.03, stroke
+
+
 def two_textures_in_a_scene():
     write_grating("oak", 1000, 0.015)
     write_grating("elm", 2000, 0.015)
     write_strokes(2)
-    layer = {"type": "texture", "texture": "oak", "at_m": 0.004, "gain_m_per_n": 5e-4}
+    layer = {"type": "texture", "texture": "oak", "at_m": 0.004, "gain_m_per_n": -5e-4}  # its sign turns it over
     scene = {"kind": "scene", "version": "1.0", "layers": [layer, {**layer, "texture": "elm", "at_m": 0.019, "gain_m_per_n": 2.5e-4}]}
     pathlib.Path("both.scene.json").write_text(json.dumps(scene))
     tacto.run("validate", "both")
     tacto.run("play", "both", "-d", "sim:", "--finger-path", "path.csv", "--time", "2s", "-o", "both")
     assert tacto.run_json("replay", "both.session")["same_to_the_bit"]
-    assert [t["gain_m_per_n"] for t in tacto.run_json("info", "both.session")["textures"]] == [5e-4, 2.5e-4]
-    tacto.run("session", "both", "-o", "both.csv")
+    assert [t["gain_m_per_n"] for t in tacto.run_json("info", "both.session")["textures"]] == [-5e-4, 2.5e-4]
+    said = tacto.run_json("session", "both", "-o", "both.csv")
+    assert all(stroke["error_db"] < -15 for stroke in said["strokes"]), said
     table = np.genfromtxt("both.csv", delimiter=",", names=True)
     for low, high, per_m in ((0.006, 0.017, 1000), (0.021, 0.031, 2000)):
         way = (table["position_m"] > low) & (table["position_m"] < high) & (table["time_s"] < 1)
@@ -70,6 +85,40 @@ def two_textures_in_a_scene():
         spectrum = np.abs(np.fft.rfft(np.interp(grid, x, v) * np.hanning(4096)))
         peak = np.argmax(spectrum) / (grid[-1] - grid[0])
         assert abs(peak - per_m) < 100, (peak, per_m)
+
+
+def a_full_disk_is_an_error():
+    """A limit of the file's size stands in for the disk; the last blocks may or may not find room."""
+    write_grating()
+    write_strokes(4)
+    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
+    done = subprocess.run([tacto.COMMAND, "play", "oak", "-d", "sim:", "--finger-path", "path.csv", "-o", "full", "--json"],
+                          capture_output=True, text=True, preexec_fn=limit, timeout=60)
+    assert done.returncode == 7 and "full.session" in done.stderr and "can't be written" in done.stderr, done
+    if done.stdout:
+        assert json.loads(done.stdout)["lost_ticks"] > 1000, done
+    replayed = subprocess.run([tacto.COMMAND, "replay", "full"], capture_output=True, text=True, timeout=60)
+    told = ("ticks are missing", "never closed", "holds no ticks")  # by what found room
+    assert any(words in replayed.stderr for words in told), replayed
+
+
+def any_damage_is_told():
+    """A byte changed anywhere behind the header: `replay` and `session` end in an error that says where."""
+    write_grating()
+    write_strokes(1)
+    tacto.run("play", "oak", "-d", "sim:", "--finger-path", "path.csv", "-o", "whole")
+    session = bytearray(pathlib.Path("whole.session").read_bytes())
+    head = 20 + int.from_bytes(session[8:12], "little")
+    for at in np.random.default_rng(5).integers(head + 20, len(session), 6):
+        damaged = bytearray(session)
+        damaged[at] ^= 0x10
+        pathlib.Path("damaged.session").write_bytes(damaged)
+        for verb in ("replay", "session"):
+            done = subprocess.run([tacto.COMMAND, verb, "damaged"], capture_output=True, text=True, timeout=60)
+            # In a block's three spare bytes it changes nothing.
+            spare = done.returncode == 0 and tacto.run_json("validate", "damaged.session")["valid"]
+            told = done.returncode == 4 and "is damaged from byte" in done.stderr
+            assert spare or told, (at, done)
 
 
 def wrong_use():
@@ -81,6 +130,10 @@ def wrong_use():
             (("play", "oak", "-d", "replay:none", "-o", "x"), 3, "none"),
             (("play", "oak", "-d", "sim:", "-o", "x", "--rate", "100"), 2, "Hz"),
             (("play", "oak", "-d", "sim:", "-o", "x", "--finger-path", "none.csv"), 3, "none.csv"),
+            (("play", "oak", "-d", "sim:", "-o", ""), 2, "is no name for a file"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--time=-1s"), 2, "a time above 0 s"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--onset", "20s"), 2, "--onset"),
+            (("ctl", "status", "junk"), 2, "takes no 'junk'"),
             (("replay", "none"), 3, "none.session"),
             (("session", "none"), 3, "none.session"),
             (("ctl", "status", "--socket", "none"), 3, "no daemon listens there"),
@@ -95,7 +148,13 @@ def wrong_use():
     assert ".csv, .wav or .nc" in said
     pathlib.Path("x.session").write_bytes(pathlib.Path("x.session").read_bytes()[:-30] + b"torn")
     _, said = tacto.run("validate", "x.session", code=4)
-    tacto.run("replay", "x")
+    for verb in ("replay", "session"):
+        _, said = tacto.run(verb, "x", code=4)
+        assert "is damaged from byte" in said, said
+    session = pathlib.Path("x.session").read_bytes()
+    pathlib.Path("y.session").write_bytes(session[:20 + int.from_bytes(session[8:12], "little")])  # the header alone
+    _, said = tacto.run("replay", "y", code=5)
+    assert "holds no ticks" in said, said
 
 
 def ten_minutes_at_10_khz():
@@ -119,5 +178,7 @@ def ten_minutes_at_10_khz():
 
 
 if __name__ == "__main__":
-    for test in (plays_what_was_wanted, two_textures_in_a_scene, wrong_use, ten_minutes_at_10_khz):
+    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, two_textures_in_a_scene, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
+        if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
+            continue
         tacto.in_folder(test)

@@ -269,5 +269,29 @@ TEST_F(HostBoardTicks, FallAndRiseAgainAfterTheyWereSleptThrough) {
   EXPECT_LE(largest_step_v, 0.5 * 1.5 / 20 * 1.01);  // 10 ms each way: 1.5 is the weight's steepest
 }
 
+// A device that ticked on while this computer stood still hands over what it has kept: 50 periods for each of
+// this computer's, long after the drive came to rest for the first time.
+TEST_F(HostBoardTicks, FollowWhatADeviceHandsOverAfterAStallWithoutAJump) {
+  for (int i = 0; i < 200; ++i) tick_at(i);
+  std::uint32_t period = 2200;
+  std::int32_t count = 200;
+  float drive_v = tick(2000 * kPeriodNs);
+  for (int i = 0; i < 60; ++i) {
+    board_->set_inputs(count += 1000, true, 0, period += 50);
+    drive_v = tick(0);
+  }
+  EXPECT_EQ(drive_v, 0);
+  for (int i = 0; i < 200; ++i) {
+    board_->set_inputs(++count, true, 0, ++period);
+    drive_v = tick(0);
+  }
+  EXPECT_NEAR(drive_v, 0.5, 1e-3);
+  for (int i = 0; i < 40; ++i) {
+    board_->set_inputs(count + 1000, true, 0, ++period);
+    drive_v = tick(0);
+  }
+  EXPECT_EQ(drive_v, 0) << "a jump is one still";
+}
+
 }  // namespace
 }  // namespace tacto::playback

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The player on the emulated device, in emulated time: states, refusals, faults, sessions that replay.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 #include <vector>
 
+#include "data-schema/files.hpp"
 #include "data-schema/session_writer.hpp"
 #include "firmware-host/sim/sim_transport.hpp"
+#include "playback/daemon/player_device.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {
@@ -38,6 +44,32 @@ TEST_F(PlayerOnSim, PlaysRecordsAndReplaysToTheBit) {
   EXPECT_EQ(all[100].drive_v, 0) << "armed is not playing";
   EXPECT_EQ(player_->last_session().queue_lost, 0U);
   expect_same_to_the_bit();
+}
+
+// SESSION.md: the upload stands first, and no command behind a tick that knew it.
+TEST_F(PlayerOnSim, ASessionHoldsEachCommandBeforeTheTicksThatTookIt) {
+  begin();
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_TRUE(i % 2 == 0 ? player_->play() : player_->stop());
+    run(0.02);
+  }
+  ASSERT_TRUE(player_->disarm());
+  auto reader = schema::SessionReader::open(session_);
+  std::uint8_t steered = 0;
+  bool armed = false;
+  while (auto block = reader->next()) {
+    if (const auto* command = std::get_if<schema::SessionCommand>(&*block)) {
+      const auto type = static_cast<wire::MessageType>(command->frame[3]);
+      steered += armed && wire::steers(type);
+      armed = armed || type == wire::MessageType::arm;
+    }
+    const auto* some = std::get_if<std::vector<schema::SessionTick>>(&*block);
+    if (some == nullptr) continue;
+    ASSERT_TRUE(armed) << "ticks before the upload";
+    const auto taken = static_cast<std::uint8_t>(some->back().flags >> wire::kTickSteeredShift);
+    ASSERT_LE(taken, steered);
+  }
+  EXPECT_EQ(steered, 41);
 }
 
 TEST_F(PlayerOnSim, AReplayTellsTheFirstTickThatDiffers) {
@@ -162,6 +194,96 @@ TEST_F(PlayerOnSim, APlayedTextureThatIsNoNumberNeverGetsToTheDevice) {
   const auto prepared = prepare(texture, schema::read_transducer("wiertlewski2011").value(), options);
   ASSERT_FALSE(prepared);
   EXPECT_EQ(prepared.error().fault, schema::Fault::unsuitable);
+}
+
+// Of 0.02 N at 0.5 mm/N: 10 um. The limit holds at load, for live gains, and while textures fade.
+TEST_F(PlayerOnSim, TheTrayIsKeptWithinItsLimitOfDisplacement) {
+  const auto limited = [this](double limit_m, double gain_m_per_n = 5e-4) {
+    Program made = program("grating", gain_m_per_n);
+    EXPECT_GT(made.tray_peak_m, 0.0199 * gain_m_per_n);
+    EXPECT_LT(made.tray_peak_m, 0.0250 * gain_m_per_n) << "2 dB more, beyond the band";
+    made.session.transducer.displacement_limit_m = limit_m;
+    return made;
+  };
+  const auto refused = player_->load(limited(1e-6));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, schema::Fault::unsuitable);
+  EXPECT_NE(refused.error().remedy.find("mm/N"), std::string::npos) << refused.error().remedy;
+  ASSERT_TRUE(player_->load(limited(25e-6)));
+  EXPECT_FALSE(player_->gain(-2.6));
+  ASSERT_TRUE(player_->arm(session_));
+  ASSERT_TRUE(player_->play());
+  run(0.2);
+  EXPECT_FALSE(player_->gain(2.6));
+  EXPECT_FALSE(player_->load(limited(25e-6, 25e-4)));
+  ASSERT_TRUE(player_->load(limited(25e-6, 1e-4), 0.5));
+  EXPECT_FALSE(player_->gain(4)) << "the old texture has not faded yet";
+  run(0.7);
+  ASSERT_TRUE(player_->gain(-4));
+  EXPECT_EQ(player_->status().gain, -4);
+  ASSERT_TRUE(player_->disarm());
+}
+
+// Another program's samples under the sidecar's own name are not what is played.
+TEST_F(PlayerOnSim, ASessionHasTheSumOfTheFileThatTheSidecarNames) {
+  const auto text = schema::read_file(folder_ / "grating.texture.json");
+  ASSERT_TRUE(text);
+  std::ofstream(folder_ / "other.texture.json") << *text;
+  std::filesystem::copy_file(folder_ / "fine.texture.wav", folder_ / "other.texture.wav");
+  const Program made = program("other");
+  EXPECT_EQ(made.session.textures.front().sha256,
+            schema::sha256_of_file(folder_ / "grating.texture.wav").value());
+  EXPECT_TRUE(std::filesystem::path(made.session.textures.front().file).is_absolute());
+  EXPECT_EQ(made.gain_m_per_n, 5e-4);
+}
+
+TEST_F(PlayerOnSim, WhatTheDeviceWouldRefuseByNumberIsToldByName) {
+  PrepareOptions options;
+  options.metres_per_count = player_->metres_per_count();
+  const auto error_of = [&](double at_m) {
+    const auto made = make_program({folder_ / "grating", at_m, 5e-4, {}}, "wiertlewski2011", options);
+    return made ? schema::Error{} : made.error();
+  };
+  EXPECT_EQ(error_of(10).what, "");
+  EXPECT_NE(error_of(1e6).remedy.find("--at"), std::string::npos);
+  options.onset_s = 20;
+  EXPECT_NE(error_of(0).remedy.find("--onset"), std::string::npos);
+  options.onset_s = 0.05;
+  options.most_samples = 100;
+  EXPECT_NE(error_of(0).where.find("grating.texture.json"), std::string::npos) << error_of(0).where;
+}
+
+TEST(DeviceLock, IsHeldByOneProgramAtATime) {
+  const std::string name = "test " + std::to_string(getpid());
+  auto held = DeviceLock::take(name);
+  ASSERT_TRUE(held) << schema::message(held.error());
+  const auto second = DeviceLock::take(name);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().fault, schema::Fault::unsuitable);
+  *held = DeviceLock();
+  EXPECT_TRUE(DeviceLock::take(name));
+}
+
+TEST_F(PlayerOnSim, ASessionThatNeverBeganLeavesNoFile) {
+  Program refused = program();
+  refused.prepared.limits.onset_s = 1e6F;  // the device refuses it
+  ASSERT_TRUE(player_->load(std::move(refused)));
+  ASSERT_FALSE(player_->arm(session_));
+  EXPECT_FALSE(std::filesystem::exists(session_));
+  EXPECT_EQ(player_->status().session, "");
+  begin();
+  ASSERT_TRUE(player_->disarm());
+  EXPECT_EQ(player_->status().session, session_);
+}
+
+// The largest gain is negative: the texture is turned over.
+TEST_F(PlayerOnSim, ANegativeGainTurnsTheTextureOver) {
+  const Program up = program("grating", 5e-4), down = program("grating", -5e-4);
+  ASSERT_EQ(up.prepared.samples.size(), down.prepared.samples.size());
+  EXPECT_EQ(up.prepared.gain_m_per_n, down.prepared.gain_m_per_n);
+  EXPECT_EQ(down.session.textures.front().gain_m_per_n, -5e-4);
+  for (std::size_t i = 0; i < up.prepared.samples.size(); ++i)
+    ASSERT_EQ(up.prepared.samples[i], -down.prepared.samples[i]);
 }
 
 TEST_F(PlayerOnSim, ADeviceThatDoesNotAnswerIsLostOnceAndForAll) {

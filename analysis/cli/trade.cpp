@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tactograph trade: what each choice costs and errs, on this machine.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "analysis/cli/compared_input.hpp"
+#include "analysis/cli/results_output.hpp"
+#include "analysis/cli/verbs.hpp"
+#include "analysis/compare/compare.hpp"
+#include "analysis/trade/measured_trade.hpp"
+#include "analysis/trade/pareto.hpp"
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/file_kind.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/scene.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using cli::Report;
+using schema::Fault;
+using schema::Result;
+
+struct TradeVerbOptions {
+  std::string what, transducer = "wiertlewski2011";
+  std::size_t stroke = 0;
+  TradeHalves halves = TradeHalves::both;
+  bool calibrate = false;
+  std::vector<std::string> outputs;
+};
+
+constexpr const char* kTradeTableEnding = ".trade.json";
+
+// Of a scene the texture of its first layer that names one.
+Result<std::string> texture_named(const std::string& what) {
+  const auto files = schema::stored_files(what);
+  if (!files || files->front().kind != schema::FileKind::scene) return what;
+  const auto scene = schema::read_scene(what);
+  if (!scene) return schema::forward_error(scene);
+  const auto& layer = std::get<schema::TextureLayer>(scene->layers.front());
+  if (scene->layers.size() > 1)
+    cli::warn(fmt::format("{}: the trade is measured with its first texture, {}", what, layer.texture));
+  return schema::texture_in_scene(files->front().path, layer.texture);
+}
+
+Report choice_row(const TradeHalf& half, const TradeRow& row, const Worth& worth) {
+  Report report;
+  report.add("half", half.name).add("choice_of", row.knob).add("choice", row.choice);
+  report.add("error_percent", 100 * row.error).add("cost_ns", row.cost_ns).add("per", row.per);
+  report.add("memory_kib", row.memory_bytes / 1024).add("latency_s", row.latency_s);
+  report.add("worth_it", worth.knee ? "the knee" : worth.on_front ? "yes" : "never: " + worth.beaten_by);
+  return report.add("note", row.note);
+}
+
+Report trade_report(const Trade& trade) {
+  Report report;
+  report.add("texture", trade.texture).add("machine", trade.machine);
+  if (!trade.simulated.empty()) report.add("simulated", trade.simulated);
+  std::vector<Report> rows;
+  std::vector<Report> answers;
+  for (const TradeHalf& half : trade.halves) {
+    const auto worth = worth_of(half.rows);
+    for (std::size_t i = 0; i < half.rows.size(); ++i)
+      rows.push_back(choice_row(half, half.rows[i], worth[i]));
+    for (const PlainAnswer& answer : plain_answers(half.rows))
+      answers.push_back(Report()
+                            .add("half", half.name)
+                            .add("choice_of", answer.knob)
+                            .add("knee", answer.knee)
+                            .add("never_worth_it", answer.never));
+  }
+  return report.add("choices", std::move(rows)).add("answers", std::move(answers));
+}
+
+std::vector<OutputKind> trade_outputs(const Trade& trade) {
+  const auto figure = [&trade] { return pareto_figure(trade.halves.front(), trade); };
+  const auto any = [](std::string_view) { return true; };
+  return {{".csv", [](std::string_view line) { return line.starts_with(kTradeCsvHead); },
+           [&trade]() -> Result<std::string> { return trade_csv(trade); }},
+          {".svg", any, [figure] { return spatial::to_svg(figure()); }},
+          {".png", any, [figure] { return spatial::to_png(figure()); }}};
+}
+
+schema::Results trade_results(const TradeVerbOptions& o, const Trade& trade) {
+  schema::Results results;
+  results.verb = "trade";
+  results.inputs = {o.what, o.transducer};
+  results.simulated = trade.simulated;
+  results.figures = trade_figures(trade);
+  results.pictures = trade_pictures(trade);
+  return results;
+}
+
+Result<Report> measure(const TradeVerbOptions& o) {
+  Trade trade;
+  const auto kinds = trade_outputs(trade);
+  if (const auto free = check_outputs(o.outputs, kinds); !free) return schema::forward_error(free);
+  const auto name = texture_named(o.what);
+  if (!name) return schema::forward_error(name);
+  const auto input = compared_input(*name, o.stroke);
+  if (!input) return schema::forward_error(input);
+  const auto transducer = schema::read_transducer(o.transducer);
+  if (!transducer) return schema::forward_error(transducer);
+  cli::Progress progress("trade");
+  auto measured =
+      measure_trade(input->texture, *transducer, o.halves, [&](double part) { progress.update(part); });
+  if (!measured) {
+    if (measured.error().where == "the texture") measured.error().where = *name;
+    return schema::forward_error(measured);
+  }
+  trade = std::move(*measured);
+  trade.texture = input->name;
+  Report report = trade_report(trade);
+  const auto written = write_outputs(
+      o.outputs, trade_results(o, trade), report, [&] { return trade_page(trade); }, kinds);
+  if (!written) return schema::forward_error(written);
+  if (!o.outputs.empty()) report.add("written", o.outputs);
+  return report;
+}
+
+Report table_report(const schema::TradeTable& table) {
+  std::vector<Report> rows;
+  for (const schema::MeasuredChoice& choice : table.choices)
+    rows.push_back(Report()
+                       .add("stage", choice.stage)
+                       .add("choice", choice.name)
+                       .add("cost_ns", choice.cost_ns)
+                       .add("per", choice.per)
+                       .add("error_percent_at_20_points", 100 * choice.error_at(20)));
+  return Report().add("machine", table.machine).add("choices", std::move(rows));
+}
+
+Result<std::string> write_table(const TradeVerbOptions& o, const schema::TradeTable& table) {
+  if (o.outputs.empty()) return schema::write_machine_trade_table(table);
+  const auto text = schema::trade_table_json(table);
+  if (!text) return schema::forward_error(text);
+  schema::PendingFiles files;
+  if (const auto put = files.write(o.outputs.front(), *text); !put) return schema::forward_error(put);
+  if (const auto done = files.commit(); !done) return schema::forward_error(done);
+  return o.outputs.front();
+}
+
+Result<void> check_table_output(const TradeVerbOptions& o) {
+  if (o.outputs.empty()) return {};
+  const std::string& path = o.outputs.front();
+  if (o.outputs.size() > 1 || !path.ends_with(kTradeTableEnding))
+    return schema::fail(Fault::usage, "is no name for a table of measured choices", path,
+                        "name one file NAME.trade.json, or none for this machine's own");
+  const auto there =
+      schema::is_file(path) ? schema::stored_files(path) : Result<std::vector<schema::StoredFile>>{};
+  if (!schema::is_file(path) || (there && there->front().kind == schema::FileKind::trade)) return {};
+  return schema::fail(Fault::usage, "is no table of measured choices, and would be lost", path,
+                      "choose another name");
+}
+
+Result<Report> calibrate(const TradeVerbOptions& o) {
+  if (!o.what.empty())
+    return schema::fail(Fault::usage, "a machine is measured without a texture", o.what, "leave it out");
+  if (const auto free = check_table_output(o); !free) return schema::forward_error(free);
+  cli::Progress progress("calibrating");
+  const schema::TradeTable table = measure_trade_table([&](double part) { progress.update(part); });
+  const auto path = write_table(o, table);
+  if (!path) return schema::forward_error(path);
+  return table_report(table).add("written", *path);
+}
+
+Result<Report> run_trade(const TradeVerbOptions& o) {
+  if (o.calibrate) return calibrate(o);
+  if (o.what.empty())
+    return schema::fail(Fault::usage, "no texture is named", {},
+                        "name one, or --calibrate for this machine's table");
+  return measure(o);
+}
+
+cli::Action declare_trade(CLI::App& app) {
+  auto options = std::make_shared<TradeVerbOptions>();
+  app.add_option("WHAT", options->what,
+                 "Texture, recording (its stroke becomes one) or scene (its first texture)");
+  app.add_option(
+      "-o,--output", options->outputs,
+      "What to write: a page (.html), results for 'report' (.results.json), a table (.csv), the first "
+      "half's Pareto picture (.svg, .png); with --calibrate NAME.trade.json; may be given again");
+  app.add_option("--transducer", options->transducer, "A preset or NAME.transducer.json")
+      ->capture_default_str();
+  app.add_option("--stroke", options->stroke, "Which of several strokes")->check(cli::from_one());
+  cli::add_choice<TradeHalves>(
+      app, "--half", options->halves,
+      {{"both", TradeHalves::both}, {"offline", TradeHalves::offline}, {"realtime", TradeHalves::real_time}},
+      "From recording to spectrogram, from texture to drive, or both");
+  app.add_flag("--calibrate", options->calibrate,
+               "Measure this machine's table, by which --quality and --max-error choose, and keep it");
+  return [options] { return run_trade(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kTradeVerb{
+    "trade", "Measure what each choice between speed and accuracy costs and errs, and say which are worth it",
+    "tactograph trade oak -o trade.html -o trade.csv\n"
+    "  tactograph trade oak --half realtime -o realtime.svg\n"
+    "  tactograph trade --calibrate",
+    declare_trade};
+
+}  // namespace tacto::analysis

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/trade/loop_latency.hpp"
+
+#include <fmt/format.h>
+
+#include "firmware-host/sim/sim_device.hpp"
+#include "playback/daemon/host_loop.hpp"
+#include "playback/upload.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using firmware_host::Client;
+using schema::Result;
+
+constexpr double kMeasuredS = 0.5, kListenS = 0.02;
+constexpr double kQueueS = 4e-3;  // HostLoop keeps the device's queue that deep
+constexpr const char* kLoopKnob = "loop";
+
+Result<void> play_on(Client& client, const playback::Prepared& prepared) {
+  if (auto sent = playback::upload(client, prepared); !sent) return sent;
+  if (auto armed = client.command(wire::Arm{wire::DriveSource::profile, prepared.rate_millihertz()}); !armed)
+    return armed;
+  if (auto playing = client.command(wire::Play{}); !playing) return playing;
+  for (const double end_s = client.transport().now_s() + kMeasuredS; client.transport().now_s() < end_s;) {
+    if (auto pulse = client.heartbeat(); !pulse) return schema::forward_error(pulse);
+    if (auto received = client.receive(kListenS); !received) return schema::forward_error(received);
+    (void)client.take_ticks();
+  }
+  return client.command(wire::Disarm{});
+}
+
+Result<playback::EdgeToDrive> measured_latency(const playback::Prepared& prepared) {
+  auto device = firmware_host::make_sim_device("sim:paced=1", "paced=1,speed=40mm/s");
+  if (!device) return schema::forward_error(device);
+  auto loop = playback::HostLoop::begin((*device)->client(), {prepared.rate_hz, 50, 1000});
+  if (!loop) return schema::forward_error(loop);
+  auto client = Client::connect((*loop)->transport(), "sim:");
+  if (!client) return schema::forward_error(client);
+  if (auto played = play_on(**client, prepared); !played) return schema::forward_error(played);
+  return (*loop)->latency();
+}
+
+}  // namespace
+
+TradeRow device_loop_row(const playback::Prepared& prepared, double tick_ns) {
+  TradeRow row{kLoopKnob, "device", 0, tick_ns, "tick", static_cast<double>(prepared.built.sample_bytes),
+               0,         {}};
+  row.latency_s = 0.5 / prepared.rate_hz + 1e-9 * tick_ns;
+  row.note = "reads and drives in one tick; the tick's time is this computer's";
+  return row;
+}
+
+TradeRow host_loop_row(const playback::Prepared& prepared, double tick_ns) {
+  TradeRow row{kLoopKnob, "host", 0, tick_ns, "tick", static_cast<double>(prepared.built.sample_bytes),
+               kQueueS,   {}};
+  const auto latency = measured_latency(prepared);
+  if (!latency || !(latency->p50_s > 0)) {
+    row.note = "not measured: " + (latency ? "no drive was sent" : schema::message(latency.error()));
+    return row;
+  }
+  row.latency_s = latency->p50_s;
+  row.note = fmt::format("on an emulated device: p50; p99 is {:.2g} ms", 1e3 * latency->p99_s);
+  return row;
+}
+
+}  // namespace tacto::analysis

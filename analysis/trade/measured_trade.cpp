@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/trade/measured_trade.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "analysis/trade/offline_choices.hpp"
+#include "analysis/trade/offline_half.hpp"
+#include "analysis/trade/realtime_choices.hpp"
+#include "analysis/trade/realtime_half.hpp"
+#include "data-schema/creation_time.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name"))
+      if (const auto colon = line.find(": "); colon != std::string::npos) return line.substr(colon + 2);
+  return "an unnamed processor";
+}
+
+std::string compiler() {
+#ifdef __clang__
+  return fmt::format("clang {}.{}", __clang_major__, __clang_minor__);
+#else
+  return fmt::format("gcc {}.{}", __GNUC__, __GNUC_MINOR__);
+#endif
+}
+
+}  // namespace
+
+std::string machine_words() {
+#ifdef NDEBUG
+  constexpr const char* kBuild = "release";
+#else
+  constexpr const char* kBuild = "with assertions";
+#endif
+  return fmt::format("{}, {}, {}", processor(), compiler(), kBuild);
+}
+
+schema::Result<Trade> measure_trade(const schema::Texture& texture, const schema::Transducer& transducer,
+                                    TradeHalves halves, const std::function<void(double)>& progress) {
+  Trade trade{{}, machine_words(), texture.simulated, {}};
+  const double share = halves == TradeHalves::both ? 0.5 : 1;
+  if (halves != TradeHalves::real_time) {
+    auto rows = measure_offline(texture, [&](double part) { progress(share * part); });
+    if (!rows) return schema::forward_error(rows);
+    trade.halves.push_back({"offline", std::move(*rows)});
+  }
+  if (halves != TradeHalves::offline) {
+    auto rows = measure_realtime(texture, transducer, [&](double part) { progress(1 - share * (1 - part)); });
+    if (!rows) return schema::forward_error(rows);
+    trade.halves.push_back({"real time", std::move(*rows)});
+  }
+  return trade;
+}
+
+schema::TradeTable measure_trade_table(const std::function<void(double)>& progress) {
+  schema::TradeTable table;
+  table.machine = machine_words();
+  table.created = schema::creation_time();
+  table.creator = kCreator;
+  table.choices = measure_resampling();
+  progress(0.5);
+  table.choices.push_back(measure_grid());
+  std::ranges::move(measure_spectrogram(), std::back_inserter(table.choices));
+  progress(0.7);
+  std::ranges::move(measure_reading_choices(), std::back_inserter(table.choices));
+  return table;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Both halves of the trade, and the table that verbs choose by.
+#pragma once
+
+#include <functional>
+
+#include "analysis/trade/trade_page.hpp"
+#include "data-schema/error.hpp"
+#include "data-schema/texture.hpp"
+#include "data-schema/trade_table.hpp"
+#include "data-schema/transducer.hpp"
+
+namespace tacto::analysis {
+
+/// Processor, compiler and kind of build.
+std::string machine_words();
+
+enum class TradeHalves { both, offline, real_time };
+
+/// A texture's trade; some 20 s. Errors: of measure_offline and measure_realtime.
+schema::Result<Trade> measure_trade(const schema::Texture& texture, const schema::Transducer& transducer,
+                                    TradeHalves halves, const std::function<void(double)>& progress);
+
+/// Every stage of the table, on this machine.
+schema::TradeTable measure_trade_table(const std::function<void(double)>& progress);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which of the measured choices are worth their cost.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/trade/trade_row.hpp"
+
+namespace tacto::analysis {
+
+/// Of the rows of one knob: those that no other beats. Costs that lie within a tenth count as alike (two runs
+/// of one choice differ by as much); so do errors within 2 %, and below 1e-6.
+struct Worth {
+  bool on_front = false;
+  bool knee = false;      ///< of the front: farthest from the line between its ends, on logarithmic axes
+  std::string beaten_by;  ///< a choice that errs and costs no more (time, memory, latency), one of them less
+};
+
+/// One for each row. Rows are compared within their knob. A knob whose front has fewer than 3 choices has its
+/// knee at the cheapest that errs by less than 1 %, where there is one.
+std::vector<Worth> worth_of(std::span<const TradeRow> rows);
+
+/// What people ask of a knob: which choice is the knee, and which are never worth it.
+struct PlainAnswer {
+  std::string knob, knee, never;
+};
+std::vector<PlainAnswer> plain_answers(std::span<const TradeRow> rows);
+
+}  // namespace tacto::analysis

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/trade/played_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/trade/cpu_cost.hpp"
+#include "firmware-host/sim/spline_noise.hpp"
+#include "playback/hysteresis_inverse.hpp"
+#include "playback/reference/exact_kernel.hpp"
+#include "playback/reference/spatial_content.hpp"
+#include "playback/reference/wanted.hpp"
+#include "playback/texture_layout.hpp"
+#include "playback/undone_chain.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using playback::Ends;
+using playback::FingerPath;
+using playback::PaddedSpectrum;
+using playback::Prepared;
+using playback::PrepareOptions;
+
+constexpr double kPlayedS = 0.8, kEndsS = 0.15, kFirstM = 5e-3;
+constexpr double kPartOfLimit = 0.02;
+constexpr int kRuns = 7;
+
+FingerPath path_of(FingerWay way) {
+  const double mean_mps = way == FingerWay::slow ? 0.01 : way == FingerWay::fast ? 0.5 : 0.06;
+  if (way != FingerWay::wandering) return {{0, kPlayedS}, {kFirstM, kFirstM + mean_mps * kPlayedS}};
+  firmware_host::SplineNoise wander(firmware_host::Random(3, 1), 0.25);
+  constexpr int kKnots = 800;
+  FingerPath path;
+  double position_m = kFirstM;
+  for (int i = 0; i <= kKnots; ++i) {
+    const double time_s = kPlayedS * i / kKnots;
+    path.time_s.push_back(time_s);
+    path.position_m.push_back(position_m);
+    position_m += mean_mps * (1 + 0.1 * wander.at(time_s)) * kPlayedS / kKnots;
+  }
+  return path;
+}
+
+// Of so fine an encoder the rounding of its scale to 32 bits would show: that is not the kernel's error.
+void take_scale_of(FingerPath& path, const Prepared& prepared, double metres_per_count) {
+  const double per_count = std::ldexp(static_cast<double>(prepared.scale.samples_per_count_q32), -32);
+  for (double& position_m : path.position_m) position_m *= per_count * prepared.pitch_m / metres_per_count;
+}
+
+schema::Texture loop_again(const schema::SpaceSignal& loop, double length_m) {
+  schema::Texture texture;
+  texture.signal.pitch_m = loop.pitch_m;
+  const auto samples = static_cast<std::size_t>(length_m / loop.pitch_m) + 1;
+  for (std::size_t i = 0; i < samples; ++i)
+    texture.signal.values.push_back(loop.values[i % loop.values.size()]);
+  return texture;
+}
+
+// What lies beside the band is neither wanted nor an error: the reference reaches a little beyond it.
+PaddedSpectrum wanted_along(const FingerPath& path, const schema::SpaceSignal& loop,
+                            const PrepareOptions& o) {
+  const spatial::Band beyond{10, 1.01 * o.band.high_hz};
+  const double most_m = *std::ranges::max_element(path.position_m);
+  const schema::Texture texture = loop_again(loop, most_m + 10e-3);
+  const double finest_hz = playback::highest_spatial_frequency(loop) * playback::greatest_speed_mps(path);
+  const auto grid = playback::reading_grid(path.duration_s(), o.rate_hz, beyond, finest_hz);
+  return playback::exact_wanted(playback::TextureLookup(texture.signal, 0), path, grid, beyond,
+                                o.gain_m_per_n, 0.005);
+}
+
+std::vector<std::int32_t> counts_along(const FingerPath& path, const PrepareOptions& o, std::size_t ticks) {
+  std::vector<std::int32_t> counts;
+  for (const double position_m : playback::positions_along(path, o.rate_hz, ticks))
+    counts.push_back(static_cast<std::int32_t>(std::floor(position_m / o.metres_per_count)));
+  return counts;
+}
+
+std::vector<float> kernel_run(const Prepared& prepared, const std::vector<std::int32_t>& counts,
+                              PlayedPart part) {
+  core::TickKernel kernel;
+  kernel.set(prepared.setup());
+  std::vector<float> values;
+  values.reserve(counts.size());
+  const float gain = prepared.gain_m_per_n;
+  for (const std::int32_t count : counts)
+    values.push_back(part == PlayedPart::reading ? kernel.wanted(count, gain)
+                                                 : kernel.tick({count, gain, true, core::kNoForce}).drive_v);
+  return values;
+}
+
+std::vector<float> double_run(const Prepared& prepared, const std::vector<std::int32_t>& counts) {
+  playback::ExactKernel kernel(prepared);
+  std::vector<float> values;
+  for (const std::int32_t count : counts)
+    values.push_back(static_cast<float>(kernel.tick({count, double{prepared.gain_m_per_n}, true})));
+  return values;
+}
+
+std::vector<double> moved_by(const std::vector<float>& drive_v, const schema::Transducer& transducer,
+                             const PrepareOptions& o, std::size_t period) {
+  std::vector<double> drive(drive_v.begin(), drive_v.end());
+  if (transducer.hysteresis)
+    drive = playback::linear_drive_of(drive, *transducer.hysteresis, schema::actuator_pole_hz(transducer),
+                                      o.rate_hz);
+  playback::Chain chain = playback::undone_chain(transducer, o).chain;
+  chain.led_pole_hz = 0;
+  return playback::signal_of(playback::through(playback::spectrum_of(drive, o.rate_hz, period),
+                                               [&](double f) { return playback::chain_response(chain, f); }));
+}
+
+std::vector<double> between_ends(const std::vector<double>& values, const PrepareOptions& o) {
+  const auto skipped = static_cast<std::ptrdiff_t>(kEndsS * o.rate_hz);
+  std::vector<double> inner(values.begin() + skipped, values.end() - skipped);
+  const auto n = static_cast<double>(inner.size());
+  for (std::size_t i = 0; i < inner.size(); ++i)
+    inner[i] *= 1 - std::cos(2 * std::numbers::pi * static_cast<double>(i) / n);
+  return inner;
+}
+
+PaddedSpectrum spectrum_between(const std::vector<double>& values, const PrepareOptions& o) {
+  const auto inner = between_ends(values, o);
+  return playback::spectrum_of(inner, o.rate_hz, inner.size());
+}
+
+double amplitude_error_re(const std::vector<double>& values, const std::vector<double>& wanted,
+                          const PrepareOptions& o) {
+  PaddedSpectrum off = spectrum_between(values, o);
+  const PaddedSpectrum whole = spectrum_between(wanted, o);
+  for (std::size_t k = 0; k < off.bins.size(); ++k)
+    off.bins[k] = std::abs(off.bins[k]) - std::abs(whole.bins[k]);
+  return std::sqrt(playback::energy_in(off, o.band) / playback::energy_in(whole, o.band));
+}
+
+double band_rms(const std::vector<double>& values, const PrepareOptions& o) {
+  return std::sqrt(playback::energy_in(spectrum_between(values, o), o.band));
+}
+
+double error_re(const std::vector<double>& values, const std::vector<double>& wanted,
+                const PrepareOptions& o) {
+  std::vector<double> error = values;
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] -= wanted[i];
+  return band_rms(error, o) / band_rms(wanted, o);
+}
+
+double gain_for(const schema::SpaceSignal& loop, const schema::Transducer& transducer) {
+  double peak_n = 0;
+  for (const double force_n : loop.values) peak_n = std::max(peak_n, std::abs(force_n));
+  return peak_n > 0 ? std::min(1.0, kPartOfLimit * transducer.displacement_limit_m / peak_n) : 1e-3;
+}
+
+double tick_cost_of(const PlayedCase& played, const Prepared& prepared,
+                    const std::vector<std::int32_t>& counts) {
+  const auto run = [&] {
+    (void)(played.in_double ? double_run(prepared, counts) : kernel_run(prepared, counts, PlayedPart::whole));
+  };
+  return median_costs_ns({run}, static_cast<double>(counts.size()), kRuns).front();
+}
+
+void compare_with(const PaddedSpectrum& wanted, const std::vector<double>& felt, const PrepareOptions& o,
+                  PlayedOutcome& outcome) {
+  const auto exact = playback::signal_of(wanted);
+  outcome.error = error_re(felt, exact, o);
+  outcome.amplitude_error = amplitude_error_re(felt, exact, o);
+  const auto later = playback::through(
+      wanted, [&](double f) { return std::polar(1.0, -2 * std::numbers::pi * f * outcome.delay_left_s); });
+  outcome.later_error = error_re(felt, playback::signal_of(later), o);
+}
+
+}  // namespace
+
+schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const schema::Transducer& transducer,
+                                        const PlayedCase& played) {
+  const playback::PlacedTexture placed{&texture, 0, 1};
+  PrepareOptions options = played.options;
+  options.ends = Ends::loop;
+  options.onset_s = 0;
+  if (auto sound = playback::check_prepare(std::span(&placed, 1), options); !sound)
+    return schema::forward_error(sound);
+  const auto loop = playback::laid_out(std::span(&placed, 1), Ends::loop, options.seam_m);
+  options.gain_m_per_n = gain_for(loop, transducer);
+  const auto prepared = playback::prepare(texture, transducer, options);
+  if (!prepared) return schema::forward_error(prepared);
+  FingerPath path = path_of(played.way);
+  const auto counts = counts_along(path, options, static_cast<std::size_t>(kPlayedS * options.rate_hz) + 1);
+  take_scale_of(path, *prepared, options.metres_per_count);
+  const PaddedSpectrum wanted = wanted_along(path, loop, options);
+  PlayedOutcome outcome{0,
+                        0,
+                        0,
+                        tick_cost_of(played, *prepared, counts),
+                        static_cast<double>(prepared->built.sample_bytes),
+                        prepared->delay_left_s,
+                        {}};
+  outcome.drive_v =
+      played.in_double ? double_run(*prepared, counts) : kernel_run(*prepared, counts, played.part);
+  const auto felt = played.part == PlayedPart::reading
+                        ? std::vector<double>(outcome.drive_v.begin(), outcome.drive_v.end())
+                        : moved_by(outcome.drive_v, transducer, options, wanted.period);
+  compare_with(wanted, felt, options, outcome);
+  return outcome;
+}
+
+}  // namespace tacto::analysis

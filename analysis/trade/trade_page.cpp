@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/trade/trade_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "analysis/html.hpp"
+#include "analysis/picture_svg.hpp"
+#include "analysis/trade/pareto.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+double error_db(const TradeRow& row) {
+  constexpr double kSmallest = 1e-8;
+  return 20 * std::log10(std::max(row.error, kSmallest));
+}
+
+bool drawn(const TradeRow& row) {
+  return row.cost_ns > 0 && row.error > 0 && row.error < 1;
+}
+
+// A picture holds so many knobs; those of which there is most to choose.
+std::vector<std::vector<std::size_t>> most_telling(std::vector<std::vector<std::size_t>> knobs) {
+  constexpr std::size_t kMostKnobs = 6;
+  std::ranges::stable_sort(knobs, std::greater<>(), [](const auto& rows) { return rows.size(); });
+  if (knobs.size() > kMostKnobs) knobs.resize(kMostKnobs);
+  return knobs;
+}
+
+// Rows by knob.
+std::vector<std::vector<std::size_t>> by_knob(const TradeHalf& half) {
+  std::vector<std::vector<std::size_t>> knobs;
+  std::map<std::string, std::size_t> place;
+  for (std::size_t i = 0; i < half.rows.size(); ++i) {
+    if (!drawn(half.rows[i])) continue;
+    const auto [at, fresh] = place.try_emplace(half.rows[i].knob, knobs.size());
+    if (fresh) knobs.emplace_back();
+    knobs[at->second].push_back(i);
+  }
+  return most_telling(std::move(knobs));
+}
+
+// Those that no cheaper one undercuts in error: what is on the front for its memory alone would make it turn.
+std::vector<std::size_t> front_by_cost(const TradeHalf& half, std::vector<std::size_t> rows) {
+  std::ranges::sort(rows, {}, [&](std::size_t i) { return half.rows[i].cost_ns; });
+  double least = INFINITY;
+  std::erase_if(rows, [&](std::size_t i) {
+    const bool falls = half.rows[i].error < least;
+    least = std::min(least, half.rows[i].error);
+    return !falls;
+  });
+  return rows;
+}
+
+// Only choices of the front are named: the rest would cover each other.
+spatial::Series marks_of(const TradeHalf& half, const std::vector<Worth>& worth,
+                         const std::vector<std::size_t>& rows, spatial::Colour colour) {
+  spatial::Series series{half.rows[rows.front()].knob, {}, {}, colour, 1.5, false, true, {}};
+  for (const std::size_t i : rows) {
+    series.x.push_back(half.rows[i].cost_ns);
+    series.y.push_back(error_db(half.rows[i]));
+    series.labels.push_back(worth[i].knee       ? half.rows[i].choice + "  (knee)"
+                            : worth[i].on_front ? half.rows[i].choice
+                                                : "");
+  }
+  return series;
+}
+
+std::string number(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::vector<std::vector<std::string>> table_of(const TradeHalf& half) {
+  const auto worth = worth_of(half.rows);
+  std::vector<std::vector<std::string>> rows = {
+      {"choice of", "choice", "error", "cost", "memory", "latency", "worth it", "note"}};
+  for (std::size_t i = 0; i < half.rows.size(); ++i) {
+    const TradeRow& row = half.rows[i];
+    rows.push_back({row.knob, row.choice, fmt::format("{:.3g} % ({:.1f} dB)", 100 * row.error, error_db(row)),
+                    row.cost_ns > 0 ? fmt::format("{:.3g} ns a {}", row.cost_ns, row.per) : "",
+                    row.memory_bytes > 0 ? fmt::format("{:.4g} KiB", row.memory_bytes / 1024) : "",
+                    row.latency_s > 0 ? fmt::format("{:.3g} ms", 1e3 * row.latency_s) : "",
+                    worth[i].knee       ? "the knee"
+                    : worth[i].on_front ? "yes"
+                                        : "never: " + worth[i].beaten_by,
+                    row.note});
+  }
+  return rows;
+}
+
+}  // namespace
+
+spatial::LineFigure pareto_figure(const TradeHalf& half, const Trade& trade) {
+  spatial::LineFigure figure;
+  figure.title = "Error against cost, " + half.name;
+  figure.subtitle = trade.texture;
+  figure.simulated = trade.simulated;
+  figure.x_label = "CPU time (ns a frame, sample, tick or ms of playing)";
+  figure.y_label = "error (dB re the RMS)";
+  figure.x_scale = spatial::AxisScale::logarithmic;
+  figure.size = {900, 480};
+  const auto worth = worth_of(half.rows);
+  std::size_t colour = 0;
+  for (const auto& rows : by_knob(half)) {
+    const spatial::Colour shade = spatial::series_colour(colour++);
+    spatial::Series line{"", {}, {}, shade, 1, true, false, {}};
+    for (const std::size_t i : front_by_cost(half, rows)) {
+      line.x.push_back(half.rows[i].cost_ns);
+      line.y.push_back(error_db(half.rows[i]));
+    }
+    figure.series.push_back(std::move(line));
+    figure.series.push_back(marks_of(half, worth, rows, shade));
+  }
+  return figure;
+}
+
+std::vector<schema::ResultPicture> trade_pictures(const Trade& trade) {
+  std::vector<schema::ResultPicture> pictures;
+  for (const TradeHalf& half : trade.halves) {
+    schema::ResultPicture picture{"Error against cost, " + half.name,
+                                  "CPU time (ns a frame, sample, tick or ms of playing)",
+                                  "error (dB re the RMS)",
+                                  true,
+                                  {}};
+    for (const auto& rows : by_knob(half)) {
+      schema::ResultCurve curve{half.rows[rows.front()].knob, {}, {}, false};
+      for (const std::size_t i : front_by_cost(half, rows)) {
+        curve.x.push_back(half.rows[i].cost_ns);
+        curve.y.push_back(error_db(half.rows[i]));
+      }
+      picture.curves.push_back(std::move(curve));
+    }
+    pictures.push_back(std::move(picture));
+  }
+  return pictures;
+}
+
+std::vector<schema::ResultFigure> trade_figures(const Trade& trade) {
+  std::vector<schema::ResultFigure> figures = {{"machine", trade.machine}};
+  for (const TradeHalf& half : trade.halves)
+    for (const PlainAnswer& answer : plain_answers(half.rows))
+      figures.push_back({half.name + ", " + answer.knob,
+                         fmt::format("the knee: {}; never worth it: {}", answer.knee, answer.never)});
+  return figures;
+}
+
+std::string trade_csv(const Trade& trade) {
+  std::string csv =
+      std::string(kTradeCsvHead) + "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note\n";
+  for (const TradeHalf& half : trade.halves) {
+    const auto worth = worth_of(half.rows);
+    for (std::size_t i = 0; i < half.rows.size(); ++i) {
+      const TradeRow& row = half.rows[i];
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", half.name, quoted(row.knob),
+                         quoted(row.choice), number(row.error), number(row.cost_ns), row.per,
+                         number(row.memory_bytes), number(row.latency_s), worth[i].on_front, worth[i].knee,
+                         quoted(worth[i].beaten_by), quoted(row.note));
+    }
+  }
+  return csv;
+}
+
+schema::Result<std::string> trade_page(const Trade& trade) {
+  std::string body = fmt::format("<h1>Speed for accuracy</h1>\n<p>Measured on {}, with {}.</p>\n",
+                                 escaped(trade.machine), escaped(trade.texture));
+  if (!trade.simulated.empty())
+    body +=
+        fmt::format("<p class=\"simulated\"><strong>Simulated</strong> {}.</p>\n", escaped(trade.simulated));
+  for (const TradeHalf& half : trade.halves) {
+    const spatial::LineFigure figure = pareto_figure(half, trade);
+    const auto svg = spatial::to_svg(figure);
+    if (!svg) return schema::forward_error(svg);
+    body += fmt::format("<h2>{}</h2>\n", escaped(half.name)) + inline_svg(*svg, figure.title);
+    std::vector<std::vector<std::string>> answers = {{"choice of", "the knee", "never worth it"}};
+    for (const PlainAnswer& answer : plain_answers(half.rows))
+      answers.push_back({answer.knob, answer.knee, answer.never});
+    body += html_table(answers);
+    body += html_table(table_of(half));
+  }
+  return html_document("Speed for accuracy: " + trade.texture, body);
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/cli/budget_report.hpp"
+
+#include "playback/budget_words.hpp"
+
+namespace tacto::playback {
+
+schema::Result<TickBudget> AskedBudget::budget() const {
+  TickBudget budget{options.budget, {}, inverse != nullptr && inverse->count() > 0, {}};
+  if (max_tick_s) budget.max_tick_ns = 1e9 * *max_tick_s;
+  if (options.explain && !budget.asked())
+    return schema::fail(schema::Fault::usage, "nothing was asked for that could be explained", "--explain",
+                        "add --quality, --max-error or --max-tick");
+  return budget;
+}
+
+void declare_tick_budget(CLI::App& app, AskedBudget& asked, CLI::Option* inverse) {
+  asked.inverse = inverse;
+  cli::declare_budget(app, asked.options, "interpolation, levels' density and the inverse's length");
+  cli::add_quantity(app, "--max-tick", asked.max_tick_s, schema::Dimension::time,
+                    "The CPU time that a tick may take, by the table; alone: what errs least within it");
+}
+
+void add_decision(cli::Report& report, const TickDecision& decision, bool explain) {
+  report.add("chosen", words_of(decision.chosen))
+      .add("promised_error_percent", 100 * decision.chosen.error)
+      .add("tick_s", 1e-9 * decision.chosen.tick_ns);
+  if (!explain) return;
+  std::vector<cli::Report> reasons;
+  for (const std::string& line : decision.reasons) reasons.push_back(cli::Report().add("reason", line));
+  report.add("by_table", decision.table).add("why", std::move(reasons));
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include "playback/budget_words.hpp"
+#include "playback/cli/budget_report.hpp"
+#include "playback/cli/verbs.hpp"
+#include "playback/daemon/program.hpp"
+
+namespace tacto::playback {
+
+using cli::Report;
+using schema::Dimension;
+using schema::Result;
+
+namespace {
+
+struct ExplainOptions {
+  ProgramRequest program;
+  std::string transducer = "wiertlewski2011";
+  std::size_t device_memory = 0;
+  PrepareOptions prepare;
+  AskedBudget budget;
+};
+
+std::vector<Report> rows_of_textures(const Program& program) {
+  std::vector<Report> rows;
+  for (const schema::SessionTexture& texture : program.session.textures)
+    rows.push_back(Report()
+                       .add("texture", texture.file)
+                       .add("at_m", texture.at_m)
+                       .add("gain_m_per_n", texture.gain_m_per_n)
+                       .add("ends", std::string(schema::word_of(texture.ends))));
+  return rows;
+}
+
+std::vector<Report> rows_of_levels(const Prepared& made) {
+  std::vector<Report> rows;
+  for (std::uint8_t level = 0; level < made.scale.levels; ++level) {
+    const double passes_per_m = made.finest_per_m * std::exp2(-0.5 * level);
+    const std::size_t samples = core::level_samples(made.scale, level);
+    rows.push_back(Report()
+                       .add("level", level + 1)
+                       .add("passes_per_m", passes_per_m)
+                       .add("up_to_mps", made.passes_to_hz / passes_per_m)
+                       .add("pitch_m", std::ldexp(made.pitch_m, level / 2))
+                       .add("samples", samples)
+                       .add("bytes", samples * sizeof(float)));
+  }
+  return rows;
+}
+
+std::vector<Report> rows_of_left_out(const Prepared& made) {
+  std::vector<Report> rows;
+  for (const LeftOut& each : left_out_of(made))
+    rows.push_back(Report().add("part", each.part).add("because", each.because));
+  return rows;
+}
+
+void add_chain(Report& report, const Prepared& made) {
+  report.add("filter_taps", made.built.taps).add("filter_delay_s", made.delay_s);
+  report.add("inverse_error_db", made.inverse_error_db).add("passes_to_hz", made.passes_to_hz);
+  report.add("hysteresis_plays", made.built.plays).add("sections", made.built.sections);
+}
+
+void add_guards(Report& report, const Prepared& made) {
+  report.add("drive_limit_v", double{made.limits.drive_v})
+      .add("slew_limit_v_per_s", double{made.limits.slew_v_per_s});
+  report.add("energy_limits", made.built.energy_limits).add("touch_gates", made.built.touch_gates);
+}
+
+// The kernel is one object of fixed size, whatever it plays; what it points at is the textures'.
+void add_costs(Report& report, const Prepared& made, double tick_ns, const schema::FoundTradeTable& table) {
+  report.add("sample_bytes", made.built.sample_bytes).add("kernel_bytes", sizeof(core::TickKernel));
+  report.add("tick_s", 1e-9 * tick_ns).add("tick_of_period_percent", 1e-7 * tick_ns * made.rate_hz);
+  report.add("by_table", table.origin);
+}
+
+Result<Report> explained(const ExplainOptions& o, const Program& program) {
+  const Prepared& made = program.prepared;
+  const auto table = schema::find_trade_table();
+  if (!table) return schema::forward_error(table);
+  const auto tick_ns =
+      tick_cost_ns(table->table, made.scale.interpolation, made.built.taps, made.plays.count > 0);
+  if (!tick_ns) return schema::forward_error(tick_ns);
+  Report report;
+  report.add("what", program.name()).add("transducer", program.session.transducer.name);
+  report.add("rate_hz", made.rate_hz).add("length_m", program.length_m);
+  report.add("textures", rows_of_textures(program)).add("texture_files_read", made.built.texture_files);
+  report.add("levels", rows_of_levels(made));
+  report.add("interpolation", word_of(made.scale.interpolation));
+  add_chain(report, made);
+  add_guards(report, made);
+  add_costs(report, made, *tick_ns, *table);
+  report.add("left_out", rows_of_left_out(made));
+  if (program.decision) add_decision(report, *program.decision, o.budget.options.explain);
+  return report;
+}
+
+Result<Report> run_explain(ExplainOptions o) {
+  const auto budget = o.budget.budget();
+  if (!budget) return schema::forward_error(budget);
+  o.program.budget = *budget;
+  if (o.device_memory > 0) o.prepare.most_samples = o.device_memory;
+  const auto program = make_program(o.program, o.transducer, o.prepare);
+  if (!program) return schema::forward_error(program);
+  for (const std::string& note : program->prepared.notes) cli::warn(note);
+  return explained(o, *program);
+}
+
+cli::Action declare_explain(CLI::App& app) {
+  auto options = std::make_shared<ExplainOptions>();
+  ExplainOptions& o = *options;
+  app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
+  app.add_option("--transducer", o.transducer, "A preset or NAME.transducer.json")->capture_default_str();
+  app.add_flag("--force", o.program.force,
+               "Take a transducer file that says of itself that its model does not fit");
+  cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
+  cli::add_quantity(app, "--encoder-step", o.prepare.metres_per_count, Dimension::length,
+                    "One count of the encoder");
+  app.add_option("--device-memory", o.device_memory,
+                 "Samples that the device holds; as many as needed unless told")
+      ->check(cli::from_one());
+  CLI::Option* inverse = cli::add_choice<Inverse>(
+      app, "--inverse", o.prepare.inverse,
+      {{"full", Inverse::full}, {"magnitude", Inverse::magnitude}, {"gain", Inverse::gain}},
+      "What of the transducer the drive undoes");
+  app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
+               "Do not undo the hysteresis that the transducer's file tells");
+  declare_tick_budget(app, o.budget, inverse);
+  return [options] { return run_explain(*options); };
+}
+
+}  // namespace
+
+const cli::Verb kExplainVerb{
+    "explain",
+    "List what is built to play a texture or scene, what it costs in memory and time, "
+    "and what was left out",
+    "tactograph explain bench.scene.json\n"
+    "  tactograph explain oak --transducer mine --rate 10kHz --quality balanced --explain",
+    declare_explain};
+
+}  // namespace tacto::playback

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/program_loader.hpp"
+
+#include <new>
+#include <utility>
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+Result<Program> made_within_memory(const ProgramLoader::Make& make) try {
+  return make();
+} catch (const std::bad_alloc&) {
+  return fail(Fault::unsuitable, "takes more memory than there is", "load", "play a shorter part");
+}
+
+}  // namespace
+
+ProgramLoader::~ProgramLoader() {
+  if (busy())
+    thread_.detach();
+  else
+    forget();
+}
+
+void ProgramLoader::begin(Make make) {
+  forget();
+  work_ = std::make_shared<Work>();
+  wanted_ = true;
+  given_up_ = false;
+  thread_ = std::thread([work = work_, make = std::move(make)] {
+    work->result = made_within_memory(make);
+    work->done.store(true);
+  });
+}
+
+void ProgramLoader::forget() {
+  if (thread_.joinable()) thread_.join();
+  work_.reset();
+}
+
+bool ProgramLoader::busy() const {
+  return work_ != nullptr && !work_->done.load();
+}
+
+void ProgramLoader::give_up() {
+  given_up_ = wanted_;
+}
+
+std::optional<Result<Program>> ProgramLoader::take() {
+  if (!wanted_ || (busy() && !given_up_)) return std::nullopt;
+  wanted_ = false;
+  if (given_up_) return fail(Fault::usage, "the load was given up, for a stop came", "load", "load again");
+  std::optional<Result<Program>> result = std::move(work_->result);
+  forget();
+  return result;
+}
+
+}  // namespace tacto::playback

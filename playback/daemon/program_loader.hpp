@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Makes a program beside whoever plays.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "playback/daemon/program.hpp"
+
+namespace tacto::playback {
+
+/// One program at a time, on a thread of its own that nobody has to wait for: a long texture takes seconds,
+/// and can't be interrupted. One thread calls.
+class ProgramLoader {
+ public:
+  using Make = std::function<schema::Result<Program>()>;
+
+  ProgramLoader() = default;
+  ProgramLoader(const ProgramLoader&) = delete;
+  ProgramLoader& operator=(const ProgramLoader&) = delete;
+  /// Leaves a thread that is still at work to itself: the process is to end without it (std::_Exit).
+  ~ProgramLoader();
+
+  /// `make` owns all that it uses. Precondition: !busy().
+  void begin(Make make);
+  /// Something is being made, be it for nobody any more.
+  bool busy() const;
+  /// What is being made is nobody's any more: take() gives an error at once.
+  void give_up();
+  /// What came of it, once; none while it is being made, or where nothing was. Errors: of `make`; unsuitable:
+  /// no memory for it; usage: it was given up.
+  std::optional<schema::Result<Program>> take();
+
+ private:
+  struct Work {
+    std::atomic<bool> done{false};
+    std::optional<schema::Result<Program>> result;
+  };
+  void forget();
+
+  std::shared_ptr<Work> work_;
+  std::thread thread_;
+  bool wanted_ = false, given_up_ = false;
+};
+
+}  // namespace tacto::playback

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/displacement_limit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "playback/chain.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr int kPeakGrid = 512;
+constexpr double kSinglePrecision = 1 + 1e-6;
+
+double taps_response(const Prepared& prepared, double frequency_hz) {
+  std::complex<double> sum = 0;
+  const double turn = -2 * std::numbers::pi * frequency_hz / prepared.rate_hz;
+  for (std::size_t i = 0; i < prepared.taps.size(); ++i)
+    sum += double{prepared.taps[i]} * std::polar(1.0, turn * static_cast<double>(i));
+  return std::abs(sum);
+}
+
+// Rounded down in the fourth digit, so that what a message names does fit.
+double fitting(double value) {
+  const double digit = std::pow(10, std::floor(std::log10(value)) - 3);
+  return std::floor(value / digit) * digit;
+}
+
+}  // namespace
+
+double tray_peak_m(const Prepared& prepared, const schema::Transducer& transducer,
+                   const PrepareOptions& options) {
+  Chain chain{transducer, options.reconstruction, options.reconstruction_cutoff_hz, options.hold,
+              prepared.rate_hz};
+  if (!prepared.sections.empty()) chain.led_pole_hz = schema::actuator_pole_hz(transducer);
+  const double highest_hz = std::min(prepared.stops_at_hz, prepared.rate_hz / 2);
+  double most = 0;
+  for (int i = 0; i <= kPeakGrid; ++i) {
+    const double f = highest_hz * i / kPeakGrid;
+    most = std::max(most, std::abs(chain_response(chain, f)) * taps_response(prepared, f));
+  }
+  float largest = 0;
+  for (const float sample : prepared.samples) largest = std::max(largest, std::abs(sample));
+  return most * double{largest} * std::abs(double{prepared.gain_m_per_n});
+}
+
+schema::Result<void> check_displacement(double peak_m, double factor, double gain_m_per_n,
+                                        const schema::Transducer& transducer) {
+  const double limit_m = transducer.displacement_limit_m, reached_m = std::abs(factor) * peak_m;
+  if (!(reached_m > kSinglePrecision * limit_m)) return {};
+  const double most = fitting(limit_m / peak_m);
+  return schema::fail(schema::Fault::unsuitable,
+                      fmt::format("the tray would go as far as {:.4g} um, its limit is {:.4g} um",
+                                  1e6 * reached_m, 1e6 * limit_m),
+                      transducer.name,
+                      fmt::format("the largest gain that fits is {:.4g}mm/N, or a factor of {:.4g}",
+                                  1e3 * most * std::abs(gain_m_per_n), most));
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`tactograph trade` and what chooses by it: files, calibration, promises, errors."""
+import csv
+import json
+import os
+import pathlib
+import tempfile
+
+import tacto
+
+os.environ["XDG_CONFIG_HOME"] = tempfile.mkdtemp()
+
+
+def make_texture(folder):
+    tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=79", "--strokes", "1", "-o", "C", "--no-calibration", cwd=folder)
+    tacto.run("spatial", "C", "-o", "C", cwd=folder)
+
+
+def check_trade(folder):
+    done = tacto.run_json("trade", "C", "-o", "t.html", "-o", "t.csv", "-o", "t.svg", "-o", "t.results.json", cwd=folder)
+    rows = list(csv.DictReader((folder / "t.csv").open()))
+    assert len(rows) == len(done["choices"]) > 60
+    assert {row["half"] for row in rows} == {"offline", "real time"}
+    for half in ("offline", "real time"):
+        assert sum(row["knee"] == "true" for row in rows if row["half"] == half) >= 3, half
+    for row in rows:
+        assert 0 <= float(row["error"]) < 10, row
+        assert (row["on_front"] == "true") != bool(row["beaten_by"]), row
+    assert all(answer["knee"] and answer["never_worth_it"] for answer in done["answers"])
+    page = (folder / "t.html").read_text()
+    assert "Simulated" in page and page.count("<img") == 2
+    assert (folder / "t.svg").read_text().startswith("<?xml")
+    tacto.run("validate", "t.results.json", cwd=folder)
+    assert "real time" in tacto.run("info", "t.results.json", cwd=folder)[0]
+    # What is no such file is not replaced.
+    (folder / "mine.csv").write_text("a,b\n1,2\n")
+    assert "mine.csv" in tacto.run("trade", "C", "-o", "mine.csv", cwd=folder, code=2)[1]
+
+
+def check_budgets(folder):
+    fast = tacto.run_json("spatial", "C", "-o", "fast", "--quality", "fast", "--explain", cwd=folder)
+    chosen = fast["chosen"][0]
+    assert "shipped" in chosen["by_table"] and chosen["promised_error_percent"] <= 1
+    taken = [row for row in chosen["tried"] if row["taken"]]
+    assert len(taken) == 1 and taken[0]["method"] == chosen["method"]
+    exact_enough = [row["cost_us_per_mm"] for row in chosen["tried"] if row["error_percent"] <= 1]
+    assert taken[0]["cost_us_per_mm"] == min(exact_enough)
+    # Against the most exact: within what was promised, and a percent of the RMS apart.
+    tacto.run("spatial", "C", "-o", "exact", "--quality", "exact", cwd=folder)
+    x, values, side = tacto.texture(folder / "fast")
+    xe, best, best_side = tacto.texture(folder / "exact")
+    import numpy as np
+    at = x + side["source_origin_m"] - best_side["source_origin_m"]
+    inside = (at > 3e-3) & (at < xe[-1] - 3e-3)
+    read = np.interp(at[inside], xe, best)
+    error = np.sqrt(np.mean((values[inside] - read) ** 2) / np.mean(read**2))
+    print(f"fast against exact: {100 * error:.3f} % of the RMS, promised {chosen['promised_error_percent']:.3f} %")
+    assert error < 0.01
+    assert "least is" in tacto.run("spatial", "C", "-o", "no", "--max-error", "0.00001ppm", cwd=folder, code=5)[1]
+    assert not (folder / "no.texture.json").exists()
+    assert "no unit" in tacto.run("spatial", "C", "-o", "no", "--max-error", "0.1", cwd=folder, code=2)[1]
+    assert "nothing was chosen" in tacto.run("spatial", "C", "-o", "no", "--explain", cwd=folder, code=2)[1]
+    assert "band that ends" in tacto.run("spatial", "C", "-o", "no", "--quality", "fast", "--band", "off", cwd=folder, code=2)[1]
+    cells = tacto.run_json("spectrogram", "C", "-o", "C.nc", "--quality", "exact", "--explain", cwd=folder)
+    assert cells["resolution"] == "whole" and len(cells["chosen"][0]["tried"]) == 2
+
+
+def check_calibration(folder):
+    done = tacto.run_json("trade", "--calibrate", cwd=folder)
+    own = pathlib.Path(done["written"])
+    assert own.is_relative_to(os.environ["XDG_CONFIG_HOME"])
+    table = json.loads(own.read_text())
+    assert table["kind"] == "trade" and {c["stage"] for c in table["choices"]} >= {"resampling", "grid", "spectrogram", "reading", "inverse"}
+    again = tacto.run_json("spatial", "C", "-o", "own", "--quality", "balanced", "--explain", cwd=folder)
+    assert str(own) in again["chosen"][0]["by_table"]
+    tacto.run("trade", "--calibrate", "-o", "here.trade.json", cwd=folder)
+    tacto.run("validate", "here.trade.json", cwd=folder)
+    assert "resampling" in tacto.run("info", "here.trade.json", cwd=folder)[0]
+    assert "no name" in tacto.run("trade", "--calibrate", "-o", "here.csv", cwd=folder, code=2)[1]
+    assert "without a texture" in tacto.run("trade", "C", "--calibrate", cwd=folder, code=2)[1]
+    own.write_text("{}")
+    assert str(own) in tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=4)[1]
+    own.unlink()
+
+
+def the_trade_and_what_chooses_by_it():
+    folder = pathlib.Path.cwd()
+    make_texture(folder)
+    check_trade(folder)
+    check_budgets(folder)
+    check_calibration(folder)
+    assert "no texture is named" in tacto.run("trade", code=2)[1]
+
+
+if __name__ == "__main__":
+    tacto.in_folder(the_trade_and_what_chooses_by_it)

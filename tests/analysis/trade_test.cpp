@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The trade of speed for accuracy: rows against closed forms, fronts and knees against ones found by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "analysis/trade/offline_choices.hpp"
+#include "analysis/trade/offline_half.hpp"
+#include "analysis/trade/pareto.hpp"
+#include "analysis/trade/trade_page.hpp"
+#include "spatial/budget.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+// Near 210 Hz under the finger of 50 mm/s; they beat over 3.3 mm.
+constexpr double kLines_per_m[] = {4137, 4437};
+
+schema::Texture line_texture(double length_m, double pitch_m) {
+  schema::Texture texture;
+  texture.signal.pitch_m = pitch_m;
+  for (double x_m = 0; x_m < length_m; x_m += pitch_m)
+    texture.signal.values.push_back(0.1 * std::sin(kTurn * kLines_per_m[0] * x_m) +
+                                    0.1 * std::sin(kTurn * kLines_per_m[1] * x_m));
+  texture.unit = "N";
+  return texture;
+}
+
+const TradeRow& row_named(const std::vector<TradeRow>& rows, const std::string& knob,
+                          const std::string& choice) {
+  for (const TradeRow& row : rows)
+    if (row.knob == knob && row.choice == choice) return row;
+  ADD_FAILURE() << "no row " << knob << ": " << choice;
+  return rows.front();
+}
+
+class OfflineTrade : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const auto measured = measure_offline(line_texture(0.03, 1e-6));
+    ASSERT_TRUE(measured) << schema::message(measured.error());
+    rows_ = *measured;
+  }
+  static const TradeRow& resampled(const std::string& choice) {
+    return row_named(rows_, "interpolation and grid", choice);
+  }
+  static inline std::vector<TradeRow> rows_;
+};
+
+TEST_F(OfflineTrade, StraightLinesErrByTheirClosedForm) {
+  // A sine read by straight lines w apart (w in radians) errs by w^2 / sqrt(120) of its RMS, for small w: the
+  // integral of (s (1 - s))^2 is 1 / 30, and the error there w^2 s (1 - s) / 2. The finger's speed wanders by
+  // a tenth: the mean of the fourth power of its speed is 3 % above that of the mean speed.
+  const auto w4 = [](double per_m) { return std::pow(kTurn * per_m * 0.05 / 10e3, 4); };
+  const double squared = (w4(kLines_per_m[0]) + w4(kLines_per_m[1])) / 2 / 120;
+  EXPECT_NEAR(resampled("linear, 1 um").error, std::sqrt(squared), 0.05 * std::sqrt(squared));
+}
+
+TEST_F(OfflineTrade, CoarseGridsErrWithinWhatReadingStates) {
+  const double w = kTurn * kLines_per_m[1] * 20e-6;
+  const double bound = 0.0026 * std::pow(w, 4) + 0.0032 * std::pow(w, 5);  // TextureLookup, of the amplitude
+  const double error = resampled("sinc, 20 um").error;
+  EXPECT_LT(error, std::sqrt(2) * bound);
+  EXPECT_GT(error, 0.05 * bound);
+  EXPECT_LT(resampled("sinc, 1 um").error, 1e-5);
+}
+
+TEST_F(OfflineTrade, MoreExactWaysErrLess) {
+  EXPECT_LT(resampled("hermite, 1 um").error, resampled("linear, 1 um").error);
+  EXPECT_LT(resampled("sinc, 1 um").error, 0.1 * resampled("hermite, 1 um").error);
+  EXPECT_NEAR(resampled("swapped, 1 um").error, resampled("hermite, 1 um").error, 1e-4);
+  // Lines in the middle of the band are kept; the drift and the hum go.
+  // What is left is the drift, bent at the ends of the record over some periods of 15 Hz.
+  EXPECT_LT(row_named(rows_, "filter", "fourier, edges treated").error, 5e-3);
+  EXPECT_LT(row_named(rows_, "hop", "100 um").error, row_named(rows_, "hop", "1 mm").error);
+  EXPECT_LT(row_named(rows_, "padding", "8 windows").error, row_named(rows_, "padding", "1 windows").error);
+  EXPECT_LT(row_named(rows_, "resolution", "auto").error, 1e-6);
+  EXPECT_LT(row_named(rows_, "stored", "single precision").error, std::ldexp(1.0, -24));
+}
+
+TEST_F(OfflineTrade, EveryRowIsMeasured) {
+  for (const TradeRow& row : rows_) {
+    EXPECT_TRUE(std::isfinite(row.error)) << row.knob << " " << row.choice;
+    EXPECT_GT(row.error, 0) << row.knob << " " << row.choice;
+    EXPECT_LT(row.error, 2) << row.knob << " " << row.choice;
+    EXPECT_GT(row.memory_bytes, 0) << row.knob << " " << row.choice;
+    const bool costs = row.knob == "stored" ? row.cost_ns == 0 : row.cost_ns > 0;
+    EXPECT_TRUE(costs) << row.knob << " " << row.choice;
+  }
+}
+
+TEST(OfflineTradeInput, RefusesWhatIsTooShortOrTooCoarse) {
+  const auto too_short = measure_offline(line_texture(0.005, 1e-6));
+  ASSERT_FALSE(too_short);
+  EXPECT_NE(too_short.error().what.find("12 mm"), std::string::npos);
+  const auto too_coarse = measure_offline(line_texture(0.03, 60e-6));
+  ASSERT_FALSE(too_coarse);
+  EXPECT_NE(too_coarse.error().what.find("50 um"), std::string::npos);
+}
+
+TEST(MeasuredChoices, FallWithPointsAndBoundTheClosedForm) {
+  for (const schema::MeasuredChoice& choice : measure_resampling()) {
+    EXPECT_GT(choice.cost_ns, 0) << choice.name;
+    for (std::size_t i = 1; i < choice.errors.size(); ++i)
+      EXPECT_LE(choice.errors[i].error, choice.errors[i - 1].error) << choice.name;
+  }
+  const auto straight = measure_resampling().front();
+  ASSERT_EQ(straight.name, "linear");
+  for (const double points : {20.0, 40.0, 100.0}) {
+    const double w = kTurn / points;
+    const double closed = w * w / std::sqrt(120);
+    EXPECT_NEAR(straight.error_at(points), closed, 0.03 * closed) << points;
+  }
+  const schema::MeasuredChoice grid = measure_grid();
+  EXPECT_LT(grid.error_at(100), 1e-7);
+  EXPECT_GT(grid.error_at(4), 0.01);
+}
+
+TEST(Pareto, FindsFrontAndKneeByHand) {
+  // A choice of error for cost: 10 %, 1 % and 0.9 % for 10, 20 and 100 ns; one is beaten.
+  const std::vector<TradeRow> rows = {{"way", "rough", 0.1, 10, "tick", 1, 0, ""},
+                                      {"way", "good", 0.01, 20, "tick", 1, 0, ""},
+                                      {"way", "silly", 0.02, 50, "tick", 1, 0, ""},
+                                      {"way", "fine", 0.009, 100, "tick", 1, 0, ""},
+                                      {"other", "only", 0.5, 1, "tick", 1, 0, ""}};
+  const auto worth = worth_of(rows);
+  EXPECT_TRUE(worth[0].on_front && worth[1].on_front && worth[3].on_front && worth[4].on_front);
+  EXPECT_FALSE(worth[2].on_front);
+  EXPECT_EQ(worth[2].beaten_by, "good");
+  EXPECT_TRUE(worth[1].knee);
+  EXPECT_FALSE(worth[0].knee || worth[3].knee || worth[4].knee);
+  const auto answers = plain_answers(rows);
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_NE(answers[0].knee.find("good (1 % off"), std::string::npos) << answers[0].knee;
+  EXPECT_EQ(answers[0].never, "silly");
+}
+
+TEST(Pareto, WhatSavesMemoryOrTimeToAnswerIsWorthIt) {
+  const std::vector<TradeRow> rows = {{"way", "big", 0.01, 10, "tick", 100, 0, ""},
+                                      {"way", "small", 0.01, 20, "tick", 1, 0, ""},
+                                      {"way", "late", 0.02, 20, "tick", 100, 2e-3, ""}};
+  const auto worth = worth_of(rows);
+  EXPECT_TRUE(worth[0].on_front && worth[1].on_front);
+  EXPECT_EQ(worth[2].beaten_by, "big");
+}
+
+TEST(Pareto, CostsWithinATenthAreAlike) {
+  const std::vector<TradeRow> rows = {{"way", "a", 0.01, 100, "tick", 1, 0, ""},
+                                      {"way", "b", 0.02, 95, "tick", 1, 0, ""}};
+  EXPECT_EQ(worth_of(rows)[1].beaten_by, "a");
+}
+
+TEST(TradePage, HasEveryRowOnceAndEscapesNames) {
+  const Trade trade{"<b>oak</b>",
+                    "a machine",
+                    "by a test",
+                    {{"offline", {{"way", "a, \"b\"", 0.01, 100, "frame", 1, 0, "n"}}}}};
+  const auto page = trade_page(trade);
+  ASSERT_TRUE(page) << schema::message(page.error());
+  EXPECT_EQ(page->find("<b>oak"), std::string::npos);
+  EXPECT_NE(page->find("&lt;b&gt;oak"), std::string::npos);
+  EXPECT_NE(page->find("Simulated"), std::string::npos);
+  EXPECT_EQ(trade_csv(trade),
+            std::string(kTradeCsvHead) +
+                "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note\n"
+                "offline,\"way\",\"a, \"\"b\"\"\",0.01,100,frame,1,0,true,false,\"\",\"n\"\n");
+}
+
+}  // namespace
+}  // namespace tacto::analysis

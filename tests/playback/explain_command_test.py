@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The verb `explain`, and what `render` and `play` do with a budget."""
+import json
+import pathlib
+import tempfile
+
+import numpy as np
+
+import made_files as made
+
+USAGE, UNSUITABLE = 2, 5
+
+
+def refused(code, said, *arguments):
+    done = made.run(*[str(a) for a in arguments])
+    assert done.returncode == code and said in done.stderr, (done.returncode, done.stderr)
+    assert done.stdout == "", done.stdout
+    return done.stderr
+
+
+def check_explain(folder):
+    report = made.report_of("explain", folder / "t")
+    assert report["texture_files_read"] == 1 and len(report["textures"]) == 1, report
+    assert report["sample_bytes"] == sum(level["bytes"] for level in report["levels"])
+    passes = [level["passes_per_m"] for level in report["levels"]]
+    assert passes == sorted(passes, reverse=True) and abs(report["levels"][-1]["up_to_mps"] / 0.5 - 1) < 0.5
+    assert report["hysteresis_plays"] == report["sections"] == report["touch_gates"] == report["energy_limits"] == 0
+    said = "\n".join(each["part"] for each in report["left_out"])
+    assert all(words in said for words in ("touch gate", "energy limit", "hysteresis", "seam", "second texture")), said
+    assert 1e-8 < report["tick_s"] < 1e-5 and "by_table" in report, report
+    # A gain alone has no filter to pay for.
+    plain = made.report_of("explain", folder / "t", "--inverse", "gain")
+    assert plain["filter_taps"] == 1 and plain["tick_s"] < report["tick_s"], plain
+    refused(UNSUITABLE, "there is room for 100", "explain", folder / "t", "--device-memory", "100")
+
+
+def check_scene(folder):
+    layers = [{"type": "texture", "texture": "t", "at_m": at, "gain_m_per_n": 1e-3} for at in (0.0, 0.06)]
+    (folder / "bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": layers}))
+    report = made.report_of("explain", folder / "bench.scene.json")
+    assert report["texture_files_read"] == 1 and len(report["textures"]) == 2, report
+
+
+def check_choice(folder):
+    fast, balanced = (made.report_of("explain", folder / "t", "--quality", quality, "--explain") for quality in ("fast", "balanced"))
+    assert fast["promised_error_percent"] <= 1 and balanced["promised_error_percent"] <= 0.1
+    assert fast["tick_s"] <= balanced["tick_s"], (fast, balanced)
+    said = "\n".join(each["reason"] for each in balanced["why"])
+    assert "asked: 0.1 %" in said and "not promised" in said and "at best" in said, said
+    assert "is the least" in refused(UNSUITABLE, "nothing keeps", "explain", folder / "t", "--max-error", "1ppm")
+    remedy = refused(UNSUITABLE, "ask for", "explain", folder / "t", "--max-error", "1ppm").split("--max-error ")[1].split()[0]
+    assert made.report_of("explain", folder / "t", "--max-error", remedy)["promised_error_percent"] <= float(remedy[:-1])
+    assert "is the least" in refused(UNSUITABLE, "no tick of", "explain", folder / "t", "--max-error", "0.1%", "--max-tick", "1ns")
+    refused(USAGE, "%", "explain", folder / "t", "--max-error", "0.1")
+    refused(USAGE, "--quality", "explain", folder / "t", "--explain")
+
+
+def render(folder, *more):
+    return made.report_of("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav",
+                          "--gain", "0.2mm/N", *more)
+
+
+def check_render(folder):
+    report = render(folder, "--max-error", "0.5%", "--explain")
+    assert report["engine"] == "reference" and report["displacement_error_db"] < 20 * np.log10(5e-3), report
+    assert "cheaper" in report["why_this_engine"][0]
+    # The kernel at rests and turns errs by more than this: what it made is measured, and not kept.
+    report = render(folder, "--engine", "kernel", "--hold", "zero-order", "--max-error", "0.5%")
+    assert report["engine"] == "reference" and report["displacement_error_db"] < 20 * np.log10(5e-3), report
+    report = render(folder, "--engine", "kernel", "--hold", "zero-order", "--max-error", "10%", "--explain")
+    assert report["engine"] == "kernel" and report["displacement_error_db"] <= -20 and "why" in report, report
+    refused(UNSUITABLE, "asked", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "no.wav",
+            "--inverse", "gain", "--max-error", "1%")
+    assert not (folder / "no.wav").exists()
+
+
+def check_play(folder):
+    arguments = ["play", folder / "t", "-d", "sim:", "--finger-path", folder / "path.csv", "--gain", "0.2mm/N", "-o", folder / "s"]
+    report = made.report_of(*arguments, "--max-error", "1%", "--explain")
+    assert report["promised_error_percent"] <= 1 and "why" in report and "chosen" in report, report
+    assert 20 * np.log10(report["promised_error_percent"] / 100) >= report["inverse_error_db"]
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        made.write_texture(folder / "t", 0.01 * np.sin(2 * np.pi * 3e3 * np.arange(50_001) * made.PITCH_M))
+        made.write_path(folder / "path.csv", [0, 0.1, 1.1, 1.2], [0.002, 0.002, 0.04, 0.04])
+        check_explain(folder)
+        check_scene(folder)
+        check_choice(folder)
+        check_render(folder)
+        check_play(folder)
+
+
+if __name__ == "__main__":
+    main()
