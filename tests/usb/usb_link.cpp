@@ -84,13 +84,20 @@ class DrivenDevice final : public firmware_host::Device {
     return device_.client().command(wire::Arm{wire::DriveSource::host, welcome.default_rate_millihertz});
   }
 
-  // Until the device's ticks have shown where the drive began, values that went by unplayed are not known:
-  // with each read one message then, which is less than were played since the last.
+  // Until the device's ticks have shown where the drive began, values that went by unplayed are not known: the
+  // device is asked then. Reads are no measure of its time: a board that was held up gives many at once.
   Result<void> fill() {
-    if (!check_.begun()) return send();
+    if (!check_.begun()) return fill_as_told();
     while (sent_ - check_.used() + kMessage <= kQueueFull)
       if (const auto sent = send(); !sent) return sent;
     return {};
+  }
+
+  Result<void> fill_as_told() {
+    const auto pulse = device_.client().heartbeat();
+    if (!pulse) return schema::forward_error(pulse);
+    if (pulse->drive_queued + kMessage > kQueueFull) return {};
+    return send();
   }
 
   Result<void> send() {
