@@ -175,7 +175,7 @@ Result<void> check_table_free(const std::string& path,
   std::string line(kLongestBeginning, '\0');
   line.resize(std::fread(line.data(), 1, line.size(), file->get()));
   if (line.empty() || ours(line.substr(0, line.find('\n')))) return {};
-  return fail(Fault::usage, "is something else than such a table, and would be lost", path,
+  return fail(Fault::usage, "holds something else, and would be lost", path,
               "choose another name, or remove it first");
 }
 

@@ -20,7 +20,8 @@ Result<void> check_readable(const std::string& path);
 /// Whether `path` names a file (not a folder).
 bool is_file(const std::string& path);
 
-/// The whole file. Errors: not_found (absent, a folder, no permission).
+/// The whole file. Only regular files are opened, here and below: a pipe would be waited for. Errors:
+/// not_found (absent, a folder, a pipe or device, no permission).
 Result<std::string> read_file(const std::string& path);
 
 /// Lower-case hexadecimal SHA-256 of a file, or of text in memory. Errors: not_found.

@@ -8,7 +8,6 @@
 #include "analysis/cli/compared_input.hpp"
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
-#include "analysis/compare/compare.hpp"
 #include "analysis/trade/measured_trade.hpp"
 #include "analysis/trade/pareto.hpp"
 #include "data-schema/cli/progress.hpp"

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <complex>
 #include <numbers>
+#include <vector>
 
 namespace tacto::analysis {
 
 inline constexpr double kTurn = 2 * std::numbers::pi;       // rad
 inline constexpr double kDegrees = 180 / std::numbers::pi;  // a rad
+
+/// Phase of each value of a curve in degrees, carried on from the one before so that no turn is jumped.
+std::vector<double> carried_phase_deg(const std::vector<std::complex<double>>& curve);
 
 }  // namespace tacto::analysis

@@ -32,18 +32,6 @@ double decibels(double part) {
   return 20 * std::log10(part);
 }
 
-// Phase of each value, carried on from the one before so that no turn is jumped.
-std::vector<double> carried_phase(const std::vector<std::complex<double>>& values) {
-  std::vector<double> phase;
-  double turns = 0;
-  for (const auto& value : values) {
-    const double plain = std::arg(value) * kDegrees;
-    if (!phase.empty()) turns = 360 * std::round((phase.back() - plain) / 360);
-    phase.push_back(plain + turns);
-  }
-  return phase;
-}
-
 struct Curves {
   std::vector<double> model_db, low_db, high_db, inverse_db, model_deg, inverse_deg;  // along curve_hz
   std::vector<double> data_db, data_deg, along, across;  // at the data's frequencies
@@ -56,7 +44,7 @@ double reference_of(const ResponseFit& fit) {
 }
 
 void put_model(const ResponseFit& fit, double reference, Curves& c) {
-  c.model_deg = carried_phase(fit.curve);
+  c.model_deg = carried_phase_deg(fit.curve);
   for (std::size_t i = 0; i < fit.curve.size(); ++i) {
     c.model_db.push_back(decibels(std::abs(fit.curve[i]) / reference));
     c.inverse_db.push_back(-c.model_db.back());
@@ -68,7 +56,7 @@ void put_model(const ResponseFit& fit, double reference, Curves& c) {
 }
 
 void put_data(const ResponseFit& fit, double reference, Curves& c) {
-  const std::vector<double> model_deg = carried_phase(fit.modelled);
+  const std::vector<double> model_deg = carried_phase_deg(fit.modelled);
   for (std::size_t i = 0; i < fit.data.size(); ++i) {
     const auto model = fit.modelled[i], measured = fit.data.response[i];
     c.data_db.push_back(decibels(std::abs(measured) / reference));

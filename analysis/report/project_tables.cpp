@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <complex>
-#include <numbers>
 
+#include "analysis/identify/angles.hpp"
 #include "analysis/report/project_readers.hpp"
 #include "data-schema/calibration.hpp"
 #include "data-schema/description.hpp"
@@ -29,12 +29,14 @@ ResultCurve response_curve(const std::string& name, bool phase,
                            const std::function<std::complex<double>(double)>& response) {
   ResultCurve curve{name, {}, {}, false};
   constexpr int kPoints = 200;
+  std::vector<std::complex<double>> values;
   for (int i = 0; i <= kPoints; ++i) {
-    const double frequency_hz = 10 * std::pow(100, static_cast<double>(i) / kPoints);
-    const std::complex<double> value = response(frequency_hz);
-    curve.x.push_back(frequency_hz);
-    curve.y.push_back(phase ? std::arg(value) * 180 / std::numbers::pi : 20 * std::log10(std::abs(value)));
+    curve.x.push_back(10 * std::pow(100, static_cast<double>(i) / kPoints));
+    values.push_back(response(curve.x.back()));
   }
+  if (phase) curve.y = carried_phase_deg(values);
+  if (!phase)
+    for (const auto& value : values) curve.y.push_back(20 * std::log10(std::abs(value)));
   return curve;
 }
 

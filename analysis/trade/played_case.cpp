@@ -49,25 +49,16 @@ void take_scale_of(FingerPath& path, const Prepared& prepared, double metres_per
   for (double& position_m : path.position_m) position_m *= per_count * prepared.pitch_m / metres_per_count;
 }
 
-schema::Texture loop_again(const schema::SpaceSignal& loop, double length_m) {
-  schema::Texture texture;
-  texture.signal.pitch_m = loop.pitch_m;
-  const auto samples = static_cast<std::size_t>(length_m / loop.pitch_m) + 1;
-  for (std::size_t i = 0; i < samples; ++i)
-    texture.signal.values.push_back(loop.values[i % loop.values.size()]);
-  return texture;
-}
-
 // What lies beside the band is neither wanted nor an error: the reference reaches a little beyond it.
 PaddedSpectrum wanted_along(const FingerPath& path, const schema::SpaceSignal& loop,
                             const PrepareOptions& o) {
   const spatial::Band beyond{10, 1.01 * o.band.high_hz};
   const double most_m = *std::ranges::max_element(path.position_m);
-  const schema::Texture texture = loop_again(loop, most_m + 10e-3);
+  const schema::SpaceSignal unrolled = playback::unrolled_loop(loop, most_m + 10e-3);
   const double finest_hz = playback::highest_spatial_frequency(loop) * playback::greatest_speed_mps(path);
   const auto grid = playback::reading_grid(path.duration_s(), o.rate_hz, beyond, finest_hz);
-  return playback::exact_wanted(playback::TextureLookup(texture.signal, 0), path, grid, beyond,
-                                o.gain_m_per_n, 0.005);
+  return playback::exact_wanted(playback::TextureLookup(unrolled, 0), path, grid, beyond, o.gain_m_per_n,
+                                0.005);
 }
 
 std::vector<std::int32_t> counts_along(const FingerPath& path, const PrepareOptions& o, std::size_t ticks) {

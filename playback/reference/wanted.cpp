@@ -95,4 +95,12 @@ PaddedSpectrum exact_wanted(const TextureLookup& texture, const FingerPath& path
   return wanted;
 }
 
+schema::SpaceSignal unrolled_loop(const schema::SpaceSignal& loop, double length_m) {
+  schema::SpaceSignal unrolled;
+  unrolled.pitch_m = loop.pitch_m;
+  const auto samples = static_cast<std::size_t>(length_m / loop.pitch_m) + 1;
+  for (std::size_t i = 0; i < samples; ++i) unrolled.values.push_back(loop.values[i % loop.values.size()]);
+  return unrolled;
+}
+
 }  // namespace tacto::playback

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "data-schema/signal.hpp"
 #include "playback/finger_path.hpp"
 #include "playback/reference/padded_spectrum.hpp"
 #include "playback/texture_lookup.hpp"
@@ -37,5 +38,8 @@ ReadingGrid reading_grid(double duration_s, double rate_hz, const spatial::Band&
 /// band.low_hz.
 PaddedSpectrum exact_wanted(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid,
                             const spatial::Band& band, double gain_m_per_n, double onset_s);
+
+/// A seamless loop laid end to end until length_m is covered, as a texture without ends to read along a path.
+schema::SpaceSignal unrolled_loop(const schema::SpaceSignal& loop, double length_m);
 
 }  // namespace tacto::playback

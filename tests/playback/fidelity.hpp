@@ -37,16 +37,6 @@ struct Fidelity {
   double delay_s = 0;  ///< of the filter
 };
 
-/// The loop again and again, as long as the path is.
-inline schema::Texture tiled(const schema::SpaceSignal& loop, double length_m) {
-  schema::Texture texture;
-  texture.signal.pitch_m = loop.pitch_m;
-  const auto samples = static_cast<std::size_t>(length_m / loop.pitch_m) + 1;
-  for (std::size_t i = 0; i < samples; ++i)
-    texture.signal.values.push_back(loop.values[i % loop.values.size()]);
-  return texture;
-}
-
 /// RMS over the band of what lies between the ends, under a Hann window.
 inline double rms_in_band(std::span<const double> values, double rate_hz, const spatial::Band& band) {
   const auto skipped = static_cast<std::size_t>(kLeftOutS * rate_hz);
@@ -87,14 +77,14 @@ inline schema::Result<Fidelity> fidelity_of(const schema::Texture& texture, Fide
   if (!prepared) return schema::forward_error(prepared);
   const auto loop = playback::laid_out(std::span(&placed, 1), playback::Ends::loop, c.options.seam_m);
   const double most = *std::ranges::max_element(c.path.position_m);
-  const schema::Texture long_texture = tiled(loop, most + 0.01);
+  const schema::SpaceSignal unrolled = playback::unrolled_loop(loop, most + 0.01);
   const auto fine = static_cast<std::size_t>(std::ceil(20e3 / c.options.rate_hz));
   const double rate_hz = c.options.rate_hz * static_cast<double>(fine);
   const double finest_hz = playback::highest_spatial_frequency(loop) * playback::greatest_speed_mps(c.path);
   // What lies beside the band is neither wanted nor an error: the reference reaches beyond it.
   const spatial::Band reference{10, c.options.band.high_hz * 1.01};
   const auto grid = playback::reading_grid(c.path.duration_s(), rate_hz, reference, finest_hz);
-  const playback::TextureLookup lookup(long_texture.signal, 0);
+  const playback::TextureLookup lookup(unrolled, 0);
   const auto wanted = playback::signal_of(
       playback::exact_wanted(lookup, c.path, grid, reference, c.options.gain_m_per_n, 0.005));
   const auto felt = felt_displacement(c, *prepared, wanted.size() / fine, fine);

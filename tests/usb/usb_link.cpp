@@ -84,8 +84,8 @@ class DrivenDevice final : public firmware_host::Device {
     return device_.client().command(wire::Arm{wire::DriveSource::host, welcome.default_rate_millihertz});
   }
 
-  // Until the device's ticks have shown where the drive began, values that went by unplayed are not known: the
-  // device is asked then. Reads are no measure of its time: a board that was held up gives many at once.
+  // Until the device's ticks have shown where the drive began, values that went by unplayed are not known:
+  // the device is asked then. Reads are no measure of its time: a board that was held up gives many at once.
   Result<void> fill() {
     if (!check_.begun()) return fill_as_told();
     while (sent_ - check_.used() + kMessage <= kQueueFull)
