@@ -24,6 +24,7 @@ struct ControlRequest {
   ControlVerb verb = ControlVerb::status;
   std::string id_json;  ///< as it came, JSON; empty where there was none
   std::string version;  ///< hello
+  std::string token;    ///< hello over TCP
   std::string file;     ///< load
   std::optional<double> at_m, gain_m_per_n;
   std::optional<double> fade_s;  ///< load while armed

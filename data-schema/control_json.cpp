@@ -82,6 +82,7 @@ ControlRequest request_of(const Json& body) {
                                           kControlVerbs.begin());
   request.id_json = id_in(body);
   request.version = text_or(body, "version");
+  request.token = text_or(body, "token");
   request.file = text_or(body, "file");
   request.at_m = optional_number(body, "at_m");
   request.gain_m_per_n = optional_number(body, "gain_m_per_n");

@@ -31,6 +31,7 @@ Result<DaemonConfig> read_daemon_config(const std::string& path) {
         std::pair{"loop", &DaemonConfig::loop}, std::pair{"socket", &DaemonConfig::socket},
         std::pair{"socket_group", &DaemonConfig::socket_group},
         std::pair{"sessions", &DaemonConfig::sessions}, std::pair{"files", &DaemonConfig::files},
+        std::pair{"tcp_token_file", &DaemonConfig::tcp_token_file},
         std::pair{"finger_path", &DaemonConfig::finger_path}})
     config.*member = text_or(body, name, config.*member);
   for (const auto& [name, member] : {std::pair{"rate_hz", &DaemonConfig::rate_hz},
@@ -42,6 +43,7 @@ Result<DaemonConfig> read_daemon_config(const std::string& path) {
                                      std::pair{"real_time_priority", &DaemonConfig::real_time_priority},
                                      std::pair{"watchdog_ms", &DaemonConfig::watchdog_ms}})
     config.*member = static_cast<int>(number_or(body, name, config.*member));
+  if (const auto port = number_in(body, "tcp_port")) config.tcp_port = static_cast<int>(*port);
   config.undo_hysteresis = body.value("undo_hysteresis", config.undo_hysteresis);
   config.budget = {quality_in(body), number_in(body, "max_error")};
   config.max_tick_ns = number_in(body, "max_tick_ns");

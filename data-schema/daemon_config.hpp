@@ -15,6 +15,8 @@ struct DaemonConfig {
   std::string loop = "device";
   double rate_hz = 2000;  ///< the paper's
   std::string socket, socket_group;
+  std::optional<int> tcp_port;  ///< of 127.0.0.1; 0: a free one
+  std::string tcp_token_file;
   int most_clients = 16;
   std::string sessions, files;
   int real_time_priority = 50;

@@ -93,7 +93,9 @@ void declare_tables(CLI::App& app, IdentifyOptions& o) {
   app.add_option("--phase-sign", o.phase_sign, "-1: the table's lags are positive")
       ->check(CLI::IsMember({-1, 1}));
   app.add_flag("--invert", o.invert, "The answer was measured upside down");
-  app.add_option("--input", o.input, "Of a recording: the channel that drives; net_force for a sensor");
+  app.add_option(
+      "--input", o.input,
+      "Of a recording: the channel that drives; for a sensor that of a fast reference cell, applied_force");
   app.add_option("--output-channel", o.output,
                  "Of a recording: the channel that answers; tangential_force for a sensor");
 }
@@ -359,6 +361,8 @@ const cli::Verb kIdentifyVerb{
     "  tactograph identify -d sim:tray_sensor=on,hysteresis=0.16 --method loop --start-from bench -o "
     "bench-loop\n"
     "  tactograph identify response.csv --start-from wiertlewski2011 -o mine\n"
+    "  tactograph record -d sim:force=chirp,force_amplitude=30mN -o pull --time 8s\n"
+    "  tactograph identify pull --input applied_force --output-channel tangential_force -o sensor\n"
     "  tactograph identify impacts.csv --method taps --rate 100kHz -o sensor",
     declare_identify};
 

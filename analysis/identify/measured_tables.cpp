@@ -188,6 +188,19 @@ Result<DrivenTray> read_driven_table(const std::string& path) {
   return tray;
 }
 
+// What is cut off is no response: one clipped resonance made a misfit of a sound sensor.
+Result<void> check_unclipped(const schema::Channel& channel, const std::vector<double>& values,
+                             const std::string& stem) {
+  const auto clipped = std::ranges::count_if(values, [&](double value) {
+    return (channel.range_max && value >= *channel.range_max) ||
+           (channel.range_min && value <= *channel.range_min);
+  });
+  if (clipped == 0) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("{} samples of {} lie at an end of the converter's range", clipped, channel.name),
+              stem, "drive less, and record again");
+}
+
 Result<RecordedPair> read_recorded_pair(const std::string& stem, const std::string& input,
                                         const std::string& output) {
   const auto recording = schema::open_recording(stem);
@@ -204,6 +217,8 @@ Result<RecordedPair> read_recorded_pair(const std::string& stem, const std::stri
     const auto signal = schema::read_channel(*recording, *index);
     if (!signal) return schema::forward_error(signal);
     *values = signal->values;
+    if (const auto whole = check_unclipped(header.channels[*index], *values, stem); !whole)
+      return schema::forward_error(whole);
     if (header.channels[*index].quantity != "tangential_force" || !header.transducer) continue;
     const double newtons_per_volt = schema::nominal_newtons_per_volt(*header.transducer);
     for (double& value : *values) value /= newtons_per_volt;

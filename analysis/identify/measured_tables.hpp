@@ -33,7 +33,8 @@ schema::Result<DrivenTray> read_driven_table(const std::string& path);
 schema::Result<bool> is_bode_table(const std::string& path);
 
 /// Two channels of a recording, in SI units: a transducer's tangential_force in volts at its output again.
-/// Errors: as of reading a recording; unsuitable: no such channel, gaps.
+/// Errors: as of reading a recording; unsuitable: no such channel, gaps, a sample at an end of its
+/// converter's range.
 struct RecordedPair {
   std::vector<double> input, output;
   double rate_hz = 0;

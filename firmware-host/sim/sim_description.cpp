@@ -104,6 +104,10 @@ std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& 
       converted("tangential_force", "V", run.converter(), "transducer, piezo sensor"),
       position_channel(run, parameters), load_channel("normal_force", run.normal_cell()),
       load_channel("net_force", run.net_cell())};
+  if (run.reference_cell() != nullptr) {
+    channels.push_back(converted("applied_force", "N", *run.reference_cell(), "reference cell in the pull"));
+    put_text(channels.back().quantity, "net_force");
+  }
   if (parameters.watches_tray())
     channels.push_back(
         converted("displacement", "m", TraySensor(parameters).converter(), "vibrometer on the driven tray"));

@@ -11,7 +11,7 @@
 namespace tacto::firmware_host {
 
 /// tangential_force (the transducer's output, V), position (encoder, counts; or LVDT, m), normal_force and
-/// net_force (load cell, N).
+/// net_force (load cell, N), and where a known force pulls applied_force (reference cell, N).
 std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& parameters);
 /// Plain numbers of the quantity `signal`.
 std::vector<wire::Channel> counter_channels(int count);

@@ -23,6 +23,11 @@ enum Stream : std::uint64_t {
 constexpr double kNormalRangeN = 17;
 constexpr double kTangentialRangeN = 12;
 
+// A quartz cell such as goes into a shaker's stinger: its own resonance lies far above the band, its noise
+// below a code. Ours, for what the slow load cell can't see.
+constexpr int kReferenceBits = 24;
+constexpr double kReferenceRangeN = 10;
+
 constexpr double kLoadKnotS = 0.25;  // ours: a hand's load wanders below about 1 Hz
 constexpr double kLeastLoad = 0.2;   // of the load: a finger that is down stays down
 
@@ -65,6 +70,7 @@ SimRun::SimRun(const SimParameters& p, const schema::Transducer& transducer, con
       normal_cell_(kNormalRangeN, p.sample_rate_hz, p.noise, Random(p.seed, kNormalStream)),
       net_cell_(kTangentialRangeN, p.sample_rate_hz, p.noise, Random(p.seed, kNetStream)),
       count_(count_at(path_.place().position_m)) {
+  if (p.known_force) reference_cell_.emplace(kReferenceBits, kReferenceRangeN);
   if (p.has_lvdt)
     lvdt_.emplace(p.lvdt, profile.length_m() / 2, path_.place().position_m, p.sample_rate_hz, p.noise,
                   Random(p.seed, kPositionStream));
@@ -93,6 +99,7 @@ bool SimRun::next(std::span<std::int32_t> frame) {
   frame[1] = lvdt_ ? lvdt_->step(reading.position_m) : count_;
   frame[2] = normal_cell_.step(errors.cell_gain * (reading.normal_n + errors.weight_n) + errors.cell_zero_n);
   frame[3] = net_cell_.step(errors.cell_gain * (reading.tangential_n + errors.pull_n) + errors.cell_zero_n);
+  if (reference_cell_) frame[4] = reference_cell_->convert(reading.tangential_n);
   return true;
 }
 

@@ -18,20 +18,22 @@
 
 namespace tacto::firmware_host {
 
-inline constexpr std::size_t kSimChannels = 4;  ///< tangential_force, position, normal_force, net_force
-
 /// The bench (a finger on a surface, or a known force) and what reads it: the piezo's converter with the
-/// noise floor before it, the encoder or LVDT, the load cell's axes. Frame i is of (i + 1) / rate seconds.
+/// noise floor before it, the encoder or LVDT, the load cell's axes, and in the pull of a known force a cell
+/// that is as fast as the converter. Frame i is of (i + 1) / rate seconds.
 class SimRun final : public FrameSource {
  public:
   SimRun(const SimParameters& parameters, const schema::Transducer& transducer, const HeightProfile& profile);
 
-  /// kSimChannels codes. False where the simulated motion has diverged.
+  /// Codes of tangential_force, position, normal_force, net_force, and applied_force where it is known. False
+  /// where the simulated motion has diverged.
   bool next(std::span<std::int32_t> frame) override;
   std::int32_t encoder_count() const override { return count_; }
   const LoadCell& normal_cell() const { return normal_cell_; }
   const LoadCell& net_cell() const { return net_cell_; }
   const Converter& converter() const { return converter_; }
+  /// Null where a finger pulls.
+  const Converter* reference_cell() const { return reference_cell_ ? &*reference_cell_ : nullptr; }
   /// Null where the encoder gives the position.
   const Lvdt* lvdt() const { return lvdt_ ? &*lvdt_ : nullptr; }
 
@@ -47,6 +49,7 @@ class SimRun final : public FrameSource {
   double noise_v_;
   Converter converter_;
   LoadCell normal_cell_, net_cell_;
+  std::optional<Converter> reference_cell_;
   std::optional<Lvdt> lvdt_;
   std::int32_t count_;
   std::uint64_t frames_ = 0;

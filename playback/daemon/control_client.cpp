@@ -20,6 +20,8 @@ constexpr std::size_t kEventsWait = std::size_t{64} * 1024;  // beyond it, event
 ControlClient::ControlClient(ControlClient&& other) noexcept
     : greeted(other.greeted),
       watching(other.watching),
+      unwelcome(other.unwelcome),
+      greets_by(other.greets_by),
       dropped_events(other.dropped_events),
       waits_with_id(std::move(other.waits_with_id)),
       descriptor_(std::exchange(other.descriptor_, -1)),
@@ -34,6 +36,8 @@ ControlClient& ControlClient::operator=(ControlClient&& other) noexcept {
   silent_ = other.silent_;
   greeted = other.greeted;
   watching = other.watching;
+  unwelcome = other.unwelcome;
+  greets_by = other.greets_by;
   dropped_events = other.dropped_events;
   std::swap(waits_with_id, other.waits_with_id);
   return *this;

@@ -2,6 +2,7 @@
 // One client of the control socket, as the server keeps it.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -40,7 +41,8 @@ class ControlClient {
   bool flush();
   bool wants_to_send() const { return !out_.empty(); }
 
-  bool greeted = false, watching = false;
+  bool greeted = false, watching = false, unwelcome = false;
+  std::optional<std::chrono::steady_clock::time_point> greets_by;  ///< with the token: who came by TCP
   std::uint64_t dropped_events = 0;
   std::optional<std::string> waits_with_id;  ///< for an answer that comes later: the request's id
 

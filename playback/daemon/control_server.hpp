@@ -12,13 +12,21 @@
 
 #include "data-schema/control.hpp"
 #include "playback/daemon/control_client.hpp"
+#include "playback/daemon/control_socket.hpp"
 
 namespace tacto::playback {
 
+/// TCP on 127.0.0.1, for clients who have no Unix sockets.
+struct LoopbackPlace {
+  int port = 0;       ///< 0: a free one
+  std::string token;  ///< to be named in hello
+};
+
 struct SocketPlace {
   std::string path;
-  std::string group;  ///< whose members may connect; empty: only the daemon's user
-  int most_clients = 16;
+  std::string group;      ///< whose members may connect; empty: only the daemon's user
+  int most_clients = 16;  ///< of whom at most half come by TCP
+  std::optional<LoopbackPlace> loopback;
 };
 
 /// Never waits for a client: neither for one who is silent in the middle of a line, nor for one who does not
@@ -45,12 +53,18 @@ class ControlServer {
   bool stop_waits() const;
   /// To all who watch, at the end of the next serve(): requests publish while clients are attended.
   void publish(std::string_view event, const schema::ControlFields& fields);
+  /// 0 where nobody may come by TCP.
+  int tcp_port() const { return tcp_.port; }
   std::size_t clients() const { return clients_.size(); }
   std::size_t watchers() const;
 
  private:
   ControlServer(const SocketPlace& place, int descriptor) : place_(place), descriptor_(descriptor) {}
   void accept_all();
+  void accept_tcp();
+  std::size_t tcp_clients() const;
+  std::vector<pollfd> what_is_waited_for() const;
+  const schema::Error* refusal_of(const ControlClient& client, const schema::ControlRequest* request) const;
   void attend_all(const std::vector<pollfd>& waiting, const Handler& handler);
   void deliver();
   void refuse(int descriptor) const;
@@ -58,9 +72,9 @@ class ControlServer {
   bool answer_lines(ControlClient& client, const Handler& handler);
   std::optional<std::string> answer_to(ControlClient& client, const std::string& line,
                                        const Handler& handler);
-
   SocketPlace place_;
   int descriptor_;
+  LoopbackSocket tcp_;
   std::vector<ControlClient> clients_;
   std::vector<std::string> events_;
 };

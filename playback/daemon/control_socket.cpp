@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <grp.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -109,6 +110,25 @@ Result<int> open_control_socket(const std::string& path, const std::string& grou
   if (done) return descriptor;
   ::close(descriptor);
   return schema::forward_error(done);
+}
+
+Result<LoopbackSocket> open_loopback_socket(int port) {
+  const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const int yes = 1;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const plain = reinterpret_cast<sockaddr*>(&address);
+  if (descriptor >= 0 && setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
+      bind(descriptor, plain, size) == 0 && ::listen(descriptor, kBacklog) == 0 &&
+      getsockname(descriptor, plain, &size) == 0)
+    return LoopbackSocket{descriptor, ntohs(address.sin_port)};
+  const int why = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  return fail(Fault::unsuitable, "can't listen there: " + system_words(why), fmt::format("tcp_port {}", port),
+              "name another port, or 0 for a free one");
 }
 
 Result<int> connect_control_socket(const std::string& path) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The control socket in the file system: who may have it, and who may connect.
+// The control socket in the file system, who may have it and who may connect; and the one for TCP.
 #pragma once
 
 #include <string>
@@ -12,6 +12,14 @@ namespace tacto::playback {
 /// listens on is replaced. Errors: usage: a path too long, an unknown group; unsuitable: somebody listens
 /// there; cannot_write.
 schema::Result<int> open_control_socket(const std::string& path, const std::string& group);
+
+struct LoopbackSocket {
+  int descriptor = -1, port = 0;
+};
+
+/// A TCP socket that listens on 127.0.0.1 only; port 0 takes a free one. Errors: unsuitable: the port is
+/// taken, or not for this user.
+schema::Result<LoopbackSocket> open_loopback_socket(int port);
 
 /// A connected one, for clients. Errors: not_found: nobody listens there, or not permitted, with what to do.
 schema::Result<int> connect_control_socket(const std::string& path);

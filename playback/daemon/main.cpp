@@ -8,12 +8,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "data-schema/cli/talk.hpp"
 #include "data-schema/standard_descriptors.hpp"
 #include "data-schema/version.hpp"
 #include "playback/daemon/control_server.hpp"
+#include "playback/daemon/control_token.hpp"
 #include "playback/daemon/service.hpp"
 #include "playback/daemon/service_manager.hpp"
 
@@ -79,10 +82,25 @@ void end_without_loading(std::unique_ptr<ControlServer>& server) {
   std::_Exit(0);
 }
 
+schema::Result<std::unique_ptr<ControlServer>> listening(const schema::DaemonConfig& config) {
+  playback::SocketPlace place{config.socket, config.socket_group, config.most_clients, std::nullopt};
+  if (config.tcp_port) {
+    auto token = playback::read_control_token(config.tcp_token_file);
+    if (!token) return schema::forward_error(token);
+    place.loopback = {*config.tcp_port, std::move(*token)};
+  }
+  return ControlServer::listen(place);
+}
+
+std::string places_of(const ControlServer& server, const schema::DaemonConfig& config) {
+  if (!config.tcp_port) return config.socket;
+  return fmt::format("{} and 127.0.0.1:{}", config.socket, server.tcp_port());
+}
+
 int run(const char* config_path) {
   const auto config = schema::read_daemon_config(config_path);
   if (!config) return failed(config.error());
-  auto server = ControlServer::listen({config->socket, config->socket_group, config->most_clients});
+  auto server = listening(*config);
   if (!server) return failed(server.error());
   ServiceManager manager;
   const auto publish = [&](std::string_view event, const schema::ControlFields& fields) {
@@ -91,7 +109,7 @@ int run(const char* config_path) {
   const auto service = Service::open(*config, publish);
   if (!service) return failed(service.error());
   if (mlockall(MCL_CURRENT) != 0) cli::talk("tactographd: memory is not locked (LimitMEMLOCK)\n");
-  cli::talk(fmt::format("tactographd: ready on {}\n", config->socket));
+  cli::talk(fmt::format("tactographd: ready on {}\n", places_of(**server, *config)));
   manager.tell("READY=1");
   serve_until_asked(**server, **service, manager);
   manager.tell("STOPPING=1");

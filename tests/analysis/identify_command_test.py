@@ -260,6 +260,28 @@ def what_is_identified_is_undone():
     assert "hardly it" in tacto.run("fidelity", "c-01", "-d", "sim:hysteresis=0.1", "--speed", "1.5mm/s")[1]
 
 
+def a_sensor_by_a_known_force():
+    """Table I's sensor out of a recording of a known force, by tones and by a chirp; 25.23 V/N are the stiffnesses' own
+    gain. One that clips is refused, and the slow load cell does not pass for the force."""
+    channels = ["--input", "applied_force", "--output-channel", "tangential_force"]
+    ways = {"tones": "multisine,force_low=10Hz,force_high=1kHz,force_tones=60,force_amplitude=3mN",
+            "chirp": "chirp,force_low=10Hz,force_high=900Hz,force_amplitude=30mN"}
+    for name, force in ways.items():
+        tacto.run("record", "-d", f"sim:force={force}", "-o", name, "--time", "8s")
+        said = tacto.run_json("identify", name, *channels, "-o", f"{name}-sensor")
+        assert said["verdict"] == "fits" and "simulated" in said, said
+        found = values(said)
+        for key, truth in [("gain_v_per_n", 25.232), ("resonance_hz", 547.73), ("damping_ratio", 0.09596), ("pole_hz", 8.1069)]:
+            row = found[key]
+            half = 2.6 * (row["high_of_95"] - row["low_of_95"]) / 2 + 1e-4 * truth  # a miss in a million, as above
+            assert abs(row["value"] - truth) < half, (key, row)
+        assert found["gain_v_per_n"]["high_of_95"] / found["gain_v_per_n"]["low_of_95"] < 1.005, found
+    tacto.run("record", "-d", "sim:force=chirp,force_amplitude=0.3N,force_high=900Hz", "-o", "loud", "--time", "2s")
+    _, err = tacto.run("identify", "loud", *channels, "-o", "none", code=5)
+    assert "tangential_force" in err and "drive less" in err, err
+    tacto.run("identify", "tones", "--input", "net_force", "--output-channel", "tangential_force", "-o", "slow", code=5)
+
+
 for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,
-             hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, second_mode_is_told_and_found, bad_input_is_one_clear_error):
+             hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, a_sensor_by_a_known_force, second_mode_is_told_and_found, bad_input_is_one_clear_error):
     tacto.in_folder(test)

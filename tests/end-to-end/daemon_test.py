@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import select
+import shutil
 import signal
 import socket
 import subprocess
@@ -41,6 +42,12 @@ def prepare_files(**changed):
     pathlib.Path("tactographd.json").write_text(json.dumps(config))
 
 
+def other_config(**changed):
+    config = {**json.loads(pathlib.Path("tactographd.json").read_text()), **changed}
+    pathlib.Path("other.json").write_text(json.dumps(config))
+    return "other.json"
+
+
 @contextlib.contextmanager
 def daemon(code=0, **options):
     """A daemon that is ready; at the end it is asked to stop, and has to with `code`."""
@@ -50,6 +57,7 @@ def daemon(code=0, **options):
         line = process.stderr.readline()
         assert line, said
         said.append(line)
+    process.ready = said[-1].strip()
     try:
         yield process
     finally:
@@ -61,13 +69,13 @@ def daemon(code=0, **options):
 
 
 class Client:
-    def __init__(self, greet=True):
-        self.socket = socket.socket(socket.AF_UNIX)
+    def __init__(self, greet=True, port=None, **hello):
+        self.socket = socket.socket(socket.AF_UNIX if port is None else socket.AF_INET)
         self.socket.settimeout(20)
-        self.socket.connect("control")
+        self.socket.connect("control" if port is None else ("127.0.0.1", port))
         self.lines = self.socket.makefile("r")
         if greet:
-            assert self.ask(request="hello", version="1.0")["ok"]
+            assert self.ask(request="hello", version="1.0", **hello)["ok"]
 
     def ask(self, **request):
         self.socket.sendall((json.dumps(request) + "\n").encode())
@@ -517,10 +525,57 @@ def files_that_nobody_can_play():
         assert client.must(request="status")["state"] == "playing"
 
 
+def write_token(text, mode=0o600):
+    pathlib.Path("token").write_text(text)
+    os.chmod("token", mode)
+
+
+def by_tcp_with_a_token():
+    """127.0.0.1 only; nothing without the token, not even a second request; and strangers don't take all places."""
+    token = "0123456789abcdef"
+    prepare_files(tcp_port=0, tcp_token_file="token", most_clients=8)
+    write_token(token + "\n")
+    with daemon() as process:
+        port = int(process.ready.rsplit(":", 1)[1])
+        for first in ({"request": "status"}, {"request": "hello", "version": "1.0"},
+                      {"request": "hello", "version": "1.0", "token": token[:-1]},
+                      {"request": "hello", "version": "1.0", "token": token + "0"}):
+            stranger = Client(greet=False, port=port)
+            answer = stranger.ask(**first)
+            assert not answer["ok"] and "tcp_token_file" in answer["error"]["remedy"], answer
+            assert stranger.lines.readline() == "", "hung up on"
+        browser = Client(greet=False, port=port)
+        browser.socket.sendall(b'POST / HTTP/1.1\r\nHost: localhost\r\n\r\n{"request":"stop"}\n')
+        assert not json.loads(browser.lines.readline())["ok"]
+        with contextlib.suppress(ConnectionResetError):
+            assert browser.lines.readline() == "", "hung up on at the first line"
+        client = Client(port=port, token=token)
+        begin(client)
+        silent = [Client(greet=False, port=port) for _ in range(5)]  # with `client` half of 8: two are refused
+        assert [bool(one.lines.readline()) for one in silent[3:]] == [True, True]
+        assert Client().must(request="status")["state"] == "playing"
+        assert silent[0].lines.readline() == "" and client.wait_for("playing"), "who says nothing goes after 5 s"
+        client.must(request="disarm")
+        addresses = subprocess.run(["ss", "-Hltn", f"sport = :{port}"], capture_output=True, text=True) if shutil.which("ss") else None
+        assert addresses is None or f"127.0.0.1:{port}" in addresses.stdout and "0.0.0.0:%d" % port not in addresses.stdout, addresses
+        second = subprocess.run([DAEMON, "--config", other_config(socket="other", tcp_port=port)], capture_output=True, text=True, timeout=20)
+        assert second.returncode == 5 and f"tcp_port {port}" in second.stderr, second
+    for text, mode, words in ((token, 0o644, "chmod 600"), ("short", 0o600, "/dev/urandom"), (None, 0, "/dev/urandom")):
+        pathlib.Path("token").unlink(missing_ok=True)
+        if text is not None:
+            write_token(text, mode)
+        second = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
+        assert second.returncode != 0 and words in second.stderr, second
+    prepare_files(tcp_port=0)
+    second = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
+    assert second.returncode == 4 and "tcp_token_file" in second.stderr, second
+
+
 TESTS = [from_load_to_a_session_that_replays, kill_9_in_mid_play, sigstop_of_200_ms, encoder_jump_of_10_mm, a_texture_with_nan,
          garbage_and_endless_lines, many_requests_at_once, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
          the_loop_closed_on_the_host, gain_saved_in_the_scene, a_texture_changed_in_mid_play,
-         a_promise_in_the_configuration, a_load_holds_up_nobody, files_that_nobody_can_play]
+         a_promise_in_the_configuration, a_load_holds_up_nobody, files_that_nobody_can_play,
+         by_tcp_with_a_token]
 
 if __name__ == "__main__":
     for test in TESTS:
