@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "analysis/cli/compared_input.hpp"
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/trade/measured_trade.hpp"
 #include "analysis/trade/pareto.hpp"
+#include "analysis/trade/worst_trade.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/file_kind.hpp"
 #include "data-schema/files.hpp"
@@ -32,16 +36,19 @@ struct TradeVerbOptions {
 
 constexpr const char* kTradeTableEnding = ".trade.json";
 
-// Of a scene the texture of its first layer that names one.
-Result<std::string> texture_named(const std::string& what) {
+// Of a scene each file once.
+Result<std::vector<std::string>> textures_named(const std::string& what) {
   const auto files = schema::stored_files(what);
-  if (!files || files->front().kind != schema::FileKind::scene) return what;
+  if (!files || files->front().kind != schema::FileKind::scene) return std::vector{what};
   const auto scene = schema::read_scene(what);
   if (!scene) return schema::forward_error(scene);
-  const auto& layer = std::get<schema::TextureLayer>(scene->layers.front());
-  if (scene->layers.size() > 1)
-    cli::warn(fmt::format("{}: the trade is measured with its first texture, {}", what, layer.texture));
-  return schema::texture_in_scene(files->front().path, layer.texture);
+  std::vector<std::string> names;
+  for (const schema::Layer& layer : scene->layers) {
+    const auto& laid = std::get<schema::TextureLayer>(layer);
+    const std::string name = schema::texture_in_scene(files->front().path, laid.texture);
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+  return names;
 }
 
 Report choice_row(const TradeHalf& half, const TradeRow& row, const Worth& worth) {
@@ -92,25 +99,44 @@ schema::Results trade_results(const TradeVerbOptions& o, const Trade& trade) {
   return results;
 }
 
+Result<Trade> measured_on(const std::string& name, const TradeVerbOptions& o,
+                          const schema::Transducer& transducer, const std::function<void(double)>& progress) {
+  const auto input = compared_input(name, o.stroke);
+  if (!input) return schema::forward_error(input);
+  auto trade = measure_trade(input->texture, transducer, o.halves, progress);
+  if (!trade && trade.error().where == "the texture") trade.error().where = name;
+  if (trade) trade->texture = input->name;
+  return trade;
+}
+
+Result<Trade> measured_on_all(const TradeVerbOptions& o) {
+  const auto names = textures_named(o.what);
+  if (!names) return schema::forward_error(names);
+  const auto transducer = schema::read_transducer(o.transducer);
+  if (!transducer) return schema::forward_error(transducer);
+  cli::Progress progress("trade");
+  const auto count = static_cast<double>(names->size());
+  std::vector<Trade> trades;
+  for (const std::string& name : *names) {
+    const auto before = static_cast<double>(trades.size());
+    auto trade =
+        measured_on(name, o, *transducer, [&](double part) { progress.update((before + part) / count); });
+    if (!trade) return schema::forward_error(trade);
+    trades.push_back(std::move(*trade));
+  }
+  Trade worst = worst_trade(trades);
+  if (trades.size() > 1)
+    worst.texture = fmt::format("{} (the worst of its {} textures)", o.what, names->size());
+  return worst;
+}
+
 Result<Report> measure(const TradeVerbOptions& o) {
   Trade trade;
   const auto kinds = trade_outputs(trade);
   if (const auto free = check_outputs(o.outputs, kinds); !free) return schema::forward_error(free);
-  const auto name = texture_named(o.what);
-  if (!name) return schema::forward_error(name);
-  const auto input = compared_input(*name, o.stroke);
-  if (!input) return schema::forward_error(input);
-  const auto transducer = schema::read_transducer(o.transducer);
-  if (!transducer) return schema::forward_error(transducer);
-  cli::Progress progress("trade");
-  auto measured =
-      measure_trade(input->texture, *transducer, o.halves, [&](double part) { progress.update(part); });
-  if (!measured) {
-    if (measured.error().where == "the texture") measured.error().where = *name;
-    return schema::forward_error(measured);
-  }
+  auto measured = measured_on_all(o);
+  if (!measured) return schema::forward_error(measured);
   trade = std::move(*measured);
-  trade.texture = input->name;
   Report report = trade_report(trade);
   const auto written = write_outputs(
       o.outputs, trade_results(o, trade), report, [&] { return trade_page(trade); }, kinds);
@@ -176,7 +202,7 @@ Result<Report> run_trade(const TradeVerbOptions& o) {
 cli::Action declare_trade(CLI::App& app) {
   auto options = std::make_shared<TradeVerbOptions>();
   app.add_option("WHAT", options->what,
-                 "Texture, recording (its stroke becomes one) or scene (its first texture)");
+                 "Texture, recording (its stroke becomes one) or scene (the worst of its textures)");
   app.add_option(
       "-o,--output", options->outputs,
       "What to write: a page (.html), results for 'report' (.results.json), a table (.csv), the first "

@@ -38,6 +38,28 @@ def check_trade(folder):
     assert "mine.csv" in tacto.run("trade", "C", "-o", "mine.csv", cwd=folder, code=2)[1]
 
 
+def check_scene(folder):
+    """A choice has to serve each texture of a scene: its error is the worst of theirs, its memory that of all."""
+    tacto.run("record", "-d", "sim:surface=E,speed=50mm/s,seed=5", "--strokes", "1", "-o", "E", "--no-calibration", cwd=folder)
+    tacto.run("spatial", "E", "-o", "E", cwd=folder)
+    layers = [{"type": "texture", "texture": name, "at_m": at, "gain_m_per_n": 0.001} for name, at in (("C", 0), ("E", 0.2), ("C", 0.4))]
+    (folder / "bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": layers}))
+
+    def measured(name):
+        done = tacto.run_json("trade", name, "--half", "realtime", cwd=folder)
+        return done["texture"], {(row["choice_of"], row["choice"]): row for row in done["choices"]}
+
+    name, scene = measured("bench.scene.json")
+    assert "the worst of its 2 textures" in name, name
+    (_, c), (_, e) = measured("C"), measured("E")
+    assert scene.keys() == c.keys() == e.keys()
+    for key, row in scene.items():
+        worst = max(c[key]["error_percent"], e[key]["error_percent"])
+        assert abs(row["error_percent"] - worst) <= 1e-9 + 1e-6 * worst, (key, row["error_percent"], worst)
+        assert abs(row["memory_kib"] - c[key]["memory_kib"] - e[key]["memory_kib"]) < 1e-6, key
+    assert any(c[key]["error_percent"] != e[key]["error_percent"] for key in c)
+
+
 def check_budgets(folder):
     fast = tacto.run_json("spatial", "C", "-o", "fast", "--quality", "fast", "--explain", cwd=folder)
     chosen = fast["chosen"][0]
@@ -88,6 +110,7 @@ def the_trade_and_what_chooses_by_it():
     folder = pathlib.Path.cwd()
     make_texture(folder)
     check_trade(folder)
+    check_scene(folder)
     check_budgets(folder)
     check_calibration(folder)
     assert "no texture is named" in tacto.run("trade", code=2)[1]
