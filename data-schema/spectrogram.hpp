@@ -78,6 +78,9 @@ Result<void> write_spectrogram_nc(const std::string& path, std::span<const Spect
 /// unsuitable, where the file has fewer.
 Result<Spectrogram> read_spectrogram_nc(const std::string& path, std::size_t stroke = 0);
 
+/// Whether it is netCDF of that kind.
+bool is_spectrogram_nc(const std::string& path);
+
 /// A table for other programs: first column position_mm; where the texture says what it knows,
 /// known_from_per_mm and known_to_per_mm; then one column a frequency, headed with the cells' unit and the
 /// frequency ("N2 mm at 0.25/mm"); several spectrograms are told apart by a leading column `stroke`. Errors:

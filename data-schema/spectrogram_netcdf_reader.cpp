@@ -141,4 +141,8 @@ Result<Spectrogram> read_spectrogram_nc(const std::string& path, std::size_t str
   return spectrogram;
 }
 
+bool is_spectrogram_nc(const std::string& path) {
+  return NetcdfReader(path).text("kind") == "spectrogram";
+}
+
 }  // namespace tacto::schema

@@ -5,8 +5,10 @@
 #include <array>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
 
 #include "data-schema/files.hpp"
+#include "data-schema/spectrogram.hpp"
 
 namespace tacto::spatial {
 
@@ -35,6 +37,15 @@ bool is_spectrogram_table(std::string_view line) {
   return begins && line.find("/mm,") != std::string_view::npos;
 }
 
+// An empty one is nobody's.
+Result<void> check_netcdf_free(const std::string& path) {
+  std::error_code ignored;
+  const auto size = std::filesystem::file_size(path, ignored);
+  if (ignored || size == 0 || schema::is_spectrogram_nc(path)) return {};
+  return schema::fail(Fault::usage, "holds something else, and would be lost", path,
+                      "choose another name, or remove it first");
+}
+
 Result<void> check_output(const std::string& path, std::span<const std::string> earlier) {
   const std::string extension = extension_of(path);
   if (std::ranges::find(kExtensions, extension) == kExtensions.end())
@@ -45,7 +56,7 @@ Result<void> check_output(const std::string& path, std::span<const std::string> 
   if (std::ranges::any_of(earlier, [&](const std::string& other) { return same_file(path, other); }))
     return schema::fail(Fault::usage, "is named twice", path, "give each output a name of its own");
   if (extension == ".csv") return schema::check_table_free(path, is_spectrogram_table);
-  return {};
+  return extension == ".nc" ? check_netcdf_free(path) : Result<void>();
 }
 
 }  // namespace

@@ -106,6 +106,14 @@ def formants_are_listed_stored_and_drawn():
     for verb in ("formants", "describe", "spectrogram"):
         _, said = tacto.run(verb, "oak", "-o", "raw.csv", code=2)
         assert "would be lost" in said and raw.read_text() == "time,force\n0,1\n", said
+    foreign = pathlib.Path("weather.nc")
+    for content in (b"CDF\x01 of somebody's", b"no netCDF at all"):
+        foreign.write_bytes(content)
+        _, said = tacto.run("spectrogram", "oak", "-o", "weather.nc", code=2)
+        assert "would be lost" in said and foreign.read_bytes() == content, said
+    foreign.write_bytes(b"")  # of nobody
+    for _ in range(2):        # and one of ours replaces its like
+        tacto.run("spectrogram", "oak", "-o", "weather.nc")
     for verb in ("formants", "describe"):  # nothing that was recorded or made is replaced by a table
         _, said = tacto.run(verb, "oak", "-o", "oak.json", code=2)
         assert "is a recording" in said, said
