@@ -20,7 +20,8 @@ using schema::Result;
 
 namespace {
 
-constexpr int kAnswerMs = 10'000;  // a texture of 100 mm takes a second to load
+constexpr int kAnswerMs = 10'000;
+constexpr int kLoadMs = 60'000;  // a texture of 100 mm takes a second to load, on a slow or busy machine many
 
 }  // namespace
 
@@ -75,7 +76,7 @@ Result<ControlFields> ControlConnection::ask(const ControlRequest& request) {
   const std::string text = schema::control_request_line(request);
   // Who hangs up at once has said why: it is read also where nothing can be sent any more.
   (void)::send(descriptor_, text.data(), text.size(), MSG_NOSIGNAL);
-  const auto answer = line(kAnswerMs);
+  const auto answer = line(request.verb == schema::ControlVerb::load ? kLoadMs : kAnswerMs);
   if (!answer) return schema::forward_error(answer);
   if (!*answer) return fail(Fault::device, "the daemon says nothing", socket_, "see its journal");
   auto reply = schema::parse_control_reply(**answer);

@@ -24,8 +24,11 @@ class ProgramLoader {
   /// Leaves a thread that is still at work to itself: the process is to end without it (std::_Exit).
   ~ProgramLoader();
 
+  /// Whether something plays meanwhile, that comes first.
+  enum class Beside { nothing, playing };
+
   /// `make` owns all that it uses. Precondition: !busy().
-  void begin(Make make);
+  void begin(Make make, Beside beside);
   /// Something is being made, be it for nobody any more.
   bool busy() const;
   /// What is being made is nobody's any more: take() gives an error at once.

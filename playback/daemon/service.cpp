@@ -203,9 +203,10 @@ Result<void> Service::begin_load(const ControlRequest& request) {
   load_request_ = request;
   const ProgramRequest wanted{resolved(request.file), request.at_m, request.gain_m_per_n,
                               request.ends,           false,        budget()};
-  loader_.begin([wanted, transducer = config_.transducer, options = options()] {
-    return make_program(wanted, transducer, options);
-  });
+  const bool idle = player_->state() == PlayerState::idle;
+  loader_.begin([wanted, transducer = config_.transducer,
+                 options = options()] { return make_program(wanted, transducer, options); },
+                idle ? ProgramLoader::Beside::nothing : ProgramLoader::Beside::playing);
   return {};
 }
 

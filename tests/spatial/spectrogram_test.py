@@ -347,8 +347,11 @@ class Spectrogram(unittest.TestCase):
     def test_a_full_disk_is_told_and_leaves_what_was_there(self):
         """A limit on files' sizes fails as a full disk does, netCDF's and HDF5's clearing up included."""
         write_texture(self.stem, chirp_and_noise())
-        before = b"position_mm,N^2 mm at 0/mm,before\n"  # a table replaces its like
-        for name in ("oak.nc", "oak.csv", "oak.png"):
+        self.made(self.stem, "-o", self.here / "small.nc", "--window", "20mm", "--hop", "20mm", "--max-frequency", "1/mm")
+        small = (self.here / "small.nc").read_bytes()
+        table = b"position_mm,N^2 mm at 0/mm,before\n"
+        # What is of its like may be replaced: so nothing but the disk stands in the way.
+        for name, before in (("oak.nc", small), ("oak.csv", table), ("oak.png", table)):
             (self.here / name).write_bytes(before)
             done = subprocess.run(
                 [TACTOGRAPH, "spectrogram", self.stem, "-o", self.here / name],
