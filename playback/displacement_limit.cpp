@@ -23,6 +23,22 @@ double taps_response(const Prepared& prepared, double frequency_hz) {
   return std::abs(sum);
 }
 
+// Of a sharp resonance the top lies between the grid's places.
+template <class Response>
+double highest_peak(double highest_hz, const Response& response) {
+  constexpr int kRounds = 6, kPlaces = 8;
+  double step_hz = highest_hz / kPeakGrid, best_hz = 0, most = response(0);
+  const auto try_at = [&](double f) {
+    if (const double here = response(std::clamp(f, 0.0, highest_hz)); here > most) most = here, best_hz = f;
+  };
+  for (int i = 1; i <= kPeakGrid; ++i) try_at(step_hz * i);
+  for (int round = 0; round < kRounds; ++round, step_hz /= kPlaces) {
+    const double middle_hz = best_hz;
+    for (int i = -kPlaces; i <= kPlaces; ++i) try_at(middle_hz + step_hz * i / kPlaces);
+  }
+  return most;
+}
+
 // Rounded down in the fourth digit, so that what a message names does fit.
 double fitting(double value) {
   const double digit = std::pow(10, std::floor(std::log10(value)) - 3);
@@ -37,14 +53,11 @@ double tray_peak_m(const Prepared& prepared, const schema::Transducer& transduce
               prepared.rate_hz};
   if (!prepared.sections.empty()) chain.led_pole_hz = schema::actuator_pole_hz(transducer);
   const double highest_hz = std::min(prepared.stops_at_hz, prepared.rate_hz / 2);
-  double most = 0;
-  for (int i = 0; i <= kPeakGrid; ++i) {
-    const double f = highest_hz * i / kPeakGrid;
-    most = std::max(most, std::abs(chain_response(chain, f)) * taps_response(prepared, f));
-  }
+  const double most = highest_peak(
+      highest_hz, [&](double f) { return std::abs(chain_response(chain, f)) * taps_response(prepared, f); });
   float largest = 0;
   for (const float sample : prepared.samples) largest = std::max(largest, std::abs(sample));
-  return most * double{largest} * std::abs(double{prepared.gain_m_per_n});
+  return most * double{largest} * double{prepared.gain_m_per_n};
 }
 
 schema::Result<void> check_displacement(double peak_m, double factor, double gain_m_per_n,
