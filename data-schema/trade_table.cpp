@@ -10,6 +10,7 @@
 #include "data-schema/embedded_files.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/json_document.hpp"
+#include "data-schema/machine_words.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -103,13 +104,41 @@ Result<std::string> machine_trade_path() {
   });
 }
 
+namespace {
+
+// Also a link to nowhere, or a folder: somebody meant something by it.
+bool is_there(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+}
+
+// Folders of configurations travel from machine to machine.
+std::string origin_of(const TradeTable& table, const std::string& path) {
+  if (!table.newer_version.empty())
+    return fmt::format("{}, of version {}, which may say more than this program reads", path,
+                       table.newer_version);
+  if (table.machine == machine_words()) return fmt::format("measured on this machine ({})", path);
+  return fmt::format(
+      "{}, measured on another machine or build ({}); 'tactograph trade --calibrate' measures this one", path,
+      table.machine);
+}
+
+Result<FoundTradeTable> machines_own(const std::string& path) {
+  auto own = read_trade_table(path);
+  if (own) {
+    const std::string origin = origin_of(*own, path);
+    return FoundTradeTable{std::move(*own), origin};
+  }
+  return fail(
+      own.error().fault, own.error().what, own.error().where,
+      "measure it anew with 'tactograph trade --calibrate', or remove it: then the shipped one serves");
+}
+
+}  // namespace
+
 Result<FoundTradeTable> find_trade_table() {
   const auto path = machine_trade_path();
-  if (path && is_file(*path)) {
-    auto own = read_trade_table(*path);
-    if (!own) return forward_error(own);
-    return FoundTradeTable{std::move(*own), fmt::format("measured on this machine ({})", *path)};
-  }
+  if (path && is_there(*path)) return machines_own(*path);
   auto shipped = shipped_trade_table();
   if (!shipped) return forward_error(shipped);
   const std::string origin =

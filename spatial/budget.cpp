@@ -18,13 +18,14 @@ constexpr double kBytesPerSample = 4;
 // The monotone cubics are not linear: a mixture can err by a little more than the sine at its upper edge (1 %
 // in 700 draws of spatial_budget_test).
 constexpr double kMargin = 1.1;
+constexpr double kMostAskedOfTexture = 0.1;
 constexpr std::array kMethods = {ResampleMethod::linear, ResampleMethod::hermite, ResampleMethod::swapped,
                                  ResampleMethod::sinc};
 
 Result<schema::MeasuredChoice> measured(const schema::TradeTable& table, const char* stage,
                                         std::string_view name) {
   for (const schema::MeasuredChoice& choice : table.choices)
-    if (choice.stage == stage && choice.name == name) return choice;
+    if (choice.stage == stage && choice.name == name && !choice.errors.empty()) return choice;
   return schema::fail(Fault::unsuitable, fmt::format("says nothing of {} by {}", stage, name),
                       "the table of measured choices", "measure again with 'tactograph trade --calibrate'");
 }
@@ -67,6 +68,9 @@ Result<std::vector<TextureChoice>> tried_for(const schema::TradeTable& table, co
 
 Result<TextureChoices> choose_texture(const schema::TradeTable& table, const TextureNeed& need,
                                       const schema::Budget& budget) {
+  if (budget.max_error && !(*budget.max_error > 0 && *budget.max_error <= kMostAskedOfTexture))
+    return schema::fail(Fault::usage, fmt::format("an error of {:g} %", 100 * *budget.max_error),
+                        "--max-error", "above 0 and at most 10%");
   auto tried = tried_for(table, need);
   if (!tried) return schema::forward_error(tried);
   const auto least = std::ranges::min_element(*tried, {}, &TextureChoice::error);

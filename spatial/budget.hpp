@@ -34,6 +34,10 @@ struct TextureNeed {
 /// any grid, and the texture's valid band says how far.
 inline constexpr double kPromisedSpeed = 0.5;
 
+/// And to speeds whose changes take so many frames or more, there and back: 10 ms at 10 kHz. Faster ones bend
+/// the path between two positions more than was measured.
+inline constexpr double kSteadyFrames = 100;
+
 struct TextureChoice {
   ResampleMethod method = ResampleMethod::hermite;
   double pitch_m = 1e-6;

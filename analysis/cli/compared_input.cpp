@@ -32,7 +32,7 @@ Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, con
   const std::size_t there = inputs.expected();
   if (stroke == 0 && there > 1)
     return schema::fail(Fault::usage, fmt::format("stands for {} textures", there), name,
-                        "name one of them, or choose with --stroke-a or --stroke-b");
+                        "name one of them, or choose with --stroke (compare: --stroke-a, --stroke-b)");
   if (stroke > there)
     return schema::fail(Fault::usage, fmt::format("stands for {}, and there is no stroke {}", there, stroke),
                         name);

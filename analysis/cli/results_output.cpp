@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/cli/results_output.hpp"
 
+#include <algorithm>
+
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/version.hpp"
@@ -36,8 +38,11 @@ Result<void> check_output(const std::string& path, std::span<const OutputKind> m
 }  // namespace
 
 Result<void> check_outputs(const std::vector<std::string>& outputs, std::span<const OutputKind> more) {
-  for (const std::string& path : outputs)
-    if (const auto free = check_output(path, more); !free) return free;
+  for (auto path = outputs.begin(); path != outputs.end(); ++path) {
+    if (std::find(outputs.begin(), path, *path) != path)
+      return schema::fail(Fault::usage, "is named twice", *path, "give each output a name of its own");
+    if (const auto free = check_output(*path, more); !free) return free;
+  }
   return {};
 }
 

@@ -168,7 +168,10 @@ Result<std::string> write_table(const TradeVerbOptions& o, const schema::TradeTa
 }
 
 Result<void> check_table_output(const TradeVerbOptions& o) {
-  if (o.outputs.empty()) return {};
+  if (o.outputs.empty()) {
+    const auto own = schema::machine_trade_path();
+    return own ? Result<void>() : schema::forward_error(own);
+  }
   const std::string& path = o.outputs.front();
   if (o.outputs.size() > 1 || !path.ends_with(kTradeTableEnding))
     return schema::fail(Fault::usage, "is no name for a table of measured choices", path,
@@ -183,6 +186,8 @@ Result<void> check_table_output(const TradeVerbOptions& o) {
 Result<Report> calibrate(const TradeVerbOptions& o) {
   if (!o.what.empty())
     return schema::fail(Fault::usage, "a machine is measured without a texture", o.what, "leave it out");
+  if (o.halves != TradeHalves::both)
+    return schema::fail(Fault::usage, "a machine's table is of both halves", "--half", "leave it out");
   if (const auto free = check_table_output(o); !free) return schema::forward_error(free);
   cli::Progress progress("calibrating");
   const schema::TradeTable table = measure_trade_table([&](double part) { progress.update(part); });

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/trade/measured_trade.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 
 #include "analysis/trade/offline_choices.hpp"
@@ -12,40 +9,27 @@
 #include "analysis/trade/realtime_choices.hpp"
 #include "analysis/trade/realtime_half.hpp"
 #include "data-schema/creation_time.hpp"
+#include "data-schema/machine_words.hpp"
 #include "data-schema/version.hpp"
 
 namespace tacto::analysis {
 namespace {
 
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("model name"))
-      if (const auto colon = line.find(": "); colon != std::string::npos) return line.substr(colon + 2);
-  return "an unnamed processor";
-}
+using schema::machine_words;
 
-std::string compiler() {
-#ifdef __clang__
-  return fmt::format("clang {}.{}", __clang_major__, __clang_minor__);
-#else
-  return fmt::format("gcc {}.{}", __GNUC__, __GNUC_MINOR__);
-#endif
+bool is_even(const schema::SpaceSignal& signal) {
+  const auto [least, largest] = std::ranges::minmax_element(signal.values);
+  return least == signal.values.end() || *least == *largest;
 }
 
 }  // namespace
 
-std::string machine_words() {
-#ifdef NDEBUG
-  constexpr const char* kBuild = "release";
-#else
-  constexpr const char* kBuild = "with assertions";
-#endif
-  return fmt::format("{}, {}, {}", processor(), compiler(), kBuild);
-}
-
 schema::Result<Trade> measure_trade(const schema::Texture& texture, const schema::Transducer& transducer,
                                     TradeHalves halves, const std::function<void(double)>& progress) {
+  if (is_even(texture.signal))
+    return schema::fail(schema::Fault::unsuitable,
+                        "is the same everywhere: there is nothing to feel, and no error to tell",
+                        "the texture", "take one with a surface");
   Trade trade{{}, machine_words(), texture.simulated, {}};
   const double share = halves == TradeHalves::both ? 0.5 : 1;
   if (halves != TradeHalves::real_time) {

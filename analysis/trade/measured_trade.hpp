@@ -12,9 +12,6 @@
 
 namespace tacto::analysis {
 
-/// Processor, compiler and kind of build.
-std::string machine_words();
-
 enum class TradeHalves { both, offline, real_time };
 
 /// A texture's trade; some 20 s. Errors: of measure_offline and measure_realtime.

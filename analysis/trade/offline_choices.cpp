@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -28,17 +30,18 @@ constexpr double kFrameWay_m = 5e-6;  // mean way a frame
 constexpr double kFineGrid_m = 1e-6;
 constexpr std::size_t kLeftOut = 1000;  // samples at either end
 
-// Periods of a speed that wanders, in frames: no whole number of them in anything.
-constexpr double kWanderPeriod = 937;
+// Periods of a speed that wanders, in frames; no whole number of them in anything. The shortest is the
+// promise's: spatial::kSteadyFrames.
+constexpr double kWanderPeriods[] = {spatial::kSteadyFrames - 0.3, 937};
 
 struct Stroke {
   spatial::MonotonePath path;
   std::vector<double> force;
 };
 
-Stroke stroke_over(double wavelength_m, double wander) {
+Stroke stroke_over(double wavelength_m, double wander, double wander_period) {
   Stroke stroke;
-  const double turn = 2 * std::numbers::pi / kWanderPeriod;
+  const double turn = 2 * std::numbers::pi / wander_period;
   for (std::size_t i = 0; i < kStrokeFrames; ++i) {
     const auto t = static_cast<double>(i);
     stroke.path.sample.push_back(t);
@@ -49,9 +52,9 @@ Stroke stroke_over(double wavelength_m, double wander) {
 }
 
 // RMS of what is missed re the sine's, where the highest local frequency has so many frames a period.
-double resampling_error(ResampleMethod method, double points, double wander) {
+double resampling_error(ResampleMethod method, double points, double wander, double wander_period) {
   const double wavelength_m = points * kFrameWay_m * (1 + wander);
-  const Stroke stroke = stroke_over(wavelength_m, wander);
+  const Stroke stroke = stroke_over(wavelength_m, wander, wander_period);
   const auto grid = spatial::grid_along(stroke.path, 1, kFineGrid_m);
   const auto values = spatial::resample(stroke.path, 1, *grid, stroke.force, 0, method);
   double sum = 0;
@@ -64,17 +67,27 @@ double resampling_error(ResampleMethod method, double points, double wander) {
 
 double worst_resampling_error(ResampleMethod method, double points) {
   double worst = 0;
-  for (const double wander : kWanders) worst = std::max(worst, resampling_error(method, points, wander));
+  for (const double period : kWanderPeriods)
+    for (const double wander : kWanders)
+      worst = std::max(worst, resampling_error(method, points, wander, period));
   return std::min(worst, 1.0);
 }
 
-double resampling_cost_ns(ResampleMethod method) {
-  const Stroke stroke = stroke_over(100e-6, 0.1);
+constexpr ResampleMethod kAllMethods[] = {ResampleMethod::linear, ResampleMethod::hermite,
+                                          ResampleMethod::swapped, ResampleMethod::sinc};
+
+// Of each, in turns.
+std::vector<double> resampling_costs_ns() {
+  constexpr int kTurns = 31;
+  const Stroke stroke = stroke_over(100e-6, 0.1, kWanderPeriods[1]);
   const auto grid = spatial::grid_along(stroke.path, 1, kFineGrid_m);
-  spatial::Resampler resampler(method);
   std::vector<double> out(grid->count);
-  return median_cost_ns([&] { resampler(stroke.path, 1, *grid, stroke.force, 0, out); },
-                        static_cast<double>(grid->count));
+  std::vector<std::function<void()>> works;
+  for (const ResampleMethod method : kAllMethods)
+    works.emplace_back([&, resampler = std::make_shared<spatial::Resampler>(method)] {
+      (*resampler)(stroke.path, 1, *grid, stroke.force, 0, out);
+    });
+  return median_costs_ns(works, static_cast<double>(grid->count), kTurns);
 }
 
 // An error that a further point's exceeds by rounding or by luck of phase is raised to it: an upper bound may
@@ -154,11 +167,11 @@ MeasuredChoice spectrogram_choice(const char* name, spatial::Resolution resoluti
 }  // namespace
 
 std::vector<MeasuredChoice> measure_resampling() {
+  const auto costs_ns = resampling_costs_ns();
   std::vector<MeasuredChoice> choices;
-  for (const ResampleMethod method :
-       {ResampleMethod::linear, ResampleMethod::hermite, ResampleMethod::swapped, ResampleMethod::sinc}) {
+  for (const ResampleMethod method : kAllMethods) {
     MeasuredChoice choice{
-        spatial::kResamplingStage, std::string(name_of(method)), "sample", resampling_cost_ns(method), 0, {}};
+        spatial::kResamplingStage, std::string(name_of(method)), "sample", costs_ns[choices.size()], 0, {}};
     for (const double points : kSinePoints)
       choice.errors.push_back({points, worst_resampling_error(method, points)});
     make_falling(choice.errors);

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 
-#include "analysis/trade/cpu_cost.hpp"
 #include "firmware-host/sim/spline_noise.hpp"
 #include "playback/hysteresis_inverse.hpp"
 #include "playback/reference/exact_kernel.hpp"
@@ -25,7 +26,6 @@ using playback::PrepareOptions;
 
 constexpr double kPlayedS = 0.8, kEndsS = 0.15, kFirstM = 5e-3;
 constexpr double kPartOfLimit = 0.02;
-constexpr int kRuns = 7;
 
 FingerPath path_of(FingerWay way) {
   const double mean_mps = way == FingerWay::slow ? 0.01 : way == FingerWay::fast ? 0.5 : 0.06;
@@ -141,14 +141,6 @@ double gain_for(const schema::SpaceSignal& loop, const schema::Transducer& trans
   return peak_n > 0 ? std::min(1.0, kPartOfLimit * transducer.displacement_limit_m / peak_n) : 1e-3;
 }
 
-double tick_cost_of(const PlayedCase& played, const Prepared& prepared,
-                    const std::vector<std::int32_t>& counts) {
-  const auto run = [&] {
-    (void)(played.in_double ? double_run(prepared, counts) : kernel_run(prepared, counts, PlayedPart::whole));
-  };
-  return median_costs_ns({run}, static_cast<double>(counts.size()), kRuns).front();
-}
-
 void compare_with(const PaddedSpectrum& wanted, const std::vector<double>& felt, const PrepareOptions& o,
                   PlayedOutcome& outcome) {
   const auto exact = playback::signal_of(wanted);
@@ -171,19 +163,20 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
     return schema::forward_error(sound);
   const auto loop = playback::laid_out(std::span(&placed, 1), Ends::loop, options.seam_m);
   options.gain_m_per_n = gain_for(loop, transducer);
-  const auto prepared = playback::prepare(texture, transducer, options);
-  if (!prepared) return schema::forward_error(prepared);
+  auto made = playback::prepare(texture, transducer, options);
+  if (!made) return schema::forward_error(made);
+  const auto prepared = std::make_shared<const Prepared>(std::move(*made));
   FingerPath path = path_of(played.way);
   const auto counts = counts_along(path, options, static_cast<std::size_t>(kPlayedS * options.rate_hz) + 1);
   take_scale_of(path, *prepared, options.metres_per_count);
   const PaddedSpectrum wanted = wanted_along(path, loop, options);
-  PlayedOutcome outcome{0,
-                        0,
-                        0,
-                        tick_cost_of(played, *prepared, counts),
-                        static_cast<double>(prepared->built.sample_bytes),
-                        prepared->delay_left_s,
-                        {}};
+  PlayedOutcome outcome;
+  outcome.ticks = static_cast<double>(counts.size());
+  outcome.ticking = [prepared, counts, in_double = played.in_double] {
+    (void)(in_double ? double_run(*prepared, counts) : kernel_run(*prepared, counts, PlayedPart::whole));
+  };
+  outcome.memory_bytes = static_cast<double>(prepared->built.sample_bytes);
+  outcome.delay_left_s = prepared->delay_left_s;
   outcome.drive_v =
       played.in_double ? double_run(*prepared, counts) : kernel_run(*prepared, counts, played.part);
   const auto felt = played.part == PlayedPart::reading

@@ -2,6 +2,8 @@
 // One way to play a texture, measured: what it errs against the exact reference, and what a tick costs.
 #pragma once
 
+#include <functional>
+
 #include "data-schema/error.hpp"
 #include "playback/finger_path.hpp"
 #include "playback/prepare.hpp"
@@ -27,10 +29,11 @@ struct PlayedCase {
 };
 
 struct PlayedOutcome {
-  double error = 0;            ///< RMS over the band of tray (or force) off, re the wanted one's RMS
-  double later_error = 0;      ///< the same re what was wanted delay_left_s before
-  double amplitude_error = 0;  ///< of the spectrum's magnitudes alone, whatever their phases
-  double tick_ns = 0;          ///< CPU time, median
+  double error = 0;               ///< RMS over the band of tray (or force) off, re the wanted one's RMS
+  double later_error = 0;         ///< the same re what was wanted delay_left_s before
+  double amplitude_error = 0;     ///< of the spectrum's magnitudes alone, whatever their phases
+  std::function<void()> ticking;  ///< the ticks again, for a clock
+  double ticks = 0;
   double memory_bytes = 0;
   double delay_left_s = 0;
   std::vector<float> drive_v;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "analysis/trade/cpu_cost.hpp"
 #include "analysis/trade/loop_latency.hpp"
 #include "analysis/trade/played_case.hpp"
 #include "playback/budget_words.hpp"
@@ -44,19 +46,29 @@ class RealtimeTrade {
     played.options.metres_per_count = kTrueEncoderM;
     return played;
   }
-  static TradeRow row_of(const std::string& knob, const std::string& choice, const PlayedOutcome& outcome) {
-    return {knob, choice, outcome.error, outcome.tick_ns, "tick", outcome.memory_bytes, outcome.delay_left_s,
-            {}};
+  // A row, and whose ticks it costs: rows of other knobs can be of the same ticks.
+  struct Line {
+    TradeRow row;
+    std::optional<std::size_t> work;
+    double times = 1;  // what they take
+    std::string refusal = {};
+  };
+  TradeRow& put(const std::string& knob, const std::string& choice, const PlayedOutcome& outcome) {
+    lines_.push_back(
+        {{knob, choice, outcome.error, 0, "tick", outcome.memory_bytes, outcome.delay_left_s, {}},
+         works_.size()});
+    works_.push_back(outcome.ticking);
+    ticks_.push_back(outcome.ticks);
+    return lines_.back().row;
   }
   // What is refused has nothing right.
   TradeRow& add(const std::string& knob, const std::string& choice, const PlayedCase& played,
                 const schema::Transducer& transducer) {
     const auto outcome = play_case(texture_, transducer, played);
-    if (outcome)
-      rows_.push_back(row_of(knob, choice, *outcome));
-    else
-      rows_.push_back({knob, choice, 1, 0, "tick", 0, 0, "refused: " + outcome.error().what});
-    return rows_.back();
+    if (outcome) return put(knob, choice, *outcome);
+    lines_.push_back(
+        {{knob, choice, 1, 0, "tick", 0, 0, {}}, std::nullopt, 1, "refused: " + outcome.error().what});
+    return lines_.back().row;
   }
   TradeRow& add(const std::string& knob, const std::string& choice, const PlayedCase& played) {
     return add(knob, choice, played, transducer_);
@@ -71,12 +83,15 @@ class RealtimeTrade {
   void add_pyramids();
   void add_precisions();
   void add_hysteresis();
+  void clock_all();
   void add_loops();
 
   const schema::Texture& texture_;
   const schema::Transducer& transducer_;
   const std::function<void(double)>& progress_;
-  std::vector<TradeRow> rows_;
+  std::vector<Line> lines_;
+  std::vector<std::function<void()>> works_;
+  std::vector<double> ticks_;  // of each
 };
 
 PlayedCase reading_case(PlayedCase played, wire::Interpolation kind, double density) {
@@ -109,13 +124,14 @@ void RealtimeTrade::add_inverses() {
   for (const auto& [word, inverse] : kInverses) {
     PlayedCase played = usual();
     played.options.inverse = inverse;
-    const TradeRow row = add("inverse", word, played);
+    add("inverse", word, played);
     const auto outcome = play_case(texture_, transducer_, played);
     if (!outcome) continue;
-    rows_.push_back(row);
-    rows_.back().knob = "inverse, amplitudes alone";
-    rows_.back().error = outcome->amplitude_error;
-    rows_.back().note = "whatever the phases";
+    lines_.push_back(lines_.back());
+    TradeRow& row = lines_.back().row;
+    row.knob = "inverse, amplitudes alone";
+    row.error = outcome->amplitude_error;
+    row.note = "whatever the phases";
   }
   for (const double delay_s : {0.5e-3, 1e-3, 2e-3, 3e-3, 4e-3}) {
     PlayedCase played = usual();
@@ -152,23 +168,24 @@ void RealtimeTrade::add_counts() {
 
 // Ticks of other rates are compared by what a millisecond of playing costs.
 void RealtimeTrade::add_rates() {
-  const std::size_t first = rows_.size();
+  const std::size_t first = lines_.size();
   for (const double rate_hz : kRates) {
     const std::string rate = fmt::format("{:g} kHz", 1e-3 * rate_hz);
     PlayedCase played = usual();
     played.options.rate_hz = rate_hz;
-    TradeRow alone = add("tick rate", rate, played);
+    add("tick rate", rate, played);
+    Line alone = lines_.back();
     for (const auto& [word, inverse] : {kInverses[1], kInverses[2]}) {
       played.options.inverse = inverse;
       add("tick rate x inverse", rate + ", " + word, played);
     }
-    alone.knob = "tick rate x inverse", alone.choice += ", full";
-    rows_.push_back(alone);
+    alone.row.knob = "tick rate x inverse", alone.row.choice += ", full";
+    lines_.push_back(alone);
   }
-  for (std::size_t i = first; i < rows_.size(); ++i) {
-    const double rate_hz = kRates[(i - first) * std::size(kRates) / (rows_.size() - first)];
-    rows_[i].cost_ns *= 1e-3 * rate_hz;
-    rows_[i].per = "ms";
+  for (std::size_t i = first; i < lines_.size(); ++i) {
+    const double rate_hz = kRates[(i - first) * std::size(kRates) / (lines_.size() - first)];
+    lines_[i].times = 1e-3 * rate_hz;
+    lines_[i].row.per = "ms";
   }
 }
 
@@ -195,10 +212,9 @@ void RealtimeTrade::add_precisions() {
     off += std::pow(double{single->drive_v[i]} - exact->drive_v[i], 2);
     size += std::pow(exact->drive_v[i], 2);
   }
-  rows_.push_back(row_of("precision", "single", *single));
-  rows_.back().note = fmt::format("drive differs from double's by {:.1g} of its RMS", std::sqrt(off / size));
-  rows_.push_back(row_of("precision", "double", *exact));
-  rows_.back().note = "the reference, which is not written for speed";
+  put("precision", "single", *single).note =
+      fmt::format("drive differs from double's by {:.1g} of its RMS", std::sqrt(off / size));
+  put("precision", "double", *exact).note = "the reference, which is not written for speed";
 }
 
 // Sixteen plays of equal weight, that open the loop by a sixth between the limits.
@@ -224,16 +240,24 @@ void RealtimeTrade::add_hysteresis() {
   }
 }
 
+// In turns, so that a machine that is busy meanwhile is so for all: what is compared was measured together.
+void RealtimeTrade::clock_all() {
+  constexpr int kTurns = 41;
+  const auto costs = median_costs_ns(works_, 1, kTurns);
+  for (Line& line : lines_)
+    if (line.work) line.row.cost_ns = line.times * costs[*line.work] / ticks_[*line.work];
+}
+
 void RealtimeTrade::add_loops() {
   PrepareOptions options;
   options.ends = playback::Ends::loop;
   const auto prepared = playback::prepare(texture_, transducer_, options);
   if (!prepared) return;
   const auto usual_tick = std::ranges::find_if(
-      rows_, [](const TradeRow& row) { return row.knob == "inverse" && row.choice == "full"; });
-  const double tick_ns = usual_tick == rows_.end() ? 0 : usual_tick->cost_ns;
-  rows_.push_back(device_loop_row(*prepared, tick_ns));
-  rows_.push_back(host_loop_row(*prepared, tick_ns));
+      lines_, [](const Line& line) { return line.row.knob == "inverse" && line.row.choice == "full"; });
+  const double tick_ns = usual_tick == lines_.end() ? 0 : usual_tick->row.cost_ns;
+  lines_.push_back({device_loop_row(*prepared, tick_ns), std::nullopt});
+  lines_.push_back({host_loop_row(*prepared, tick_ns), std::nullopt});
 }
 
 Result<std::vector<TradeRow>> RealtimeTrade::rows() {
@@ -241,16 +265,21 @@ Result<std::vector<TradeRow>> RealtimeTrade::rows() {
           play_case(texture_, transducer_, reading_case(usual(), wire::Interpolation::hermite, 16));
       !playable)
     return schema::forward_error(playable);
-  constexpr Part kParts[] = {&RealtimeTrade::add_readings,   &RealtimeTrade::add_densities,
-                             &RealtimeTrade::add_inverses,   &RealtimeTrade::add_looking_ahead,
-                             &RealtimeTrade::add_counts,     &RealtimeTrade::add_rates,
-                             &RealtimeTrade::add_pyramids,   &RealtimeTrade::add_precisions,
-                             &RealtimeTrade::add_hysteresis, &RealtimeTrade::add_loops};
+  constexpr Part kParts[] = {
+      &RealtimeTrade::add_readings,      &RealtimeTrade::add_densities,  &RealtimeTrade::add_inverses,
+      &RealtimeTrade::add_looking_ahead, &RealtimeTrade::add_counts,     &RealtimeTrade::add_rates,
+      &RealtimeTrade::add_pyramids,      &RealtimeTrade::add_precisions, &RealtimeTrade::add_hysteresis,
+      &RealtimeTrade::clock_all,         &RealtimeTrade::add_loops};
   for (std::size_t i = 0; i < std::size(kParts); ++i) {
     (this->*kParts[i])();
     if (progress_) progress_(static_cast<double>(i + 1) / static_cast<double>(std::size(kParts)));
   }
-  return std::move(rows_);
+  std::vector<TradeRow> rows;
+  for (Line& line : lines_) {
+    if (!line.refusal.empty()) line.row.note = line.refusal;
+    rows.push_back(std::move(line.row));
+  }
+  return rows;
 }
 
 }  // namespace

@@ -156,16 +156,16 @@ std::vector<schema::ResultFigure> trade_figures(const Trade& trade) {
 }
 
 std::string trade_csv(const Trade& trade) {
-  std::string csv =
-      std::string(kTradeCsvHead) + "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note\n";
+  std::string csv = std::string(kTradeCsvHead) +
+                    "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note,simulated\n";
   for (const TradeHalf& half : trade.halves) {
     const auto worth = worth_of(half.rows);
     for (std::size_t i = 0; i < half.rows.size(); ++i) {
       const TradeRow& row = half.rows[i];
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", half.name, quoted(row.knob),
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", half.name, quoted(row.knob),
                          quoted(row.choice), number(row.error), number(row.cost_ns), row.per,
                          number(row.memory_bytes), number(row.latency_s), worth[i].on_front, worth[i].knee,
-                         quoted(worth[i].beaten_by), quoted(row.note));
+                         quoted(worth[i].beaten_by), quoted(row.note), quoted(trade.simulated));
     }
   }
   return csv;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "spatial/dsp/block_fourier_filter.hpp"
+
 namespace tacto::spatial {
 namespace {
 
@@ -40,7 +42,7 @@ std::string asked(const schema::Budget& budget) {
   return budget.most_exact() ? "the most exact" : fmt::format("at most {:g} %", 100 * budget.most_error());
 }
 
-void explain(Report& report, const TextureChoices& choices, const TextureNeed& need,
+void explain(Report& report, const TextureChoices& choices, const TextureNeed& need, double lowest_hz,
              const schema::FoundTradeTable& found) {
   report.add("by_table", found.origin);
   report.add("counts",
@@ -48,9 +50,13 @@ void explain(Report& report, const TextureChoices& choices, const TextureNeed& n
                          "where the finger goes at {} or more",
                          need.highest_hz,
                          schema::for_people(kPromisedSpeed * need.slowest_mps, schema::Dimension::speed)));
-  report.add("counts_not",
-             "the encoder's rounding and noise, the filter at the record's ends, slower places "
-             "(the valid band says how far they reach)");
+  report.add(
+      "counts_not",
+      fmt::format(
+          "the band-pass itself, near its edges and within {:.2g} s of the record's ends (some tenths of "
+          "a percent), the encoder's rounding and noise, a speed that comes and goes within "
+          "{:g} frames, slower places (the valid band says how far they reach)",
+          kBandKernelPeriods / lowest_hz, kSteadyFrames));
   std::vector<Report> rows;
   for (const TextureChoice& choice : choices.tried) rows.push_back(row_of(choice, choices.taken));
   report.add("tried", std::move(rows));
@@ -67,7 +73,7 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
   if (!found) return schema::forward_error(found);
   auto choices = choose_texture(found->table, *need, budget);
   if (!choices) {
-    choices.error().where = record.where();
+    if (choices.error().where.empty()) choices.error().where = record.where();
     return schema::forward_error(choices);
   }
   ChosenTexture chosen{wanted, {}};
@@ -76,7 +82,8 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
   chosen.report.add("method", std::string(name_of(choices->taken.method)))
       .add("promised_error_percent", 100 * choices->taken.error)
       .add("asked_error", asked(budget));
-  if (options.chosen_by.explain) explain(chosen.report, *choices, *need, *found);
+  if (options.chosen_by.explain)
+    explain(chosen.report, *choices, *need, wanted.filter.passed(need->sample_rate_hz).low_hz, *found);
   return chosen;
 }
 

@@ -16,7 +16,6 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kKernelPeriods = 200;
 constexpr std::size_t kLongestReach = 32768;
 // The ends of a record are treated for the lowest frequency, but for no lower one than this share of the
 // highest.
@@ -34,7 +33,7 @@ double lowest_treated(Band band, double sample_rate_hz) {
 
 std::size_t reach_of(double low_hz, double rate_hz) {
   if (low_hz <= 0) return kLongestReach / 2;
-  const double samples = std::ceil(kKernelPeriods / low_hz * rate_hz);
+  const double samples = std::ceil(kBandKernelPeriods / low_hz * rate_hz);
   return static_cast<std::size_t>(std::clamp(samples, 1.0, static_cast<double>(kLongestReach)));
 }
 

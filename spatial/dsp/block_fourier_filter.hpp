@@ -16,6 +16,9 @@ namespace tacto::spatial {
 /// A complex gain at a frequency in Hz, for positive frequencies; negative ones take its conjugate.
 using SpectralGain = std::function<std::complex<double>(double frequency_hz)>;
 
+/// How far its kernel reaches either way, in periods of the band's lowest frequency.
+inline constexpr double kBandKernelPeriods = 200;
+
 /// What it gives is the convolution of the record, gone on beyond its ends (ExtendedRecord), with the ideal
 /// band-pass kernel under a window (band_kernel) that ends at 200 periods of the lowest frequency: 13.3 s for
 /// 15 Hz, and edges 0.2 Hz wide. (Over 65 times from the lowest to the highest frequency it ends at 32768

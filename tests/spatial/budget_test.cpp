@@ -68,7 +68,7 @@ Case drawn_case(unsigned seed) {
   made.need.highest_hz = made.need.sample_rate_hz / draw.logarithmic(4, 100);
   made.need.slowest_mps = draw.logarithmic(0.01, 0.3);
   made.wander = draw.even(0, 0.5);
-  made.wander_frames = draw.even(300, 3000);
+  made.wander_frames = draw.even(kSteadyFrames, 3000);
   made.asked = draw.logarithmic(3e-6, 3e-2);
   made.frames = 2500;
   // Nothing beyond the band where the finger is fastest; half of the surfaces are a single line at its edge.
