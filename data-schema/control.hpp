@@ -29,6 +29,7 @@ struct ControlRequest {
   std::optional<double> at_m, gain_m_per_n;
   std::optional<double> fade_s;  ///< load while armed
   std::optional<TextureEnds> ends;
+  PlaybackChoices playback;  ///< load
   std::optional<double> gain;
   bool save = false;
 };

@@ -7,6 +7,7 @@
 
 #include "data-schema/control.hpp"
 #include "data-schema/json_schema.hpp"
+#include "data-schema/playback_choices_json.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -41,10 +42,20 @@ tl::unexpected<Error> bad_member(const char* member, std::string what, std::stri
               std::move(remedy));
 }
 
+Json rule_at(const Json& rules, std::string_view pointer) {
+  Json rule = rules;
+  while (!pointer.empty()) {
+    pointer.remove_prefix(1);
+    const std::string member(pointer.substr(0, pointer.find('/')));
+    pointer.remove_prefix(member.size());
+    rule = rule.value("properties", Json::object()).value(member, Json::object());
+  }
+  return rule;
+}
+
 // A member says what it is; without one the request itself is wrong.
 std::string remedy_for(const std::string& pointer, const Json& rules) {
-  const std::string member = pointer.empty() ? "" : pointer.substr(1);
-  const Json rule = rules["properties"].value(member, Json::object());
+  const Json rule = pointer.empty() ? Json::object() : rule_at(rules, pointer);
   if (!rule.contains("description"))
     return fmt::format("the requests are {}", fmt::join(kControlVerbs, ", "));
   const std::string meaning = rule["description"];
@@ -87,6 +98,7 @@ ControlRequest request_of(const Json& body) {
   request.at_m = optional_number(body, "at_m");
   request.gain_m_per_n = optional_number(body, "gain_m_per_n");
   request.fade_s = optional_number(body, "fade_s");
+  request.playback = playback_choices_in(body);
   request.gain = optional_number(body, "gain");
   request.save = body.value("save", false);
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
@@ -170,6 +182,7 @@ std::string control_request_line(const ControlRequest& request) {
   if (request.gain_m_per_n) body["gain_m_per_n"] = *request.gain_m_per_n;
   if (request.ends) body["ends"] = word_of(*request.ends);
   if (request.fade_s) body["fade_s"] = *request.fade_s;
+  if (Json playback = playback_choices_body(request.playback); !playback.empty()) body["playback"] = playback;
   if (request.gain) body["gain"] = *request.gain;
   if (request.save) body["save"] = true;
   return line_of(body);

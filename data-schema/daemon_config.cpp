@@ -2,6 +2,7 @@
 #include "data-schema/daemon_config.hpp"
 
 #include "data-schema/json_document.hpp"
+#include "data-schema/playback_choices_json.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -46,6 +47,10 @@ Result<DaemonConfig> read_daemon_config(const std::string& path) {
   if (const auto port = number_in(body, "tcp_port")) config.tcp_port = static_cast<int>(*port);
   config.undo_hysteresis = body.value("undo_hysteresis", config.undo_hysteresis);
   config.budget = {quality_in(body), number_in(body, "max_error")};
+  config.playback = playback_choices_in(body);
+  if (!config.playback.extra_json.empty())
+    return fail(Fault::malformed, "playback knows no " + config.playback.extra_json, path + "#/playback",
+                "its members are in data-schema/schemas/playback.schema.json");
   config.max_tick_ns = number_in(body, "max_tick_ns");
   return config;
 }

@@ -7,6 +7,7 @@
 
 #include "data-schema/budget.hpp"
 #include "data-schema/error.hpp"
+#include "data-schema/playback_choices.hpp"
 
 namespace tacto::schema {
 
@@ -28,6 +29,7 @@ struct DaemonConfig {
   bool undo_hysteresis = true;
   Budget budget;  ///< of what is loaded
   std::optional<double> max_tick_ns;
+  PlaybackChoices playback;  ///< for what neither a request nor a scene says
 };
 
 /// Errors: not_found; malformed, by JSON pointer, also for a member that does not exist; unsupported_version.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data-schema/error.hpp"
+#include "data-schema/playback_choices.hpp"
 
 namespace tacto::schema {
 
@@ -31,6 +32,7 @@ struct Scene {
   std::vector<Layer> layers;  ///< at least one; their wanted displacements add up
   std::string name, notes;
   std::string created, creator;
+  PlaybackChoices playback;
   std::string extra_json;
   std::string newer_version;
 };

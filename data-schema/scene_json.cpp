@@ -6,6 +6,7 @@
 
 #include "data-schema/files.hpp"
 #include "data-schema/json_document.hpp"
+#include "data-schema/playback_choices_json.hpp"
 #include "data-schema/scene.hpp"
 
 namespace tacto::schema {
@@ -70,6 +71,7 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
   scene.notes = text_or(document.body, "notes");
   scene.created = text_or(document.body, "created");
   scene.creator = text_or(document.body, "creator");
+  scene.playback = playback_choices_in(document.body);
   scene.extra_json = unknown_members(document.body, kSceneKind);
   scene.newer_version = document.newer_version;
   return scene;
@@ -81,6 +83,7 @@ Json scene_body(const Scene& scene) {
   put_text(body, "notes", scene.notes);
   put_text(body, "created", scene.created);
   put_text(body, "creator", scene.creator);
+  if (Json playback = playback_choices_body(scene.playback); !playback.empty()) body["playback"] = playback;
   body["layers"] = Json::array();
   for (const Layer& layer : scene.layers) body["layers"].push_back(layer_body(layer));
   return body;

@@ -63,6 +63,7 @@ struct SessionHeader {
   std::string loop = "device";  ///< or "host"
   double rate_hz = 0, clock_hz = 0, metres_per_count = 0;
   std::string device_uri, device_name, device_serial, device_firmware, simulated;
+  std::string device_protocol;  ///< "1.2", of the wire; empty: not told, older
   Transducer transducer;
   std::string transducer_sha256;
   std::string scene_file, scene_sha256;  ///< empty where a texture was played by itself
@@ -70,6 +71,7 @@ struct SessionHeader {
   double initial_gain = 1;
   std::int32_t initial_encoder = 0;
   std::string inverse;
+  PlaybackChoices choices;  ///< with which it was played; older sessions tell the inverse alone
   double delay_s = 0, low_hz = 0, high_hz = 0;
   std::string extra_json;
   std::string newer_version;

@@ -6,6 +6,7 @@
 
 #include "data-schema/json_document.hpp"
 #include "data-schema/json_schema.hpp"
+#include "data-schema/playback_choices_json.hpp"
 #include "data-schema/session.hpp"
 #include "data-schema/transducer_json.hpp"
 
@@ -41,6 +42,7 @@ constexpr SessionNumber kPlaybackNumbers[] = {{"delay_s", &SessionHeader::delay_
 Json device_body(const SessionHeader& header) {
   Json body = Json::object();
   for (const auto& [name, member] : kDeviceTexts) body[name] = header.*member;
+  put_text(body, "protocol", header.device_protocol);
   put_text(body, "simulated", header.simulated);
   return body;
 }
@@ -65,7 +67,8 @@ SessionTexture texture_of_row(const Json& row) {
 }
 
 Json playback_body(const SessionHeader& header) {
-  Json body = {{"inverse", header.inverse}};
+  Json body = playback_choices_body(header.choices);
+  body["inverse"] = header.inverse;
   for (const auto& [name, member] : kPlaybackNumbers) body[name] = header.*member;
   return body;
 }
@@ -89,6 +92,7 @@ Json session_body(const SessionHeader& header) {
 
 void read_device(const Json& body, SessionHeader& header) {
   for (const auto& [name, member] : kDeviceTexts) header.*member = text_or(body, name);
+  header.device_protocol = text_or(body, "protocol");
   header.simulated = text_or(body, "simulated");
 }
 
@@ -122,6 +126,8 @@ SessionHeader session_from(const Json& body) {
   header.initial_gain = number_or(body["initial"], "gain", 1);
   header.initial_encoder = body["initial"].value("encoder_count", std::int32_t{0});
   header.inverse = text_or(body["playback"], "inverse");
+  header.choices = playback_choices_in(body);
+  header.choices.extra_json.clear();
   for (const auto& [name, member] : kPlaybackNumbers) header.*member = number_or(body["playback"], name, 0);
   return header;
 }

@@ -60,13 +60,13 @@ struct Readings {
 };
 
 Readings readings_of(std::span<const PlacedTexture> textures, const PrepareOptions& options,
-                     double passes_to_hz, const schema::TradeTable& table) {
+                     double passes_to_hz, const schema::TradeTable& table, bool keep_reading) {
   const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m);
   const double highest_per_m = highest_spatial_frequency(path);
   Readings readings;
   for (const schema::MeasuredChoice& measured : table.at("reading")) {
     const auto kind = interpolation_of(measured.name);
-    if (!kind) continue;
+    if (!kind || (keep_reading && *kind != options.interpolation)) continue;
     for (const schema::ErrorPoint& point : measured.errors) {
       TickChoice choice{*kind, kStopOverPass * point.points_per_period, {}, point.error, 0, measured.cost_ns,
                         0};
@@ -123,7 +123,7 @@ tl::unexpected<schema::Error> no_room(const Readings& readings, const PrepareOpt
   return fail(Fault::unsuitable,
               fmt::format("the texture takes {} samples at least, there is room for {}",
                           readings.least_samples, options.most_samples),
-              "texture", "play a shorter part, or let the host close the loop");
+              "texture", ways_to_fit(options.interpolation));
 }
 
 tl::unexpected<schema::Error> not_kept(const Choices& all, const TickBudget& budget) {
@@ -165,7 +165,7 @@ Result<TickDecision> decide(std::span<const PlacedTexture> textures,
   if (auto sound = check_budget(budget); !sound) return schema::forward_error(sound);
   if (auto sound = check_prepare(textures, options); !sound) return schema::forward_error(sound);
   const double passes_to_hz = undone_chain({}, options).band.high_hz;
-  const Readings readings = readings_of(textures, options, passes_to_hz, found.table);
+  const Readings readings = readings_of(textures, options, passes_to_hz, found.table, budget.keep_reading);
   if (readings.choices.empty()) return no_room(readings, options);
   const Choices all = all_choices(readings.choices, inverses, undoes_hysteresis, found.table);
   const Choices kept = kept_by(all, budget, true);

@@ -19,6 +19,7 @@ struct TickBudget {
   schema::Budget error = {};                         ///< of the displacement, re the wanted one
   std::optional<double> max_tick_ns = std::nullopt;  ///< CPU time, by the table
   bool keep_inverse = false;                         ///< the options' kind of inverse was named: it stays
+  bool keep_reading = false;                         ///< and so was their interpolation
   /// That plays, and stays while another texture takes the place of one.
   std::optional<InverseChoice> filter = std::nullopt;
 

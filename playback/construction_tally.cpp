@@ -25,7 +25,7 @@ std::vector<LeftOut> left_out_of(const Prepared& prepared) {
   };
   tell(built.seams, "a loop's seam", "nothing loops");
   if (built.levels < wire::kMaxLevels) left_out.push_back(levels_left_out(prepared));
-  tell(built.filters, "a filter that undoes the transducer", "its gain alone was asked for");
+  tell(built.filters, "a filter that undoes the transducer", "its gain alone, or no inverse, was asked for");
   tell(built.hysteresis, "plays that undo a hysteresis", "the transducer's file tells none, or it is kept");
   tell(built.sections, "recursive sections", "only an undone hysteresis needs one");
   tell(built.energy_limits, "an energy limit", "none is named");

@@ -18,12 +18,13 @@ namespace tacto::playback {
 struct FingerPath {
   std::vector<double> time_s;
   std::vector<double> position_m;
+  std::vector<double> normal_force_n = {};  ///< with which it presses, even between knots; empty: not told
 
   double duration_s() const { return time_s.back() - time_s.front(); }
 };
 
 /// Reads a table whose first line names the columns; `time_s` and `position_m` are taken,
-/// others are left alone. Columns are parted by
+/// and `normal_force_n` where there is one; others are left alone. Columns are parted by
 /// commas, or by semicolons or tabs: then numbers may have decimal commas. Errors: not_found; malformed, by
 /// line and column, for a missing column (with those that exist), a ragged row, text, NaN, infinity, time
 /// that does not grow, fewer than 2 rows.

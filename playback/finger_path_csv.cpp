@@ -20,7 +20,8 @@ using schema::Result;
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kColumns = {"time_s", "position_m"};
+constexpr std::array<std::string_view, 3> kColumns = {"time_s", "position_m", "normal_force_n"};
+constexpr std::size_t kNeeded = 2, kForce = 2;
 constexpr std::string_view kRemedy = "write a header line 'time_s,position_m', then one row a knot";
 
 std::string_view trimmed(std::string_view text) {
@@ -68,7 +69,8 @@ struct Table {
   const std::string& name;
   char separator;
   std::vector<std::string_view> header;
-  std::array<std::size_t, 2> column{};  // where time_s and position_m stand in the header
+  std::array<std::size_t, kColumns.size()> column{};  // where they stand in the header
+  bool tells_force = false;
 
   std::string place(std::size_t line, std::size_t which) const {
     return fmt::format("{}, line {}, column {} ({})", name, line, column[which] + 1, kColumns[which]);
@@ -80,10 +82,11 @@ Result<Table> read_header(std::string_view line, const std::string& name) {
     return fail(Fault::malformed, "this is no table: its first line holds binary data", name,
                 "a path is a CSV with the columns time_s,position_m");
   const char separator = separator_of(line);
-  Table table{name, separator, split(line, separator), {}};
+  Table table{name, separator, split(line, separator), {}, false};
   for (std::size_t which = 0; which < kColumns.size(); ++which) {
     const auto found = std::ranges::find(table.header, kColumns[which]);
-    if (found == table.header.end())
+    if (which == kForce) table.tells_force = found != table.header.end();
+    if (which < kNeeded && found == table.header.end())
       return fail(
           Fault::malformed,
           fmt::format("there is no column '{}', only {}", kColumns[which], fmt::join(table.header, ", ")),
@@ -119,6 +122,10 @@ Result<void> add_row(FingerPath& path, const Table& table, std::string_view text
                 table.place(line, 0), "each row must be later than the one before");
   path.time_s.push_back(*time_s);
   path.position_m.push_back(*position_m);
+  if (!table.tells_force) return {};
+  const auto force_n = cell(table, fields, line, kForce);
+  if (!force_n) return schema::forward_error(force_n);
+  path.normal_force_n.push_back(*force_n);
   return {};
 }
 

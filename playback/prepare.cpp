@@ -28,6 +28,26 @@ constexpr double kSpeedMargin = 1.01;
 constexpr double kTrackerS = 2e-3;
 constexpr double kMostSamplesPerCount = 1024;
 constexpr double kQ32 = 4294967296.0;
+constexpr double kMostEnergyV = 1000, kLongestWindowS = 3600, kMostContactN = 100;
+
+// The device asks the same, by numbers of its own.
+Result<void> check_guards(const PrepareOptions& o) {
+  const auto wrong = [](const char* what, const char* remedy) {
+    return fail(Fault::usage, what, {}, remedy);
+  };
+  if (!(o.energy_rms_v >= 0 && o.energy_rms_v <= kMostEnergyV))
+    return wrong("an energy limit beyond 0 to 1000 V", "an RMS of the drive; 0V turns it off");
+  if (!(o.energy_window_s > 0 && o.energy_window_s <= kLongestWindowS))
+    return wrong("a window of energy beyond 0 to 3600 s", "1s is usual");
+  if (!(o.contact_on_n >= 0 && o.contact_on_n <= kMostContactN))
+    return wrong("a contact's normal force beyond 0 to 100 N",
+                 "a finger presses with 0.1 to 3 N; 0N turns it off");
+  if (o.contact_on_n > 0 && !(o.contact_off_n >= 0 && o.contact_off_n <= o.contact_on_n))
+    return wrong(
+        "a contact that ends above the force that it begins with",
+        "let it end (--contact-off, contact_off_n) at or below where it begins (--contact, contact_on_n)");
+  return {};
+}
 
 Result<void> check_prepare_options(const PrepareOptions& o) {
   const auto wrong = [](std::string what, std::string remedy) {
@@ -51,9 +71,10 @@ Result<void> check_prepare_options(const PrepareOptions& o) {
     return wrong("a largest speed beyond 0 to 10 m/s", "a finger goes at up to 0.5 m/s");
   if (!(o.onset_s >= 0 && o.release_s >= 0 && o.seam_m >= 0 && std::isfinite(o.onset_s + o.release_s)))
     return wrong("an onset, release or seam below 0", "0 turns each off");
-  if (!(o.energy_rms_v >= 0 && o.energy_window_s > 0)) return wrong("no window of energy", "take 1s");
+  if (!(o.reconstruction_cutoff_hz > 0 && o.reconstruction_cutoff_hz <= kMostRateHz))
+    return wrong("the reconstruction filter's cut-off is not above 0", "the paper's is 600Hz");
   if (!std::isfinite(o.origin_m)) return wrong("the origin is not finite", "give a length");
-  return {};
+  return check_guards(o);
 }
 
 Result<void> check_placed(std::span<const PlacedTexture> textures, const PrepareOptions& options) {
@@ -75,7 +96,7 @@ Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, co
     return fail(Fault::unsuitable,
                 fmt::format("the texture takes {} samples in {} levels, there is room for {}", size,
                             shape.levels, o.most_samples),
-                "texture", "play a shorter part, or on a device that holds more");
+                "texture", ways_to_fit(o.interpolation));
   Pyramid pyramid = make_pyramid(path, shape);
   prepared.samples = std::move(pyramid.samples);
   prepared.built.levels = pyramid.levels;
@@ -200,6 +221,15 @@ core::KernelSetup Prepared::setup() const {
   setup.gate_on_n = gate_on_n;
   setup.gate_off_n = gate_off_n;
   return setup;
+}
+
+std::string ways_to_fit(wire::Interpolation interpolation) {
+  const bool sparse = interpolation == wire::Interpolation::sinc;
+  return fmt::format(
+      "play a shorter part{}, or let the host close the loop (--loop host; \"loop\": \"host\" in the "
+      "daemon's "
+      "configuration)",
+      sparse ? "" : ", interpolate by sinc (--interpolation sinc; \"interpolation\" in playback)");
 }
 
 Result<void> check_prepare(std::span<const PlacedTexture> textures, const PrepareOptions& options) {

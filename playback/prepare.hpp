@@ -55,8 +55,9 @@ struct PrepareOptions {
   double jump_mps = 0;             ///< beyond it the encoder has jumped, a fault; 0: four times max_speed_mps
   double onset_s = 0.05, release_s = 0.01;
   std::uint16_t watchdog_ms = 100;
-  double energy_rms_v = 0, energy_window_s = 1;     ///< 0: no such limit
-  double contact_on_n = 0, contact_off_n = 0;       ///< normal force; 0: not gated
+  double energy_rms_v = 0, energy_window_s = 1;  ///< RMS of the drive that is kept; 0: no such limit
+  /// Normal force, N, from which on there is a drive and below which there is none any more; 0: not gated.
+  double contact_on_n = 0, contact_off_n = 0;
   std::size_t most_samples = std::size_t{1} << 24;  ///< of all levels: a device's profile_samples
 };
 
@@ -115,6 +116,9 @@ schema::Result<Prepared> prepare(std::span<const PlacedTexture> textures,
 
 /// What prepare() asks of its arguments by themselves. Errors: as of prepare().
 schema::Result<void> check_prepare(std::span<const PlacedTexture> textures, const PrepareOptions& options);
+
+/// What to do with a texture that takes more samples than there is room for, read in this way.
+std::string ways_to_fit(wire::Interpolation interpolation);
 
 /// One texture at a place.
 inline schema::Result<Prepared> prepare(const schema::Texture& texture, const schema::Transducer& transducer,

@@ -126,6 +126,9 @@ PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
   options.reconstruction_cutoff_hz = o.reconstruction_cutoff_hz;
   options.hold = o.hold;
   options.onset_s = onset_s;
+  options.interpolation = o.interpolation;
+  options.energy_rms_v = o.energy_rms_v;
+  options.energy_window_s = o.energy_window_s;
   options.undo_hysteresis = o.undo_hysteresis;
   return options;
 }
@@ -174,6 +177,8 @@ Result<ExactDrive> kernels_drive(Rendering& rendering, const schema::Texture& te
     return fail(Fault::unsuitable, fmt::format("the limits took away {} samples of the drive", clipped),
                 "drive", "take a smaller --gain; --over-limit clip plays it clipped");
   if (clipped > 0) rendering.clipping = {clipped, 0, drive.tally.removed_db()};
+  rendering.energy_limited_samples = drive.tally.energy_limited();
+  rendering.removed_db = drive.tally.removed_db();
   rendering.delay_s = prepared->delay_left_s;
   return moved_bender(drive.drive_v, wanted, chain);
 }
@@ -225,6 +230,12 @@ Engine engine_for(const RenderOptions& o, const schema::Transducer& transducer,
   return Engine::reference;
 }
 
+Result<void> check_engine(Engine engine, const RenderOptions& o) {
+  if (engine == Engine::kernel || !(o.budget.keep_reading || o.energy_rms_v > 0)) return {};
+  return fail(Fault::usage, "the reference reads the texture exactly, and has no energy limit",
+              o.budget.keep_reading ? "--interpolation" : "--energy-limit", "add --engine kernel");
+}
+
 bool keeps_budget(const Rendering& rendering, const RenderOptions& o) {
   return o.budget.by_error() || rendering.error_db <= level_db(o.budget.error.most_error());
 }
@@ -257,10 +268,11 @@ Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job)
   return {};
 }
 
-// Of a hysteresis the reference knows nothing: it can't take over.
+// Of a hysteresis or an energy limit the reference knows nothing: it can't take over.
 Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
   if (keeps_budget(rendering, job.options)) return {};
-  if (rendering.engine == Engine::kernel && !job.chain.transducer.hysteresis) {
+  const bool alone = job.chain.transducer.hysteresis || job.options.energy_rms_v > 0;
+  if (rendering.engine == Engine::kernel && !alone) {
     rendering.warnings.push_back("the reference takes over: the kernel's " +
                                  words_of_miss(rendering, job.options));
     rendering.clipping.reset();
@@ -302,6 +314,7 @@ Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
   const auto wanted = exact_wanted(lookup, path, grid, options.band, options.gain_m_per_n, rendering.onset_s);
   report(0.8);
   const Engine engine = engine_for(options, transducer, rendering.reasons);
+  if (auto knows = check_engine(engine, options); !knows) return schema::forward_error(knows);
   warn_of_hysteresis(rendering, transducer, engine);
   const RenderJob job{texture, path, wanted, chain_of(transducer, options), options};
   rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};

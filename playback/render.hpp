@@ -36,10 +36,12 @@ struct RenderOptions {
   Hold hold = Hold::none;
   OverLimit over_limit = OverLimit::refuse;
   Engine engine = Engine::reference;
-  double encoder_step_m = 1e-6;  ///< of the kernel's encoder
-  bool undo_hysteresis = true;   ///< by the kernel, of a transducer that says what hysteresis it has
-  TickBudget budget;             ///< what the rendering has to keep, see render()
-  bool keep_engine = false;      ///< the engine was named: it stays
+  double encoder_step_m = 1e-6;                                      ///< of the kernel's encoder
+  wire::Interpolation interpolation = wire::Interpolation::hermite;  ///< the kernel's
+  double energy_rms_v = 0, energy_window_s = 1;                      ///< the kernel's; 0: no such limit
+  bool undo_hysteresis = true;  ///< by the kernel, of a transducer that says what hysteresis it has
+  TickBudget budget;            ///< what the rendering has to keep, see render()
+  bool keep_engine = false;     ///< the engine was named: it stays
   /// Raised-cosine fade of the force at either end of the path, at most a quarter of it: nothing starts with
   /// a jump where the finger starts inside the texture. What is left is the ringing of the band's edges: on a
   /// real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3 of it.
@@ -74,6 +76,9 @@ struct Rendering {
   Engine engine = Engine::reference;     ///< that made the drive
   std::vector<std::string> reasons;      ///< why it was chosen, where a budget asked for it
   std::optional<TickDecision> decision;  ///< of the kernel's budget
+  /// Of the kernel's drive: turned down to hold its RMS, and what all limits took away, re the drive's RMS.
+  std::uint64_t energy_limited_samples = 0;
+  double removed_db = -300;
 };
 
 /// Renders in double precision, or (engine) by the tick kernel, as it would run: single precision, position

@@ -23,12 +23,14 @@ Result<void> check_room(const Client& client, const Prepared& prepared) {
     return fail(Fault::device,
                 fmt::format("'{}' (firmware {}) plays no textures by itself: its protocol is {}.{}",
                             device.name, device.firmware, device.major, device.minor),
-                client.where(), "update its firmware, or let the host close the loop");
+                client.where(),
+                "update its firmware, or let the host close the loop (--loop host; \"loop\": \"host\" in the "
+                "daemon's configuration)");
   if (prepared.samples.size() > device.profile_samples)
     return fail(Fault::unsuitable,
                 fmt::format("the texture takes {} samples, '{}' holds {}", prepared.samples.size(),
                             device.name, device.profile_samples),
-                client.where(), "play a shorter part, interpolate by sinc, or let the host close the loop");
+                client.where(), ways_to_fit(prepared.scale.interpolation));
   const double rate_millihertz = 1e3 * prepared.rate_hz;
   if (rate_millihertz < device.least_rate_millihertz || rate_millihertz > device.most_rate_millihertz)
     return fail(Fault::unsuitable,
@@ -87,13 +89,31 @@ Result<void> send_filters(Client& client, const Prepared& prepared) {
 }
 
 // A device that knows nothing of it is asked only for what is needed.
+Result<void> check_hysteresis(const Client& client, const Prepared& prepared) {
+  const wire::Welcome& device = client.description().welcome;
+  if (prepared.plays.count == 0 || (device.features & wire::kFeatureHysteresis) != 0) return {};
+  return fail(Fault::device,
+              fmt::format("'{}' (firmware {}) does not undo hysteresis", device.name, device.firmware),
+              client.where(), "update its firmware, or play without (--keep-hysteresis)");
+}
+
+const wire::Channel* force_channel(const Client& client) {
+  const auto& channels = client.description().channels;
+  const auto force = std::ranges::find_if(
+      channels, [](const wire::Channel& c) { return std::string_view(c.quantity) == "normal_force"; });
+  return force == channels.end() ? nullptr : &*force;
+}
+
+Result<void> check_contact(const Client& client, const Prepared& prepared) {
+  if (!(prepared.gate_on_n > 0) || force_channel(client) != nullptr) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("'{}' reports no normal force, by which the drive could be gated",
+                          client.description().welcome.name),
+              client.where(), "play without (--contact 0N; \"contact_on_n\": 0 in playback)");
+}
+
 Result<void> send_hysteresis(Client& client, const Prepared& prepared) {
   if (prepared.plays.count == 0) return {};
-  const wire::Welcome& device = client.description().welcome;
-  if ((device.features & wire::kFeatureHysteresis) == 0)
-    return fail(Fault::device,
-                fmt::format("'{}' (firmware {}) does not undo hysteresis", device.name, device.firmware),
-                client.where(), "update its firmware, or play without (--keep-hysteresis)");
   return client.command(prepared.plays);
 }
 
@@ -108,24 +128,25 @@ Result<void> send_tracking(Client& client, const Prepared& prepared) {
 
 Result<void> send_contact(Client& client, const Prepared& prepared) {
   if (!(prepared.gate_on_n > 0)) return {};
-  const auto& channels = client.description().channels;
-  const auto force = std::ranges::find_if(
-      channels, [](const wire::Channel& c) { return std::string_view(c.quantity) == "normal_force"; });
-  if (force == channels.end())
-    return fail(Fault::unsuitable, "the device reports no normal force", client.where(),
-                "play without contact");
-  return client.command(wire::Contact{force->index,
+  const wire::Channel& force = *force_channel(client);
+  return client.command(wire::Contact{force.index,
                                       {},
                                       prepared.gate_on_n,
                                       prepared.gate_off_n,
-                                      static_cast<float>(force->scale),
-                                      static_cast<float>(force->offset)});
+                                      static_cast<float>(force.scale),
+                                      static_cast<float>(force.offset)});
 }
 
 }  // namespace
 
-Result<void> upload(Client& client, const Prepared& prepared) {
+Result<void> check_upload(const Client& client, const Prepared& prepared) {
   if (auto room = check_room(client, prepared); !room) return room;
+  if (auto knows = check_hysteresis(client, prepared); !knows) return knows;
+  return check_contact(client, prepared);
+}
+
+Result<void> upload(Client& client, const Prepared& prepared) {
+  if (auto fits = check_upload(client, prepared); !fits) return fits;
   if (auto sent = client.command(prepared.limits); !sent) return sent;
   if (auto sent = send_levels(client, prepared, 1); !sent) return sent;
   if (auto sent = send_filters(client, prepared); !sent) return sent;

@@ -7,11 +7,15 @@
 
 namespace tacto::playback {
 
+/// Whether a device can play it by itself. Errors: unsuitable, for more samples than it holds, a touch that
+/// it cannot feel, or ticks outside its rates; device, for firmware that does not know what is asked of it;
+/// each with what to do.
+schema::Result<void> check_upload(const firmware_host::Client& client, const Prepared& prepared);
+
 /// Sends limits, levels, taps, following, energy, gain and, where the setup is gated, which of the device's
 /// channels holds the normal force; the device is idle. Then `arm` with source profile at prepared.rate_hz
 /// runs the same kernel as core::TickKernel with prepared.setup(), to the bit.
-/// Errors: unsuitable, for more samples than the device holds, a touch that it cannot feel, or ticks outside
-/// its rates; device, for firmware of protocol 1.0, and as of Client::command().
+/// Errors: as check_upload() and Client::command().
 schema::Result<void> upload(firmware_host::Client& client, const Prepared& prepared);
 
 /// Sends another texture to a device that is armed with one by upload(), and has it cross-fade over fade_s (0

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/cli/choices_report.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/scene.hpp"
 
@@ -26,6 +27,7 @@ Result<cli::Report> describe_scene(const std::string& path) {
   for (const Layer& layer : scene->layers)
     rows.push_back(std::visit([](const TextureLayer& texture) { return row_of(texture); }, layer));
   report.add("layers", std::move(rows));
+  cli::add_choices(report, scene->playback);
   add_text(report, "notes", scene->notes);
   return report;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/cli/choices_report.hpp"
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/session_reader.hpp"
 
@@ -23,7 +24,9 @@ void add_device(cli::Report& report, const SessionHeader& header) {
                        .add("gain_m_per_n", texture.gain_m_per_n)
                        .add("ends", word_of(texture.ends)));
   report.add("textures", std::move(rows));
-  report.add("inverse", header.inverse).add("delay_s", header.delay_s);
+  if (!header.choices.inverse) report.add("inverse", header.inverse);
+  cli::add_choices(report, header.choices);
+  report.add("delay_s", header.delay_s);
 }
 
 void add_totals(cli::Report& report, const SessionTotals& totals) {

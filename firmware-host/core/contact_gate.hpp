@@ -24,6 +24,8 @@ class ContactGate {
     touching_ = touching_ ? force_n >= off_n_ : force_n >= on_n_;
     return weight_.step(touching_);
   }
+  /// All that it needs of the force, as of the last step: who replays it is told this, and no force.
+  bool touching() const noexcept { return touching_; }
 
  private:
   float on_n_ = 0, off_n_ = 0;

@@ -5,7 +5,7 @@
 
 namespace tacto::core {
 namespace {
-constexpr float kMostTicksAhead = 2000, kLongestWindowS = 3600;
+constexpr float kMostTicksAhead = 2000, kLongestWindowS = 3600, kMostCode = 2147483648.0F;
 }
 
 Reply Firmware::filters(const wire::Filters& message) noexcept {
@@ -52,7 +52,8 @@ Reply Firmware::contact(const wire::Contact& message) noexcept {
   if (message.channel >= board_.channel_count) return bad_value(0);
   if (!within(message.on_n, 0, kLargestFloat)) return bad_value(2);
   if (!within(message.off_n, 0, message.on_n)) return bad_value(3);
-  if (!is_finite(message.newtons_per_code) || !is_finite(message.offset_n)) return bad_value(4);
+  const float most_n = message.newtons_per_code * kMostCode;  // no force may be no number
+  if (!is_finite(most_n + message.offset_n) || !is_finite(most_n - message.offset_n)) return bad_value(4);
   contact_ = message;
   return {};
 }

@@ -47,6 +47,7 @@ TickOutput TickKernel::drive(float wanted, bool raise, float normal_force_n) noe
   }
   const float touch = gate_.step(normal_force_n);
   if (touch < 1) output.flags |= wire::kTickGated;
+  if (gate_.touching()) output.flags |= wire::kTickTouching;
   const float weight = envelope_.step(raise && output.sound) * touch;
   output.wished_v = output.sound ? filtered * weight : 0;
   output.drive_v = limiter_.limit(energy_.limit(output.wished_v, output.flags), output.flags);

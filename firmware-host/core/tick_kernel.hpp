@@ -43,7 +43,7 @@ struct TickInput {
 struct TickOutput {
   float drive_v = 0;
   float wished_v = 0;  ///< before the limits: their difference is what was taken away
-  uint32_t flags = 0;  ///< wire::TickFlag: amplitude, slew, energy, gated
+  uint32_t flags = 0;  ///< wire::TickFlag: amplitude, slew, energy, gated, touching
   bool sound = true;   ///< false where what was wished is no finite number; then the drive falls
 };
 

@@ -2,6 +2,7 @@
 #include "firmware-host/sim/sim_board.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "firmware-host/hosted_board.hpp"
@@ -14,6 +15,7 @@ namespace tacto::firmware_host {
 namespace {
 
 constexpr std::uint32_t kClockHz = 1'000'000;
+constexpr std::size_t kForceChannel = 2;   // as ScriptedRun has it
 constexpr std::size_t kMessageBytes = 40;  // of a samples message, beside its codes: core/WIRE.md
 
 }  // namespace
@@ -77,9 +79,19 @@ double SimBoard::stream_bytes_per_s() const {
   return 1e-3 * rate_millihertz_ * (frame + static_cast<double>(kMessageBytes) / wire::kMaxBlockFrames);
 }
 
+// Codes of the load cell, without its lag and noise.
+std::function<std::int32_t(double)> SimBoard::scripted_force() const {
+  const bool told = static_cast<bool>(normal_n_);
+  const double load_n = parameters_.finger_down ? parameters_.load_n : 0;
+  const double newtons_per_code = channels_.size() > kForceChannel ? channels_[kForceChannel].scale : 1;
+  return [=, force_n = normal_n_](double time_s) {
+    return static_cast<std::int32_t>(std::llround((told ? force_n(time_s) : load_n) / newtons_per_code));
+  };
+}
+
 std::unique_ptr<FrameSource> SimBoard::source_at(const SimParameters& parameters) const {
   if (script_)
-    return std::make_unique<ScriptedRun>(script_, 1 / parameters.sample_rate_hz,
+    return std::make_unique<ScriptedRun>(script_, scripted_force(), 1 / parameters.sample_rate_hz,
                                          parameters.encoder_quantum_m);
   if (parameters.counter) return std::make_unique<CounterRun>();
   return std::make_unique<SimRun>(parameters, transducer_, profile_);

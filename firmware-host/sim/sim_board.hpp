@@ -39,8 +39,13 @@ class SimBoard {
   std::vector<std::uint8_t>& to_host() { return to_host_; }
   void set_enabled(bool enabled) { enabled_.store(enabled); }  // from any thread
   /// From the next time the rate is set, the encoder goes where this says (m, against seconds since then),
-  /// and there is no other physics of the finger: channels that are no encoder's read zero.
-  void set_script(std::function<double(double time_s)> position_m) { script_ = std::move(position_m); }
+  /// and there is no other physics of the finger. It presses with what the parameter `load` says, or with
+  /// normal_n (N, against the same time); the other channels read zero.
+  void set_script(std::function<double(double time_s)> position_m,
+                  std::function<double(double time_s)> normal_n = {}) {
+    script_ = std::move(position_m);
+    normal_n_ = std::move(normal_n);
+  }
   /// Bytes to the host that the link holds; what does not fit stays in the firmware's ring, as long as that
   /// has room.
   void set_link_bytes(std::size_t bytes) { link_bytes_ = bytes; }
@@ -60,6 +65,7 @@ class SimBoard {
   void set_rate(std::uint32_t rate_millihertz);
   std::size_t send(std::span<const std::uint8_t> bytes);
   std::unique_ptr<FrameSource> source_at(const SimParameters& parameters) const;
+  std::function<std::int32_t(double)> scripted_force() const;
   std::uint64_t clock() const;
   SimParameters parameters_at(std::uint32_t rate_millihertz) const;
   void describe();
@@ -67,7 +73,7 @@ class SimBoard {
   SimParameters parameters_;
   schema::Transducer transducer_;
   HeightProfile profile_;
-  std::function<double(double)> script_;
+  std::function<double(double)> script_, normal_n_;
   std::vector<wire::Channel> channels_;
   std::vector<wire::Note> notes_;
   HostedProfile texture_;

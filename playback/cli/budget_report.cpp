@@ -6,7 +6,11 @@
 namespace tacto::playback {
 
 schema::Result<TickBudget> AskedBudget::budget() const {
-  TickBudget budget{options.budget, {}, inverse != nullptr && inverse->count() > 0, {}};
+  TickBudget budget{options.budget,
+                    {},
+                    inverse != nullptr && inverse->count() > 0,
+                    reading != nullptr && reading->count() > 0,
+                    {}};
   if (max_tick_s) budget.max_tick_ns = 1e9 * *max_tick_s;
   if (options.explain && !budget.asked())
     return schema::fail(schema::Fault::usage, "nothing was asked for that could be explained", "--explain",
@@ -14,8 +18,7 @@ schema::Result<TickBudget> AskedBudget::budget() const {
   return budget;
 }
 
-void declare_tick_budget(CLI::App& app, AskedBudget& asked, CLI::Option* inverse) {
-  asked.inverse = inverse;
+void declare_tick_budget(CLI::App& app, AskedBudget& asked) {
   cli::declare_budget(app, asked.options, "interpolation, levels' density and the inverse's length");
   cli::add_quantity(app, "--max-tick", asked.max_tick_s, schema::Dimension::time,
                     "The CPU time that a tick may take, by the table; alone: what errs least within it");

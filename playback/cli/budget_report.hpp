@@ -11,14 +11,16 @@ namespace tacto::playback {
 struct AskedBudget {
   cli::BudgetOptions options;
   std::optional<double> max_tick_s;
-  CLI::Option* inverse = nullptr;  ///< the verb's --inverse: where it was given, it stays
+  /// The verb's --inverse and --interpolation, where make_program() is not told of them: what was given
+  /// stays.
+  CLI::Option *inverse = nullptr, *reading = nullptr;
 
   /// Errors: usage, for --explain with nothing to explain.
   schema::Result<TickBudget> budget() const;
 };
 
-/// `inverse` is the verb's own option. `asked` must outlive the parser.
-void declare_tick_budget(CLI::App& app, AskedBudget& asked, CLI::Option* inverse);
+/// `asked` must outlive the parser.
+void declare_tick_budget(CLI::App& app, AskedBudget& asked);
 
 /// What was chosen; with `explain` also why, and by which table.
 void add_decision(cli::Report& report, const TickDecision& decision, bool explain);

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "data-schema/cli/stop_signals.hpp"
+#include "playback/cli/choice_options.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/control_connection.hpp"
 #include "playback/daemon/time_histogram.hpp"
@@ -35,6 +36,7 @@ struct CtlOptions {
   std::optional<double> at_m, gain_m_per_n, fade_s;
   std::optional<double> time_s;
   bool save = false;
+  schema::PlaybackChoices choices;
 };
 
 // What a field is for people and machines alike: its key says the unit.
@@ -77,6 +79,7 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   request.at_m = o.at_m;
   request.gain_m_per_n = o.gain_m_per_n;
   request.fade_s = o.fade_s;
+  request.playback = o.choices;
   if (!o.ends.empty())
     request.ends =
         static_cast<schema::TextureEnds>(cli::choose("--ends", o.ends, {"stop", "mirror", "loop"}));
@@ -121,9 +124,12 @@ void show_top(const ControlFields& fields) {
   fmt::print("finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"), 1e3 * number("speed_mps"));
   fmt::print("drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V   gain {:g}\n", number("drive_v"),
              number("drive_rms_v"), number("drive_peak_v"), number("gain"));
-  fmt::print("ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}   blind {:.0f}\n",
-             number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
-             number("blind_ticks"));
+  fmt::print(
+      "ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}   energy {:.0f}   gated {:.0f}   "
+      "blind "
+      "{:.0f}\n",
+      number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
+      number("energy_limited_ticks"), number("gated_ticks"), number("blind_ticks"));
   if (number("wake_p99_s") > 0) show_lateness(fields);
   std::fflush(stdout);
 }
@@ -186,6 +192,7 @@ cli::Action declare_ctl(CLI::App& app) {
   app.add_option("--ends", o.ends, "load of a texture: stop, mirror or loop");
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
                     "load while one plays: how long the change takes, 50ms unless told");
+  declare_choices(app, o.choices, "load: ");
   app.add_flag("--save", o.save, "gain: also into the scene's file");
   cli::add_quantity(app, "--time", o.time_s, Dimension::time, "watch, top: how long");
   return [options] { return run_ctl(*options); };

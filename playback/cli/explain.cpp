@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <memory>
 
-#include "playback/budget_words.hpp"
+#include "data-schema/cli/choices_report.hpp"
 #include "playback/cli/budget_report.hpp"
+#include "playback/cli/choice_options.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/program.hpp"
 
@@ -87,7 +88,7 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   report.add("rate_hz", made.rate_hz).add("length_m", program.length_m);
   report.add("textures", rows_of_textures(program)).add("texture_files_read", made.built.texture_files);
   report.add("levels", rows_of_levels(made));
-  report.add("interpolation", word_of(made.scale.interpolation));
+  cli::add_choices(report, choices_in(program.options));
   add_chain(report, made);
   add_guards(report, made);
   add_costs(report, made, *tick_ns, *table);
@@ -120,13 +121,10 @@ cli::Action declare_explain(CLI::App& app) {
   app.add_option("--device-memory", o.device_memory,
                  "Samples that the device holds; as many as needed unless told")
       ->check(cli::from_one());
-  CLI::Option* inverse = cli::add_choice<Inverse>(
-      app, "--inverse", o.prepare.inverse,
-      {{"full", Inverse::full}, {"magnitude", Inverse::magnitude}, {"gain", Inverse::gain}},
-      "What of the transducer the drive undoes");
+  declare_choices(app, o.program.choices);
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
                "Do not undo the hysteresis that the transducer's file tells");
-  declare_tick_budget(app, o.budget, inverse);
+  declare_tick_budget(app, o.budget);
   return [options] { return run_explain(*options); };
 }
 
@@ -137,7 +135,8 @@ const cli::Verb kExplainVerb{
     "List what is built to play a texture or scene, what it costs in memory and time, "
     "and what was left out",
     "tactograph explain bench.scene.json\n"
-    "  tactograph explain oak --transducer mine --rate 10kHz --quality balanced --explain",
+    "  tactograph explain oak --transducer mine --rate 10kHz --quality balanced --explain\n"
+    "  tactograph explain oak --interpolation sinc --inverse magnitude --reconstruction butterworth3",
     declare_explain};
 
 }  // namespace tacto::playback

@@ -5,9 +5,11 @@
 
 #include <memory>
 
+#include "data-schema/cli/choices_report.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/budget_report.hpp"
+#include "playback/cli/choice_options.hpp"
 #include "playback/cli/verbs.hpp"
 
 namespace tacto::playback {
@@ -32,7 +34,8 @@ void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_flag("--force", o.program.force,
                "Take a transducer file that says of itself that its model does not fit");
   app.add_option("--finger-path", o.finger_path,
-                 "Where an emulated device's finger goes: CSV with the columns time_s,position_m");
+                 "Where an emulated device's finger goes: CSV with the columns time_s,position_m, and how it "
+                 "presses where there is a column normal_force_n");
   cli::add_quantity(app, "--time", o.time_s, Dimension::time,
                     "How long; unless told as long as the finger's path, or 10 s");
 }
@@ -52,19 +55,15 @@ void declare_texture(CLI::App& app, PlayOptions& o) {
       ->type_name("stop|mirror|loop");
 }
 
-// Gives the option that names the inverse.
-CLI::Option* declare_chain(CLI::App& app, PlayOptions& o) {
+void declare_loop(CLI::App& app, PlayOptions& o) {
   cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
-  CLI::Option* inverse = cli::add_choice<Inverse>(
-      app, "--inverse", o.prepare.inverse,
-      {{"full", Inverse::full}, {"magnitude", Inverse::magnitude}, {"gain", Inverse::gain}},
-      "What of the transducer the drive undoes");
+  cli::add_choice<bool>(app, "--loop", o.loop_here, {{"device", false}, {"host", true}},
+                        "Who closes it: the device, or this computer's real-time thread");
   app.add_flag("!--no-look-ahead", o.prepare.look_ahead,
                "Read the texture where the finger is, not where it will be when the inverse has answered");
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
                "Do not undo the hysteresis that the transducer's file tells");
   cli::add_quantity(app, "--onset", o.prepare.onset_s, Dimension::time, "In which the drive rises");
-  return inverse;
 }
 
 void add_played(Report& report, const PlayOutcome& outcome) {
@@ -72,10 +71,13 @@ void add_played(Report& report, const PlayOutcome& outcome) {
   report.add("ticks", outcome.recorder.ticks).add("lost_ticks", ticks.lost() + outcome.recorder.lost());
   report.add("late_ticks", ticks.late())
       .add("limited_ticks", ticks.limited())
+      .add("energy_limited_ticks", ticks.energy_limited())
+      .add("gated_ticks", ticks.gated())
       .add("blind_ticks", ticks.blind());
   report.add("drive_peak_v", ticks.drive_peak_v());
   report.add("passes_to_hz", outcome.passes_to_hz).add("delay_left_s", outcome.delay_left_s);
   report.add("inverse_error_db", outcome.inverse_error_db);
+  cli::add_choices(report, outcome.choices);
 }
 
 Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explain) {
@@ -116,7 +118,9 @@ cli::Action declare_play(CLI::App& app) {
   options->play.prepare.onset_s = 0.02;
   declare_what(app, options->play);
   declare_texture(app, options->play);
-  declare_tick_budget(app, options->budget, declare_chain(app, options->play));
+  declare_loop(app, options->play);
+  declare_choices(app, options->play.program.choices);
+  declare_tick_budget(app, options->budget);
   return [options] { return run_play(*options); };
 }
 
@@ -125,7 +129,9 @@ cli::Action declare_play(CLI::App& app) {
 const cli::Verb kPlayVerb{"play", "Play a texture or scene on a device, live, and keep the session",
                           "tactograph play oak -d usb: --time 60s -o first\n"
                           "  tactograph play oak -d sim: --finger-path path.csv -o first\n"
-                          "  tactograph play oak -d usb: -o first --max-error 0.2% --explain",
+                          "  tactograph play oak -d usb: -o first --max-error 0.2% --explain\n"
+                          "  tactograph play oak -d usb: -o first --contact 0.3N --energy-limit 2V "
+                          "--reconstruction butterworth3",
                           declare_play};
 
 }  // namespace tacto::playback

@@ -57,6 +57,26 @@ void add_quantities(CLI::App& app, RenderOptions& o) {
                     "Fade at either end of the path, for a finger that starts inside the texture");
 }
 
+// By the words of play. A path tells no normal force: there is no contact.
+void add_kernel(CLI::App& app, RenderVerbOptions& verb) {
+  RenderOptions& o = verb.render;
+  verb.budget.reading =
+      cli::add_choice<wire::Interpolation>(app, "--interpolation", o.interpolation,
+                                           {{"nearest", wire::Interpolation::nearest},
+                                            {"linear", wire::Interpolation::linear},
+                                            {"hermite", wire::Interpolation::hermite},
+                                            {"sinc", wire::Interpolation::sinc}},
+                                           "How the kernel reads the texture between samples")
+          ->needs(verb.engine);
+  CLI::Option* limit =
+      cli::add_quantity(app, "--energy-limit", o.energy_rms_v, Dimension::voltage,
+                        "Turn the kernel's drive down where its RMS would pass this; 0V: never")
+          ->needs(verb.engine);
+  cli::add_quantity(app, "--energy-window", o.energy_window_s, Dimension::time,
+                    "Over which that RMS is taken")
+      ->needs(limit);
+}
+
 void add_model(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
   CLI::Option* inverse =
@@ -84,10 +104,12 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
   cli::add_quantity(app, "--encoder-step", o.encoder_step_m, Dimension::length,
                     "One count of the kernel's encoder")
       ->needs(engine);
+  add_kernel(app, verb);
   cli::add_choice<OverLimit>(app, "--over-limit", o.over_limit,
                              {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
                              "What to do with a drive that passes a limit of the transducer");
-  declare_tick_budget(app, verb.budget, inverse);
+  declare_tick_budget(app, verb.budget);
+  verb.budget.inverse = inverse;
 }
 
 std::vector<SignalFile> files_of(const RenderVerbOptions& o, const Rendering& rendering) {
@@ -104,6 +126,8 @@ void add_limits(Report& report, const Rendering& r) {
       .add("displacement_limit_used_percent", 100 * r.peaks.displacement_m.used())
       .add("slew_peak_v_per_s", r.peaks.slew_v_per_s.value)
       .add("slew_limit_used_percent", 100 * r.peaks.slew_v_per_s.used());
+  if (r.engine == Engine::kernel)
+    report.add("energy_limited_samples", r.energy_limited_samples).add("limits_removed_db", r.removed_db);
   if (!r.clipping) return;
   report.add("clipped_samples", r.clipping->samples)
       .add("clipped_peak_reduction_db", r.clipping->peak_reduced_db)

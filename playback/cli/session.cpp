@@ -28,7 +28,9 @@ Report stroke_row(const PlayedStroke& stroke) {
     row.add("wanted_rms_m", stroke.wanted_rms_m)
         .add("error_db", stroke.error_db)
         .add("received_over_wanted_db", stroke.level_db);
-  return row.add("limited_ticks", stroke.limited_ticks);
+  return row.add("limited_ticks", stroke.limited_ticks)
+      .add("energy_limited_ticks", stroke.energy_limited_ticks)
+      .add("gated_ticks", stroke.gated_ticks);
 }
 
 Result<Report> run_session(const SessionVerbOptions& o) {

@@ -26,7 +26,7 @@ core::Hal HostBoard::hal() {
   hal.board = this;
   hal.read_encoder = [](void* b) noexcept { return of(b).encoder_; };
   hal.encoder_unseen = [](void* b) noexcept { return of(b).unseen_; };
-  hal.read_channels = [](void*, std::int32_t*) noexcept { return false; };  // the device streams them itself
+  hal.read_channels = [](void* b, std::int32_t* codes) noexcept { return of(b).read_codes(codes); };
   hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
   hal.enable_closed = [](void* b) noexcept { return of(b).enabled_.load(std::memory_order_acquire); };
   hal.clock = [](void* b) noexcept { return static_cast<std::uint64_t>(of(b).now_ns_ - of(b).began_ns_); };
@@ -43,6 +43,13 @@ core::Hal HostBoard::hal() {
   };
   hal.restart = [](void*) noexcept {};
   return hal;
+}
+
+// As they came last, for the contact gate: where they stay away the counts do too, and the drive falls.
+bool HostBoard::read_codes(std::int32_t* codes) const noexcept {
+  for (std::size_t i = 0; i < about_.channels.size(); ++i)
+    codes[i] = codes_[i].load(std::memory_order_relaxed);
+  return readings_.load(std::memory_order_acquire) > 0;
 }
 
 void HostBoard::rest(std::int64_t now_ns) noexcept {

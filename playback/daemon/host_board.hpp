@@ -2,9 +2,11 @@
 // The firmware's core on this computer: its hardware is another thread, reached without locks.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "firmware-host/client.hpp"
@@ -48,6 +50,11 @@ class HostBoard {
     enabled_.store(enabled, std::memory_order_release);
     readings_.fetch_add(1, std::memory_order_release);
   }
+  /// Before set_inputs(): the codes of the device's channels in the same period.
+  void set_codes(std::span<const std::int32_t> codes) noexcept {
+    for (std::size_t i = 0; i < std::min(codes.size(), codes_.size()); ++i)
+      codes_[i].store(codes[i], std::memory_order_relaxed);
+  }
   void open_enable() noexcept { enabled_.store(false, std::memory_order_release); }
   ByteRing<65536>& from_player() noexcept { return from_player_; }
   ByteRing<262144>& to_player() noexcept { return to_player_; }
@@ -68,6 +75,7 @@ class HostBoard {
   static HostBoard& of(void* board) noexcept { return *static_cast<HostBoard*>(board); }
   core::Board board();
   core::Hal hal();
+  bool read_codes(std::int32_t* codes) const noexcept;
   void look_for_readings(std::int64_t late_ns) noexcept;
   std::uint32_t take_reading() noexcept;
 
@@ -82,6 +90,7 @@ class HostBoard {
   std::array<std::atomic<std::int64_t>, kLatenesses> dues_{};
   std::atomic<std::uint64_t> drives_lost_{0};
   std::atomic<std::uint32_t> readings_{0};  // of the encoder
+  std::array<std::atomic<std::int32_t>, wire::kMaxChannels> codes_{};
   std::atomic<std::int64_t> reading_ns_{0};
   std::int64_t period_ns_;
   std::uint32_t seen_reading_ = 0, age_ = 0, unseen_ = 0;  // in periods

@@ -152,8 +152,9 @@ void HostLoop::take_counts() {
     if (!more) break;
     last_count_ns_ = TickClock::now_ns();
     periods_ += static_cast<std::uint32_t>(frames);
-    board_->set_inputs(codes_[(frames - 1) * channels + position_channel_], sound_ && enabled_,
-                       last_count_ns_, periods_);
+    const auto last = std::span(codes_).subspan((frames - 1) * channels, channels);
+    board_->set_codes(last);
+    board_->set_inputs(last[position_channel_], sound_ && enabled_, last_count_ns_, periods_);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "data-schema/files.hpp"
+#include "playback/daemon/loop_here.hpp"
 #include "playback/daemon/player_device.hpp"
 
 namespace tacto::playback {
@@ -15,6 +16,7 @@ using schema::fail;
 using schema::Fault;
 using schema::Result;
 
+constexpr int kUsualPriority = 50;  // as the daemon's
 constexpr double kUsualS = 10, kPlayStepS = 0.01, kReleaseWaitS = 0.05;
 
 double time_of(const PlayOptions& options, const std::optional<FingerScript>& script) {
@@ -35,12 +37,14 @@ Result<std::string> transducer_for(const PlayOptions& options, const firmware_ho
               "name it with --transducer");
 }
 
-Result<Program> program_for(const PlayOptions& options, const PlayerDevice& device, double metres_per_count) {
+Result<Program> program_for(const PlayOptions& options, const PlayerDevice& device, const LoopHere& here,
+                            double metres_per_count) {
   const auto transducer = transducer_for(options, device.device->capabilities());
   if (!transducer) return schema::forward_error(transducer);
   PrepareOptions prepare = options.prepare;
   prepare.metres_per_count = metres_per_count;
-  prepare.most_samples = device.client->description().welcome.profile_samples;
+  const firmware_host::Client& plays = here ? *here.client : *device.client;
+  prepare.most_samples = plays.description().welcome.profile_samples;
   return make_program(options.program, *transducer, prepare);
 }
 
@@ -72,6 +76,7 @@ PlayOutcome outcome_of(const Program& program) {
   outcome.delay_left_s = made.delay_left_s;
   outcome.inverse_error_db = made.inverse_error_db;
   outcome.notes = made.notes;
+  outcome.choices = choices_in(program.options);
   return outcome;
 }
 
@@ -88,6 +93,16 @@ Result<void> play_through(Player& player, const PlayOptions& options, double tim
   return player.disarm();
 }
 
+// Time that runs as fast as it can has no real-time thread that could keep up with it.
+Result<LoopHere> loop_of(const PlayOptions& options, PlayerDevice& device, PlayerOptions& player_options) {
+  if (!options.loop_here) return LoopHere{};
+  if (!device.device->keeps_time())
+    return fail(Fault::usage, "this computer closes no loop on a device that keeps no time", device.uri,
+                "add paced=1 (-d sim:paced=1)");
+  const HostLoopOptions loop{options.prepare.rate_hz, kUsualPriority, options.prepare.watchdog_ms};
+  return close_loop_here(*device.client, device.uri, loop, player_options);
+}
+
 }  // namespace
 
 Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
@@ -100,9 +115,11 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   PlayerOptions player_options;
   // In emulated time nobody waits, so nothing may be lost.
   player_options.full_queue = device->device->keeps_time() ? FullQueue::lose : FullQueue::wait;
-  const auto player = Player::make(*device->client, device->uri, player_options);
+  const auto here = loop_of(options, *device, player_options);
+  if (!here) return schema::forward_error(here);
+  const auto player = Player::make(*here ? *here->client : *device->client, device->uri, player_options);
   if (!player) return schema::forward_error(player);
-  auto program = program_for(options, *device, (*player)->metres_per_count());
+  auto program = program_for(options, *device, *here, (*player)->metres_per_count());
   if (!program) return schema::forward_error(program);
   PlayOutcome outcome = outcome_of(*program);
   outcome.device = device->uri;

@@ -16,6 +16,7 @@ struct PlayOptions {
   std::string finger_path;       ///< CSV, for an emulated device; empty: its own finger
   std::optional<double> time_s;  ///< unless told as long as the finger's path, or 10 s
   double gain = 1;
+  bool loop_here = false;  ///< closed by this computer, on a device that keeps time
   PrepareOptions prepare;  ///< rate, inverse, delay ...; gain, ends, encoder and limits are filled in
   std::string session;     ///< its file
 };
@@ -28,10 +29,13 @@ struct PlayOutcome {
   double passes_to_hz = 0, delay_s = 0, delay_left_s = 0, inverse_error_db = 0;
   std::vector<std::string> notes;
   std::optional<TickDecision> decision;  ///< of the program's budget
+  schema::PlaybackChoices choices;       ///< with which it was played
 };
 
 /// Emulated devices play as fast as they can, or paced; `stop_asked` ends it early, by a ramp. A fault ends
-/// it too, and is in the outcome. Errors: as open_player_device, make_program, Player.
+/// it too, and is in the outcome. Errors: usage, for a loop that
+/// this computer is to close on a device that keeps no time; as open_player_device, close_loop_here,
+/// make_program, Player.
 schema::Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                                       const std::function<void(double)>& progress = {});
 

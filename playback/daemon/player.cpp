@@ -49,6 +49,12 @@ Result<double> encoder_step(const firmware_host::Description& about, const std::
               "it lacks a channel of the quantity position");
 }
 
+// The device knows no files.
+schema::Error naming(schema::Error error, const Program& program) {
+  error.where = fmt::format("{}, on {}", program.name(), error.where);
+  return error;
+}
+
 // By a factor on the program's gains.
 Result<void> within_reach(const Program& program, double peak_m, double factor) {
   return check_displacement(peak_m, factor, program.prepared.gain_m_per_n, program.session.transducer);
@@ -111,6 +117,8 @@ Result<void> Player::load(Program program, double fade_s) {
   limits.drive_v = std::min(limits.drive_v, about.drive_limit_v);
   limits.slew_v_per_s = std::min(limits.slew_v_per_s, about.slew_limit_v_per_s);
   if (runs(state_)) return change(std::move(program), fade_s);
+  if (auto fits = check_upload(client_, program.prepared); !fits)
+    return tl::unexpected(naming(fits.error(), program));
   program_ = std::move(program);
   return {};
 }
@@ -147,6 +155,7 @@ schema::SessionHeader Player::session_header() const {
   header.device_name = about.welcome.name;
   header.device_serial = about.welcome.serial;
   header.device_firmware = about.welcome.firmware;
+  header.device_protocol = fmt::format("{}.{}", about.welcome.major, about.welcome.minor);
   header.initial_gain = gain_;
   for (const wire::Note& note : about.notes)
     if (note.kind == wire::NoteKind::simulated_by) header.simulated = note.text;

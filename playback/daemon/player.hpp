@@ -65,10 +65,9 @@ class Player {
   void listen(Listener listener) { listener_ = std::move(listener); }
 
   /// In idle: kept for arm(), which uploads it. Armed or playing: the texture changes to it, over `fade_s` (0
-  /// to 10 s); gain() goes on from what it is. Errors: usage, in another state, while an earlier change still
-  /// fades, or for another fade; unsuitable, where the tray would go beyond its limit; as of
-  /// check_texture_change(); device. After an error the texture that played
-  /// plays on.
+  /// to 10 s); gain() goes on from what it is. Errors: as check_upload(), in idle; usage, in another state,
+  /// while an earlier change still fades, or for another fade; unsuitable, where the tray would go beyond its
+  /// limit; as of check_texture_change(); device. After an error the texture that played plays on.
   schema::Result<void> load(Program program, double fade_s = kUsualFadeS);
   /// Whether it may be loaded in this state. Errors: usage.
   schema::Result<void> may_load() const;

@@ -38,13 +38,25 @@ class Script {
   explicit Script(const FingerScript& script)
       : repeated_(script.repeated), knots_(std::make_shared<const Knots>(script.path)) {}
 
-  double operator()(double time_s) const {
-    const double whole_s = knots_->path.duration_s();
-    if (repeated_) time_s = whole_s - std::abs(std::fmod(time_s, 2 * whole_s) - whole_s);
-    return knots_->curve(knots_->path.time_s.front() + std::clamp(time_s, 0.0, whole_s));
+  double operator()(double time_s) const { return knots_->curve(on_path(time_s)); }
+  /// Precondition: the path tells it.
+  double force_n(double time_s) const {
+    const FingerPath& path = knots_->path;
+    const double at_s = on_path(time_s);
+    const auto next = std::ranges::upper_bound(path.time_s, at_s);
+    if (next == path.time_s.end()) return path.normal_force_n.back();
+    const auto i = static_cast<std::size_t>(next - path.time_s.begin());  // above 0: the first is not later
+    const double part = (at_s - path.time_s[i - 1]) / (path.time_s[i] - path.time_s[i - 1]);
+    return std::lerp(path.normal_force_n[i - 1], path.normal_force_n[i], part);
   }
 
  private:
+  double on_path(double time_s) const {
+    const double whole_s = knots_->path.duration_s();
+    if (repeated_) time_s = whole_s - std::abs(std::fmod(time_s, 2 * whole_s) - whole_s);
+    return knots_->path.time_s.front() + std::clamp(time_s, 0.0, whole_s);
+  }
+
   struct Knots {
     explicit Knots(FingerPath along) : path(std::move(along)), curve(path.time_s, path.position_m) {}
     FingerPath path;
@@ -61,7 +73,10 @@ Result<std::unique_ptr<firmware_host::Device>> open_scripted(const std::string& 
                 "leave the finger's path out, or play on sim:");
   auto device = firmware_host::make_sim_device(uri, std::string_view(uri).substr(kSimScheme.size()));
   if (!device) return schema::forward_error(device);
-  (*device)->board().set_script(Script(script));
+  const Script way(script);
+  std::function<double(double)> force_n;
+  if (!script.path.normal_force_n.empty()) force_n = [way](double time_s) { return way.force_n(time_s); };
+  (*device)->board().set_script(way, std::move(force_n));
   return std::unique_ptr<firmware_host::Device>(std::move(*device));
 }
 

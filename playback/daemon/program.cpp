@@ -151,20 +151,6 @@ std::vector<PlacedTexture> placed(const Laid& laid) {
   return list;
 }
 
-const char* word_of(Inverse inverse) {
-  switch (inverse) {
-    case Inverse::full:
-      return "full";
-    case Inverse::magnitude:
-      return "magnitude";
-    case Inverse::gain:
-      return "gain";
-    case Inverse::none:
-      break;
-  }
-  return "none";
-}
-
 std::string transducer_sum(const std::string& name) {
   for (const std::string& path : {name, name + ".transducer.json"})
     if (schema::is_file(path)) return schema::sha256_of_file(path).value_or("");
@@ -178,6 +164,7 @@ void describe(schema::SessionHeader& session, const Prepared& prepared, const Pr
   session.rate_hz = options.rate_hz;
   session.metres_per_count = options.metres_per_count;
   session.inverse = word_of(options.inverse);
+  session.choices = choices_in(options);
   session.delay_s = prepared.delay_left_s;
   session.low_hz = options.band.low_hz;
   session.high_hz = prepared.passes_to_hz;
@@ -220,11 +207,40 @@ Result<void> check_place(const Laid& laid, const Prepared& prepared) {
               fmt::format("lay it within {:.4g} m (--at, or at_m in the scene)", farthest_m));
 }
 
-// Of a texture by itself the file is known.
-schema::Error naming_the_file(schema::Error error, const Laid& laid) {
+// Of a texture by itself the file is known; of several, the scene.
+schema::Error naming_the_file(schema::Error error, const Laid& laid, const std::string& scene_path) {
   if (laid.rows.size() == 1 && error.where.starts_with("texture"))
     error.where = laid.rows.front().file + error.where.substr(std::string_view("texture").size());
+  if (error.where == "texture") error.where = scene_path;
   return error;
+}
+
+// What was named stays, whatever else would be cheaper.
+TickBudget budget_of(const ProgramRequest& request, const schema::PlaybackChoices& choices) {
+  TickBudget budget = request.budget;
+  budget.keep_inverse = budget.keep_inverse || choices.inverse.has_value();
+  budget.keep_reading = budget.keep_reading || choices.interpolation.has_value();
+  return budget;
+}
+
+Result<void> prepare_laid(Program& program, const Laid& laid, const TickBudget& budget) {
+  PrepareOptions& options = program.options;
+  const schema::Transducer& transducer = program.session.transducer;
+  options.gain_m_per_n = laid.gain();
+  options.ends = ends_of(laid.layers.front().ends);
+  if (const auto soft = check_onset(options); !soft) return soft;
+  auto decision = decided(placed(laid), transducer, budget, options);
+  if (!decision) return schema::forward_error(decision);
+  program.decision = std::move(*decision);
+  auto prepared = prepare(placed(laid), transducer, options);
+  if (!prepared) return tl::unexpected(naming_the_file(prepared.error(), laid, program.scene_path));
+  if (const auto near = check_place(laid, *prepared); !near) return near;
+  program.prepared = std::move(*prepared);
+  program.prepared.built.texture_files = laid.files.size();
+  program.tray_peak_m = tray_peak_m(program.prepared, transducer, options);
+  program.gain_m_per_n = laid.gain();
+  program.length_m = laid.end_m() - laid.start_m();
+  return {};
 }
 
 }  // namespace
@@ -233,6 +249,9 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
                              PrepareOptions options) {
   const auto scene = scene_of(request);
   if (!scene) return schema::forward_error(scene);
+  const schema::PlaybackChoices choices = request.choices.over(scene->playback.over(request.defaults));
+  auto chosen = with_choices(std::move(options), choices);
+  if (!chosen) return schema::forward_error(chosen);
   Program program;
   if (names_a_scene(request.file)) program.scene_path = schema::scene_path(request.file);
   auto laid = laid_out(*scene, program.scene_path);
@@ -241,24 +260,14 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
   if (!transducer) return schema::forward_error(transducer);
   if (const auto usable = schema::check_usable(*transducer, request.force); !usable)
     return schema::forward_error(usable);
-  options.gain_m_per_n = laid->gain();
-  options.ends = ends_of(laid->layers.front().ends);
-  if (const auto soft = check_onset(options); !soft) return schema::forward_error(soft);
-  auto decision = decided(placed(*laid), *transducer, request.budget, options);
-  if (!decision) return schema::forward_error(decision);
-  program.decision = std::move(*decision);
-  auto prepared = prepare(placed(*laid), *transducer, options);
-  if (!prepared) return tl::unexpected(naming_the_file(prepared.error(), *laid));
-  if (const auto near = check_place(*laid, *prepared); !near) return schema::forward_error(near);
-  program.prepared = std::move(*prepared);
-  program.prepared.built.texture_files = laid->files.size();
-  program.tray_peak_m = request.any_displacement ? 0 : tray_peak_m(program.prepared, *transducer, options);
-  program.gain_m_per_n = laid->gain();
-  program.length_m = laid->end_m() - laid->start_m();
   program.session.transducer = *transducer;
   program.session.transducer_sha256 = transducer_sum(transducer_name);
+  program.options = std::move(*chosen);
+  const auto made = prepare_laid(program, *laid, budget_of(request, choices));
+  if (!made) return schema::forward_error(made);
+  if (request.any_displacement) program.tray_peak_m = 0;
   name_files(program, *laid);
-  describe(program.session, program.prepared, options);
+  describe(program.session, program.prepared, program.options);
   return program;
 }
 

@@ -7,6 +7,7 @@
 
 #include "data-schema/session.hpp"
 #include "playback/budget.hpp"
+#include "playback/choices.hpp"
 #include "playback/prepare.hpp"
 
 namespace tacto::playback {
@@ -21,6 +22,8 @@ struct ProgramRequest {
   /// Also what could move the tray beyond its limit: on an emulated one, to see what the other limits take
   /// away.
   bool any_displacement = false;
+  schema::PlaybackChoices choices = {};   ///< go before the scene's
+  schema::PlaybackChoices defaults = {};  ///< for what neither they nor the scene say
 };
 
 /// Ready to upload. `session` lacks only what the player knows: device, clock, initial state.
@@ -32,15 +35,16 @@ struct Program {
   double gain_m_per_n = 0;  ///< the largest of its textures, without sign
   double length_m = 0;      ///< from the first texture's start to the last one's end
   std::optional<TickDecision> decision;  ///< of the request's budget
+  PrepareOptions options;                ///< that it was prepared with, in the end
 
   /// The scene's file, or the texture's.
   const std::string& name() const { return scene_path.empty() ? session.textures.front().file : scene_path; }
 };
 
 /// Reads the files, and prepares. `options`: rate, encoder, limits; gain and ends are taken from the request
-/// or the scene. Errors: as read_texture, read_scene, read_transducer, prepare, decide, find_trade_table;
-/// unsuitable: as check_usable; a scene of several textures whose ends are not `stop`; usage: a place or gain
-/// for a scene.
+/// or the scene, and what was chosen from request, scene and defaults, in this order. Errors: as
+/// read_texture, read_scene, read_transducer, prepare, decide, find_trade_table; unsuitable: as check_usable;
+/// a scene of several textures whose ends are not `stop`; usage: a place or gain for a scene.
 schema::Result<Program> make_program(const ProgramRequest& request, const std::string& transducer,
                                      PrepareOptions options);
 

@@ -47,6 +47,13 @@ void add_decision(ControlFields& fields, const TickDecision& decision) {
     fields.emplace_back(fmt::format("why_{}", i + 1), decision.reasons[i]);
 }
 
+void add_choices(ControlFields& fields, const schema::PlaybackChoices& choices) {
+  for (const auto& [name, member] : schema::kChosenWords)
+    if (choices.*member) fields.emplace_back(name, *(choices.*member));
+  for (const auto& [name, member] : schema::kChosenNumbers)
+    if (choices.*member) fields.emplace_back(name, *(choices.*member));
+}
+
 ControlFields fields_of(const std::string& file, const Program& program) {
   const Prepared& made = program.prepared;
   ControlFields fields{{"file", file},
@@ -57,6 +64,7 @@ ControlFields fields_of(const std::string& file, const Program& program) {
                        {"delay_s", made.delay_s},
                        {"delay_left_s", made.delay_left_s},
                        {"inverse_error_db", made.inverse_error_db}};
+  add_choices(fields, choices_in(program.options));
   if (program.decision) add_decision(fields, *program.decision);
   for (std::size_t i = 0; i < made.notes.size(); ++i)
     fields.emplace_back(fmt::format("note_{}", i + 1), made.notes[i]);
@@ -69,6 +77,8 @@ void add_ticks(ControlFields& fields, const TickView& view, std::uint64_t not_re
   fields.emplace_back("lost_ticks", count(view.lost() + not_recorded));
   fields.emplace_back("late_ticks", count(view.late()));
   fields.emplace_back("limited_ticks", count(view.limited()));
+  fields.emplace_back("energy_limited_ticks", count(view.energy_limited()));
+  fields.emplace_back("gated_ticks", count(view.gated()));
   fields.emplace_back("blind_ticks", count(view.blind()));
   fields.emplace_back("played_s", view.span_s());
   fields.emplace_back("device_s", 1e-9 * static_cast<double>(view.last().time_ns));
@@ -102,12 +112,6 @@ void add_loop(ControlFields& fields, const HostLoopStatus& loop) {
   if (!loop.device_fault.empty()) fields.emplace_back("device_fault", loop.device_fault);
 }
 
-std::string words_of(const EdgeToDrive& latency) {
-  return fmt::format(
-      "from the encoder's edge to the drive: p50 {:.2f} ms, p99 {:.2f} ms (count's age, queue, round trip)",
-      1e3 * latency.p50_s, 1e3 * latency.p99_s);
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& config, Publish publish) {
@@ -125,8 +129,8 @@ Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& confi
 
 Result<void> Service::connect() {
   player_.reset();
-  loop_client_.reset();
-  loop_.reset();
+  here_.client.reset();
+  here_.loop.reset();
   device_ = {};
   const auto script = read_finger_script(config_.finger_path, true);
   if (!script) return schema::forward_error(script);
@@ -136,31 +140,19 @@ Result<void> Service::connect() {
   player_options.heartbeat_s = 1e-3 * config_.watchdog_ms / 4;
   player_options.most_late = 1e-2 * config_.most_late_percent;
   device_ = std::move(*device);
-  if (const auto closed = close_loop_here(player_options); !closed) return closed;
+  if (config_.loop == "host") {
+    const HostLoopOptions loop{config_.rate_hz, config_.real_time_priority,
+                               static_cast<std::uint16_t>(config_.watchdog_ms)};
+    auto here = close_loop_here(*device_.client, device_.uri, loop, player_options);
+    if (!here) return schema::forward_error(here);
+    here_ = std::move(*here);
+  }
   auto player = Player::make(client(), device_.uri, player_options);
   if (!player) return schema::forward_error(player);
   player_ = std::move(*player);
   player_->listen([this](PlayerState state, const std::string& why, double device_s) {
     publish_("state", {{"state", std::string(word_of(state))}, {"why", why}, {"device_s", device_s}});
   });
-  return {};
-}
-
-// Where it is asked for: then the player speaks to this computer's own real-time thread.
-Result<void> Service::close_loop_here(PlayerOptions& options) {
-  if (config_.loop != "host") return {};
-  HostLoopOptions loop_options{config_.rate_hz, config_.real_time_priority,
-                               static_cast<std::uint16_t>(config_.watchdog_ms)};
-  auto loop = HostLoop::begin(*device_.client, loop_options);
-  if (!loop) return schema::forward_error(loop);
-  loop_ = std::move(*loop);
-  auto connected = firmware_host::Client::connect(loop_->transport(), device_.uri);
-  if (!connected) return schema::forward_error(connected);
-  loop_client_ = std::move(*connected);
-  options.loop = "host";
-  options.lateness_ns = [&board = loop_->board()](std::uint64_t tick) { return board.lateness_ns(tick); };
-  options.due_ns = [&board = loop_->board()](std::uint64_t tick) { return board.due_ns(tick); };
-  options.latency = [&loop = *loop_] { return words_of(loop.latency()); };
   return {};
 }
 
@@ -179,7 +171,7 @@ PrepareOptions Service::options() {
 
 // While one plays its filter stays, as the device has one for both.
 TickBudget Service::budget() const {
-  TickBudget budget{config_.budget, config_.max_tick_ns, false, {}};
+  TickBudget budget{config_.budget, config_.max_tick_ns, false, false, {}};
   if (player_->state() != PlayerState::idle) budget.filter = filter_;
   return budget;
 }
@@ -201,8 +193,10 @@ Result<void> Service::begin_load(const ControlRequest& request) {
     if (const auto connected = connect(); !connected) return connected;
   if (const auto may = player_->may_load(); !may) return may;
   load_request_ = request;
-  const ProgramRequest wanted{resolved(request.file), request.at_m, request.gain_m_per_n,
-                              request.ends,           false,        budget()};
+  ProgramRequest wanted{resolved(request.file), request.at_m, request.gain_m_per_n, request.ends};
+  wanted.budget = budget();
+  wanted.choices = request.playback;
+  wanted.defaults = config_.playback;
   const bool idle = player_->state() == PlayerState::idle;
   loader_.begin([wanted, transducer = config_.transducer,
                  options = options()] { return make_program(wanted, transducer, options); },
@@ -342,7 +336,7 @@ ControlFields Service::status() const {
   add_ticks(fields, status.ticks, status.recorder ? status.recorder->lost() : 0);
   if (status.recorder) add_recorder(fields, *status.recorder);
   fields.emplace_back("period_s", 1 / config_.rate_hz);
-  if (loop_) add_loop(fields, loop_->status());
+  if (here_) add_loop(fields, here_.loop->status());
   return fields;
 }
 

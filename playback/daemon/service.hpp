@@ -8,7 +8,7 @@
 
 #include "data-schema/control.hpp"
 #include "data-schema/daemon_config.hpp"
-#include "playback/daemon/host_loop.hpp"
+#include "playback/daemon/loop_here.hpp"
 #include "playback/daemon/player.hpp"
 #include "playback/daemon/player_device.hpp"
 #include "playback/daemon/program_loader.hpp"
@@ -42,8 +42,7 @@ class Service {
   Service(const schema::DaemonConfig& config, Publish publish)
       : config_(config), publish_(std::move(publish)) {}
   schema::Result<void> connect();
-  schema::Result<void> close_loop_here(PlayerOptions& options);
-  firmware_host::Client& client() { return loop_client_ ? *loop_client_ : *device_.client; }
+  firmware_host::Client& client() { return here_ ? *here_.client : *device_.client; }
   schema::Result<void> begin_load(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> load(Program program);
   schema::Result<void> may_begin(const char* what) const;
@@ -63,8 +62,7 @@ class Service {
   schema::DaemonConfig config_;
   Publish publish_;
   PlayerDevice device_;
-  std::unique_ptr<HostLoop> loop_;  // where the host closes it
-  std::unique_ptr<firmware_host::Client> loop_client_;
+  LoopHere here_;
   std::unique_ptr<Player> player_;
   ProgramLoader loader_;
   schema::ControlRequest load_request_;  // that is being prepared

@@ -13,6 +13,20 @@ namespace {
 constexpr std::size_t kProfileSamples = std::size_t{1} << 24;  // as much as prepare() makes at most
 constexpr std::uint32_t kReplayClockHz = 1'000'000;
 
+// Which channel it was, and in which units, did its work when the device decided: its ticks say what came of
+// it. So the gate is given a force of one newton, or of none.
+std::vector<std::uint8_t> as_decided(std::span<const std::uint8_t> frame) {
+  wire::Contact contact;
+  const std::size_t payload = frame.size() - wire::kHeaderSize - wire::kCheckSize;
+  if (wire::parse(frame.data() + wire::kHeaderSize, payload, contact) != wire::Parse::ok)
+    return {frame.begin(), frame.end()};
+  const float threshold = contact.on_n > 0 ? 0.5F : 0;
+  std::vector<std::uint8_t> decided(wire::kMaxFrame);
+  decided.resize(wire::encode_frame(wire::Contact{0, {}, threshold, threshold, 1, 0}, 0, decided.data(),
+                                    decided.size()));
+  return decided;
+}
+
 }  // namespace
 
 bool is_frame(std::span<const std::uint8_t> bytes) {
@@ -34,6 +48,8 @@ core::Board SessionBoard::board() {
   core::Board board;
   board.profile_memory = profile_.get();
   board.profile_samples = static_cast<std::uint32_t>(kProfileSamples);
+  board.channels = &force_;
+  board.channel_count = 1;
   wire::Welcome& about = board.about;
   about.features = wire::kFeatureDrive;
   about.clock_hz = kReplayClockHz;
@@ -49,7 +65,10 @@ core::Hal SessionBoard::hal() {
   hal.board = this;
   hal.read_encoder = [](void* b) noexcept { return of(b).encoder_; };
   hal.encoder_unseen = [](void* b) noexcept { return of(b).unseen_; };
-  hal.read_channels = [](void*, std::int32_t*) noexcept { return true; };
+  hal.read_channels = [](void* b, std::int32_t* codes) noexcept {
+    codes[0] = of(b).touching_;
+    return true;
+  };
   hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
   hal.enable_closed = [](void* b) noexcept { return of(b).enabled_; };
   hal.clock = [](void* b) noexcept { return of(b).clock_; };
@@ -85,10 +104,11 @@ void SessionBoard::listen() {
 
 // Each frame gets the next sequence number: the core drops what it has heard before.
 std::optional<wire::Answer> SessionBoard::say_frame(std::span<const std::uint8_t> frame) {
-  std::vector<std::uint8_t> sealed(frame.begin(), frame.end());
+  const bool gates = frame[3] == static_cast<std::uint8_t>(wire::MessageType::contact);
+  std::vector<std::uint8_t> sealed = gates ? as_decided(frame) : std::vector(frame.begin(), frame.end());
   const wire::FrameHeader header{
       wire::kProtocolMajor, sealed[3],
-      static_cast<std::uint16_t>(frame.size() - wire::kHeaderSize - wire::kCheckSize), sequence_++};
+      static_cast<std::uint16_t>(sealed.size() - wire::kHeaderSize - wire::kCheckSize), sequence_++};
   sealed.resize(wire::seal_frame(header, sealed.data()));
   from_host_.insert(from_host_.end(), sealed.begin(), sealed.end());
   answer_.reset();
@@ -107,6 +127,7 @@ std::uint32_t SessionBoard::unseen_in(const schema::SessionTick& recorded) const
 float SessionBoard::tick(const schema::SessionTick& recorded) {
   encoder_ = recorded.encoder;
   enabled_ = (recorded.flags & wire::kTickEnabled) != 0;
+  touching_ = (recorded.flags & wire::kTickTouching) != 0 ? 1 : 0;
   unseen_ = unseen_in(recorded);
   clock_ += static_cast<std::uint64_t>(std::llround(kReplayClockHz / header_.rate_hz));
   firmware_->tick();

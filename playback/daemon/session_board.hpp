@@ -16,7 +16,7 @@ namespace tacto::playback {
 /// Whether these bytes are one whole frame.
 bool is_frame(std::span<const std::uint8_t> bytes);
 
-/// Encoder and enable input are as told; the drive is kept.
+/// Encoder, enable input and touch are as told; the drive is kept.
 class SessionBoard {
  public:
   explicit SessionBoard(const schema::SessionHeader& header);
@@ -51,6 +51,8 @@ class SessionBoard {
   std::uint32_t sequence_ = 0;
   std::int32_t encoder_ = 0;
   std::uint32_t unseen_ = 0;
+  wire::Channel force_;  // of the finger: 1 N where it touches
+  std::int32_t touching_ = 0;
   bool enabled_ = true;
   float drive_v_ = 0;
   std::uint64_t clock_ = 0;

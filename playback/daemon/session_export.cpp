@@ -16,6 +16,11 @@ namespace tacto::playback {
 namespace {
 
 constexpr std::string_view kColumns =
+    "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s,energy_limited,gated,"
+    "touching";
+
+// With which a table begins in every version.
+constexpr std::string_view kOldestColumns =
     "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s";
 
 using schema::fail;
@@ -25,7 +30,7 @@ using schema::Result;
 using schema::SessionTick;
 
 bool is_session_table(std::string_view line) {
-  return line == kColumns;
+  return line.starts_with(kOldestColumns);
 }
 
 int flag(std::uint32_t flags, std::uint32_t which) {
@@ -37,12 +42,13 @@ std::string lines_of(const std::vector<SessionTick>& ticks, const schema::Sessio
   auto out = std::back_inserter(text);
   for (const SessionTick& t : ticks) {
     const bool measured = t.lateness_ns != SessionTick::kLatenessUnknown;
-    fmt::format_to(out, "{},{:.9f},{},{:.9g},{:.9g},{},{},{},{},{}\n", t.tick,
-                   1e-9 * static_cast<double>(t.time_ns), t.encoder,
-                   header.metres_per_count * (t.encoder + 0.5), t.drive_v, flag(t.flags, wire::kTickPlaying),
-                   flag(t.flags, wire::kTickFault), flag(t.flags, wire::kTickLate),
-                   flag(t.flags, wire::kTickAmplitudeLimited | wire::kTickSlewLimited),
-                   measured ? fmt::format("{:.9g}", 1e-9 * t.lateness_ns) : "");
+    fmt::format_to(
+        out, "{},{:.9f},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{}\n", t.tick,
+        1e-9 * static_cast<double>(t.time_ns), t.encoder, header.metres_per_count * (t.encoder + 0.5),
+        t.drive_v, flag(t.flags, wire::kTickPlaying), flag(t.flags, wire::kTickFault),
+        flag(t.flags, wire::kTickLate), flag(t.flags, wire::kTickAmplitudeLimited | wire::kTickSlewLimited),
+        measured ? fmt::format("{:.9g}", 1e-9 * t.lateness_ns) : "", flag(t.flags, wire::kTickEnergyLimited),
+        flag(t.flags, wire::kTickGated), flag(t.flags, wire::kTickTouching));
   }
   return text;
 }

@@ -45,9 +45,26 @@ struct FirstFault {
   }
 };
 
+template <class Message>
+std::optional<Message> message_in(const SessionCommand& command) {
+  Message message;
+  const std::size_t payload = command.frame.size() - wire::kHeaderSize - wire::kCheckSize;
+  if (type_of(command) != Message::kType ||
+      wire::parse(command.frame.data() + wire::kHeaderSize, payload, message) != wire::Parse::ok)
+    return std::nullopt;
+  return message;
+}
+
+// From protocol 1.2 on, ticks say whether the finger touches. Older sessions do not name the protocol.
+bool tells_touch(const schema::SessionHeader& header) {
+  const std::string& protocol = header.device_protocol;
+  return !protocol.empty() && protocol != "1.0" && protocol != "1.1";
+}
+
 // What has to be known of the whole before its first tick.
 struct Overview {
   FirstFault fault;
+  bool gated = false;  // by contact
   std::uint64_t lost = 0;
   schema::SessionEnding ending = schema::SessionEnding::unread;
   std::optional<std::uint64_t> damaged_at;
@@ -66,12 +83,10 @@ Result<Overview> overview_of(const std::string& name) {
     if (command == nullptr) continue;
     if (!is_frame(command->frame))
       return fail(Fault::malformed, "a command in it is no frame of the wire", reader->path());
-    wire::Limits limits;
-    const std::size_t payload = command->frame.size() - wire::kHeaderSize - wire::kCheckSize;
-    if (type_of(*command) == wire::MessageType::limits &&
-        wire::parse(command->frame.data() + wire::kHeaderSize, payload, limits) == wire::Parse::ok)
-      fault.watchdog_ticks = static_cast<std::uint32_t>(1e-6F * limits.watchdog_ms *
+    if (const auto limits = message_in<wire::Limits>(*command))
+      fault.watchdog_ticks = static_cast<std::uint32_t>(1e-6F * limits->watchdog_ms *
                                                         static_cast<float>(1e3 * reader->header().rate_hz));
+    if (const auto contact = message_in<wire::Contact>(*command)) seen.gated = contact->on_n > 0;
   }
   seen.ending = reader->ending();
   if (seen.ending == schema::SessionEnding::damaged) seen.damaged_at = reader->sound_bytes();
@@ -174,6 +189,11 @@ Result<ReplayOutcome> replay_session(const std::string& name, const std::functio
   if (!seen) return schema::forward_error(seen);
   auto reader = schema::SessionReader::open(name);
   if (!reader) return schema::forward_error(reader);
+  if (seen->gated && !tells_touch(reader->header()))
+    return fail(Fault::unsuitable,
+                "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
+                "computed again",
+                reader->path(), "play anew, on firmware of protocol 1.2 or newer");
   std::error_code ignored;
   const auto size = static_cast<double>(std::filesystem::file_size(reader->path(), ignored));
   SessionPlayer player(reader->header(), seen->fault);

@@ -34,9 +34,11 @@ struct ReplayOutcome {
 /// The recorded commands go to a device of this program's core in the ticks that took them, the recorded
 /// counts to its encoder (a texture that it changes to, in the tick of the change); its drive has to be the
 /// recorded one to the bit. A fault is met again where its
-/// cause is in the ticks (enable input, jump, no number) or in the silence of the host. Nothing but the
-/// session is read. Errors: unsuitable, where there are no ticks; malformed, where a command in it is no
-/// frame; unsuitable, where the core refuses one, with its reason. `progress` hears fractions.
+/// cause is in the ticks (enable input, jump, no number) or in the silence of the host. Of a contact gate the
+/// ticks tell what it decided, not the force. Nothing but the session is read. Errors: unsuitable, where
+/// there are no ticks, or where a contact gated a session whose ticks do not tell (before protocol 1.2);
+/// malformed, where a command in it is no frame; unsuitable, where the core refuses one, with its reason.
+/// `progress` hears fractions.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
                                              const std::function<void(double)>& progress = {});
 

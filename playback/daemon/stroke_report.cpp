@@ -12,6 +12,7 @@
 #include "data-schema/texture_wav.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 #include "playback/chain.hpp"
+#include "playback/choices.hpp"
 #include "playback/daemon/session_columns.hpp"
 #include "playback/hysteresis_inverse.hpp"
 #include "playback/reference/spatial_content.hpp"
@@ -62,6 +63,13 @@ Result<schema::Texture> same_texture(const schema::SessionTexture& played) {
   return fail(Fault::unsuitable, "is not what was played any more", played.file);
 }
 
+// Older sessions tell of no filter behind the converter. Words of a newer version: as if there was none.
+Chain chain_of(const schema::SessionHeader& header) {
+  const PrepareOptions played = with_choices({}, header.choices).value_or(PrepareOptions{});
+  return {header.transducer, played.reconstruction, played.reconstruction_cutoff_hz, played.hold,
+          header.rate_hz};
+}
+
 struct Judge {
   const SessionColumns& columns;
   spatial::Band band;
@@ -90,14 +98,21 @@ double rms_in(std::span<const double> values, const StrokeRange& range) {
   return schema::statistics_of(values.subspan(range.first, range.last - range.first + 1)).rms();
 }
 
+void count_limited(PlayedStroke& stroke, std::span<const std::uint32_t> flags) {
+  for (const std::uint32_t tick : flags) {
+    stroke.limited_ticks += (tick & (wire::kTickAmplitudeLimited | wire::kTickSlewLimited)) != 0;
+    stroke.energy_limited_ticks += (tick & wire::kTickEnergyLimited) != 0;
+    stroke.gated_ticks += (tick & wire::kTickGated) != 0;
+  }
+}
+
 PlayedStroke stroke_of(const SessionColumns& columns, const StrokeRange& range,
                        std::span<const double> wanted, const std::vector<double>& received) {
   PlayedStroke stroke;
   stroke.from_s = columns.time_s[range.first], stroke.to_s = columns.time_s[range.last];
   stroke.from_m = columns.position_m[range.first], stroke.to_m = columns.position_m[range.last];
   stroke.received_rms_m = rms_in(received, range);
-  for (std::size_t i = range.first; i <= range.last; ++i)
-    stroke.limited_ticks += (columns.flags[i] & (wire::kTickAmplitudeLimited | wire::kTickSlewLimited)) != 0;
+  count_limited(stroke, std::span(columns.flags).subspan(range.first, range.last - range.first + 1));
   if (wanted.empty()) return stroke;
   std::vector<double> difference(received.size());
   std::ranges::transform(received, wanted, difference.begin(), std::minus<>());
@@ -159,7 +174,7 @@ std::vector<double> received_displacement_m(const SessionColumns& columns) {
   const schema::SessionHeader& header = columns.header;
   const spatial::Band band{header.low_hz, header.high_hz};
   const ReadingGrid grid = reading_grid(duration_s(columns), header.rate_hz, band, 0);
-  const Chain chain{header.transducer, Reconstruction::none, 0, Hold::zero_order, header.rate_hz};
+  const Chain chain = chain_of(header);
   const schema::Transducer& t = header.transducer;
   const std::vector<double> linear =
       t.hysteresis

@@ -17,7 +17,8 @@ struct PlayedStroke {
   double wanted_rms_m = 0, received_rms_m = 0;
   double error_db = 0;  ///< RMS of received - wanted, re RMS of wanted; at most 0 where nothing was wanted
   double level_db = 0;  ///< received over wanted
-  std::uint64_t limited_ticks = 0;
+  std::uint64_t limited_ticks = 0;                          ///< in amplitude or slew
+  std::uint64_t energy_limited_ticks = 0, gated_ticks = 0;  ///< turned down; not touching
 };
 
 struct StrokeReport {

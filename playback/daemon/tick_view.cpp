@@ -10,6 +10,7 @@ namespace tacto::playback {
 namespace {
 
 constexpr double kSpeedOverS = 0.02, kLevelOverS = 0.1, kLateOverS = 1;
+constexpr std::uint32_t kHeldBack = wire::kTickGated | wire::kTickPlaying;
 constexpr std::uint32_t kAnyLimit = wire::kTickAmplitudeLimited | wire::kTickSlewLimited;
 
 }  // namespace
@@ -29,6 +30,8 @@ void TickView::take(const schema::SessionTick& tick) {
   late_ += (tick.flags & wire::kTickLate) != 0;
   blind_ += (tick.flags & wire::kTickBlind) != 0;
   limited_ += (tick.flags & kAnyLimit) != 0;
+  energy_limited_ += (tick.flags & wire::kTickEnergyLimited) != 0;
+  gated_ += (tick.flags & kHeldBack) == kHeldBack;
   const double drive_v = tick.drive_v;
   mean_square_ += share_ * (drive_v * drive_v - mean_square_);
   peak_v_ = std::max(peak_v_, std::abs(drive_v));

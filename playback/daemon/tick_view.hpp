@@ -24,6 +24,10 @@ class TickView {
   std::uint64_t lost() const { return lost_; }
   std::uint64_t late() const { return late_; }
   std::uint64_t limited() const { return limited_; }
+  /// Turned down to hold the drive's RMS.
+  std::uint64_t energy_limited() const { return energy_limited_; }
+  /// While playing, in which the drive was held back because the finger does not touch, or did not just now.
+  std::uint64_t gated() const { return gated_; }
   /// In which the drive fell because no count came.
   std::uint64_t blind() const { return blind_; }
   /// Of the last whole second: the part of the ticks that were late.
@@ -41,6 +45,7 @@ class TickView {
   static constexpr std::size_t kPlaces = 512;  // 25 ms at 20 kHz
   double rate_hz_ = 1, metres_per_count_ = 0;
   std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, limited_ = 0, blind_ = 0;
+  std::uint64_t energy_limited_ = 0, gated_ = 0;
   std::uint64_t second_from_ = 0, late_before_ = 0;
   double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0;
   schema::SessionTick last_;

@@ -164,8 +164,8 @@ TEST(TradePage, HasEveryRowOnceAndEscapesNames) {
   EXPECT_NE(page->find("Simulated"), std::string::npos);
   EXPECT_EQ(trade_csv(trade),
             std::string(kTradeCsvHead) +
-                "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note\n"
-                "offline,\"way\",\"a, \"\"b\"\"\",0.01,100,frame,1,0,true,false,\"\",\"n\"\n");
+                "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note,simulated\n"
+                "offline,\"way\",\"a, \"\"b\"\"\",0.01,100,frame,1,0,true,false,\"\",\"n\",\"by a test\"\n");
 }
 
 }  // namespace

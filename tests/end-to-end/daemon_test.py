@@ -459,6 +459,41 @@ def a_texture_changed_in_mid_play():
     assert np.max(steps) < 1.1 * np.max(np.abs(np.diff(one))), (np.max(steps), np.max(np.abs(np.diff(one))))
 
 
+def what_was_chosen_is_told():
+    """The configuration's choices, a scene's over them, a request's over both; what can't be is refused, and the rest plays on."""
+    prepare_files(playback={"interpolation": "linear", "inverse": "gain", "contact_on_n": 0.6, "energy_rms_v": 5})
+    layer = {"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 0.0005}
+    scene = {"kind": "scene", "version": "1.0", "layers": [layer], "playback": {"inverse": "magnitude", "contact_on_n": 0.2}}
+    pathlib.Path("s.scene.json").write_text(json.dumps(scene))
+    with daemon():
+        client = Client()
+        answer = client.must(request="load", file="oak", gain_m_per_n=0.0005)
+        assert (answer["interpolation"], answer["inverse"], answer["contact_on_n"], answer["energy_rms_v"]) == ("linear", "gain", 0.6, 5), answer
+        client.must(request="arm")
+        client.must(request="play")
+        time.sleep(0.5)
+        status = client.must(request="status")  # the emulated finger presses with 0.5 N
+        assert status["gated_ticks"] > 100 and status["drive_peak_v"] == 0, status
+        client.must(request="disarm")
+        answer = client.must(request="load", file="s", playback={"interpolation": "sinc"})
+        assert (answer["interpolation"], answer["inverse"], answer["contact_on_n"]) == ("sinc", "magnitude", 0.2), answer
+        session = client.must(request="arm")["session"]
+        client.must(request="play")
+        time.sleep(0.7)
+        assert client.must(request="status")["drive_peak_v"] > 0.01
+        answer = client.ask(request="load", file="s", playback={"contact_on_n": 0.25})
+        assert not answer["ok"] and "limits" in answer["error"]["what"] and "disarm" in answer["error"]["remedy"], answer
+        answer = client.ask(request="load", file="s", playback={"contact_on_n": -1})
+        assert not answer["ok"] and "from 0 to 100" in answer["error"]["remedy"], answer
+        out, _ = tacto.run("ctl", "load", "s", "--interpolation", "nearest", "--json", "--socket", "control")
+        assert json.loads(out)["interpolation"] == "nearest" and json.loads(out)["changed"], out
+        client.must(request="disarm")
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+    prepare_files(playback={"interpolations": "linear"})
+    refused = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
+    assert refused.returncode == 4 and "#/playback" in refused.stderr, refused
+
+
 def a_promise_in_the_configuration():
     """What is loaded keeps it, what can't is refused with the best there is, and a change keeps the filter that plays."""
     prepare_files(max_error=0.002, max_tick_ns=10000, undo_hysteresis=False)
@@ -574,7 +609,7 @@ def by_tcp_with_a_token():
 TESTS = [from_load_to_a_session_that_replays, kill_9_in_mid_play, sigstop_of_200_ms, encoder_jump_of_10_mm, a_texture_with_nan,
          garbage_and_endless_lines, many_requests_at_once, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
          the_loop_closed_on_the_host, gain_saved_in_the_scene, a_texture_changed_in_mid_play,
-         a_promise_in_the_configuration, a_load_holds_up_nobody, files_that_nobody_can_play,
+         what_was_chosen_is_told, a_promise_in_the_configuration, a_load_holds_up_nobody, files_that_nobody_can_play,
          by_tcp_with_a_token]
 
 if __name__ == "__main__":

@@ -87,6 +87,52 @@ def two_textures_in_a_scene():
         assert abs(peak - per_m) < 100, (peak, per_m)
 
 
+def what_was_chosen_acts():
+    """By option, over the scene: reading, inverse, energy and contact, in the report, in the session, and to the bit again."""
+    write_grating()
+    lifts = "time_s,position_m,normal_force_n\n0,0.004,0.5\n1,0.034,0.5\n1.2,0.034,0\n1.8,0.004,0\n2,0.004,0.5\n3,0.034,0.5\n"
+    pathlib.Path("lifts.csv").write_text(lifts)
+    layer = {"type": "texture", "texture": "oak", "at_m": 0.0, "gain_m_per_n": 5e-4}
+    playback = {"interpolation": "linear", "inverse": "magnitude", "contact_on_n": 0.3}
+    pathlib.Path("felt.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "playback": playback, "layers": [layer]}))
+    arguments = ("play", "felt", "-d", "sim:", "--finger-path", "lifts.csv")
+    free = tacto.run_json(*arguments, "--contact", "0N", "-o", "free")
+    assert (free["interpolation"], free["inverse"], free["gated_ticks"]) == ("linear", "magnitude", 0) and "contact_on_n" not in free, free
+    gated = tacto.run_json(*arguments, "--interpolation", "sinc", "--inverse", "full", "-o", "gated")
+    assert gated["interpolation"] == "sinc" and abs(gated["contact_off_n"] - 0.24) < 1e-12, gated
+    assert 1000 < gated["gated_ticks"] < 2400, gated  # of 6000: 0.8 s aloft, and the way there and back
+    tacto.run("session", "gated", "-o", "gated.csv")
+    table = np.genfromtxt("gated.csv", delimiter=",", names=True)
+    aloft = (table["time_s"] - table["time_s"][0] > 1.2) & (table["time_s"] - table["time_s"][0] < 1.8)
+    assert np.all(table["drive_v"][aloft] == 0) and np.all(table["touching"][aloft] == 0) and np.all(table["gated"][aloft] == 1)
+    last = table["time_s"] - table["time_s"][0] > 2.2
+    assert np.std(table["drive_v"][last & (table["playing"] > 0)]) > 0.05
+    plain = tacto.run_json("play", "oak", "-d", "sim:", "--finger-path", "lifts.csv", "--gain", "0.5mm/N", "-o", "plain")
+    rms = lambda name: np.sqrt(np.mean(drive_of(name)[1000:1800] ** 2))
+    limit = 0.5 * rms("plain")
+    limited = tacto.run_json("play", "oak", "-d", "sim:", "--finger-path", "lifts.csv", "--gain", "0.5mm/N", "--energy-limit", f"{limit}V",
+                             "--energy-window", "0.1s", "-o", "limited")
+    assert plain["energy_limited_ticks"] == 0 < limited["energy_limited_ticks"], limited
+    assert 0.9 * limit < rms("limited") < 1.02 * limit, (rms("limited"), limit)  # energy_limiter.hpp: within 2 %
+    for name in ("free", "gated", "limited"):
+        assert tacto.run_json("replay", name)["same_to_the_bit"], name
+    said = tacto.run_json("info", "gated.session")
+    assert (said["interpolation"], said["inverse"], said["contact_on_n"]) == ("sinc", "full", 0.3), said
+    strokes = tacto.run_json("session", "limited")["strokes"]
+    assert sum(s["energy_limited_ticks"] for s in strokes) > 0 == sum(s["gated_ticks"] for s in strokes), strokes
+    assert tacto.run_json("info", "felt.scene.json")["interpolation"] == "linear"
+    explained = tacto.run_json("explain", "felt", "--energy-limit", "2V", "--reconstruction", "butterworth3")
+    assert (explained["inverse"], explained["cutoff_hz"], explained["energy_rms_v"], explained["contact_on_n"]) == ("magnitude", 600, 2, 0.3), explained
+    here = tacto.run_json("play", "oak", "-d", "sim:paced=1,rate=2kHz", "--loop", "host", "--finger-path", "lifts.csv", "--gain", "0.5mm/N",
+                          "--contact", "0.3N", "--time", "0.8s", "-o", "here")
+    assert here["drive_peak_v"] > 0.01 and tacto.run_json("replay", "here")["same_to_the_bit"], here
+
+
+def drive_of(name):
+    tacto.run("session", name, "-o", f"{name}.csv")
+    return np.genfromtxt(f"{name}.csv", delimiter=",", names=True)["drive_v"]
+
+
 def a_full_disk_is_an_error():
     """A limit of the file's size stands in for the disk; the last blocks may or may not find room."""
     write_grating()
@@ -133,6 +179,12 @@ def wrong_use():
             (("play", "oak", "-d", "sim:", "-o", ""), 2, "is no name for a file"),
             (("play", "oak", "-d", "sim:", "-o", "x", "--time=-1s"), 2, "a time above 0 s"),
             (("play", "oak", "-d", "sim:", "-o", "x", "--onset", "20s"), 2, "--onset"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--interpolation", "cubic"), 2, "hermite"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--inverse", "half"), 2, "magnitude"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--contact", "0.3"), 2, "N"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--contact", "0.3N", "--contact-off", "0.4N"), 2, "--contact-off"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--energy-limit", "2000V"), 2, "0V turns it off"),
+            (("play", "oak", "-d", "sim:", "-o", "x", "--loop", "host"), 2, "paced=1"),
             (("ctl", "status", "junk"), 2, "takes no 'junk'"),
             (("replay", "none"), 3, "none.session"),
             (("session", "none"), 3, "none.session"),
@@ -178,7 +230,7 @@ def ten_minutes_at_10_khz():
 
 
 if __name__ == "__main__":
-    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, two_textures_in_a_scene, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
+    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, two_textures_in_a_scene, what_was_chosen_acts, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
         if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
             continue
         tacto.in_folder(test)

@@ -191,7 +191,7 @@ TEST(TickKernel, ATexturesBitsAreTheSameEverywhere) {
   EXPECT_EQ(fingerprint.value(), tests::kTextureFingerprint);
   EXPECT_GT(most_v, 1);
   EXPECT_EQ(workload->flags(), wire::kTickAmplitudeLimited | wire::kTickSlewLimited |
-                                   wire::kTickEnergyLimited | wire::kTickGated);
+                                   wire::kTickEnergyLimited | wire::kTickGated | wire::kTickTouching);
 }
 
 TEST(TickKernel, WhatIsNoNumberDrivesTowardsZeroAndIsForgotten) {

@@ -31,6 +31,14 @@ def check_explain(folder):
     # A gain alone has no filter to pay for.
     plain = made.report_of("explain", folder / "t", "--inverse", "gain")
     assert plain["filter_taps"] == 1 and plain["tick_s"] < report["tick_s"], plain
+    chosen = made.report_of("explain", folder / "t", "--interpolation", "sinc", "--inverse", "none", "--hold", "none", "--contact", "0.3N", "--energy-limit", "2V")
+    assert [chosen[k] for k in ("interpolation", "inverse", "hold", "reconstruction")] == ["sinc", "none", "none", "none"], chosen
+    assert (chosen["touch_gates"], chosen["energy_limits"], chosen["energy_rms_v"], chosen["contact_on_n"]) == (1, 1, 2, 0.3), chosen
+    assert chosen["sample_bytes"] < report["sample_bytes"], "sinc takes six points a period, hermite sixteen"
+    kept = made.report_of("explain", folder / "t", "--quality", "fast", "--interpolation", "linear")
+    assert kept["interpolation"] == "linear", kept  # what was named stays, whatever is cheaper
+    remedy = refused(UNSUITABLE, "interpolate by sinc", "explain", folder / "t", "--device-memory", "100")
+    assert "--loop host" in remedy and "t.texture.json" in remedy, remedy
     refused(UNSUITABLE, "there is room for 100", "explain", folder / "t", "--device-memory", "100")
 
 

@@ -220,6 +220,27 @@ TEST_F(HostBoardTicks, TakeNothingFromTheHeap) {
   EXPECT_EQ(board_->lateness_ns(1499), 1499);
 }
 
+// Channel 2 is the normal force, a newton a code here. The gate closes over 20 ms, 40 ticks.
+TEST_F(HostBoardTicks, AreGatedByTheForceThatTheDeviceStreams) {
+  say(wire::Disarm{});
+  for (int i = 0; i < 60 && board_->ticking(); ++i) tick_at(i);
+  ASSERT_FALSE(board_->ticking());
+  say(wire::Contact{2, {}, 2, 1, 1, 0});
+  say(wire::Arm{wire::DriveSource::profile, 2'000'000});
+  say(wire::Play{});
+  const auto drive_under = [&](std::int32_t newtons) {
+    const std::int32_t codes[] = {7, 7, newtons, 7};
+    board_->set_codes(codes);
+    float drive_v = 0;
+    for (int i = 0; i < 100; ++i) drive_v = tick_at(i);
+    return drive_v;
+  };
+  EXPECT_EQ(drive_under(1), 0) << "not yet";
+  EXPECT_NEAR(drive_under(2), 0.5, 1e-3);
+  EXPECT_NEAR(drive_under(1), 0.5, 1e-3) << "still";
+  EXPECT_EQ(drive_under(0), 0);
+}
+
 // In strict mode the kernel kills a thread for any call but read, write and exit.
 int status_under_seccomp(const std::function<bool()>& work) {
   const pid_t child = fork();

@@ -70,6 +70,19 @@ def check_kernel(folder):
     report = made.report_of("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "kernel.wav",
                             "--engine", "kernel", "--encoder-step", "0.5um", "--hold", "zero-order")
     assert report["displacement_error_db"] < -30 and report["delay_s"] == 0, report  # with the path's rests in it
+    kernel = ["render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "kernel.wav", "--hold", "zero-order",
+              "--engine", "kernel"]
+    free = made.report_of(*kernel)
+    rms = lambda: np.sqrt(np.mean(made.samples(folder / "kernel.wav")[5000:10000] ** 2))
+    limit = 0.5 * rms()
+    limited = made.report_of(*kernel, "--energy-limit", f"{limit}V", "--energy-window", "0.1s")
+    assert free["energy_limited_samples"] == 0 < limited["energy_limited_samples"] and limited["limits_removed_db"] > -12, limited
+    assert 0.9 * limit < rms() < 1.02 * limit, (rms(), limit)
+    errors = [made.report_of(*kernel, "--interpolation", word)["displacement_error_db"] for word in ("nearest", "sinc")]
+    assert abs(errors[1] - free["displacement_error_db"]) < 1 and errors[0] < -20, errors  # 64 points a period for nearest
+    done = made.run("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "no.wav", "--engine", "reference",
+                    "--energy-limit", "1V")
+    assert done.returncode == USAGE and "--engine kernel" in done.stderr, done
 
 
 def main():

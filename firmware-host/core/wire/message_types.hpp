@@ -98,7 +98,8 @@ enum TickFlag : uint32_t {
   kTickLate = 32,           ///< it began more than half a period late
   kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
   kTickGated = 128,         ///< the finger does not touch: the drive falls
-  kTickBlind = 256,  ///< the encoder was not read for 10 ms: the drive falls, then the count is taken anew
+  kTickBlind = 256,     ///< the encoder was not read for 10 ms: the drive falls, then the count is taken anew
+  kTickTouching = 512,  ///< the contact gate takes the finger for touching; since protocol 1.2
 };
 /// From this bit on: commands that steer, taken since arming, modulo 256.
 inline constexpr uint32_t kTickSteeredShift = 24;

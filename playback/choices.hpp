@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What users choose of how a texture is read, undone and held back, and the options that it becomes.
+#pragma once
+
+#include <string_view>
+
+#include "data-schema/playback_choices.hpp"
+#include "playback/prepare.hpp"
+
+namespace tacto::playback {
+
+/// "full", "magnitude", "gain", "none".
+std::string_view word_of(Inverse inverse);
+
+/// The options with what was chosen; what was not stays. A contact without its lower threshold lets go at
+/// four fifths of the upper one: a finger's tremor at the threshold does not chatter. Errors: usage, for a
+/// word that there is none of, by its member.
+schema::Result<PrepareOptions> with_choices(PrepareOptions options, const schema::PlaybackChoices& choices);
+
+/// All that these options come to, for files and reports: energy and contact only where there are such.
+schema::PlaybackChoices choices_in(const PrepareOptions& options);
+
+}  // namespace tacto::playback

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/cli/choice_options.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::Dimension;
+using schema::PlaybackChoices;
+
+void add_word(CLI::App& app, const std::string& name, std::optional<std::string>& choice,
+              const std::vector<std::string>& words, const std::string& help) {
+  app.add_option_function<std::string>(
+         name,
+         [name, words, &choice](const std::string& word) { choice = words[cli::choose(name, word, words)]; },
+         help)
+      ->type_name(cli::words_of(words));
+}
+
+void declare_path(CLI::App& app, PlaybackChoices& c, const std::string& of) {
+  add_word(app, "--interpolation", c.interpolation, {"nearest", "linear", "hermite", "sinc"},
+           of + "How the texture is read between its samples; hermite unless told");
+  add_word(
+      app, "--inverse", c.inverse, {"full", "magnitude", "gain", "none"},
+      of + "What of the transducer the drive undoes: amplitude and phase (unless told), amplitude, the gain "
+           "at rest, or nothing");
+  add_word(app, "--reconstruction", c.reconstruction, {"none", "butterworth3"},
+           of + "Analog filter behind the device's converter, undone as well; none unless told");
+  cli::add_quantity(app, "--cutoff", c.cutoff_hz, Dimension::frequency,
+                    of + "Cut-off of butterworth3; 600Hz, the paper's, unless told");
+  add_word(app, "--hold", c.hold, {"none", "zero-order"},
+           of + "Whether the converter holds each sample until the next (unless told), undone as well");
+}
+
+void declare_limits(CLI::App& app, PlaybackChoices& c, const std::string& of) {
+  cli::add_quantity(
+      app, "--energy-limit", c.energy_rms_v, Dimension::voltage,
+      of + "Turn the drive down where its RMS would pass this, at the amplifier's input; 0V: never");
+  cli::add_quantity(app, "--energy-window", c.energy_window_s, Dimension::time,
+                    of + "Over which that RMS is taken; 1s unless told");
+  cli::add_quantity(app, "--contact", c.contact_on_n, Dimension::force,
+                    of + "Drive only from this normal force on, by a device that reports it; 0N: always");
+  cli::add_quantity(app, "--contact-off", c.contact_off_n, Dimension::force,
+                    of + "And until it is below this; four fifths of --contact unless told");
+}
+
+}  // namespace
+
+void declare_choices(CLI::App& app, PlaybackChoices& choices, const std::string& of_what) {
+  declare_path(app, choices, of_what);
+  declare_limits(app, choices, of_what);
+}
+
+}  // namespace tacto::playback
