@@ -170,7 +170,7 @@ Result<TickDecision> decide(std::span<const PlacedTexture> textures,
   const Choices all = all_choices(readings.choices, inverses, undoes_hysteresis, found.table);
   const Choices kept = kept_by(all, budget, true);
   if (kept.empty()) return not_kept(all, budget);
-  TickDecision decision{best_of(kept, budget.by_error()), {}, found.origin};
+  TickDecision decision{best_of(kept, budget.by_error()), {}, found.origin, !budget.by_error()};
   decision.reasons = reasons_for(decision.chosen, all, budget);
   return decision;
 }

@@ -47,8 +47,9 @@ std::string words_of(const TickChoice& choice);
 struct TickDecision {
   TickChoice chosen;
   std::vector<std::string>
-      reasons;        ///< why, what else there was, what the promise does not cover; a line each
-  std::string table;  ///< FoundTradeTable::origin
+      reasons;           ///< why, what else there was, what the promise does not cover; a line each
+  std::string table;     ///< FoundTradeTable::origin
+  bool promised = true;  ///< an error was asked for, and is kept; else the least there was
 };
 
 /// Among the table's interpolations ("reading"), the samples per period for which it knows an error, and

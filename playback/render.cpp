@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "data-schema/statistics.hpp"
 #include "playback/hysteresis_inverse.hpp"
+#include "playback/kept_error.hpp"
 #include "playback/kernel_drive.hpp"
 #include "playback/reference/exact_drive.hpp"
 #include "playback/reference/spatial_content.hpp"
@@ -236,15 +238,6 @@ Result<void> check_engine(Engine engine, const RenderOptions& o) {
               o.budget.keep_reading ? "--interpolation" : "--energy-limit", "add --engine kernel");
 }
 
-bool keeps_budget(const Rendering& rendering, const RenderOptions& o) {
-  return o.budget.by_error() || rendering.error_db <= level_db(o.budget.error.most_error());
-}
-
-std::string words_of_miss(const Rendering& rendering, const RenderOptions& o) {
-  return fmt::format("error is {:.3g} %, asked: {:.3g} %", 100 * std::pow(10, rendering.error_db / 20),
-                     100 * o.budget.error.most_error());
-}
-
 /// What both engines are given.
 struct RenderJob {
   const schema::Texture& texture;
@@ -268,21 +261,57 @@ Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job)
   return {};
 }
 
-// Of a hysteresis or an energy limit the reference knows nothing: it can't take over.
+// The error, where it is more than what was asked.
+std::optional<double> missed_error(const Rendering& rendering, const RenderJob& job) {
+  if (job.options.budget.by_error()) return std::nullopt;
+  const double error = error_between_ends(rendering, job.wanted, job.options.band);
+  return error <= job.options.budget.error.most_error() ? std::nullopt : std::optional(error);
+}
+
+std::string words_of_miss(double error, const RenderOptions& o) {
+  return fmt::format("error is {:.3g} % between the path's ends, asked: {:.3g} %", 100 * error,
+                     100 * o.budget.error.most_error());
+}
+
+Result<void> refuse_miss(double error, const Rendering& rendering, const RenderOptions& o) {
+  if (std::isnan(error))
+    return fail(Fault::unsuitable, "nothing is wanted in the band: no error can be told", "error budget",
+                "render without a budget");
+  return fail(Fault::unsuitable, "the rendering's " + words_of_miss(error, o), "error budget",
+              rendering.engine == Engine::kernel
+                  ? "allow more, name a finer --encoder-step, or leave --engine and --max-tick away"
+                  : "allow more, or name less: --inverse full, a smaller --gain within the limits");
+}
+
+// Of a hysteresis or an energy limit the reference knows nothing: it can't take over, nor from a kernel that
+// was named.
 Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
-  if (keeps_budget(rendering, job.options)) return {};
-  const bool alone = job.chain.transducer.hysteresis || job.options.energy_rms_v > 0;
-  if (rendering.engine == Engine::kernel && !alone) {
+  auto missed = missed_error(rendering, job);
+  const bool stays =
+      job.options.keep_engine || job.chain.transducer.hysteresis || job.options.energy_rms_v > 0;
+  if (missed && !std::isnan(*missed) && rendering.engine == Engine::kernel && !stays) {
     rendering.warnings.push_back("the reference takes over: the kernel's " +
-                                 words_of_miss(rendering, job.options));
+                                 words_of_miss(*missed, job.options));
     rendering.clipping.reset();
     rendering.decision.reset();
     rendering.delay_s = 0;
     if (auto driven = drive_by(Engine::reference, rendering, job); !driven) return driven;
+    missed = missed_error(rendering, job);
   }
-  if (keeps_budget(rendering, job.options)) return {};
-  return fail(Fault::unsuitable, "the rendering's " + words_of_miss(rendering, job.options), "error budget",
-              "allow more, or name less: --inverse full, a smaller --gain within the limits");
+  return missed ? refuse_miss(*missed, rendering, job.options) : Result<void>();
+}
+
+// Beyond that the kernel is silent (core/profile.cpp).
+Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
+  constexpr double kFarthestCount = 1 << 29;
+  double farthest_m = 0;
+  for (const double position_m : path.position_m) farthest_m = std::max(farthest_m, std::abs(position_m));
+  if (farthest_m / o.encoder_step_m < kFarthestCount) return {};
+  return fail(
+      Fault::unsuitable,
+      fmt::format("the path goes to {:.4g} m, which is over 2^29 of the encoder's counts", farthest_m),
+      "--encoder-step",
+      fmt::format("{:.3g} nm and more reach as far", std::ceil(1e9 * farthest_m / kFarthestCount * 1.01)));
 }
 
 void warn_of_hysteresis(Rendering& rendering, const schema::Transducer& transducer, Engine engine) {
@@ -315,6 +344,8 @@ Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
   report(0.8);
   const Engine engine = engine_for(options, transducer, rendering.reasons);
   if (auto knows = check_engine(engine, options); !knows) return schema::forward_error(knows);
+  if (engine == Engine::kernel)
+    if (auto near = check_counts(path, options); !near) return schema::forward_error(near);
   warn_of_hysteresis(rendering, transducer, engine);
   const RenderJob job{texture, path, wanted, chain_of(transducer, options), options};
   rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};

@@ -84,10 +84,11 @@ struct Rendering {
 /// Renders in double precision, or (engine) by the tick kernel, as it would run: single precision, position
 /// from an encoder, limits held. All signals share the path's time axis. `progress` hears 0 to 1.
 ///
-/// A budget is kept as measured, by error_db: the reference is exact, and cheaper than the kernel, whose
-/// error is measured against it, so it is taken unless the engine is named, max_tick_ns asks for ticks, or a
-/// hysteresis is to be undone. The kernel's reading and inverse are decide()'s; where its measured error is
-/// beyond the asked one (the finger's encoder, its turns), the reference takes over, with a warning.
+/// A budget is kept as measured, by error_between_ends(): the reference is exact, and cheaper than the
+/// kernel, whose error is measured against it, so it is taken unless the engine is named, max_tick_ns asks
+/// for ticks, or a hysteresis is to be undone. The kernel's reading and inverse are decide()'s; where its
+/// measured error is beyond the asked one (the finger's encoder, its turns), the reference takes over, with a
+/// warning; a kernel that was named stays, and the error is refused.
 ///
 /// Errors: usage, for options out of range (rate <= 2 band.high_hz, 0 < low < high, gain, onset not finite);
 /// unsuitable, for a texture that isn't force in N, a path that check_finger_path() refuses, that never meets

@@ -26,7 +26,8 @@ void declare_tick_budget(CLI::App& app, AskedBudget& asked) {
 
 void add_decision(cli::Report& report, const TickDecision& decision, bool explain) {
   report.add("chosen", words_of(decision.chosen))
-      .add("promised_error_percent", 100 * decision.chosen.error)
+      .add(decision.promised ? "promised_error_percent" : "least_error_percent", 100 * decision.chosen.error)
+      .add("which_is", "at even speed and a true place; what else there is: --explain")
       .add("tick_s", 1e-9 * decision.chosen.tick_ns);
   if (!explain) return;
   std::vector<cli::Report> reasons;

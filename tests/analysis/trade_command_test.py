@@ -2,10 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`tactograph trade` and what chooses by it: files, calibration, promises, errors."""
 import csv
+import hashlib
 import json
 import os
 import pathlib
+import subprocess
 import tempfile
+
+import numpy as np
+import soundfile
 
 import tacto
 
@@ -72,7 +77,6 @@ def check_budgets(folder):
     tacto.run("spatial", "C", "-o", "exact", "--quality", "exact", cwd=folder)
     x, values, side = tacto.texture(folder / "fast")
     xe, best, best_side = tacto.texture(folder / "exact")
-    import numpy as np
     at = x + side["source_origin_m"] - best_side["source_origin_m"]
     inside = (at > 3e-3) & (at < xe[-1] - 3e-3)
     read = np.interp(at[inside], xe, best)
@@ -101,9 +105,39 @@ def check_calibration(folder):
     assert "resampling" in tacto.run("info", "here.trade.json", cwd=folder)[0]
     assert "no name" in tacto.run("trade", "--calibrate", "-o", "here.csv", cwd=folder, code=2)[1]
     assert "without a texture" in tacto.run("trade", "C", "--calibrate", cwd=folder, code=2)[1]
-    own.write_text("{}")
-    assert str(own) in tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=4)[1]
+    assert "--half" in tacto.run("trade", "--calibrate", "--half", "offline", cwd=folder, code=2)[1]
+    table["machine"] = "Cray-1, f77"
+    own.write_text(json.dumps(table))
+    by = tacto.run_json("spatial", "C", "-o", "foreign", "--quality", "balanced", "--explain", cwd=folder)["chosen"][0]["by_table"]
+    assert "another machine" in by and "Cray-1" in by, by
+    for choice in table["choices"]:  # a table that says nothing is no promise of nothing
+        choice["errors"] = []
+    own.write_text(json.dumps(table))
+    _, said = tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=5)
+    assert "the table of measured choices" in said and "--calibrate" in said, said
+    for content in ("{}", '{"kind": "trade", "version'):
+        own.write_text(content)
+        _, said = tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=4)
+        assert str(own) in said and "--calibrate" in said, said
     own.unlink()
+    own.mkdir()  # nobody's table, but somebody meant something
+    assert "--calibrate" in tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=3)[1]
+    own.rmdir()
+    homeless = {key: value for key, value in os.environ.items() if key not in ("HOME", "XDG_CONFIG_HOME")}
+    done = subprocess.run([tacto.COMMAND, "trade", "--calibrate"], env=homeless, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 3 and "calibrating" not in done.stderr, done
+
+
+def check_refusals(folder):
+    """Nothing to feel is no trade; a percentage beyond a tenth no promise; an output is named once."""
+    side = json.loads((folder / "C.texture.json").read_text())
+    wav = folder / "even.texture.wav"
+    soundfile.write(wav, np.full(side["data"]["samples"], 0.5, np.float32), soundfile.info(folder / "C.texture.wav").samplerate, subtype="FLOAT")
+    side["data"] |= {"file": wav.name, "sha256": hashlib.sha256(wav.read_bytes()).hexdigest()}
+    (folder / "even.texture.json").write_text(json.dumps(side))
+    assert "nothing to feel" in tacto.run("trade", "even", "-o", "no.html", cwd=folder, code=5)[1]
+    assert "named twice" in tacto.run("trade", "C", "-o", "a.csv", "-o", "a.csv", cwd=folder, code=2)[1]
+    assert "at most 10%" in tacto.run("spatial", "C", "-o", "no", "--max-error", "1000%", cwd=folder, code=2)[1]
 
 
 def the_trade_and_what_chooses_by_it():
@@ -113,6 +147,7 @@ def the_trade_and_what_chooses_by_it():
     check_scene(folder)
     check_budgets(folder)
     check_calibration(folder)
+    check_refusals(folder)
     assert "no texture is named" in tacto.run("trade", code=2)[1]
 
 

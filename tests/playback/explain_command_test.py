@@ -72,9 +72,11 @@ def check_render(folder):
     report = render(folder, "--max-error", "0.5%", "--explain")
     assert report["engine"] == "reference" and report["displacement_error_db"] < 20 * np.log10(5e-3), report
     assert "cheaper" in report["why_this_engine"][0]
-    # The kernel at rests and turns errs by more than this: what it made is measured, and not kept.
-    report = render(folder, "--engine", "kernel", "--hold", "zero-order", "--max-error", "0.5%")
+    # The kernel at rests and turns errs by more than this: what it made is measured, and not kept. One that was named stays.
+    report = render(folder, "--max-tick", "1us", "--hold", "zero-order", "--max-error", "0.5%")
     assert report["engine"] == "reference" and report["displacement_error_db"] < 20 * np.log10(5e-3), report
+    refused(UNSUITABLE, "the rendering's error", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011",
+            "-o", folder / "no.wav", "--gain", "0.2mm/N", "--engine", "kernel", "--hold", "zero-order", "--max-error", "0.5%")
     report = render(folder, "--engine", "kernel", "--hold", "zero-order", "--max-error", "10%", "--explain")
     assert report["engine"] == "kernel" and report["displacement_error_db"] <= -20 and "why" in report, report
     refused(UNSUITABLE, "asked", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "no.wav",

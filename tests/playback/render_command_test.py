@@ -85,6 +85,22 @@ def check_kernel(folder):
     assert done.returncode == USAGE and "--engine kernel" in done.stderr, done
 
 
+def check_budget(folder):
+    """What is asked for holds between the path's ends; a time alone is no promise; what can't be told is refused."""
+    made.write_path(folder / "through.csv", [0, 1.5], [0.002, 0.048])  # goes at both ends
+    base = ["render", folder / "t", "--path", folder / "through.csv", "--transducer", "wiertlewski2011", "-o", folder / "b.wav"]
+    kept = made.report_of(*base, "--max-error", "10ppm")
+    assert kept["engine"] == "reference" and kept["displacement_error_db"] > -95, kept  # the ends are told, not judged
+    timed = made.report_of(*base, "--max-tick", "1us")
+    assert timed["engine"] == "kernel" and "promised_error_percent" not in timed and timed["least_error_percent"] < 0.1, timed
+    assert made.report_of(*base, "--engine", "kernel", "--max-error", "5%", "--encoder-step", "10nm")["engine"] == "kernel"
+    expect_refusal(folder, UNSUITABLE, "between the path's ends",
+                   **{"path": folder / "through.csv", "engine": "kernel", "max-error": "0.1%", "encoder-step": "5um"})
+    expect_refusal(folder, UNSUITABLE, "2^29", **{"path": folder / "through.csv", "engine": "kernel", "encoder-step": "80pm"})
+    made.write_texture(folder / "nothing", np.zeros(50_001))
+    expect_refusal(folder, UNSUITABLE, "no error can be told", texture=folder / "nothing", quality="balanced")
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -93,6 +109,7 @@ def main():
         check_refusals(folder)
         check_clipping(folder)
         check_kernel(folder)
+        check_budget(folder)
         check_report(folder)
 
 
