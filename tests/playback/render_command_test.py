@@ -96,7 +96,7 @@ def check_budget(folder):
     assert made.report_of(*base, "--engine", "kernel", "--max-error", "5%", "--encoder-step", "10nm")["engine"] == "kernel"
     expect_refusal(folder, UNSUITABLE, "between the path's ends",
                    **{"path": folder / "through.csv", "engine": "kernel", "max-error": "0.1%", "encoder-step": "5um"})
-    expect_refusal(folder, UNSUITABLE, "2^29", **{"path": folder / "through.csv", "engine": "kernel", "encoder-step": "80pm"})
+    expect_refusal(folder, UNSUITABLE, "2^29", **{"path": folder / "through.csv", "engine": "kernel", "encoder-step": "0.08nm"})
     made.write_texture(folder / "nothing", np.zeros(50_001))
     expect_refusal(folder, UNSUITABLE, "no error can be told", texture=folder / "nothing", quality="balanced")
 
