@@ -13,6 +13,7 @@
 #include "firmware-host/core/wire/message_types.hpp"
 #include "playback/chain.hpp"
 #include "playback/choices.hpp"
+#include "playback/daemon/played_ends.hpp"
 #include "playback/daemon/session_columns.hpp"
 #include "playback/hysteresis_inverse.hpp"
 #include "playback/reference/spatial_content.hpp"
@@ -53,9 +54,6 @@ FingerPath path_of(const SessionColumns& columns) {
 }
 
 Result<schema::Texture> same_texture(const schema::SessionTexture& played) {
-  if (played.ends != schema::TextureEnds::stop)
-    return fail(Fault::unsuitable, "was played with mirrored or looped ends, which the reference does not do",
-                played.file);
   auto texture = schema::read_texture(played.file);
   if (!texture) return texture;
   const auto wav = schema::texture_wav(played.file);
@@ -83,9 +81,12 @@ struct Judge {
     for (const schema::SessionTexture& played : columns.header.textures) {
       const auto texture = same_texture(played);
       if (!texture) return schema::forward_error(texture);
+      const auto [nearest, farthest] = std::ranges::minmax_element(path.position_m);
+      const auto signal = as_played(*texture, played, *nearest, *farthest);
+      if (!signal) return schema::forward_error(signal);
       const double finest_hz = fastest_mps * highest_spatial_frequency(texture->signal);
       const ReadingGrid fine = reading_grid(path.duration_s(), columns.header.rate_hz, band, finest_hz);
-      const TextureLookup lookup(texture->signal, played.at_m);
+      const TextureLookup lookup(signal->signal, signal->at_m);
       const auto values = signal_of(exact_wanted(lookup, path, fine, band, played.gain_m_per_n, 0));
       for (std::size_t i = 0; i < std::min(sum.size(), values.size()); ++i)
         sum[i] += columns.gain[i] * values[i];

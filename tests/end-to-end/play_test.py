@@ -53,6 +53,20 @@ def plays_what_was_wanted():
     np.testing.assert_allclose(np.diff(table["time_s"]), 1 / 2000, atol=1.1e-6)  # the emulated clock counts microseconds
 
 
+def what_goes_on_beyond_its_ends_is_judged_too():
+    """13 mm under a finger that goes 30: looped and mirrored, the strokes err as inside; taken for the other, not at all."""
+    x = np.arange(1300) * 10e-6
+    write_texture("short", 0.02 * np.sin(2 * np.pi * 1030 * x + 1) * (1 + 20 * x))
+    write_strokes(4)
+    for ends in ("loop", "mirror"):
+        tacto.run("play", "short", "-d", "sim:", "--finger-path", "path.csv", "--time", "4s", "--gain", "0.5mm/N", "--ends", ends, "-o", ends)
+        strokes = tacto.run_json("session", ends)["strokes"]
+        assert len(strokes) == 4, strokes
+        for stroke in strokes:
+            assert stroke["error_db"] < -15 and abs(stroke["received_over_wanted_db"]) < 0.5, (ends, stroke)
+        print(f"{ends}: error of each stroke:", ", ".join(f"{s['error_db']:.1f} dB" for s in strokes))
+
+
 def a_slow_finger_on_a_coarse_encoder():
     """What was wanted goes along the finger's way, not up the encoder's staircase: 20 Hz at 1 mm/s, five counts a period."""
     x = np.arange(20000) * 1e-6
@@ -230,7 +244,7 @@ def ten_minutes_at_10_khz():
 
 
 if __name__ == "__main__":
-    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, two_textures_in_a_scene, what_was_chosen_acts, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
+    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, what_goes_on_beyond_its_ends_is_judged_too, two_textures_in_a_scene, what_was_chosen_acts, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
         if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
             continue
         tacto.in_folder(test)
