@@ -250,7 +250,7 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
   const auto scene = scene_of(request);
   if (!scene) return schema::forward_error(scene);
   const schema::PlaybackChoices choices = request.choices.over(scene->playback.over(request.defaults));
-  auto chosen = with_choices(std::move(options), choices);
+  auto chosen = with_choices(options, choices);
   if (!chosen) return schema::forward_error(chosen);
   Program program;
   if (names_a_scene(request.file)) program.scene_path = schema::scene_path(request.file);
@@ -262,7 +262,7 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
     return schema::forward_error(usable);
   program.session.transducer = *transducer;
   program.session.transducer_sha256 = transducer_sum(transducer_name);
-  program.options = std::move(*chosen);
+  program.options = *chosen;
   const auto made = prepare_laid(program, *laid, budget_of(request, choices));
   if (!made) return schema::forward_error(made);
   if (request.any_displacement) program.tray_peak_m = 0;
