@@ -62,16 +62,14 @@ class RealtimeTrade {
     return lines_.back().row;
   }
   // What is refused has nothing right.
-  TradeRow& add(const std::string& knob, const std::string& choice, const PlayedCase& played,
-                const schema::Transducer& transducer) {
-    const auto outcome = play_case(texture_, transducer, played);
+  TradeRow& take(const std::string& knob, const std::string& choice, const Result<PlayedOutcome>& outcome) {
     if (outcome) return put(knob, choice, *outcome);
     lines_.push_back(
         {{knob, choice, 1, 0, "tick", 0, 0, {}}, std::nullopt, 1, "refused: " + outcome.error().what});
     return lines_.back().row;
   }
   TradeRow& add(const std::string& knob, const std::string& choice, const PlayedCase& played) {
-    return add(knob, choice, played, transducer_);
+    return take(knob, choice, play_case(texture_, transducer_, played));
   }
 
   void add_readings();
@@ -124,8 +122,8 @@ void RealtimeTrade::add_inverses() {
   for (const auto& [word, inverse] : kInverses) {
     PlayedCase played = usual();
     played.options.inverse = inverse;
-    add("inverse", word, played);
     const auto outcome = play_case(texture_, transducer_, played);
+    take("inverse", word, outcome);
     if (!outcome) continue;
     lines_.push_back(lines_.back());
     TradeRow& row = lines_.back().row;
@@ -146,7 +144,7 @@ void RealtimeTrade::add_looking_ahead() {
     played.way = FingerWay::wandering;
     played.options.look_ahead = ahead;
     const auto outcome = play_case(texture_, transducer_, played);
-    TradeRow& row = add("look ahead", ahead ? "on" : "off", played);
+    TradeRow& row = take("look ahead", ahead ? "on" : "off", outcome);
     row.note = "speed wanders by 10 %";
     if (outcome && !ahead)
       row.note += fmt::format("; re what was wanted {:g} ms before it errs by {}",
@@ -235,7 +233,7 @@ void RealtimeTrade::add_hysteresis() {
   for (const bool undone : {true, false}) {
     PlayedCase played = usual();
     played.options.undo_hysteresis = undone;
-    add("hysteresis", undone ? "undone" : "kept", played, bender).note =
+    take("hysteresis", undone ? "undone" : "kept", play_case(texture_, bender, played)).note =
         transducer_.hysteresis ? "as the transducer's file has it" : "a bender of 16 plays, assumed";
   }
 }
