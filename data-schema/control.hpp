@@ -32,6 +32,7 @@ struct ControlRequest {
   PlaybackChoices playback;  ///< load
   std::optional<double> gain;
   bool save = false;
+  std::string asked_by;  ///< who saves; in no line: the socket knows
 };
 
 /// One member of a reply or event.

@@ -35,9 +35,9 @@ std::string reason(int error_number) {
 }
 
 tl::unexpected<Error> unreadable(const std::string& path, int error_number) {
-  const std::string what =
-      error_number == ENOENT ? "there is no such file" : "can't be read: " + reason(error_number);
-  return fail(Fault::not_found, what, path);
+  if (error_number == ENOENT)
+    return fail(Fault::not_found, "there is no such file", path, "see how it is spelt, and in which folder");
+  return fail(Fault::not_found, "can't be read: " + reason(error_number), path);
 }
 
 // A pipe, a terminal or a device may never end, or be silent for ever: it is not even opened.
@@ -240,6 +240,16 @@ Result<void> PendingFiles::commit(Existing existing) {
     pending_.erase(pending_.begin());
   }
   return {};
+}
+
+Result<void> check_changeable(const std::string& path) {
+  constexpr auto kAnyWrite = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  std::error_code failed;
+  const auto status = fs::status(path, failed);
+  const bool read_only = !failed && (status.permissions() & kAnyWrite) == fs::perms::none;
+  if (!read_only && access(path.c_str(), W_OK) == 0) return {};
+  return fail(Fault::cannot_write, read_only ? "is read-only" : "may not be written", path,
+              "permit it (chmod u+w), or work on a copy");
 }
 
 Result<void> check_stem(const std::string& stem) {

@@ -20,6 +20,10 @@ Result<void> check_readable(const std::string& path);
 /// Whether `path` names a file (not a folder).
 bool is_file(const std::string& path);
 
+/// That a file may be changed: who renames a new one over it would not be stopped by its being read-only.
+/// Errors: cannot_write.
+Result<void> check_changeable(const std::string& path);
+
 /// The whole file. Only regular files are opened, here and below: a pipe would be waited for. Errors:
 /// not_found (absent, a folder, a pipe or device, no permission).
 Result<std::string> read_file(const std::string& path);

@@ -47,7 +47,8 @@ Result<Scene> read_scene(const std::string& name);
 /// The same from a text; `where` names it in errors.
 Result<Scene> parse_scene(std::string_view text, const std::string& where);
 
-/// Replaces what is there. Errors: cannot_write; unsuitable, where the schema does not allow it.
+/// Replaces what is there. Errors: cannot_write, also of a file that is read-only; unsuitable, where the
+/// schema does not allow it.
 Result<void> write_scene(const std::string& stem, const Scene& scene);
 
 /// NAME.scene.json of a stem or file name.

@@ -113,8 +113,11 @@ Result<Scene> read_scene(const std::string& name) {
 Result<void> write_scene(const std::string& stem, const Scene& scene) {
   const auto text = document_text(kSceneKind, scene_body(scene), scene.extra_json);
   if (!text) return forward_error(text);
+  const std::string path = scene_path(stem);
+  if (is_file(path))
+    if (const auto free = check_changeable(path); !free) return free;
   PendingFiles pending;
-  if (const auto written = pending.write(scene_path(stem), *text); !written) return written;
+  if (const auto written = pending.write(path, *text); !written) return written;
   return pending.commit();
 }
 

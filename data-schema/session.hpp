@@ -58,7 +58,18 @@ struct SessionTexture {
   TextureEnds ends = TextureEnds::stop;
 };
 
-struct SessionHeader {
+/// What is played, and how the drive is made of it.
+struct SessionProgram {
+  std::string scene_file, scene_sha256;  ///< empty where a texture was played by itself
+  std::vector<SessionTexture> textures;
+  std::string inverse;
+  PlaybackChoices choices;  ///< with which it was played; older sessions tell the inverse alone
+  double delay_s = 0, low_hz = 0, high_hz = 0;
+  double loop_delay_s = 0;  ///< of a loop closed on the host: from the count to the drive at the device
+};
+
+/// It begins with the program that was armed.
+struct SessionHeader : SessionProgram {
   std::string created, creator, build;
   std::string loop = "device";  ///< or "host"
   double rate_hz = 0, clock_hz = 0, metres_per_count = 0;
@@ -66,20 +77,28 @@ struct SessionHeader {
   std::string device_protocol;  ///< "1.2", of the wire; empty: not told, older
   Transducer transducer;
   std::string transducer_sha256;
-  std::string scene_file, scene_sha256;  ///< empty where a texture was played by itself
-  std::vector<SessionTexture> textures;
   double initial_gain = 1;
   std::int32_t initial_encoder = 0;
-  std::string inverse;
-  PlaybackChoices choices;  ///< with which it was played; older sessions tell the inverse alone
-  double delay_s = 0, low_hz = 0, high_hz = 0;
   std::string extra_json;
   std::string newer_version;
+};
+
+/// What the next `change` among the commands brings. Where several stand before it, the last one: an earlier
+/// one came to nothing.
+struct SessionChange {
+  std::uint64_t not_before = 0;
+  std::int64_t time_ns = 0;  ///< host's steady clock, before its upload
+  SessionProgram program;
 };
 
 /// The header as JSON and back; `where` names the file in errors. Errors: as document_text, parse_document.
 Result<std::string> session_header_text(const SessionHeader& header);
 Result<SessionHeader> parse_session_header(std::string_view text, const std::string& where);
+
+/// A change's program likewise. Errors: as of the header's; unsuitable, where it takes more than a block
+/// holds.
+Result<std::string> session_program_text(const SessionProgram& program);
+Result<SessionProgram> parse_session_program(std::string_view text, const std::string& where);
 
 /// NAME.session of a stem or file name.
 std::string session_path(const std::string& name);

@@ -174,6 +174,27 @@ std::optional<SessionEvent> event_from(std::string_view payload) {
   return event;
 }
 
+Result<std::string> change_payload(const SessionChange& change) {
+  const auto text = session_program_text(change.program);
+  if (!text) return forward_error(text);
+  std::string bytes;
+  append_number(bytes, change.not_before);
+  append_number(bytes, change.time_ns);
+  return bytes + *text;
+}
+
+std::optional<SessionChange> change_from(std::string_view payload) {
+  if (payload.size() < kMomentBytes) return std::nullopt;
+  NumberReader take(payload);
+  SessionChange change;
+  change.not_before = take.number<std::uint64_t>();
+  change.time_ns = take.number<std::int64_t>();
+  auto program = parse_session_program(take.rest(), "change");
+  if (!program) return std::nullopt;
+  change.program = std::move(*program);
+  return change;
+}
+
 std::string end_payload(const SessionEnd& end) {
   std::string bytes;
   for (const std::uint64_t number : {end.ticks, end.lost_ticks, end.late_ticks}) append_number(bytes, number);

@@ -13,7 +13,15 @@
 
 namespace tacto::schema {
 
-enum class BlockType : std::uint8_t { header = 0, ticks = 1, command = 2, loss = 3, event = 4, end = 5 };
+enum class BlockType : std::uint8_t {
+  header = 0,
+  ticks = 1,
+  command = 2,
+  loss = 3,
+  event = 4,
+  end = 5,
+  change = 6
+};
 
 inline constexpr std::uint32_t kBlockMagic = 0x31534354;
 inline constexpr std::size_t kBlockHead = 20;
@@ -38,6 +46,8 @@ std::string command_payload(const SessionCommand& command);
 std::string loss_payload(const SessionLoss& loss);
 std::string event_payload(const SessionEvent& event);
 std::string end_payload(const SessionEnd& end);
+/// Errors: as session_program_text.
+Result<std::string> change_payload(const SessionChange& change);
 
 /// And back; none where the size does not fit.
 std::optional<std::vector<SessionTick>> ticks_from(std::string_view payload);
@@ -45,5 +55,6 @@ std::optional<SessionCommand> command_from(std::string_view payload);
 std::optional<SessionLoss> loss_from(std::string_view payload);
 std::optional<SessionEvent> event_from(std::string_view payload);
 std::optional<SessionEnd> end_from(std::string_view payload);
+std::optional<SessionChange> change_from(std::string_view payload);
 
 }  // namespace tacto::schema

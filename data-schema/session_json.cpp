@@ -8,12 +8,14 @@
 #include "data-schema/json_schema.hpp"
 #include "data-schema/playback_choices_json.hpp"
 #include "data-schema/session.hpp"
+#include "data-schema/session_blocks.hpp"
 #include "data-schema/transducer_json.hpp"
 
 namespace tacto::schema {
 namespace {
 
 constexpr std::string_view kSessionKind = "session";
+constexpr std::string_view kChangeKind = "session_change";
 
 struct SessionText {
   const char* name;
@@ -35,9 +37,14 @@ struct SessionNumber {
 constexpr SessionNumber kSessionNumbers[] = {{"rate_hz", &SessionHeader::rate_hz},
                                              {"clock_hz", &SessionHeader::clock_hz},
                                              {"metres_per_count", &SessionHeader::metres_per_count}};
-constexpr SessionNumber kPlaybackNumbers[] = {{"delay_s", &SessionHeader::delay_s},
-                                              {"low_hz", &SessionHeader::low_hz},
-                                              {"high_hz", &SessionHeader::high_hz}};
+struct ProgramNumber {
+  const char* name;
+  double SessionProgram::*member;
+};
+constexpr ProgramNumber kPlaybackNumbers[] = {{"delay_s", &SessionProgram::delay_s},
+                                              {"loop_delay_s", &SessionProgram::loop_delay_s},
+                                              {"low_hz", &SessionProgram::low_hz},
+                                              {"high_hz", &SessionProgram::high_hz}};
 
 Json device_body(const SessionHeader& header) {
   Json body = Json::object();
@@ -66,11 +73,18 @@ SessionTexture texture_of_row(const Json& row) {
           number_or(row, "gain_m_per_n", 0), ends_from(text_or(row, "ends"))};
 }
 
-Json playback_body(const SessionHeader& header) {
-  Json body = playback_choices_body(header.choices);
-  body["inverse"] = header.inverse;
-  for (const auto& [name, member] : kPlaybackNumbers) body[name] = header.*member;
+Json playback_body(const SessionProgram& program) {
+  Json body = playback_choices_body(program.choices);
+  body["inverse"] = program.inverse;
+  for (const auto& [name, member] : kPlaybackNumbers) body[name] = program.*member;
   return body;
+}
+
+void put_textures(Json& body, const SessionProgram& program) {
+  if (!program.scene_file.empty())
+    body["scene"] = {{"file", program.scene_file}, {"sha256", program.scene_sha256}};
+  body["textures"] = Json::array();
+  for (const SessionTexture& texture : program.textures) body["textures"].push_back(texture_row(texture));
 }
 
 Json session_body(const SessionHeader& header) {
@@ -80,10 +94,7 @@ Json session_body(const SessionHeader& header) {
   body["device"] = device_body(header);
   body["transducer"] = transducer_body(header.transducer);
   put_text(body, "transducer_sha256", header.transducer_sha256);
-  if (!header.scene_file.empty())
-    body["scene"] = {{"file", header.scene_file}, {"sha256", header.scene_sha256}};
-  body["textures"] = Json::array();
-  for (const SessionTexture& texture : header.textures) body["textures"].push_back(texture_row(texture));
+  put_textures(body, header);
   body["initial"] = {
       {"state", "idle"}, {"gain", header.initial_gain}, {"encoder_count", header.initial_encoder}};
   body["playback"] = playback_body(header);
@@ -96,13 +107,28 @@ void read_device(const Json& body, SessionHeader& header) {
   header.simulated = text_or(body, "simulated");
 }
 
-void read_played(const Json& body, SessionHeader& header) {
-  header.transducer = transducer_from(body["transducer"]);
-  header.transducer_sha256 = text_or(body, "transducer_sha256");
-  for (const Json& row : body["textures"]) header.textures.push_back(texture_of_row(row));
+void read_textures(const Json& body, SessionProgram& program) {
+  for (const Json& row : body["textures"]) program.textures.push_back(texture_of_row(row));
   if (!body.contains("scene")) return;
-  header.scene_file = text_or(body["scene"], "file");
-  header.scene_sha256 = text_or(body["scene"], "sha256");
+  program.scene_file = text_or(body["scene"], "file");
+  program.scene_sha256 = text_or(body["scene"], "sha256");
+}
+
+void read_program(const Json& body, SessionProgram& program) {
+  read_textures(body, program);
+  program.inverse = text_or(body["playback"], "inverse");
+  program.choices = playback_choices_in(body);
+  program.choices.extra_json.clear();
+  for (const auto& [name, member] : kPlaybackNumbers) program.*member = number_or(body["playback"], name, 0);
+}
+
+constexpr std::size_t kMostProgramText = kMostPayload - 16;  // beside a change's moment
+
+Result<std::string> too_long(std::size_t bytes) {
+  return fail(Fault::unsuitable,
+              fmt::format("what is played takes {} bytes to name, a session has room for {}", bytes,
+                          kMostProgramText),
+              "session", "play a scene of fewer layers");
 }
 
 // It says neither kind nor version, and fits the transducer's schema in all else.
@@ -122,20 +148,35 @@ SessionHeader session_from(const Json& body) {
   for (const auto& [name, member] : kSessionTexts) header.*member = text_or(body, name);
   for (const auto& [name, member] : kSessionNumbers) header.*member = number_or(body, name, 0);
   read_device(body["device"], header);
-  read_played(body, header);
+  read_program(body, header);
+  header.transducer = transducer_from(body["transducer"]);
+  header.transducer_sha256 = text_or(body, "transducer_sha256");
   header.initial_gain = number_or(body["initial"], "gain", 1);
   header.initial_encoder = body["initial"].value("encoder_count", std::int32_t{0});
-  header.inverse = text_or(body["playback"], "inverse");
-  header.choices = playback_choices_in(body);
-  header.choices.extra_json.clear();
-  for (const auto& [name, member] : kPlaybackNumbers) header.*member = number_or(body["playback"], name, 0);
   return header;
 }
 
 }  // namespace
 
 Result<std::string> session_header_text(const SessionHeader& header) {
-  return document_text(kSessionKind, session_body(header), header.extra_json);
+  auto text = document_text(kSessionKind, session_body(header), header.extra_json);
+  return text && text->size() > kMostProgramText ? too_long(text->size()) : text;
+}
+
+Result<std::string> session_program_text(const SessionProgram& program) {
+  Json body = Json::object();
+  put_textures(body, program);
+  body["playback"] = playback_body(program);
+  auto text = document_text(kChangeKind, body, {});
+  return text && text->size() > kMostProgramText ? too_long(text->size()) : text;
+}
+
+Result<SessionProgram> parse_session_program(std::string_view text, const std::string& where) {
+  const auto document = parse_document(text, where, kChangeKind);
+  if (!document) return forward_error(document);
+  SessionProgram program;
+  read_program(document->body, program);
+  return program;
 }
 
 Result<SessionHeader> parse_session_header(std::string_view text, const std::string& where) {

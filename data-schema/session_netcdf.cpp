@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/session_netcdf.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <sstream>
 
@@ -27,9 +29,30 @@ void put_played(NetcdfWriter& file, const SessionHeader& header) {
   file.attribute("textures", names);
 }
 
+void put_turns(NetcdfWriter& file, const std::vector<SessionTurn>& turns) {
+  std::string lines;
+  const auto add = [&](const SessionTurn& turn, std::string_view name) {
+    lines += fmt::format("{}from {:.6g} s on, over {:.6g} s: {}", lines.empty() ? "" : "\n", turn.from_s,
+                         turn.fade_s, name);
+  };
+  for (const SessionTurn& turn : turns) {
+    if (turn.textures.empty()) add(turn, "the session does not say");
+    for (const SessionTexture& texture : turn.textures) add(turn, texture.file);
+  }
+  if (!lines.empty()) file.attribute("changes", lines);
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 }  // namespace
 
 Result<void> write_session_netcdf(const std::string& path, const SessionHeader& header,
+                                  const std::vector<SessionTurn>& turns,
                                   const std::vector<SessionVariable>& variables,
                                   const std::vector<double>& time_s) {
   NetcdfWriter file(path);
@@ -40,6 +63,7 @@ Result<void> write_session_netcdf(const std::string& path, const SessionHeader& 
   for (const SessionVariable& variable : variables)
     ids.push_back(file.values(variable.name, blocks, variable.units, variable.long_name));
   put_played(file, header);
+  put_turns(file, turns);
   file.put(axis, time_s);
   for (std::size_t i = 0; i < ids.size(); ++i) file.put(ids[i], *variables[i].values);
   return file.close(path);
@@ -58,8 +82,8 @@ Result<SessionTable> read_session_table(const std::string& path) {
   table.device = file.text("device");
   table.transducer = file.text("transducer");
   table.simulated = file.text("simulated");
-  std::istringstream names(file.text("textures"));
-  for (std::string name; std::getline(names, name);) table.textures.push_back(name);
+  table.textures = lines_of(file.text("textures"));
+  table.changes = lines_of(file.text("changes"));
   table.rate_hz = file.number("rate_hz");
   const bool ours = file.text("kind") == kSessionKind;
   const std::vector<double> time_s = file.axis("time");

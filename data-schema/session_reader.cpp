@@ -9,7 +9,9 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::uint32_t kLateFlag = 32;        // firmware-host/core/WIRE.md
+constexpr std::uint32_t kLateFlag = 32;  // firmware-host/core/WIRE.md
+constexpr std::uint8_t kChangeMessage = 0x17;
+constexpr std::size_t kTypeInFrame = 3;
 constexpr std::size_t kMostEventsKept = 1000;  // of the totals: a file may hold any number
 
 template <class Part>
@@ -30,6 +32,8 @@ std::optional<SessionBlock> decoded(BlockType type, std::string_view payload) {
       return block_of(event_from(payload));
     case BlockType::end:
       return block_of(end_from(payload));
+    case BlockType::change:
+      return block_of(change_from(payload));
     case BlockType::header:
       break;
   }
@@ -37,7 +41,7 @@ std::optional<SessionBlock> decoded(BlockType type, std::string_view payload) {
 }
 
 bool is_known(BlockType type) {
-  return type >= BlockType::ticks && type <= BlockType::end;
+  return type >= BlockType::ticks && type <= BlockType::change;
 }
 
 }  // namespace
@@ -119,26 +123,34 @@ namespace {
 // One overload a kind of block.
 struct Count {
   SessionTotals& totals;
+  std::optional<SessionChange> next = {};
 
-  void operator()(const std::vector<SessionTick>& ticks) const {
+  void operator()(const std::vector<SessionTick>& ticks) {
     if (totals.ticks == 0) totals.first_ns = ticks.front().time_ns;
     totals.ticks += ticks.size();
     totals.last_ns = ticks.back().time_ns;
     for (const SessionTick& tick : ticks) totals.late_ticks += (tick.flags & kLateFlag) != 0;
   }
-  void operator()(const SessionCommand&) const { ++totals.commands; }
-  void operator()(const SessionLoss& loss) const { totals.lost_ticks += loss.count; }
-  void operator()(const SessionEvent& event) const {
+  void operator()(const SessionCommand& command) {
+    ++totals.commands;
+    if (command.frame.size() <= kTypeInFrame || command.frame[kTypeInFrame] != kChangeMessage) return;
+    if (next && totals.changes.size() < kMostEventsKept) totals.changes.push_back(std::move(*next));
+    next.reset();
+  }
+  void operator()(SessionChange& change) { next = std::move(change); }
+  void operator()(const SessionLoss& loss) { totals.lost_ticks += loss.count; }
+  void operator()(const SessionEvent& event) {
     if (totals.events.size() < kMostEventsKept) totals.events.push_back(event);
   }
-  void operator()(const SessionEnd& end) const { totals.end = end; }
+  void operator()(const SessionEnd& end) { totals.end = end; }
 };
 
 }  // namespace
 
 SessionTotals session_totals(SessionReader& reader) {
   SessionTotals totals;
-  while (const auto block = reader.next()) std::visit(Count{totals}, *block);
+  Count count{totals};
+  while (auto block = reader.next()) std::visit(count, *block);
   totals.ending = reader.ending();
   return totals;
 }

@@ -10,8 +10,8 @@
 
 namespace tacto::schema {
 
-using SessionBlock =
-    std::variant<std::vector<SessionTick>, SessionCommand, SessionLoss, SessionEvent, SessionEnd>;
+using SessionBlock = std::variant<std::vector<SessionTick>, SessionCommand, SessionLoss, SessionEvent,
+                                  SessionEnd, SessionChange>;
 
 /// How a session's file ends.
 enum class SessionEnding {
@@ -48,7 +48,8 @@ class SessionReader {
 struct SessionTotals {
   std::uint64_t ticks = 0, commands = 0, lost_ticks = 0, late_ticks = 0;
   std::int64_t first_ns = 0, last_ns = 0;
-  std::vector<SessionEvent> events;
+  std::vector<SessionEvent> events;    ///< the first 1000
+  std::vector<SessionChange> changes;  ///< the first 1000 that came to be
   std::optional<SessionEnd> end;
   SessionEnding ending = SessionEnding::unread;
 };

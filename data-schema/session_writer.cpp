@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -14,6 +15,9 @@
 namespace tacto::schema {
 namespace {
 
+constexpr std::int64_t kFreeOfTicks = 4096, kFreeOfNotes = 2048, kFreeOfLosses = 256;
+constexpr std::int64_t kAhead = 65536;  // room is asked for in such steps
+
 tl::unexpected<Error> unwritable_session(const std::string& path, int error_number) {
   if (error_number == EEXIST)
     return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
@@ -24,12 +28,16 @@ tl::unexpected<Error> unwritable_session(const std::string& path, int error_numb
 }  // namespace
 
 SessionWriter::SessionWriter(SessionWriter&& other) noexcept
-    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)), size_(other.size_) {}
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_),
+      held_(other.held_) {}
 
 SessionWriter& SessionWriter::operator=(SessionWriter&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(size_, other.size_);
+  std::swap(held_, other.held_);
   return *this;
 }
 
@@ -44,43 +52,67 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
   if (opened < 0) return unwritable_session(path, errno);
   SessionWriter writer(path, opened);
   flock(opened, LOCK_EX | LOCK_NB);  // held by nobody else: the file is new
-  if (const auto begun = writer.append(sealed_block(BlockType::header, *text)); !begun) {
+  if (const auto begun = writer.append(sealed_block(BlockType::header, *text), kFreeOfTicks); !begun) {
     unlink(path.c_str());
     return forward_error(begun);
   }
   return writer;
 }
 
+// Where a file system promises nothing, a write will tell.
+Result<void> SessionWriter::make_room(std::int64_t bytes) {
+  const std::int64_t needed = size_ + bytes;
+  rlimit most{};
+  if (getrlimit(RLIMIT_FSIZE, &most) == 0 && static_cast<rlim_t>(needed) > most.rlim_cur)
+    return unwritable_session(path_, EFBIG);
+  if (needed <= held_) return {};
+  for (const std::int64_t ahead : {kAhead, std::int64_t{0}}) {
+    if (fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, size_, bytes + ahead) == 0)
+      return held_ = needed + ahead, Result<void>{};
+    if (errno != ENOSPC && errno != EDQUOT) return {};
+  }
+  return unwritable_session(path_, errno);
+}
+
 // Half a block would hide what comes after it.
-Result<void> SessionWriter::append(const std::string& block) {
+Result<void> SessionWriter::append(const std::string& block, std::int64_t to_keep_free) {
+  const auto size = static_cast<std::int64_t>(block.size());
+  if (const auto room = make_room(size + to_keep_free); !room) return room;
   const ssize_t done = pwrite(descriptor_, block.data(), block.size(), size_);
   if (done == static_cast<ssize_t>(block.size())) {
     size_ += done;
     return {};
   }
   const int why = done < 0 ? errno : ENOSPC;
-  [[maybe_unused]] const int cut = ftruncate(descriptor_, size_);
+  if (done > 0 && ftruncate(descriptor_, size_) == 0) held_ = 0;
   return unwritable_session(path_, why);
 }
 
 Result<void> SessionWriter::add(std::span<const SessionTick> ticks) {
   for (; !ticks.empty(); ticks = ticks.subspan(std::min(ticks.size(), kMostBlockTicks))) {
     const auto part = ticks.first(std::min(ticks.size(), kMostBlockTicks));
-    if (const auto done = append(sealed_block(BlockType::ticks, ticks_payload(part))); !done) return done;
+    if (const auto done = append(sealed_block(BlockType::ticks, ticks_payload(part)), kFreeOfTicks); !done)
+      return done;
   }
   return {};
 }
 
 Result<void> SessionWriter::add(const SessionCommand& command) {
-  return append(sealed_block(BlockType::command, command_payload(command)));
+  return append(sealed_block(BlockType::command, command_payload(command)), kFreeOfNotes);
 }
 
 Result<void> SessionWriter::add(const SessionLoss& loss) {
-  return append(sealed_block(BlockType::loss, loss_payload(loss)));
+  return append(sealed_block(BlockType::loss, loss_payload(loss)), kFreeOfLosses);
 }
 
 Result<void> SessionWriter::add(const SessionEvent& event) {
-  return append(sealed_block(BlockType::event, event_payload(event)));
+  return append(sealed_block(BlockType::event, event_payload(event)), kFreeOfNotes);
+}
+
+Result<void> SessionWriter::add(const SessionChange& change) {
+  const auto payload = change_payload(change);
+  if (!payload) return forward_error(payload);
+  return append(sealed_block(BlockType::change, *payload), kFreeOfNotes);
 }
 
 Result<void> SessionWriter::sync() {
@@ -88,7 +120,8 @@ Result<void> SessionWriter::sync() {
 }
 
 Result<void> SessionWriter::close(const SessionEnd& end) {
-  if (const auto done = append(sealed_block(BlockType::end, end_payload(end))); !done) return done;
+  if (const auto done = append(sealed_block(BlockType::end, end_payload(end)), 0); !done) return done;
+  [[maybe_unused]] const int given_back = ftruncate(descriptor_, size_);  // what was held for more
   if (const auto done = sync(); !done) return done;
   ::close(std::exchange(descriptor_, -1));
   return {};

@@ -94,14 +94,23 @@ Result<void> check_writable(const std::string& stem, const Texture& texture) {
   return check_finite(texture.average->spread, stem, Fault::unsuitable);
 }
 
+std::string sidecar_path(const std::string& name) {
+  return stem_of(name, kTextureSuffix) + ".texture.json";
+}
+
+Result<Document> open_sidecar(const std::string& name) {
+  const std::string path = sidecar_path(name);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return absent(name);
+  return open_document(path, kTextureKind);
+}
+
 }  // namespace
 
 Result<Texture> read_texture(const std::string& name) {
-  const std::string path = stem_of(name, kTextureSuffix) + ".texture.json";
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return absent(name);
-  const auto document = open_document(path, kTextureKind);
+  const auto document = open_sidecar(name);
   if (!document) return forward_error(document);
+  const std::string path = sidecar_path(name);
   Texture texture = texture_from(document->body);
   const TextureData data = texture_data_from(document->body);
   const std::string wav = (fs::path(path).parent_path() / data.file).string();
@@ -121,11 +130,30 @@ Result<Texture> read_texture(const std::string& name) {
 }
 
 Result<TextureWav> texture_wav(const std::string& name) {
-  const std::string path = stem_of(name, kTextureSuffix) + ".texture.json";
+  const std::string path = sidecar_path(name);
   const auto document = open_document(path, kTextureKind);
   if (!document) return forward_error(document);
   const TextureData data = texture_data_from(document->body);
   return TextureWav{(fs::path(path).parent_path() / data.file).string(), data.sha256};
+}
+
+Result<std::optional<PlaybackGain>> read_playback_gain(const std::string& name) {
+  const auto document = open_sidecar(name);
+  return document ? texture_from(document->body).playback_gain
+                  : Result<std::optional<PlaybackGain>>(forward_error(document));
+}
+
+Result<void> write_playback_gain(const std::string& name, const PlaybackGain& gain) {
+  auto document = open_sidecar(name);
+  if (!document) return forward_error(document);
+  const std::string path = sidecar_path(name);
+  if (const auto free = check_changeable(path); !free) return free;
+  document->body["playback_gain"] = playback_gain_body(gain);
+  const auto text = document_text(kTextureKind, document->body, {});
+  if (!text) return forward_error(text);
+  PendingFiles pending;
+  if (const auto written = pending.write(path, *text); !written) return written;
+  return pending.commit();
 }
 
 Result<void> add_texture(PendingFiles& pending, const std::string& name, const Texture& texture) {

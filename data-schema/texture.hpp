@@ -69,6 +69,12 @@ struct TextureAverage {
   std::vector<StrokeCount> counts;  ///< by growing position, from 0 on
 };
 
+/// G_psi as somebody felt it to be right.
+struct PlaybackGain {
+  double gain_m_per_n = 0;  ///< displacement for force; negative turns the texture over
+  std::string who, when;    ///< when: ISO 8601, UTC
+};
+
 struct Texture {
   /// Values in `unit`; origin_m is 0 and the first sample lies at position 0.
   SpaceSignal signal;
@@ -77,10 +83,11 @@ struct Texture {
   int direction = 1;  ///< -1: the stroke was made backwards; it is stored by growing position all the same
   double source_origin_m = 0;  ///< where position 0 lay on the bench
   std::vector<BandPoint> valid_band;
-  TextureSource source;                    ///< of an average: from its first stroke to its last
-  std::optional<TextureAverage> average;   ///< of several strokes; the WAV has the spread as 2nd channel
-  std::optional<Certificate> certificate;  ///< which of its peaks are the surface's
-  std::string simulated;                   ///< by what, where it is simulated
+  TextureSource source;                       ///< of an average: from its first stroke to its last
+  std::optional<TextureAverage> average;      ///< of several strokes; the WAV has the spread as 2nd channel
+  std::optional<Certificate> certificate;     ///< which of its peaks are the surface's
+  std::optional<PlaybackGain> playback_gain;  ///< with which it is played where nobody says another
+  std::string simulated;                      ///< by what, where it is simulated
   std::string surface, subject, finger, notes;
   std::string created, creator;
   std::string extra_json;
@@ -100,6 +107,14 @@ Result<void> write_texture(const std::string& stem, const Texture& texture);
 
 /// The same with other files, at the commit() of `pending`.
 Result<void> add_texture(PendingFiles& pending, const std::string& stem, const Texture& texture);
+
+/// What the sidecar keeps; none where nobody saved one. Errors: as read_texture, of the sidecar.
+Result<std::optional<PlaybackGain>> read_playback_gain(const std::string& name);
+
+/// Puts it into the sidecar, in the place of an earlier one: all else in it stays, known or not, and the WAV
+/// is not touched. Appears whole or not at all. Errors: as read_playback_gain; cannot_write, also of a file
+/// that is read-only; unsuitable, for a gain that is no number.
+Result<void> write_playback_gain(const std::string& name, const PlaybackGain& gain);
 
 /// That no texture lies under the name. Errors: usage, naming the file.
 Result<void> check_texture_free(const std::string& stem);

@@ -154,7 +154,18 @@ TextureAverage average_from(const Json& body) {
   return average;
 }
 
+PlaybackGain playback_gain_from(const Json& body) {
+  return {body["gain_m_per_n"].get<double>(), text_or(body, "who"), text_or(body, "when")};
+}
+
 }  // namespace
+
+Json playback_gain_body(const PlaybackGain& gain) {
+  Json body = {{"gain_m_per_n", gain.gain_m_per_n}};
+  put_text(body, "who", gain.who);
+  put_text(body, "when", gain.when);
+  return body;
+}
 
 Json texture_body(const Texture& texture, const TextureData& data) {
   Json body = {{"data", {{"file", data.file}, {"sha256", data.sha256}, {"samples", data.samples}}}};
@@ -170,6 +181,7 @@ Json texture_body(const Texture& texture, const TextureData& data) {
     body["channels"] = channels_body(texture.unit);
     body["average"] = average_body(*texture.average);
   }
+  if (texture.playback_gain) body["playback_gain"] = playback_gain_body(*texture.playback_gain);
   for (const auto& [name, member] : kTextureTexts) put_text(body, name, texture.*member);
   if (texture.certificate) body["certificate"] = certificate_body(*texture.certificate);
   return body;
@@ -186,6 +198,7 @@ Texture texture_from(const Json& body) {
   if (body.contains("source")) texture.source = source_from(body["source"]);
   if (body.contains("average")) texture.average = average_from(body["average"]);
   if (body.contains("certificate")) texture.certificate = certificate_from(body["certificate"]);
+  if (body.contains("playback_gain")) texture.playback_gain = playback_gain_from(body["playback_gain"]);
   for (const auto& [name, member] : kTextureTexts) texture.*member = text_or(body, name);
   return texture;
 }

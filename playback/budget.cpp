@@ -172,6 +172,9 @@ Result<TickDecision> decide(std::span<const PlacedTexture> textures,
   if (kept.empty()) return not_kept(all, budget);
   TickDecision decision{best_of(kept, budget.by_error()), {}, found.origin, !budget.by_error()};
   decision.reasons = reasons_for(decision.chosen, all, budget);
+  const double delay_s = decision.chosen.inverse.delay_s;
+  decision.reasons.push_back(
+      words_of_hand(wandering_error(textures, {}, options, delay_s), {}, delay_s + options.loop_delay_s));
   return decision;
 }
 

@@ -100,6 +100,14 @@ std::string percent(double part) {
   return fmt::format("{:.3g} %", 100 * part);
 }
 
+std::string words_of_hand(double error, const WanderingHand& hand, double delay_s) {
+  return fmt::format(
+      "a hand that goes at {:g} mm/s and wanders by {} at {:g} Hz adds up to {:.2g} % (estimated, an "
+      "encoder's steps apart: the delay of "
+      "{:.2g} ms is looked ahead by)",
+      1e3 * hand.speed_mps, percent(hand.part), hand.rate_hz, 100 * error, 1e3 * delay_s);
+}
+
 std::string percent_or_more(double part) {
   const double digit = std::pow(10, std::floor(std::log10(100 * part)) - 1);
   return fmt::format("{:.2g}%", digit * std::ceil(100 * part / digit));

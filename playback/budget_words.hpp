@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "playback/budget.hpp"
+#include "playback/wandering_hand.hpp"
 
 namespace tacto::playback {
 
@@ -30,6 +31,9 @@ std::string percent_or_more(double part);
 
 /// What most of a choice's error is of.
 std::string limited_by(const TickChoice& choice);
+
+/// What a hand that does not go evenly adds to the error.
+std::string words_of_hand(double error, const WanderingHand& hand, double delay_s);
 
 /// The best of some, none of which is refused: by cost, or by error first. Precondition: there is one.
 TickChoice best_of(std::vector<TickChoice> choices, bool most_exact);

@@ -71,6 +71,25 @@ schema::Result<PrepareOptions> with_choices(PrepareOptions options, const schema
                       "playback.schema.json says what there is");
 }
 
+schema::Result<void> check_meant(const schema::PlaybackChoices& said, const schema::PlaybackChoices& all) {
+  const auto nothing = [](const char* what, const char* where, const char* remedy) {
+    return schema::fail(schema::Fault::usage, what, where, remedy);
+  };
+  if (said.cutoff_hz && all.reconstruction.value_or("none") == "none")
+    return nothing(
+        "a cut-off, and no filter that it is of", "--cutoff (cutoff_hz)",
+        "name the filter (--reconstruction butterworth3; \"reconstruction\" in playback), or leave "
+        "it out");
+  if (said.energy_window_s && !(all.energy_rms_v.value_or(0) > 0))
+    return nothing("a window of energy, and no limit that it is of", "--energy-window (energy_window_s)",
+                   "give the limit (--energy-limit; \"energy_rms_v\" in playback), or leave it out");
+  if (said.contact_off_n && !(all.contact_on_n.value_or(0) > 0))
+    return nothing("a force at which contact ends, and none at which it begins",
+                   "--contact-off (contact_off_n)",
+                   "give that one too (--contact; \"contact_on_n\" in playback), or leave it out");
+  return {};
+}
+
 schema::PlaybackChoices choices_in(const PrepareOptions& options) {
   schema::PlaybackChoices choices;
   choices.interpolation = std::string(word_of(options.interpolation));

@@ -17,6 +17,11 @@ std::string_view word_of(Inverse inverse);
 /// word that there is none of, by its member.
 schema::Result<PrepareOptions> with_choices(PrepareOptions options, const schema::PlaybackChoices& choices);
 
+/// Whether what somebody said tells more of what is there: a cut-off of a filter, a window of an energy
+/// limit, a lower threshold of a contact. `all` is what was said, over what stands below it. Errors: usage,
+/// by option and member.
+schema::Result<void> check_meant(const schema::PlaybackChoices& said, const schema::PlaybackChoices& all);
+
 /// All that these options come to, for files and reports: energy and contact only where there are such.
 schema::PlaybackChoices choices_in(const PrepareOptions& options);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "data-schema/quantity.hpp"
 #include "playback/chain.hpp"
 
 namespace tacto::playback {
@@ -66,8 +67,9 @@ schema::Result<void> check_displacement(double peak_m, double factor, double gai
   if (!(reached_m > kSinglePrecision * limit_m)) return {};
   const double most = fitting(limit_m / peak_m);
   return schema::fail(schema::Fault::unsuitable,
-                      fmt::format("the tray would go as far as {:.4g} um, its limit is {:.4g} um",
-                                  1e6 * reached_m, 1e6 * limit_m),
+                      fmt::format("the tray would go as far as {}, its limit is {}",
+                                  schema::for_people(reached_m, schema::Dimension::length),
+                                  schema::for_people(limit_m, schema::Dimension::length)),
                       transducer.name,
                       fmt::format("the largest gain that fits is {:.4g}mm/N, or a factor of {:.4g}",
                                   1e3 * most * std::abs(gain_m_per_n), most));

@@ -33,6 +33,7 @@ class LimitTally {
   double wished_rms_v() const {
     return std::sqrt(wished_v2_ / static_cast<double>(std::max<std::uint64_t>(ticks_, 1)));
   }
+  bool removed_any() const { return removed_v2_ > 0; }
   /// RMS of what amplitude, slew and energy took away, re RMS of the wished drive; at least -300.
   double removed_db() const {
     return wished_v2_ > 0 && removed_v2_ > 0 ? std::max(10 * std::log10(removed_v2_ / wished_v2_), -300.0)

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "playback/hysteresis_inverse.hpp"
+#include "playback/identified_band.hpp"
 #include "playback/pyramid.hpp"
 #include "playback/pyramid_shape.hpp"
 #include "playback/reference/spatial_content.hpp"
@@ -25,7 +27,6 @@ namespace {
 constexpr double kLeastRateHz = 100, kMostRateHz = 100e3;
 // core::half_octaves() may say 0.02 too much: levels are chosen that much finer.
 constexpr double kSpeedMargin = 1.01;
-constexpr double kTrackerS = 2e-3;
 constexpr double kMostSamplesPerCount = 1024;
 constexpr double kQ32 = 4294967296.0;
 constexpr double kMostEnergyV = 1000, kLongestWindowS = 3600, kMostContactN = 100;
@@ -127,10 +128,36 @@ Result<void> lay_on_counts(Prepared& prepared, double first_m, const PrepareOpti
   return {};
 }
 
-// The transducer's model may be one that no bounded inverse undoes.
-Result<void> check_inverse(const InverseFilter& filter, Inverse inverse, const spatial::Band& band) {
-  const bool shapes = inverse == Inverse::full || inverse == Inverse::magnitude;
-  if (!shapes || filter.error_db <= kMostInverseErrorDb) return {};
+bool shapes_chain(Inverse inverse) {
+  return inverse == Inverse::full || inverse == Inverse::magnitude;
+}
+
+// The highest of the usual rates below this one at which the same inverse works: there its taps last longer.
+std::optional<double> rate_that_works(const schema::Transducer& transducer, PrepareOptions o) {
+  const double asked_hz = o.rate_hz;
+  for (const double rate_hz : {50e3, 40e3, 20e3, 10e3}) {
+    o.rate_hz = rate_hz;
+    if (rate_hz >= asked_hz) continue;
+    if (inverse_of(undone_chain(transducer, o), o).error_db <= kMostInverseErrorDb) return rate_hz;
+  }
+  return std::nullopt;
+}
+
+Result<void> fail_by_rate(const InverseFilter& filter, const PrepareOptions& o, double works_hz) {
+  return fail(Fault::unsuitable,
+              fmt::format("{} taps at {:g} Hz last {:.2g} ms: too short for the transducer's inverse, which "
+                          "leaves {:.1f} dB of what is wanted",
+                          filter.taps.size(), o.rate_hz,
+                          1e3 * static_cast<double>(filter.taps.size()) / o.rate_hz, filter.error_db),
+              "rate", fmt::format("play at {:g} kHz, or with --inverse gain", 1e-3 * works_hz));
+}
+
+// The rate may be too high for the kernel's taps, or the transducer's model one that no bounded inverse
+// undoes.
+Result<void> check_inverse(const InverseFilter& filter, const schema::Transducer& transducer,
+                           const PrepareOptions& o, const spatial::Band& band) {
+  if (!shapes_chain(o.inverse) || filter.error_db <= kMostInverseErrorDb) return {};
+  if (const auto works_hz = rate_that_works(transducer, o)) return fail_by_rate(filter, o, *works_hz);
   return fail(
       Fault::unsuitable,
       fmt::format("over {:g} to {:.4g} Hz its inverse, within 20 dB of gain, leaves {:.1f} dB of what is "
@@ -149,16 +176,17 @@ Result<void> undo_chain(Prepared& prepared, const schema::Transducer& transducer
     prepared.built.sections = prepared.sections.size();
   }
   InverseFilter filter = inverse_of(undone, o);
-  if (auto sound = check_inverse(filter, o.inverse, undone.band); !sound) return sound;
+  if (auto sound = check_inverse(filter, transducer, o, undone.band); !sound) return sound;
   prepared.built.filters += filter.solutions > 0;
   prepared.built.taps = filter.taps.size();
   prepared.taps = std::move(filter.taps);
   prepared.delay_s = filter.delay_s;
-  prepared.delay_left_s = o.look_ahead ? 0 : filter.delay_s;
+  const double delay_s = filter.delay_s + o.loop_delay_s;
+  prepared.delay_left_s = o.look_ahead ? 0 : delay_s;
   prepared.inverse_error_db = filter.error_db;
   prepared.inverse_gain_db = filter.gain_db;
   prepared.beyond_band_db = filter.beyond_band_db;
-  const double ahead_ticks = o.look_ahead ? filter.delay_s * o.rate_hz : 0;
+  const double ahead_ticks = o.look_ahead ? delay_s * o.rate_hz : 0;
   prepared.tracker = {o.between_counts, static_cast<float>(ahead_ticks),
                       static_cast<float>(kTrackerS * o.rate_hz)};
   prepared.built.following = (o.between_counts ? 1U : 0U) + (ahead_ticks > 0 ? 1U : 0U);
@@ -201,6 +229,7 @@ Prepared settled(const schema::Transducer& transducer, const UndoneChain& undone
   if (prepared.passes_to_hz < o.band.high_hz)
     prepared.notes.push_back(
         fmt::format("at {:g} ticks a second the band ends at {:.4g} Hz", o.rate_hz, prepared.passes_to_hz));
+  if (auto beyond = beyond_identified(transducer, undone.band)) prepared.notes.push_back(std::move(*beyond));
   return prepared;
 }
 
@@ -226,9 +255,9 @@ core::KernelSetup Prepared::setup() const {
 std::string ways_to_fit(wire::Interpolation interpolation) {
   const bool sparse = interpolation == wire::Interpolation::sinc;
   return fmt::format(
-      "play a shorter part{}, or let the host close the loop (--loop host; \"loop\": \"host\" in the "
-      "daemon's "
-      "configuration)",
+      "play a shorter part{}, or, where the device closes the loop, let the host (--loop host; \"loop\": "
+      "\"host\" "
+      "in the daemon's configuration)",
       sparse ? "" : ", interpolate by sinc (--interpolation sinc; \"interpolation\" in playback)");
 }
 

@@ -31,6 +31,9 @@ struct PlacedTexture {
 /// neighbour: without a seam. mirror: it comes back.
 using Ends = wire::ProfileEnds;
 
+/// Over which the tracker averages speed where counts come every tick.
+inline constexpr double kTrackerS = 2e-3;
+
 struct PrepareOptions {
   double rate_hz = 2e3;            ///< of ticks; Wiertlewski 2011 plays at 2 kHz
   double metres_per_count = 1e-6;  ///< of the encoder
@@ -49,7 +52,8 @@ struct PrepareOptions {
   bool undo_hysteresis = true;     ///< of a transducer that says what hysteresis it has
   double delay_s = 2e-3;           ///< that the inverse may take (magnitude, full)
   std::uint16_t inverse_taps = 0;  ///< of it; 0: 3.2 ms of them, 24 to 128
-  bool look_ahead = true;          ///< read where the finger will be after that delay
+  double loop_delay_s = 0;         ///< of a loop closed elsewhere: from the count to the drive at the device
+  bool look_ahead = true;          ///< read where the finger will be after both delays
   bool between_counts = true;      ///< time the encoder's edges
   double max_speed_mps = 0.5;      ///< up to which nothing folds; beyond, the texture fades to silence
   double jump_mps = 0;             ///< beyond it the encoder has jumped, a fault; 0: four times max_speed_mps

@@ -9,6 +9,7 @@
 
 #include "data-schema/statistics.hpp"
 #include "playback/hysteresis_inverse.hpp"
+#include "playback/identified_band.hpp"
 #include "playback/kept_error.hpp"
 #include "playback/kernel_drive.hpp"
 #include "playback/reference/exact_drive.hpp"
@@ -314,8 +315,12 @@ Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
       fmt::format("{:.3g} nm and more reach as far", std::ceil(1e9 * farthest_m / kFarthestCount * 1.01)));
 }
 
-void warn_of_hysteresis(Rendering& rendering, const schema::Transducer& transducer, Engine engine) {
-  if (transducer.hysteresis && engine == Engine::reference)
+// The kernel's own notes tell of the band.
+void warn_of_model(Rendering& rendering, const schema::Transducer& transducer, const spatial::Band& band,
+                   Engine engine) {
+  if (engine == Engine::kernel) return;
+  if (auto beyond = beyond_identified(transducer, band)) rendering.warnings.push_back(std::move(*beyond));
+  if (transducer.hysteresis)
     rendering.warnings.push_back(
         "the reference undoes the linear model alone: the bender's hysteresis stays (--engine kernel undoes "
         "it)");
@@ -346,7 +351,7 @@ Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
   if (auto knows = check_engine(engine, options); !knows) return schema::forward_error(knows);
   if (engine == Engine::kernel)
     if (auto near = check_counts(path, options); !near) return schema::forward_error(near);
-  warn_of_hysteresis(rendering, transducer, engine);
+  warn_of_model(rendering, transducer, options.band, engine);
   const RenderJob job{texture, path, wanted, chain_of(transducer, options), options};
   rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};
   if (auto driven = drive_by(engine, rendering, job); !driven) return schema::forward_error(driven);

@@ -6,9 +6,11 @@
 #include <memory>
 
 #include "analysis/cli/identify_report.hpp"
+#include "analysis/cli/results_output.hpp"
 #include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/identify/bode_figure.hpp"
+#include "analysis/identify/identify_results.hpp"
 #include "analysis/identify/loop_figure.hpp"
 #include "analysis/identify/measured_tables.hpp"
 #include "analysis/identify/plausibility.hpp"
@@ -30,7 +32,7 @@ using schema::Result;
 constexpr const char* kUsualBase = "wiertlewski2011";
 
 struct IdentifyOptions {
-  std::string file, device_uri, stem, base, picture;
+  std::string file, device_uri, stem, base, picture, results;
   IdentifyMethod method = IdentifyMethod::sweep;
   ModelChoice model;
   TableUnits units;
@@ -43,15 +45,18 @@ struct IdentifyOptions {
 };
 
 void declare_source(CLI::App& app, IdentifyOptions& o) {
-  app.add_option(
-      "FILE", o.file,
-      "A response (frequency_hz,amplitude_um_per_v,phase_deg), loops (drive_v,displacement_um), taps, or a "
-      "recording with both channels");
+  app.add_option("FILE", o.file,
+                 "A response (frequency_hz,amplitude_um_per_v,phase_deg, and where it is known "
+                 "noise_um_per_v), loops (drive_v,displacement_um), taps, or a "
+                 "recording with both channels");
   app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:tray_sensor=on ...");
   app.add_option("-o,--output", o.stem, "What is written: NAME.transducer.json")->required();
   app.add_option("--start-from", o.base,
                  "Preset or file that the fit begins from, and that what can't be told apart is held at");
   app.add_option("--picture", o.picture, "Bode plot, or the loops: .svg or .png");
+  app.add_option(
+      "--results", o.results,
+      "Also what was found, for 'report': NAME.results.json, parameters with intervals and curves");
   cli::add_choice<IdentifyMethod>(
       app, "--method", o.method,
       {{"sweep", IdentifyMethod::sweep},
@@ -224,6 +229,20 @@ Result<void> draw(const std::string& picture, const spatial::Figure& figure, Rep
   return {};
 }
 
+// The details are the report as it stands.
+Result<Report> with_results(const IdentifyOptions& o, schema::Results results, Report report) {
+  if (o.results.empty()) return report;
+  results.verb = "identify";
+  results.device = o.device_uri;
+  for (const std::string& input : {o.file, o.base})
+    if (!input.empty()) results.inputs.push_back(input);
+  const auto no_page = []() -> Result<std::string> { return std::string(); };
+  if (auto written = write_outputs({o.results}, std::move(results), report, no_page); !written)
+    return schema::forward_error(written);
+  report.add("results", o.results);
+  return report;
+}
+
 Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
   auto data = response_of(o, asked);
   if (!data) return schema::forward_error(data);
@@ -243,7 +262,7 @@ Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
   Report report = response_report(fit, choice, asked.base, found, file_of(o));
   if (const auto drawn = draw(o.picture, BodeFigure(fit), report); !drawn)
     return schema::forward_error(drawn);
-  return report;
+  return with_results(o, identify_results(fit, choice, asked.base, found), std::move(report));
 }
 
 Result<DrivenTray> loops_of(const IdentifyOptions& o, Asked& asked, schema::Identification& about) {
@@ -291,7 +310,7 @@ Result<Report> identify_loops(const IdentifyOptions& o, Asked& asked) {
   Report report = loop_report(*fit, found, file_of(o));
   if (const auto drawn = draw(o.picture, loop_figure(*fit, found), report); !drawn)
     return schema::forward_error(drawn);
-  return report;
+  return with_results(o, identify_results(*fit, found), std::move(report));
 }
 
 Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
@@ -315,7 +334,8 @@ Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
   const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);
   if (const auto written = schema::write_transducer(o.stem, found); !written)
     return schema::forward_error(written);
-  return taps_report(*fit, *foretold, found, file_of(o));
+  return with_results(o, identify_results(*fit, *foretold, found),
+                      taps_report(*fit, *foretold, found, file_of(o)));
 }
 
 Result<Report> identify_by(const IdentifyOptions& o, Asked& asked) {
@@ -330,7 +350,10 @@ Result<void> check_names_free(const IdentifyOptions& o) {
     if (!o.replace && schema::is_file(path))
       return fail(Fault::usage, "is there already, and would be lost", path,
                   "choose another name, or give --replace");
-  return {};
+  if (o.results.empty() || o.results.ends_with(".json"))
+    return o.results.empty() ? Result<void>() : schema::check_results_free(o.results);
+  return fail(Fault::usage, "has an ending that this verb does not write", o.results,
+              "name results (NAME.results.json)");
 }
 
 Result<Report> run_identify(const IdentifyOptions& o) {
@@ -357,7 +380,7 @@ cli::Action declare_identify(CLI::App& app) {
 
 const cli::Verb kIdentifyVerb{
     "identify", "Find a transducer's parameters, with their uncertainty, from a device or measured data",
-    "tactograph identify -d sim:tray_sensor=on -o bench --picture bench.svg\n"
+    "tactograph identify -d sim:tray_sensor=on -o bench --picture bench.svg --results bench.results.json\n"
     "  tactograph identify -d sim:tray_sensor=on,hysteresis=0.16 --method loop --start-from bench -o "
     "bench-loop\n"
     "  tactograph identify response.csv --start-from wiertlewski2011 -o mine\n"

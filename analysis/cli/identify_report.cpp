@@ -44,7 +44,7 @@ void add_quality(Report& report, const ResponseFit& fit) {
   report.add("r_squared", fit.r_squared)
       .add("iterations", fit.iterations)
       .add("condition_number", fit.condition);
-  if (fit.data.has_noise())
+  if (fit.data.noise_is_measured())
     report.add("reduced_chi_squared", fit.misfit.reduced_chi_squared)
         .add("reduced_chi_squared_limit", fit.misfit.chi_squared_limit);
   report.add("residual_phase_correlation", fit.misfit.phase_correlation)

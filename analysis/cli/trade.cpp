@@ -18,6 +18,7 @@
 #include "data-schema/file_kind.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/scene.hpp"
+#include "playback/identified_band.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -30,7 +31,7 @@ struct TradeVerbOptions {
   std::string what, transducer = "wiertlewski2011";
   std::size_t stroke = 0;
   TradeHalves halves = TradeHalves::both;
-  bool calibrate = false;
+  bool calibrate = false, force = false;
   std::vector<std::string> outputs;
 };
 
@@ -56,7 +57,7 @@ Report choice_row(const TradeHalf& half, const TradeRow& row, const Worth& worth
   report.add("half", half.name).add("choice_of", row.knob).add("choice", row.choice);
   report.add("error_percent", 100 * row.error).add("cost_ns", row.cost_ns).add("per", row.per);
   report.add("memory_kib", row.memory_bytes / 1024).add("latency_s", row.latency_s);
-  report.add("worth_it", worth.knee ? "the knee" : worth.on_front ? "yes" : "never: " + worth.beaten_by);
+  report.add("worth_it", worth_words(worth));
   return report.add("note", row.note);
 }
 
@@ -109,10 +110,20 @@ Result<Trade> measured_on(const std::string& name, const TradeVerbOptions& o,
   return trade;
 }
 
+// Only the real-time half plays through it, in the band that played_case() leaves as it is.
+Result<schema::Transducer> transducer_of(const TradeVerbOptions& o) {
+  auto transducer = schema::read_transducer(o.transducer);
+  if (!transducer || o.halves == TradeHalves::offline) return transducer;
+  if (const auto usable = schema::check_usable(*transducer, o.force); !usable)
+    return schema::forward_error(usable);
+  if (const auto beyond = playback::beyond_identified(*transducer, spatial::Band{})) cli::warn(*beyond);
+  return transducer;
+}
+
 Result<Trade> measured_on_all(const TradeVerbOptions& o) {
   const auto names = textures_named(o.what);
   if (!names) return schema::forward_error(names);
-  const auto transducer = schema::read_transducer(o.transducer);
+  const auto transducer = transducer_of(o);
   if (!transducer) return schema::forward_error(transducer);
   cli::Progress progress("trade");
   const auto count = static_cast<double>(names->size());
@@ -214,6 +225,8 @@ cli::Action declare_trade(CLI::App& app) {
       "half's Pareto picture (.svg, .png); with --calibrate NAME.trade.json; may be given again");
   app.add_option("--transducer", options->transducer, "A preset or NAME.transducer.json")
       ->capture_default_str();
+  app.add_flag("--force", options->force,
+               "Take a transducer file that says of itself that its model does not fit");
   app.add_option("--stroke", options->stroke, "Which of several strokes")->check(cli::from_one());
   cli::add_choice<TradeHalves>(
       app, "--half", options->halves,

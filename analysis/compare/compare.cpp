@@ -22,6 +22,7 @@ using schema::Result;
 constexpr double kShortestCompareWindow = 16;  // samples
 constexpr double kHannBandwidth = 1.5;         // bins
 constexpr double kExplained = 0.5;             // correlation at the places as they are
+constexpr double kThousandDb = 60, kNearThousandDb = 1;
 constexpr double kParts = 8, kWavelengths = 8;
 
 double usual_window(const TexturePair& pair) {
@@ -165,6 +166,19 @@ void note_likeness(Comparison& comparison) {
         "B follows A, but not at the same places: --align correlation finds the shift");
 }
 
+// A level of a thousand or a thousandth, and nothing else: one of the two is in another unit.
+void note_units(Comparison& comparison) {
+  const Evidence& e = comparison.evidence;
+  if (std::abs(std::abs(e.level_db) - kThousandDb) > kNearThousandDb ||
+      e.shape_excess_db > comparison.tolerance_db)
+    return;
+  comparison.notes.push_back(
+      fmt::format("B is {} times A, and of the same shape: if that is a unit (mN for N, um for mm), import "
+                  "one of them again "
+                  "with its own",
+                  e.level_db > 0 ? "a thousand" : "a thousandth"));
+}
+
 }  // namespace
 
 Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b,
@@ -187,6 +201,7 @@ Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b,
   comparison.verdict = verdict_of(comparison.evidence, comparison.tolerance_db);
   compare_formants(comparison, options);
   note_likeness(comparison);
+  note_units(comparison);
   return comparison;
 }
 

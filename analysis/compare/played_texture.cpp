@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 
 #include "analysis/compare/along_path.hpp"
@@ -44,10 +45,32 @@ Result<void> check_steady_gain(const SessionColumns& columns, const StrokeRange&
   if (std::any_of(first, last, [&](double gain) { return gain != *first; }))
     return schema::fail(Fault::unsuitable, "the gain changes within the stroke", session,
                         "name another stroke");
-  if (columns.changed_at && *columns.changed_at <= range.last)
-    return schema::fail(Fault::unsuitable, "the texture changes in or before the stroke", session,
-                        "name an earlier stroke");
+  const auto turns = std::ranges::any_of(columns.turns, [&](const playback::TextureTurn& turn) {
+    const double felt_to = static_cast<double>(turn.row) + turn.fade_ticks + columns.look_ahead_ticks;
+    return turn.row <= range.last && felt_to >= static_cast<double>(range.first);
+  });
+  if (turns)
+    return schema::fail(Fault::unsuitable, "the texture changes within the stroke", session,
+                        "name another stroke");
   return {};
+}
+
+// With the textures that the whole stroke is of.
+Result<schema::SessionHeader> header_of(const SessionColumns& columns, const StrokeRange& range,
+                                        const std::string& session) {
+  if (const auto steady = check_steady_gain(columns, range, session); !steady)
+    return schema::forward_error(steady);
+  schema::SessionHeader header = columns.header;
+  const auto later = std::ranges::find_if(
+      columns.turns, [&](const playback::TextureTurn& turn) { return turn.row > range.first; });
+  if (later == columns.turns.begin()) return header;
+  const auto& brings = std::prev(later)->brings;
+  if (!brings)
+    return schema::fail(Fault::unsuitable,
+                        "the texture changes before the stroke, the session does not say to what", session,
+                        "name an earlier stroke");
+  static_cast<schema::SessionProgram&>(header) = *brings;
+  return header;
 }
 
 Result<schema::Texture> along(const SessionColumns& columns, const StrokeRange& range) {
@@ -75,11 +98,11 @@ Result<PlayedTexture> played_texture(const std::string& session, std::size_t str
   const auto ranges = playback::stroke_ranges(*columns);
   const auto which = chosen(*columns, ranges, stroke, session);
   if (!which) return schema::forward_error(which);
-  if (const auto steady = check_steady_gain(*columns, ranges[*which], session); !steady)
-    return schema::forward_error(steady);
+  auto header = header_of(*columns, ranges[*which], session);
+  if (!header) return schema::forward_error(header);
   auto texture = along(*columns, ranges[*which]);
   if (!texture) return schema::forward_error(texture);
-  PlayedTexture played{std::move(*texture), columns->header, *which + 1, ranges.size(),
+  PlayedTexture played{std::move(*texture), std::move(*header), *which + 1, ranges.size(),
                        columns->gain[ranges[*which].first]};
   played.texture.simulated = columns->header.simulated;
   return played;

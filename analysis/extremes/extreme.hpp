@@ -32,8 +32,14 @@ std::vector<Extreme> filter_extremes();
 std::vector<Extreme> space_extremes(bool all);
 /// playback's inverse: transducers that nobody builds.
 std::vector<Extreme> inverse_extremes();
-/// The tick kernel: rates, counts, speeds, gains, silence.
+/// The tick kernel: rates, counts, speeds, gains, silence (and, of all rows the only one that is of this
+/// machine, how long a tick takes there).
 std::vector<Extreme> kernel_extremes();
+
+/// spatial's spectrogram: frequencies, offsets.
+std::vector<Extreme> spectrum_extremes();
+/// analysis: transducers to identify, levels to compare.
+std::vector<Extreme> question_extremes();
 
 /// All rooms.
 std::vector<Extreme> all_extremes(bool all, const ExtremesProgress& progress = {});

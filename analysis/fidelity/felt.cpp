@@ -26,7 +26,7 @@ std::vector<double> felt_displacement_m(const EmulatedPass& pass, const schema::
                                         const firmware_host::TrayPhysics& physics) {
   const double rate_hz = pass.columns.header.rate_hz;
   const std::size_t fine = samples_a_tick(rate_hz);
-  firmware_host::ActuatedTray tray(real, rate_hz * static_cast<double>(fine), std::nullopt, physics);
+  firmware_host::ActuatedTray tray(real, rate_hz * static_cast<double>(fine), physics);
   std::vector<double> displacement_m;
   for (std::size_t tick = 0; tick < pass.position_m.size(); ++tick)
     for (std::size_t i = 0; i < fine; ++i) displacement_m.push_back(tray.tick(pass.columns.drive_v[tick]));

@@ -30,6 +30,7 @@ constexpr double kLeftOutS = 0.05, kFadeM = 1e-3;  // left out at either end of 
 constexpr double kFarthestShiftM = 50e-6;
 constexpr double kUsualFidelityGain = 1e-3;
 constexpr double kFastestMps = 10, kLeastKeptPercent = 1;
+constexpr double kOtherUnitWish = 31.6;  // times the limit: 30 dB
 
 double gain_of(const FidelityOptions& options) {
   return options.play.program.gain_m_per_n.value_or(kUsualFidelityGain);
@@ -139,6 +140,19 @@ FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double 
   return speed;
 }
 
+// Thirty times the limit is no texture that is played too loud, but another unit.
+void note_wish(FidelitySpeed& speed, const std::vector<double>& wanted_m, double limit_m) {
+  double peak_m = 0;
+  for (const double value : wanted_m) peak_m = std::max(peak_m, std::abs(value));
+  if (peak_m < kOtherUnitWish * limit_m) return;
+  speed.notes.push_back(
+      fmt::format("at {:g} mm/s {} are wanted, {:.0f} dB over the transducer's limit of {}: check the "
+                  "texture's unit, and "
+                  "--gain",
+                  1e3 * speed.speed_mps, schema::length_for_people(peak_m), 20 * std::log10(peak_m / limit_m),
+                  schema::length_for_people(limit_m)));
+}
+
 tl::unexpected<schema::Error> fidelity_stopped() {
   return schema::fail(Fault::usage, "stopped before the end", "fidelity");
 }
@@ -154,6 +168,7 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
   const auto stretch = judged_stretch(*pass, texture, at_m, speed_mps);
   if (!stretch) return schema::forward_error(stretch);
   const auto wanted_m = wanted_displacement_m(*pass, texture, at_m, gain_of(options), band);
+  note_wish(speed, wanted_m, pass->columns.header.transducer.displacement_limit_m);
   const auto wanted = along_stretch(wanted_m, *stretch, band);
   if (!wanted) return schema::forward_error(wanted);
   for (const Tray& tray : trays.trays) {

@@ -18,7 +18,8 @@ using firmware_host::TrayPhysics;
 constexpr double kPaperHysteresis = 0.16;
 
 bool names_physics(const TrayPhysics& physics) {
-  return physics.second_mode || physics.finger_load || physics.hysteresis > 0;
+  return physics.second_mode || physics.finger_load || physics.hysteresis > 0 ||
+         physics.reconstruction_cutoff_hz;
 }
 
 firmware_host::SecondMode usual_mode(const schema::Transducer& transducer) {

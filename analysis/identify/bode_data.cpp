@@ -71,8 +71,10 @@ Result<void> check_bode(const BodeData& data) {
   if (loud && smoothness(data) >= kLeastSmoothness) return {};
   return fail(
       Fault::unsuitable, "this is noise: there is no response in it", data.source,
-      "drive it with more, measure longer, and see that the sensor looks at the tray; slow loops take "
-      "--method loop");
+      data.direction == Direction::sensor
+          ? "push it with more force, measure longer, and see that the reference cell is in the force's way"
+          : "drive it with more, measure longer, and see that the sensor looks at the tray; slow loops "
+            "take --method loop");
 }
 
 }  // namespace tacto::analysis

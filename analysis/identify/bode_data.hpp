@@ -22,6 +22,8 @@ struct BodeData {
   std::vector<std::complex<double>> response;  ///< m/V or V/N
   /// Standard deviation of the real and of the imaginary part alone, from scatter; empty: nobody measured it.
   std::vector<double> noise;
+  double noise_freedom = 0;           ///< real values that the least known noise was told by; 0: it is known
+  bool noise_from_residuals = false;  ///< nobody measured it: it is what a fit left
   /// The drive was held from sample to sample at this rate, and the answer sampled with it; 0: continuous.
   double held_rate_hz = 0;
   std::string source, conditions, simulated;
@@ -32,6 +34,7 @@ struct BodeData {
 
   std::size_t size() const { return frequency_hz.size(); }
   bool has_noise() const { return !noise.empty(); }
+  bool noise_is_measured() const { return has_noise() && !noise_from_residuals; }
 };
 
 inline constexpr std::size_t kLeastFrequencies = 8;  // twice the parameters of the model

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/identify/angles.hpp"
+#include "analysis/identify/bode_curves.hpp"
 #include "spatial/picture/axes.hpp"
 #include "spatial/picture/canvas.hpp"
 #include "spatial/picture/heading.hpp"
@@ -27,54 +27,6 @@ constexpr double kHeights[] = {230, 150, 80};
 constexpr double kGap = 14;
 constexpr double kDot = 1.6;
 constexpr double kNearResidual = 1.96;  // where 95 % of noise lies
-
-double decibels(double part) {
-  return 20 * std::log10(part);
-}
-
-struct Curves {
-  std::vector<double> model_db, low_db, high_db, inverse_db, model_deg, inverse_deg;  // along curve_hz
-  std::vector<double> data_db, data_deg, along, across;  // at the data's frequencies
-};
-
-double reference_of(const ResponseFit& fit) {
-  if (const FittedParameter* gain = fit.find("gain_m_per_v")) return gain->value;
-  const auto largest = std::ranges::max_element(fit.curve, {}, [](auto h) { return std::abs(h); });
-  return fit.data.direction == Direction::actuator ? std::abs(fit.curve.front()) : std::abs(*largest);
-}
-
-void put_model(const ResponseFit& fit, double reference, Curves& c) {
-  c.model_deg = carried_phase_deg(fit.curve);
-  for (std::size_t i = 0; i < fit.curve.size(); ++i) {
-    c.model_db.push_back(decibels(std::abs(fit.curve[i]) / reference));
-    c.inverse_db.push_back(-c.model_db.back());
-    c.inverse_deg.push_back(-c.model_deg[i]);
-    if (fit.band.empty()) continue;
-    c.low_db.push_back(c.model_db.back() - decibels(1 + fit.band[i]));
-    c.high_db.push_back(c.model_db.back() + decibels(1 + fit.band[i]));
-  }
-}
-
-void put_data(const ResponseFit& fit, double reference, Curves& c) {
-  const std::vector<double> model_deg = carried_phase_deg(fit.modelled);
-  for (std::size_t i = 0; i < fit.data.size(); ++i) {
-    const auto model = fit.modelled[i], measured = fit.data.response[i];
-    c.data_db.push_back(decibels(std::abs(measured) / reference));
-    c.data_deg.push_back(model_deg[i] + std::arg(measured / model) * kDegrees);
-    const double sigma = fit.data.has_noise() ? fit.data.noise[i] : std::abs(measured);
-    const auto residual = (measured - model) / sigma * std::polar(1.0, -std::arg(model));
-    c.along.push_back(residual.real());
-    c.across.push_back(residual.imag());
-  }
-}
-
-Curves curves_of(const ResponseFit& fit) {
-  Curves c;
-  const double reference = reference_of(fit);
-  put_model(fit, reference, c);
-  put_data(fit, reference, c);
-  return c;
-}
 
 // One of the stacked plots.
 struct Panel {
@@ -177,7 +129,7 @@ spatial::Size BodeFigure::page() const {
 }
 
 schema::Result<void> BodeFigure::draw(Canvas& canvas) const {
-  const Curves c = curves_of(fit);
+  const BodeCurves c = bode_curves(fit);
   const auto& hz = fit.data.frequency_hz;
   spatial::draw_heading(canvas, {kMargin, kMargin, kBodePage.width - 2 * kMargin, spatial::kHeadingHeight},
                         title_of(fit), facts_of(fit), fit.data.simulated);

@@ -17,11 +17,11 @@ struct TableUnits {
 };
 
 /// Columns by the beginnings of their names: frequency, amplitude (or gain, magnitude), phase, and where
-/// there is one noise (in the amplitude's unit, of each part). Units stand behind the name: frequency_hz,
-/// amplitude_um_per_v, "Gain (dB m/V)", phase_deg; a number without a unit is refused. m/V makes it an
-/// actuator's, V/N a sensor's. Errors: as of reading a file; malformed, with line and column (NaN, text, a
-/// ragged row); usage: a unit that is missing or unknown; unsuitable: phases of more than 100 in radians,
-/// which will be degrees. Frequencies in Hz, kHz or rad/s.
+/// there is one noise (noise_um_per_v: in the amplitude's unit, the standard deviation of each part). Units
+/// stand behind the name: frequency_hz, amplitude_um_per_v, "Gain (dB m/V)", phase_deg; a number without a
+/// unit is refused. m/V makes it an actuator's, V/N a sensor's. Errors: as of reading a file; malformed, with
+/// line and column (NaN, text, a ragged row); usage: a unit that is missing or unknown; unsuitable: phases of
+/// more than 100 in radians, which will be degrees. Frequencies in Hz, kHz or rad/s.
 schema::Result<BodeData> read_bode_table(const std::string& path, const TableUnits& units);
 
 /// Columns drive_v (V, mV) and displacement_m (m, mm, um, nm); with time_s the rate, without it 0. Errors:

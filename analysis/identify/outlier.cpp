@@ -9,6 +9,8 @@ namespace tacto::analysis {
 namespace {
 
 constexpr double kTakes = 0.1;
+constexpr double kNeverNoise = 1e-9;   // of tables
+constexpr double kParameters = 4;      // more in longer models: then it asks for a little too much
 constexpr std::size_t kTried = 3;      // of each kind of suspect
 constexpr std::ptrdiff_t kBeside = 2;  // neighbours on either side
 
@@ -42,6 +44,12 @@ BodeData without_value(BodeData data, std::size_t index) {
   return data;
 }
 
+// With two values less, left^((2 n - p - 2) / 2) is the F test's own probability.
+bool is_never_noise(const BodeData& data, const RestOfFit& rest, double part_left) {
+  const double n = static_cast<double>(data.size()), freedom = 2 * n - kParameters - 2;
+  return data.noise_from_residuals && rest.is_noise && n * std::pow(part_left, freedom / 2) < kNeverNoise;
+}
+
 }  // namespace
 
 std::optional<Outlier> outlier_of(const BodeData& data, std::span<const double> shares, double left_by_all,
@@ -55,8 +63,10 @@ std::optional<Outlier> outlier_of(const BodeData& data, std::span<const double> 
   suspects.erase(same.begin(), same.end());
   std::optional<Outlier> found;
   for (const std::size_t index : suspects) {
-    const double left = left_by_fit(without_value(data, index)) / left_by_all;
-    if (left < kTakes && (!found || left < found->left)) found = Outlier{index, left};
+    const RestOfFit rest = left_by_fit(without_value(data, index));
+    const double left = rest.left / left_by_all;
+    const bool takes = left < kTakes || is_never_noise(data, rest, left);
+    if (takes && (!found || left < found->left)) found = Outlier{index, left};
   }
   return found;
 }

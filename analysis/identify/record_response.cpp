@@ -91,6 +91,13 @@ std::vector<double> noise_powers(std::span<const LocalResponse> list) {
   return powers;
 }
 
+// Real values that a place's noise is told by, at the fewest.
+double freedom_of(std::span<const LocalResponse> list) {
+  double fewest = INFINITY;
+  for (const LocalResponse& local : list) fewest = std::min(fewest, 2 * local.freedom);
+  return fewest * kFewestNeighbours;
+}
+
 // Whether leaving the ends out leaves more than noise would.
 bool ends_show(std::span<const LocalResponse> with, std::span<const LocalResponse> without) {
   const std::vector<double> powers = noise_powers(with);
@@ -118,6 +125,7 @@ Result<BodeData> response_of_record(std::span<const double> input, std::span<con
   const std::vector<double> powers = noise_powers(list);
   BodeData data;
   data.source = source;
+  data.noise_freedom = freedom_of(list);
   for (std::size_t i = 0; i < list.size(); ++i) {
     const double noise = noise_no_less(std::sqrt(powers[i] * list[i].variance_for_one), list[i].response);
     if (!(noise < kMostNoise * std::abs(list[i].response))) continue;

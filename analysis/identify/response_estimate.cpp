@@ -14,6 +14,7 @@ using Complex = std::complex<double>;
 
 constexpr int kHarmonics = 5;
 constexpr std::ptrdiff_t kNeighbours = 4;  // on either side
+static_assert(kFewestNeighbours == kNeighbours + 1, "at the ends of the band");
 
 // (2 / n) sum x exp(-i w t), the amplitude of a sine of `turns` in the window; the turning factor by
 // recurrence, set right every 256 samples: exact to 1e-13.
@@ -38,7 +39,7 @@ double power_of(std::span<const double> x) {
 struct StepAnswer {
   Complex fundamental;
   double third = 0;
-  double noise_power = 0;
+  double noise_power = 0, freedom = 0;
 };
 
 StepAnswer answer_of(std::span<const double> x, double turns_per_sample) {
@@ -52,7 +53,8 @@ StepAnswer answer_of(std::span<const double> x, double turns_per_sample) {
     if (h == 1) answer.fundamental = a;
     if (h == 3) answer.third = std::abs(a);
   }
-  answer.noise_power = std::max(rest, 0.0) * n / (n - lost);
+  answer.freedom = n - lost;
+  answer.noise_power = std::max(rest, 0.0) * n / answer.freedom;
   return answer;
 }
 
@@ -85,6 +87,8 @@ BodeData response_of_steps(const DrivenTray& tray, const SteppedSine& plan) {
     data.response.push_back(answer.fundamental / drive);
     const double noise = std::sqrt(2 * answer.noise_power / static_cast<double>(count)) / std::abs(drive);
     data.noise.push_back(noise_no_less(noise, data.response.back()));
+    data.noise_freedom =
+        data.noise_freedom > 0 ? std::min(data.noise_freedom, answer.freedom) : answer.freedom;
     data.third_harmonic =
         std::max(data.third_harmonic.value_or(0), answer.third / std::abs(answer.fundamental));
   }
@@ -114,6 +118,7 @@ BodeData response_of_periods(const DrivenTray& tray, const PeriodicDrive& plan) 
     data.response.push_back(sum / periods / drive);
   }
   squares = mean_of_neighbours(squares);
+  data.noise_freedom = 2 * (periods - 1) * kFewestNeighbours;
   for (std::size_t i = 0; i < data.size(); ++i)
     data.noise.push_back(noise_no_less(std::sqrt(std::max(squares[i], 0.0)) / drives[i], data.response[i]));
   return data;

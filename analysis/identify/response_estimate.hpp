@@ -25,5 +25,6 @@ double noise_no_less(double noise, std::complex<double> response);
 
 /// Of each value and up to four on either side.
 std::vector<double> mean_of_neighbours(const std::vector<double>& squares);
+inline constexpr int kFewestNeighbours = 5;  ///< with the value itself, at the ends
 
 }  // namespace tacto::analysis

@@ -42,18 +42,16 @@ struct ResponseFit {
   const FittedParameter* find(std::string_view name) const;
 };
 
-/// Weighted non-linear least squares of complex values (Levenberg-Marquardt), weights 1 / noise^2, or
-/// relative ones where nobody measured it. Started from the data (starting_values), the hold taken out with
-/// the model itself. A parameter whose standard error is more than a factor e is held at the base's value,
-/// and said. Intervals: from the Jacobian, normal where the noise is known, else with the residuals' own
-/// variance and Student's t; none where the fit did not converge or misfit_of() says that the model is wrong.
+/// Weighted non-linear least squares of complex values (Levenberg-Marquardt), weights 1 / noise^2; where
+/// nobody measured the noise, that of with_noise_of_residuals() of a first, relative fit. Started from the
+/// data (starting_values), the hold taken out with the model itself. A parameter whose standard error is more
+/// than a factor e is held at the base's value, and said. Intervals: from the Jacobian, normal where the
+/// noise is known, else with Student's t: by the noise's own degrees of freedom, or by the residuals' 2 n - p
+/// and their own variance; none where the fit did not converge or misfit_of() says that the model is wrong.
 /// Precondition: check_bode(data).
 ResponseFit fit_response(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base);
 
 /// What no frequency response can tell apart, and what was done about it: one line each.
 std::vector<std::string> held_words(const ModelChoice& choice, const schema::Transducer& base);
-
-/// Student's t, two-sided 95 %: within 0.5 % from 4 degrees of freedom on (Cornish and Fisher's expansion).
-double student_95(double freedom);
 
 }  // namespace tacto::analysis

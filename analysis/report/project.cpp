@@ -23,7 +23,8 @@ Result<std::vector<std::string>> files_below(const std::string& folder, const st
   std::error_code failure, ignored;
   fs::recursive_directory_iterator at(folder, failure);
   if (failure)
-    return schema::fail(Fault::not_found, "the folder can't be read: " + failure.message(), folder);
+    return schema::fail(Fault::not_found, "the folder can't be read: " + failure.message(), folder,
+                        "name the folder that holds the project's files");
   std::vector<std::string> files;
   for (; at != fs::recursive_directory_iterator(); at.increment(failure)) {
     if (failure) break;

@@ -204,6 +204,24 @@ Result<void> add_spectrogram(const std::string& path, ProjectFile& file) {
   return {};
 }
 
+namespace {
+
+constexpr std::size_t kMostTurnsShown = 20;
+
+void add_turns(const playback::SessionColumns& columns, ProjectFile& file) {
+  for (std::size_t i = 0; i < std::min(columns.turns.size(), kMostTurnsShown); ++i) {
+    const playback::TextureTurn& turn = columns.turns[i];
+    std::string names = turn.brings ? "" : "not named";
+    if (turn.brings)
+      for (const schema::SessionTexture& texture : turn.brings->textures)
+        names += (names.empty() ? "" : ", ") + name_of_file(texture.file);
+    const std::string when = for_people(columns.time_s[turn.row], Dimension::time);
+    file.figures.push_back({"changed at " + when, names});
+  }
+}
+
+}  // namespace
+
 Result<void> add_session(const std::string& path, ProjectFile& file) {
   const auto columns = playback::read_session_columns(path);
   if (!columns) return schema::forward_error(columns);
@@ -220,6 +238,7 @@ Result<void> add_session(const std::string& path, ProjectFile& file) {
                   {"transducer", header.transducer.name}};
   for (const schema::SessionTexture& texture : header.textures)
     file.figures.push_back({"texture", name_of_file(texture.file)});
+  add_turns(*columns, file);
   add_drive_picture(*columns, file);
   return {};
 }

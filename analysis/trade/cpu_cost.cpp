@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <ctime>
+#include <functional>
+#include <iterator>
+#include <utility>
 
 namespace tacto::analysis {
 namespace {
@@ -13,16 +16,22 @@ double thread_ns() {
   return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
 }
 
+}  // namespace
+
 double median_cost(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
 }
 
-}  // namespace
+double median_difference(const std::vector<double>& more, const std::vector<double>& less) {
+  std::vector<double> differences(more.size());
+  std::ranges::transform(more, less, differences.begin(), std::minus<>());
+  return median_cost(std::move(differences));
+}
 
-std::vector<double> median_costs_ns(const std::vector<std::function<void()>>& works, double units,
-                                    int batches) {
+std::vector<std::vector<double>> costs_in_turns_ns(const std::vector<std::function<void()>>& works,
+                                                   double units, int batches) {
   std::vector<std::vector<double>> times(works.size());
   for (int batch = 0; batch <= batches; ++batch)
     for (std::size_t i = 0; i < works.size(); ++i) {
@@ -30,8 +39,13 @@ std::vector<double> median_costs_ns(const std::vector<std::function<void()>>& wo
       works[i]();
       if (batch > 0) times[i].push_back((thread_ns() - begun_ns) / units);
     }
+  return times;
+}
+
+std::vector<double> median_costs_ns(const std::vector<std::function<void()>>& works, double units,
+                                    int batches) {
   std::vector<double> medians;
-  std::ranges::transform(times, std::back_inserter(medians), median_cost);
+  std::ranges::transform(costs_in_turns_ns(works, units, batches), std::back_inserter(medians), median_cost);
   return medians;
 }
 

@@ -44,15 +44,17 @@ Result<playback::EdgeToDrive> measured_latency(const playback::Prepared& prepare
 }  // namespace
 
 TradeRow device_loop_row(const playback::Prepared& prepared, double tick_ns) {
-  TradeRow row{kLoopKnob, "device", 0, tick_ns, "tick", static_cast<double>(prepared.built.sample_bytes),
+  TradeRow row{kLoopKnob, "device", kNotMeasured, 0, "tick", static_cast<double>(prepared.built.sample_bytes),
                0,         {}};
   row.latency_s = 0.5 / prepared.rate_hz + 1e-9 * tick_ns;
-  row.note = "reads and drives in one tick; the tick's time is this computer's";
+  row.note =
+      "reads and drives in one tick: half a tick's wait, and the tick's time on this computer; only the "
+      "latency is told";
   return row;
 }
 
-TradeRow host_loop_row(const playback::Prepared& prepared, double tick_ns) {
-  TradeRow row{kLoopKnob, "host", 0, tick_ns, "tick", static_cast<double>(prepared.built.sample_bytes),
+TradeRow host_loop_row(const playback::Prepared& prepared) {
+  TradeRow row{kLoopKnob, "host", kNotMeasured, 0, "tick", static_cast<double>(prepared.built.sample_bytes),
                kQueueS,   {}};
   const auto latency = measured_latency(prepared);
   if (!latency || !(latency->p50_s > 0)) {
@@ -60,7 +62,8 @@ TradeRow host_loop_row(const playback::Prepared& prepared, double tick_ns) {
     return row;
   }
   row.latency_s = latency->p50_s;
-  row.note = fmt::format("on an emulated device: p50; p99 is {:.2g} ms", 1e3 * latency->p99_s);
+  row.note = fmt::format("on an emulated device: p50; p99 is {:.2g} ms; only the latency was measured",
+                         1e3 * latency->p99_s);
   return row;
 }
 

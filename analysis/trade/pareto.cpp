@@ -13,6 +13,8 @@ namespace {
 constexpr double kAlikeCost = 1.1;
 constexpr double kAlikeError = 1e-6, kAlikeErrors = 1.02;
 constexpr double kGoodError = 1e-2;
+constexpr const char* kOneChoice = "one choice alone was measured";
+constexpr const char* kNotJudged = "not judged: error and cost are not measured";
 
 double floored(double error) {
   return std::max(error, kAlikeError);
@@ -30,6 +32,7 @@ bool better_in_one(const TradeRow& a, const TradeRow& b) {
 
 // What loses all is worth nothing, whatever it costs.
 bool beats(const TradeRow& a, const TradeRow& b) {
+  if (!a.is_judged() || !b.is_judged()) return false;
   if (a.error < 1 && b.error >= 1) return true;
   return no_worse(a, b) && better_in_one(a, b);
 }
@@ -55,8 +58,14 @@ std::optional<std::size_t> first_good(std::span<const TradeRow> rows, const Fron
   return std::nullopt;
 }
 
+std::ptrdiff_t choices_of(std::span<const TradeRow> rows, const std::string& knob) {
+  return std::ranges::count_if(rows,
+                               [&](const TradeRow& row) { return row.knob == knob && row.is_judged(); });
+}
+
 // Farthest below the line between the ends, both axes brought to 0...1.
 std::optional<std::size_t> knee_of(std::span<const TradeRow> rows, const Front& front) {
+  if (front.empty() || choices_of(rows, rows[front.front()].knob) < 2) return std::nullopt;
   if (front.size() < 3) return first_good(rows, front);
   const TradeRow &first = rows[front.front()], &last = rows[front.back()];
   const double width = log_cost(last) - log_cost(first);
@@ -93,7 +102,8 @@ std::vector<Worth> worth_of(std::span<const TradeRow> rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto winner = std::ranges::find_if(
         rows, [&](const TradeRow& other) { return other.knob == rows[i].knob && beats(other, rows[i]); });
-    worth[i].on_front = winner == rows.end();
+    worth[i].judged = rows[i].is_judged();
+    worth[i].on_front = worth[i].judged && winner == rows.end();
     if (winner != rows.end()) worth[i].beaten_by = winner->choice;
   }
   for (const std::string& knob : knobs_of(rows))
@@ -101,17 +111,25 @@ std::vector<Worth> worth_of(std::span<const TradeRow> rows) {
   return worth;
 }
 
+std::string worth_words(const Worth& worth) {
+  if (!worth.judged) return "not judged";
+  if (worth.knee) return "the knee";
+  return worth.on_front ? "yes" : "never: " + worth.beaten_by;
+}
+
 std::vector<PlainAnswer> plain_answers(std::span<const TradeRow> rows) {
   const auto worth = worth_of(rows);
   std::vector<PlainAnswer> answers;
   for (const std::string& knob : knobs_of(rows)) {
-    PlainAnswer answer{knob, "none stands out", ""};
+    const auto choices = choices_of(rows, knob);
+    PlainAnswer answer{knob, choices > 1 ? "none stands out" : choices == 1 ? kOneChoice : kNotJudged, ""};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (rows[i].knob != knob) continue;
-      if (!worth[i].on_front) answer.never += (answer.never.empty() ? "" : "; ") + rows[i].choice;
+      if (!worth[i].on_front && worth[i].judged)
+        answer.never += (answer.never.empty() ? "" : "; ") + rows[i].choice;
       if (worth[i].knee) answer.knee = knee_words(rows[i]);
     }
-    if (answer.never.empty()) answer.never = "none";
+    if (answer.never.empty()) answer.never = choices > 0 ? "none" : kNotJudged;
     answers.push_back(std::move(answer));
   }
   return answers;

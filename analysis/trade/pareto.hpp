@@ -15,12 +15,16 @@ namespace tacto::analysis {
 struct Worth {
   bool on_front = false;
   bool knee = false;      ///< of the front: farthest from the line between its ends, on logarithmic axes
+  bool judged = true;     ///< error and cost were measured; what was not is on no front and beaten by nobody
   std::string beaten_by;  ///< a choice that errs and costs no more (time, memory, latency), one of them less
 };
 
 /// One for each row. Rows are compared within their knob. A knob whose front has fewer than 3 choices has its
-/// knee at the cheapest that errs by less than 1 %, where there is one.
+/// knee at the cheapest that errs by less than 1 %, where there is one; a knob of one choice has none.
 std::vector<Worth> worth_of(std::span<const TradeRow> rows);
+
+/// "the knee", "yes", "never: " and by what it is beaten, or "not judged".
+std::string worth_words(const Worth& worth);
 
 /// What people ask of a knob: which choice is the knee, and which are never worth it.
 struct PlainAnswer {

@@ -113,10 +113,10 @@ struct TimedKernels {
     setup.section_count = undoes_hysteresis ? 1 : 0;
     kernels.emplace_back().kernel.set(setup);
   }
-  std::vector<double> costs_ns() {
+  std::vector<std::vector<double>> costs_ns() {
     std::vector<std::function<void()>> works;
     for (MovingFinger& each : kernels) works.emplace_back([&each] { each.run(); });
-    return median_costs_ns(works, kTicksPerBatch, kBatches);
+    return costs_in_turns_ns(works, kTicksPerBatch, kBatches);
   }
 
   std::vector<playback::Prepared> textures;
@@ -130,15 +130,21 @@ struct TimedKernels {
 
 std::vector<schema::MeasuredChoice> measure_reading_choices() {
   TimedKernels timed;
-  const std::vector<double> costs_ns = timed.costs_ns();
+  const auto costs_ns = timed.costs_ns();
   std::vector<schema::MeasuredChoice> choices;
   for (std::size_t i = 0; i < std::size(kReadings); ++i)
-    choices.push_back({"reading", std::string(playback::word_of(kReadings[i])), "tick", costs_ns[i], 0,
-                       errors_of(kReadings[i])});
-  const double hermite_ns = costs_ns[2], few_ns = costs_ns[4], many_ns = costs_ns[5], undone_ns = costs_ns[6];
+    choices.push_back({"reading", std::string(playback::word_of(kReadings[i])), "tick",
+                       median_cost(costs_ns[i]), 0, errors_of(kReadings[i])});
+  const auto &hermite_ns = costs_ns[2], &few_ns = costs_ns[4], &many_ns = costs_ns[5],
+             &undone_ns = costs_ns[6];
+  choices.push_back({"inverse",
+                     "tap",
+                     "tap",
+                     std::max(0.0, median_difference(many_ns, few_ns) / (kManyTaps - kFewTaps)),
+                     0,
+                     {}});
   choices.push_back(
-      {"inverse", "tap", "tap", std::max(0.0, (many_ns - few_ns) / (kManyTaps - kFewTaps)), 0, {}});
-  choices.push_back({"hysteresis", "undone", "tick", std::max(0.0, undone_ns - hermite_ns), 0, {}});
+      {"hysteresis", "undone", "tick", std::max(0.0, median_difference(undone_ns, hermite_ns)), 0, {}});
   return choices;
 }
 

@@ -255,7 +255,7 @@ void RealtimeTrade::add_loops() {
       lines_, [](const Line& line) { return line.row.knob == "inverse" && line.row.choice == "full"; });
   const double tick_ns = usual_tick == lines_.end() ? 0 : usual_tick->row.cost_ns;
   lines_.push_back({device_loop_row(*prepared, tick_ns), std::nullopt});
-  lines_.push_back({host_loop_row(*prepared, tick_ns), std::nullopt});
+  lines_.push_back({host_loop_row(*prepared), std::nullopt});
 }
 
 Result<std::vector<TradeRow>> RealtimeTrade::rows() {

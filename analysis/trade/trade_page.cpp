@@ -72,6 +72,7 @@ spatial::Series marks_of(const TradeHalf& half, const std::vector<Worth>& worth,
 }
 
 std::string number(double value) {
+  if (std::isnan(value)) return "";
   return fmt::format("{:.6g}", value);
 }
 
@@ -81,20 +82,22 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+std::string error_words(const TradeRow& row) {
+  if (!row.is_judged()) return "not measured";
+  return fmt::format("{:.3g} % ({:.1f} dB)", 100 * row.error, error_db(row));
+}
+
 std::vector<std::vector<std::string>> table_of(const TradeHalf& half) {
   const auto worth = worth_of(half.rows);
   std::vector<std::vector<std::string>> rows = {
       {"choice of", "choice", "error", "cost", "memory", "latency", "worth it", "note"}};
   for (std::size_t i = 0; i < half.rows.size(); ++i) {
     const TradeRow& row = half.rows[i];
-    rows.push_back({row.knob, row.choice, fmt::format("{:.3g} % ({:.1f} dB)", 100 * row.error, error_db(row)),
+    rows.push_back({row.knob, row.choice, error_words(row),
                     row.cost_ns > 0 ? fmt::format("{:.3g} ns a {}", row.cost_ns, row.per) : "",
                     row.memory_bytes > 0 ? fmt::format("{:.4g} KiB", row.memory_bytes / 1024) : "",
                     row.latency_s > 0 ? fmt::format("{:.3g} ms", 1e3 * row.latency_s) : "",
-                    worth[i].knee       ? "the knee"
-                    : worth[i].on_front ? "yes"
-                                        : "never: " + worth[i].beaten_by,
-                    row.note});
+                    worth_words(worth[i]), row.note});
   }
   return rows;
 }

@@ -12,21 +12,40 @@ const char* words_of(SessionEnding ending) {
   return "damaged: what stands before the damage was read";
 }
 
+cli::Report& add_texture(cli::Report& row, const SessionTexture& texture) {
+  return row.add("texture", texture.file)
+      .add("at_m", texture.at_m)
+      .add("gain_m_per_n", texture.gain_m_per_n)
+      .add("ends", word_of(texture.ends));
+}
+
 void add_device(cli::Report& report, const SessionHeader& header) {
   report.add("device", header.device_uri).add("loop", header.loop).add("rate_hz", header.rate_hz);
   report.add("transducer", header.transducer.name).add("encoder_step_m", header.metres_per_count);
   add_text(report, "scene", header.scene_file);
   std::vector<cli::Report> rows;
-  for (const SessionTexture& texture : header.textures)
-    rows.push_back(cli::Report()
-                       .add("texture", texture.file)
-                       .add("at_m", texture.at_m)
-                       .add("gain_m_per_n", texture.gain_m_per_n)
-                       .add("ends", word_of(texture.ends)));
+  for (const SessionTexture& texture : header.textures) {
+    cli::Report row;
+    rows.push_back(add_texture(row, texture));
+  }
   report.add("textures", std::move(rows));
   if (!header.choices.inverse) report.add("inverse", header.inverse);
   cli::add_choices(report, header.choices);
   report.add("delay_s", header.delay_s);
+}
+
+// After which tick, for the device may be ahead of what the host knows.
+void add_changes(cli::Report& report, const std::vector<SessionChange>& changes) {
+  if (changes.empty()) return;
+  std::vector<cli::Report> rows;
+  for (const SessionChange& change : changes)
+    for (const SessionTexture& texture : change.program.textures) {
+      cli::Report row;
+      row.add("tick", change.not_before);
+      add_text(row, "scene", change.program.scene_file);
+      rows.push_back(add_texture(row, texture));
+    }
+  report.add("changes", std::move(rows));
 }
 
 void add_totals(cli::Report& report, const SessionTotals& totals) {
@@ -49,7 +68,9 @@ Result<cli::Report> describe_session(const std::string& path) {
   cli::Report report = report_of(FileKind::session, path, reader->header().simulated);
   report.add("created", reader->header().created).add("creator", reader->header().creator);
   add_device(report, reader->header());
-  add_totals(report, session_totals(*reader));
+  const SessionTotals totals = session_totals(*reader);
+  add_changes(report, totals.changes);
+  add_totals(report, totals);
   return report;
 }
 

@@ -13,7 +13,9 @@ Result<cli::Report> describe_session_table(const std::string& path) {
   add_text(report, "device", table->device);
   add_text(report, "transducer", table->transducer);
   report.add("rate_hz", table->rate_hz).add("ticks", table->times).add("duration_s", table->duration_s);
-  return report.add("textures", table->textures);
+  report.add("textures", table->textures);
+  if (!table->changes.empty()) report.add("changes", table->changes);
+  return report;
 }
 
 }  // namespace tacto::schema

@@ -97,6 +97,11 @@ Result<Report> describe_texture(const std::string& path) {
   add_position(report, texture->source);
   add_average(report, *texture);
   add_certificate(report, texture->certificate);
+  if (texture->playback_gain) {
+    report.add("playback_gain_m_per_n", texture->playback_gain->gain_m_per_n);
+    add_text(report, "gain_set_by", texture->playback_gain->who);
+    add_text(report, "gain_set_on", texture->playback_gain->when);
+  }
   add_text(report, "surface", texture->surface);
   add_text(report, "finger", texture->finger);
   add_text(report, "subject", texture->subject);

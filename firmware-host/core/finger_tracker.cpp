@@ -6,9 +6,6 @@
 namespace tacto::core {
 namespace {
 
-// Measured with an encoder of 1 um (position where the finger will be in 2 ms, RMS): 0.04 um at constant
-// speed, 1 um at 2 kHz and 0.4 um at 10 kHz with 10 % of speed wander at 1.5 Hz.
-constexpr float kMostAlpha = 0.1F;
 constexpr float kHaste = 0.2F, kMostHaste = 0.5F;  // alpha where a miss is too large for what is not known
 constexpr float kEdgeNoise = 0.1F;                 // counts: of an edge's place
 constexpr float kTolerableMiss = 4;

@@ -19,12 +19,17 @@ struct TrackerSetup {
   float smoothing_ticks = 100;  ///< over which speed is averaged where counts come every tick
 };
 
+/// Of what an edge tells, at most so much is taken. Measured with an encoder of 1 um (position where the
+/// finger will be in 2 ms, RMS): 0.04 um at constant speed, 1 um at 2 kHz and 0.4 um at 10 kHz with 10 % of
+/// speed wander at 1.5 Hz.
+inline constexpr float kMostAlpha = 0.1F;
+
 /// Times the edges: an edge is known to lie at a count's border, crossed within the last tick (where counts
 /// come every tick, the middle of the count is what is known); between edges the finger goes on at its speed,
 /// but the place that is given never leaves the count that the encoder shows. An alpha-beta filter whose
 /// gains begin with those of a straight line through what was seen (2 (2 n - 1) / (n (n + 1)), 6 / (n (n +
-/// 1))) and settle at alpha = t / (t + smoothing), t the ticks since the last edge, at most 0.1; beta =
-/// alpha^2 / (2 - alpha). A miss beyond what is not known of an edge (half a tick's way, at most half a
+/// 1))) and settle at alpha = t / (t + smoothing), t the ticks since the last edge, at most kMostAlpha; beta
+/// = alpha^2 / (2 - alpha). A miss beyond what is not known of an edge (half a tick's way, at most half a
 /// count, and 0.1 counts) weighs 0.2 to 0.5. It begins again where the finger turns, or is off by 4 counts.
 /// An edge that is long overdue bounds the speed by 1.5 / t: a finger that stops comes to rest. Safe in the
 /// tick.

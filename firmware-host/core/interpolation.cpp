@@ -10,14 +10,14 @@ constexpr float kTwelfth = 1.0F / 12;
 constexpr int kPhases = 256;
 constexpr double kPi = 3.14159265358979323846;
 
-float slope(float before2, float before, float after, float after2) noexcept {
-  return (8 * (after - before) - (after2 - before2)) * kTwelfth;
-}
-
-float hermite(const float* y, float u) noexcept {
-  const float m0 = slope(y[1], y[2], y[4], y[5]), m1 = slope(y[2], y[3], y[5], y[6]);
-  const float rise = y[4] - y[3];
-  return y[3] + u * (m0 + u * (3 * rise - 2 * m0 - m1 + u * (m0 + m1 - 2 * rise)));
+// The cubic's coefficients, 1, u, u^2 and u^3, of each sample.
+Weights hermite(float u) noexcept {
+  constexpr float k = kTwelfth;
+  constexpr Four one{0, 0, 0, 1};
+  constexpr Four low1{0, k, -8 * k, 0}, low2{0, -2 * k, 15 * k, -28 * k}, low3{0, k, -7 * k, 16 * k};
+  constexpr Four high1{8 * k, -k, 0, 0}, high2{20 * k, -6 * k, k, 0}, high3{-16 * k, 7 * k, -k, 0};
+  const float u2 = u * u;
+  return {(one + u * low1) + u2 * (low2 + u * low3), u * high1 + u2 * (high2 + u * high3)};
 }
 
 // Taylor's series about 0; |x| <= pi / 2, error below 1e-12.
@@ -61,30 +61,36 @@ constexpr SincTable make_sinc() {
 }
 constexpr SincTable kSinc = make_sinc();
 
-float sinc(const float* y, float u) noexcept {
+Four between(const float* low, const float* high, float rest) noexcept {
+  return load_four(low) + rest * (load_four(high) - load_four(low));
+}
+
+Weights sinc(float u) noexcept {
   const float place = u * kPhases;
   const auto phase = static_cast<int32_t>(place);
   const float rest = place - static_cast<float>(phase);
   const float *low = kSinc.weights[phase], *high = kSinc.weights[phase + 1];
-  float sum = 0;
-  for (int i = 0; i < kReach; ++i) sum += y[i] * (low[i] + rest * (high[i] - low[i]));
-  return sum;
+  return {between(low, high, rest), between(low + 4, high + 4, rest)};
+}
+
+Weights of_two(float next) noexcept {
+  return {Four{0, 0, 0, 1 - next}, Four{next, 0, 0, 0}};
 }
 
 }  // namespace
 
-float interpolated(Interpolation kind, const float* y, float u) noexcept {
+Weights weights_at(Interpolation kind, float u) noexcept {
   switch (kind) {
     case Interpolation::nearest:
-      return y[u < 0.5F ? kBefore : kBefore + 1];
+      return of_two(u < 0.5F ? 0.0F : 1.0F);
     case Interpolation::linear:
-      return y[kBefore] + u * (y[kBefore + 1] - y[kBefore]);
+      return of_two(u);
     case Interpolation::sinc:
-      return sinc(y, u);
+      return sinc(u);
     case Interpolation::hermite:
       break;
   }
-  return hermite(y, u);
+  return hermite(u);
 }
 
 }  // namespace tacto::core

@@ -2,6 +2,7 @@
 // Between samples.
 #pragma once
 
+#include "firmware-host/core/four.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 
 namespace tacto::core {
@@ -9,8 +10,13 @@ namespace tacto::core {
 /// Samples that an interpolation may read: y[kBefore] is the one at or before the place.
 inline constexpr int32_t kReach = 8, kBefore = 3;
 
-/// The value at y[kBefore] + u, 0 <= u < 1, of kReach samples. w = 2 pi k pitch for a sinusoid of spatial
-/// frequency k; errors in parts of its amplitude, measured on w from 0.06 to 0.63 (ten samples a period):
+/// What each of kReach samples counts for.
+struct Weights {
+  Four low, high;
+};
+
+/// Of samples y at y[kBefore] + u, 0 <= u < 1. w = 2 pi k pitch for a sinusoid of spatial frequency k; errors
+/// in parts of its amplitude, measured on w from 0.06 to 0.63 (ten samples a period):
 /// - nearest: the closer sample; at most 0.5 w.
 /// - linear: at most 0.125 w^2.
 /// - hermite: cubic, slopes from central differences of fourth order, m_i = (8 (y_i+1 - y_i-1) - (y_i+2 -
@@ -18,6 +24,17 @@ inline constexpr int32_t kReach = 8, kBefore = 3;
 /// - sinc: eight samples under a Kaiser window (beta 8), for profiles of few samples a period: at most 6e-4
 ///   up to w = 1.05 (six samples a period), where hermite errs by 7e-3.
 /// Safe in the tick.
-float interpolated(wire::Interpolation kind, const float* y, float u) noexcept;
+Weights weights_at(wire::Interpolation kind, float u) noexcept;
+
+/// The weighted samples, not yet summed: levels are blended first.
+inline Four weighted(wire::Interpolation kind, const float* y, float u) noexcept {
+  const Weights weights = weights_at(kind, u);
+  return weights.low * load_four(y) + weights.high * load_four(y + 4);
+}
+
+/// The value between kReach samples.
+inline float interpolated(wire::Interpolation kind, const float* y, float u) noexcept {
+  return sum_of(weighted(kind, y, u));
+}
 
 }  // namespace tacto::core

@@ -9,6 +9,7 @@ namespace {
 constexpr int32_t kFarthestSample = INT32_C(1) << 29;
 constexpr float kPerFraction = 1.0F / (1 << 24);
 constexpr float kFractions = 1 << 24;
+constexpr int64_t kOneSample = INT64_C(1) << 32;
 
 // Of index by size, never negative.
 int32_t wrapped(int32_t index, int32_t size) noexcept {
@@ -21,13 +22,27 @@ int64_t part_of(uint64_t step, uint32_t fraction) noexcept {
   return static_cast<int64_t>((step >> 32) * fraction + (((step & 0xFFFFFFFFU) * fraction) >> 32));
 }
 
+// offset x 2^24 toward zero. One instruction where integers have 64 bits; else, to the same bits, in two
+// parts.
+int64_t in_fractions(float offset) noexcept {
+  if constexpr (sizeof(void*) >= sizeof(int64_t)) return static_cast<int64_t>(offset * kFractions);
+  const auto whole = static_cast<int32_t>(offset);
+  const auto rest = static_cast<int32_t>((offset - static_cast<float>(whole)) * kFractions);
+  return whole * INT64_C(0x1000000) + rest;
+}
+
 // step x offset, to 2^-24 of a step.
 int64_t stretch(uint64_t step, float offset) noexcept {
-  const auto toward_zero = static_cast<int32_t>(offset);
-  const int32_t whole = toward_zero - (offset < static_cast<float>(toward_zero) ? 1 : 0);
-  const auto fraction = static_cast<uint32_t>((offset - static_cast<float>(whole)) * kFractions);
-  const uint32_t most = (UINT32_C(1) << 24) - 1;  // an offset just below a whole number may round up to it
-  return static_cast<int64_t>(step) * whole + part_of(step, (fraction < most ? fraction : most) << 8);
+  const int64_t fractions = in_fractions(offset);
+  return static_cast<int64_t>(step) * (fractions >> 24) +
+         part_of(step, static_cast<uint32_t>(fractions) << 8);
+}
+
+// Of a place, by sample; one division where it lies elsewhere.
+int64_t within_period(int64_t place, int32_t size) noexcept {
+  const auto sample = static_cast<int32_t>(place >> 32);
+  if (sample >= 0 && sample < size) return place;
+  return static_cast<int64_t>(wrapped(sample, size)) * kOneSample + static_cast<uint32_t>(place);
 }
 
 }  // namespace
@@ -48,7 +63,7 @@ uint32_t pyramid_samples(const ProfileScale& scale) noexcept {
 }
 
 Profile::Profile(const float* samples, const ProfileScale& scale) noexcept
-    : scale_(scale), reach_(reach_counts(scale)) {
+    : scale_(scale), reach_(reach_counts(scale)), farthest_(static_cast<float>(reach_)) {
   for (uint8_t i = 0; i < scale.levels; ++i) {
     levels_[i] = {samples, static_cast<int32_t>(level_samples(scale, i))};
     samples += levels_[i].size;
@@ -71,40 +86,43 @@ void Profile::gather(const Level& level, int32_t first, float* y) const noexcept
   }
 }
 
-float Profile::read(uint32_t which, int64_t place) const noexcept {
-  const Level& level = levels_[which];
-  place >>= which / 2;
-  const auto index = static_cast<int32_t>(place >> 32);
-  const float u = static_cast<float>(static_cast<uint32_t>(place) >> 8) * kPerFraction;
-  int32_t first = index - kBefore;
-  const auto inside = [&] { return first >= 0 && first + kReach <= level.size; };
-  if (!inside() && scale_.ends == wire::ProfileEnds::loop) first = wrapped(first, level.size);
-  if (inside()) return interpolated(scale_.interpolation, level.samples + first, u);
+Four Profile::read_near_end(const Level& level, int32_t first, float u) const noexcept {
   float y[kReach];
   gather(level, first, y);
-  return interpolated(scale_.interpolation, y, u);
+  return weighted(scale_.interpolation, y, u);
 }
 
+Four Profile::read(uint32_t which, int64_t place) const noexcept {
+  const Level& level = levels_[which];
+  place >>= which / 2;
+  const int32_t first = static_cast<int32_t>(place >> 32) - kBefore;
+  const auto fraction = static_cast<int32_t>(static_cast<uint32_t>(place) >> 8);
+  const float u = static_cast<float>(fraction) * kPerFraction;
+  const bool inside = first >= 0 && first + kReach <= level.size;
+  return inside ? weighted(scale_.interpolation, level.samples + first, u) : read_near_end(level, first, u);
+}
+
+// The count is brought into a loop's first turn by itself: it is known before the offset is.
 bool Profile::place_of(int32_t count, float offset, int64_t& place) const noexcept {
   const int64_t away = counts_between(scale_.origin_count, count);
   if (away > reach_ || away < -reach_) return false;
+  if (!(offset >= -farthest_ && offset <= farthest_)) return false;
   place = away * static_cast<int64_t>(scale_.samples_per_count_q32) + scale_.at_origin_q32;
-  const auto reach = static_cast<float>(reach_);
-  if (!(offset >= -reach && offset <= reach)) return false;
-  if (offset != 0) place += stretch(scale_.samples_per_count_q32, offset);
+  const bool looped = scale_.ends == wire::ProfileEnds::loop;
+  if (looped) place = within_period(place, levels_[0].size);
+  place += stretch(scale_.samples_per_count_q32, offset);
+  if (looped) place = within_period(place, levels_[0].size);
   return true;
 }
 
-float Profile::at(int32_t count, float offset, float coarseness) const noexcept {
+float Profile::at(int32_t count, float offset, Detail detail) const noexcept {
   int64_t place = 0;
   if (!place_of(count, offset, place)) return 0;
-  if (scale_.levels == 1 || coarseness < 1) return read(0, place);
-  const uint32_t most = scale_.levels;
-  if (coarseness >= static_cast<float>(most + 1)) return 0;
-  const auto coarser = static_cast<uint32_t>(coarseness);
-  const float fade = coarseness - static_cast<float>(coarser);
-  const float fine = read(coarser - 1, place), coarse = coarser < most ? read(coarser, place) : 0;
-  return fine + fade * (coarse - fine);
+  if (scale_.levels == 1 || detail.coarser == 0) return sum_of(read(0, place));
+  if (detail.coarser > scale_.levels) return 0;
+  const Four fine = read(detail.coarser - 1, place);
+  const Four coarse = detail.coarser < scale_.levels ? read(detail.coarser, place) : Four{};
+  return sum_of(fine + detail.fade * (coarse - fine));
 }
 
 }  // namespace tacto::core

@@ -3,6 +3,7 @@
 // samples.
 #pragma once
 
+#include "firmware-host/core/detail.hpp"
 #include "firmware-host/core/interpolation.hpp"
 
 namespace tacto::core {
@@ -38,13 +39,12 @@ class Profile {
   Profile(const float* samples, const ProfileScale& scale) noexcept;
 
   /// At a count, of the first level. Safe in the tick.
-  float at(int32_t count) const noexcept { return at(count, 0, 0); }
+  float at(int32_t count) const noexcept { return at(count, 0, {}); }
 
-  /// At count + offset, where `coarseness` (0 and more) counts half-octaves of speed beyond the one up to
-  /// which the first level serves. From n to n + 1 level n - 1 fades evenly into level n, beyond the last one
-  /// into silence: all is continuous. A profile of one level serves at every speed. Beyond reach_counts() it
-  /// is zero. Safe in the tick.
-  float at(int32_t count, float offset, float coarseness) const noexcept;
+  /// At count + offset, in so much detail: level `coarser` - 1 fades evenly into level `coarser`, beyond the
+  /// last one into silence: all is continuous. A profile of one level serves at every speed. Beyond
+  /// reach_counts() it is zero. Safe in the tick.
+  float at(int32_t count, float offset, Detail detail) const noexcept;
 
  private:
   struct Level {
@@ -52,11 +52,13 @@ class Profile {
     int32_t size = 0;
   };
   bool place_of(int32_t count, float offset, int64_t& place) const noexcept;
-  float read(uint32_t level, int64_t place) const noexcept;
+  Four read(uint32_t level, int64_t place) const noexcept;
+  [[gnu::noinline]] Four read_near_end(const Level& level, int32_t first, float u) const noexcept;
   void gather(const Level& level, int32_t first, float* y) const noexcept;
 
   ProfileScale scale_;
   int32_t reach_ = 0;
+  float farthest_ = 0;  // the same
   Level levels_[wire::kMaxLevels];
 };
 

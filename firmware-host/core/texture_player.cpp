@@ -3,16 +3,6 @@
 
 namespace tacto::core {
 
-// The exponent is the whole part; of the rest m, log2(1 + m) is about m + 0.3431 m (1 - m).
-float half_octaves(float ratio) noexcept {
-  if (!(ratio > 1)) return 0;
-  uint32_t bits;
-  __builtin_memcpy(&bits, &ratio, sizeof bits);
-  const auto whole = static_cast<float>(static_cast<int32_t>(bits >> 23) - 127);
-  const float rest = static_cast<float>(bits & 0x7FFFFFU) * (1.0F / (1 << 23));
-  return 2 * (whole + rest + 0.3431F * rest * (1 - rest));
-}
-
 void TexturePlayer::begin(float gain_ticks) noexcept {
   gain_ticks_ = gain_ticks > 1 ? static_cast<uint32_t>(gain_ticks) : 1;
   gain_left_ = 0;
@@ -38,7 +28,7 @@ void TexturePlayer::change(const TextureSetup& texture, float fade_ticks) noexce
 float TexturePlayer::read(const TextureSetup& texture) const noexcept {
   const float speed = place_.counts_per_tick < 0 ? -place_.counts_per_tick : place_.counts_per_tick;
   const float per_full = texture.per_full_detail;
-  return texture.profile.at(place_.count, place_.offset, half_octaves(speed * per_full));
+  return texture.profile.at(place_.count, place_.offset, detail_at(speed * per_full));
 }
 
 float TexturePlayer::follow(float gain) noexcept {
@@ -53,13 +43,17 @@ float TexturePlayer::follow(float gain) noexcept {
   return gain_;
 }
 
-float TexturePlayer::wanted(int32_t count, float gain) noexcept {
+float TexturePlayer::faded(float value) noexcept {
+  const float weight = fade_ * fade_ * (3 - 2 * fade_);
+  fade_ -= fade_step_;
+  return value + weight * (read(leaving()) - value);
+}
+
+// In one piece: what a tick waits for begins as early as it may.
+[[gnu::flatten]] float TexturePlayer::wanted(int32_t count, float gain) noexcept {
   place_ = tracker_.track(count);
   float value = read(playing());
-  if (fade_ > 0) {
-    value += fade_ * fade_ * (3 - 2 * fade_) * (read(leaving()) - value);
-    fade_ -= fade_step_;
-  }
+  if (fade_ > 0) value = faded(value);
   return follow(gain) * value;
 }
 

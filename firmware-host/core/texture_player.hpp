@@ -21,10 +21,6 @@ inline float per_full_detail(float counts_per_tick) noexcept {
   return counts_per_tick > 0 ? 1 / counts_per_tick : 0;
 }
 
-/// 2 log2(ratio), without libm: within 0.02, continuous and growing, exact at powers of two; 0 for ratios
-/// below 1. Safe in the tick.
-float half_octaves(float ratio) noexcept;
-
 /// wanted = gain x texture(place). A gain goes evenly to its new value within `gain_ticks`, and is then
 /// exactly that; another texture fades in by a raised weight w = u^2 (3 - 2 u). Safe in the tick.
 class TexturePlayer {
@@ -41,6 +37,7 @@ class TexturePlayer {
 
  private:
   float read(const TextureSetup& texture) const noexcept;
+  [[gnu::noinline]] float faded(float value) noexcept;  // seldom: out of the usual tick's way
   float follow(float gain) noexcept;
 
   TextureSetup& playing() noexcept { return textures_[which_]; }

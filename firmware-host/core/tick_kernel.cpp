@@ -36,7 +36,7 @@ TickOutput TickKernel::tick(const TickInput& input) noexcept {
   return drive(player_.wanted(input.count, input.gain), input.raise, input.normal_force_n);
 }
 
-TickOutput TickKernel::drive(float wanted, bool raise, float normal_force_n) noexcept {
+[[gnu::flatten]] TickOutput TickKernel::drive(float wanted, bool raise, float normal_force_n) noexcept {
   TickOutput output;
   const float filtered = sections_.filter(plays_.follow(fir_.filter(wanted)));
   output.sound = is_finite(filtered);

@@ -51,7 +51,7 @@ struct TickOutput {
 /// texture(place of the finger), or comes from elsewhere. Single precision, no contraction, no libm: the same
 /// bits on host and device (a test holds the two against each other). Against double precision: a texture
 /// with levels, taps, following and limits, 2 kHz to 20 kHz: -105 dB of the drive; eight sections, 20 kHz:
-/// -100 dB for an actuator's inverse (poles of radius 0.99 at most), -65 dB where three of them are
+/// -100 dB for an actuator's inverse (poles of radius 0.99 at most), -64 dB where three of them are
 /// high-passes of 15 Hz (0.9967): such belong into the texture. A drive that is cut at its limits has the
 /// error that it has uncut. Nothing here allocates, locks, throws or calls.
 class TickKernel {

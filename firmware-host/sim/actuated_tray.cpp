@@ -8,14 +8,13 @@
 #include "firmware-host/sim/bench.hpp"
 
 namespace tacto::firmware_host {
-ActuatedTray::ActuatedTray(const schema::Transducer& t, double tick_rate_hz,
-                           std::optional<double> reconstruction_cutoff_hz, const TrayPhysics& physics)
+ActuatedTray::ActuatedTray(const schema::Transducer& t, double tick_rate_hz, const TrayPhysics& physics)
     : mechanics_(t, physics),
       hysteresis_(physics.hysteresis, t.max_voltage_v),
       force_n_per_v_(t.deflection_m / t.max_voltage_v * t.bender_stiffness_n_per_m * t.actuator_scale),
       amplifier_gain_(t.amplifier_gain),
       time_constant_s_(2 * t.amplifier_resistance_ohm * t.capacitance_f),
-      filter_rad_per_s_(2 * std::numbers::pi * reconstruction_cutoff_hz.value_or(0)),
+      filter_rad_per_s_(2 * std::numbers::pi * physics.reconstruction_cutoff_hz.value_or(0)),
       drive_limit_v_(t.drive_limit_v),
       step_s_(1 / (tick_rate_hz * substeps_in(1 / tick_rate_hz))),
       substeps_(substeps_in(1 / tick_rate_hz)) {}

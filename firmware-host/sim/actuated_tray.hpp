@@ -15,7 +15,8 @@
 namespace tacto::firmware_host {
 
 /// Wiertlewski 2011, equations (5) and (6). The drive V_a is held for a tick, as a converter does; on request
-/// an analog Butterworth low-pass of order 3 smooths it (the paper's reconstruction filter, 600 Hz); then
+/// an analog Butterworth low-pass of order 3 smooths it (the paper's reconstruction filter, 600 Hz),
+///   v_1' = w (V_a - v_1),   v'' = w (w (v_1 - v) - v'),   then, V_a being v,
 ///   2 R_a C_p V_p' = G_a V_a - V_p,   m x'' + b_r x' + (k_r + k_p) x = 2 beta k_p V_p x actuator_scale +
 ///   F_d.
 /// On request the bender lags V_p by hysteresis (in V_p, between +-v_max), the mass has a second mode, and a
@@ -24,11 +25,9 @@ namespace tacto::firmware_host {
 /// Not safe to share between threads; no allocation after construction.
 class ActuatedTray {
  public:
-  /// At rest, at 0. The tick rate in Hz, above 0; the filter's cut-off in Hz. Preconditions of TrayMechanics
-  /// and BenderHysteresis.
-  ActuatedTray(const schema::Transducer& transducer, double tick_rate_hz,
-               std::optional<double> reconstruction_cutoff_hz = std::nullopt,
-               const TrayPhysics& physics = {});
+  /// At rest, at 0. The tick rate in Hz, above 0. Preconditions of TrayMechanics and BenderHysteresis; a
+  /// filter's cut-off of at most 5 kHz, where its steps err by 2e-4 a radian and less.
+  ActuatedTray(const schema::Transducer& transducer, double tick_rate_hz, const TrayPhysics& physics = {});
 
   /// The displacement in metres at the tick's beginning; then holds `drive_v`, and the finger's force on the
   /// tray, to its end.

@@ -124,7 +124,7 @@ void SimBoard::step() {
     diverged_s_ = static_cast<double>(steps_) * period_s();
   ++steps_;
   if (!tray_ && drive_v_ != 0)
-    tray_ = std::make_unique<ActuatedTray>(transducer_, 1 / period_s(), std::nullopt, parameters_.tray());
+    tray_ = std::make_unique<ActuatedTray>(transducer_, 1 / period_s(), parameters_.tray());
   if (tray_) tray_->tick(drive_v_);
   if (tray_sensor_) frame_[channels_.size() - 1] = tray_sensor_->step(displacement_m());
   firmware_->tick();

@@ -73,6 +73,9 @@ std::string extras_words(const SimParameters& p) {
   if (p.has_second_mode)
     words += fmt::format(", second mode at {}", for_people(p.second_mode.frequency_hz, Dimension::frequency));
   if (p.hysteresis > 0) words += fmt::format(", driven with {:g} % of hysteresis", 100 * p.hysteresis);
+  if (p.has_reconstruction)
+    words += fmt::format(", driven through a Butterworth low-pass of order 3 at {}",
+                         for_people(p.reconstruction_cutoff_hz, Dimension::frequency));
   if (p.has_finger_load) words += ", driven under a resting finger's load";
   return words;
 }

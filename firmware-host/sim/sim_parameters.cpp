@@ -88,6 +88,8 @@ struct Detail {
 constexpr Detail kDetails[] = {
     {"force_", [](const SimParameters& p) { return p.known_force; }, "add force=multisine, or another"},
     {"lvdt_", [](const SimParameters& p) { return p.has_lvdt; }, "add position=lvdt"},
+    {"cutoff", [](const SimParameters& p) { return p.has_reconstruction; },
+     "add reconstruction=butterworth3"},
     {"second_mode_", [](const SimParameters& p) { return p.has_second_mode; }, "add second_mode=800Hz"},
     {"tray_sensor_", [](const SimParameters& p) { return p.has_tray_sensor; }, "add tray_sensor=on"},
     {"finger_load_", [](const SimParameters& p) { return p.has_finger_load; }, "add finger_load=on"},
@@ -123,6 +125,7 @@ TrayPhysics SimParameters::tray() const {
   if (has_second_mode) physics.second_mode = second_mode;
   if (has_finger_load) physics.finger_load = finger_load;
   physics.hysteresis = hysteresis;
+  if (has_reconstruction) physics.reconstruction_cutoff_hz = reconstruction_cutoff_hz;
   return physics;
 }
 

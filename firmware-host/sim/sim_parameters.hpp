@@ -54,6 +54,9 @@ struct SimParameters {
   FingerLoad finger_load;
   double hysteresis = 0;
 
+  bool has_reconstruction = false;  ///< a filter behind the drive's converter
+  double reconstruction_cutoff_hz = 600;
+
   bool has_tray_sensor = false;  ///< a channel `displacement`: where the driven tray is
   double tray_sensor_noise_m = 20e-9;
   TrayPhysics tray() const;

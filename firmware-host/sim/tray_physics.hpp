@@ -28,11 +28,15 @@ struct FingerLoad {
 
 /// All off: the paper's equations and nothing else.
 struct TrayPhysics {
-  std::optional<SecondMode> second_mode;
-  std::optional<FingerLoad> finger_load;  ///< of a driven tray; a recording finger is simulated in full
+  std::optional<SecondMode> second_mode = std::nullopt;
+  std::optional<FingerLoad> finger_load =
+      std::nullopt;  ///< of a driven tray; a recording finger is simulated in full
   /// The bender's: the loop's opening at no voltage, as a part of the loop's height, when it is driven
   /// between its largest voltages. 0: none. Wiertlewski 2011, Figure 7: 0.16.
   double hysteresis = 0;
+  /// Of the driven tray: an analog Butterworth low-pass of order 3 between converter and amplifier, its
+  /// cut-off (Wiertlewski 2011: 600 Hz).
+  std::optional<double> reconstruction_cutoff_hz = std::nullopt;
 };
 
 }  // namespace tacto::firmware_host

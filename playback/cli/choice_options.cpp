@@ -25,8 +25,9 @@ void declare_path(CLI::App& app, PlaybackChoices& c, const std::string& of) {
            "at rest, or nothing");
   add_word(app, "--reconstruction", c.reconstruction, {"none", "butterworth3"},
            of + "Analog filter behind the device's converter, undone as well; none unless told");
-  cli::add_quantity(app, "--cutoff", c.cutoff_hz, Dimension::frequency,
-                    of + "Cut-off of butterworth3; 600Hz, the paper's, unless told");
+  cli::add_quantity(
+      app, "--cutoff", c.cutoff_hz, Dimension::frequency,
+      of + "Cut-off of butterworth3 (needs one: --reconstruction); 600Hz, the paper's, unless told");
   add_word(app, "--hold", c.hold, {"none", "zero-order"},
            of + "Whether the converter holds each sample until the next (unless told), undone as well");
 }
@@ -36,11 +37,11 @@ void declare_limits(CLI::App& app, PlaybackChoices& c, const std::string& of) {
       app, "--energy-limit", c.energy_rms_v, Dimension::voltage,
       of + "Turn the drive down where its RMS would pass this, at the amplifier's input; 0V: never");
   cli::add_quantity(app, "--energy-window", c.energy_window_s, Dimension::time,
-                    of + "Over which that RMS is taken; 1s unless told");
+                    of + "Over which that RMS is taken (needs a limit); 1s unless told");
   cli::add_quantity(app, "--contact", c.contact_on_n, Dimension::force,
                     of + "Drive only from this normal force on, by a device that reports it; 0N: always");
   cli::add_quantity(app, "--contact-off", c.contact_off_n, Dimension::force,
-                    of + "And until it is below this; four fifths of --contact unless told");
+                    of + "And until it is below this (needs --contact); four fifths of it unless told");
 }
 
 }  // namespace

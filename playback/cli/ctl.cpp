@@ -111,16 +111,16 @@ void show_lateness(const ControlFields& fields) {
   for (const double bound_s : kLateBoundsS)
     show(fmt::format("< {:g} us", 1e6 * bound_s), number(late_part_name(bound_s)));
   show("more", 0);
-  fmt::print("edge to drive  p50 {:.2f}  p99 {:.2f} ms\n", 1e3 * number("latency_p50_s"),
-             1e3 * number("latency_p99_s"));
+  fmt::print("edge to drive  p50 {:.2f}  p99 {:.2f} ms, looked ahead by {:.2f} ms\n",
+             1e3 * number("latency_p50_s"), 1e3 * number("latency_p99_s"), 1e3 * number("looked_ahead_s"));
 }
 
 void show_top(const ControlFields& fields) {
   const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
   fmt::print("\033[H\033[2J{:<8} {}\n", schema::control_text(fields, "state"),
              schema::control_text(fields, "fault"));
-  fmt::print("period   {:8.1f} us   round trip {:.2f} ms\n", 1e6 * number("period_s"),
-             1e3 * number("round_trip_s"));
+  fmt::print("period   {:8.1f} us   round trip {:.2f} ms   band up to {:.4g} Hz\n", 1e6 * number("period_s"),
+             1e3 * number("round_trip_s"), number("passes_to_hz"));
   fmt::print("finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"), 1e3 * number("speed_mps"));
   fmt::print("drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V   gain {:g}\n", number("drive_v"),
              number("drive_rms_v"), number("drive_peak_v"), number("gain"));
@@ -193,7 +193,7 @@ cli::Action declare_ctl(CLI::App& app) {
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
                     "load while one plays: how long the change takes, 50ms unless told");
   declare_choices(app, o.choices, "load: ");
-  app.add_flag("--save", o.save, "gain: also into the scene's file");
+  app.add_flag("--save", o.save, "gain: also into the file of the scene or texture, with who and when");
   cli::add_quantity(app, "--time", o.time_s, Dimension::time, "watch, top: how long");
   return [options] { return run_ctl(*options); };
 }

@@ -4,6 +4,7 @@
 #include "data-schema/cli/choices_report.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
+#include "playback/cli/gain_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/program.hpp"
 
@@ -86,6 +87,7 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   Report report;
   report.add("what", program.name()).add("transducer", program.session.transducer.name);
   report.add("rate_hz", made.rate_hz).add("length_m", program.length_m);
+  add_kept_gain(report, program.kept_gain);
   report.add("textures", rows_of_textures(program)).add("texture_files_read", made.built.texture_files);
   report.add("levels", rows_of_levels(made));
   cli::add_choices(report, choices_in(program.options));
@@ -93,6 +95,7 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   add_guards(report, made);
   add_costs(report, made, *tick_ns, *table);
   report.add("left_out", rows_of_left_out(made));
+  if (!made.notes.empty()) report.add("notes", made.notes);
   if (program.decision) add_decision(report, *program.decision, o.budget.options.explain);
   return report;
 }

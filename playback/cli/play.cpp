@@ -3,14 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "data-schema/cli/choices_report.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
+#include "playback/cli/gain_report.hpp"
+#include "playback/cli/limits_report.hpp"
 #include "playback/cli/verbs.hpp"
+#include "playback/daemon/session_name.hpp"
 
 namespace tacto::playback {
 
@@ -22,13 +27,13 @@ namespace {
 
 struct PlayVerbOptions {
   PlayOptions play;
+  std::optional<std::string> session;
   AskedBudget budget;
 };
 
 void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
   app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:surface=C ...")->required();
-  app.add_option("-o,--output", o.session, "The session: NAME.session")->required();
   app.add_option("--transducer", o.transducer,
                  "A preset or NAME.transducer.json; the device's own unless told");
   app.add_flag("--force", o.program.force,
@@ -44,7 +49,7 @@ void declare_texture(CLI::App& app, PlayOptions& o) {
   cli::add_quantity(app, "--at", o.program.at_m, Dimension::length,
                     "Of a texture: where its position 0 lies on the encoder's axis");
   cli::add_quantity(app, "--gain", o.program.gain_m_per_n, Dimension::compliance,
-                    "Of a texture: displacement for force, 1mm/N unless told");
+                    "Of a texture: displacement for force; unless told the one that it keeps, or 1mm/N");
   app.add_option_function<std::string>(
          "--ends",
          [&o](const std::string& word) {
@@ -74,8 +79,14 @@ void add_played(Report& report, const PlayOutcome& outcome) {
       .add("energy_limited_ticks", ticks.energy_limited())
       .add("gated_ticks", ticks.gated())
       .add("blind_ticks", ticks.blind());
+  add_removed(report, outcome.limits);
   report.add("drive_peak_v", ticks.drive_peak_v());
   report.add("passes_to_hz", outcome.passes_to_hz).add("delay_left_s", outcome.delay_left_s);
+  if (const auto& looped = outcome.looped)
+    report.add("looked_ahead_s", looped->looked_ahead_s)
+        .add("latency_p50_s", looped->latency.p50_s)
+        .add("latency_p99_s", looped->latency.p99_s)
+        .add("missed_ticks", looped->missed_ticks);
   report.add("inverse_error_db", outcome.inverse_error_db);
   cli::add_choices(report, outcome.choices);
 }
@@ -84,6 +95,8 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explai
   Report report;
   report.add("session", o.session).add("device", outcome.device);
   if (!outcome.simulated.empty()) report.add("simulated", outcome.simulated);
+  report.add("gain_m_per_n", outcome.gain_m_per_n);
+  add_kept_gain(report, outcome.kept_gain);
   report.add("played_s", outcome.status.ticks.span_s());
   add_played(report, outcome);
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
@@ -99,12 +112,16 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explai
   return report;
 }
 
+std::string session_named_after(const std::string& what) {
+  return dated_session(std::filesystem::path(what).filename().stem().stem().string() + "-");
+}
+
 Result<Report> run_play(const PlayVerbOptions& asked) {
   const auto budget = asked.budget.budget();
   if (!budget) return schema::forward_error(budget);
   PlayOptions o = asked.play;
   o.program.budget = *budget;
-  o.session = schema::session_path(o.session);
+  o.session = schema::session_path(asked.session.value_or(session_named_after(o.program.file)));
   const cli::StopSignals signals;
   cli::Progress progress("playing");
   const auto outcome = play_once(
@@ -117,6 +134,8 @@ cli::Action declare_play(CLI::App& app) {
   auto options = std::make_shared<PlayVerbOptions>();
   options->play.prepare.onset_s = 0.02;
   declare_what(app, options->play);
+  app.add_option("-o,--output", options->session,
+                 "The session: NAME.session; unless told the texture's name and the time of day, here");
   declare_texture(app, options->play);
   declare_loop(app, options->play);
   declare_choices(app, options->play.program.choices);

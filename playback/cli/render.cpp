@@ -7,6 +7,7 @@
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/statistics.hpp"
 #include "playback/cli/budget_report.hpp"
+#include "playback/cli/gain_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/drive_files.hpp"
 #include "playback/render.hpp"
@@ -25,6 +26,8 @@ struct RenderVerbOptions {
   RenderOptions render;
   AskedBudget budget;
   CLI::Option* engine = nullptr;
+  std::optional<double> gain_m_per_n;
+  std::optional<schema::PlaybackGain> kept_gain;
 };
 
 void add_files(CLI::App& app, RenderVerbOptions& o) {
@@ -42,9 +45,11 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
   app.add_option("--wanted", o.wanted, "Also write the displacement that was wanted: float WAV in metres");
 }
 
-void add_quantities(CLI::App& app, RenderOptions& o) {
+void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
+  RenderOptions& o = verb.render;
   cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency, "Sample rate of the drive");
-  cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance, "Displacement for force");
+  cli::add_quantity(app, "--gain", verb.gain_m_per_n, Dimension::compliance,
+                    "Displacement for force; unless told the one that the texture keeps, or 1mm/N");
   cli::add_quantity(
       app, "--at", o.at_m, Dimension::length,
       "Where the texture's position 0 lies on the path's axis; for a path in bench positions give the "
@@ -148,6 +153,7 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
   Report report;
   report.add("drive", o.drive).add("transducer", transducer.name).add("duration_s", r.drive_v.duration_s());
   report.add("rate_hz", r.drive_v.sample_rate_hz).add("gain_m_per_n", o.render.gain_m_per_n);
+  add_kept_gain(report, o.kept_gain);
   report.add("drive_rms_v", schema::statistics_of(r.drive_v.values).rms())
       .add("wanted_rms_m", schema::statistics_of(r.wanted_m.values).rms());
   report.add("displacement_error_db", r.error_db).add("delay_s", r.delay_s);
@@ -173,9 +179,12 @@ Result<void> check_outputs(const RenderVerbOptions& o) {
   return check_signal_files(files_of(o, Rendering{}));
 }
 
-Result<Rendering> rendered(const RenderVerbOptions& o, const schema::Transducer& transducer) {
+Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& transducer) {
   const auto texture = schema::read_texture(o.texture);
   if (!texture) return schema::forward_error(texture);
+  if (!o.gain_m_per_n) o.kept_gain = texture->playback_gain;
+  if (o.kept_gain) o.render.gain_m_per_n = o.kept_gain->gain_m_per_n;
+  o.render.gain_m_per_n = o.gain_m_per_n.value_or(o.render.gain_m_per_n);
   const auto path = read_finger_path(o.path);
   if (!path) return schema::forward_error(path);
   cli::Progress progress("rendering");
@@ -203,7 +212,7 @@ Result<Report> run_render(RenderVerbOptions o) {
 cli::Action declare_render(CLI::App& app) {
   auto options = std::make_shared<RenderVerbOptions>();
   add_files(app, *options);
-  add_quantities(app, options->render);
+  add_quantities(app, *options);
   add_model(app, *options);
   return [options] { return run_render(*options); };
 }

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "playback/cli/limits_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/session_export.hpp"
 #include "playback/daemon/stroke_report.hpp"
@@ -28,6 +29,8 @@ Report stroke_row(const PlayedStroke& stroke) {
     row.add("wanted_rms_m", stroke.wanted_rms_m)
         .add("error_db", stroke.error_db)
         .add("received_over_wanted_db", stroke.level_db);
+  if (stroke.limits && stroke.limits->removed_any())
+    row.add("removed_by_limits_db", stroke.limits->removed_db());
   return row.add("limited_ticks", stroke.limited_ticks)
       .add("energy_limited_ticks", stroke.energy_limited_ticks)
       .add("gated_ticks", stroke.gated_ticks);
@@ -46,6 +49,8 @@ Result<Report> run_session(const SessionVerbOptions& o) {
   report.add("session", schema::session_path(o.session));
   if (!o.outputs.empty()) report.add("written", o.outputs);
   report.add("band_low_hz", strokes->low_hz).add("band_high_hz", strokes->high_hz);
+  add_removed(report, strokes->limits);
+  if (strokes->limits) report.add("energy_limited_ticks", strokes->limits->energy_limited());
   std::vector<Report> rows;
   for (const PlayedStroke& stroke : strokes->strokes) rows.push_back(stroke_row(stroke));
   report.add("strokes", std::move(rows));

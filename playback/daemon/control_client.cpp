@@ -22,6 +22,7 @@ ControlClient::ControlClient(ControlClient&& other) noexcept
       watching(other.watching),
       unwelcome(other.unwelcome),
       greets_by(other.greets_by),
+      user(other.user),
       dropped_events(other.dropped_events),
       waits_with_id(std::move(other.waits_with_id)),
       descriptor_(std::exchange(other.descriptor_, -1)),
@@ -38,6 +39,7 @@ ControlClient& ControlClient::operator=(ControlClient&& other) noexcept {
   watching = other.watching;
   unwelcome = other.unwelcome;
   greets_by = other.greets_by;
+  user = other.user;
   dropped_events = other.dropped_events;
   std::swap(waits_with_id, other.waits_with_id);
   return *this;

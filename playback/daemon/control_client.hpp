@@ -43,6 +43,7 @@ class ControlClient {
 
   bool greeted = false, watching = false, unwelcome = false;
   std::optional<std::chrono::steady_clock::time_point> greets_by;  ///< with the token: who came by TCP
+  std::optional<std::uint32_t> user;                               ///< who came by the Unix socket
   std::uint64_t dropped_events = 0;
   std::optional<std::string> waits_with_id;  ///< for an answer that comes later: the request's id
 

@@ -74,10 +74,12 @@ void ControlServer::accept_all() {
   for (int i = 0; i < kAcceptAtOnce; ++i) {
     const int accepted = accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (accepted < 0) return;
-    if (clients_.size() < static_cast<std::size_t>(place_.most_clients))
+    if (clients_.size() < static_cast<std::size_t>(place_.most_clients)) {
       clients_.emplace_back(accepted);
-    else
+      clients_.back().user = peer_user(accepted);
+    } else {
       refuse(accepted);
+    }
   }
 }
 
@@ -116,11 +118,12 @@ const schema::Error* ControlServer::refusal_of(const ControlClient& client,
 std::optional<std::string> ControlServer::answer_to(ControlClient& client, const std::string& line,
                                                     const Handler& handler) {
   std::string id;
-  const auto request = schema::parse_control_request(line, &id);
+  auto request = schema::parse_control_request(line, &id);
   const schema::Error* const refusal = refusal_of(client, request ? &*request : nullptr);
   client.unwelcome = refusal == &kUnknown;
   if (refusal != nullptr) return schema::control_error_line(id, *refusal);
   if (!request) return schema::control_error_line(id, request.error());
+  if (request->save) request->asked_by = client.user ? user_name(*client.user) : "token";
   const Answer fields = handler(*request);
   if (!fields) {
     client.waits_with_id = id;

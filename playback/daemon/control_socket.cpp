@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <grp.h>
 #include <netinet/in.h>
+#include <pwd.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -13,6 +14,7 @@
 #include <cstring>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 namespace tacto::playback {
 namespace {
@@ -110,6 +112,22 @@ Result<int> open_control_socket(const std::string& path, const std::string& grou
   if (done) return descriptor;
   ::close(descriptor);
   return schema::forward_error(done);
+}
+
+std::optional<std::uint32_t> peer_user(int descriptor) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return std::nullopt;
+  return peer.uid;
+}
+
+std::string user_name(std::uint32_t user) {
+  constexpr std::size_t kRoom = 16384;
+  std::vector<char> room(kRoom);
+  passwd entry{};
+  passwd* found = nullptr;
+  const int failed = getpwuid_r(user, &entry, room.data(), room.size(), &found);
+  return failed == 0 && found != nullptr ? std::string(entry.pw_name) : fmt::format("user {}", user);
 }
 
 Result<LoopbackSocket> open_loopback_socket(int port) {

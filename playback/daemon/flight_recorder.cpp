@@ -79,7 +79,12 @@ void FlightRecorder::confess() {
 
 void FlightRecorder::command(schema::SessionCommand command) {
   const std::lock_guard lock(notes_mutex_);
-  notes_.commands.push_back(std::move(command));
+  notes_.commands.emplace_back(std::move(command));
+}
+
+void FlightRecorder::change(schema::SessionChange change) {
+  const std::lock_guard lock(notes_mutex_);
+  notes_.commands.emplace_back(std::move(change));
 }
 
 void FlightRecorder::loss(const SessionLoss& loss) {
@@ -103,14 +108,26 @@ void FlightRecorder::failed(const schema::Error& error) {
   failure_ = schema::message(error);
 }
 
+void FlightRecorder::owe(const SessionLoss& loss) {
+  const bool goes_on = !owed_.empty() && owed_.back().why == loss.why &&
+                       owed_.back().first_tick + owed_.back().count == loss.first_tick;
+  if (goes_on) {
+    owed_.back().count += loss.count;
+  } else if (owed_.size() < kMostOwed) {
+    owed_.push_back(loss);
+  }
+}
+
 void FlightRecorder::write_run(std::span<const SessionTick> ticks) {
   const auto done = writer_.add(ticks);
   if (!done) {
     failed(done.error());
     disk_lost_.fetch_add(ticks.size());
-    if (owed_.size() < kMostOwed) owed_.push_back({ticks.front().tick, ticks.size(), SessionLoss::Why::disk});
+    owe({ticks.front().tick, ticks.size(), SessionLoss::Why::disk});
+    disk_full_ = true;
     return;
   }
+  disk_full_ = false;
   written_.fetch_add(ticks.size());
   for (const SessionTick& tick : ticks) late_.fetch_add((tick.flags & wire::kTickLate) != 0);
 }
@@ -144,15 +161,20 @@ void FlightRecorder::write_notes() {
     const std::lock_guard lock(notes_mutex_);
     notes = std::exchange(notes_, {});
   }
-  owed_.insert(owed_.end(), notes.losses.begin(), notes.losses.end());
+  for (const SessionLoss& loss : notes.losses) owe(loss);
   const auto put = [&](const auto& note) {
-    const auto done = writer_.add(note);
-    if (!done) failed(done.error());
-    return done.has_value();
+    if (const auto done = writer_.add(note); !done) failed(done.error());
   };
-  for (const auto& command : notes.commands) put(command);
+  for (const auto& command : notes.commands) std::visit(put, command);
   for (const auto& event : notes.events) put(event);
-  while (!owed_.empty() && put(owed_.front())) owed_.erase(owed_.begin());
+  if (!disk_full_) write_owed();  // what is held back for losses is for all of them
+}
+
+void FlightRecorder::write_owed() {
+  while (!owed_.empty()) {
+    if (const auto done = writer_.add(owed_.front()); !done) return failed(done.error());
+    owed_.erase(owed_.begin());
+  }
 }
 
 void FlightRecorder::run() {
@@ -177,6 +199,7 @@ Result<void> FlightRecorder::close() {
   stop();
   if (missing_ > 0) confess();
   write_queued();
+  write_owed();  // also what just found no room
   return writer_.close(
       {written_.load(), queue_lost_.load() + disk_lost_.load() + link_lost_.load(), late_.load()});
 }

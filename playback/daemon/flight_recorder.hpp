@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "data-schema/session_writer.hpp"
@@ -44,6 +45,8 @@ class FlightRecorder {
 
   void tick(const schema::SessionTick& tick) noexcept;
   void command(schema::SessionCommand command);
+  /// What the commands that come next are to change to.
+  void change(schema::SessionChange change);
   /// Ticks that never came.
   void loss(const schema::SessionLoss& loss);
   void event(schema::SessionEvent event);
@@ -58,7 +61,7 @@ class FlightRecorder {
  private:
   static constexpr std::uint32_t kQueue = 65536;
   struct Notes {
-    std::vector<schema::SessionCommand> commands;
+    std::vector<std::variant<schema::SessionCommand, schema::SessionChange>> commands;  // as they came
     std::vector<schema::SessionLoss> losses;
     std::vector<schema::SessionEvent> events;
   };
@@ -69,8 +72,10 @@ class FlightRecorder {
   void write_ticks(std::uint32_t most);
   void write_run(std::span<const schema::SessionTick> ticks);
   void write_notes();
+  void write_owed();
   void failed(const schema::Error& error);
   void confess();
+  void owe(const schema::SessionLoss& loss);
 
   schema::SessionWriter writer_;
   std::string path_;
@@ -80,6 +85,7 @@ class FlightRecorder {
   std::uint64_t missing_ = 0, missing_from_ = 0;  // the putter's: ticks that found no room
   std::vector<schema::SessionTick> batch_;        // the writer's
   std::vector<schema::SessionLoss> owed_;         // the writer's: losses that the disk did not take either
+  bool disk_full_ = false;                        // the writer's
   mutable std::mutex notes_mutex_;
   Notes notes_;
   std::string failure_;

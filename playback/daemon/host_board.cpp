@@ -9,7 +9,7 @@
 namespace tacto::playback {
 
 HostBoard::HostBoard(const firmware_host::Description& device, double rate_hz)
-    : about_(device), period_ns_(static_cast<std::int64_t>(1e9 / rate_hz)) {
+    : about_(device), counts_(rate_hz), period_ns_(static_cast<std::int64_t>(1e9 / rate_hz)) {
   wire::Welcome& welcome = about_.welcome;
   welcome.clock_hz = kClockHz;
   welcome.default_rate_millihertz = welcome.least_rate_millihertz = welcome.most_rate_millihertz =
@@ -49,37 +49,27 @@ core::Hal HostBoard::hal() {
 bool HostBoard::read_codes(std::int32_t* codes) const noexcept {
   for (std::size_t i = 0; i < about_.channels.size(); ++i)
     codes[i] = codes_[i].load(std::memory_order_relaxed);
-  return readings_.load(std::memory_order_acquire) > 0;
+  return coded_.load(std::memory_order_acquire);
 }
 
 void HostBoard::rest(std::int64_t now_ns) noexcept {
   if (began_ns_ == 0) began_ns_ = now_ns;
   now_ns_ = now_ns;
-  take_reading();
+  encoder_ = counts_.begin().count;
   firmware_->poll();
   wants_drive_.store(ticking_, std::memory_order_release);
 }
 
-// The device's periods since the last reading that was taken.
-std::uint32_t HostBoard::take_reading() noexcept {
-  const std::uint64_t reading = reading_.load(std::memory_order_relaxed);
-  encoder_ = static_cast<std::int32_t>(static_cast<std::uint32_t>(reading));
-  const auto period = static_cast<std::uint32_t>(reading >> 32U);
-  const std::uint32_t passed = period - seen_period_;
-  seen_period_ = period;
-  return passed;
-}
-
 // A period that this thread slept through is as blind as one in which no count came, and so is one that the
 // device made and of which only a later count was taken.
-void HostBoard::look_for_readings(std::int64_t late_ns) noexcept {
-  const std::uint32_t reading = readings_.load(std::memory_order_acquire);
-  if (late_ns >= period_ns_) age_ += static_cast<std::uint32_t>(late_ns / period_ns_);
-  const bool fresh = reading != seen_reading_;
-  seen_reading_ = reading;
-  const std::uint32_t passed = take_reading();
-  unseen_ = std::max(fresh ? age_ : ++age_, passed > 0 ? passed - 1 : 0);
-  if (fresh) age_ = 0;
+void HostBoard::look_at_count(std::int64_t late_ns) noexcept {
+  const std::uint32_t slept = late_ns >= period_ns_ ? static_cast<std::uint32_t>(late_ns / period_ns_) : 0;
+  const CountTrack::Sight sight = counts_.see();
+  encoder_ = sight.count;
+  reading_ns_ = sight.made_ns;
+  age_ += slept + (sight.fresh ? 0U : 1U);
+  unseen_ = std::max(age_, sight.passed > 0 ? sight.passed - 1 : 0);
+  if (sight.fresh) age_ = 0;
 }
 
 // A drive that finds no room is not kept for later.
@@ -90,10 +80,10 @@ void HostBoard::tick(std::int64_t now_ns, std::int64_t late_ns) noexcept {
   lateness_[slot].store(static_cast<std::int32_t>(std::min(late_ns, kMost)), std::memory_order_relaxed);
   // Periods that were slept through are passed over: the tick belongs to the last of them.
   dues_[slot].store(now_ns - began_ns_ - late_ns % period_ns_, std::memory_order_relaxed);
-  look_for_readings(late_ns);
+  look_at_count(late_ns);
   firmware_->tick();
   if (TimedDrive* place = drives_.place(); place != nullptr) {
-    *place = {now_ns, drive_v_, reading_ns_.load(std::memory_order_relaxed)};
+    *place = {now_ns, drive_v_, reading_ns_};
     drives_.push();
   } else {
     drives_lost_.store(drives_lost_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);

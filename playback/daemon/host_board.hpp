@@ -14,6 +14,7 @@
 #include "firmware-host/core/ring.hpp"
 #include "firmware-host/hosted_board.hpp"
 #include "playback/daemon/byte_ring.hpp"
+#include "playback/daemon/count_track.hpp"
 
 namespace tacto::playback {
 
@@ -21,7 +22,7 @@ namespace tacto::playback {
 struct TimedDrive {
   std::int64_t time_ns = 0;
   float drive_v = 0;
-  std::int64_t reading_ns = 0;  ///< when its count came
+  std::int64_t reading_ns = 0;  ///< when the device took its count
 };
 
 /// tick() and rest() are the real-time thread's; inputs and outputs other threads'.
@@ -40,22 +41,18 @@ class HostBoard {
   void rest(std::int64_t now_ns) noexcept;
   bool ticking() const noexcept { return ticking_; }
 
-  // From other threads. `period` numbers the device's periods: counts of a device that hands over what it has
-  // kept come faster than they were made.
-  void set_inputs(std::int32_t encoder, bool enabled, std::int64_t now_ns = 0,
-                  std::uint32_t period = 0) noexcept {
-    reading_ns_.store(now_ns, std::memory_order_relaxed);
-    const auto count = static_cast<std::uint32_t>(encoder);
-    reading_.store(std::uint64_t{period} << 32U | count, std::memory_order_relaxed);
-    enabled_.store(enabled, std::memory_order_release);
-    readings_.fetch_add(1, std::memory_order_release);
+  // From other threads.
+  /// Each count that the device made, in their order, by the device's period.
+  void put_count(std::uint32_t period, std::int32_t encoder, std::int64_t made_ns) noexcept {
+    counts_.put(period, encoder, made_ns);
   }
-  /// Before set_inputs(): the codes of the device's channels in the same period.
+  void set_enabled(bool enabled) noexcept { enabled_.store(enabled, std::memory_order_release); }
+  /// Before put_count(): the codes of the device's channels in the same period.
   void set_codes(std::span<const std::int32_t> codes) noexcept {
     for (std::size_t i = 0; i < std::min(codes.size(), codes_.size()); ++i)
       codes_[i].store(codes[i], std::memory_order_relaxed);
+    coded_.store(true, std::memory_order_release);
   }
-  void open_enable() noexcept { enabled_.store(false, std::memory_order_release); }
   ByteRing<65536>& from_player() noexcept { return from_player_; }
   ByteRing<262144>& to_player() noexcept { return to_player_; }
   core::Ring<TimedDrive, 1024>& drives() noexcept { return drives_; }
@@ -76,26 +73,23 @@ class HostBoard {
   core::Board board();
   core::Hal hal();
   bool read_codes(std::int32_t* codes) const noexcept;
-  void look_for_readings(std::int64_t late_ns) noexcept;
-  std::uint32_t take_reading() noexcept;
+  void look_at_count(std::int64_t late_ns) noexcept;
 
   firmware_host::Description about_;
   firmware_host::HostedProfile profile_;
-  std::atomic<std::uint64_t> reading_{0};  // the device's period, and the encoder's count in it
-  std::atomic<bool> enabled_{false}, wants_drive_{false};
+  CountTrack counts_;
+  std::atomic<bool> enabled_{false}, wants_drive_{false}, coded_{false};
   ByteRing<65536> from_player_;
   ByteRing<262144> to_player_;
   core::Ring<TimedDrive, 1024> drives_;
   std::array<std::atomic<std::int32_t>, kLatenesses> lateness_{};
   std::array<std::atomic<std::int64_t>, kLatenesses> dues_{};
   std::atomic<std::uint64_t> drives_lost_{0};
-  std::atomic<std::uint32_t> readings_{0};  // of the encoder
   std::array<std::atomic<std::int32_t>, wire::kMaxChannels> codes_{};
-  std::atomic<std::int64_t> reading_ns_{0};
   std::int64_t period_ns_;
-  std::uint32_t seen_reading_ = 0, age_ = 0, unseen_ = 0;  // in periods
-  std::uint32_t seen_period_ = 0;                          // the device's
+  std::uint32_t age_ = 0, unseen_ = 0;  // in periods
   std::int32_t encoder_ = 0;
+  std::int64_t reading_ns_ = 0;
   std::uint64_t ticks_ = 0;  // since arming
   std::int64_t now_ns_ = 0, began_ns_ = 0;
   float drive_v_ = 0;

@@ -22,6 +22,8 @@ constexpr double kCarryS = 0.5e-3;
 constexpr std::int64_t kStaleNs = 20'000'000, kRestNs = 200'000;
 constexpr double kQueueS = 4e-3;  // of drives on the device: what the carrier's own sleep may take
 constexpr float kDeviceReleaseS = 0.01F;
+constexpr int kLooks = 100;
+constexpr double kQueueShare = 0.2, kFollowS = 0.5, kMostLonger = 5e-3;
 
 // The player's cable: bytes in memory.
 class LoopTransport final : public firmware_host::Transport {
@@ -49,6 +51,12 @@ class LoopTransport final : public firmware_host::Transport {
   HostBoard& board_;
 };
 
+std::int64_t median_of(std::vector<std::int64_t>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 Result<std::size_t> position_channel(const firmware_host::Description& about) {
   for (std::size_t i = 0; i < about.channels.size(); ++i)
     if (std::strcmp(about.channels[i].quantity, "position") == 0) return i;
@@ -72,10 +80,30 @@ Result<std::unique_ptr<HostLoop>> HostLoop::begin(firmware_host::Client& device,
   if (const auto started = device.start_stream(firmware_host::millihertz(options.rate_hz), 1); !started)
     return schema::forward_error(started);
   if (const auto first = device.await_samples(1); !first) return schema::forward_error(first);
-  loop->take_counts();
+  if (const auto measured = loop->measure_delay(); !measured) return schema::forward_error(measured);
   loop->tick_thread_ = std::thread([&self = *loop] { self.tick_forever(); });
   loop->carry_thread_ = std::thread([&self = *loop] { self.carry_forever(); });
   return loop;
+}
+
+// A count waits for those that come with it and for one more, and twice for the carrier; then the device's
+// queue, and the cable there and back. Medians, for a computer may stall.
+Result<void> HostLoop::measure_delay() {
+  std::vector<std::int64_t> batches, trips;
+  for (int i = 0; i < kLooks; ++i) {
+    const std::uint32_t before = periods_;
+    if (const auto came = device_.receive(kCarryS); !came) return came;
+    take_counts();
+    if (periods_ > before) batches.push_back(periods_ - before);
+    if (i % 10 != 0) continue;
+    const std::int64_t asked_ns = TickClock::now_ns();
+    if (const auto pulse = device_.heartbeat(); !pulse) return schema::forward_error(pulse);
+    trips.push_back(TickClock::now_ns() - asked_ns);
+  }
+  const double batch = batches.empty() ? 0 : static_cast<double>(median_of(batches));
+  delay_s_ = (batch + 1 + queue_target()) / options_.rate_hz + 2 * kCarryS +
+             1e-9 * static_cast<double>(median_of(trips));
+  return {};
 }
 
 HostLoop::~HostLoop() {
@@ -97,6 +125,7 @@ HostLoopStatus HostLoop::status() const {
   std::ranges::transform(kLateBoundsS, status.late_parts.begin(),
                          [this](double bound_s) { return wake_.part_over(bound_s); });
   status.latency = latency();
+  status.looked_ahead_s = delay_s_;
   status.missed_ticks = missed_.load();
   status.stale_drives = stale_.load();
   status.trimmed_drives = trimmed_.load();
@@ -127,6 +156,7 @@ void HostLoop::tick_forever() {
       clock.begin(options_.rate_hz);
     }
     ticked = true;
+    clock.lengthen(longer_ns_.load(std::memory_order_relaxed));
     const std::int64_t late_ns = clock.wait(missed);
     const std::int64_t began_ns = TickClock::now_ns();
     board_->tick(began_ns, late_ns);
@@ -142,8 +172,10 @@ void HostLoop::give_up(const std::string& why) {
   fault_ = why;
 }
 
+// The newest of them was taken just now, each other one a period before the next.
 void HostLoop::take_counts() {
   const std::size_t channels = device_.description().channels.size();
+  const double period_ns = 1e9 / options_.rate_hz;
   auto& queue = device_.samples();
   for (bool more = true; more;) {
     while (queue.at_gap()) periods_ += static_cast<std::uint32_t>(queue.take_gap().count);
@@ -151,10 +183,12 @@ void HostLoop::take_counts() {
     more = frames > 0;
     if (!more) break;
     last_count_ns_ = TickClock::now_ns();
-    periods_ += static_cast<std::uint32_t>(frames);
-    const auto last = std::span(codes_).subspan((frames - 1) * channels, channels);
-    board_->set_codes(last);
-    board_->set_inputs(last[position_channel_], sound_ && enabled_, last_count_ns_, periods_);
+    board_->set_codes(std::span(codes_).subspan((frames - 1) * channels, channels));
+    for (std::size_t i = 0; i < frames; ++i) {
+      const auto age_ns = static_cast<std::int64_t>(static_cast<double>(frames - 1 - i) * period_ns);
+      board_->put_count(++periods_, codes_[i * channels + position_channel_], last_count_ns_ - age_ns);
+    }
+    board_->set_enabled(sound_ && enabled_);
   }
 }
 
@@ -190,6 +224,8 @@ void HostLoop::follow_arming() {
   if (done) done = device_.command(wire::Play{});
   if (!done) give_up(schema::message(done.error()));
   to_pad_ = queue_target();
+  queue_mean_ = to_pad_;
+  longer_ns_.store(0, std::memory_order_relaxed);
 }
 
 void HostLoop::send_drives() {
@@ -218,6 +254,15 @@ std::uint32_t HostLoop::queue_target() const {
   return std::clamp(static_cast<std::uint32_t>(kQueueS * options_.rate_hz), 4U, 200U);
 }
 
+// A queue that grows tells of a device whose clock is slower, or of a stall: the ticks follow it, within half
+// a percent, instead of leaving drives out.
+void HostLoop::follow_queue(std::uint32_t queued) {
+  queue_mean_ += kQueueShare * (queued - queue_mean_);
+  const double part = (queue_mean_ - queue_target()) / options_.rate_hz / kFollowS;
+  const double longer = std::clamp(part, -kMostLonger, kMostLonger) * 1e9 / options_.rate_hz;
+  longer_ns_.store(static_cast<std::int64_t>(longer), std::memory_order_relaxed);
+}
+
 // Feeds the device's watchdog, and sees how deep its queue is.
 void HostLoop::beat() {
   const std::int64_t now = TickClock::now_ns();
@@ -230,11 +275,14 @@ void HostLoop::beat() {
   if (!armed_) return;
   const std::uint32_t target = queue_target(), queued = pulse->drive_queued;
   queue_ns_ = static_cast<std::int64_t>(1e9 * queued / options_.rate_hz);
+  follow_queue(queued);
   if (queued > 2 * target) to_trim_ = queued - target;
   if (queued < target / 4) to_pad_ = target - queued;
 }
 
+// Below the ticks, above all else: what comes late is felt late.
 void HostLoop::carry_forever() {
+  const firmware_host::RealtimePriority priority(options_.priority / 2);
   const std::int64_t silence_ns = std::int64_t{options_.watchdog_ms} * 1'000'000;
   last_count_ns_ = TickClock::now_ns();
   while (!ending_.load(std::memory_order_relaxed)) {
@@ -243,7 +291,7 @@ void HostLoop::carry_forever() {
     take_faults();
     take_counts();
     if (TickClock::now_ns() - last_count_ns_ > silence_ns) give_up("the device gives no counts");
-    if (!sound_) board_->open_enable();
+    if (!sound_) board_->set_enabled(false);
     if (armed_ && sound_) send_drives();
     beat();
   }

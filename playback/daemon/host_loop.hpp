@@ -33,6 +33,7 @@ struct HostLoopStatus {
   double busy_p99_s = 0;                                   ///< of the tick's work
   std::array<double, kLateBoundsS.size()> late_parts{};    ///< of the ticks, later than kLateBoundsS
   EdgeToDrive latency;
+  double looked_ahead_s = 0;         ///< of it, by what is played
   std::uint64_t missed_ticks = 0;    ///< periods that were slept through
   std::uint64_t stale_drives = 0;    ///< that were not sent, for they were too old
   std::uint64_t trimmed_drives = 0;  ///< left out because the device's clock is slower
@@ -59,10 +60,13 @@ class HostLoop {
   std::unique_ptr<firmware_host::Transport> transport();
   const HostBoard& board() const { return *board_; }
   HostLoopStatus status() const;
+  /// From the encoder's edge to the drive, as seen while the loop began: what a texture looks ahead by.
+  double delay_s() const { return delay_s_; }
   EdgeToDrive latency() const { return {latency_.quantile_s(0.5), latency_.quantile_s(0.99)}; }
 
  private:
   HostLoop(firmware_host::Client& device, const HostLoopOptions& options, std::size_t position_channel);
+  schema::Result<void> measure_delay();
   void tick_forever();
   void carry_forever();
   void take_counts();
@@ -71,6 +75,7 @@ class HostLoop {
   void send_drives();
   std::uint32_t queue_target() const;
   void beat();
+  void follow_queue(std::uint32_t queued);
   void give_up(const std::string& why);
 
   firmware_host::Client& device_;
@@ -79,12 +84,14 @@ class HostLoop {
   std::unique_ptr<HostBoard> board_;
   TimeHistogram wake_, busy_, latency_;
   std::atomic<std::uint64_t> missed_{0}, stale_{0}, trimmed_{0};
+  std::atomic<std::int64_t> longer_ns_{0};  // each period of the ticks, to follow the device's clock
   std::atomic<bool> ending_{false}, real_time_{false};
   // The carrier's.
   std::vector<std::int32_t> codes_;
   std::int64_t last_count_ns_ = 0, next_beat_ns_ = 0;
   std::int64_t round_trip_ns_ = 0, queue_ns_ = 0;  // as of the last heartbeat
-  std::uint32_t periods_ = 0;                      // of the device's stream
+  double delay_s_ = 0, queue_mean_ = 0;
+  std::uint32_t periods_ = 0;  // of the device's stream
   std::uint32_t to_trim_ = 0, to_pad_ = 0;
   float last_drive_v_ = 0;
   bool armed_ = false, sound_ = true, enabled_ = true;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tactographd: plays textures on a device, steered over a socket. See README.md and CONTROL.md.
 #include <fmt/format.h>
-#include <sys/mman.h>
 
 #include <chrono>
 #include <csignal>
@@ -17,6 +16,7 @@
 #include "data-schema/version.hpp"
 #include "playback/daemon/control_server.hpp"
 #include "playback/daemon/control_token.hpp"
+#include "playback/daemon/locked_memory.hpp"
 #include "playback/daemon/service.hpp"
 #include "playback/daemon/service_manager.hpp"
 
@@ -108,7 +108,7 @@ int run(const char* config_path) {
   };
   const auto service = Service::open(*config, publish);
   if (!service) return failed(service.error());
-  if (mlockall(MCL_CURRENT) != 0) cli::talk("tactographd: memory is not locked (LimitMEMLOCK)\n");
+  if (!playback::lock_memory()) cli::talk("tactographd: memory is not locked (LimitMEMLOCK)\n");
   cli::talk(fmt::format("tactographd: ready on {}\n", places_of(**server, *config)));
   manager.tell("READY=1");
   serve_until_asked(**server, **service, manager);

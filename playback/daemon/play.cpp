@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "data-schema/files.hpp"
+#include "playback/daemon/locked_memory.hpp"
 #include "playback/daemon/loop_here.hpp"
 #include "playback/daemon/player_device.hpp"
+#include "playback/daemon/session_limits.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -45,6 +47,7 @@ Result<Program> program_for(const PlayOptions& options, const PlayerDevice& devi
   prepare.metres_per_count = metres_per_count;
   const firmware_host::Client& plays = here ? *here.client : *device.client;
   prepare.most_samples = plays.description().welcome.profile_samples;
+  if (here) prepare.loop_delay_s = here.loop->delay_s();
   return make_program(options.program, *transducer, prepare);
 }
 
@@ -76,6 +79,8 @@ PlayOutcome outcome_of(const Program& program) {
   outcome.delay_left_s = made.delay_left_s;
   outcome.inverse_error_db = made.inverse_error_db;
   outcome.notes = made.notes;
+  outcome.gain_m_per_n = program.gain_m_per_n;
+  outcome.kept_gain = program.kept_gain;
   outcome.choices = choices_in(program.options);
   return outcome;
 }
@@ -93,6 +98,12 @@ Result<void> play_through(Player& player, const PlayOptions& options, double tim
   return player.disarm();
 }
 
+void tell_limits(const std::string& session, PlayOutcome& outcome) {
+  const auto tally = tally_session(session);
+  if (tally) outcome.limits = *tally;
+  if (!tally) outcome.notes.push_back(schema::message(tally.error()));
+}
+
 // Time that runs as fast as it can has no real-time thread that could keep up with it.
 Result<LoopHere> loop_of(const PlayOptions& options, PlayerDevice& device, PlayerOptions& player_options) {
   if (!options.loop_here) return LoopHere{};
@@ -101,6 +112,10 @@ Result<LoopHere> loop_of(const PlayOptions& options, PlayerDevice& device, Playe
                 "add paced=1 (-d sim:paced=1)");
   const HostLoopOptions loop{options.prepare.rate_hz, kUsualPriority, options.prepare.watchdog_ms};
   return close_loop_here(*device.client, device.uri, loop, player_options);
+}
+
+LoopedHere looped_by(const HostLoop& loop) {
+  return {loop.latency(), loop.delay_s(), loop.status().missed_ticks};
 }
 
 }  // namespace
@@ -126,9 +141,12 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   outcome.simulated = device->device->capabilities().simulated;
   outcome.asked_s = time_of(options, *script);
   if (const auto loaded = (*player)->load(std::move(*program)); !loaded) return schema::forward_error(loaded);
+  if (*here) lock_memory();
   const auto played = play_through(**player, options, outcome.asked_s, stop_asked, progress, outcome);
   if (!played) return schema::forward_error(played);
   outcome.recorder = (*player)->last_session();
+  if (*here) outcome.looped = looped_by(*here->loop);
+  tell_limits(options.session, outcome);
   return outcome;
 }
 

@@ -4,8 +4,10 @@
 
 #include <functional>
 
+#include "playback/daemon/host_loop.hpp"
 #include "playback/daemon/player.hpp"
 #include "playback/daemon/program.hpp"
+#include "playback/limit_tally.hpp"
 
 namespace tacto::playback {
 
@@ -21,6 +23,13 @@ struct PlayOptions {
   std::string session;     ///< its file
 };
 
+/// Of a loop that this computer closed.
+struct LoopedHere {
+  EdgeToDrive latency;
+  double looked_ahead_s = 0;  ///< of it, by what was played
+  std::uint64_t missed_ticks = 0;
+};
+
 struct PlayOutcome {
   PlayerStatus status;  ///< as it was before the device was disarmed
   RecorderCounts recorder;
@@ -28,8 +37,12 @@ struct PlayOutcome {
   double asked_s = 0;
   double passes_to_hz = 0, delay_s = 0, delay_left_s = 0, inverse_error_db = 0;
   std::vector<std::string> notes;
-  std::optional<TickDecision> decision;  ///< of the program's budget
-  schema::PlaybackChoices choices;       ///< with which it was played
+  std::optional<TickDecision> decision;           ///< of the program's budget
+  schema::PlaybackChoices choices;                ///< with which it was played
+  double gain_m_per_n = 0;                        ///< the largest of its textures
+  std::optional<schema::PlaybackGain> kept_gain;  ///< the texture's own, where it was played with that
+  std::optional<LimitTally> limits;               ///< of the session; none: not known, `notes` say why
+  std::optional<LoopedHere> looped;
 };
 
 /// Emulated devices play as fast as they can, or paced; `stop_asked` ends it early, by a ramp. A fault ends

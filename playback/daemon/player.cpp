@@ -135,6 +135,8 @@ Result<void> Player::may_change(const Program& program, double fade_s) const {
 // The device's gain stays what it is, so that a gain that comes later is a factor of the same.
 Result<void> Player::change(Program program, double fade_s) {
   if (const auto may = may_change(program, fade_s); !may) return may;
+  const schema::SessionProgram& brought = program.session;  // of a header, what a change brings
+  recorder_->change({view_.expected(), steady_ns(), brought});
   const auto done = upload_change(client_, program.prepared, device_gain_m_per_n_, fade_s);
   take_ticks();
   take_faults();

@@ -33,14 +33,24 @@ bool names_a_scene(const std::string& file) {
   return !schema::is_file(file) && schema::is_file(file + ".scene.json");
 }
 
-Result<schema::Scene> scene_of(const ProgramRequest& request) {
-  if (!names_a_scene(request.file)) {
-    schema::Scene alone;
-    alone.layers = {TextureLayer{request.file, request.at_m.value_or(0),
-                                 request.gain_m_per_n.value_or(kUsualGain), "", "",
-                                 request.ends.value_or(schema::TextureEnds::stop), ""}};
-    return alone;
+// What was asked for, else what the texture keeps, else the usual.
+Result<schema::Scene> scene_of_texture(const ProgramRequest& request,
+                                       std::optional<schema::PlaybackGain>& kept_gain) {
+  if (!request.gain_m_per_n) {
+    auto kept = schema::read_playback_gain(request.file);
+    if (!kept) return schema::forward_error(kept);
+    kept_gain = std::move(*kept);
   }
+  const double usual = kept_gain ? kept_gain->gain_m_per_n : kUsualGain;
+  schema::Scene alone;
+  alone.layers = {TextureLayer{request.file, request.at_m.value_or(0), request.gain_m_per_n.value_or(usual),
+                               "", "", request.ends.value_or(schema::TextureEnds::stop), ""}};
+  return alone;
+}
+
+Result<schema::Scene> scene_of(const ProgramRequest& request,
+                               std::optional<schema::PlaybackGain>& kept_gain) {
+  if (!names_a_scene(request.file)) return scene_of_texture(request, kept_gain);
   if (request.at_m || request.gain_m_per_n || request.ends)
     return fail(Fault::usage, "a scene says itself where its textures lie, with which gains and ends",
                 request.file, "change the scene, or name a texture");
@@ -166,6 +176,7 @@ void describe(schema::SessionHeader& session, const Prepared& prepared, const Pr
   session.inverse = word_of(options.inverse);
   session.choices = choices_in(options);
   session.delay_s = prepared.delay_left_s;
+  session.loop_delay_s = options.loop_delay_s;
   session.low_hz = options.band.low_hz;
   session.high_hz = prepared.passes_to_hz;
 }
@@ -223,6 +234,14 @@ TickBudget budget_of(const ProgramRequest& request, const schema::PlaybackChoice
   return budget;
 }
 
+// A request is held to what it means; a scene or configuration may say more, for those who name what it is
+// of.
+Result<PrepareOptions> options_of(const ProgramRequest& request, const schema::PlaybackChoices& choices,
+                                  const PrepareOptions& options) {
+  if (const auto meant = check_meant(request.choices, choices); !meant) return schema::forward_error(meant);
+  return with_choices(options, choices);
+}
+
 Result<void> prepare_laid(Program& program, const Laid& laid, const TickBudget& budget) {
   PrepareOptions& options = program.options;
   const schema::Transducer& transducer = program.session.transducer;
@@ -247,12 +266,12 @@ Result<void> prepare_laid(Program& program, const Laid& laid, const TickBudget& 
 
 Result<Program> make_program(const ProgramRequest& request, const std::string& transducer_name,
                              PrepareOptions options) {
-  const auto scene = scene_of(request);
+  Program program;
+  const auto scene = scene_of(request, program.kept_gain);
   if (!scene) return schema::forward_error(scene);
   const schema::PlaybackChoices choices = request.choices.over(scene->playback.over(request.defaults));
-  auto chosen = with_choices(options, choices);
+  const auto chosen = options_of(request, choices, options);
   if (!chosen) return schema::forward_error(chosen);
-  Program program;
   if (names_a_scene(request.file)) program.scene_path = schema::scene_path(request.file);
   auto laid = laid_out(*scene, program.scene_path);
   if (!laid) return schema::forward_error(laid);
@@ -268,6 +287,8 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
   if (request.any_displacement) program.tray_peak_m = 0;
   name_files(program, *laid);
   describe(program.session, program.prepared, program.options);
+  if (const auto fits = schema::session_program_text(program.session); !fits)
+    return schema::forward_error(fits);
   return program;
 }
 

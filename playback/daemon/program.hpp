@@ -33,9 +33,10 @@ struct Program {
   std::string scene_path;   ///< empty for a texture by itself
   double tray_peak_m = 0;   ///< the furthest that the tray goes, at a factor of 1 (displacement_limit.hpp)
   double gain_m_per_n = 0;  ///< the largest of its textures, without sign
-  double length_m = 0;      ///< from the first texture's start to the last one's end
-  std::optional<TickDecision> decision;  ///< of the request's budget
-  PrepareOptions options;                ///< that it was prepared with, in the end
+  std::optional<schema::PlaybackGain> kept_gain;  ///< the texture's own, where it is played with that
+  double length_m = 0;                            ///< from the first texture's start to the last one's end
+  std::optional<TickDecision> decision;           ///< of the request's budget
+  PrepareOptions options;                         ///< that it was prepared with, in the end
 
   /// The scene's file, or the texture's.
   const std::string& name() const { return scene_path.empty() ? session.textures.front().file : scene_path; }
@@ -44,7 +45,9 @@ struct Program {
 /// Reads the files, and prepares. `options`: rate, encoder, limits; gain and ends are taken from the request
 /// or the scene, and what was chosen from request, scene and defaults, in this order. Errors: as
 /// read_texture, read_scene, read_transducer, prepare, decide, find_trade_table; unsuitable: as check_usable;
-/// a scene of several textures whose ends are not `stop`; usage: a place or gain for a scene.
+/// more textures than a session has room to name; a scene of several textures whose ends are not `stop`;
+/// usage: a place or gain for a scene; as
+/// check_meant, of the request.
 schema::Result<Program> make_program(const ProgramRequest& request, const std::string& transducer,
                                      PrepareOptions options);
 

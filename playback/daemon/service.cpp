@@ -6,14 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <filesystem>
 
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/scene.hpp"
 #include "data-schema/version.hpp"
+#include "playback/daemon/locked_memory.hpp"
 #include "playback/daemon/program.hpp"
+#include "playback/daemon/session_name.hpp"
+#include "playback/daemon/status_fields.hpp"
 
 namespace tacto::playback {
 
@@ -64,52 +66,15 @@ ControlFields fields_of(const std::string& file, const Program& program) {
                        {"delay_s", made.delay_s},
                        {"delay_left_s", made.delay_left_s},
                        {"inverse_error_db", made.inverse_error_db}};
+  if (program.kept_gain) {
+    fields.emplace_back("gain_set_by", program.kept_gain->who);
+    fields.emplace_back("gain_set_on", program.kept_gain->when);
+  }
   add_choices(fields, choices_in(program.options));
   if (program.decision) add_decision(fields, *program.decision);
   for (std::size_t i = 0; i < made.notes.size(); ++i)
     fields.emplace_back(fmt::format("note_{}", i + 1), made.notes[i]);
   return fields;
-}
-
-void add_ticks(ControlFields& fields, const TickView& view, std::uint64_t not_recorded) {
-  const auto count = [](std::uint64_t n) { return static_cast<std::int64_t>(n); };
-  fields.emplace_back("ticks", count(view.ticks()));
-  fields.emplace_back("lost_ticks", count(view.lost() + not_recorded));
-  fields.emplace_back("late_ticks", count(view.late()));
-  fields.emplace_back("limited_ticks", count(view.limited()));
-  fields.emplace_back("energy_limited_ticks", count(view.energy_limited()));
-  fields.emplace_back("gated_ticks", count(view.gated()));
-  fields.emplace_back("blind_ticks", count(view.blind()));
-  fields.emplace_back("played_s", view.span_s());
-  fields.emplace_back("device_s", 1e-9 * static_cast<double>(view.last().time_ns));
-  fields.emplace_back("encoder_count", std::int64_t{view.last().encoder});
-  fields.emplace_back("position_m", view.position_m());
-  fields.emplace_back("speed_mps", view.speed_mps());
-  fields.emplace_back("drive_v", double{view.last().drive_v});
-  fields.emplace_back("drive_rms_v", view.drive_rms_v());
-  fields.emplace_back("drive_peak_v", view.drive_peak_v());
-}
-
-void add_recorder(ControlFields& fields, const RecorderCounts& counts) {
-  fields.emplace_back("recorded_ticks", static_cast<std::int64_t>(counts.ticks));
-  fields.emplace_back("recorder_lost_ticks", static_cast<std::int64_t>(counts.lost()));
-  if (!counts.failure.empty()) fields.emplace_back("recorder_failure", counts.failure);
-}
-
-void add_loop(ControlFields& fields, const HostLoopStatus& loop) {
-  fields.emplace_back("wake_p50_s", loop.wake_p50_s);
-  fields.emplace_back("wake_p99_s", loop.wake_p99_s);
-  fields.emplace_back("wake_p999_s", loop.wake_p999_s);
-  fields.emplace_back("busy_p99_s", loop.busy_p99_s);
-  for (std::size_t i = 0; i < kLateBoundsS.size(); ++i)
-    fields.emplace_back(late_part_name(kLateBoundsS[i]), loop.late_parts[i]);
-  fields.emplace_back("latency_p50_s", loop.latency.p50_s);
-  fields.emplace_back("latency_p99_s", loop.latency.p99_s);
-  fields.emplace_back("missed_ticks", static_cast<std::int64_t>(loop.missed_ticks));
-  fields.emplace_back("stale_drives", static_cast<std::int64_t>(loop.stale_drives));
-  fields.emplace_back("trimmed_drives", static_cast<std::int64_t>(loop.trimmed_drives));
-  fields.emplace_back("real_time", loop.real_time);
-  if (!loop.device_fault.empty()) fields.emplace_back("device_fault", loop.device_fault);
 }
 
 }  // namespace
@@ -166,6 +131,7 @@ PrepareOptions Service::options() {
   options.watchdog_ms = static_cast<std::uint16_t>(config_.watchdog_ms);
   options.jump_mps = config_.most_speed_mps;
   options.most_samples = client().description().welcome.profile_samples;
+  if (here_) options.loop_delay_s = here_.loop->delay_s();
   return options;
 }
 
@@ -215,12 +181,16 @@ Result<ControlFields> Service::load(Program program) {
   const std::string& file = load_request_.file;
   ControlFields fields = fields_of(file, program);
   const std::string scene_path = program.scene_path;
+  const double passes_to_hz = program.prepared.passes_to_hz;
+  const schema::SessionTexture alone = program.session.textures.front();
   const auto filter = program.decision ? std::optional(program.decision->chosen.inverse) : std::nullopt;
   const bool changes = player_->state() != PlayerState::idle;
   const double fade_s = load_request_.fade_s.value_or(kUsualFadeS);
   if (const auto kept = player_->load(std::move(program), fade_s); !kept) return schema::forward_error(kept);
   loaded_ = file;
+  passes_to_hz_ = passes_to_hz;
   scene_path_ = scene_path;
+  alone_ = alone;
   filter_ = filter;
   saved_gain_ = 1;
   fields.emplace_back("changed", changes);
@@ -231,15 +201,7 @@ Result<ControlFields> Service::load(Program program) {
 }
 
 std::string Service::next_session() const {
-  std::tm parts{};
-  const std::time_t now = std::time(nullptr);
-  gmtime_r(&now, &parts);
-  char date[32];
-  std::strftime(date, sizeof date, "%Y%m%dT%H%M%SZ", &parts);
-  const std::string stem = (fs::path(config_.sessions) / date).string();
-  std::string path = schema::session_path(stem);
-  for (int i = 2; schema::is_file(path); ++i) path = schema::session_path(fmt::format("{}-{}", stem, i));
-  return path;
+  return dated_session((fs::path(config_.sessions) / "").string());
 }
 
 Result<ControlFields> Service::arm() {
@@ -247,6 +209,7 @@ Result<ControlFields> Service::arm() {
   const std::string path = next_session();
   if (const auto armed = player_->arm(path); !armed) return schema::forward_error(armed);
   told_lost_.reset();
+  lock_memory();  // also what came since the daemon began
   return ControlFields{{"state", std::string(word_of(player_->state()))}, {"session", path}};
 }
 
@@ -270,18 +233,24 @@ Result<ControlFields> Service::disarm() {
 
 // G_psi as it was felt to be right, with who and when: the gains that were loaded times the factor, however
 // often it is saved.
-Result<void> Service::save_gain(double factor) {
+Result<void> Service::save_gain(double factor, const std::string& who) {
+  if (loaded_.empty())
+    return fail(Fault::usage, "nothing is loaded that could keep a gain", {}, "load first");
   if (factor == 0)
     return fail(Fault::usage, "a gain of 0 would lose the layers' own gains", loaded_, "save another one");
-  if (scene_path_.empty())
-    return fail(Fault::usage, "a texture by itself keeps no gain", loaded_, "load a scene");
+  if (!scene_path_.empty()) return save_scene_gain(factor, who);
+  return schema::write_playback_gain(alone_.file,
+                                     {alone_.gain_m_per_n * factor, who, schema::creation_time()});
+}
+
+Result<void> Service::save_scene_gain(double factor, const std::string& who) {
   auto scene = schema::read_scene(scene_path_);
   if (!scene) return schema::forward_error(scene);
   for (schema::Layer& layer : scene->layers)
     std::visit(
         [&](schema::TextureLayer& texture) {
           texture.gain_m_per_n *= factor / saved_gain_;
-          texture.gain_set_by = "tactographd";
+          texture.gain_set_by = who;
           texture.gain_set_on = schema::creation_time();
         },
         layer);
@@ -294,7 +263,8 @@ Result<void> Service::save_gain(double factor) {
 Result<ControlFields> Service::gain(const ControlRequest& request) {
   if (const auto may = player_->may_gain(*request.gain); !may) return schema::forward_error(may);
   if (request.save)
-    if (const auto saved = save_gain(*request.gain); !saved) return schema::forward_error(saved);
+    if (const auto saved = save_gain(*request.gain, request.asked_by); !saved)
+      return schema::forward_error(saved);
   if (const auto set = player_->gain(*request.gain); !set) return schema::forward_error(set);
   const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
   publish_("gain", {{"gain", *request.gain}, {"device_s", device_s}});
@@ -331,6 +301,7 @@ ControlFields Service::status() const {
   ControlFields fields{{"state", std::string(word_of(status.state))}, {"gain", status.gain}};
   if (!status.fault.empty()) fields.emplace_back("fault", status.fault);
   if (!loaded_.empty()) fields.emplace_back("loaded", loaded_);
+  if (!loaded_.empty()) fields.emplace_back("passes_to_hz", passes_to_hz_);
   if (!status.session.empty()) fields.emplace_back("session", status.session);
   fields.emplace_back("round_trip_s", status.round_trip_s);
   add_ticks(fields, status.ticks, status.recorder ? status.recorder->lost() : 0);

@@ -48,7 +48,8 @@ class Service {
   schema::Result<void> may_begin(const char* what) const;
   schema::Result<schema::ControlFields> arm();
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
-  schema::Result<void> save_gain(double factor);
+  schema::Result<void> save_gain(double factor, const std::string& who);
+  schema::Result<void> save_scene_gain(double factor, const std::string& who);
   void tell_losses(const RecorderCounts& counts, bool last);
   schema::Result<schema::ControlFields> disarm();
   schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState wanted);
@@ -68,6 +69,8 @@ class Service {
   schema::ControlRequest load_request_;  // that is being prepared
   std::string loaded_, scene_path_;
   std::optional<InverseChoice> filter_;  // that a budget chose for what is loaded: a change keeps it
+  double passes_to_hz_ = 0;              // of what is loaded
+  schema::SessionTexture alone_;         // what is loaded, where it is no scene
   double saved_gain_ = 1;                // that the scene's file holds, of the gains that were loaded
   double next_status_s_ = 0;
   std::optional<std::uint64_t> told_lost_;  // of the session; none where nothing went wrong

@@ -13,18 +13,27 @@ namespace {
 constexpr std::size_t kProfileSamples = std::size_t{1} << 24;  // as much as prepare() makes at most
 constexpr std::uint32_t kReplayClockHz = 1'000'000;
 
+// No drive comes near them, and their ratio takes nothing of the time that a release may take.
+constexpr float kNoDriveLimitV = 1e12F, kNoSlewLimitVPerS = 1e30F;
+
+template <class Message>
+std::vector<std::uint8_t> frame_of(const Message& message) {
+  std::vector<std::uint8_t> frame(wire::kMaxFrame);
+  frame.resize(wire::encode_frame(message, 0, frame.data(), frame.size()));
+  return frame;
+}
+
 // Which channel it was, and in which units, did its work when the device decided: its ticks say what came of
 // it. So the gate is given a force of one newton, or of none.
-std::vector<std::uint8_t> as_decided(std::span<const std::uint8_t> frame) {
-  wire::Contact contact;
-  const std::size_t payload = frame.size() - wire::kHeaderSize - wire::kCheckSize;
-  if (wire::parse(frame.data() + wire::kHeaderSize, payload, contact) != wire::Parse::ok)
-    return {frame.begin(), frame.end()};
+wire::Contact as_decided(const wire::Contact& contact) {
   const float threshold = contact.on_n > 0 ? 0.5F : 0;
-  std::vector<std::uint8_t> decided(wire::kMaxFrame);
-  decided.resize(wire::encode_frame(wire::Contact{0, {}, threshold, threshold, 1, 0}, 0, decided.data(),
-                                    decided.size()));
-  return decided;
+  return {0, {}, threshold, threshold, 1, 0};
+}
+
+wire::Limits lifted(wire::Limits limits) {
+  limits.drive_v = kNoDriveLimitV;
+  limits.slew_v_per_s = kNoSlewLimitVPerS;
+  return limits;
 }
 
 }  // namespace
@@ -36,8 +45,9 @@ bool is_frame(std::span<const std::uint8_t> bytes) {
          header.length <= wire::kMaxPayload && bytes.size() == around + header.length;
 }
 
-SessionBoard::SessionBoard(const schema::SessionHeader& header)
+SessionBoard::SessionBoard(const schema::SessionHeader& header, BoardLimits limits)
     : header_(header),
+      limits_(limits),
       profile_(std::make_unique_for_overwrite<float[]>(kProfileSamples)),
       encoder_(header.initial_encoder) {
   firmware_ = std::make_unique<core::Firmware>(board(), hal());
@@ -57,6 +67,10 @@ core::Board SessionBoard::board() {
   about.default_rate_millihertz = about.least_rate_millihertz = about.most_rate_millihertz = rate;
   about.drive_limit_v = static_cast<float>(header_.transducer.drive_limit_v);
   about.slew_limit_v_per_s = static_cast<float>(header_.transducer.slew_limit_v_per_s);
+  if (limits_ == BoardLimits::lifted) {
+    about.drive_limit_v = kNoDriveLimitV;
+    about.slew_limit_v_per_s = kNoSlewLimitVPerS;
+  }
   return board;
 }
 
@@ -102,10 +116,18 @@ void SessionBoard::listen() {
   to_host_.clear();
 }
 
+std::vector<std::uint8_t> SessionBoard::as_replayed(std::span<const std::uint8_t> frame) const {
+  if (const auto contact = message_in_frame<wire::Contact>(frame)) return frame_of(as_decided(*contact));
+  if (limits_ == BoardLimits::lifted) {
+    if (const auto limits = message_in_frame<wire::Limits>(frame)) return frame_of(lifted(*limits));
+    if (message_in_frame<wire::Energy>(frame)) return frame_of(wire::Energy{0, 1});
+  }
+  return {frame.begin(), frame.end()};
+}
+
 // Each frame gets the next sequence number: the core drops what it has heard before.
 std::optional<wire::Answer> SessionBoard::say_frame(std::span<const std::uint8_t> frame) {
-  const bool gates = frame[3] == static_cast<std::uint8_t>(wire::MessageType::contact);
-  std::vector<std::uint8_t> sealed = gates ? as_decided(frame) : std::vector(frame.begin(), frame.end());
+  std::vector<std::uint8_t> sealed = as_replayed(frame);
   const wire::FrameHeader header{
       wire::kProtocolMajor, sealed[3],
       static_cast<std::uint16_t>(sealed.size() - wire::kHeaderSize - wire::kCheckSize), sequence_++};

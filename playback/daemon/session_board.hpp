@@ -16,10 +16,24 @@ namespace tacto::playback {
 /// Whether these bytes are one whole frame.
 bool is_frame(std::span<const std::uint8_t> bytes);
 
+/// The message in a frame, where it is one of its kind. Precondition: is_frame().
+template <class Message>
+std::optional<Message> message_in_frame(std::span<const std::uint8_t> frame) {
+  Message message;
+  const std::size_t payload = frame.size() - wire::kHeaderSize - wire::kCheckSize;
+  if (static_cast<wire::MessageType>(frame[3]) != Message::kType ||
+      wire::parse(frame.data() + wire::kHeaderSize, payload, message) != wire::Parse::ok)
+    return std::nullopt;
+  return message;
+}
+
+/// Whether amplitude, slew and energy hold the drive, or let through what the kernel wishes.
+enum class BoardLimits { recorded, lifted };
+
 /// Encoder, enable input and touch are as told; the drive is kept.
 class SessionBoard {
  public:
-  explicit SessionBoard(const schema::SessionHeader& header);
+  explicit SessionBoard(const schema::SessionHeader& header, BoardLimits limits = BoardLimits::recorded);
   SessionBoard(const SessionBoard&) = delete;
   SessionBoard& operator=(const SessionBoard&) = delete;
 
@@ -41,9 +55,11 @@ class SessionBoard {
   core::Board board();
   core::Hal hal();
   void listen();
+  std::vector<std::uint8_t> as_replayed(std::span<const std::uint8_t> frame) const;
   std::uint32_t unseen_in(const schema::SessionTick& recorded) const;
 
   schema::SessionHeader header_;
+  BoardLimits limits_;
   std::unique_ptr<float[]> profile_;
   std::vector<std::uint8_t> from_host_, to_host_;
   wire::FrameDecoder decoder_;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 #include "firmware-host/core/encoder_watch.hpp"
 #include "firmware-host/core/wire/host_messages.hpp"
@@ -20,32 +22,49 @@ using schema::SessionTick;
 
 constexpr std::size_t kMostColumnTicks = std::size_t{1} << 24;
 
+constexpr std::size_t kMostTexturesKept = 65536;  // of all changes: a file may hold any number
+
 struct SteeringStep {
-  std::optional<double> gain;  // the factor, where it is a gain
-  bool changes_texture = false;
+  std::optional<double> gain;       // the factor, where it is a gain
+  std::optional<TextureTurn> turn;  // where it is a change, its row yet to be found
 };
 
 // Each command that steers, in their order.
-struct SteeringSteps {
-  std::vector<SteeringStep> steps;
-  double textures_gain = 1;
-  bool armed = false;
+class SteeringSteps {
+ public:
+  SteeringSteps(double textures_gain, double rate_hz) : textures_gain_(textures_gain), rate_hz_(rate_hz) {}
 
   void see(const schema::SessionCommand& command) {
     if (!is_frame(command.frame)) return;
     const auto type = static_cast<wire::MessageType>(command.frame[3]);
-    if (armed && wire::steers(type))
-      steps.push_back({factor_of(command, type), type == wire::MessageType::change});
-    armed = armed || type == wire::MessageType::arm;
+    if (armed_ && wire::steers(type)) steps_.push_back({factor_of(command), turn_of(command)});
+    if (const auto tracking = message_in_frame<wire::Tracking>(command.frame); tracking && !armed_)
+      look_ahead_ticks_ = tracking->look_ahead_ticks;
+    armed_ = armed_ || type == wire::MessageType::arm;
   }
-  std::optional<double> factor_of(const schema::SessionCommand& command, wire::MessageType type) const {
-    wire::Gain gain;
-    const std::size_t payload = command.frame.size() - wire::kHeaderSize - wire::kCheckSize;
-    const bool is_gain =
-        type == wire::MessageType::gain &&
-        wire::parse(command.frame.data() + wire::kHeaderSize, payload, gain) == wire::Parse::ok;
-    return is_gain ? std::optional(gain.gain / textures_gain) : std::nullopt;
+  void see(const schema::SessionChange& change) { next_ = change.program; }
+  const std::vector<SteeringStep>& steps() const { return steps_; }
+  double look_ahead_ticks() const { return look_ahead_ticks_; }
+
+ private:
+  std::optional<double> factor_of(const schema::SessionCommand& command) const {
+    const auto gain = message_in_frame<wire::Gain>(command.frame);
+    return gain ? std::optional(gain->gain / textures_gain_) : std::nullopt;
   }
+  std::optional<TextureTurn> turn_of(const schema::SessionCommand& command) {
+    const auto change = message_in_frame<wire::Change>(command.frame);
+    if (!change) return std::nullopt;
+    TextureTurn turn{0, change->fade_s * rate_hz_, std::exchange(next_, std::nullopt)};
+    textures_ += turn.brings ? turn.brings->textures.size() : 0;
+    if (textures_ > kMostTexturesKept) turn.brings.reset();
+    return turn;
+  }
+
+  double textures_gain_, rate_hz_, look_ahead_ticks_ = 0;
+  bool armed_ = false;
+  std::vector<SteeringStep> steps_;
+  std::optional<schema::SessionProgram> next_;  // what the next change brings
+  std::size_t textures_ = 0;
 };
 
 // The greatest of the textures' gains is the one that the device knows; the others are parts of it.
@@ -74,11 +93,57 @@ void follow_steps(SessionColumns& columns, const std::vector<SteeringStep>& step
     const auto steered = static_cast<std::uint8_t>(flags >> wire::kTickSteeredShift);
     for (; taken != steered && next < steps.size(); ++taken, ++next) {
       gain = steps[next].gain.value_or(gain);
-      if (steps[next].changes_texture && !columns.changed_at) columns.changed_at = columns.gain.size();
+      if (!steps[next].turn) continue;
+      columns.turns.push_back(*steps[next].turn);
+      columns.turns.back().row = columns.gain.size();
     }
     columns.gain.push_back(gain);
   }
 }
+
+// Takes blocks in, one overload a kind.
+class ColumnCollector {
+ public:
+  explicit ColumnCollector(const schema::SessionHeader& header)
+      : steps_(shared_gain(header), header.rate_hz) {
+    columns_.header = header;
+  }
+  void operator()(const schema::SessionLoss& loss) { told_lost_ += loss.count; }
+  void operator()(const schema::SessionEnd& end) { told_lost_ = end.lost_ticks; }
+  void operator()(const schema::SessionCommand& command) { steps_.see(command); }
+  void operator()(const schema::SessionChange& change) { steps_.see(change); }
+  void operator()(const schema::SessionEvent&) {}
+  void operator()(const std::vector<SessionTick>& ticks) {
+    full_ = columns_.tick.size() + ticks.size() > kMostColumnTicks;
+    if (full_) return;
+    if (columns_.tick.empty()) first_ns_ = ticks.front().time_ns;
+    count_lost_before(ticks.front().tick);
+    for (const SessionTick& tick : ticks) add_row(columns_, tick, first_ns_);
+  }
+  bool is_full() const { return full_; }
+
+  SessionColumns take() {
+    if (told_lost_ > columns_.lost && !columns_.lost_at) columns_.lost_at = next_tick();
+    columns_.lost = std::max(columns_.lost, told_lost_);
+    columns_.look_ahead_ticks = steps_.look_ahead_ticks();
+    follow_steps(columns_, steps_.steps());
+    return std::move(columns_);
+  }
+
+ private:
+  std::uint64_t next_tick() const { return columns_.tick.empty() ? 0 : columns_.tick.back() + 1; }
+  void count_lost_before(std::uint64_t tick) {
+    if (tick <= next_tick()) return;
+    if (!columns_.lost_at) columns_.lost_at = next_tick();
+    columns_.lost += tick - next_tick();
+  }
+
+  SessionColumns columns_;
+  SteeringSteps steps_;
+  std::int64_t first_ns_ = 0;
+  std::uint64_t told_lost_ = 0;
+  bool full_ = false;
+};
 
 // How many periods passed without a tick before this row. Times in a message are counted on by the rate: half
 // a period is no gap.
@@ -125,6 +190,9 @@ Result<EvenColumns> evened(const SessionColumns& columns) {
   even.columns.lost_at = columns.lost_at;
   even.columns.lost = columns.lost;
   even.columns.damaged_at = columns.damaged_at;
+  even.columns.turns = columns.turns;
+  even.columns.look_ahead_ticks = columns.look_ahead_ticks;
+  auto turn = even.columns.turns.begin();
   const auto longest = static_cast<std::uint64_t>(core::kBlindS * columns.header.rate_hz);
   for (std::size_t row = 0; row < columns.tick.size(); ++row) {
     const std::uint64_t missing = periods_before(columns, row);
@@ -134,7 +202,7 @@ Result<EvenColumns> evened(const SessionColumns& columns) {
     fill_before(columns, row, missing, missing > longest, even.columns);
     even.added += missing;
     even.stops += missing > longest;
-    if (columns.changed_at == row) even.columns.changed_at = even.columns.tick.size();
+    for (; turn != even.columns.turns.end() && turn->row == row; ++turn) turn->row = even.columns.tick.size();
     copy_row(columns, row, even.columns);
   }
   return even;
@@ -143,35 +211,17 @@ Result<EvenColumns> evened(const SessionColumns& columns) {
 Result<SessionColumns> read_session_columns(const std::string& name) {
   auto reader = schema::SessionReader::open(name);
   if (!reader) return schema::forward_error(reader);
-  SessionColumns columns;
-  columns.header = reader->header();
-  SteeringSteps steps;
-  steps.textures_gain = shared_gain(columns.header);
-  std::int64_t first_ns = 0;
-  std::uint64_t told_lost = 0;
+  ColumnCollector collector(reader->header());
   while (const auto block = reader->next()) {
-    if (const auto* loss = std::get_if<schema::SessionLoss>(&*block)) told_lost += loss->count;
-    if (const auto* end = std::get_if<schema::SessionEnd>(&*block)) told_lost = end->lost_ticks;
-    if (const auto* command = std::get_if<schema::SessionCommand>(&*block)) steps.see(*command);
-    const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block);
-    if (ticks == nullptr) continue;
-    if (columns.tick.empty()) first_ns = ticks->front().time_ns;
-    const std::uint64_t expected = columns.tick.empty() ? 0 : columns.tick.back() + 1;
-    if (ticks->front().tick > expected) {
-      if (!columns.lost_at) columns.lost_at = expected;
-      columns.lost += ticks->front().tick - expected;
-    }
-    if (columns.tick.size() + ticks->size() > kMostColumnTicks)
+    std::visit(collector, *block);
+    if (collector.is_full())
       return fail(Fault::unsuitable, fmt::format("has over {} ticks", kMostColumnTicks), reader->path(),
                   "export it as CSV, which takes no memory");
-    for (const SessionTick& tick : *ticks) add_row(columns, tick, first_ns);
   }
+  SessionColumns columns = collector.take();
   if (reader->ending() == schema::SessionEnding::damaged) columns.damaged_at = reader->sound_bytes();
   if (columns.tick.empty()) return tl::unexpected(no_ticks_in(reader->path(), columns.damaged_at));
-  if (told_lost > columns.lost && !columns.lost_at) columns.lost_at = columns.tick.back() + 1;
-  columns.lost = std::max(columns.lost, told_lost);
   columns.closed = reader->ending() == schema::SessionEnding::closed;
-  follow_steps(columns, steps.steps);
   return columns;
 }
 

@@ -10,6 +10,13 @@
 
 namespace tacto::playback {
 
+/// A change of texture.
+struct TextureTurn {
+  std::size_t row = 0;                           ///< the first that another texture is in
+  double fade_ticks = 0;                         ///< over which it comes in (core::TexturePlayer)
+  std::optional<schema::SessionProgram> brings;  ///< none: the session does not say, as older ones
+};
+
 /// A row a tick, all columns of one length.
 struct SessionColumns {
   schema::SessionHeader header;
@@ -24,9 +31,9 @@ struct SessionColumns {
   std::uint64_t lost = 0;                ///< also after the last one
   /// The byte from which on the file is damaged; what comes after it is not here.
   std::optional<std::uint64_t> damaged_at;
-  bool closed = false;  ///< by its last block; else its writer is still at it, or was killed
-  /// The first row that another texture than the header's is in.
-  std::optional<std::size_t> changed_at;
+  bool closed = false;             ///< by its last block; else its writer is still at it, or was killed
+  std::vector<TextureTurn> turns;  ///< in their order
+  double look_ahead_ticks = 0;     ///< the drive is of where the finger will be then
 };
 
 /// The same with a row for each period, as a signal at one rate needs it. A computer that closes the loop may

@@ -90,6 +90,14 @@ Result<std::string> write_wav(const std::string& session, const std::string& tem
                                 even->added);
 }
 
+std::vector<schema::SessionTurn> turns_of(const SessionColumns& columns) {
+  std::vector<schema::SessionTurn> turns;
+  for (const TextureTurn& turn : columns.turns)
+    turns.push_back({columns.time_s[turn.row], turn.fade_ticks / columns.header.rate_hz,
+                     turn.brings ? turn.brings->textures : std::vector<schema::SessionTexture>()});
+  return turns;
+}
+
 Result<std::string> write_netcdf(const std::string& session, const std::string& temporary) {
   auto columns = read_session_columns(session);
   if (!columns) return schema::forward_error(columns);
@@ -97,7 +105,7 @@ Result<std::string> write_netcdf(const std::string& session, const std::string& 
   const std::vector<double> encoder(columns->encoder.begin(), columns->encoder.end());
   const std::vector<double> flags(columns->flags.begin(), columns->flags.end());
   const auto written = schema::write_session_netcdf(
-      temporary, columns->header,
+      temporary, columns->header, turns_of(*columns),
       {{"tick", "1", "tick since arming", &ticks},
        {"encoder_count", "1", "encoder's count", &encoder},
        {"position", "m", "position of the finger: the middle of the count", &columns->position_m},

@@ -6,6 +6,7 @@
 #include <bit>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include "firmware-host/wire_words.hpp"
@@ -45,16 +46,6 @@ struct FirstFault {
   }
 };
 
-template <class Message>
-std::optional<Message> message_in(const SessionCommand& command) {
-  Message message;
-  const std::size_t payload = command.frame.size() - wire::kHeaderSize - wire::kCheckSize;
-  if (type_of(command) != Message::kType ||
-      wire::parse(command.frame.data() + wire::kHeaderSize, payload, message) != wire::Parse::ok)
-    return std::nullopt;
-  return message;
-}
-
 // From protocol 1.2 on, ticks say whether the finger touches. Older sessions do not name the protocol.
 bool tells_touch(const schema::SessionHeader& header) {
   const std::string& protocol = header.device_protocol;
@@ -83,10 +74,10 @@ Result<Overview> overview_of(const std::string& name) {
     if (command == nullptr) continue;
     if (!is_frame(command->frame))
       return fail(Fault::malformed, "a command in it is no frame of the wire", reader->path());
-    if (const auto limits = message_in<wire::Limits>(*command))
+    if (const auto limits = message_in_frame<wire::Limits>(command->frame))
       fault.watchdog_ticks = static_cast<std::uint32_t>(1e-6F * limits->watchdog_ms *
                                                         static_cast<float>(1e3 * reader->header().rate_hz));
-    if (const auto contact = message_in<wire::Contact>(*command)) seen.gated = contact->on_n > 0;
+    if (const auto contact = message_in_frame<wire::Contact>(command->frame)) seen.gated = contact->on_n > 0;
   }
   seen.ending = reader->ending();
   if (seen.ending == schema::SessionEnding::damaged) seen.damaged_at = reader->sound_bytes();
@@ -95,8 +86,10 @@ Result<Overview> overview_of(const std::string& name) {
 
 class SessionPlayer {
  public:
-  SessionPlayer(const schema::SessionHeader& header, const FirstFault& fault)
-      : board_(header), fault_(fault) {}
+  SessionPlayer(const schema::SessionHeader& header, const FirstFault& fault, const WishListener& wishes)
+      : board_(header), fault_(fault), wishes_(wishes) {
+    if (wishes_) unlimited_ = std::make_unique<SessionBoard>(header, BoardLimits::lifted);
+  }
 
   // Upload goes in at once; arming waits for the first tick, steering for the tick that took it. What is
   // uploaded after arming goes in right before the change that is to it: then the device is known to have
@@ -132,6 +125,7 @@ class SessionPlayer {
   void obey(const SessionCommand& command) {
     if (refused_) return;
     const auto answer = board_.say_frame(command.frame);
+    if (unlimited_) unlimited_->say_frame(command.frame);
     if (answer && answer->code == wire::AnswerCode::ok) return;
     const auto words = answer ? firmware_host::words_of(answer->code, answer->detail).what : "no answer";
     refused_ = fmt::format("{} is refused: {}", firmware_host::word_of(type_of(command)), words);
@@ -149,12 +143,20 @@ class SessionPlayer {
     }
     if (tick.tick == 0 && arming_) {
       board_.rest_at(tick.encoder);
+      if (unlimited_) unlimited_->rest_at(tick.encoder);
       obey(*arming_);
     }
     const auto steered = static_cast<std::uint8_t>(tick.flags >> wire::kTickSteeredShift);
     for (; steered_ != steered && !waiting_.empty(); ++steered_) obey_next();
-    if (fault_.beats_before(tick.tick)) board_.say(wire::Heartbeat{});
+    const bool beats = fault_.beats_before(tick.tick);
+    if (beats) board_.say(wire::Heartbeat{});
     compare(tick, board_.tick(tick));
+    if (unlimited_) tell_wish(tick, beats);
+  }
+  void tell_wish(const SessionTick& tick, bool beats) {
+    if (beats) unlimited_->say(wire::Heartbeat{});
+    const float wished_v = unlimited_->tick(tick);
+    if (!outcome_.first_difference) wishes_(tick, wished_v);
   }
   void compare(const SessionTick& tick, float replayed_v) {
     ++outcome_.ticks;
@@ -163,7 +165,9 @@ class SessionPlayer {
   }
 
   SessionBoard board_;
+  std::unique_ptr<SessionBoard> unlimited_;  // where somebody asks for its drive
   FirstFault fault_;
+  const WishListener& wishes_;
   std::optional<SessionCommand> arming_;
   std::deque<Steering> waiting_;
   std::vector<SessionCommand> next_;  // what was uploaded since, for a change to come
@@ -184,7 +188,8 @@ Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) 
 
 }  // namespace
 
-Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress) {
+Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
+                                     const WishListener& wishes) {
   const auto seen = overview_of(name);
   if (!seen) return schema::forward_error(seen);
   auto reader = schema::SessionReader::open(name);
@@ -196,7 +201,7 @@ Result<ReplayOutcome> replay_session(const std::string& name, const std::functio
                 reader->path(), "play anew, on firmware of protocol 1.2 or newer");
   std::error_code ignored;
   const auto size = static_cast<double>(std::filesystem::file_size(reader->path(), ignored));
-  SessionPlayer player(reader->header(), seen->fault);
+  SessionPlayer player(reader->header(), seen->fault, wishes);
   if (const auto handed = hand_over_commands(name, player); !handed) return schema::forward_error(handed);
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) player.play(*ticks);

@@ -31,6 +31,10 @@ struct ReplayOutcome {
   bool same() const { return !first_difference && !lost_at && !damaged_at; }
 };
 
+/// Hears of each tick that was replayed alike what the kernel wished before amplitude, slew and energy were
+/// held, V.
+using WishListener = std::function<void(const schema::SessionTick& tick, float wished_v)>;
+
 /// The recorded commands go to a device of this program's core in the ticks that took them, the recorded
 /// counts to its encoder (a texture that it changes to, in the tick of the change); its drive has to be the
 /// recorded one to the bit. A fault is met again where its
@@ -38,8 +42,11 @@ struct ReplayOutcome {
 /// ticks tell what it decided, not the force. Nothing but the session is read. Errors: unsuitable, where
 /// there are no ticks, or where a contact gated a session whose ticks do not tell (before protocol 1.2);
 /// malformed, where a command in it is no frame; unsuitable, where the core refuses one, with its reason.
-/// `progress` hears fractions.
+/// `progress` hears fractions; `wishes` costs the same again: a second device, without limits, is given the
+/// same. It comes to rest a little sooner where the slew held the other one, at most drive limit / slew
+/// limit, and then takes a count that was unseen so much sooner.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
-                                             const std::function<void(double)>& progress = {});
+                                             const std::function<void(double)>& progress = {},
+                                             const WishListener& wishes = {});
 
 }  // namespace tacto::playback

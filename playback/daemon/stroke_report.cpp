@@ -5,18 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "data-schema/files.hpp"
 #include "data-schema/statistics.hpp"
-#include "data-schema/texture.hpp"
-#include "data-schema/texture_wav.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 #include "playback/chain.hpp"
 #include "playback/choices.hpp"
-#include "playback/daemon/played_ends.hpp"
 #include "playback/daemon/session_columns.hpp"
+#include "playback/daemon/session_limits.hpp"
+#include "playback/daemon/session_wanted.hpp"
 #include "playback/hysteresis_inverse.hpp"
-#include "playback/reference/spatial_content.hpp"
 #include "playback/reference/wanted.hpp"
 
 namespace tacto::playback {
@@ -37,63 +37,12 @@ double duration_s(const SessionColumns& columns) {
   return static_cast<double>(columns.tick.size() - 1) / columns.header.rate_hz;
 }
 
-// Where the count changes the finger is between the two, half a tick ago; until the next change it goes on
-// from there. The counts themselves are a staircase, which nobody wanted to be felt.
-FingerPath path_of(const SessionColumns& columns) {
-  const std::vector<double>& x = columns.position_m;
-  FingerPath path{{0}, {x.front()}};
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    if (x[i] == x[i - 1]) continue;
-    path.time_s.push_back((static_cast<double>(i) - 0.5) / columns.header.rate_hz);
-    path.position_m.push_back(0.5 * (x[i - 1] + x[i]));
-  }
-  path.time_s.push_back(std::max(duration_s(columns), 0.5 / columns.header.rate_hz));
-  path.position_m.push_back(path.position_m.back());
-  if (path.position_m.size() > 2) path.position_m.front() = path.position_m[1];
-  return path;
-}
-
-Result<schema::Texture> same_texture(const schema::SessionTexture& played) {
-  auto texture = schema::read_texture(played.file);
-  if (!texture) return texture;
-  const auto wav = schema::texture_wav(played.file);
-  if (wav && wav->sha256 == played.sha256) return texture;
-  return fail(Fault::unsuitable, "is not what was played any more", played.file);
-}
-
 // Older sessions tell of no filter behind the converter. Words of a newer version: as if there was none.
 Chain chain_of(const schema::SessionHeader& header) {
   const PrepareOptions played = with_choices({}, header.choices).value_or(PrepareOptions{});
   return {header.transducer, played.reconstruction, played.reconstruction_cutoff_hz, played.hold,
           header.rate_hz};
 }
-
-struct Judge {
-  const SessionColumns& columns;
-  spatial::Band band;
-  FingerPath path;
-  explicit Judge(const SessionColumns& session)
-      : columns(session), band{session.header.low_hz, session.header.high_hz}, path(path_of(session)) {}
-
-  Result<std::vector<double>> wanted_m() {
-    std::vector<double> sum(columns.tick.size(), 0.0);
-    const double fastest_mps = greatest_speed_mps(path);
-    for (const schema::SessionTexture& played : columns.header.textures) {
-      const auto texture = same_texture(played);
-      if (!texture) return schema::forward_error(texture);
-      const auto [nearest, farthest] = std::ranges::minmax_element(path.position_m);
-      const auto signal = as_played(*texture, played, *nearest, *farthest);
-      if (!signal) return schema::forward_error(signal);
-      const double finest_hz = fastest_mps * highest_spatial_frequency(texture->signal);
-      const ReadingGrid fine = reading_grid(path.duration_s(), columns.header.rate_hz, band, finest_hz);
-      const TextureLookup lookup(signal->signal, signal->at_m);
-      const auto values = signal_of(exact_wanted(lookup, path, fine, band, played.gain_m_per_n, 0));
-      for (std::size_t i = 0; i < std::min(sum.size(), values.size()); ++i)
-        sum[i] += columns.gain[i] * values[i];
-    }
-    return sum;
-  }
-};
 
 double rms_in(std::span<const double> values, const StrokeRange& range) {
   return schema::statistics_of(values.subspan(range.first, range.last - range.first + 1)).rms();
@@ -123,9 +72,36 @@ PlayedStroke stroke_of(const SessionColumns& columns, const StrokeRange& range,
   return stroke;
 }
 
-// The session's header knows the texture that it began with.
-bool is_of_first_texture(const SessionColumns& columns, const StrokeRange& range) {
-  return !columns.changed_at || range.last < *columns.changed_at;
+// Rows that were put in were no ticks.
+LimitTally tally_rows(const SessionColumns& columns, const StrokeRange& range,
+                      std::span<const float> wished_v) {
+  LimitTally tally;
+  for (std::size_t i = range.first; i <= range.last; ++i) {
+    const bool put_in = i > range.first && columns.tick[i] == columns.tick[i - 1];
+    const auto drive_v = static_cast<float>(columns.drive_v[i]);
+    if (!put_in) tally.add(limited_tick(drive_v, wished_v[columns.tick[i]], columns.flags[i]));
+  }
+  return tally;
+}
+
+void tell_limits(const std::string& name, const SessionColumns& columns, StrokeReport& report) {
+  std::vector<float> wished_v;
+  LimitTally whole;
+  const auto heard = hear_wishes(name, [&](const schema::SessionTick& tick, float v) {
+    wished_v.push_back(v);
+    whole.add(limited_tick(tick.drive_v, v, tick.flags));
+  });
+  if (!heard) return report.notes.push_back(schema::message(heard.error()));
+  report.limits = whole;
+  const auto ranges = stroke_ranges(columns);
+  for (std::size_t i = 0; i < report.strokes.size(); ++i)
+    report.strokes[i].limits = tally_rows(columns, ranges[i], wished_v);
+}
+
+bool is_known(const SessionWanted& wanted, const StrokeRange& range) {
+  const auto first = wanted.unknown.begin() + static_cast<std::ptrdiff_t>(range.first);
+  const auto end = wanted.unknown.begin() + static_cast<std::ptrdiff_t>(range.last) + 1;
+  return std::find(first, end, true) == end;
 }
 
 std::string note_of_stops(const EvenColumns& even) {
@@ -133,11 +109,6 @@ std::string note_of_stops(const EvenColumns& even) {
       "{} ticks were never made, for the computer stood still; {} stops were longer than 10 ms: "
       "strokes end there",
       even.added, even.stops);
-}
-
-std::string note_of_change(const SessionColumns& columns) {
-  return fmt::format("the texture changes at {:.3f} s: strokes that reach beyond are not judged",
-                     columns.time_s[*columns.changed_at]);
 }
 
 }  // namespace
@@ -183,21 +154,22 @@ std::vector<double> received_displacement_m(const SessionColumns& columns) {
           : columns.drive_v;
   auto drive = spectrum_of(linear, header.rate_hz, grid.period);
   keep_band(drive, band);
-  return signal_of(through(drive, [&](double f) { return chain_response(chain, f); }));
+  // A drive that was made elsewhere is felt later than the tick that it was made in.
+  return signal_of(through(drive, [&](double f) {
+    return chain_response(chain, f) * std::polar(1.0, -2 * std::numbers::pi * f * header.loop_delay_s);
+  }));
 }
 
 void judge_strokes(const SessionColumns& columns, StrokeReport& report) {
-  if (columns.changed_at) report.notes.push_back(note_of_change(columns));
   const auto ranges = stroke_ranges(columns);
   if (ranges.empty()) return;
-  Judge judge(columns);
-  const auto wanted = judge.wanted_m();
-  if (!wanted) report.notes.push_back(schema::message(wanted.error()));
+  const SessionWanted wanted = wanted_in(columns);
+  report.notes.insert(report.notes.end(), wanted.notes.begin(), wanted.notes.end());
   const auto received = received_displacement_m(columns);
   for (const StrokeRange& range : ranges) {
-    const bool judged = wanted && is_of_first_texture(columns, range);
-    report.strokes.push_back(
-        stroke_of(columns, range, judged ? std::span(*wanted) : std::span<const double>(), received));
+    const bool judged = is_known(wanted, range);
+    report.strokes.push_back(stroke_of(
+        columns, range, judged ? std::span(wanted.displacement_m) : std::span<const double>(), received));
   }
 }
 
@@ -221,6 +193,7 @@ Result<StrokeReport> report_strokes(const std::string& name) {
   if (!even) return schema::forward_error(even);
   if (even->added > 0) report.notes.push_back(note_of_stops(*even));
   judge_strokes(even->columns, report);
+  tell_limits(name, even->columns, report);
   return report;
 }
 

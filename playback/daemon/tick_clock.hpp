@@ -20,10 +20,11 @@ class TickClock {
     const std::int64_t part = period_ns_ * 2 / 5;
     spin_ns_ = part < kMostSpinNs ? part : kMostSpinNs;
     due_ns_ = now_ns();
+    longer_ns_ = 0;
   }
   /// Waits for the next tick; gives how late it is. `missed` grows by the periods that were passed over.
   std::int64_t wait(std::uint64_t& missed) noexcept {
-    due_ns_ += period_ns_;
+    due_ns_ += period_ns_ + longer_ns_;
     std::int64_t now = now_ns();
     if (due_ns_ - spin_ns_ > now) sleep_until(due_ns_ - spin_ns_);
     while ((now = now_ns()) < due_ns_) {
@@ -36,6 +37,8 @@ class TickClock {
     return late_ns;
   }
   std::int64_t period_ns() const noexcept { return period_ns_; }
+  /// From now on each period is so much longer, much less than one: who follows another clock.
+  void lengthen(std::int64_t by_ns) noexcept { longer_ns_ = by_ns; }
   static std::int64_t now_ns() noexcept {
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -49,7 +52,7 @@ class TickClock {
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
     }
   }
-  std::int64_t period_ns_ = 1, spin_ns_ = 0, due_ns_ = 0;
+  std::int64_t period_ns_ = 1, spin_ns_ = 0, due_ns_ = 0, longer_ns_ = 0;
 };
 
 }  // namespace tacto::playback

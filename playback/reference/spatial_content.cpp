@@ -41,4 +41,17 @@ double highest_spatial_frequency(const schema::SpaceSignal& texture) {
   return static_cast<double>(k) / (static_cast<double>(length) * texture.pitch_m);
 }
 
+double relative_slope(const schema::SpaceSignal& texture, double low_per_m, double high_per_m) {
+  const std::size_t length = spatial::fast_length(texture.values.size());
+  const auto energy = energies(texture, length);
+  double whole = 0, steep = 0;
+  for (std::size_t k = 0; k < energy.size(); ++k) {
+    const double per_m = static_cast<double>(k) / (static_cast<double>(length) * texture.pitch_m);
+    if (per_m < low_per_m || per_m > high_per_m) continue;
+    whole += energy[k];
+    steep += energy[k] * per_m * per_m;
+  }
+  return whole > 0 ? 2 * std::numbers::pi * std::sqrt(steep / whole) : 0;
+}
+
 }  // namespace tacto::playback

@@ -10,4 +10,8 @@ namespace tacto::playback {
 /// left out and its ends under a Hann window. At most half the grid's; 0 for a constant.
 double highest_spatial_frequency(const schema::SpaceSignal& texture);
 
+/// RMS of the texture's slope re its own, rad/m, of what lies from low to high (1/m), windowed alike: what a
+/// place that is off by 1 m would cost. 0 where nothing lies there.
+double relative_slope(const schema::SpaceSignal& texture, double low_per_m, double high_per_m);
+
 }  // namespace tacto::playback

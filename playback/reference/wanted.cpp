@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "spatial/dsp/fft.hpp"
 
@@ -51,23 +52,12 @@ void settle_ends(std::span<double> readings, std::size_t count, std::size_t onse
   fill_padding(readings.subspan(count), end, start);
 }
 
-std::vector<double> read_along(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid,
-                               double onset_s, double low_hz) {
-  const std::size_t count = (grid.samples - 1) * grid.oversampling + 1;
-  std::vector<double> readings = positions_along(path, grid.reading_rate_hz(), count);
-  for (double& value : readings) value = texture(value);
-  readings.resize(grid.period * grid.oversampling);
-  const auto onset = static_cast<std::size_t>(onset_s * grid.reading_rate_hz());
-  settle_ends(readings, count, onset, static_cast<std::size_t>(grid.reading_rate_hz() / low_hz));
-  return readings;
-}
-
 // Bins of the readings up to half the result's rate, scaled to the result's length: exact decimation of what
 // the band keeps.
-PaddedSpectrum decimated(const PaddedSpectrum& fine, const ReadingGrid& grid, double gain) {
+PaddedSpectrum decimated(const PaddedSpectrum& fine, const ReadingGrid& grid) {
   PaddedSpectrum coarse{grid.rate_hz, grid.samples, grid.period, fine.bins};
   coarse.bins.resize(grid.period / 2 + 1);
-  for (auto& bin : coarse.bins) bin *= gain / static_cast<double>(grid.oversampling);
+  for (auto& bin : coarse.bins) bin /= static_cast<double>(grid.oversampling);
   return coarse;
 }
 
@@ -87,12 +77,27 @@ ReadingGrid reading_grid(double duration_s, double rate_hz, const spatial::Band&
   return grid;
 }
 
-PaddedSpectrum exact_wanted(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid,
-                            const spatial::Band& band, double gain_m_per_n, double onset_s) {
-  const auto readings = read_along(texture, path, grid, onset_s, band.low_hz);
-  auto wanted = decimated(spectrum_of(readings, grid.reading_rate_hz(), readings.size()), grid, gain_m_per_n);
+std::vector<double> reading_places(const FingerPath& path, const ReadingGrid& grid) {
+  return positions_along(path, grid.reading_rate_hz(), (grid.samples - 1) * grid.oversampling + 1);
+}
+
+PaddedSpectrum wanted_of_readings(std::vector<double> readings, const ReadingGrid& grid,
+                                  const spatial::Band& band, double onset_s) {
+  const double rate_hz = grid.reading_rate_hz();
+  const std::size_t count = readings.size();
+  readings.resize(grid.period * grid.oversampling);
+  settle_ends(readings, count, static_cast<std::size_t>(onset_s * rate_hz),
+              static_cast<std::size_t>(rate_hz / band.low_hz));
+  auto wanted = decimated(spectrum_of(readings, rate_hz, readings.size()), grid);
   keep_band(wanted, band);
   return wanted;
+}
+
+PaddedSpectrum exact_wanted(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid,
+                            const spatial::Band& band, double gain_m_per_n, double onset_s) {
+  std::vector<double> readings = reading_places(path, grid);
+  for (double& value : readings) value = gain_m_per_n * texture(value);
+  return wanted_of_readings(std::move(readings), grid, band, onset_s);
 }
 
 schema::SpaceSignal unrolled_loop(const schema::SpaceSignal& loop, double length_m) {

@@ -31,6 +31,15 @@ struct ReadingGrid {
 /// stay below 2^24, about 0.5 GB of memory: `capped` says that oversampling had to stop there.
 ReadingGrid reading_grid(double duration_s, double rate_hz, const spatial::Band& band, double finest_hz);
 
+/// Places at which a grid reads a path: (samples - 1) x oversampling + 1 of them. Precondition: a checked
+/// path.
+std::vector<double> reading_places(const FingerPath& path, const ReadingGrid& grid);
+
+/// What was read there, m, kept to the band, at the result's samples; before and after the path it rests, as
+/// in exact_wanted.
+PaddedSpectrum wanted_of_readings(std::vector<double> readings, const ReadingGrid& grid,
+                                  const spatial::Band& band, double onset_s);
+
 /// Reads the texture along the path, keeps the band (keep_band) and gives the result's samples:
 /// gain_m_per_n * force, m. Before and after the path the force rests at its mean over the first and the last
 /// period of band.low_hz; over onset_s at either end it leaves and reaches that rest by a raised cosine, so

@@ -55,6 +55,23 @@ TEST(CompareVerdict, OtherShapesAndLevelsAreFound) {
   EXPECT_GE(louder, kPairs * 95 / 100);
 }
 
+std::string notes_of(const schema::Texture& a, const schema::Texture& b) {
+  CompareOptions options;
+  options.formants = false;
+  const auto found = compare(a, b, options);
+  std::string all;
+  for (const std::string& note : found->notes) all += note + "\n";
+  return all;
+}
+
+TEST(CompareVerdict, AThousandTimesIsAskedAboutAsAUnit) {
+  const auto a = white_texture(7, kLength);
+  EXPECT_NE(notes_of(a, scaled(a, 1000)).find("a thousand times A"), std::string::npos);
+  EXPECT_NE(notes_of(a, scaled(a, 1e-3)).find("a thousandth times A"), std::string::npos);
+  EXPECT_EQ(notes_of(a, scaled(a, 500)).find("unit"), std::string::npos);  // 54 dB
+  EXPECT_EQ(notes_of(a, scaled(smoothed(a, 0.1), 1000)).find("unit"), std::string::npos);
+}
+
 // The interval of the level holds the truth 90 times in 100.
 TEST(CompareVerdict, IntervalCovers) {
   constexpr int kPairs = 300;

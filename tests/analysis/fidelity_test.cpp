@@ -75,6 +75,18 @@ TEST_F(FidelityOfATexture, TellsWhatTheLimitsTookAway) {
   EXPECT_GT(found.speeds.front().rows.front().error_db, -12);
 }
 
+// 3 mm RMS of 100 um, and 150 um RMS of them.
+TEST_F(FidelityOfATexture, AsksAboutTheUnitWhereThirtyTimesTheLimitIsWanted) {
+  options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
+  for (const double gain_m_per_n : {1.0, 0.05}) {
+    options_.play.program.gain_m_per_n = gain_m_per_n;
+    std::string notes;
+    const Fidelity found = measured();
+    for (const std::string& note : found.speeds.front().notes) notes += note;
+    EXPECT_EQ(notes.find("check the texture's unit") != std::string::npos, gain_m_per_n == 1.0) << notes;
+  }
+}
+
 TEST_F(FidelityOfATexture, TheBandTakesWhatIsTooFast) {
   options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
   options_.speeds_mps = {0.2};  // 6 /mm at 1.2 kHz: 500 Hz is 2.5 /mm

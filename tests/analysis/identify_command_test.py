@@ -36,7 +36,7 @@ def values(report):
 
 def table_one_comes_back():
     """The emulated device's own sweep gives Table I, and every other verb takes the file."""
-    said = tacto.run_json("identify", "-d", "sim:tray_sensor=on", "-o", "bench", "--picture", "bench.svg")
+    said = tacto.run_json("identify", "-d", "sim:tray_sensor=on", "-o", "bench", "--picture", "bench.svg", "--results", "bench.results.json")
     assert "fits" == said["verdict"], said
     for key, truth, tolerance in [("mass_kg", 6.8e-3, 2e-3), ("damping_n_s_per_m", 4.49, 5e-3),
                                   ("amplifier_resistance_ohm", 680, 5e-3)]:
@@ -54,6 +54,26 @@ def table_one_comes_back():
     assert json.load(open("bench.transducer.json"))["identification"]["misfit"] is False
     assert tacto.run_json("info", "bench.transducer.json")["identification_usable"] is True
     assert tacto.run_json("validate", "bench.transducer.json")["valid"] is True
+    results_hold_what_was_found(said)
+
+
+def results_hold_what_was_found(said):
+    """Figures and curves outlive the terminal, and `report` draws them."""
+    assert tacto.run_json("validate", "bench.results.json")["valid"] is True
+    stored = json.load(open("bench.results.json"))
+    figures = {row["name"]: row["value"] for row in stored["figures"]}
+    found = values(said)["resonance_hz"]
+    assert figures["resonance_hz, 95 %"] == "{:.5g} ({:.5g} to {:.5g})".format(*(found[k] for k in ("value", "low_of_95", "high_of_95")))
+    assert "reported 500, by Table I 547.7" in figures["the paper against itself: resonance_hz"], figures
+    assert "not told apart" in figures and "condition number" in figures and stored["details"]["parameters"] == said["parameters"]
+    curves = {picture["title"]: [curve["name"] for curve in picture["curves"]] for picture in stored["pictures"]}
+    assert curves == {"Amplitude": ["data", "model", "95 % band", "", "inverse"], "Phase": ["data", "model", "inverse"],
+                      "Residuals": ["amplitude", "phase"]}, curves
+    tacto.run("report", ".", "-o", "page.html")
+    page = pathlib.Path("page.html").read_text()
+    assert "the paper against itself" in page and "not told apart" in page
+    for wrong, words in (("bench.txt", "results.json"), ("bench.transducer.json", "bench.transducer.json")):
+        assert words in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "never", "--results", wrong, code=2)[1]
 
 
 def quick_methods_agree():
@@ -130,7 +150,8 @@ def loop_table(name, drive, times=1.0):
 def loops_are_held_to_what_a_sweep_is():
     drive = 5 * np.sin(2 * np.pi * np.arange(3000) / 1e3)
     loop_table("loop.csv", drive)
-    said = tacto.run_json("identify", "loop.csv", "--method", "loop", "-o", "loop", "--picture", "loop.svg")
+    said = tacto.run_json("identify", "loop.csv", "--method", "loop", "-o", "loop", "--picture", "loop.svg", "--results", "loop.results.json")
+    assert "% open" in json.load(open("loop.results.json"))["figures"][5]["value"]
     assert said["verdict"] == "fits" and "<svg" in pathlib.Path("loop.svg").read_text(), said
     assert json.load(open("loop.transducer.json"))["identification"]["high_hz"] < 1.1  # what loops of 1 Hz know
     kept = pathlib.Path("loop.transducer.json").read_bytes()

@@ -24,7 +24,7 @@ schema::Transducer base() {
 BodeData without_noise(const schema::Transducer& plant, const firmware_host::TrayPhysics& physics,
                        double amplitude_v) {
   const SteppedSine stepped = stepped_sine({.amplitude_v = amplitude_v, .low_hz = 20, .frequencies = 24});
-  firmware_host::ActuatedTray tray(plant, 10e3, std::nullopt, physics);
+  firmware_host::ActuatedTray tray(plant, 10e3, physics);
   const std::vector<double> drive(stepped.drive_v.begin(), stepped.drive_v.end());
   BodeData data =
       response_of_steps({10e3, drive, firmware_host::displacement_under(tray, drive), 0}, stepped);

@@ -6,6 +6,7 @@
 #include "analysis/identify/least_squares.hpp"
 #include "analysis/identify/plausibility.hpp"
 #include "analysis/identify/response_fit.hpp"
+#include "analysis/identify/student.hpp"
 #include "firmware-host/sim/actuated_tray.hpp"
 #include "tests/analysis/identify_plants.hpp"
 
@@ -113,6 +114,11 @@ TEST(IdentifyFit, RefusesTooFewAllNoiseAndNoNumber) {
   BodeData loud = exact(preset());
   for (const auto& value : loud.response) loud.noise.push_back(std::abs(value));
   EXPECT_NE(refusal(check_bode(loud)).find("noise"), std::string::npos);
+
+  EXPECT_NE(refusal(check_bode(loud)).find("the tray"), std::string::npos);
+  loud.direction = Direction::sensor;  // no tray is looked at
+  EXPECT_EQ(refusal(check_bode(loud)).find("the tray"), std::string::npos);
+  EXPECT_NE(refusal(check_bode(loud)).find("reference cell"), std::string::npos);
 
   BodeData broken = exact(preset());
   broken.response[17] = {std::nan(""), 0};

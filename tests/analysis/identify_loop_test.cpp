@@ -33,7 +33,7 @@ std::vector<double> drive_of(double amplitude_v) {
 }
 
 std::vector<double> tray_under(const std::vector<double>& drive_v, double opening) {
-  firmware_host::ActuatedTray tray(preset(), kRateHz, std::nullopt,
+  firmware_host::ActuatedTray tray(preset(), kRateHz,
                                    {.second_mode = {}, .finger_load = {}, .hysteresis = opening});
   std::vector<double> x = firmware_host::displacement_under(tray, drive_v);
   std::mt19937_64 random(2);

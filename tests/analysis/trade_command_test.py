@@ -29,7 +29,14 @@ def check_trade(folder):
     assert {row["half"] for row in rows} == {"offline", "real time"}
     for half in ("offline", "real time"):
         assert sum(row["knee"] == "true" for row in rows if row["half"] == half) >= 3, half
+    loops = [row for row in done["choices"] if row["choice_of"] == "loop"]
+    assert len(loops) == 2 and all(row["worth_it"] == "not judged" and row["latency_s"] > 0 for row in loops), loops
+    answers = {answer["choice_of"]: answer for answer in done["answers"]}
+    assert "not measured" in answers["loop"]["knee"] and "one choice" in answers["stored"]["knee"], answers
     for row in rows:
+        if row["knob"] == "loop":
+            assert (row["error"], row["on_front"], row["knee"], row["beaten_by"]) == ("", "false", "false", ""), row
+            continue
         assert 0 <= float(row["error"]) < 10, row
         assert (row["on_front"] == "true") != bool(row["beaten_by"]), row
     assert all(answer["knee"] and answer["never_worth_it"] for answer in done["answers"])
@@ -57,6 +64,8 @@ def check_scene(folder):
     name, scene = measured("bench.scene.json")
     assert "the worst of its 2 textures" in name, name
     (_, c), (_, e) = measured("C"), measured("E")
+    c, e = ({key: row for key, row in rows.items() if key[0] != "loop"} for rows in (c, e))
+    scene = {key: row for key, row in scene.items() if key[0] != "loop"}
     assert scene.keys() == c.keys() == e.keys()
     for key, row in scene.items():
         worst = max(c[key]["error_percent"], e[key]["error_percent"])
@@ -129,12 +138,19 @@ def check_calibration(folder):
 
 
 def check_refusals(folder):
-    """Nothing to feel is no trade; a percentage beyond a tenth no promise; an output is named once."""
+    """A transducer that does not fit is refused, one that was measured elsewhere warned of; nothing to feel is no trade; a percentage beyond a tenth no promise; an output is named once."""
     side = json.loads((folder / "C.texture.json").read_text())
     wav = folder / "even.texture.wav"
     soundfile.write(wav, np.full(side["data"]["samples"], 0.5, np.float32), soundfile.info(folder / "C.texture.wav").samplerate, subtype="FLOAT")
     side["data"] |= {"file": wav.name, "sha256": hashlib.sha256(wav.read_bytes()).hexdigest()}
     (folder / "even.texture.json").write_text(json.dumps(side))
+    preset = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json").read_text())
+    about = {"date": "2026-01-01T00:00:00Z", "conditions": "bench", "source": "sim:", "converged": True, "misfit": True, "words": "waves",
+             "r_squared": 0.99, "low_hz": 100, "high_hz": 300}
+    (folder / "hys.transducer.json").write_text(json.dumps(preset | {"name": "hys", "identification": about}))
+    realtime = ["trade", "C", "--transducer", "hys", "--half", "realtime"]
+    assert "--force" in tacto.run(*realtime, cwd=folder, code=5)[1]
+    assert "100 to 300 Hz" in tacto.run(*realtime, "--force", cwd=folder)[1]
     assert "nothing to feel" in tacto.run("trade", "even", "-o", "no.html", cwd=folder, code=5)[1]
     assert "named twice" in tacto.run("trade", "C", "-o", "a.csv", "-o", "a.csv", cwd=folder, code=2)[1]
     assert "at most 10%" in tacto.run("spatial", "C", "-o", "no", "--max-error", "1000%", cwd=folder, code=2)[1]

@@ -10,6 +10,7 @@
 
 #include "data-schema/check.hpp"
 #include "data-schema/files.hpp"
+#include "data-schema/session_blocks.hpp"
 #include "data-schema/session_reader.hpp"
 #include "data-schema/session_writer.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
@@ -194,6 +195,96 @@ TEST_F(Session, AHeaderWithNumbersThatCanNotBeIsNone) {
     refused([=](SessionHeader& h) { h.metres_per_count = metres; }, "metres_per_count");
   refused([](SessionHeader& h) { h.transducer.mass_kg = -1; }, "transducer/mass_kg");
   EXPECT_TRUE(parse_session_header(session_header_text(made_header()).value(), "one"));
+}
+
+SessionChange made_change(const std::string& file) {
+  SessionChange change{17, 18, made_header()};
+  change.program.textures[0].file = file;
+  change.program.scene_file = "two.scene.json";
+  change.program.scene_sha256 = std::string(64, 'b');
+  change.program.choices.interpolation = "sinc";
+  change.program.high_hz = 400;
+  return change;
+}
+
+SessionCommand change_command() {
+  return {20, 21, {0, 0, 0, 0x17}};
+}
+
+// Of two that no `change` parts, the first came to nothing; so did what stands at the end.
+TEST_F(Session, AChangeNamesWhatTheNextOneBrings) {
+  auto writer = created();
+  for (const char* file : {"failed.texture.json", "pine.texture.json"})
+    ASSERT_TRUE(writer.add(made_change(file)));
+  ASSERT_TRUE(writer.add(change_command()));
+  ASSERT_TRUE(writer.add(made_ticks(0, 10)));
+  ASSERT_TRUE(writer.add(made_change("never.texture.json")));
+  ASSERT_TRUE(writer.close({10, 0, 0}));
+  auto reader = SessionReader::open(path_);
+  const SessionTotals totals = session_totals(*reader);
+  EXPECT_EQ(totals.ending, SessionEnding::closed);
+  ASSERT_EQ(totals.changes.size(), 1U);
+  EXPECT_EQ(totals.changes[0].not_before, 17U);
+  EXPECT_EQ(totals.changes[0].time_ns, 18);
+  const SessionProgram& program = totals.changes[0].program;
+  ASSERT_EQ(program.textures.size(), 1U);
+  EXPECT_EQ(program.textures[0].file, "pine.texture.json");
+  EXPECT_EQ(program.textures[0].ends, TextureEnds::loop);
+  EXPECT_EQ(program.scene_sha256, std::string(64, 'b'));
+  EXPECT_EQ(program.choices.interpolation, "sinc");
+  EXPECT_EQ(program.inverse, "full");
+  EXPECT_EQ(program.high_hz, 400);
+  EXPECT_TRUE(check_file({FileKind::session, path_})->findings.empty());
+}
+
+void append_block(const std::string& path, std::uint8_t type, const std::string& payload) {
+  std::ofstream(path, std::ios::binary | std::ios::app)
+      << sealed_block(static_cast<BlockType>(type), payload);
+}
+
+// As this reader is to one of before.
+TEST_F(Session, ATypeThatIsNotKnownIsPassedOver) {
+  { ASSERT_TRUE(created().add(made_ticks(0, 10))); }
+  append_block(path_, 7, "of a version to come");
+  append_block(path_, 1, ticks_payload(made_ticks(10, 5)));
+  auto reader = SessionReader::open(path_);
+  EXPECT_EQ(ticks_in(*reader), made_ticks(0, 15));
+  EXPECT_EQ(reader->ending(), SessionEnding::unclosed);
+}
+
+TEST_F(Session, AChangeThatIsNoneIsDamage) {
+  const std::string moment(16, '\0');
+  for (const std::string& text :
+       {std::string("short"), moment, moment + "{",
+        moment + R"({"kind": "session_change", "version": "1.0"})", moment + std::string(1000, '[')}) {
+    std::filesystem::remove(path_);
+    { ASSERT_TRUE(created().add(made_ticks(0, 10))); }
+    const auto sound = std::filesystem::file_size(path_);
+    append_block(path_, 6, text);
+    append_block(path_, 1, ticks_payload(made_ticks(10, 5)));
+    auto reader = SessionReader::open(path_);
+    EXPECT_EQ(ticks_in(*reader), made_ticks(0, 10));
+    EXPECT_EQ(reader->ending(), SessionEnding::damaged);
+    const auto checked = check_file({FileKind::session, path_});
+    ASSERT_EQ(checked->findings.size(), 1U);
+    EXPECT_NE(checked->findings[0].what.find("block"), std::string::npos) << sound;
+  }
+}
+
+TEST_F(Session, MoreTexturesThanABlockHoldsAreRefused) {
+  SessionChange change = made_change("oak.texture.json");
+  change.program.textures.resize(300, change.program.textures[0]);
+  for (SessionTexture& texture : change.program.textures) texture.file = std::string(4000, 'a');
+  auto writer = created();
+  const auto large = writer.add(change);
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error().fault, Fault::unsuitable);
+  SessionHeader header = made_header();
+  header.textures = change.program.textures;
+  const auto refused = SessionWriter::create(folder_ / "large.session", header);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, Fault::unsuitable);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "large.session"));
 }
 
 TEST_F(Session, NoHeaderIsNoSession) {

@@ -251,5 +251,32 @@ TEST_F(TextureFile, WritesNothingWhereItCannotWriteAll) {
   EXPECT_EQ(nowhere.error().fault, Fault::cannot_write);
 }
 
+// A gain that is saved takes an earlier one's place; the WAV, its hash and what a newer version added stay.
+TEST_F(TextureFile, KeepsAGainAndAllElse) {
+  ASSERT_TRUE(write_texture(folder_ / "oak", example()));
+  write("oak.texture.json", replaced(sidecar(), "\"version\"", "\"later\": {\"a\": 1}, \"version\""));
+  EXPECT_FALSE(read_playback_gain(folder_ / "oak")->has_value());
+  const auto wav = read_file(folder_ / "oak.texture.wav").value();
+  for (const double gain_m_per_n : {1e-3, -2.5e-4}) {
+    ASSERT_TRUE(write_playback_gain(folder_ / "oak", {gain_m_per_n, "mw", "2026-11-22T21:00:00Z"}));
+    const auto kept = read_texture(folder_ / "oak");
+    ASSERT_TRUE(kept) << message(kept.error());
+    ASSERT_TRUE(kept->playback_gain);
+    EXPECT_EQ(kept->playback_gain->gain_m_per_n, gain_m_per_n);
+    EXPECT_EQ(kept->playback_gain->who, "mw");
+    EXPECT_EQ(kept->playback_gain->when, "2026-11-22T21:00:00Z");
+    EXPECT_EQ(kept->signal.values.size(), 5000U);
+    EXPECT_EQ(kept->surface, "oak");
+  }
+  EXPECT_NE(sidecar().find("\"later\""), std::string::npos);
+  EXPECT_EQ(read_file(folder_ / "oak.texture.wav").value(), wav);
+  const std::string before = sidecar();
+  const auto refused = write_playback_gain(
+      folder_ / "oak", {std::numeric_limits<double>::quiet_NaN(), "mw", "2026-11-22T21:00:00Z"});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().fault, Fault::unsuitable);
+  EXPECT_EQ(sidecar(), before);
+}
+
 }  // namespace
 }  // namespace tacto::schema

@@ -67,6 +67,30 @@ def what_goes_on_beyond_its_ends_is_judged_too():
         print(f"{ends}: error of each stroke:", ", ".join(f"{s['error_db']:.1f} dB" for s in strokes))
 
 
+def what_the_limits_took_is_told_in_db():
+    """A weak amplifier: play and session tell what render tells of the same way, by stroke and as a whole."""
+    write_grating()
+    pathlib.Path("once.csv").write_text("time_s,position_m\n0,0.004\n0.1,0.004\n0.9,0.034\n1.1,0.034\n1.9,0.004\n2,0.004\n")
+    preset = pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json"
+    weak = {**json.loads(preset.read_text()), "name": "weak", "drive_limit_v": 0.3}
+    pathlib.Path("weak.transducer.json").write_text(json.dumps(weak))
+    shared = ("oak", "--gain", "0.5mm/N", "--transducer", "weak")
+    rendered = tacto.run_json("render", *shared, "--path", "once.csv", "--engine", "kernel", "--over-limit", "clip", "--hold", "zero-order",
+                              "--onset", "20ms", "--rate", "2kHz", "-o", "drive.wav")
+    played = tacto.run_json("play", *shared, "-d", "sim:", "--finger-path", "once.csv", "-o", "weak")
+    said = tacto.run_json("session", "weak")
+    assert said["removed_by_limits_db"] == played["removed_by_limits_db"], (said, played)
+    # They take their samples at other places between the encoder's edges (-75 dB of the drive), and the finger rests at the ends.
+    assert abs(played["removed_by_limits_db"] - rendered["limits_removed_db"]) < 0.05, (played, rendered)
+    assert said["amplitude_limited_ticks"] == played["amplitude_limited_ticks"] > 500 and said["slew_limited_ticks"] == 0, said
+    strokes = said["strokes"]
+    assert len(strokes) == 2 and all(-20 < s["removed_by_limits_db"] < -5 for s in strokes), strokes
+    assert "removed by limits" in tacto.run("play", *shared, "-d", "sim:", "--finger-path", "once.csv", "--time", "0.2s", "-o", "short")[0]
+    free = tacto.run_json("play", "oak", "--gain", "0.5mm/N", "-d", "sim:", "--finger-path", "once.csv", "-o", "free")
+    assert free["removed_by_limits"] == "none" == tacto.run_json("session", "free")["removed_by_limits"], free
+    print(f"limits took {played['removed_by_limits_db']:.2f} dB in play, {rendered['limits_removed_db']:.2f} dB in render")
+
+
 def a_slow_finger_on_a_coarse_encoder():
     """What was wanted goes along the finger's way, not up the encoder's staircase: 20 Hz at 1 mm/s, five counts a period."""
     x = np.arange(20000) * 1e-6
@@ -137,6 +161,11 @@ def what_was_chosen_acts():
     assert tacto.run_json("info", "felt.scene.json")["interpolation"] == "linear"
     explained = tacto.run_json("explain", "felt", "--energy-limit", "2V", "--reconstruction", "butterworth3")
     assert (explained["inverse"], explained["cutoff_hz"], explained["energy_rms_v"], explained["contact_on_n"]) == ("magnitude", 600, 2, 0.3), explained
+    filtered = tacto.run_json("play", "oak", "-d", "sim:reconstruction=butterworth3,cutoff=500Hz", "--finger-path", "lifts.csv", "--gain", "0.5mm/N",
+                              "--reconstruction", "butterworth3", "--cutoff", "500Hz", "-o", "filtered")
+    assert "low-pass of order 3 at 500 Hz" in filtered["simulated"] and filtered["cutoff_hz"] == 500, filtered
+    early = np.std(drive_of("filtered")[1000:1800] - drive_of("plain")[1000:1800]) / np.std(drive_of("plain")[1000:1800])
+    assert early > 0.02, early  # by what the filter is late: 2 / (2 pi 500 Hz), a tenth of a turn at 150 Hz
     here = tacto.run_json("play", "oak", "-d", "sim:paced=1,rate=2kHz", "--loop", "host", "--finger-path", "lifts.csv", "--gain", "0.5mm/N",
                           "--contact", "0.3N", "--time", "0.8s", "-o", "here")
     assert here["drive_peak_v"] > 0.01 and tacto.run_json("replay", "here")["same_to_the_bit"], here
@@ -185,7 +214,6 @@ def wrong_use():
     write_grating()
     write_strokes(1)
     for arguments, code, words in (
-            (("play", "oak", "-d", "sim:"), 2, "--output"),
             (("play", "nothing", "-d", "sim:", "-o", "x"), 3, "nothing"),
             (("play", "oak", "-d", "replay:none", "-o", "x"), 3, "none"),
             (("play", "oak", "-d", "sim:", "-o", "x", "--rate", "100"), 2, "Hz"),
@@ -208,6 +236,8 @@ def wrong_use():
         assert words in said, (arguments, said)
     assert not pathlib.Path("x.session").exists()
     tacto.run("play", "oak", "-d", "sim:", "-o", "x", "--time", "0.1s")
+    named = tacto.run_json("play", "oak", "-d", "sim:", "--time", "0.1s")["session"]
+    assert named.startswith("oak-2") and tacto.run_json("replay", named)["same_to_the_bit"], named
     _, said = tacto.run("play", "oak", "-d", "sim:", "-o", "x", "--time", "0.1s", code=2)
     assert "is there already" in said
     _, said = tacto.run("session", "x", "-o", "x.mat", code=2)
@@ -244,7 +274,7 @@ def ten_minutes_at_10_khz():
 
 
 if __name__ == "__main__":
-    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, what_goes_on_beyond_its_ends_is_judged_too, two_textures_in_a_scene, what_was_chosen_acts, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
+    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, what_goes_on_beyond_its_ends_is_judged_too, two_textures_in_a_scene, what_was_chosen_acts, what_the_limits_took_is_told_in_db, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
         if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
             continue
         tacto.in_folder(test)

@@ -55,7 +55,7 @@ TEST_P(TraySine, GainAndPhaseAreTheClosedForm) {
 }
 
 TEST_P(TraySine, TheReconstructionFilterComesOnTop) {
-  ActuatedTray tray(preset(), kTickHz, 600);
+  ActuatedTray tray(preset(), kTickHz, {.reconstruction_cutoff_hz = 600});
   const Complex ratio = measured_response(GetParam(), tray) / folded_response(GetParam(), true);
   EXPECT_NEAR(std::abs(ratio), 1, 2e-6);
   EXPECT_NEAR(std::arg(ratio), 0, 2e-6);

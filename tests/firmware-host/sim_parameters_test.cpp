@@ -99,6 +99,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"force_low=20Hz", "sim:force_low", "add force=multisine"},
         Refusal{"lvdt_noise=1um", "sim:lvdt_noise", "add position=lvdt"},
         Refusal{"position=gps", "sim:position", "encoder or lvdt"},
+        Refusal{"cutoff=500Hz", "sim:cutoff", "add reconstruction=butterworth3"},
+        Refusal{"reconstruction=rc", "sim:reconstruction", "none or butterworth3"},
+        Refusal{"reconstruction=butterworth3,cutoff=6kHz", "sim:cutoff", "from 10 Hz to 5 kHz"},
         Refusal{"channels=8", "sim:channels", "add source=counter"},
         Refusal{"source=counter,channels=17", "sim:channels", "from 1 to 16"},
         Refusal{"link_buffer=1s", "sim:link_buffer", "add paced=1"}));
@@ -134,7 +137,7 @@ TEST(SimParameters, TheEndsOfARangeAreInIt) {
 TEST(SimParameters, HelpNamesEveryKey) {
   for (const char* key : {"surface", "finger", "speed", "load", "seed", "person", "encoder_quantum",
                           "hysteresis", "second_mode", "finger_load", "position", "lvdt_range", "force_low",
-                          "source", "channels", "link_buffer"})
+                          "source", "channels", "link_buffer", "reconstruction", "cutoff"})
     EXPECT_NE(sim_parameters_help().find(key), std::string::npos) << key;
 }
 

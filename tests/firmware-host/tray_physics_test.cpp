@@ -74,7 +74,7 @@ Complex folded(double frequency_hz, Ratio&& ratio) {
 }
 
 Complex measured(double frequency_hz, const TrayPhysics& physics) {
-  ActuatedTray tray(preset(), kTickHz, std::nullopt, physics);
+  ActuatedTray tray(preset(), kTickHz, physics);
   std::vector<double> drive_v;
   for (int i = 0; i < 20000; ++i) drive_v.push_back(2 * std::cos(kTurn * frequency_hz * i / kTickHz));
   const auto displacement_m = displacement_under(tray, drive_v);
@@ -132,7 +132,7 @@ TEST(TrayPhysics, TheModesLieWhereThePaperSawThem) {
   const SecondMode mode;
   EXPECT_NEAR(peak_hz(400, 600, mode), 500, 10);
   EXPECT_NEAR(peak_hz(700, 900, mode), 800, 10);
-  ActuatedTray tray(preset(), 10e3, std::nullopt, {.second_mode = mode, .finger_load = {}});
+  ActuatedTray tray(preset(), 10e3, {.second_mode = mode, .finger_load = {}});
   for (int i = 0; i < 5000; ++i) tray.tick(1);
   EXPECT_NEAR(tray.displacement_m(), schema::actuator_response(preset(), 0).real(), 1e-14);
 }
@@ -155,8 +155,7 @@ TEST(TrayPhysics, AFingerTakesThreeDecibelsOffTheResonance) {
 // of 1/32.
 TEST(TrayPhysics, TheDrivenLoopOpensByWhatIsAsked) {
   constexpr double kSlowHz = 0.2, kRate = 1e3, kOpening = 0.16;
-  ActuatedTray tray(preset(), kRate, std::nullopt,
-                    {.second_mode = {}, .finger_load = {}, .hysteresis = kOpening});
+  ActuatedTray tray(preset(), kRate, {.second_mode = {}, .finger_load = {}, .hysteresis = kOpening});
   std::vector<double> drive_v, x_m;
   for (int i = 0; i < 15000; ++i) drive_v.push_back(5 * std::sin(kTurn * kSlowHz * i / kRate));
   x_m = displacement_under(tray, drive_v);

@@ -10,6 +10,7 @@
 #include "playback/budget_words.hpp"
 #include "playback/reference/padded_spectrum.hpp"
 #include "playback/undone_chain.hpp"
+#include "playback/wandering_hand.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -70,6 +71,7 @@ struct RandomPath {
 struct Outcome {
   double error = 0;   ///< RMS re wanted, over the band
   double beside = 0;  ///< RMS of what is read beside the band, re what is in it
+  double felt = 0;    ///< the same error, re what is wanted where the finger then was
 };
 
 /// Blackman and Harris's window of four terms: -92 dB beyond four bins.
@@ -94,6 +96,7 @@ std::vector<double> through_response(const std::vector<double>& values, double r
 /// What the kernel drives, and what it was to read where it took the finger to be.
 struct Played {
   std::vector<double> drive_v, wanted_m;
+  std::vector<double> true_m;  ///< the same where the finger then was
 };
 
 // Of an encoder this fine the rounding of its scale to 32 bits shows: over 0.1 m some 20 nm.
@@ -115,9 +118,14 @@ Played played(const Prepared& prepared, const PrepareOptions& o, const LineTextu
     const core::FingerPlace place = kernel.place();
     const double guess_m = kTrueM * (place.count + double{place.offset});
     const double ahead_m = path.wander > 0 ? guess_m : true_m + path.mean_mps * prepared.delay_s;
+    const double then_m = path.place_m(i / o.rate_hz + prepared.delay_s);
     const double ratio = std::abs(place.counts_per_tick) / prepared.full_detail_counts_per_tick;
-    played.wanted_m.push_back(o.gain_m_per_n * texture.read(ahead_m * scale_of(prepared), ratio,
-                                                            prepared.finest_per_m, prepared.scale.levels));
+    const auto wanted_at = [&](double place_m) {
+      return o.gain_m_per_n *
+             texture.read(place_m * scale_of(prepared), ratio, prepared.finest_per_m, prepared.scale.levels);
+    };
+    played.wanted_m.push_back(wanted_at(ahead_m));
+    played.true_m.push_back(wanted_at(then_m));
   }
   return played;
 }
@@ -132,11 +140,15 @@ Outcome outcome_of(const Machine& machine, const PrepareOptions& o, const LineTe
   auto error_m = through_response(all.drive_v, o.rate_hz, [&](double f) { return chain_response(chain, f); });
   const auto wanted_m = through_response(
       all.wanted_m, o.rate_hz, [&](double f) { return std::polar(1.0, -kTwoPi * f * prepared->delay_s); });
-  for (std::size_t i = 0; i < error_m.size(); ++i) error_m[i] -= wanted_m[i];
+  const auto true_m = through_response(
+      all.true_m, o.rate_hz, [&](double f) { return std::polar(1.0, -kTwoPi * f * prepared->delay_s); });
+  std::vector<double> felt_m = error_m;
+  for (std::size_t i = 0; i < error_m.size(); ++i) error_m[i] -= wanted_m[i], felt_m[i] -= true_m[i];
   const spatial::Band band{o.band.low_hz + kWindowHz, prepared->passes_to_hz - kWindowHz};
   const double wanted = windowed_energy(wanted_m, o.rate_hz, band);
   const double whole = windowed_energy(wanted_m, o.rate_hz, {0, 0.5 * o.rate_hz});
-  return {std::sqrt(windowed_energy(error_m, o.rate_hz, band) / wanted), std::sqrt(whole / wanted - 1)};
+  return {std::sqrt(windowed_energy(error_m, o.rate_hz, band) / wanted), std::sqrt(whole / wanted - 1),
+          std::sqrt(windowed_energy(felt_m, o.rate_hz, band) / wanted)};
 }
 
 struct Case {
@@ -156,7 +168,8 @@ Case random_case(Random& random) {
 
 struct Tally {
   int kept = 0, broken = 0, refused = 0, beside = 0;
-  double nearest = 0;  ///< the largest error re what was asked
+  double nearest = 0;         ///< the largest error re what was asked
+  std::vector<double> hands;  ///< of paths that wander: what the hand cost re what was estimated
 
   void add(const Outcome& outcome, double asked, const std::string& words) {
     if (outcome.beside > 1) {
@@ -182,8 +195,14 @@ void try_case(Tally& tally, const Machine& machine, const Case& c, const schema:
     return;
   }
   EXPECT_LE(decision->chosen.error, c.asked);
-  tally.add(outcome_of(machine, decision->chosen.in(machine.options), c.texture, c.path), c.asked,
-            words_of(decision->chosen));
+  const Outcome outcome = outcome_of(machine, decision->chosen.in(machine.options), c.texture, c.path);
+  tally.add(outcome, c.asked, words_of(decision->chosen));
+  if (!(c.path.wander > 0) || outcome.beside > 1) return;
+  const double hand =
+      wandering_error(std::span(&placed, 1), {c.path.mean_mps, c.path.wander, c.path.wander_hz},
+                      machine.options, decision->chosen.inverse.delay_s);
+  tally.hands.push_back(
+      std::sqrt(std::max(0.0, outcome.felt * outcome.felt - outcome.error * outcome.error)) / hand);
 }
 
 Tally tried(int machines, int cases, const schema::TradeTable& table) {
@@ -202,6 +221,13 @@ TEST(BudgetPromise, HoldsForRandomTexturesPathsAndTransducers) {
   const Tally tally = tried(8, 75, *schema::shipped_trade_table());
   EXPECT_EQ(tally.broken, 0) << tally.last;
   EXPECT_GE(tally.kept, 500);
+  std::vector<double> hands = tally.hands;
+  ASSERT_GE(hands.size(), 200U);
+  std::ranges::sort(hands);
+  std::printf("what wandering hands cost re the estimate: median %.2f, of all %.2f to %.2f\n",
+              hands[hands.size() / 2], hands.front(), hands.back());
+  EXPECT_LT(hands.back(), 1) << "more than wandering_error() says";
+  EXPECT_GT(hands.back(), 0.3) << "an estimate that nothing comes near";
   EXPECT_GT(tally.nearest, 0.2) << "a promise that nothing comes near says nothing about the table";
 }
 

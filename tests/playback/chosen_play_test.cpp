@@ -57,6 +57,36 @@ TEST(PlaybackChoices, WhatWasPlayedSaysItselfAgain) {
   EXPECT_FALSE(choices_in(PrepareOptions{}).energy_rms_v) << "no limit is none";
 }
 
+// Of something that is not there. What stands below may name it; a request may turn it off, and then not say
+// more of it.
+TEST(PlaybackChoices, MoreOfWhatIsNotThereIsRefused) {
+  const PlaybackChoices below = choices_with(
+      [](auto& c) { c.reconstruction = "butterworth3", c.energy_rms_v = 2.0, c.contact_on_n = 0.3; });
+  struct Said {
+    PlaybackChoices more, off;
+    const char* words[2];
+  };
+  const Said all[] = {{choices_with([](auto& c) { c.cutoff_hz = 500.0; }),
+                       choices_with([](auto& c) { c.cutoff_hz = 500.0, c.reconstruction = "none"; }),
+                       {"--cutoff", "--reconstruction butterworth3"}},
+                      {choices_with([](auto& c) { c.energy_window_s = 2.0; }),
+                       choices_with([](auto& c) { c.energy_window_s = 2.0, c.energy_rms_v = 0.0; }),
+                       {"--energy-window", "--energy-limit"}},
+                      {choices_with([](auto& c) { c.contact_off_n = 0.1; }),
+                       choices_with([](auto& c) { c.contact_off_n = 0.1, c.contact_on_n = 0.0; }),
+                       {"--contact-off", "contact_on_n"}}};
+  for (const Said& said : all) {
+    EXPECT_TRUE(check_meant(said.more, said.more.over(below))) << said.words[0];
+    EXPECT_FALSE(check_meant(said.off, said.off.over(below))) << said.words[0];
+    const auto alone = check_meant(said.more, said.more);
+    ASSERT_FALSE(alone) << said.words[0];
+    EXPECT_EQ(alone.error().fault, schema::Fault::usage);
+    for (const char* words : said.words)
+      EXPECT_NE(schema::message(alone.error()).find(words), std::string::npos) << words;
+  }
+  EXPECT_TRUE(check_meant({}, below)) << "what stands below may say more: for those who name it";
+}
+
 TEST(PlaybackChoices, AWordThatThereIsNotIsRefused) {
   const auto wrong = with_choices({}, choices_with([](auto& c) { c.inverse = "half"; }));
   ASSERT_FALSE(wrong);

@@ -91,6 +91,26 @@ def check_play(folder):
     assert 20 * np.log10(report["promised_error_percent"] / 100) >= report["inverse_error_db"]
 
 
+def check_where_it_was_identified(folder):
+    """A transducer known over 100-300 Hz alone is warned of by each verb; a rate too high is what is blamed, not the transducer."""
+    preset = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json").read_text())
+    about = {"date": "2026-01-01T00:00:00Z", "conditions": "bench", "source": "sim:", "converged": True, "misfit": False, "words": "noise",
+             "r_squared": 1, "low_hz": 100, "high_hz": 300}
+    render = ["--path", folder / "path.csv", "--gain", "0.2mm/N"]
+    for low, high, warned in ((100, 300, True), (10, 1000, False)):
+        narrow = folder / f"from{low}.transducer.json"
+        narrow.write_text(json.dumps(preset | {"name": "narrow", "identification": about | {"low_hz": low, "high_hz": high}}))
+        for arguments in (["explain", folder / "t"], ["render", folder / "t", *render, "-o", folder / f"{low}.wav"],
+                          ["render", folder / "t", *render, "-o", folder / f"{low}k.wav", "--engine", "kernel"],
+                          ["play", folder / "t", "-d", "sim:", "--time", "0.1s", "-o", folder / f"s{low}"]):
+            done = made.run(*[str(a) for a in [*arguments, "--transducer", narrow]])
+            assert done.returncode == 0 and done.stderr.count("identified from 100 to 300 Hz") == warned, (arguments, done.stderr)
+    assert "100 to 300 Hz" in made.report_of("explain", folder / "t", "--transducer", folder / "from100.transducer.json")["notes"][0]
+    said = refused(UNSUITABLE, "128 taps at 100000 Hz", "explain", folder / "t", "--rate", "100kHz")
+    assert "play at 50 kHz" in said and "resonance" not in said, said
+    made.report_of("explain", folder / "t", "--rate", "50kHz")
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -101,6 +121,7 @@ def main():
         check_choice(folder)
         check_render(folder)
         check_play(folder)
+        check_where_it_was_identified(folder)
 
 
 if __name__ == "__main__":

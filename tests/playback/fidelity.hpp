@@ -54,11 +54,10 @@ inline double rms_in_band(std::span<const double> values, double rate_hz, const 
 inline std::vector<double> felt_displacement(const FidelityCase& c, const playback::Prepared& prepared,
                                              std::size_t ticks, std::size_t fine) {
   const auto positions = playback::positions_along(c.path, c.options.rate_hz, ticks);
-  firmware_host::ActuatedTray tray(c.real, c.options.rate_hz * static_cast<double>(fine),
-                                   c.options.reconstruction == playback::Reconstruction::none
-                                       ? std::nullopt
-                                       : std::optional(c.options.reconstruction_cutoff_hz),
-                                   c.physics);
+  firmware_host::TrayPhysics physics = c.physics;
+  if (c.options.reconstruction != playback::Reconstruction::none)
+    physics.reconstruction_cutoff_hz = c.options.reconstruction_cutoff_hz;
+  firmware_host::ActuatedTray tray(c.real, c.options.rate_hz * static_cast<double>(fine), physics);
   core::TickKernel kernel;
   kernel.set(prepared.setup());
   std::vector<double> displacement_m;

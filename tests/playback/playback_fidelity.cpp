@@ -71,7 +71,7 @@ bool exact_model(const schema::Texture& texture) {
 
 void worse_position(const schema::Texture& texture) {
   for (const double rate_hz : {2e3, 10e3})
-    for (const double speed_mps : {0.0263, 0.0517, 0.1031, 0.1973}) {
+    for (const double speed_mps : {0.0263, 0.0517, 0.1031, 0.1973, 0.025, 0.05, 0.1, 0.2}) {
       FidelityCase c = basic(speed_mps, rate_hz);
       c.options.metres_per_count = 1e-6;
       print_row(texture,

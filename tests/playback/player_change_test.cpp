@@ -2,7 +2,6 @@
 // A texture changes while one plays: what is driven, what is recorded, what can't be.
 #include <fmt/format.h>
 
-#include "playback/daemon/stroke_report.hpp"
 #include "playback/texture_change.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
@@ -137,25 +136,6 @@ TEST_F(PlayerOnSim, AnUploadThatComesToNothingReplays) {
   EXPECT_EQ(player_->state(), PlayerState::fault);
   ASSERT_TRUE(player_->disarm());
   expect_same_to_the_bit();
-}
-
-// 30 mm there and back in 1.5 s.
-TEST_F(PlayerOnSim, StrokesAreJudgedUpToTheChange) {
-  begin();
-  ASSERT_TRUE(player_->play());
-  run(1.9);
-  ASSERT_TRUE(player_->load(program("fine")));
-  run(1.2);
-  ASSERT_TRUE(player_->disarm());
-  const auto report = report_strokes(session_);
-  ASSERT_TRUE(report) << schema::message(report.error());
-  ASSERT_EQ(report->strokes.size(), 4U);
-  for (const PlayedStroke& stroke : report->strokes) {
-    EXPECT_GT(stroke.received_rms_m, 1e-6);
-    EXPECT_EQ(stroke.wanted_rms_m > 0, stroke.to_s < 1.9) << "from " << stroke.from_s << " s";
-  }
-  ASSERT_EQ(report->notes.size(), 1U);
-  EXPECT_TRUE(report->notes[0].starts_with("the texture changes at 1.9")) << report->notes[0];
 }
 
 TEST(TextureChange, OnlyWhatBelongsToTheTextureMayDiffer) {

@@ -116,7 +116,7 @@ inline constexpr size_t kMaxBlockTicks = 64;
 inline constexpr size_t kMaxChunk = 512;  ///< floats of a profile's or drive's chunk
 inline constexpr size_t kMaxSections = 16;
 inline constexpr size_t kMaxLevels = 16;  ///< of a profile's pyramid
-inline constexpr size_t kMaxTaps = 128;   ///< of the finite filter; a multiple of 4
+inline constexpr size_t kMaxTaps = 128;   ///< of the finite filter; a multiple of 16
 inline constexpr size_t kMaxPlays = 16;   ///< of hysteresis; a multiple of 4
 
 }  // namespace tacto::wire

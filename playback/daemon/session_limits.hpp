@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the limits took away in a session.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "data-schema/error.hpp"
+#include "data-schema/session.hpp"
+#include "playback/limit_tally.hpp"
+
+namespace tacto::playback {
+
+/// A tick as LimitTally takes it: the recorded drive and its flags, and what was wished, V.
+core::TickOutput limited_tick(float drive_v, float wished_v, std::uint32_t flags);
+
+/// Hears of every tick in its order what the kernel wished before the limits. Where no tick is flagged as
+/// limited that is the drive; else the session is replayed (replay_session). Errors: as replay_session;
+/// unsuitable, where ticks are missing, the file is damaged, or the replayed drive is another one: then it is
+/// not known.
+schema::Result<void> hear_wishes(
+    const std::string& session,
+    const std::function<void(const schema::SessionTick& tick, float wished_v)>& listener);
+
+/// Of the whole session. Errors: as hear_wishes().
+schema::Result<LimitTally> tally_session(const std::string& session);
+
+}  // namespace tacto::playback

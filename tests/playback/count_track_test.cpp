@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Counts that come several at a time, late and by another clock, as a loop on the host sees them.
+#include "playback/daemon/count_track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace tacto::playback {
+namespace {
+
+constexpr double kRateHz = 2000;
+
+/// A device whose finger goes evenly, and the ticks of a host.
+struct Cable {
+  double counts_per_period = 9.3;
+  double device_periods_per_tick = 1;  ///< its clock by the host's
+  int batch = 3;                       ///< periods that are handed over together
+  double late_ticks = 0;               ///< up to so much later, at random
+};
+
+/// What 20,000 ticks saw, less where the finger was: counts by which they lag.
+std::vector<double> lags_of(const Cable& cable, CountTrack& track) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> late(0, cable.late_ticks);
+  std::vector<double> lags;
+  std::uint32_t given = 0;
+  double held_until = 0;
+  track.put(0, 0, 0);
+  track.begin();
+  for (int tick = 0; tick < 20000; ++tick) {
+    const auto made = static_cast<std::uint32_t>(tick * cable.device_periods_per_tick);
+    const std::uint32_t whole = made / cable.batch * cable.batch;
+    if (whole > given && tick >= held_until) {
+      for (; given < whole; ++given)
+        track.put(given + 1, static_cast<std::int32_t>(std::floor((given + 1) * cable.counts_per_period)), 0);
+      held_until = tick + late(random);
+    }
+    lags.push_back(tick * cable.device_periods_per_tick * cable.counts_per_period - track.see().count);
+  }
+  return lags;
+}
+
+struct Range {
+  double least, most;
+};
+Range range_of(const std::vector<double>& lags, std::size_t first, std::size_t last) {
+  const auto [least, most] = std::minmax_element(lags.begin() + static_cast<std::ptrdiff_t>(first),
+                                                 lags.begin() + static_cast<std::ptrdiff_t>(last));
+  return {*least, *most};
+}
+
+// The count itself is known to one, what lies between two is rounded to one.
+TEST(CountTrack, GoesEvenlyWhereCountsComeThreeAtATime) {
+  CountTrack track(kRateHz);
+  const Cable cable;
+  const auto lags = lags_of(cable, track);
+  const Range settled = range_of(lags, 4000, lags.size());
+  EXPECT_LT(settled.most - settled.least, 2.5);
+  EXPECT_LT(settled.most, (cable.batch + 2) * cable.counts_per_period);
+}
+
+// 100 parts in a million either way, and up to 4 ms late: over each half second the lag changes by less than
+// a period's way, where the last count alone would leap by three.
+TEST(CountTrack, FollowsAnotherClock) {
+  for (const double part : {1 - 1e-4, 1 + 1e-4}) {
+    CountTrack track(kRateHz);
+    Cable cable;
+    cable.device_periods_per_tick = part, cable.late_ticks = 8;
+    const auto lags = lags_of(cable, track);
+    for (std::size_t i = 4000; i + 1000 < lags.size(); i += 1000) {
+      const Range here = range_of(lags, i, i + 1000);
+      EXPECT_LT(here.most - here.least, cable.counts_per_period + 2.5) << part << " " << i;
+      EXPECT_LT(here.most, (cable.batch + cable.late_ticks + 2) * cable.counts_per_period) << part;
+    }
+  }
+}
+
+TEST(CountTrack, ComesNearAgainAfterAStall) {
+  CountTrack track(kRateHz);
+  std::uint32_t period = 0;
+  track.put(0, 0, 0);
+  track.begin();
+  CountTrack::Sight sight;
+  const auto give = [&](std::uint32_t periods) {
+    for (const std::uint32_t end = period + periods; period < end;) {
+      ++period;
+      track.put(period, static_cast<std::int32_t>(10 * period), 0);
+    }
+  };
+  for (int i = 0; i < 100; ++i) give(1), sight = track.see();
+  EXPECT_GE(sight.count, 980);
+  for (int i = 0; i < 30; ++i) sight = track.see();  // 15 ms without a count: straight on for 2 ms
+  EXPECT_EQ(sight.count, 1040);
+  give(30);
+  sight = track.see();
+  EXPECT_LE(sight.passed, 2U) << "less than 20 ms: no leap";
+  for (int i = 0; i < 4000; ++i) give(1), sight = track.see();
+  EXPECT_GE(sight.count, static_cast<std::int32_t>(10 * period) - 30);
+  give(1000);
+  sight = track.see();
+  EXPECT_EQ(sight.count, static_cast<std::int32_t>(10 * period)) << "half a second: at once";
+  EXPECT_GT(sight.passed, 900U);
+}
+
+TEST(CountTrack, PeriodsThatAreLeftOutLieOnALine) {
+  CountTrack track(kRateHz);
+  track.put(UINT32_MAX - 1, 100, 0);
+  track.begin();
+  track.put(3, 200, 7000);  // over the counter's end: 5 periods on
+  std::vector<std::int32_t> seen;
+  for (int i = 0; i < 5; ++i) seen.push_back(track.see().count);
+  EXPECT_EQ(seen, (std::vector<std::int32_t>{120, 140, 160, 180, 200}));
+}
+
+TEST(CountTrack, AFingerThatStandsStands) {
+  CountTrack track(kRateHz);
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    track.put(i, -7, 0);
+    if (i == 0) track.begin();
+    EXPECT_EQ(track.see().count, -7);
+  }
+}
+
+}  // namespace
+}  // namespace tacto::playback

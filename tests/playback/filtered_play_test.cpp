@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The emulated device with a filter behind its converter: what the bender does of a drive that undoes it, and
+// of one that knows nothing of it.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "data-schema/transducer.hpp"
+#include "playback/daemon/session_wanted.hpp"
+#include "playback/reference/padded_spectrum.hpp"
+#include "tests/playback/player_on_sim.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr double kFastHz = 10e3;  // what a held drive brings above 5 kHz is nothing to the tray
+constexpr double kPlayS = 1.6;
+
+class FilteredPlay : public testing::Test {
+ protected:
+  // Up to 380 Hz: 63 mm/s over 6 lines a mm.
+  void SetUp() override { ASSERT_TRUE(schema::write_texture(folder_ / "lines", grating(6000, 0.004))); }
+
+  // The finger turns gently, as in changed_strokes_test. Its place is asked for once a tick, before the tray
+  // moves on: what the tray is then it was when the last drive began.
+  void open(const std::string& parameters) {
+    player_.reset();
+    auto device = firmware_host::make_sim_device("sim:", parameters);
+    ASSERT_TRUE(device) << schema::message(device.error());
+    device_ = std::move(*device);
+    device_->board().set_script([this](double t) {
+      if (device_->board().drive_state() != wire::DriveState::idle)
+        moved_m_.push_back(device_->board().displacement_m());
+      return 17e-3 - 15e-3 * std::cos(kTwoPi * t / 1.5);
+    });
+    PlayerOptions options;
+    options.full_queue = FullQueue::wait;
+    player_ = std::move(*Player::make(device_->client(), "sim:", options));
+  }
+  Program program(const schema::PlaybackChoices& choices) {
+    PrepareOptions options;
+    options.rate_hz = kFastHz;
+    options.metres_per_count = player_->metres_per_count();
+    options.onset_s = 0.02;
+    options.most_samples = device_->client().description().welcome.profile_samples;
+    ProgramRequest request{folder_ / "lines", {}, 5e-4, {}};
+    request.choices = choices;
+    auto made = make_program(request, "wiertlewski2011", options);
+    EXPECT_TRUE(made) << schema::message(made.error());
+    return std::move(*made);
+  }
+  /// Error of the bender's displacement re what was wanted, in the band, in the second stroke: dB.
+  double error_db(const std::string& parameters, const schema::PlaybackChoices& choices) {
+    open(parameters);
+    const std::string session = folder_ / fmt::format("{}.session", ++sessions_);
+    EXPECT_TRUE(player_->load(program(choices)));
+    moved_m_.clear();
+    EXPECT_TRUE(player_->arm(session));
+    EXPECT_TRUE(player_->play());
+    while (player_->played_s() < kPlayS) EXPECT_TRUE(player_->step(0.01));
+    EXPECT_TRUE(player_->disarm());
+    return judged(*read_session_columns(session));
+  }
+  double judged(const SessionColumns& columns) {
+    const spatial::Band band{columns.header.low_hz, columns.header.high_hz};
+    const std::size_t rows = columns.tick.size();
+    EXPECT_EQ(moved_m_.size(), rows);
+    auto spectrum = spectrum_of(std::span(moved_m_).subspan(1), kFastHz, 4 * rows);
+    keep_band(spectrum, band);
+    const auto moved = signal_of(spectrum);  // without the last row
+    const auto wanted = wanted_in(columns).displacement_m;
+    double error = 0, whole = 0;
+    for (std::size_t row = 8000; row < 14500; ++row)  // 0.8 to 1.45 s
+      error += std::pow(moved[row] - wanted[row], 2), whole += std::pow(wanted[row], 2);
+    return 10 * std::log10(error / whole);
+  }
+  static schema::PlaybackChoices filter(double cutoff_hz) {
+    schema::PlaybackChoices choices;
+    choices.reconstruction = "butterworth3";
+    choices.cutoff_hz = cutoff_hz;
+    return choices;
+  }
+
+  tests::TemporaryFolder folder_;
+  std::vector<double> moved_m_;
+  std::unique_ptr<firmware_host::SimDevice> device_;
+  std::unique_ptr<Player> player_;
+  int sessions_ = 0;
+};
+
+// Without a filter -29.4 dB are left, by the finger's turns (looking 2 ms ahead, at six lines a mm) and the
+// encoder; one that is undone adds its inverse's error, which is 20 dB below that. One that nobody undoes
+// turns a sine of 380 Hz by 75 degrees and more (twice its delay of 2 / (2 pi 600 Hz), at least).
+TEST_F(FilteredPlay, WhatIsUndoneIsNotFeltAndWhatIsNotIs) {
+  const double none_db = error_db("", {});
+  const double undone_db = error_db("reconstruction=butterworth3", filter(600));
+  const double lower_db = error_db("reconstruction=butterworth3,cutoff=400Hz", filter(400));
+  const double ignored_db = error_db("reconstruction=butterworth3", {});
+  const double another_db = error_db("reconstruction=butterworth3,cutoff=400Hz", filter(600));
+  fmt::print(
+      "no filter {:.1f} dB; 600 Hz, undone {:.1f} dB, not undone {:.1f} dB; 400 Hz, undone {:.1f} dB, as 600 "
+      "Hz {:.1f} dB\n",
+      none_db, undone_db, ignored_db, lower_db, another_db);
+  EXPECT_LT(none_db, -28);
+  EXPECT_NEAR(undone_db, none_db, 1);
+  EXPECT_NEAR(lower_db, none_db, 1);
+  EXPECT_GT(ignored_db, -3);
+  EXPECT_GT(another_db, -8) << "undone with a cut-off that it has not";
+}
+
+TEST_F(FilteredPlay, TheDeviceSaysWhatItIs) {
+  open("reconstruction=butterworth3,cutoff=500Hz");
+  std::string said;
+  for (const wire::Note& note : device_->client().description().notes)
+    if (note.kind == wire::NoteKind::simulated_by) said = note.text;
+  EXPECT_NE(said.find("Butterworth low-pass of order 3 at 500 Hz"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace tacto::playback

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the limits of a session took, against what plays where there is no limit to reach.
+#include "playback/daemon/session_limits.hpp"
+
+#include "playback/daemon/stroke_report.hpp"
+#include "tests/playback/player_on_sim.hpp"
+
+namespace tacto::playback {
+namespace {
+
+/// Plays the same twice: with limits that nothing reaches, where the drive is what is wished, and with those
+/// of a test. A device each, so that time and finger are the same to the tick.
+class SessionLimits : public PlayerOnSim {
+ protected:
+  std::vector<double> drive_of(const schema::Transducer& transducer, const schema::PlaybackChoices& choices,
+                               const std::string& name) {
+    player_.reset();
+    SetUp();  // the finger begins anew
+    session_ = folder_ / (name + ".session");
+    PrepareOptions options;
+    options.metres_per_count = player_->metres_per_count();
+    options.onset_s = 0.02;
+    options.most_samples = device_->client().description().welcome.profile_samples;
+    const std::string file = folder_ / (name + ".transducer.json");
+    EXPECT_TRUE(schema::write_transducer(file, transducer));
+    const auto load = [&](const std::string& texture) {
+      ProgramRequest request{folder_ / texture, {}, 5e-4, {}};
+      request.choices = choices;
+      auto made = make_program(request, file, options);
+      EXPECT_TRUE(made) << schema::message(made.error());
+      EXPECT_TRUE(player_->load(std::move(*made)));
+    };
+    load("grating");
+    const auto armed = player_->arm(session_);
+    if (!armed) {
+      ADD_FAILURE() << schema::message(armed.error());
+      return {};
+    }
+    EXPECT_TRUE(player_->play());
+    run(1);
+    EXPECT_TRUE(player_->gain(1.2));
+    load("fine");
+    run(1.2);
+    EXPECT_TRUE(player_->disarm());
+    std::vector<double> drive;
+    for (const auto& tick : ticks()) drive.push_back(tick.drive_v);
+    return drive;
+  }
+  static double removed_db(const std::vector<double>& wished, const std::vector<double>& drive) {
+    double removed = 0, whole = 0;
+    for (std::size_t i = 0; i < wished.size(); ++i)
+      removed += (wished[i] - drive[i]) * (wished[i] - drive[i]), whole += wished[i] * wished[i];
+    return 10 * std::log10(removed / whole);
+  }
+  schema::Transducer bender_ = *schema::read_transducer("wiertlewski2011");
+};
+
+// The two sums differ by the roundings of double precision alone.
+constexpr double kRoundingsDb = 1e-6;
+
+TEST_F(SessionLimits, NothingIsTakenWhereNoneIsReached) {
+  drive_of(bender_, {}, "free");
+  const auto tally = tally_session(session_);
+  ASSERT_TRUE(tally) << schema::message(tally.error());
+  EXPECT_FALSE(tally->removed_any());
+  EXPECT_EQ(tally->ticks(), ticks().size());
+}
+
+TEST_F(SessionLimits, AmplitudeIsToldInDb) {
+  const auto wished = drive_of(bender_, {}, "free");
+  bender_.drive_limit_v = 0.2;
+  const auto drive = drive_of(bender_, {}, "weak");
+  ASSERT_EQ(wished.size(), drive.size());
+  const auto tally = tally_session(session_);
+  ASSERT_TRUE(tally) << schema::message(tally.error());
+  const double expected_db = removed_db(wished, drive);
+  EXPECT_GT(expected_db, -20) << "the test takes nothing away";
+  EXPECT_NEAR(tally->removed_db(), expected_db, kRoundingsDb);
+  EXPECT_GT(tally->amplitude_limited(), 100U);
+  EXPECT_EQ(tally->energy_limited(), 0U);
+}
+
+TEST_F(SessionLimits, SlewIsToldInDb) {
+  const auto wished = drive_of(bender_, {}, "free");
+  bender_.slew_limit_v_per_s = 60;
+  bender_.drive_limit_v = 0.4;  // so that a release stays within 18 ms
+  const auto drive = drive_of(bender_, {}, "slow");
+  ASSERT_EQ(wished.size(), drive.size());
+  const auto tally = tally_session(session_);
+  ASSERT_TRUE(tally) << schema::message(tally.error());
+  EXPECT_NEAR(tally->removed_db(), removed_db(wished, drive), kRoundingsDb);
+  EXPECT_GT(tally->slew_limited(), 100U);
+}
+
+TEST_F(SessionLimits, EnergyIsToldInDb) {
+  const auto wished = drive_of(bender_, {}, "free");
+  schema::PlaybackChoices choices;
+  choices.energy_rms_v = 0.15;
+  choices.energy_window_s = 0.1;
+  const auto drive = drive_of(bender_, choices, "cool");
+  ASSERT_EQ(wished.size(), drive.size());
+  const auto tally = tally_session(session_);
+  ASSERT_TRUE(tally) << schema::message(tally.error());
+  EXPECT_NEAR(tally->removed_db(), removed_db(wished, drive), kRoundingsDb);
+  EXPECT_GT(tally->energy_limited(), 100U);
+  EXPECT_EQ(tally->amplitude_limited(), 0U);
+}
+
+// A stroke's part is of its own ticks.
+TEST_F(SessionLimits, EachStrokeIsToldItsOwn) {
+  const auto wished = drive_of(bender_, {}, "free");
+  bender_.drive_limit_v = 0.2;
+  const auto drive = drive_of(bender_, {}, "weak");
+  const auto report = report_strokes(session_);
+  ASSERT_TRUE(report) << schema::message(report.error());
+  const auto ranges = stroke_ranges(*read_session_columns(session_));
+  ASSERT_EQ(report->strokes.size(), ranges.size());
+  ASSERT_GT(ranges.size(), 1U);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const auto part = [&](const std::vector<double>& all) {
+      return std::vector<double>(all.begin() + static_cast<long>(ranges[i].first),
+                                 all.begin() + static_cast<long>(ranges[i].last) + 1);
+    };
+    ASSERT_TRUE(report->strokes[i].limits);
+    EXPECT_NEAR(report->strokes[i].limits->removed_db(), removed_db(part(wished), part(drive)), kRoundingsDb);
+  }
+}
+
+}  // namespace
+}  // namespace tacto::playback

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of textures in a session's rows, against the kernel's own player of textures.
+#include "playback/daemon/texture_mix.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "firmware-host/core/texture_player.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr std::size_t kRows = 400;
+
+SessionColumns rows_with(const std::vector<TextureTurn>& turns) {
+  SessionColumns columns;
+  columns.header.rate_hz = 2000;
+  columns.turns = turns;
+  for (std::size_t row = 0; row < kRows; ++row) {
+    columns.tick.push_back(row);
+    columns.gain.push_back(row < 120 ? 1 : row < 128 ? 0.25 : 3);
+  }
+  return columns;
+}
+
+TextureTurn turn_at(std::size_t row, double fade_ticks) {
+  return {row, fade_ticks, schema::SessionProgram{}};
+}
+
+/// What the kernel makes of textures that are 1, 10, 100 ... everywhere, under these gains.
+std::vector<double> played(const SessionColumns& columns) {
+  std::vector<std::array<float, 8>> samples(columns.turns.size() + 1);
+  float value = 1;
+  for (auto& texture : samples) texture.fill(value), value *= 10;
+  const auto setup = [&](std::size_t set) {
+    const core::ProfileScale scale{8, 0, 0, UINT64_C(1) << 32, wire::ProfileEnds::loop};
+    return core::TextureSetup{core::Profile(samples[set].data(), scale), {}, 0};
+  };
+  core::TexturePlayer player;
+  player.set(setup(0), 20);
+  std::vector<double> wanted;
+  for (std::size_t row = 0, next = 0; row < kRows; ++row) {
+    for (; next < columns.turns.size() && columns.turns[next].row == row; ++next)
+      player.change(setup(next + 1), static_cast<float>(columns.turns[next].fade_ticks));
+    wanted.push_back(player.wanted(0, static_cast<float>(columns.gain[row])));
+  }
+  return wanted;
+}
+
+std::vector<double> mixed(const SessionColumns& columns) {
+  const TextureMix mix = texture_mix(columns, std::vector<bool>(columns.turns.size() + 1, true));
+  const auto gain = followed_gain(columns);
+  std::vector<double> sum(kRows, 0.0);
+  double value = 1;
+  for (const MixedSet& set : mix.sets) {
+    for (std::size_t i = 0; i < set.part.size(); ++i)
+      sum[set.first + i] += gain[set.first + i] * value * double{set.part[i]};
+    value *= 10;
+  }
+  return sum;
+}
+
+// Single precision: four operations' rounding, 2^-24 each of the largest texture, times the gain.
+void expect_as_played(const std::vector<TextureTurn>& turns) {
+  const SessionColumns columns = rows_with(turns);
+  const auto wanted = played(columns), here = mixed(columns);
+  const double rounding = 4 * 0x1p-24 * 3 * std::pow(10.0, static_cast<double>(turns.size()));
+  for (std::size_t row = 0; row < kRows; ++row)
+    ASSERT_NEAR(here[row], wanted[row], rounding) << "row " << row;
+}
+
+TEST(TextureMix, IsWhatTheKernelPlays) {
+  expect_as_played({});
+  expect_as_played({turn_at(100, 60), turn_at(250, 100)});
+  expect_as_played({turn_at(0, 30), turn_at(390, 100)});
+  expect_as_played({turn_at(50, 0), turn_at(60, 1), turn_at(70, 1.5)});
+}
+
+// A second change before the first is through begins from what is nearer.
+TEST(TextureMix, ASecondChangeInAFadeIsTheKernelsToo) {
+  expect_as_played({turn_at(100, 60), turn_at(110, 60)});
+  expect_as_played({turn_at(100, 60), turn_at(150, 60)});
+  expect_as_played({turn_at(100, 60), turn_at(130, 60), turn_at(140, 200)});
+}
+
+TEST(TextureMix, WhatIsNotKnownIsStoodInFor) {
+  const SessionColumns columns = rows_with({turn_at(100, 64), turn_at(200, 64)});
+  const TextureMix mix = texture_mix(columns, {true, false, true});
+  EXPECT_TRUE(mix.sets[1].part.empty());
+  EXPECT_EQ(mix.sets[0].part.size(), 264U);
+  for (std::size_t row = 0; row < 200; ++row) ASSERT_FLOAT_EQ(mix.sets[0].part[row], 1) << row;
+  for (std::size_t row = 0; row < kRows; ++row) ASSERT_EQ(mix.unknown[row], row >= 100 && row < 264) << row;
+  const TextureMix none = texture_mix(columns, {false, false, true});
+  EXPECT_TRUE(none.sets[0].part.empty());
+  EXPECT_EQ(none.sets[2].first, 200U);
+  EXPECT_TRUE(none.unknown[0]);
+}
+
+// Rows that were put in where no tick was made do not go on with a fade.
+TEST(TextureMix, ARowWithoutATickIsNoTick) {
+  SessionColumns columns = rows_with({turn_at(100, 50)});
+  for (std::size_t row = 120; row < 140; ++row) columns.tick[row] = 119;
+  const TextureMix mix = texture_mix(columns, {true, true});
+  for (std::size_t row = 120; row < 140; ++row)
+    ASSERT_EQ(mix.sets[1].part[row - 100], mix.sets[1].part[19]) << row;
+  EXPECT_GT(mix.sets[1].part[40], mix.sets[1].part[39]);
+}
+
+}  // namespace
+}  // namespace tacto::playback
