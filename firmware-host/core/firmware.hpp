@@ -24,6 +24,7 @@ class Firmware {
   void poll() noexcept;
 
   wire::DriveState drive_state() const noexcept { return ticker_.supervisor().state(); }
+  const DriveSupervisor& supervisor() const noexcept { return ticker_.supervisor(); }
 
  private:
   enum class Owed : uint8_t { nothing, answer, answer_after_data, pulse };

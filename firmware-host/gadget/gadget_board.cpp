@@ -28,6 +28,8 @@ class SimGadgetBoard final : public GadgetBoard {
   double period_s() const override { return board_.period_s(); }
   void step() override { board_.step(); }
   void poll() override { board_.poll(); }
+  double drive_v() const override { return board_.drive_v(); }
+  const core::DriveSupervisor& supervisor() const override { return board_.supervisor(); }
   std::vector<std::uint8_t>& from_host() override { return board_.from_host(); }
   std::vector<std::uint8_t>& to_host() override { return board_.to_host(); }
 

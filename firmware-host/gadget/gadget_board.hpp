@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data-schema/error.hpp"
+#include "firmware-host/core/drive_supervisor.hpp"
 
 namespace tacto::firmware_host {
 
@@ -26,6 +27,9 @@ class GadgetBoard {
   virtual void step() = 0;
   /// The core's main loop, once.
   virtual void poll() = 0;
+  /// Of the last tick: what the converter was given (V), and what the core says of it.
+  virtual double drive_v() const = 0;
+  virtual const core::DriveSupervisor& supervisor() const = 0;
   virtual std::vector<std::uint8_t>& from_host() = 0;
   virtual std::vector<std::uint8_t>& to_host() = 0;
 };

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "firmware-host/wire_words.hpp"
+
 namespace tacto::firmware_host {
 namespace {
 
@@ -45,8 +47,18 @@ void GadgetLoop::tick() {
   if (!pacer_.running()) pacer_.start(board_.period_s(), now);
   const std::uint64_t ticks = std::min(due(), kTicksBetweenPolls);
   if (ticks == 0) return link_.wait_until(pacer_.next_wake(now));
-  for (std::uint64_t i = 0; i < ticks && board_.ticking(); ++i) board_.step();
+  for (std::uint64_t i = 0; i < ticks && board_.ticking(); ++i) step();
   pacer_.did(ticks);
+}
+
+void GadgetLoop::step() {
+  const double period_s = board_.period_s();
+  board_.step();
+  const core::DriveSupervisor& supervisor = board_.supervisor();
+  if (const auto fall = drive_.observe(supervisor.state(), board_.drive_v(), period_s))
+    say_(fmt::format("fault: {}; the drive went from {:.3f} V to {:.3f} V within {:.2f} ms",
+                     words_of(supervisor.fault(), supervisor.fault_detail()).what, fall->from_v, fall->left_v,
+                     1e3 * fall->fell_s));
 }
 
 std::uint64_t GadgetLoop::due() {

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "firmware-host/gadget/drive_watch.hpp"
 #include "firmware-host/gadget/fault_injector.hpp"
 #include "firmware-host/gadget/gadget_board.hpp"
 #include "firmware-host/gadget/tick_pacer.hpp"
@@ -12,7 +13,7 @@
 namespace tacto::firmware_host {
 
 /// One thread. Where the host does not take what the board says, the board is not polled: as on a small
-/// device, its ring fills and it counts what it loses.
+/// device, its ring fills and it counts what it loses. After a fault it says what became of the drive.
 class GadgetLoop {
  public:
   GadgetLoop(GadgetBoard& board, UsbLink& link, const FaultPlan& faults,
@@ -24,6 +25,7 @@ class GadgetLoop {
  private:
   void exchange();
   void tick();
+  void step();
   std::uint64_t due();
 
   GadgetBoard& board_;
@@ -31,6 +33,7 @@ class GadgetLoop {
   FaultInjector faults_;
   std::function<void(const std::string&)> say_;
   TickPacer pacer_;
+  DriveWatch drive_;
   bool told_slow_ = false;
 };
 

@@ -75,7 +75,7 @@ core::Hal ReplayBoard::hal() {
     std::copy(of(b).frame_.begin(), of(b).frame_.end(), codes);
     return !of(b).ended_;
   };
-  hal.write_drive = [](void*, float) noexcept {};
+  hal.write_drive = [](void* b, float drive_v) noexcept { of(b).drive_v_ = drive_v; };
   hal.enable_closed = [](void*) noexcept { return true; };
   hal.clock = [](void* b) noexcept {
     return static_cast<std::uint64_t>(static_cast<double>(of(b).ticks_) * of(b).period_s() * kClockHz);

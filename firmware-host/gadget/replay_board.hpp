@@ -26,6 +26,8 @@ class ReplayBoard final : public GadgetBoard {
   double period_s() const override { return 1 / recording_.header.sample_rate_hz; }
   void step() override;
   void poll() override { firmware_->poll(); }
+  double drive_v() const override { return drive_v_; }
+  const core::DriveSupervisor& supervisor() const override { return firmware_->supervisor(); }
   std::vector<std::uint8_t>& from_host() override { return from_host_; }
   std::vector<std::uint8_t>& to_host() override { return to_host_; }
 
@@ -51,6 +53,7 @@ class ReplayBoard final : public GadgetBoard {
   std::vector<std::int32_t> frame_;
   bool ticking_ = false, ended_ = false;
   std::uint64_t ticks_ = 0;
+  double drive_v_ = 0;
   std::vector<std::uint8_t> from_host_, to_host_;
   std::unique_ptr<core::Firmware> firmware_;
 };

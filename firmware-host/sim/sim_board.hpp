@@ -57,6 +57,7 @@ class SimBoard {
   double drive_v() const { return drive_v_; }
   double displacement_m() const { return tray_ ? tray_->displacement_m() : 0; }
   wire::DriveState drive_state() const { return firmware_->drive_state(); }
+  const core::DriveSupervisor& supervisor() const { return firmware_->supervisor(); }
 
  private:
   static SimBoard& of(void* board) noexcept { return *static_cast<SimBoard*>(board); }

@@ -8,6 +8,7 @@
 
 #include "firmware-host/core/wire/device_messages.hpp"
 #include "firmware-host/core/wire/frame_decoder.hpp"
+#include "firmware-host/gadget/drive_watch.hpp"
 #include "firmware-host/gadget/fault_injector.hpp"
 #include "firmware-host/gadget/functionfs_descriptors.hpp"
 #include "firmware-host/gadget/gadget_options.hpp"
@@ -53,6 +54,35 @@ TEST(TickPacer, GivesUpWhatAStallCost) {
   EXPECT_NEAR(slipped_s, 3, 1e-9);
   EXPECT_EQ(pacer.due(start + seconds(3) + microseconds(1050), slipped_s), 10U);
   EXPECT_EQ(slipped_s, 0);
+}
+
+// 2 V at 2 kHz through zero and on: the level at the fault, and the last tick that had one.
+TEST(DriveWatch, MeasuresTheFallToTheLastTickWithADrive) {
+  constexpr double kTickS = 0.5e-3;
+  DriveWatch watch;
+  for (int i = 0; i < 50; ++i) EXPECT_FALSE(watch.observe(wire::DriveState::playing, -2, kTickS));
+  std::optional<DriveFall> fall;
+  int ticks = 0;
+  for (; !fall; ++ticks)
+    fall = watch.observe(wire::DriveState::fault, ticks == 10 || ticks >= 30 ? 0 : 1, kTickS);
+  EXPECT_EQ(ticks, 200);
+  EXPECT_EQ(fall->from_v, 2);
+  EXPECT_EQ(fall->left_v, 0);
+  EXPECT_NEAR(fall->fell_s, 30 * kTickS, 1e-12);
+  EXPECT_FALSE(watch.observe(wire::DriveState::fault, 0, kTickS)) << "a fault is told once";
+}
+
+TEST(DriveWatch, SaysWhatIsLeftWhereTheDriveStays) {
+  DriveWatch watch;
+  std::optional<DriveFall> fall;
+  while (!fall) fall = watch.observe(wire::DriveState::fault, 0.25, 1e-3);
+  EXPECT_EQ(fall->left_v, 0.25);
+  EXPECT_NEAR(fall->fell_s, DriveWatch::kWatchS, 1e-3);
+  EXPECT_FALSE(watch.observe(wire::DriveState::idle, 0, 1e-3));
+  EXPECT_FALSE(watch.observe(wire::DriveState::fault, 1, 1e-3));
+  fall = watch.observe(wire::DriveState::idle, 0, 1e-3);
+  ASSERT_TRUE(fall) << "disarmed before the watch is over";
+  EXPECT_NEAR(fall->fell_s, 1e-3, 1e-12);
 }
 
 TEST(BurstQueue, JoinsBytesUpToAnEnd) {

@@ -7,6 +7,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import sys
 
 import numpy as np
@@ -65,6 +66,16 @@ def expect_played(name):
           f"round trip {1e3 * said.get('round_trip_s', float('nan')):.2f} ms, late {said.get('late_ticks')}, missed {said.get('missed_ticks')}")
 
 
+def expect_fall(name):
+    """What the device itself did to its drive: DESIGN.md allows 20 ms. Gives the level it fell from."""
+    said = pathlib.Path(f"{name}.fall").read_text()
+    print(f"{name}: {said.strip()}")
+    assert "the device heard nothing from this computer" in said, said
+    from_v, left_v, within_ms = map(float, re.search(r"from (\S+) V to (\S+) V within (\S+) ms", said).groups())
+    assert left_v == 0 and within_ms <= 20, said
+    return from_v
+
+
 def played_over_usb():
     results = pathlib.Path("results")
     results.mkdir()
@@ -83,6 +94,8 @@ def played_over_usb():
         assert status(name)["state"] == "playing", status(name)
     replayed = tacto.run_json("replay", "killed.session")
     assert replayed["same_to_the_bit"] and replayed["ticks_compared"] > LEAST_TICKS / 10, replayed
+    assert expect_fall("killed") > 0.1
+    expect_fall("unplugged")
     assert status("unplugged")["state"] == "lost" and "unplugged" in json.dumps(status("unplugged")), status("unplugged")
     assert tacto.run_json("replay", "after.session")["same_to_the_bit"]
     assert status("replugged")["state"] == "playing", status("replugged")

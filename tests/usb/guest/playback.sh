@@ -14,6 +14,8 @@ daemon() {
   DAEMON_PID=$!
   within 60 daemon_ready "$1"
 }
+falls() { grep -c "the drive went from" "$R/gadget.log" || true; }
+fell() { [ "$(falls)" -gt "$FALLS" ]; }
 daemon_ready() { kill -0 $DAEMON_PID || { cat "$R/$1.log"; fail "tactographd ended"; }; grep -q ready "$R/$1.log"; }
 begin() {
   ctl load oak --gain 0.5mm/N
@@ -48,13 +50,20 @@ played device "$SECONDS_WANTED"
 say "host loop, $HOST_SECONDS s"
 played host "$HOST_SECONDS"
 
+# The finger may just rest when the device misses its host: another one is killed then.
 say "killed in mid-play; the next one takes over"
-daemon killed
-begin
-sleep 2
-status killed
-kill -9 $DAEMON_PID
-wait $DAEMON_PID || true
+for attempt in 1 2 3 4 5; do
+  daemon killed
+  begin
+  sleep 2
+  status killed
+  FALLS=$(falls)
+  kill -9 $DAEMON_PID
+  wait $DAEMON_PID || true
+  within 20 fell
+  grep "the drive went from" "$R/gadget.log" | tail -1 >"$R/killed.fall"
+  grep -q "from 0.0" "$R/killed.fall" || break
+done
 keep killed
 daemon after
 status after
@@ -63,7 +72,10 @@ sleep 1
 status after
 
 say "unplugged in mid-play"
+FALLS=$(falls)
 unplug
+within 20 fell
+grep "the drive went from" "$R/gadget.log" | tail -1 >"$R/unplugged.fall"
 lost() { ctl status | grep -q lost; }
 within 20 lost
 status unplugged
