@@ -2,12 +2,15 @@
 #include "playback/daemon/player_device.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <utility>
 
@@ -97,7 +100,9 @@ Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
   const std::string path = lock_path(device_name);
   int opened = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
   if (opened < 0) opened = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kForAll);
-  if (opened < 0) return fail(Fault::cannot_write, "the lock can't be made", path, "see who owns it");
+  if (opened < 0)
+    return fail(Fault::cannot_write, fmt::format("the lock can't be made: {}", std::strerror(errno)), path,
+                "see who owns it and its folder");
   [[maybe_unused]] const int shared = fchmod(opened, kForAll);
   if (flock(opened, LOCK_EX | LOCK_NB) == 0) return DeviceLock(opened);
   ::close(opened);
