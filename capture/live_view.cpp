@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "firmware-host/encoder_counts.hpp"
+
 namespace tacto::capture {
 namespace {
 
@@ -55,13 +57,20 @@ std::uint64_t LiveFigures::clipped_in(std::span<const std::int32_t> frame) const
   return clipped;
 }
 
+double LiveFigures::next_position_m(std::int32_t code) {
+  unwrapped_ = begun_ ? unwrapped_ + firmware_host::counts_between(last_code_, code) : code;
+  last_code_ = code;
+  const schema::Channel& told = header_.channels[*position_];
+  return static_cast<double>(unwrapped_) * told.scale + told.offset;
+}
+
 void LiveFigures::add_motion(std::span<const std::int32_t> codes) {
   const std::size_t frames = codes.size() / header_.channels.size();
   for (std::size_t frame = 0; frame < frames; ++frame) {
     const double normal_n = normal_ ? physical(codes, frame, *normal_) : 0;
     load_sum_n_ += normal_n;
     if (!position_) continue;
-    const double position_m = physical(codes, frame, *position_);
+    const double position_m = next_position_m(codes[frame * header_.channels.size() + *position_]);
     if (begun_) moved_m_ += position_m - last_position_m_;
     last_position_m_ = position_m;
     begun_ = true;

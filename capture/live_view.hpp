@@ -55,6 +55,8 @@ class LiveFigures {
   std::uint64_t clipped_in(std::span<const std::int32_t> frame) const;
   schema::StrokeFigures figures_of(const CountedStroke& stroke) const;
   double physical(std::span<const std::int32_t> codes, std::size_t frame, std::size_t channel) const;
+  // Where a counter that passes 2^31 goes on.
+  double next_position_m(std::int32_t code);
 
   const schema::RecordingHeader& header_;
   std::optional<std::size_t> position_, normal_;
@@ -62,6 +64,8 @@ class LiveFigures {
   std::vector<firmware_host::CodeRange> ranges_;
   StrokeCounter counter_;
   std::uint64_t recent_frames_ = 0;
+  std::int32_t last_code_ = 0;
+  std::int64_t unwrapped_ = 0;  // the position's code, turns of the counter counted
   double last_position_m_ = 0, moved_m_ = 0, load_sum_n_ = 0;
   bool begun_ = false;
 };

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+
+#include "firmware-host/encoder_counts.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -70,13 +73,17 @@ Result<TravelScale> scale_by_travel(std::span<const double> differences, double 
   return found;
 }
 
+double travelled_counts(double from, double to) {
+  return firmware_host::counts_between(static_cast<std::int32_t>(from), static_cast<std::int32_t>(to));
+}
+
 Result<std::vector<double>> count_differences(const Take& take, const std::string& channel) {
   const auto index = schema::find_channel(take.header, channel);
   if (!index)
     return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
   const std::vector<double>& codes = take.codes[*index];
   const auto& marks = take.header.marks;
-  if (marks.empty()) return std::vector{codes.back() - codes.front()};
+  if (marks.empty()) return std::vector{travelled_counts(codes.front(), codes.back())};
   if (marks.size() == 1)
     return schema::fail(Fault::unsuitable, "has one mark, and a travel has two ends", take.header.wav_file,
                         "mark both ends of each travel");
@@ -84,7 +91,8 @@ Result<std::vector<double>> count_differences(const Take& take, const std::strin
   const auto at = [&](const schema::Mark& mark) {
     return codes[std::min<std::size_t>(mark.frame, codes.size() - 1)];
   };
-  for (std::size_t i = 1; i < marks.size(); ++i) differences.push_back(at(marks[i]) - at(marks[i - 1]));
+  for (std::size_t i = 1; i < marks.size(); ++i)
+    differences.push_back(travelled_counts(at(marks[i - 1]), at(marks[i])));
   return differences;
 }
 

@@ -27,6 +27,9 @@ struct TravelScale {
 schema::Result<TravelScale> scale_by_travel(std::span<const double> differences, double travel_m,
                                             double travel_uncertainty_m, double step = 1);
 
+/// From one stored count to another, the short way: a counter of 32 bits that passes 2^31 goes on.
+double travelled_counts(double from, double to);
+
 /// The differences in a recording's part: between its marks, one after the other; without marks, between its
 /// beginning and its end. Errors: usage: no such channel; unsuitable: one mark only.
 schema::Result<std::vector<double>> count_differences(const Take& take, const std::string& channel);

@@ -52,10 +52,19 @@ Result<std::vector<std::string>> textures_named(const std::string& what) {
   return names;
 }
 
+void add_speeds(Report& report, const TradeRow& row) {
+  report.add("worst_speed_mps", row.worst_speed_mps());
+  if (row.by_speed.size() == 1) return;
+  for (const ErrorAtSpeed& each : row.by_speed)
+    report.add(fmt::format("error_at_{:g}mmps_percent", 1e3 * each.speed_mps), 100 * each.error);
+}
+
 Report choice_row(const TradeHalf& half, const TradeRow& row, const Worth& worth) {
   Report report;
   report.add("half", half.name).add("choice_of", row.knob).add("choice", row.choice);
-  report.add("error_percent", 100 * row.error).add("cost_ns", row.cost_ns).add("per", row.per);
+  report.add("error_percent", 100 * row.error);
+  if (!row.by_speed.empty()) add_speeds(report, row);
+  report.add("cost_ns", row.cost_ns).add("per", row.per);
   report.add("memory_kib", row.memory_bytes / 1024).add("latency_s", row.latency_s);
   report.add("worth_it", worth_words(worth));
   return report.add("note", row.note);

@@ -25,6 +25,8 @@ struct Extreme {
 /// Hears how much of all is done, 0 to 1.
 using ExtremesProgress = std::function<void(double)>;
 
+/// capture: codes, clocks, counters, numbers of tables.
+std::vector<Extreme> capture_extremes();
 /// spatial's filters: rates, edges, steps, sizes.
 std::vector<Extreme> filter_extremes();
 /// spatial's resampling: grids, offsets, forces, strokes. `all`: a stroke of 1e8 samples (a minute) instead
@@ -38,6 +40,8 @@ std::vector<Extreme> kernel_extremes();
 
 /// spatial's spectrogram: frequencies, offsets.
 std::vector<Extreme> spectrum_extremes();
+/// The spectrogram's formants: lines that lie close, at edges, on slopes, and sizes of force.
+std::vector<Extreme> formant_extremes();
 /// analysis: transducers to identify, levels to compare.
 std::vector<Extreme> question_extremes();
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "analysis/trade/played_speeds.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -91,7 +93,10 @@ std::vector<std::string> knobs_of(std::span<const TradeRow> rows) {
 }
 
 std::string knee_words(const TradeRow& row) {
-  const std::string off = fmt::format("{} ({:.3g} % off", row.choice, 100 * row.error);
+  std::string off = fmt::format("{} ({:.3g} % off", row.choice, 100 * row.error);
+  if (row.by_speed.size() > 1)
+    off +=
+        fmt::format(" at {:g} mm/s, the worst of {}", 1e3 * row.worst_speed_mps(), speed_words(row.by_speed));
   return row.cost_ns > 0 ? fmt::format("{}, {:.3g} ns a {})", off, row.cost_ns, row.per) : off + ")";
 }
 

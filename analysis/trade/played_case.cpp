@@ -27,9 +27,9 @@ using playback::PrepareOptions;
 constexpr double kPlayedS = 0.8, kEndsS = 0.15, kFirstM = 5e-3;
 constexpr double kPartOfLimit = 0.02;
 
-FingerPath path_of(FingerWay way) {
-  const double mean_mps = way == FingerWay::slow ? 0.01 : way == FingerWay::fast ? 0.5 : 0.06;
-  if (way != FingerWay::wandering) return {{0, kPlayedS}, {kFirstM, kFirstM + mean_mps * kPlayedS}};
+FingerPath path_of(const FingerWay& way) {
+  const double mean_mps = way.speed_mps;
+  if (!way.wanders) return {{0, kPlayedS}, {kFirstM, kFirstM + mean_mps * kPlayedS}};
   firmware_host::SplineNoise wander(firmware_host::Random(3, 1), 0.25);
   constexpr int kKnots = 800;
   FingerPath path;
@@ -141,6 +141,21 @@ double gain_for(const schema::SpaceSignal& loop, const schema::Transducer& trans
   return peak_n > 0 ? std::min(1.0, kPartOfLimit * transducer.displacement_limit_m / peak_n) : 1e-3;
 }
 
+double rms_of(const schema::SpaceSignal& loop) {
+  double sum = 0;
+  for (const double value : loop.values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(loop.values.size()));
+}
+
+// By Parseval, of one half of the lines; the mean square of the window between the ends is 3/2.
+double part_wanted(const std::vector<double>& exact, const schema::SpaceSignal& loop,
+                   const PrepareOptions& o) {
+  const PaddedSpectrum inner = spectrum_between(exact, o);
+  const auto n = static_cast<double>(inner.period);
+  const double mean_square = 2 * playback::energy_in(inner, o.band) / (1.5 * n * n);
+  return std::sqrt(mean_square) / (o.gain_m_per_n * rms_of(loop));
+}
+
 void compare_with(const PaddedSpectrum& wanted, const std::vector<double>& felt, const PrepareOptions& o,
                   PlayedOutcome& outcome) {
   const auto exact = playback::signal_of(wanted);
@@ -182,6 +197,7 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
   const auto felt = played.part == PlayedPart::reading
                         ? std::vector<double>(outcome.drive_v.begin(), outcome.drive_v.end())
                         : moved_by(outcome.drive_v, transducer, options, wanted.period);
+  outcome.wanted_part = part_wanted(playback::signal_of(wanted), loop, options);
   compare_with(wanted, felt, options, outcome);
   return outcome;
 }

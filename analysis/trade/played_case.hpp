@@ -10,12 +10,10 @@
 
 namespace tacto::analysis {
 
-/// Where the finger goes meanwhile, on a loop of the texture.
-enum class FingerWay {
-  steady,     ///< 60 mm/s
-  slow,       ///< 10 mm/s
-  fast,       ///< 500 mm/s
-  wandering,  ///< 60 mm/s, and 10 % of wander (RMS) below 2 Hz
+/// The finger's way meanwhile, on a loop of the texture.
+struct FingerWay {
+  double speed_mps = 0.1;
+  bool wanders = false;  ///< by 10 % of the speed (RMS), below 2 Hz
 };
 
 /// What of the way from force to tray is looked at.
@@ -23,15 +21,16 @@ enum class PlayedPart { whole, reading };
 
 struct PlayedCase {
   playback::PrepareOptions options;  ///< ends, origin and gain are filled in
-  FingerWay way = FingerWay::steady;
+  FingerWay way;
   PlayedPart part = PlayedPart::whole;
   bool in_double = false;  ///< by the kernel in double precision
 };
 
 struct PlayedOutcome {
-  double error = 0;               ///< RMS over the band of tray (or force) off, re the wanted one's RMS
-  double later_error = 0;         ///< the same re what was wanted delay_left_s before
-  double amplitude_error = 0;     ///< of the spectrum's magnitudes alone, whatever their phases
+  double error = 0;            ///< RMS over the band of tray (or force) off, re the wanted one's RMS
+  double later_error = 0;      ///< the same re what was wanted delay_left_s before
+  double amplitude_error = 0;  ///< of the spectrum's magnitudes alone, whatever their phases
+  double wanted_part = 0;      ///< RMS of the wanted displacement over the band, re the texture's times gain
   std::function<void()> ticking;  ///< the ticks again, for a clock
   double ticks = 0;
   double memory_bytes = 0;

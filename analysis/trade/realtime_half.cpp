@@ -9,7 +9,7 @@
 
 #include "analysis/trade/cpu_cost.hpp"
 #include "analysis/trade/loop_latency.hpp"
-#include "analysis/trade/played_case.hpp"
+#include "analysis/trade/played_speeds.hpp"
 #include "playback/budget_words.hpp"
 #include "playback/reference/spatial_content.hpp"
 
@@ -23,6 +23,7 @@ using schema::Result;
 constexpr wire::Interpolation kKinds[] = {wire::Interpolation::nearest, wire::Interpolation::linear,
                                           wire::Interpolation::hermite, wire::Interpolation::sinc};
 constexpr double kDensities[] = {6, 8, 12, 16, 24, 48};
+constexpr double kSlow_mps[] = {0.01}, kFast_mps[] = {0.5};
 constexpr double kRates[] = {1e3, 2e3, 5e3, 10e3, 20e3};
 constexpr std::pair<const char*, Inverse> kInverses[] = {{"none", Inverse::none},
                                                          {"gain", Inverse::gain},
@@ -53,23 +54,33 @@ class RealtimeTrade {
     double times = 1;  // what they take
     std::string refusal = {};
   };
-  TradeRow& put(const std::string& knob, const std::string& choice, const PlayedOutcome& outcome) {
-    lines_.push_back(
-        {{knob, choice, outcome.error, 0, "tick", outcome.memory_bytes, outcome.delay_left_s, {}},
-         works_.size()});
+  TradeRow& put(const std::string& knob, const std::string& choice, const PlayedSpeeds& played) {
+    const PlayedOutcome& outcome = played.middle();
+    TradeRow row{knob, choice, 0, 0, "tick", outcome.memory_bytes, outcome.delay_left_s, {}, played.errors()};
+    row.error = worst_of(row.by_speed);
+    lines_.push_back({std::move(row), works_.size()});
     works_.push_back(outcome.ticking);
     ticks_.push_back(outcome.ticks);
     return lines_.back().row;
   }
   // What is refused has nothing right.
-  TradeRow& take(const std::string& knob, const std::string& choice, const Result<PlayedOutcome>& outcome) {
-    if (outcome) return put(knob, choice, *outcome);
+  TradeRow& take(const std::string& knob, const std::string& choice, const Result<PlayedSpeeds>& played) {
+    if (played) return put(knob, choice, *played);
     lines_.push_back(
-        {{knob, choice, 1, 0, "tick", 0, 0, {}}, std::nullopt, 1, "refused: " + outcome.error().what});
+        {{knob, choice, 1, 0, "tick", 0, 0, {}}, std::nullopt, 1, "refused: " + played.error().what});
     return lines_.back().row;
   }
+  Result<PlayedSpeeds> play(const PlayedCase& played) const {
+    return PlayedSpeeds::of(texture_, transducer_, played);
+  }
   TradeRow& add(const std::string& knob, const std::string& choice, const PlayedCase& played) {
-    return take(knob, choice, play_case(texture_, transducer_, played));
+    return take(knob, choice, play(played));
+  }
+  // The last line's ticks, told of another knob too.
+  TradeRow& again(const std::string& knob, const std::string& choice) {
+    lines_.push_back(lines_.back());
+    lines_.back().row.knob = knob, lines_.back().row.choice = choice;
+    return lines_.back().row;
   }
 
   void add_readings();
@@ -82,6 +93,7 @@ class RealtimeTrade {
   void add_precisions();
   void add_hysteresis();
   void clock_all();
+  Result<void> check_felt() const;
   void add_loops();
 
   const schema::Texture& texture_;
@@ -122,13 +134,12 @@ void RealtimeTrade::add_inverses() {
   for (const auto& [word, inverse] : kInverses) {
     PlayedCase played = usual();
     played.options.inverse = inverse;
-    const auto outcome = play_case(texture_, transducer_, played);
-    take("inverse", word, outcome);
-    if (!outcome) continue;
-    lines_.push_back(lines_.back());
-    TradeRow& row = lines_.back().row;
-    row.knob = "inverse, amplitudes alone";
-    row.error = outcome->amplitude_error;
+    const auto outcomes = play(played);
+    take("inverse", word, outcomes);
+    if (!outcomes) continue;
+    TradeRow& row = again("inverse, amplitudes alone", word);
+    row.by_speed = outcomes->errors(&PlayedOutcome::amplitude_error);
+    row.error = worst_of(row.by_speed);
     row.note = "whatever the phases";
   }
   for (const double delay_s : {0.5e-3, 1e-3, 2e-3, 3e-3, 4e-3}) {
@@ -141,14 +152,15 @@ void RealtimeTrade::add_inverses() {
 void RealtimeTrade::add_looking_ahead() {
   for (const bool ahead : {true, false}) {
     PlayedCase played = usual();
-    played.way = FingerWay::wandering;
+    played.way.wanders = true;
     played.options.look_ahead = ahead;
-    const auto outcome = play_case(texture_, transducer_, played);
-    TradeRow& row = take("look ahead", ahead ? "on" : "off", outcome);
+    const auto outcomes = play(played);
+    TradeRow& row = take("look ahead", ahead ? "on" : "off", outcomes);
     row.note = "speed wanders by 10 %";
-    if (outcome && !ahead)
+    if (outcomes && !ahead)
       row.note += fmt::format("; re what was wanted {:g} ms before it errs by {}",
-                              1e3 * outcome->delay_left_s, playback::percent(outcome->later_error));
+                              1e3 * outcomes->middle().delay_left_s,
+                              playback::percent(worst_of(outcomes->errors(&PlayedOutcome::later_error))));
   }
 }
 
@@ -156,10 +168,10 @@ void RealtimeTrade::add_counts() {
   for (const double step_m : {1e-6, 10e-6})
     for (const bool between : {true, false}) {
       PlayedCase played = usual();
-      played.way = FingerWay::slow;
       played.options.metres_per_count = step_m;
       played.options.between_counts = between;
-      add("between counts", fmt::format("{}, {:g} um encoder", between ? "on" : "off", 1e6 * step_m), played)
+      take("between counts", fmt::format("{}, {:g} um encoder", between ? "on" : "off", 1e6 * step_m),
+           PlayedSpeeds::of(texture_, transducer_, played, kSlow_mps))
           .note = "a finger at 10 mm/s";
     }
 }
@@ -172,13 +184,15 @@ void RealtimeTrade::add_rates() {
     PlayedCase played = usual();
     played.options.rate_hz = rate_hz;
     add("tick rate", rate, played);
-    Line alone = lines_.back();
+    again("tick rate x inverse", rate + ", full");
+    again("tick rate x delay compensation", rate + ", on");
+    played.options.look_ahead = false;
+    add("tick rate x delay compensation", rate + ", off", played);
+    played.options.look_ahead = true;
     for (const auto& [word, inverse] : {kInverses[1], kInverses[2]}) {
       played.options.inverse = inverse;
       add("tick rate x inverse", rate + ", " + word, played);
     }
-    alone.row.knob = "tick rate x inverse", alone.row.choice += ", full";
-    lines_.push_back(alone);
   }
   for (std::size_t i = first; i < lines_.size(); ++i) {
     const double rate_hz = kRates[(i - first) * std::size(kRates) / (lines_.size() - first)];
@@ -192,23 +206,25 @@ void RealtimeTrade::add_pyramids() {
   const double finest_per_m = playback::highest_spatial_frequency(texture_.signal);
   for (const bool all : {true, false}) {
     PlayedCase played = usual();
-    played.way = FingerWay::fast;
     if (!all)
       played.options.max_speed_mps = std::clamp(played.options.band.high_hz / finest_per_m, 1e-4, 10.0);
-    add("pyramid", all ? "all levels" : "one level", played).note = "a finger at 500 mm/s";
+    take("pyramid", all ? "all levels" : "one level",
+         PlayedSpeeds::of(texture_, transducer_, played, kFast_mps))
+        .note = "a finger at 500 mm/s";
   }
 }
 
 void RealtimeTrade::add_precisions() {
   PlayedCase played = usual();
-  const auto single = play_case(texture_, transducer_, played);
+  const auto single = play(played);
   played.in_double = true;
-  const auto exact = play_case(texture_, transducer_, played);
+  const auto exact = play(played);
   if (!single || !exact) return;
+  const std::vector<float>&quick = single->middle().drive_v, &slow = exact->middle().drive_v;
   double off = 0, size = 0;
-  for (std::size_t i = 0; i < exact->drive_v.size(); ++i) {
-    off += std::pow(double{single->drive_v[i]} - exact->drive_v[i], 2);
-    size += std::pow(exact->drive_v[i], 2);
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    off += std::pow(double{quick[i]} - slow[i], 2);
+    size += std::pow(slow[i], 2);
   }
   put("precision", "single", *single).note =
       fmt::format("drive differs from double's by {:.1g} of its RMS", std::sqrt(off / size));
@@ -233,7 +249,7 @@ void RealtimeTrade::add_hysteresis() {
   for (const bool undone : {true, false}) {
     PlayedCase played = usual();
     played.options.undo_hysteresis = undone;
-    take("hysteresis", undone ? "undone" : "kept", play_case(texture_, bender, played)).note =
+    take("hysteresis", undone ? "undone" : "kept", PlayedSpeeds::of(texture_, bender, played)).note =
         transducer_.hysteresis ? "as the transducer's file has it" : "a bender of 16 plays, assumed";
   }
 }
@@ -258,11 +274,17 @@ void RealtimeTrade::add_loops() {
   lines_.push_back({host_loop_row(*prepared), std::nullopt});
 }
 
+Result<void> RealtimeTrade::check_felt() const {
+  const auto played = play(reading_case(usual(), wire::Interpolation::hermite, 16));
+  if (!played) return schema::forward_error(played);
+  if (!std::isnan(worst_of(played->errors()))) return {};
+  return schema::fail(schema::Fault::unsuitable,
+                      "has nothing within 15 to 500 Hz at " + speed_words(played->errors()), "the texture",
+                      "measure the trade on one that such a finger feels");
+}
+
 Result<std::vector<TradeRow>> RealtimeTrade::rows() {
-  if (const auto playable =
-          play_case(texture_, transducer_, reading_case(usual(), wire::Interpolation::hermite, 16));
-      !playable)
-    return schema::forward_error(playable);
+  if (const auto playable = check_felt(); !playable) return schema::forward_error(playable);
   constexpr Part kParts[] = {
       &RealtimeTrade::add_readings,      &RealtimeTrade::add_densities,  &RealtimeTrade::add_inverses,
       &RealtimeTrade::add_looking_ahead, &RealtimeTrade::add_counts,     &RealtimeTrade::add_rates,
@@ -275,6 +297,8 @@ Result<std::vector<TradeRow>> RealtimeTrade::rows() {
   std::vector<TradeRow> rows;
   for (Line& line : lines_) {
     if (!line.refusal.empty()) line.row.note = line.refusal;
+    if (!line.row.by_speed.empty() && !line.row.is_judged())
+      line.row.note = "nothing of the texture is in the band at " + speed_words(line.row.by_speed);
     rows.push_back(std::move(line.row));
   }
   return rows;

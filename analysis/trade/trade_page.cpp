@@ -2,15 +2,18 @@
 #include "analysis/trade/trade_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <ranges>
 
 #include "analysis/html.hpp"
 #include "analysis/picture_svg.hpp"
 #include "analysis/trade/pareto.hpp"
+#include "analysis/trade/played_speeds.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -87,19 +90,47 @@ std::string error_words(const TradeRow& row) {
   return fmt::format("{:.3g} % ({:.1f} dB)", 100 * row.error, error_db(row));
 }
 
+std::string words_by_speed(const TradeRow& row) {
+  std::string words;
+  for (const ErrorAtSpeed& each : row.by_speed)
+    words += (words.empty() ? "" : ", ") +
+             (std::isnan(each.error) ? "-" : fmt::format("{:.3g}", 100 * each.error));
+  return words.empty() ? "" : words + " % at " + speed_words(row.by_speed);
+}
+
+bool is_worst_of_several(const TradeHalf& half) {
+  return std::ranges::any_of(half.rows, [](const TradeRow& row) { return row.by_speed.size() > 1; });
+}
+
+std::string error_axis(const TradeHalf& half) {
+  return is_worst_of_several(half) ? "error at the worst speed (dB re the RMS)" : "error (dB re the RMS)";
+}
+
+// Empty where no finger of this speed was tried.
+double error_at(const TradeRow& row, double speed_mps) {
+  const auto at = std::ranges::find(row.by_speed, speed_mps, &ErrorAtSpeed::speed_mps);
+  return at == row.by_speed.end() ? kNotMeasured : at->error;
+}
+
 std::vector<std::vector<std::string>> table_of(const TradeHalf& half) {
   const auto worth = worth_of(half.rows);
   std::vector<std::vector<std::string>> rows = {
-      {"choice of", "choice", "error", "cost", "memory", "latency", "worth it", "note"}};
+      {"choice of", "choice", "error", "by speed", "cost", "memory", "latency", "worth it", "note"}};
   for (std::size_t i = 0; i < half.rows.size(); ++i) {
     const TradeRow& row = half.rows[i];
-    rows.push_back({row.knob, row.choice, error_words(row),
+    rows.push_back({row.knob, row.choice, error_words(row), words_by_speed(row),
                     row.cost_ns > 0 ? fmt::format("{:.3g} ns a {}", row.cost_ns, row.per) : "",
                     row.memory_bytes > 0 ? fmt::format("{:.4g} KiB", row.memory_bytes / 1024) : "",
                     row.latency_s > 0 ? fmt::format("{:.3g} ms", 1e3 * row.latency_s) : "",
                     worth_words(worth[i]), row.note});
   }
   return rows;
+}
+
+std::string speeds_paragraph() {
+  return fmt::format(
+      "<p>Each error is the worst of fingers of {:g} mm/s, unless a note names another.</p>\n",
+      fmt::join(kTradeSpeeds_mps | std::views::transform([](double v) { return 1e3 * v; }), ", "));
 }
 
 }  // namespace
@@ -110,7 +141,7 @@ spatial::LineFigure pareto_figure(const TradeHalf& half, const Trade& trade) {
   figure.subtitle = trade.texture;
   figure.simulated = trade.simulated;
   figure.x_label = "CPU time (ns a frame, sample, tick or ms of playing)";
-  figure.y_label = "error (dB re the RMS)";
+  figure.y_label = error_axis(half);
   figure.x_scale = spatial::AxisScale::logarithmic;
   figure.size = {900, 480};
   const auto worth = worth_of(half.rows);
@@ -133,7 +164,7 @@ std::vector<schema::ResultPicture> trade_pictures(const Trade& trade) {
   for (const TradeHalf& half : trade.halves) {
     schema::ResultPicture picture{"Error against cost, " + half.name,
                                   "CPU time (ns a frame, sample, tick or ms of playing)",
-                                  "error (dB re the RMS)",
+                                  error_axis(half),
                                   true,
                                   {}};
     for (const auto& rows : by_knob(half)) {
@@ -159,16 +190,22 @@ std::vector<schema::ResultFigure> trade_figures(const Trade& trade) {
 }
 
 std::string trade_csv(const Trade& trade) {
-  std::string csv = std::string(kTradeCsvHead) +
-                    "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note,simulated\n";
+  std::string csv =
+      std::string(kTradeCsvHead) +
+      "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note,simulated,worst_speed_mps";
+  for (const double speed_mps : kTradeSpeeds_mps) csv += fmt::format(",error_at_{:g}mmps", 1e3 * speed_mps);
+  csv += "\n";
   for (const TradeHalf& half : trade.halves) {
     const auto worth = worth_of(half.rows);
     for (std::size_t i = 0; i < half.rows.size(); ++i) {
       const TradeRow& row = half.rows[i];
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", half.name, quoted(row.knob),
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", half.name, quoted(row.knob),
                          quoted(row.choice), number(row.error), number(row.cost_ns), row.per,
                          number(row.memory_bytes), number(row.latency_s), worth[i].on_front, worth[i].knee,
-                         quoted(worth[i].beaten_by), quoted(row.note), quoted(trade.simulated));
+                         quoted(worth[i].beaten_by), quoted(row.note), quoted(trade.simulated),
+                         number(row.worst_speed_mps()));
+      for (const double speed_mps : kTradeSpeeds_mps) csv += "," + number(error_at(row, speed_mps));
+      csv += "\n";
     }
   }
   return csv;
@@ -185,6 +222,7 @@ schema::Result<std::string> trade_page(const Trade& trade) {
     const auto svg = spatial::to_svg(figure);
     if (!svg) return schema::forward_error(svg);
     body += fmt::format("<h2>{}</h2>\n", escaped(half.name)) + inline_svg(*svg, figure.title);
+    if (is_worst_of_several(half)) body += speeds_paragraph();
     std::vector<std::vector<std::string>> answers = {{"choice of", "the knee", "never worth it"}};
     for (const PlainAnswer& answer : plain_answers(half.rows))
       answers.push_back({answer.knob, answer.knee, answer.never});

@@ -31,7 +31,8 @@ spatial::LineFigure pareto_figure(const TradeHalf& half, const Trade& trade);
 std::vector<schema::ResultPicture> trade_pictures(const Trade& trade);
 std::vector<schema::ResultFigure> trade_figures(const Trade& trade);
 
-/// half,knob,choice,error,cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note,simulated
+/// half,knob,choice,error,cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note,simulated,
+/// worst_speed_mps, and error_at_...mmps for each of kTradeSpeeds_mps; empty where no such finger goes.
 std::string trade_csv(const Trade& trade);
 inline constexpr const char* kTradeCsvHead = "half,knob,choice,error,";
 

@@ -2,6 +2,7 @@
 #include "analysis/trade/worst_trade.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tacto::analysis {
 namespace {
@@ -12,9 +13,16 @@ const TradeRow* same_choice(const TradeHalf& half, const TradeRow& row) {
   return found == half.rows.end() ? nullptr : &*found;
 }
 
+// Both were measured under the same fingers; one that has nothing to feel of the one may have of the other.
+void take_worse(std::vector<ErrorAtSpeed>& errors, const std::vector<ErrorAtSpeed>& others) {
+  for (std::size_t i = 0; i < std::min(errors.size(), others.size()); ++i)
+    errors[i].error = std::fmax(errors[i].error, others[i].error);
+}
+
 void take_worse(TradeRow& row, const TradeRow& other) {
-  if (other.error > row.error) row.note = other.note;
-  row.error = std::max(row.error, other.error);
+  if (other.is_judged() && !(other.error <= row.error)) row.note = other.note;
+  row.error = std::fmax(row.error, other.error);
+  take_worse(row.by_speed, other.by_speed);
   row.cost_ns = std::max(row.cost_ns, other.cost_ns);
   row.latency_s = std::max(row.latency_s, other.latency_s);
   row.memory_bytes += other.memory_bytes;

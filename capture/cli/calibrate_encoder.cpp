@@ -70,7 +70,7 @@ Result<Travels> of_device(const CalibrateEncoderOptions& options) {
   if (!watched) return schema::forward_error(watched);
   Travels travels{std::move(watched->take), {}, 1};
   for (std::size_t i = 1; i < watched->counts.size(); ++i)
-    travels.differences.push_back(watched->counts[i] - watched->counts[i - 1]);
+    travels.differences.push_back(travelled_counts(watched->counts[i - 1], watched->counts[i]));
   return travels;
 }
 

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "data-schema/cli/choices_report.hpp"
+#include "data-schema/cli/harmless.hpp"
+#include "data-schema/cli/talk.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/gain_report.hpp"
+#include "playback/cli/room_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/program.hpp"
 
@@ -100,15 +105,31 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   return report;
 }
 
+// The error is said as by verbs that stop there; the table is printed all the same.
+Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgram& asked,
+                                      const schema::Error& refused) {
+  const auto program = with_room_enough(asked);
+  if (!program || program->prepared.samples.size() <= asked.room()) return tl::unexpected(refused);
+  auto report = explained(o, *program);
+  if (!report) return report;
+  cli::talk(fmt::format("tactograph: {}\n", cli::on_one_line(schema::message(refused))));
+  add_room(*report, program->prepared, asked.room());
+  add_ways_to_fit(*report, asked, *program);
+  return report->ends_with(refused.fault);
+}
+
 Result<Report> run_explain(ExplainOptions o) {
   const auto budget = o.budget.budget();
   if (!budget) return schema::forward_error(budget);
   o.program.budget = *budget;
   if (o.device_memory > 0) o.prepare.most_samples = o.device_memory;
-  const auto program = make_program(o.program, o.transducer, o.prepare);
-  if (!program) return schema::forward_error(program);
+  const AskedProgram asked{o.program, o.transducer, o.prepare};
+  const auto program = make_program(asked.request, asked.transducer, asked.options);
+  if (!program) return explained_without_room(o, asked, program.error());
   for (const std::string& note : program->prepared.notes) cli::warn(note);
-  return explained(o, *program);
+  auto report = explained(o, *program);
+  if (report && o.device_memory > 0) add_room(*report, program->prepared, asked.room());
+  return report;
 }
 
 cli::Action declare_explain(CLI::App& app) {
@@ -122,7 +143,7 @@ cli::Action declare_explain(CLI::App& app) {
   cli::add_quantity(app, "--encoder-step", o.prepare.metres_per_count, Dimension::length,
                     "One count of the encoder");
   app.add_option("--device-memory", o.device_memory,
-                 "Samples that the device holds; as many as needed unless told")
+                 "Samples that the device holds; 2^24, this computer's own loop, unless told")
       ->check(cli::from_one());
   declare_choices(app, o.program.choices);
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,

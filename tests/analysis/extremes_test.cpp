@@ -3,27 +3,43 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "analysis/extremes/extreme.hpp"
 
 namespace tacto::analysis {
 namespace {
 
+// The documentation's table, which `tactograph extremes` prints.
+std::string documented() {
+  std::ostringstream text;
+  text << std::ifstream(TACTO_SOURCE "/analysis/README.md").rdbuf();
+  return text.str();
+}
+
 TEST(Extremes, HoldWhatTheirMethodsState) {
-  const auto rows = all_extremes(std::getenv("TACTO_EXTREMES") != nullptr);
-  std::set<std::string> conditions;
+  const bool all = std::getenv("TACTO_EXTREMES") != nullptr;
+  const auto rows = all_extremes(all);
+  const std::string table = documented();
+  std::set<std::string> conditions, rooms;
   for (const Extreme& row : rows) {
-    std::printf("%-70s error %.1e, at most %.0e  %s\n", row.condition.c_str(), row.error, row.most,
+    std::printf("%-72s error %.1e, at most %.0e  %s\n", row.condition.c_str(), row.error, row.most,
                 row.note.c_str());
     EXPECT_TRUE(row.holds()) << row.condition << ": " << row.error << ", at most " << row.most;
     if (row.note.find("refused, it takes") != std::string::npos) {
       EXPECT_NE(row.note.find("at 2000 Hz"), std::string::npos) << row.note;
     }
     EXPECT_FALSE(row.reference.empty()) << row.condition;
+    const bool listed = table.find("| " + row.condition + " | ") != std::string::npos &&
+                        table.find(" | " + row.reference + " | ") != std::string::npos;
+    EXPECT_TRUE(listed || all) << row.condition << ": not in analysis/README.md as the command prints it";
+    rooms.insert(row.room);
     EXPECT_TRUE(conditions.insert(row.condition).second) << "twice: " << row.condition;
   }
-  EXPECT_GT(rows.size(), 50U);
+  EXPECT_GT(rows.size(), 70U);
+  EXPECT_EQ(rooms, (std::set<std::string>{"analysis", "capture", "firmware-host", "playback", "spatial"}));
   EXPECT_TRUE(conditions.contains("the same: a tick's time in that silence"));
 }
 

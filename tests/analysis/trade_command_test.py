@@ -40,6 +40,7 @@ def check_trade(folder):
         assert 0 <= float(row["error"]) < 10, row
         assert (row["on_front"] == "true") != bool(row["beaten_by"]), row
     assert all(answer["knee"] and answer["never_worth_it"] for answer in done["answers"])
+    check_speeds(rows, done, answers)
     page = (folder / "t.html").read_text()
     assert "Simulated" in page and page.count("<img") == 2
     assert (folder / "t.svg").read_text().startswith("<?xml")
@@ -48,6 +49,24 @@ def check_trade(folder):
     # What is no such file is not replaced.
     (folder / "mine.csv").write_text("a,b\n1,2\n")
     assert "mine.csv" in tacto.run("trade", "C", "-o", "mine.csv", cwd=folder, code=2)[1]
+
+
+def check_speeds(rows, done, answers):
+    """Real-time errors are the worst of three fingers', each told; the pairs that interact are there."""
+    speeds = ("25", "100", "200")
+    for row in rows:
+        by_speed = [float(row[f"error_at_{speed}mmps"] or "nan") for speed in speeds]
+        if row["half"] == "offline" or row["knob"] in ("loop", "between counts", "pyramid") or row["note"].startswith("refused"):
+            assert np.all(np.isnan(by_speed)), row
+            continue
+        assert float(row["error"]) == np.nanmax(by_speed), row
+        assert 1e3 * float(row["worst_speed_mps"]) == float(speeds[int(np.nanargmax(by_speed))]), row
+    assert {"window x hop", "window x padding", "tick rate x delay compensation", "tick rate x inverse"} <= set(answers), answers.keys()
+    full = next(row for row in done["choices"] if (row["choice_of"], row["choice"]) == ("inverse", "full"))
+    assert full["error_percent"] == max(full[f"error_at_{speed}mmps_percent"] for speed in speeds), full
+    late = [row for row in done["choices"] if row["choice_of"] == "tick rate x delay compensation" and row["choice"].endswith("off")]
+    assert len(late) == 5 and all(row["error_percent"] > 50 and row["latency_s"] > 1e-3 for row in late), late
+    assert "the worst of 25, 100, 200 mm/s" in answers["inverse"]["knee"] and "mm/s" not in answers["filter"]["knee"], answers
 
 
 def check_scene(folder):

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The trade of speed for accuracy: rows against closed forms, fronts and knees against ones found by hand.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +9,10 @@
 #include "analysis/trade/offline_choices.hpp"
 #include "analysis/trade/offline_half.hpp"
 #include "analysis/trade/pareto.hpp"
+#include "analysis/trade/spectrogram_pairs.hpp"
 #include "analysis/trade/trade_page.hpp"
+#include "analysis/trade/worst_trade.hpp"
+#include "playback/budget_words.hpp"
 #include "spatial/budget.hpp"
 
 namespace tacto::analysis {
@@ -91,6 +95,75 @@ TEST_F(OfflineTrade, EveryRowIsMeasured) {
   }
 }
 
+// Blackman's window makes of the power's beat, cos(2 pi d x), one of depth Q(d) / Q(0), where Q is the
+// transform of its square; straight lines between rows h apart err of it by (2 pi d h)^2 / sqrt(120) of its
+// RMS.
+double closed_hop_error(double window_m, double hop_m) {
+  const auto square = [&](double per_m) {
+    constexpr int kSteps = 20000;
+    double sum = 0;
+    for (int n = 0; n < kSteps; ++n) {
+      const double turn = kTurn * (n + 0.5) / kSteps;
+      const double w = 0.42 - 0.5 * std::cos(turn) + 0.08 * std::cos(2 * turn);
+      sum += w * w * std::cos(kTurn * per_m * window_m * ((n + 0.5) / kSteps - 0.5));
+    }
+    return sum;
+  };
+  const double beat_per_m = kLines_per_m[1] - kLines_per_m[0];
+  const double depth = square(beat_per_m) / square(0);
+  return depth / std::sqrt(2 + depth * depth) * std::pow(kTurn * beat_per_m * hop_m, 2) / std::sqrt(120);
+}
+
+// Each pair's error is its two parts' root of sum of squares: the smallest hop has next to none of its own.
+TEST_F(OfflineTrade, WindowAndHopErrAsTheBeatSays) {
+  for (const double window_mm : {2.5, 5.0}) {
+    const auto error = [&](const char* hop) {
+      return row_named(rows_, "window x hop", fmt::format("{:g} mm, {}", window_mm, hop)).error;
+    };
+    EXPECT_LT(error("100 um"), error("200 um"));
+    EXPECT_LT(error("200 um"), error("500 um"));
+    EXPECT_LT(error("500 um"), error("1 mm"));
+    const double window_alone =
+        std::sqrt(std::pow(error("200 um"), 2) - std::pow(closed_hop_error(window_mm * 1e-3, 200e-6), 2));
+    const double hop_alone = std::sqrt(std::pow(error("500 um"), 2) - std::pow(window_alone, 2));
+    const double closed = closed_hop_error(window_mm * 1e-3, 500e-6);
+    EXPECT_NEAR(hop_alone, closed, 0.1 * closed) << window_mm;  // the next term, (2 pi d h)^2 / 14, is 6 %
+  }
+  // A wide window smooths the beat away: rows may lie far apart.
+  EXPECT_LT(closed_hop_error(10e-3, 1e-3), 0.1 * closed_hop_error(2.5e-3, 1e-3));
+}
+
+// Lines alone in their window, d bins beside the next one: Blackman's main lobe at d.
+TEST(SpectrogramPairs, PaddingErrsAsTheWindowsLobeSays) {
+  schema::Texture line;
+  line.signal.pitch_m = 5e-6;
+  constexpr double kLine_per_m = 2117;
+  for (int i = 0; i < 6000; ++i) line.signal.values.push_back(std::sin(kTurn * kLine_per_m * 5e-6 * i));
+  const auto energy = OctaveEnergy::of(line);
+  ASSERT_TRUE(energy);
+  const auto rows = measure_spectrogram_pairs(line, *energy);
+  ASSERT_TRUE(rows) << schema::message(rows.error());
+  const auto lobe = [](double bins) {
+    const auto sinc = [](double x) {
+      return std::abs(x) < 1e-12 ? 1 : std::sin(kTurn / 2 * x) / (kTurn / 2 * x);
+    };
+    return 0.42 * sinc(bins) + 0.25 * (sinc(bins - 1) + sinc(bins + 1)) +
+           0.04 * (sinc(bins - 2) + sinc(bins + 2));
+  };
+  for (const double window_m : {5e-3, 10e-3})
+    for (const int times : {1, 2, 4, 8}) {
+      const auto height = [&](int padding) {
+        const double place = kLine_per_m * window_m * padding;
+        return lobe((place - std::round(place)) / padding);
+      };
+      const TradeRow& row =
+          row_named(*rows, "window x padding", fmt::format("{:g} mm, {} windows", 1e3 * window_m, times));
+      const std::string wanted = playback::percent(std::abs(height(times) / height(16) - 1));
+      EXPECT_TRUE(row.note.ends_with("padding " + wanted))
+          << row.choice << ": " << row.note << ", " << wanted;
+    }
+}
+
 TEST(OfflineTradeInput, RefusesWhatIsTooShortOrTooCoarse) {
   const auto too_short = measure_offline(line_texture(0.005, 1e-6));
   ASSERT_FALSE(too_short);
@@ -137,6 +210,33 @@ TEST(Pareto, FindsFrontAndKneeByHand) {
   EXPECT_EQ(answers[0].never, "silly");
 }
 
+TEST(Pareto, SaysAtWhichSpeedItsPickErrsMost) {
+  TradeRow row{"way", "late", 0.3, 10, "tick", 1, 2e-3, ""};
+  row.by_speed = {{0.025, 0.1}, {0.1, 0.3}, {0.2, kNotMeasured}};
+  EXPECT_EQ(row.worst_speed_mps(), 0.1);
+  TradeRow good = row;
+  good.choice = "early", good.error = 0.005, good.by_speed = {{0.025, 0.001}, {0.1, 0.002}, {0.2, 0.005}};
+  const std::vector<TradeRow> rows = {row, good};
+  EXPECT_EQ(plain_answers(rows).front().knee,
+            "early (0.5 % off at 200 mm/s, the worst of 25, 100, 200 mm/s, 10 ns a tick)");
+  EXPECT_TRUE(std::isnan(TradeRow{}.worst_speed_mps()));
+}
+
+// A scene of a slow texture and a fast one errs by the worse at each speed.
+TEST(WorstTrade, TakesTheWorseOfEachSpeed) {
+  TradeRow a{"way", "late", 0.3, 10, "tick", 1, 0, "a"}, b{"way", "late", 0.4, 10, "tick", 2, 0, "b"};
+  a.by_speed = {{0.025, 0.3}, {0.1, kNotMeasured}};
+  b.by_speed = {{0.025, 0.1}, {0.1, 0.4}};
+  const Trade worst =
+      worst_trade({{"a", "m", "", {{"real time", {a}}}}, {"b", "m", "", {{"real time", {b}}}}});
+  const TradeRow& row = worst.halves.front().rows.front();
+  EXPECT_EQ(row.error, 0.4);
+  EXPECT_EQ(row.by_speed[0].error, 0.3);
+  EXPECT_EQ(row.by_speed[1].error, 0.4);
+  EXPECT_EQ(row.worst_speed_mps(), 0.1);
+  EXPECT_EQ(row.note, "b");
+}
+
 TEST(Pareto, WhatSavesMemoryOrTimeToAnswerIsWorthIt) {
   const std::vector<TradeRow> rows = {{"way", "big", 0.01, 10, "tick", 100, 0, ""},
                                       {"way", "small", 0.01, 20, "tick", 1, 0, ""},
@@ -162,10 +262,12 @@ TEST(TradePage, HasEveryRowOnceAndEscapesNames) {
   EXPECT_EQ(page->find("<b>oak"), std::string::npos);
   EXPECT_NE(page->find("&lt;b&gt;oak"), std::string::npos);
   EXPECT_NE(page->find("Simulated"), std::string::npos);
-  EXPECT_EQ(trade_csv(trade),
-            std::string(kTradeCsvHead) +
-                "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note,simulated\n"
-                "offline,\"way\",\"a, \"\"b\"\"\",0.01,100,frame,1,0,true,false,\"\",\"n\",\"by a test\"\n");
+  EXPECT_EQ(
+      trade_csv(trade),
+      std::string(kTradeCsvHead) +
+          "cost_ns,per,memory_bytes,latency_s,on_front,knee,beaten_by,note,simulated,worst_speed_mps,"
+          "error_at_25mmps,error_at_100mmps,error_at_200mmps\n"
+          "offline,\"way\",\"a, \"\"b\"\"\",0.01,100,frame,1,0,true,false,\"\",\"n\",\"by a test\",,,,\n");
 }
 
 }  // namespace

@@ -113,5 +113,26 @@ TEST(LiveFigures, TellWhatIsMissingAndClippedInAStroke) {
   EXPECT_FALSE(strokes[0].mean_normal_n);
 }
 
+// A counter of 32 bits that passes 2^31 in the middle of a stroke goes on; what is shown is no leap of 4.3
+// km.
+TEST(LiveFigures, CountAStrokeThroughTheCountersWrap) {
+  schema::RecordingHeader header;
+  header.sample_rate_hz = kRate_hz;
+  header.channels.resize(1);
+  header.channels[0].quantity = "position";
+  header.channels[0].scale = 1e-6;
+  LiveFigures figures(header);
+  for (int i = 0; i < 1500; ++i) {
+    const std::uint32_t count = 0x7fffffffU - 30'000U + 53U * static_cast<std::uint32_t>(std::min(i, 1200));
+    const auto code = static_cast<std::int32_t>(count);
+    figures.add(std::span(&code, 1));
+  }
+  const auto strokes = figures.stroke_figures();
+  ASSERT_EQ(strokes.size(), 1U);
+  EXPECT_EQ(strokes[0].direction, 1);
+  EXPECT_NEAR(strokes[0].length_m, 1200 * 53e-6, 0.2e-3);  // told in steps of 0.1 mm
+  EXPECT_NEAR(*figures.take_view().speed_mps, 1200 * 53e-6 / 1.5, 1e-6);
+}
+
 }  // namespace
 }  // namespace tacto::capture

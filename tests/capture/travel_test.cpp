@@ -14,6 +14,12 @@ namespace {
 
 using schema::Fault;
 
+TEST(Travel, GoesOnWhereTheCounterWraps) {
+  EXPECT_EQ(travelled_counts(2147483000, -2147483000), 1296);
+  EXPECT_EQ(travelled_counts(-2147483000, 2147483000), -1296);
+  EXPECT_EQ(travelled_counts(-5, 7), 12);
+}
+
 // Two ends of a count each: over many travels of random places the stated interval holds the truth.
 TEST(Travel, CountsAtTheEndsAreCovered) {
   std::mt19937_64 random(3);

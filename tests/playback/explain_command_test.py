@@ -37,9 +37,45 @@ def check_explain(folder):
     assert chosen["sample_bytes"] < report["sample_bytes"], "sinc takes six points a period, hermite sixteen"
     kept = made.report_of("explain", folder / "t", "--quality", "fast", "--interpolation", "linear")
     assert kept["interpolation"] == "linear", kept  # what was named stays, whatever is cheaper
-    remedy = refused(UNSUITABLE, "interpolate by sinc", "explain", folder / "t", "--device-memory", "100")
-    assert "--loop host" in remedy and "t.texture.json" in remedy, remedy
-    refused(UNSUITABLE, "there is room for 100", "explain", folder / "t", "--device-memory", "100")
+    check_room(folder, report["sample_bytes"] // 4)
+
+
+def explained_without_room(what, room):
+    done = made.run("explain", str(what), "--device-memory", str(room), "--json")
+    assert done.returncode == UNSUITABLE and f"there is room for {room}" in done.stderr, (done.returncode, done.stderr)
+    return done.stderr, json.loads(done.stdout)
+
+
+def check_room(folder, needed):
+    """Where a device has no room the table comes all the same: what is built, item by item against the room, and what would fit."""
+    fitting = made.report_of("explain", folder / "t", "--device-memory", str(needed))
+    assert fitting["fits"] is True and fitting["needed_samples"] == fitting["device_samples"] == needed, fitting
+    room = needed - 1
+    said, short = explained_without_room(folder / "t", room)
+    assert "interpolate by sinc" in said and "--loop host" in said and "t.texture.json" in said, said
+    assert (short["fits"], short["needed_samples"], short["device_samples"]) == (False, needed, room), short
+    assert short["levels"] == fitting["levels"] and short["left_out"] == fitting["left_out"]
+    items = {row["item"]: row for row in short["memory"]}
+    levels = [row for name, row in items.items() if name.startswith("samples of level ")]
+    assert sum(row["bytes"] for row in levels) == items["samples of all levels"]["bytes"] == 4 * needed
+    assert abs(items["samples of all levels"]["of_room_percent"] - 100 * needed / room) < 1e-9 and items["filter's taps"]["of_room_percent"] < 100
+    ways = {row["way"].split()[0]: row for row in short["ways_to_fit"]}
+    assert ways["interpolate"]["fits"] and ways["let"]["fits"], ways
+    sinc = made.report_of("explain", folder / "t", "--interpolation", "sinc", "--device-memory", str(room))
+    assert sinc["needed_samples"] == ways["interpolate"]["samples"], (sinc, ways)
+    # The beginning that is said to fit does, and the next hundredth would not.
+    whole = made.samples(folder / "t.texture.wav")
+    _, short = explained_without_room(folder / "t", room)
+    beginning = next(row for row in short["ways_to_fit"] if "first" in row["way"])
+    number, unit = beginning["way"].split()[-2:]
+    hundredths = round(float(number) * {"um": 1e-6, "mm": 1e-3}[unit] / (0.01 * len(whole) * made.PITCH_M))
+    made.write_texture(folder / "part", whole[: len(whole) * hundredths // 100])
+    assert made.report_of("explain", folder / "part", "--device-memory", str(room))["needed_samples"] == beginning["samples"]
+    made.write_texture(folder / "part", whole[: len(whole) * (hundredths + 1) // 100])
+    explained_without_room(folder / "part", room)
+    report = made.report_of("explain", folder / "t", "--interpolation", "sinc")
+    assert "device_samples" not in report and "ways_to_fit" not in report, report
+
 
 
 def check_scene(folder):
@@ -47,6 +83,11 @@ def check_scene(folder):
     (folder / "bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": layers}))
     report = made.report_of("explain", folder / "bench.scene.json")
     assert report["texture_files_read"] == 1 and len(report["textures"]) == 2, report
+    _, short = explained_without_room(folder / "bench.scene.json", report["sample_bytes"] // 4 - 1)
+    alone = [row for row in short["ways_to_fit"] if "t.texture.json" in row["way"]]
+    assert len(alone) == 1 and alone[0]["fits"] and alone[0]["samples"] == made.report_of("explain", folder / "t")["sample_bytes"] // 4, short
+    printed = made.run("explain", str(folder / "bench.scene.json"), "--device-memory", "100")
+    assert printed.returncode == UNSUITABLE and "of room" in printed.stdout and "play by itself" in printed.stdout, printed
 
 
 def check_choice(folder):

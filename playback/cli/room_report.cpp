@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/cli/room_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "data-schema/quantity.hpp"
+#include "data-schema/texture.hpp"
+#include "playback/budget_words.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using cli::Report;
+using schema::Result;
+
+constexpr std::size_t kRoomEnough = std::size_t{1} << 26;
+
+Report item(std::string name, std::size_t count, std::size_t room, std::size_t bytes_each) {
+  return Report()
+      .add("item", std::move(name))
+      .add("bytes", count * bytes_each)
+      .add("room_bytes", room * bytes_each)
+      .add("of_room_percent", 100 * static_cast<double>(count) / static_cast<double>(room));
+}
+
+// What does not come about for another reason is no way.
+void add_way(std::vector<Report>& ways, std::string way, const AskedProgram& asked) {
+  const auto program = with_room_enough(asked);
+  if (!program) return;
+  const std::size_t samples = program->prepared.samples.size();
+  ways.push_back(
+      Report().add("way", std::move(way)).add("samples", samples).add("fits", samples <= asked.room()));
+}
+
+void add_sinc(std::vector<Report>& ways, AskedProgram asked, const Program& program) {
+  if (program.prepared.scale.interpolation == wire::Interpolation::sinc) return;
+  asked.request.choices.interpolation = std::string(word_of(wire::Interpolation::sinc));
+  add_way(ways, "interpolate by sinc (--interpolation sinc)", asked);
+}
+
+void add_host(std::vector<Report>& ways, const AskedProgram& asked, const Program& program) {
+  const std::size_t samples = program.prepared.samples.size(), room = PrepareOptions{}.most_samples;
+  if (asked.room() >= room) return;
+  ways.push_back(Report()
+                     .add("way", "let this computer close the loop (--loop host)")
+                     .add("samples", samples)
+                     .add("fits", samples <= room));
+}
+
+std::optional<std::size_t> samples_of_beginning(schema::Texture texture, int hundredths,
+                                                const Program& program) {
+  std::vector<double>& values = texture.signal.values;
+  values.resize(std::max<std::size_t>(2, values.size() * static_cast<std::size_t>(hundredths) / 100));
+  PrepareOptions options = program.options;
+  options.most_samples = kRoomEnough;
+  const auto made = prepare(texture, program.session.transducer, options);
+  if (!made) return std::nullopt;
+  return made->samples.size();
+}
+
+// Found by halves, and prepared: a cut may be finer than what is cut, so its samples do not follow its
+// length.
+void add_beginning(std::vector<Report>& ways, const AskedProgram& asked, const Program& program) {
+  if (program.session.textures.size() != 1) return;
+  const auto texture = schema::read_texture(program.session.textures.front().file);
+  if (!texture) return;
+  int fits = 0, too_long = 100;
+  std::size_t samples = 0;
+  while (too_long - fits > 1) {
+    const int middle = (fits + too_long) / 2;
+    const auto taken = samples_of_beginning(*texture, middle, program);
+    const bool fit = taken && *taken <= asked.room();
+    (fit ? fits : too_long) = middle;
+    if (fit) samples = *taken;
+  }
+  if (fits == 0) return;
+  ways.push_back(
+      Report()
+          .add("way", fmt::format("play its first {}",
+                                  schema::length_for_people(0.01 * fits * texture->signal.length_m())))
+          .add("samples", samples)
+          .add("fits", true));
+}
+
+// What lies between textures takes as much as they do.
+void add_alone(std::vector<Report>& ways, const AskedProgram& asked, const Program& program) {
+  if (program.session.textures.size() < 2) return;
+  std::vector<std::string> seen;
+  for (const schema::SessionTexture& texture : program.session.textures) {
+    if (std::ranges::find(seen, texture.file) != seen.end()) continue;
+    seen.push_back(texture.file);
+    AskedProgram alone = asked;
+    alone.request.file = texture.file;
+    alone.request.at_m = texture.at_m;
+    add_way(ways, "play by itself " + texture.file, alone);
+  }
+}
+
+}  // namespace
+
+Result<Program> with_room_enough(const AskedProgram& asked) {
+  PrepareOptions options = asked.options;
+  options.most_samples = std::max(kRoomEnough, asked.room());
+  return make_program(asked.request, asked.transducer, options);
+}
+
+void add_room(Report& report, const Prepared& made, std::size_t device_samples) {
+  const std::size_t needed = made.samples.size();
+  report.add("device_samples", device_samples).add("needed_samples", needed);
+  report.add("fits", needed <= device_samples);
+  std::vector<Report> items;
+  for (std::uint8_t level = 0; level < made.scale.levels; ++level)
+    items.push_back(item(fmt::format("samples of level {}", level + 1),
+                         core::level_samples(made.scale, level), device_samples, sizeof(float)));
+  items.push_back(item("samples of all levels", needed, device_samples, sizeof(float)));
+  items.push_back(item("filter's taps", made.built.taps, wire::kMaxTaps, sizeof(float)));
+  items.push_back(
+      item("hysteresis's plays", made.built.plays, wire::kMaxPlays, sizeof(wire::HysteresisPlay)));
+  items.push_back(item("sections", made.built.sections, wire::kMaxSections, sizeof(wire::Section)));
+  report.add("memory", std::move(items));
+}
+
+void add_ways_to_fit(Report& report, const AskedProgram& asked, const Program& program) {
+  std::vector<Report> ways;
+  add_sinc(ways, asked, program);
+  add_beginning(ways, asked, program);
+  add_alone(ways, asked, program);
+  add_host(ways, asked, program);
+  report.add("ways_to_fit", std::move(ways));
+}
+
+}  // namespace tacto::playback
