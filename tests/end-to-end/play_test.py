@@ -265,6 +265,9 @@ def ten_minutes_at_10_khz():
     about = tacto.run_json("info", "long.session")
     assert about["lost_ticks"] == 0 and about["ending"] == "closed" and about["ticks"] >= 600_000 * MINUTES, about
     assert tacto.run_json("replay", "long")["same_to_the_bit"]
+    judged = tacto.peak_mb("session", "long", "-o", "long.nc")
+    print(f"judged and exported: {judged:.1f} MB")
+    assert tacto.SANITIZED or judged < 128
     tacto.run("session", "short", "-o", "short.csv")
     table = np.genfromtxt("short.csv", delimiter=",", names=True)
     assert np.all(np.diff(table["tick"]) == 1)
