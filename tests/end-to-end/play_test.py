@@ -238,6 +238,10 @@ def wrong_use():
     tacto.run("play", "oak", "-d", "sim:", "-o", "x", "--time", "0.1s")
     named = tacto.run_json("play", "oak", "-d", "sim:", "--time", "0.1s")["session"]
     assert named.startswith("oak-2") and tacto.run_json("replay", named)["same_to_the_bit"], named
+    write_grating("a.b")
+    for what in ("a.b", "./a.b.texture.json", "a.b.texture.wav"):  # a dot is part of a name
+        named = tacto.run_json("play", what, "-d", "sim:", "--time", "0.1s")["session"]
+        assert named.startswith("a.b-2") and pathlib.Path(named).exists(), named
     _, said = tacto.run("play", "oak", "-d", "sim:", "-o", "x", "--time", "0.1s", code=2)
     assert "is there already" in said
     _, said = tacto.run("session", "x", "-o", "x.mat", code=2)
