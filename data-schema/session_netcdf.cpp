@@ -51,22 +51,41 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 }  // namespace
 
-Result<void> write_session_netcdf(const std::string& path, const SessionHeader& header,
-                                  const std::vector<SessionTurn>& turns,
-                                  const std::vector<SessionVariable>& variables,
-                                  const std::vector<double>& time_s) {
-  NetcdfWriter file(path);
-  const int time = file.dimension("time", time_s.size());
-  const int axis = file.axis("time", time, "s", "time since the first tick, by the device's clock");
-  const Blocks blocks{{time}, {std::min(time_s.size(), kSessionBlock)}};
-  std::vector<int> ids;
+SessionNetcdf::SessionNetcdf(const std::string& path, const SessionHeader& header, std::uint64_t times,
+                             std::vector<SessionVariable> variables)
+    : path_(path), file_(std::make_unique<NetcdfWriter>(path)), values_(variables.size()) {
+  const int time = file_->dimension("time", times);
+  axis_ = file_->axis("time", time, "s", "time since the first tick, by the device's clock");
+  const Blocks blocks{{time}, {std::min<std::size_t>(times, kSessionBlock)}};
   for (const SessionVariable& variable : variables)
-    ids.push_back(file.values(variable.name, blocks, variable.units, variable.long_name));
-  put_played(file, header);
-  put_turns(file, turns);
-  file.put(axis, time_s);
-  for (std::size_t i = 0; i < ids.size(); ++i) file.put(ids[i], *variables[i].values);
-  return file.close(path);
+    ids_.push_back(file_->values(variable.name, blocks, variable.units, variable.long_name));
+  put_played(*file_, header);
+}
+
+SessionNetcdf::~SessionNetcdf() = default;
+
+void SessionNetcdf::add(double time_s, std::span<const double> values) {
+  time_s_.push_back(time_s);
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i].push_back(values[i]);
+  if (time_s_.size() == kSessionBlock) put_block();
+}
+
+void SessionNetcdf::put_block() {
+  const Part part{{put_}, {time_s_.size()}};
+  if (time_s_.empty()) return;
+  put_ += time_s_.size();
+  file_->put(axis_, part, time_s_);
+  time_s_.clear();
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    file_->put(ids_[i], part, values_[i]);
+    values_[i].clear();
+  }
+}
+
+Result<void> SessionNetcdf::close(const std::vector<SessionTurn>& turns) {
+  put_block();
+  put_turns(*file_, turns);
+  return file_->close(path_);
 }
 
 bool is_session_netcdf(const std::string& path) {

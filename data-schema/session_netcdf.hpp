@@ -2,6 +2,10 @@
 // A session as netCDF-4, for xarray, MATLAB and Octave.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,7 +18,6 @@ struct SessionVariable {
   const char* name;
   const char* units;  ///< SI
   const char* long_name;
-  const std::vector<double>* values;  ///< as many as there are times
 };
 
 /// Textures that took the place of those before, from a time on.
@@ -24,12 +27,34 @@ struct SessionTurn {
   std::vector<SessionTexture> textures;  ///< none: the session does not name them
 };
 
-/// Dimension `time` (s), the variables over it, and what was played on what as attributes. Errors:
-/// cannot_write.
-Result<void> write_session_netcdf(const std::string& path, const SessionHeader& header,
-                                  const std::vector<SessionTurn>& turns,
-                                  const std::vector<SessionVariable>& variables,
-                                  const std::vector<double>& time_s);
+class NetcdfWriter;
+
+/// Dimension `time` (s), the variables over it, and what was played on what as attributes, written piece by
+/// piece: the file depends on the numbers, not on the pieces.
+class SessionNetcdf {
+ public:
+  SessionNetcdf(const std::string& path, const SessionHeader& header, std::uint64_t times,
+                std::vector<SessionVariable> variables);
+  SessionNetcdf(const SessionNetcdf&) = delete;
+  SessionNetcdf& operator=(const SessionNetcdf&) = delete;
+  ~SessionNetcdf();
+
+  /// The next time, and the values of the variables then, as many as there are variables.
+  void add(double time_s, std::span<const double> values);
+  /// After the last time. Errors: cannot_write, of all that was done.
+  Result<void> close(const std::vector<SessionTurn>& turns);
+
+ private:
+  void put_block();
+
+  std::string path_;
+  std::unique_ptr<NetcdfWriter> file_;
+  int axis_ = -1;
+  std::vector<int> ids_;
+  std::vector<double> time_s_;
+  std::vector<std::vector<double>> values_;  // of a block, by variable
+  std::size_t put_ = 0;
+};
 
 /// What such a file says of itself.
 struct SessionTable {

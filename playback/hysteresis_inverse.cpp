@@ -35,6 +35,17 @@ void merge_nearest(std::vector<Play>& plays) {
   plays.erase(plays.begin() + static_cast<std::ptrdiff_t>(best) + 1);
 }
 
+// The operator's sum once its input has gone to v.
+double moved_plays(const schema::Hysteresis& hysteresis, double v, std::span<double> plays) {
+  double sum = 0;
+  for (std::size_t i = 0; i < plays.size(); ++i) {
+    const double r = hysteresis.thresholds_v[i];
+    plays[i] = std::max(v - r, std::min(v + r, plays[i]));
+    sum += hysteresis.weights[i] * plays[i];
+  }
+  return sum;
+}
+
 }  // namespace
 
 wire::Hysteresis inverse_of(const schema::Hysteresis& hysteresis) {
@@ -65,32 +76,26 @@ wire::Section pole_lead(double pole_hz, double rate_hz) {
 std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v) {
   std::vector<double> plays(hysteresis.weights.size()), out;
   out.reserve(drive_v.size());
-  for (const double v : drive_v) {
-    double sum = 0;
-    for (std::size_t i = 0; i < plays.size(); ++i) {
-      const double r = hysteresis.thresholds_v[i];
-      plays[i] = std::max(v - r, std::min(v + r, plays[i]));
-      sum += hysteresis.weights[i] * plays[i];
-    }
-    out.push_back(sum);
-  }
+  for (const double v : drive_v) out.push_back(moved_plays(hysteresis, v, plays));
   return out;
+}
+
+LinearDrive::LinearDrive(const schema::Hysteresis& hysteresis, double pole_hz, double rate_hz)
+    : hysteresis_(hysteresis), plays_(hysteresis.weights.size()), kept_(kept_in_a_tick(pole_hz, rate_hz)) {}
+
+double LinearDrive::operator()(double drive_v) {
+  charge_v_ = kept_ * charge_v_ + (1 - kept_) * drive_v;
+  const double v = moved_plays(hysteresis_, charge_v_, plays_);
+  return (v - kept_ * std::exchange(last_v_, v)) / (1 - kept_);
 }
 
 std::vector<double> linear_drive_of(const std::vector<double>& drive_v, const schema::Hysteresis& hysteresis,
                                     double pole_hz, double rate_hz) {
-  const double a = kept_in_a_tick(pole_hz, rate_hz);
-  std::vector<double> charge_v;
-  charge_v.reserve(drive_v.size());
-  for (const double v : drive_v)
-    charge_v.push_back(a * (charge_v.empty() ? 0 : charge_v.back()) + (1 - a) * v);
-  std::vector<double> linear = played_through(hysteresis, charge_v);
-  double before_v = 0;
-  for (double& v : linear) {
-    const double last_v = std::exchange(before_v, v);
-    v = (v - a * last_v) / (1 - a);
-  }
-  return linear;
+  LinearDrive linear(hysteresis, pole_hz, rate_hz);
+  std::vector<double> all;
+  all.reserve(drive_v.size());
+  for (const double v : drive_v) all.push_back(linear(v));
+  return all;
 }
 
 }  // namespace tacto::playback

@@ -26,6 +26,18 @@ wire::Section pole_lead(double pole_hz, double rate_hz);
 /// The operator itself, from rest: sum_i weights[i] play_{thresholds_v[i]}(drive_v), volts.
 std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v);
 
+/// linear_drive_of() sample by sample, from rest; its past goes on.
+class LinearDrive {
+ public:
+  LinearDrive(const schema::Hysteresis& hysteresis, double pole_hz, double rate_hz);
+  double operator()(double drive_v);
+
+ private:
+  schema::Hysteresis hysteresis_;
+  std::vector<double> plays_;
+  double kept_, charge_v_ = 0, last_v_ = 0;
+};
+
 /// The drive that would do to the linear model what `drive_v`, held for a tick each, does to a bender with
 /// this hysteresis, from rest: charge, its hysteresis, and the drive that charges so. Double precision;
 /// volts.

@@ -24,6 +24,13 @@ class LimitTally {
     wished_v2_ += wished_v * wished_v;
     removed_v2_ += removed_v * removed_v;
   }
+  /// Of other ticks.
+  void add(const LimitTally& other) noexcept {
+    ticks_ += other.ticks_;
+    amplitude_ += other.amplitude_, slew_ += other.slew_, energy_ += other.energy_;
+    gated_ += other.gated_, unsound_ += other.unsound_;
+    wished_v2_ += other.wished_v2_, removed_v2_ += other.removed_v2_;
+  }
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t amplitude_limited() const { return amplitude_; }
   std::uint64_t slew_limited() const { return slew_; }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "data-schema/statistics.hpp"
+#include "playback/felt_path.hpp"
 #include "playback/hysteresis_inverse.hpp"
 #include "playback/identified_band.hpp"
 #include "playback/kept_error.hpp"
@@ -16,7 +17,6 @@
 #include "playback/reference/spatial_content.hpp"
 #include "playback/reference/wanted.hpp"
 #include "playback/texture_check.hpp"
-#include "playback/texture_lookup.hpp"
 
 namespace tacto::playback {
 
@@ -68,28 +68,21 @@ Result<void> check_length(const FingerPath& path, const RenderOptions& options) 
   return {};
 }
 
-Result<void> check_inputs(const schema::Texture& texture, const FingerPath& path,
+Result<void> check_textures(std::span<const PlacedTexture> textures, Ends ends) {
+  for (const PlacedTexture& placed : textures)
+    if (auto sound = check_playable(*placed.texture); !sound) return sound;
+  if (textures.size() > 1 && ends != Ends::stop)
+    return fail(Fault::unsuitable, "one of several textures can't go on beyond its ends", "ends",
+                "let them stop");
+  return {};
+}
+
+Result<void> check_inputs(std::span<const PlacedTexture> textures, const FingerPath& path,
                           const RenderOptions& options) {
   if (auto sound = check_options(options); !sound) return sound;
-  if (auto sound = check_playable(texture); !sound) return sound;
+  if (auto sound = check_textures(textures, options.ends); !sound) return sound;
   if (auto sound = check_finger_path(path); !sound) return sound;
   return check_length(path, options);
-}
-
-std::size_t count_outside(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid) {
-  const auto positions = positions_along(path, grid.rate_hz, grid.samples);
-  return static_cast<std::size_t>(
-      std::ranges::count_if(positions, [&](double x) { return !texture.contains(x); }));
-}
-
-tl::unexpected<schema::Error> never_met(const schema::Texture& texture, const FingerPath& path, double at_m) {
-  const auto [low, high] = std::ranges::minmax(path.position_m);
-  return fail(
-      Fault::unsuitable,
-      fmt::format("the finger moves between {:.4g} mm and {:.4g} mm and never meets the texture, which lies "
-                  "from {:.4g} mm to {:.4g} mm",
-                  low * 1e3, high * 1e3, at_m * 1e3, (at_m + texture.signal.length_m()) * 1e3),
-      "path", "--at lays the texture elsewhere");
 }
 
 Clipping clipping_of(const std::vector<double>& wished, const std::vector<double>& clipped) {
@@ -124,6 +117,7 @@ PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
   options.metres_per_count = o.encoder_step_m;
   options.gain_m_per_n = o.gain_m_per_n;
   options.band = o.band;
+  options.ends = o.ends;
   options.inverse = o.inverse;
   options.reconstruction = o.reconstruction;
   options.reconstruction_cutoff_hz = o.reconstruction_cutoff_hz;
@@ -151,13 +145,12 @@ ExactDrive moved_bender(const std::vector<double>& drive_v, const PaddedSpectrum
 }
 
 // What the budget chooses goes into the options.
-Result<void> decide_kernel(Rendering& rendering, const schema::Texture& texture, const Chain& chain,
+Result<void> decide_kernel(Rendering& rendering, std::span<const PlacedTexture> textures, const Chain& chain,
                            const RenderOptions& o, PrepareOptions& options) {
   if (!o.budget.asked()) return {};
   const auto table = schema::find_trade_table();
   if (!table) return schema::forward_error(table);
-  const PlacedTexture placed{&texture, o.at_m, 1};
-  auto decision = decide(std::span(&placed, 1), chain.transducer, options, o.budget, *table);
+  auto decision = decide(textures, chain.transducer, options, o.budget, *table);
   if (!decision) return schema::forward_error(decision);
   options = decision->chosen.in(options);
   rendering.decision = std::move(*decision);
@@ -165,12 +158,13 @@ Result<void> decide_kernel(Rendering& rendering, const schema::Texture& texture,
 }
 
 // What the kernel's limits took away is told; refused, unless it may.
-Result<ExactDrive> kernels_drive(Rendering& rendering, const schema::Texture& texture, const FingerPath& path,
-                                 const PaddedSpectrum& wanted, const Chain& chain, const RenderOptions& o) {
+Result<ExactDrive> kernels_drive(Rendering& rendering, std::span<const PlacedTexture> textures,
+                                 const FingerPath& path, const PaddedSpectrum& wanted, const Chain& chain,
+                                 const RenderOptions& o) {
   PrepareOptions options = kernel_options(o, rendering.onset_s);
-  if (auto chosen = decide_kernel(rendering, texture, chain, o, options); !chosen)
+  if (auto chosen = decide_kernel(rendering, textures, chain, o, options); !chosen)
     return schema::forward_error(chosen);
-  const auto prepared = prepare(texture, chain.transducer, options, o.at_m);
+  const auto prepared = prepare(textures, chain.transducer, options);
   if (!prepared) return schema::forward_error(prepared);
   rendering.warnings.insert(rendering.warnings.end(), prepared->notes.begin(), prepared->notes.end());
   KernelDrive drive = kernel_drive(*prepared, path, options, wanted.samples);
@@ -203,11 +197,14 @@ void warn_of_folding(Rendering& rendering, const ReadingGrid& grid, const spatia
       1e-3 * safe_hz / rendering.max_speed_mps, 1e3 * rendering.max_speed_mps));
 }
 
-Rendering described(const schema::Texture& texture, const FingerPath& path, const RenderOptions& options) {
+Rendering described(std::span<const PlacedTexture> textures, const FingerPath& path,
+                    const RenderOptions& options) {
   Rendering rendering;
   rendering.max_speed_mps = greatest_speed_mps(path);
   rendering.highest_passed_per_m = options.band.high_hz / rendering.max_speed_mps;
-  rendering.texture_highest_per_m = highest_spatial_frequency(texture.signal);
+  for (const PlacedTexture& placed : textures)
+    rendering.texture_highest_per_m =
+        std::max(rendering.texture_highest_per_m, highest_spatial_frequency(placed.texture->signal));
   rendering.onset_s = std::min(options.onset_s, path.duration_s() / 4);
   return rendering;
 }
@@ -241,7 +238,7 @@ Result<void> check_engine(Engine engine, const RenderOptions& o) {
 
 /// What both engines are given.
 struct RenderJob {
-  const schema::Texture& texture;
+  std::span<const PlacedTexture> textures;
   const FingerPath& path;
   const PaddedSpectrum& wanted;
   Chain chain;
@@ -250,7 +247,7 @@ struct RenderJob {
 
 Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job) {
   auto drive = engine == Engine::kernel
-                   ? kernels_drive(rendering, job.texture, job.path, job.wanted, job.chain, job.options)
+                   ? kernels_drive(rendering, job.textures, job.path, job.wanted, job.chain, job.options)
                    : limited_drive(rendering, job.wanted, job.chain, job.options);
   if (!drive) return schema::forward_error(drive);
   const double start_s = job.path.time_s.front(), rate_hz = job.options.rate_hz;
@@ -328,36 +325,44 @@ void warn_of_model(Rendering& rendering, const schema::Transducer& transducer, c
 
 }  // namespace
 
-Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
+Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPath& path,
                          const schema::Transducer& transducer, const RenderOptions& options,
                          const std::function<void(double)>& progress) {
-  if (auto sound = check_inputs(texture, path, options); !sound) return schema::forward_error(sound);
+  if (auto sound = check_inputs(textures, path, options); !sound) return schema::forward_error(sound);
   const auto report = [&](double fraction) {
     if (progress) progress(fraction);
   };
-  Rendering rendering = described(texture, path, options);
-  const TextureLookup lookup(texture.signal, options.at_m);
+  Rendering rendering = described(textures, path, options);
+  const auto felt = FeltPath::make(textures, path, options.ends);
+  if (!felt) return schema::forward_error(felt);
   const double finest_hz = rendering.texture_highest_per_m * rendering.max_speed_mps;
   const auto grid = reading_grid(path.duration_s(), options.rate_hz, options.band, finest_hz);
-  rendering.samples_outside = count_outside(lookup, path, grid);
-  if (rendering.samples_outside == grid.samples) return never_met(texture, path, options.at_m);
+  rendering.samples_outside = felt->count_outside(grid);
+  if (rendering.samples_outside == grid.samples) return felt->never_met();
   if (grid.capped) warn_of_folding(rendering, grid, options.band);
   rendering.reading_rate_hz = grid.reading_rate_hz();
-  rendering.fade_m = lookup.fade_m();
+  rendering.fade_m = felt->fade_m();
   report(0.1);
-  const auto wanted = exact_wanted(lookup, path, grid, options.band, options.gain_m_per_n, rendering.onset_s);
+  const auto wanted = felt->wanted(grid, options.band, options.gain_m_per_n, rendering.onset_s);
   report(0.8);
   const Engine engine = engine_for(options, transducer, rendering.reasons);
   if (auto knows = check_engine(engine, options); !knows) return schema::forward_error(knows);
   if (engine == Engine::kernel)
     if (auto near = check_counts(path, options); !near) return schema::forward_error(near);
   warn_of_model(rendering, transducer, options.band, engine);
-  const RenderJob job{texture, path, wanted, chain_of(transducer, options), options};
+  const RenderJob job{textures, path, wanted, chain_of(transducer, options), options};
   rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};
   if (auto driven = drive_by(engine, rendering, job); !driven) return schema::forward_error(driven);
   if (auto kept = keep_budget(rendering, job); !kept) return schema::forward_error(kept);
   report(1);
   return rendering;
+}
+
+Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
+                         const schema::Transducer& transducer, const RenderOptions& options,
+                         const std::function<void(double)>& progress) {
+  const PlacedTexture placed{&texture, options.at_m, 1};
+  return render(std::span(&placed, 1), path, transducer, options, progress);
 }
 
 }  // namespace tacto::playback

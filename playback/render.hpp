@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "playback/chain.hpp"
 #include "playback/finger_path.hpp"
 #include "playback/limits.hpp"
+#include "playback/prepare.hpp"
 #include "spatial/dsp/band.hpp"
 
 namespace tacto::playback {
@@ -28,7 +30,8 @@ enum class Engine { reference, kernel };
 struct RenderOptions {
   double rate_hz = 10e3;       ///< of the drive; Wiertlewski 2011 records at 10 kHz
   double gain_m_per_n = 1e-3;  ///< G_psi: displacement for force. A fingertip has about 1e3 N/m
-  double at_m = 0;             ///< where the texture's position 0 lies on the path's axis
+  double at_m = 0;             ///< of one texture: where its position 0 lies on the path's axis
+  Ends ends = Ends::stop;      ///< what lies beyond it, of one texture
   spatial::Band band;          ///< of the displacement
   Inverse inverse = Inverse::full;
   Reconstruction reconstruction = Reconstruction::none;
@@ -90,13 +93,21 @@ struct Rendering {
 /// measured error is beyond the asked one (the finger's encoder, its turns), the reference takes over, with a
 /// warning; a kernel that was named stays, and the error is refused.
 ///
+/// Several textures add up, each times its weight. Beyond its ends one may be looped or mirrored, as
+/// prepare() does it: then it is known to within 2^24 samples of the path.
+///
 /// Errors: usage, for options out of range (rate <= 2 band.high_hz, 0 < low < high, gain, onset not finite);
 /// unsuitable, for a texture that isn't force in N, a path that check_finger_path() refuses, that never meets
 /// the texture, that is shorter than one period of the band's lowest frequency or too long to render at once,
-/// for displacement or drive beyond a limit (see check_limits), for an error that
-/// is not kept; and as decide(). Not for the tick: allocates, and plans
+/// for ends of several textures that are not stop, for displacement or drive beyond a limit (see
+/// check_limits), for an error that is not kept; and as decide(). Not for the tick: allocates, and plans
 /// Fourier transforms. Source: Wiertlewski, Lozada, Hayward 2011, equations (5), (6) inverted in the
 /// frequency domain.
+schema::Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPath& path,
+                                 const schema::Transducer& transducer, const RenderOptions& options,
+                                 const std::function<void(double)>& progress = {});
+
+/// One texture at options.at_m.
 schema::Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
                                  const schema::Transducer& transducer, const RenderOptions& options,
                                  const std::function<void(double)>& progress = {});

@@ -4,50 +4,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <span>
+#include <vector>
 
 #include "analysis/compare/along_path.hpp"
 #include "data-schema/texture_wav.hpp"
-#include "playback/daemon/session_columns.hpp"
-#include "playback/daemon/stroke_report.hpp"
+#include "playback/daemon/session_stroke.hpp"
 
 namespace tacto::analysis {
 namespace {
 
-using playback::SessionColumns;
-using playback::StrokeRange;
+using playback::SessionStroke;
 using schema::Fault;
 using schema::Result;
 
-double length_of(const SessionColumns& columns, const StrokeRange& range) {
-  return std::abs(columns.position_m[range.last] - columns.position_m[range.first]);
-}
-
-Result<std::size_t> chosen(const SessionColumns& columns, const std::vector<StrokeRange>& ranges,
-                           std::size_t stroke, const std::string& session) {
-  if (ranges.empty())
-    return schema::fail(Fault::unsuitable, "holds no stroke of 5 mm while it plays", session);
-  if (stroke > ranges.size())
-    return schema::fail(Fault::usage, fmt::format("has {} strokes, and no stroke {}", ranges.size(), stroke),
-                        session);
-  if (stroke > 0) return stroke - 1;
-  const auto longest = std::ranges::max_element(
-      ranges, {}, [&](const StrokeRange& range) { return length_of(columns, range); });
-  return static_cast<std::size_t>(longest - ranges.begin());
-}
-
-Result<void> check_steady_gain(const SessionColumns& columns, const StrokeRange& range,
-                               const std::string& session) {
-  const auto first = columns.gain.begin() + static_cast<std::ptrdiff_t>(range.first);
-  const auto last = columns.gain.begin() + static_cast<std::ptrdiff_t>(range.last);
-  if (std::any_of(first, last, [&](double gain) { return gain != *first; }))
+Result<void> check_steady(const SessionStroke& stroke, const std::string& session) {
+  const double gain = stroke.rows.front().gain;
+  if (std::ranges::any_of(stroke.rows, [&](const playback::SessionRow& row) { return row.gain != gain; }))
     return schema::fail(Fault::unsuitable, "the gain changes within the stroke", session,
                         "name another stroke");
-  const auto turns = std::ranges::any_of(columns.turns, [&](const playback::TextureTurn& turn) {
-    const double felt_to = static_cast<double>(turn.row) + turn.fade_ticks + columns.look_ahead_ticks;
-    return turn.row <= range.last && felt_to >= static_cast<double>(range.first);
+  const auto first = static_cast<double>(stroke.first_row);
+  const std::uint64_t last = stroke.first_row + stroke.rows.size() - 1;
+  const auto turns = std::ranges::any_of(stroke.turns, [&](const playback::TextureTurn& turn) {
+    const double felt_to = static_cast<double>(turn.row) + turn.fade_ticks + stroke.overview.look_ahead_ticks;
+    return turn.row <= last && felt_to >= first;
   });
   if (turns)
     return schema::fail(Fault::unsuitable, "the texture changes within the stroke", session,
@@ -56,14 +36,12 @@ Result<void> check_steady_gain(const SessionColumns& columns, const StrokeRange&
 }
 
 // With the textures that the whole stroke is of.
-Result<schema::SessionHeader> header_of(const SessionColumns& columns, const StrokeRange& range,
-                                        const std::string& session) {
-  if (const auto steady = check_steady_gain(columns, range, session); !steady)
-    return schema::forward_error(steady);
-  schema::SessionHeader header = columns.header;
+Result<schema::SessionHeader> header_of(const SessionStroke& stroke, const std::string& session) {
+  if (const auto steady = check_steady(stroke, session); !steady) return schema::forward_error(steady);
+  schema::SessionHeader header = stroke.overview.header;
   const auto later = std::ranges::find_if(
-      columns.turns, [&](const playback::TextureTurn& turn) { return turn.row > range.first; });
-  if (later == columns.turns.begin()) return header;
+      stroke.turns, [&](const playback::TextureTurn& turn) { return turn.row > stroke.first_row; });
+  if (later == stroke.turns.begin()) return header;
   const auto& brings = std::prev(later)->brings;
   if (!brings)
     return schema::fail(Fault::unsuitable,
@@ -73,15 +51,16 @@ Result<schema::SessionHeader> header_of(const SessionColumns& columns, const Str
   return header;
 }
 
-Result<schema::Texture> along(const SessionColumns& columns, const StrokeRange& range) {
-  const auto received = playback::received_displacement_m(columns);
-  const std::size_t count = range.last - range.first + 1;
+Result<schema::Texture> along(const SessionStroke& stroke) {
+  const schema::SessionHeader& header = stroke.overview.header;
+  std::vector<double> position_m(stroke.rows.size());
+  std::ranges::transform(stroke.rows, position_m.begin(), &playback::SessionRow::position_m);
   SignalAlongPath signal;
-  signal.values = std::span(received).subspan(range.first, count);
-  signal.position_m = std::span(columns.position_m).subspan(range.first, count);
-  signal.rate_hz = columns.header.rate_hz;
-  signal.quantum_m = columns.header.metres_per_count;
-  signal.band = {columns.header.low_hz, columns.header.high_hz};
+  signal.values = stroke.received_m;
+  signal.position_m = position_m;
+  signal.rate_hz = header.rate_hz;
+  signal.quantum_m = header.metres_per_count;
+  signal.band = {header.low_hz, header.high_hz};
   signal.quantity = "displacement";
   signal.unit = "m";
   return texture_along(signal);
@@ -90,21 +69,15 @@ Result<schema::Texture> along(const SessionColumns& columns, const StrokeRange& 
 }  // namespace
 
 Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke) {
-  const auto columns = playback::read_session_columns(session);
-  if (!columns) return schema::forward_error(columns);
-  if (columns->lost_at)
-    return schema::fail(Fault::unsuitable, fmt::format("{} ticks are missing", columns->lost), session,
-                        "compare a session that is whole");
-  const auto ranges = playback::stroke_ranges(*columns);
-  const auto which = chosen(*columns, ranges, stroke, session);
-  if (!which) return schema::forward_error(which);
-  auto header = header_of(*columns, ranges[*which], session);
+  const auto found = playback::read_session_stroke(session, stroke);
+  if (!found) return schema::forward_error(found);
+  auto header = header_of(*found, session);
   if (!header) return schema::forward_error(header);
-  auto texture = along(*columns, ranges[*which]);
+  auto texture = along(*found);
   if (!texture) return schema::forward_error(texture);
-  PlayedTexture played{std::move(*texture), std::move(*header), *which + 1, ranges.size(),
-                       columns->gain[ranges[*which].first]};
-  played.texture.simulated = columns->header.simulated;
+  PlayedTexture played{std::move(*texture), std::move(*header), found->stroke, found->strokes,
+                       found->rows.front().gain};
+  played.texture.simulated = found->overview.header.simulated;
   return played;
 }
 

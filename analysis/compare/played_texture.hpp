@@ -20,9 +20,8 @@ struct PlayedTexture {
   double gain = 1;                      ///< factor on the textures' own gains
 };
 
-/// `stroke` is 1-based; 0 takes the longest. Errors: as read_session_columns, texture_along; usage: no such
-/// stroke; unsuitable: no stroke of 5 mm, ticks missing, a gain or texture
-/// that changes within the stroke, or to one that an older session does not name before it.
+/// `stroke` is 1-based; 0 takes the longest. Errors: as read_session_stroke, texture_along; unsuitable: a
+/// gain or texture that changes within the stroke, or to one that an older session does not name before it.
 schema::Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke);
 
 /// A texture as the session's finger was to feel it: force times gain, where it lay. `file` names it, by stem

@@ -11,7 +11,7 @@
 #include "data-schema/recording_frames.hpp"
 #include "data-schema/spectrogram.hpp"
 #include "data-schema/texture.hpp"
-#include "playback/daemon/session_columns.hpp"
+#include "playback/daemon/session_rows.hpp"
 #include "spatial/make_texture.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
 #include "spatial/spectrogram.hpp"
@@ -112,16 +112,6 @@ Result<void> draw_texture(const schema::Texture& texture, const std::string& nam
   return {};
 }
 
-void add_drive_picture(const playback::SessionColumns& columns, ProjectFile& file) {
-  Envelope drive(columns.tick.size()), position(columns.tick.size());
-  for (std::size_t i = 0; i < columns.tick.size(); ++i) {
-    drive.add(columns.time_s[i], columns.drive_v[i]);
-    position.add(columns.time_s[i], 1e3 * columns.position_m[i]);
-  }
-  file.pictures.push_back({"Drive", "time (s)", "drive (V)", false, {drive.curve("")}});
-  file.pictures.push_back({"Finger", "time (s)", "position (mm)", false, {position.curve("")}});
-}
-
 }  // namespace
 
 Envelope::Envelope(std::size_t samples) : per_piece_(samples / kMostPieces + 1) {}
@@ -208,38 +198,58 @@ namespace {
 
 constexpr std::size_t kMostTurnsShown = 20;
 
-void add_turns(const playback::SessionColumns& columns, ProjectFile& file) {
-  for (std::size_t i = 0; i < std::min(columns.turns.size(), kMostTurnsShown); ++i) {
-    const playback::TextureTurn& turn = columns.turns[i];
+void add_turns(const std::vector<playback::TextureTurn>& turns, ProjectFile& file) {
+  for (std::size_t i = 0; i < std::min(turns.size(), kMostTurnsShown); ++i) {
+    const playback::TextureTurn& turn = turns[i];
     std::string names = turn.brings ? "" : "not named";
     if (turn.brings)
       for (const schema::SessionTexture& texture : turn.brings->textures)
         names += (names.empty() ? "" : ", ") + name_of_file(texture.file);
-    const std::string when = for_people(columns.time_s[turn.row], Dimension::time);
-    file.figures.push_back({"changed at " + when, names});
+    file.figures.push_back({"changed at " + for_people(turn.time_s, Dimension::time), names});
   }
 }
+
+// What is shown of a session's ticks, however many.
+struct TicksShown {
+  Envelope drive, position;
+  double peak_v = 0, last_s = 0;
+
+  explicit TicksShown(std::uint64_t ticks) : drive(ticks), position(ticks) {}
+  void add(const playback::SessionRow& row) {
+    drive.add(row.time_s, row.drive_v);
+    position.add(row.time_s, 1e3 * row.position_m);
+    peak_v = std::max(peak_v, std::abs(row.drive_v));
+    last_s = row.time_s;
+  }
+  void draw(ProjectFile& file) const {
+    file.pictures.push_back({"Drive", "time (s)", "drive (V)", false, {drive.curve("")}});
+    file.pictures.push_back({"Finger", "time (s)", "position (mm)", false, {position.curve("")}});
+  }
+};
 
 }  // namespace
 
 Result<void> add_session(const std::string& path, ProjectFile& file) {
-  const auto columns = playback::read_session_columns(path);
-  if (!columns) return schema::forward_error(columns);
-  const schema::SessionHeader& header = columns->header;
+  const auto overview = playback::session_overview(path);
+  if (!overview) return schema::forward_error(overview);
+  playback::RowMaker maker(*overview);
+  TicksShown ticks(overview->ticks);
+  const auto read =
+      playback::read_rows(maker, path, [&](const playback::SessionRow& row) { ticks.add(row); });
+  if (!read) return read;
+  const schema::SessionHeader& header = overview->header;
   file.date = header.created;
   file.origin = header.device_uri;
   file.simulated = header.simulated;
-  const double peak_v =
-      std::abs(*std::ranges::max_element(columns->drive_v, {}, [](double volts) { return std::abs(volts); }));
-  file.figures = {{"played", for_people(columns->time_s.back(), Dimension::time)},
-                  {"ticks", fmt::format("{}, {} lost, at {}", columns->tick.size(), columns->lost,
+  file.figures = {{"played", for_people(ticks.last_s, Dimension::time)},
+                  {"ticks", fmt::format("{}, {} lost, at {}", overview->ticks, overview->lost,
                                         for_people(header.rate_hz, Dimension::frequency))},
-                  {"drive, peak", for_people(peak_v, Dimension::voltage)},
+                  {"drive, peak", for_people(ticks.peak_v, Dimension::voltage)},
                   {"transducer", header.transducer.name}};
   for (const schema::SessionTexture& texture : header.textures)
     file.figures.push_back({"texture", name_of_file(texture.file)});
-  add_turns(*columns, file);
-  add_drive_picture(*columns, file);
+  add_turns(maker.turns(), file);
+  ticks.draw(file);
   return {};
 }
 

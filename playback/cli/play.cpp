@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -110,10 +109,6 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explai
   cli::warn("playing ended in a fault: " + outcome.status.fault);
   report.add("fault", outcome.status.fault).ends_with(schema::Fault::device);
   return report;
-}
-
-std::string session_named_after(const std::string& what) {
-  return dated_session(std::filesystem::path(what).filename().stem().stem().string() + "-");
 }
 
 Result<Report> run_play(const PlayVerbOptions& asked) {

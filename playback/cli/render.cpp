@@ -6,9 +6,11 @@
 
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/statistics.hpp"
+#include "playback/choices.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/verbs.hpp"
+#include "playback/daemon/laid_textures.hpp"
 #include "playback/drive_files.hpp"
 #include "playback/render.hpp"
 
@@ -20,24 +22,31 @@ using schema::Result;
 
 namespace {
 
+/// Of a scene they go before what it says of itself.
+struct NamedChoices {
+  CLI::Option *inverse = nullptr, *interpolation = nullptr, *reconstruction = nullptr, *cutoff = nullptr,
+              *hold = nullptr, *energy = nullptr, *energy_window = nullptr;
+};
+
 struct RenderVerbOptions {
-  std::string texture, path, transducer, drive, displacement, wanted;
-  bool force = false;
+  ProgramRequest what;
+  std::string path, transducer, drive, displacement, wanted;
   RenderOptions render;
   AskedBudget budget;
   CLI::Option* engine = nullptr;
-  std::optional<double> gain_m_per_n;
+  NamedChoices named;
   std::optional<schema::PlaybackGain> kept_gain;
 };
 
 void add_files(CLI::App& app, RenderVerbOptions& o) {
-  app.add_option("texture", o.texture, "Texture: its stem, NAME.texture.json or NAME.texture.wav")
+  app.add_option("what", o.what.file, "Texture or scene: its stem, NAME.texture.json, NAME.scene.json ...")
       ->required();
   app.add_option("--path", o.path,
                  "Finger path: CSV with the columns time_s,position_m; between its points by monotone cubics")
       ->required();
   app.add_option("--transducer", o.transducer, "Transducer: a preset or NAME.transducer.json")->required();
-  app.add_flag("--force", o.force, "Take a transducer file that says of itself that its model does not fit");
+  app.add_flag("--force", o.what.force,
+               "Take a transducer file that says of itself that its model does not fit");
   app.add_option("-o,--output", o.drive, "The drive: float WAV in volts at the amplifier's input")
       ->required();
   app.add_option("--displacement", o.displacement,
@@ -48,12 +57,12 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
 void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
   cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency, "Sample rate of the drive");
-  cli::add_quantity(app, "--gain", verb.gain_m_per_n, Dimension::compliance,
-                    "Displacement for force; unless told the one that the texture keeps, or 1mm/N");
-  cli::add_quantity(
-      app, "--at", o.at_m, Dimension::length,
-      "Where the texture's position 0 lies on the path's axis; for a path in bench positions give the "
-      "source_origin_m that `info TEXTURE` tells");
+  cli::add_quantity(app, "--gain", verb.what.gain_m_per_n, Dimension::compliance,
+                    "Of a texture: displacement for force; unless told the one that it keeps, or 1mm/N");
+  cli::add_quantity(app, "--at", verb.what.at_m, Dimension::length,
+                    "Of a texture: where the texture's position 0 lies on the path's axis; for a path in "
+                    "bench positions give the "
+                    "source_origin_m that `info TEXTURE` tells");
   cli::add_quantity(app, "--low", o.band.low_hz, Dimension::frequency,
                     "Lowest frequency of the displacement");
   cli::add_quantity(app, "--high", o.band.high_hz, Dimension::frequency,
@@ -62,10 +71,21 @@ void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
                     "Fade at either end of the path, for a finger that starts inside the texture");
 }
 
+void add_ends(CLI::App& app, ProgramRequest& what) {
+  app.add_option_function<std::string>(
+         "--ends",
+         [&what](const std::string& word) {
+           what.ends =
+               static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
+         },
+         "Of a texture: what lies beyond its ends")
+      ->type_name("stop|mirror|loop");
+}
+
 // By the words of play. A path tells no normal force: there is no contact.
 void add_kernel(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
-  verb.budget.reading =
+  verb.budget.reading = verb.named.interpolation =
       cli::add_choice<wire::Interpolation>(app, "--interpolation", o.interpolation,
                                            {{"nearest", wire::Interpolation::nearest},
                                             {"linear", wire::Interpolation::linear},
@@ -73,18 +93,18 @@ void add_kernel(CLI::App& app, RenderVerbOptions& verb) {
                                             {"sinc", wire::Interpolation::sinc}},
                                            "How the kernel reads the texture between samples")
           ->needs(verb.engine);
-  CLI::Option* limit =
+  verb.named.energy =
       cli::add_quantity(app, "--energy-limit", o.energy_rms_v, Dimension::voltage,
                         "Turn the kernel's drive down where its RMS would pass this; 0V: never")
           ->needs(verb.engine);
-  cli::add_quantity(app, "--energy-window", o.energy_window_s, Dimension::time,
-                    "Over which that RMS is taken")
-      ->needs(limit);
+  verb.named.energy_window = cli::add_quantity(app, "--energy-window", o.energy_window_s, Dimension::time,
+                                               "Over which that RMS is taken")
+                                 ->needs(verb.named.energy);
 }
 
 void add_model(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
-  CLI::Option* inverse =
+  verb.budget.inverse = verb.named.inverse =
       cli::add_choice<Inverse>(app, "--inverse", o.inverse,
                                {{"full", Inverse::full},
                                 {"magnitude", Inverse::magnitude},
@@ -92,15 +112,16 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
                                 {"none", Inverse::none}},
                                "What of the transducer the drive undoes: amplitude and phase, amplitude, the "
                                "gain at rest, or nothing");
-  CLI::Option* reconstruction = cli::add_choice<Reconstruction>(
+  verb.named.reconstruction = cli::add_choice<Reconstruction>(
       app, "--reconstruction", o.reconstruction,
       {{"none", Reconstruction::none}, {"butterworth3", Reconstruction::butterworth3}},
       "Analog filter behind the converter, undone as well");
-  cli::add_quantity(app, "--cutoff", o.reconstruction_cutoff_hz, Dimension::frequency,
-                    "Cut-off of butterworth3")
-      ->needs(reconstruction);
-  cli::add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
-                        "Whether the converter holds each sample until the next, undone as well");
+  verb.named.cutoff = cli::add_quantity(app, "--cutoff", o.reconstruction_cutoff_hz, Dimension::frequency,
+                                        "Cut-off of butterworth3")
+                          ->needs(verb.named.reconstruction);
+  verb.named.hold =
+      cli::add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
+                            "Whether the converter holds each sample until the next, undone as well");
   app.add_flag("!--keep-hysteresis", o.undo_hysteresis,
                "Do not undo the hysteresis that the transducer's file tells (the kernel does)");
   CLI::Option* engine = verb.engine = cli::add_choice<Engine>(
@@ -114,7 +135,6 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
                              {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
                              "What to do with a drive that passes a limit of the transducer");
   declare_tick_budget(app, verb.budget);
-  verb.budget.inverse = inverse;
 }
 
 std::vector<SignalFile> files_of(const RenderVerbOptions& o, const Rendering& rendering) {
@@ -179,16 +199,39 @@ Result<void> check_outputs(const RenderVerbOptions& o) {
   return check_signal_files(files_of(o, Rendering{}));
 }
 
+// What a scene says of how it is to be played, where nobody named something else.
+Result<void> take_choices(RenderVerbOptions& o, const schema::PlaybackChoices& scene) {
+  const auto played = with_choices({}, scene);
+  if (!played) return schema::forward_error(played);
+  const auto take = [](bool said, const CLI::Option* named, auto& option, const auto& value) {
+    if (said && named->count() == 0) option = value;
+  };
+  RenderOptions& r = o.render;
+  take(scene.inverse.has_value(), o.named.inverse, r.inverse, played->inverse);
+  take(scene.interpolation.has_value(), o.named.interpolation, r.interpolation, played->interpolation);
+  take(scene.reconstruction.has_value(), o.named.reconstruction, r.reconstruction, played->reconstruction);
+  take(scene.cutoff_hz.has_value(), o.named.cutoff, r.reconstruction_cutoff_hz,
+       played->reconstruction_cutoff_hz);
+  take(scene.hold.has_value(), o.named.hold, r.hold, played->hold);
+  take(scene.energy_rms_v.has_value(), o.named.energy, r.energy_rms_v, played->energy_rms_v);
+  take(scene.energy_window_s.has_value(), o.named.energy_window, r.energy_window_s, played->energy_window_s);
+  if (played->contact_on_n > 0)
+    cli::warn("the path tells no normal force: the scene's contact gate is left out");
+  return {};
+}
+
 Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& transducer) {
-  const auto texture = schema::read_texture(o.texture);
-  if (!texture) return schema::forward_error(texture);
-  if (!o.gain_m_per_n) o.kept_gain = texture->playback_gain;
-  if (o.kept_gain) o.render.gain_m_per_n = o.kept_gain->gain_m_per_n;
-  o.render.gain_m_per_n = o.gain_m_per_n.value_or(o.render.gain_m_per_n);
+  const auto laid = lay_textures(o.what);
+  if (!laid) return schema::forward_error(laid);
+  if (const auto taken = take_choices(o, laid->choices()); !taken) return schema::forward_error(taken);
+  o.kept_gain = laid->kept_gain();
+  o.render.gain_m_per_n = laid->gain();
+  o.render.ends = laid->ends();
   const auto path = read_finger_path(o.path);
   if (!path) return schema::forward_error(path);
   cli::Progress progress("rendering");
-  return render(*texture, *path, transducer, o.render, [&](double fraction) { progress.update(fraction); });
+  return render(laid->placed(), *path, transducer, o.render,
+                [&](double fraction) { progress.update(fraction); });
 }
 
 Result<Report> run_render(RenderVerbOptions o) {
@@ -199,7 +242,7 @@ Result<Report> run_render(RenderVerbOptions o) {
   if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
   const auto transducer = schema::read_transducer(o.transducer);
   if (!transducer) return schema::forward_error(transducer);
-  if (const auto usable = schema::check_usable(*transducer, o.force); !usable)
+  if (const auto usable = schema::check_usable(*transducer, o.what.force); !usable)
     return schema::forward_error(usable);
   const auto rendering = rendered(o, *transducer);
   if (!rendering) return schema::forward_error(rendering);
@@ -213,6 +256,7 @@ cli::Action declare_render(CLI::App& app) {
   auto options = std::make_shared<RenderVerbOptions>();
   add_files(app, *options);
   add_quantities(app, *options);
+  add_ends(app, options->what);
   add_model(app, *options);
   return [options] { return run_render(*options); };
 }
@@ -220,8 +264,11 @@ cli::Action declare_render(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kRenderVerb{
-    "render", "Play a texture along a finger path, offline: the drive for the transducer",
-    "tactograph render oak --path path.csv --transducer wiertlewski2011 -o drive.wav --displacement tray.wav",
+    "render", "Play a texture or scene along a finger path, offline: the drive for the transducer",
+    "tactograph render oak --path path.csv --transducer wiertlewski2011 -o drive.wav --displacement "
+    "tray.wav\n"
+    "  tactograph render bench.scene.json --path path.csv --transducer wiertlewski2011 --engine kernel -o "
+    "drive.wav",
     declare_render};
 
 }  // namespace tacto::playback

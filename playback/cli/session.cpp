@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <fstream>
 #include <memory>
 
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/session.hpp"
 #include "playback/cli/limits_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/session_export.hpp"
@@ -18,6 +22,56 @@ namespace {
 struct SessionVerbOptions {
   std::string session;
   std::vector<std::string> outputs;
+  std::string strokes;
+};
+
+constexpr std::string_view kStrokeColumns =
+    "stroke,from_s,to_s,from_m,to_m,received_rms_m,wanted_rms_m,error_db,received_over_wanted_db,"
+    "removed_by_limits_db,limited_ticks,energy_limited_ticks,gated_ticks";
+
+// What is not known is left empty.
+std::string stroke_line(std::uint64_t number, const PlayedStroke& s) {
+  const auto cell = [](bool known, double value) { return known ? fmt::format("{:.9g}", value) : ""; };
+  const bool judged = s.wanted_rms_m > 0;
+  return fmt::format("{},{:.9f},{:.9f},{:.9g},{:.9g},{:.9g},{},{},{},{},{},{},{}\n", number, s.from_s, s.to_s,
+                     s.from_m, s.to_m, s.received_rms_m, cell(judged, s.wanted_rms_m),
+                     cell(judged, s.error_db), cell(judged, s.level_db),
+                     cell(s.limits && s.limits->removed_any(), s.limits ? s.limits->removed_db() : 0),
+                     s.limited_ticks, s.energy_limited_ticks, s.gated_ticks);
+}
+
+bool is_stroke_table(std::string_view line) {
+  return line == kStrokeColumns;
+}
+
+/// The strokes as a table, written as they are found.
+class StrokeTable {
+ public:
+  Result<void> open(const std::string& file) {
+    if (const auto free = schema::check_table_free(file, is_stroke_table); !free) return free;
+    const auto temporary = pending_.add(file);
+    if (!temporary) return schema::forward_error(temporary);
+    file_ = file;
+    out_.open(*temporary, std::ios::binary);
+    out_ << kStrokeColumns << '\n';
+    return {};
+  }
+  void add(const PlayedStroke& stroke) {
+    if (out_.is_open()) out_ << stroke_line(++strokes_, stroke);
+  }
+  Result<void> close() {
+    if (!out_.is_open()) return {};
+    out_.flush();
+    if (!out_)
+      return schema::fail(schema::Fault::cannot_write, "can't be written", file_, "is the disk full?");
+    return pending_.commit(schema::Existing::replace);
+  }
+
+ private:
+  schema::PendingFiles pending_;
+  std::string file_;
+  std::ofstream out_;
+  std::uint64_t strokes_ = 0;
 };
 
 Report stroke_row(const PlayedStroke& stroke) {
@@ -36,21 +90,49 @@ Report stroke_row(const PlayedStroke& stroke) {
       .add("gated_ticks", stroke.gated_ticks);
 }
 
-Result<Report> run_session(const SessionVerbOptions& o) {
+Result<void> export_all(const SessionVerbOptions& o) {
   for (const std::string& output : o.outputs) {
-    const auto said = export_session(o.session, output);
+    cli::Progress progress("exporting " + output);
+    const auto said = export_session(o.session, output, [&](double part) { progress.update(part); });
     if (!said) return schema::forward_error(said);
     if (!said->empty()) cli::warn(fmt::format("{}: {}", output, *said));
   }
-  const auto strokes = report_strokes(o.session);
+  return {};
+}
+
+Result<StrokeReport> judge_all(const SessionVerbOptions& o) {
+  StrokeTable table;
+  if (!o.strokes.empty())
+    if (const auto opened = table.open(o.strokes); !opened) return schema::forward_error(opened);
+  cli::Progress progress("judging");
+  auto report = report_strokes(o.session, {[&](const PlayedStroke& stroke) { table.add(stroke); },
+                                           [&](double part) { progress.update(part); }});
+  if (!report) return report;
+  const auto closed = table.close();
+  return closed ? report : schema::forward_error(closed);
+}
+
+void warn_of(const StrokeReport& strokes) {
+  for (const std::string& note : strokes.notes) cli::warn(note);
+  if (strokes.stroke_count > strokes.strokes.size())
+    cli::warn(fmt::format("the first {} of {} strokes are told here: --strokes FILE.csv takes all",
+                          strokes.strokes.size(), strokes.stroke_count));
+}
+
+Result<Report> run_session(const SessionVerbOptions& o) {
+  if (const auto exported = export_all(o); !exported) return schema::forward_error(exported);
+  const auto strokes = judge_all(o);
   if (!strokes) return schema::forward_error(strokes);
-  for (const std::string& note : strokes->notes) cli::warn(note);
+  warn_of(*strokes);
+  std::vector<std::string> written = o.outputs;
+  if (!o.strokes.empty()) written.push_back(o.strokes);
   Report report;
   report.add("session", schema::session_path(o.session));
-  if (!o.outputs.empty()) report.add("written", o.outputs);
+  if (!written.empty()) report.add("written", written);
   report.add("band_low_hz", strokes->low_hz).add("band_high_hz", strokes->high_hz);
   add_removed(report, strokes->limits);
   if (strokes->limits) report.add("energy_limited_ticks", strokes->limits->energy_limited());
+  report.add("stroke_count", strokes->stroke_count);
   std::vector<Report> rows;
   for (const PlayedStroke& stroke : strokes->strokes) rows.push_back(stroke_row(stroke));
   report.add("strokes", std::move(rows));
@@ -63,6 +145,7 @@ cli::Action declare_session(CLI::App& app) {
   app.add_option("session", options->session, "NAME.session")->required();
   app.add_option("-o,--output", options->outputs,
                  "Table of the ticks: .csv, .wav or .nc; may be given again");
+  app.add_option("--strokes", options->strokes, "Table of the strokes: .csv, a line each, however many");
   return [options] { return run_session(*options); };
 }
 

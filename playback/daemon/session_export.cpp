@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 
@@ -10,10 +12,12 @@
 #include "data-schema/session_netcdf.hpp"
 #include "data-schema/wav.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
-#include "playback/daemon/session_columns.hpp"
+#include "playback/daemon/session_rows.hpp"
 
 namespace tacto::playback {
 namespace {
+
+constexpr std::size_t kBlockRows = 65536;
 
 constexpr std::string_view kColumns =
     "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s,energy_limited,gated,"
@@ -28,6 +32,7 @@ using schema::Fault;
 using schema::PendingFiles;
 using schema::Result;
 using schema::SessionTick;
+using Heard = std::function<void(double)>;
 
 bool is_session_table(std::string_view line) {
   return line.starts_with(kOldestColumns);
@@ -53,78 +58,130 @@ std::string lines_of(const std::vector<SessionTick>& ticks, const schema::Sessio
   return text;
 }
 
-Result<std::string> write_csv(const std::string& session, const std::string& temporary) {
+Result<std::string> write_csv(const std::string& session, const std::string& temporary,
+                              const Heard& progress) {
   auto reader = schema::SessionReader::open(session);
   if (!reader) return schema::forward_error(reader);
   std::ofstream out(temporary, std::ios::binary);
   out << kColumns << '\n';
-  while (const auto block = reader->next())
+  while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
       out << lines_of(*ticks, reader->header());
+    if (progress) progress(part_read(*reader));
+  }
   out.flush();
   return out ? Result<std::string>()
              : fail(Fault::cannot_write, "can't be written", temporary, "is the disk full?");
 }
 
-Result<std::string> write_wav(const std::string& session, const std::string& temporary) {
-  const auto columns = read_session_columns(session);
-  if (!columns) return schema::forward_error(columns);
-  if (columns->lost_at)
+// What a WAV would hold of periods without a tick: at most as much as of the others, or half an hour.
+Result<void> check_even(const SessionOverview& overview) {
+  const auto most = std::max(overview.ticks, static_cast<std::uint64_t>(1800 * overview.header.rate_hz));
+  if (overview.lost_at)
     return fail(Fault::unsuitable,
-                fmt::format("ticks are missing from {} on, which a WAV can't show", *columns->lost_at),
-                session, "export CSV or netCDF, which carry the time");
-  const auto even = evened(*columns);
-  if (!even) return schema::forward_error(even);
-  auto wav = schema::WavWriter::create(temporary, columns->header.rate_hz, 2, schema::SampleFormat::float64);
-  if (!wav) return schema::forward_error(wav);
-  std::vector<double> frames;
-  for (std::size_t i = 0; i < even->columns.tick.size(); ++i)
-    frames.insert(frames.end(), {even->columns.drive_v[i], even->columns.position_m[i]});
-  auto written = wav->write(frames);
-  if (written) written = wav->close();
-  if (!written) return schema::forward_error(written);
-  return even->added == 0 ? std::string()
-                          : fmt::format(
-                                "{} ticks were never made, for the computer stood still: the WAV goes "
-                                "straight from one neighbour to the other",
-                                even->added);
+                fmt::format("ticks are missing from {} on, which a WAV can't show", *overview.lost_at),
+                overview.path, "export CSV or netCDF, which carry the time");
+  if (overview.missing_periods > most)
+    return fail(Fault::unsuitable,
+                fmt::format("{} periods passed without a tick, beside {} ticks: most of the WAV would be "
+                            "made up",
+                            overview.missing_periods, overview.ticks),
+                overview.path, "export CSV or netCDF, which carry the time");
+  return {};
 }
 
-std::vector<schema::SessionTurn> turns_of(const SessionColumns& columns) {
+std::string words_of_missing(const SessionOverview& overview) {
+  if (overview.missing_periods == 0) return {};
+  return fmt::format(
+      "{} ticks were never made, for the computer stood still: the WAV goes straight from one neighbour to "
+      "the other",
+      overview.missing_periods);
+}
+
+// Frames are written in blocks; the first failure stays.
+class FrameWriter {
+ public:
+  explicit FrameWriter(schema::WavWriter& wav) : wav_(wav) { frames_.reserve(2 * kBlockRows); }
+  void add(const SessionRow& row) {
+    frames_.insert(frames_.end(), {row.drive_v, row.position_m});
+    if (frames_.size() == 2 * kBlockRows) write();
+  }
+  Result<void> close() {
+    write();
+    return written_ ? wav_.close() : written_;
+  }
+
+ private:
+  void write() {
+    if (written_) written_ = wav_.write(frames_);
+    frames_.clear();
+  }
+  schema::WavWriter& wav_;
+  std::vector<double> frames_;
+  Result<void> written_;
+};
+
+Result<std::string> write_wav(const std::string& session, const std::string& temporary,
+                              const Heard& progress) {
+  const auto overview = session_overview(session);
+  if (!overview) return schema::forward_error(overview);
+  if (const auto even = check_even(*overview); !even) return schema::forward_error(even);
+  auto wav = schema::WavWriter::create(temporary, overview->header.rate_hz, 2, schema::SampleFormat::float64);
+  if (!wav) return schema::forward_error(wav);
+  FrameWriter frames(*wav);
+  RowMaker maker(*overview, UINT64_MAX);
+  const auto read = read_rows(
+      maker, session, [&](const SessionRow& row) { frames.add(row); }, progress);
+  if (!read) return schema::forward_error(read);
+  if (const auto written = frames.close(); !written) return schema::forward_error(written);
+  return words_of_missing(*overview);
+}
+
+std::vector<schema::SessionTurn> named_turns(const RowMaker& maker, double rate_hz) {
   std::vector<schema::SessionTurn> turns;
-  for (const TextureTurn& turn : columns.turns)
-    turns.push_back({columns.time_s[turn.row], turn.fade_ticks / columns.header.rate_hz,
+  for (const TextureTurn& turn : maker.turns())
+    turns.push_back({turn.time_s, turn.fade_ticks / rate_hz,
                      turn.brings ? turn.brings->textures : std::vector<schema::SessionTexture>()});
   return turns;
 }
 
-Result<std::string> write_netcdf(const std::string& session, const std::string& temporary) {
-  auto columns = read_session_columns(session);
-  if (!columns) return schema::forward_error(columns);
-  const std::vector<double> ticks(columns->tick.begin(), columns->tick.end());
-  const std::vector<double> encoder(columns->encoder.begin(), columns->encoder.end());
-  const std::vector<double> flags(columns->flags.begin(), columns->flags.end());
-  const auto written = schema::write_session_netcdf(
-      temporary, columns->header, turns_of(*columns),
-      {{"tick", "1", "tick since arming", &ticks},
-       {"encoder_count", "1", "encoder's count", &encoder},
-       {"position", "m", "position of the finger: the middle of the count", &columns->position_m},
-       {"drive", "V", "drive at the amplifier's input", &columns->drive_v},
-       {"gain", "1", "factor on the textures' gains", &columns->gain},
-       {"flags", "1", "flags of the wire's ticks", &flags}},
-      columns->time_s);
+Result<std::string> write_netcdf(const std::string& session, const std::string& temporary,
+                                 const Heard& progress) {
+  const auto overview = session_overview(session);
+  if (!overview) return schema::forward_error(overview);
+  schema::SessionNetcdf file(temporary, overview->header, overview->ticks,
+                             {{"tick", "1", "tick since arming"},
+                              {"encoder_count", "1", "encoder's count"},
+                              {"position", "m", "position of the finger: the middle of the count"},
+                              {"drive", "V", "drive at the amplifier's input"},
+                              {"gain", "1", "factor on the textures' gains"},
+                              {"flags", "1", "flags of the wire's ticks"}});
+  RowMaker maker(*overview);
+  const auto add = [&](const SessionRow& row) {
+    const double values[] = {static_cast<double>(row.tick),
+                             static_cast<double>(row.encoder),
+                             row.position_m,
+                             row.drive_v,
+                             row.gain,
+                             static_cast<double>(row.flags)};
+    file.add(row.time_s, values);
+  };
+  if (const auto read = read_rows(maker, session, add, progress); !read) return schema::forward_error(read);
+  const auto written = file.close(named_turns(maker, overview->header.rate_hz));
   return written ? Result<std::string>() : schema::forward_error(written);
 }
 
 struct Format {
   std::string_view ending;
-  Result<std::string> (*write)(const std::string& session, const std::string& temporary);
+  Result<std::string> (*write)(const std::string& session, const std::string& temporary,
+                               const Heard& progress);
 };
 constexpr Format kFormats[] = {{".csv", write_csv}, {".wav", write_wav}, {".nc", write_netcdf}};
 
 }  // namespace
 
-Result<std::string> export_session(const std::string& session, const std::string& file) {
+Result<std::string> export_session(const std::string& session, const std::string& file,
+                                   const std::function<void(double)>& progress) {
   for (const Format& format : kFormats) {
     if (!file.ends_with(format.ending)) continue;
     const bool table = format.ending == ".csv";
@@ -134,7 +191,7 @@ Result<std::string> export_session(const std::string& session, const std::string
     PendingFiles pending;
     const auto temporary = pending.add(file);
     if (!temporary) return schema::forward_error(temporary);
-    auto said = format.write(session, *temporary);
+    auto said = format.write(session, *temporary, progress);
     if (!said) return said;
     const auto kept = pending.commit(table ? schema::Existing::replace : schema::Existing::keep);
     return kept ? said : schema::forward_error(kept);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "playback/daemon/session_replay.hpp"
+#include "playback/daemon/session_rows.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -40,12 +41,19 @@ Result<FlagsSeen> flags_in(const std::string& session) {
   return seen;
 }
 
-Result<void> hear_drive(const std::string& session, const WishListener& listener) {
+using TickListener = std::function<void(const SessionTick& tick)>;
+
+Result<void> hear_ticks(const std::string& session, std::uint64_t from, const TickListener& listener,
+                        const std::function<void(double)>& progress) {
   auto reader = schema::SessionReader::open(session);
   if (!reader) return schema::forward_error(reader);
-  while (const auto block = reader->next())
+  std::uint64_t heard = 0;
+  while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
-      for (const SessionTick& tick : *ticks) listener(tick, tick.drive_v);
+      for (const SessionTick& tick : *ticks)
+        if (heard++ >= from) listener(tick);
+    if (progress) progress(part_read(*reader));
+  }
   return {};
 }
 
@@ -64,17 +72,34 @@ core::TickOutput limited_tick(float drive_v, float wished_v, std::uint32_t flags
   return output;
 }
 
-Result<void> hear_wishes(const std::string& session, const WishListener& listener) {
+Result<void> hear_wishes(const std::string& session, const WishListener& listener,
+                         const std::function<void(double)>& progress) {
   const auto seen = flags_in(session);
   if (!seen) return schema::forward_error(seen);
   if (!seen->whole) return not_known("ticks are missing", session);
-  if (!seen->limited) return hear_drive(session, listener);
-  const auto outcome = replay_session(session, {}, listener);
+  if (!seen->limited)
+    return hear_ticks(
+        session, 0, [&](const SessionTick& tick) { listener(tick, tick.drive_v); }, progress);
+  const auto outcome = replay_session(session, progress, listener);
   if (!outcome) return schema::forward_error(outcome);
   if (!outcome->first_difference) return {};
   return not_known(
       fmt::format("the replayed drive is another one from tick {} on", outcome->first_difference->tick),
       session);
+}
+
+Result<std::optional<schema::Error>> hear_every_wish(
+    const std::string& session,
+    const std::function<void(const SessionTick& tick, std::optional<float> wished_v)>& listener,
+    const std::function<void(double)>& progress) {
+  std::uint64_t heard = 0;
+  const auto wishes = hear_wishes(
+      session, [&](const SessionTick& tick, float wished_v) { ++heard, listener(tick, wished_v); }, progress);
+  if (wishes) return std::optional<schema::Error>();
+  const auto rest = hear_ticks(
+      session, heard, [&](const SessionTick& tick) { listener(tick, std::nullopt); }, progress);
+  if (!rest) return schema::forward_error(rest);
+  return std::optional(wishes.error());
 }
 
 Result<LimitTally> tally_session(const std::string& session) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "data-schema/error.hpp"
@@ -20,7 +21,16 @@ core::TickOutput limited_tick(float drive_v, float wished_v, std::uint32_t flags
 /// not known.
 schema::Result<void> hear_wishes(
     const std::string& session,
-    const std::function<void(const schema::SessionTick& tick, float wished_v)>& listener);
+    const std::function<void(const schema::SessionTick& tick, float wished_v)>& listener,
+    const std::function<void(double)>& progress = {});
+
+/// The same of every tick: none where it is not known. Gives why it is not known of all, where it is not:
+/// then it is told up to where the replayed drive becomes another one. Errors: as SessionReader::open.
+/// `progress` hears fractions.
+schema::Result<std::optional<schema::Error>> hear_every_wish(
+    const std::string& session,
+    const std::function<void(const schema::SessionTick& tick, std::optional<float> wished_v)>& listener,
+    const std::function<void(double)>& progress = {});
 
 /// Of the whole session. Errors: as hear_wishes().
 schema::Result<LimitTally> tally_session(const std::string& session);

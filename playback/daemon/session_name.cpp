@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <ctime>
+#include <filesystem>
 
 #include "data-schema/files.hpp"
 #include "data-schema/session.hpp"
@@ -20,6 +21,12 @@ std::string dated_session(const std::string& before) {
   std::string path = schema::session_path(stem);
   for (int i = 2; schema::is_file(path); ++i) path = schema::session_path(fmt::format("{}-{}", stem, i));
   return path;
+}
+
+std::string session_named_after(const std::string& played) {
+  std::string name = std::filesystem::path(played).filename().string();
+  for (const std::string_view kind : {".texture", ".scene"}) name = schema::stem_of(name, kind);
+  return dated_session(name + "-");
 }
 
 }  // namespace tacto::playback

@@ -5,13 +5,12 @@
 
 #include <bit>
 #include <deque>
-#include <filesystem>
 #include <memory>
 #include <utility>
 
 #include "firmware-host/wire_words.hpp"
 #include "playback/daemon/session_board.hpp"
-#include "playback/daemon/session_columns.hpp"
+#include "playback/daemon/session_rows.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -199,14 +198,12 @@ Result<ReplayOutcome> replay_session(const std::string& name, const std::functio
                 "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
                 "computed again",
                 reader->path(), "play anew, on firmware of protocol 1.2 or newer");
-  std::error_code ignored;
-  const auto size = static_cast<double>(std::filesystem::file_size(reader->path(), ignored));
   SessionPlayer player(reader->header(), seen->fault, wishes);
   if (const auto handed = hand_over_commands(name, player); !handed) return schema::forward_error(handed);
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) player.play(*ticks);
     if (player.is_over()) break;
-    if (progress) progress(static_cast<double>(reader->sound_bytes()) / size);
+    if (progress) progress(part_read(*reader));
   }
   if (player.refused() && !seen->damaged_at)
     return fail(Fault::unsuitable, *player.refused(), reader->path(), "was it made by a newer version?");

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
-#include "data-schema/texture.hpp"
 #include "data-schema/texture_wav.hpp"
-#include "playback/daemon/played_ends.hpp"
-#include "playback/daemon/texture_mix.hpp"
+#include "playback/played_ends.hpp"
 #include "playback/reference/spatial_content.hpp"
 #include "playback/reference/wanted.hpp"
 
@@ -24,16 +21,15 @@ using schema::SessionTexture;
 
 // Where the count changes the finger is between the two, half a tick ago; until the next change it goes on
 // from there. The counts themselves are a staircase, which nobody wanted to be felt.
-FingerPath path_of(const SessionColumns& columns) {
-  const std::vector<double>& x = columns.position_m;
-  const double rate_hz = columns.header.rate_hz;
-  FingerPath path{{0}, {x.front()}};
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    if (x[i] == x[i - 1]) continue;
+FingerPath path_of(std::span<const JudgedRow> rows, double rate_hz) {
+  const auto x = [&](std::size_t i) { return rows[i].row.position_m; };
+  FingerPath path{{0}, {x(0)}};
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (x(i) == x(i - 1)) continue;
     path.time_s.push_back((static_cast<double>(i) - 0.5) / rate_hz);
-    path.position_m.push_back(0.5 * (x[i - 1] + x[i]));
+    path.position_m.push_back(0.5 * (x(i - 1) + x(i)));
   }
-  path.time_s.push_back(std::max(static_cast<double>(x.size() - 1), 0.5) / rate_hz);
+  path.time_s.push_back(std::max(static_cast<double>(rows.size() - 1), 0.5) / rate_hz);
   path.position_m.push_back(path.position_m.back());
   if (path.position_m.size() > 2) path.position_m.front() = path.position_m[1];
   return path;
@@ -47,17 +43,35 @@ Result<schema::Texture> same_texture(const SessionTexture& played) {
   return fail(Fault::unsuitable, "is not what was played any more", played.file);
 }
 
+TextureMix mix_of(std::span<const JudgedRow> rows, const std::vector<bool>& known) {
+  std::vector<MixRow> mix(rows.size());
+  std::ranges::transform(rows, mix.begin(), &JudgedRow::mix);
+  return texture_mix(mix, known);
+}
+
+// What a row's drive is of is felt later.
+std::vector<bool> felt(const std::vector<bool>& driven, double look_ahead_ticks) {
+  const auto delay = static_cast<std::size_t>(std::ceil(look_ahead_ticks));
+  std::vector<bool> unknown = driven;
+  for (std::size_t row = 0; row < driven.size(); ++row)
+    for (std::size_t later = 1; driven[row] && later <= delay && row + later < driven.size(); ++later)
+      unknown[row + later] = true;
+  return unknown;
+}
+
+}  // namespace
+
 // A part that begins or ends between two rows goes evenly.
-class PartOfReadings {
+class WantedReader::PartOfReadings {
  public:
-  PartOfReadings(const MixedSet& set, const std::vector<double>& gain, double delay_rows, double per_row)
-      : set_(set), gain_(gain), delay_rows_(delay_rows), per_row_(per_row) {}
+  PartOfReadings(const MixedSet& set, std::span<const JudgedRow> rows, double delay_rows, double per_row)
+      : set_(set), rows_(rows), delay_rows_(delay_rows), per_row_(per_row) {}
 
   /// Readings outside [first, last) have no part of it.
   std::size_t first() const { return set_.first == 0 ? 0 : reading_of(static_cast<double>(set_.first) - 1); }
   std::size_t last(std::size_t readings) const {
     const std::size_t end = set_.first + set_.part.size();
-    return end == gain_.size() ? readings : std::min(readings, reading_of(static_cast<double>(end) + 1));
+    return end == rows_.size() ? readings : std::min(readings, reading_of(static_cast<double>(end) + 1));
   }
   double operator()(std::size_t reading) const {
     const double row = std::max(0.0, static_cast<double>(reading) / per_row_ - delay_rows_);
@@ -70,123 +84,137 @@ class PartOfReadings {
     return static_cast<std::size_t>(std::max(0.0, (row + delay_rows_) * per_row_));
   }
   double in_row(std::size_t row) const {
-    row = std::min(row, gain_.size() - 1);
+    row = std::min(row, rows_.size() - 1);
     const bool has_part = row >= set_.first && row - set_.first < set_.part.size();
-    return has_part ? gain_[row] * double{set_.part[row - set_.first]} : 0;
+    return has_part ? rows_[row].followed_gain * double{set_.part[row - set_.first]} : 0;
   }
 
   const MixedSet& set_;
-  const std::vector<double>& gain_;
+  std::span<const JudgedRow> rows_;
   double delay_rows_, per_row_;
 };
 
-class Judge {
- public:
-  explicit Judge(const SessionColumns& columns) : columns_(columns), path_(path_of(columns)) {
-    const auto [nearest, farthest] = std::ranges::minmax_element(path_.position_m);
-    nearest_m_ = *nearest, farthest_m_ = *farthest;
-  }
+WantedReader::WantedReader(const SessionOverview& overview) : overview_(overview) {
+  sets_.push_back(&overview.header.textures);
+  for (const SteeringStep& step : overview.steps)
+    if (step.turn) sets_.push_back(step.turn->brings ? &step.turn->brings->textures : nullptr);
+  set_notes_.resize(sets_.size());
+  std::map<Key, std::string> faults;
+  for (std::size_t set = 0; set < sets_.size(); ++set) known_.push_back(look_at(set, faults));
+}
 
-  SessionWanted wanted() {
-    look_at_sets();
-    const TextureMix mix = texture_mix(columns_, known_);
-    const schema::SessionHeader& header = columns_.header;
-    const spatial::Band band{header.low_hz, header.high_hz};
-    const ReadingGrid grid =
-        reading_grid(path_.duration_s(), header.rate_hz, band, greatest_speed_mps(path_) * finest_per_m_);
-    std::vector<double> readings = mixed(mix, grid);
-    wanted_.displacement_m = signal_of(wanted_of_readings(std::move(readings), grid, band, 0));
-    wanted_.displacement_m.resize(columns_.tick.size());
-    wanted_.unknown = felt(mix.unknown);
-    return std::move(wanted_);
+bool WantedReader::look_at(std::size_t set, std::map<Key, std::string>& faults) {
+  if (sets_[set] == nullptr) return false;
+  for (const SessionTexture& played : *sets_[set]) {
+    const auto [seen, first] = faults.try_emplace({played.file, played.sha256});
+    if (first)
+      if (const auto texture = same_texture(played); !texture)
+        seen->second = schema::message(texture.error());
+    if (!seen->second.empty()) set_notes_[set].push_back(seen->second);
   }
+  return set_notes_[set].empty();
+}
 
- private:
-  std::span<const SessionTexture> textures_of(std::size_t set) const {
-    if (set == 0) return columns_.header.textures;
-    return columns_.turns[set - 1].brings->textures;
-  }
-  void note(std::string words) {
-    if (std::ranges::find(wanted_.notes, words) == wanted_.notes.end())
-      wanted_.notes.push_back(std::move(words));
-  }
+void WantedReader::note(std::string words) {
+  if (std::ranges::find(notes_, words) == notes_.end()) notes_.push_back(std::move(words));
+}
 
-  // Which sets there are, and how fine they are. They are not kept: a session may name any number.
-  void look_at_sets() {
-    for (std::size_t set = 0; set <= columns_.turns.size(); ++set) {
-      known_.push_back(set == 0 || columns_.turns[set - 1].brings);
-      if (!known_[set]) {
-        note_of_turn(set);
-        continue;
-      }
-      for (const SessionTexture& played : textures_of(set)) look_at(played, set);
+// Told once of those that are not named and follow each other.
+std::vector<std::string> WantedReader::notes(std::span<const TextureTurn> turns) const {
+  std::vector<std::string> all;
+  const auto add = [&](const std::string& words) {
+    if (std::ranges::find(all, words) == all.end()) all.push_back(words);
+  };
+  const auto is_named_again_after = [&](std::size_t set) {
+    for (; set < turns.size(); ++set)
+      if (turns[set].brings) return fmt::format(", up to the change at {:.3f} s", turns[set].time_s);
+    return std::string();
+  };
+  for (std::size_t set = 0; set <= turns.size(); ++set) {
+    for (const std::string& words : set_notes_[set]) add(words);
+    const bool follows_another = set > 1 && !turns[set - 2].brings;
+    if (sets_[set] == nullptr && !follows_another)
+      add(fmt::format("the texture changes at {:.3f} s: strokes that reach beyond are not judged{}",
+                      turns[set - 1].time_s, is_named_again_after(set)));
+  }
+  for (const std::string& words : notes_) add(words);
+  return all;
+}
+
+Result<const ReadAgain*> WantedReader::read_again(const SessionTexture& played) {
+  const Key key{played.file, played.sha256};
+  auto at = kept_.find(key);
+  if (at == kept_.end()) {
+    auto texture = same_texture(played);
+    if (!texture) return schema::forward_error(texture);
+    const double finest_per_m = highest_spatial_frequency(texture->signal);
+    at = kept_.emplace(key, ReadAgain{std::move(*texture), finest_per_m, true}).first;
+  }
+  at->second.used = true;
+  return &at->second;
+}
+
+void WantedReader::forget_unused() {
+  for (auto at = kept_.begin(); at != kept_.end();)
+    at = std::exchange(at->second.used, false) ? std::next(at) : kept_.erase(at);
+}
+
+double WantedReader::finest_in(const TextureMix& mix, bool& sound) {
+  double finest_per_m = 0;
+  for (std::size_t set = 0; set < mix.sets.size(); ++set) {
+    if (mix.sets[set].part.empty()) continue;
+    for (const SessionTexture& played : *sets_[set]) {
+      const auto texture = read_again(played);
+      sound = sound && texture;
+      if (texture) finest_per_m = std::max(finest_per_m, (*texture)->finest_per_m);
+      if (!texture) note(schema::message(texture.error()));
     }
   }
-  void look_at(const SessionTexture& played, std::size_t set) {
-    const auto texture = same_texture(played);
-    const auto there = texture ? as_played(*texture, played, nearest_m_, farthest_m_)
-                               : Result<PlayedSignal>(schema::forward_error(texture));
-    known_[set] = known_[set] && there;
-    if (!there) return note(schema::message(there.error()));
-    finest_per_m_ = std::max(finest_per_m_, highest_spatial_frequency(texture->signal));
-  }
-  // Told once, of those that follow each other.
-  void note_of_turn(std::size_t set) {
-    if (set > 1 && !columns_.turns[set - 2].brings) return;
-    note(fmt::format("the texture changes at {:.3f} s: strokes that reach beyond are not judged{}",
-                     columns_.time_s[columns_.turns[set - 1].row], is_named_again_after(set)));
-  }
-  std::string is_named_again_after(std::size_t set) const {
-    for (; set < columns_.turns.size(); ++set)
-      if (columns_.turns[set].brings)
-        return fmt::format(", up to the change at {:.3f} s", columns_.time_s[columns_.turns[set].row]);
-    return {};
-  }
+  return finest_per_m;
+}
 
-  std::vector<double> mixed(const TextureMix& mix, const ReadingGrid& grid) {
-    const std::vector<double> places = reading_places(path_, grid);
-    const std::vector<double> gain = followed_gain(columns_);
-    std::vector<double> readings(places.size(), 0.0);
-    for (std::size_t set = 0; set < mix.sets.size(); ++set) {
-      if (mix.sets[set].part.empty()) continue;
-      const PartOfReadings part(mix.sets[set], gain, columns_.look_ahead_ticks,
-                                static_cast<double>(grid.oversampling));
-      for (const SessionTexture& played : textures_of(set)) add(played, part, places, readings);
-    }
-    return readings;
+bool WantedReader::add(const SessionTexture& played, const PartOfReadings& part,
+                       std::span<const double> places, std::span<double> readings) {
+  const auto texture = read_again(played);
+  if (!texture) return false;  // finest_in() has told
+  const auto [nearest, farthest] = std::ranges::minmax(places);
+  const auto signal =
+      as_played((*texture)->texture, played.at_m, ends_of(played.ends), nearest, farthest, played.file);
+  if (!signal) return note(schema::message(signal.error())), false;
+  const TextureLookup lookup(signal->signal, signal->at_m);
+  for (std::size_t i = part.first(), last = part.last(places.size()); i < last; ++i)
+    readings[i] += part(i) * played.gain_m_per_n * lookup(places[i]);
+  return true;
+}
+
+std::vector<double> WantedReader::mixed(std::span<const JudgedRow> rows, const TextureMix& mix,
+                                        const ReadingGrid& grid, const FingerPath& path, bool& sound) {
+  const std::vector<double> places = reading_places(path, grid);
+  std::vector<double> readings(places.size(), 0.0);
+  for (std::size_t set = 0; set < mix.sets.size(); ++set) {
+    if (mix.sets[set].part.empty()) continue;
+    const PartOfReadings part(mix.sets[set], rows, overview_.look_ahead_ticks,
+                              static_cast<double>(grid.oversampling));
+    for (const SessionTexture& played : *sets_[set]) sound = add(played, part, places, readings) && sound;
   }
-  void add(const SessionTexture& played, const PartOfReadings& part, std::span<const double> places,
-           std::span<double> readings) {
-    const auto texture = same_texture(played);
-    if (!texture) return note(schema::message(texture.error()));
-    const auto signal = as_played(*texture, played, nearest_m_, farthest_m_);
-    if (!signal) return note(schema::message(signal.error()));
-    const TextureLookup lookup(signal->signal, signal->at_m);
-    for (std::size_t i = part.first(), last = part.last(places.size()); i < last; ++i)
-      readings[i] += part(i) * played.gain_m_per_n * lookup(places[i]);
-  }
+  return readings;
+}
 
-  // What a row's drive is of is felt later.
-  std::vector<bool> felt(const std::vector<bool>& driven) const {
-    const auto delay = static_cast<std::size_t>(std::ceil(columns_.look_ahead_ticks));
-    std::vector<bool> unknown = driven;
-    for (std::size_t row = 0; row < driven.size(); ++row)
-      for (std::size_t later = 1; driven[row] && later <= delay && row + later < driven.size(); ++later)
-        unknown[row + later] = true;
-    return unknown;
-  }
-
-  const SessionColumns& columns_;
-  FingerPath path_;
-  double nearest_m_ = 0, farthest_m_ = 0, finest_per_m_ = 0;
-  std::vector<bool> known_;  // a set of textures
-  SessionWanted wanted_;
-};
-
-}  // namespace
-
-SessionWanted wanted_in(const SessionColumns& columns) {
-  return Judge(columns).wanted();
+SessionWanted WantedReader::wanted_in(std::span<const JudgedRow> rows) {
+  const schema::SessionHeader& header = overview_.header;
+  const TextureMix mix = mix_of(rows, known_);
+  const FingerPath path = path_of(rows, header.rate_hz);
+  bool sound = true;
+  const double finest_hz = greatest_speed_mps(path) * finest_in(mix, sound);
+  const spatial::Band band{header.low_hz, header.high_hz};
+  const ReadingGrid grid = reading_grid(path.duration_s(), header.rate_hz, band, finest_hz);
+  auto readings = mixed(rows, mix, grid, path, sound);
+  forget_unused();
+  SessionWanted wanted{signal_of(wanted_of_readings(std::move(readings), grid, band, 0)),
+                       felt(mix.unknown, overview_.look_ahead_ticks)};
+  wanted.displacement_m.resize(rows.size());
+  if (!sound) wanted.unknown.assign(rows.size(), true);
+  return wanted;
 }
 
 }  // namespace tacto::playback

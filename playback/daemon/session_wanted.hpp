@@ -2,23 +2,67 @@
 // What a session's finger was to receive.
 #pragma once
 
+#include <map>
+#include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "playback/daemon/session_columns.hpp"
+#include "data-schema/texture.hpp"
+#include "playback/daemon/judged_rows.hpp"
+#include "playback/finger_path.hpp"
+#include "playback/reference/wanted.hpp"
 
 namespace tacto::playback {
 
 struct SessionWanted {
   std::vector<double> displacement_m;  ///< one a row, in the session's band
   std::vector<bool> unknown;           ///< a row: a texture that is not known had a part in what was felt
-  std::vector<std::string> notes;      ///< of textures that are not known, and why
+};
+
+/// A texture that was played, read again.
+struct ReadAgain {
+  schema::Texture texture;
+  double finest_per_m = 0;
+  bool used = false;  ///< in the last stretch
 };
 
 /// Gain x textures along the path between the recorded counts (monotone cubics through the places where the
 /// count changed), read exactly (reference/wanted.hpp). Gain and changes of texture are those that the kernel
 /// follows and fades (texture_mix.hpp), felt when the drive that looked ahead is: look_ahead_ticks later.
-/// Precondition: rows of one rate (evened()).
-SessionWanted wanted_in(const SessionColumns& columns);
+class WantedReader {
+ public:
+  /// Reads each texture that the session names once, to know which are there. The overview stays where it is.
+  explicit WantedReader(const SessionOverview& overview);
+
+  /// In consecutive rows of one rate, at least one. Holds the textures of this stretch in memory.
+  SessionWanted wanted_in(std::span<const JudgedRow> rows);
+  /// Of textures that are not known, and why; `turns` are the changes of all rows.
+  std::vector<std::string> notes(std::span<const TextureTurn> turns) const;
+
+ private:
+  using Textures = std::vector<schema::SessionTexture>;
+  using Key = std::pair<std::string, std::string>;  // file and SHA-256
+
+  class PartOfReadings;
+
+  bool look_at(std::size_t set, std::map<Key, std::string>& faults);
+  schema::Result<const ReadAgain*> read_again(const schema::SessionTexture& played);
+  double finest_in(const TextureMix& mix, bool& sound);
+  bool add(const schema::SessionTexture& played, const PartOfReadings& part, std::span<const double> places,
+           std::span<double> readings);
+  std::vector<double> mixed(std::span<const JudgedRow> rows, const TextureMix& mix, const ReadingGrid& grid,
+                            const FingerPath& path, bool& sound);
+  void forget_unused();
+  void note(std::string words);
+
+  const SessionOverview& overview_;
+  std::vector<const Textures*> sets_;  // none: the session does not say
+  std::vector<bool> known_;
+  std::vector<std::vector<std::string>> set_notes_;
+  std::vector<std::string> notes_;
+  std::map<Key, ReadAgain> kept_;
+};
 
 }  // namespace tacto::playback

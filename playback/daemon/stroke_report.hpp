@@ -2,12 +2,13 @@
 // What the finger received in each stroke of a session, against what was wanted.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "data-schema/session_reader.hpp"
-#include "playback/daemon/session_columns.hpp"
+#include "data-schema/error.hpp"
 #include "playback/limit_tally.hpp"
 
 namespace tacto::playback {
@@ -25,30 +26,42 @@ struct PlayedStroke {
 };
 
 struct StrokeReport {
-  std::vector<PlayedStroke> strokes;
-  std::optional<LimitTally> limits;  ///< of the whole session; none: what they took is not known
-  double low_hz = 0, high_hz = 0;    ///< the band in which both are taken
-  std::vector<std::string> notes;    ///< what could not be judged, and why
-  bool damaged = false;              ///< the file: what comes after the damage is not in the report
+  std::vector<PlayedStroke> strokes;  ///< the first kMostStrokesKept
+  std::uint64_t stroke_count = 0;     ///< of all
+  std::optional<LimitTally> limits;   ///< of the whole session; none: what they took is not known
+  double low_hz = 0, high_hz = 0;     ///< the band in which both are taken
+  std::vector<std::string> notes;     ///< what could not be judged, and why
+  bool damaged = false;               ///< the file: what comes after the damage is not in the report
 };
 
-/// Rows of a session that are one stroke, both included.
-struct StrokeRange {
-  std::size_t first = 0, last = 0;
+/// An hour at three strokes a second.
+inline constexpr std::size_t kMostStrokesKept = 10000;
+
+/// How much of a session is judged at once, with so much of what is around it: what the band's filters take
+/// from farther away is left out. Their edges are raised cosines of 3 and 5 Hz, whose responses fall with the
+/// third power of time: over 5 s away is at most 5e-4 of the largest value there, if all of it is at an edge.
+struct JudgedBlocks {
+  double block_s = 20, around_s = 5;
 };
-std::vector<StrokeRange> stroke_ranges(const SessionColumns& columns);
 
-/// What the model makes of the recorded drive, in the session's band: displacement in m, one a row.
-std::vector<double> received_displacement_m(const SessionColumns& columns);
+struct StrokeListener {
+  std::function<void(const PlayedStroke&)> stroke;  ///< each one, in their order, also beyond those kept
+  std::function<void(double)> progress;             ///< 0 to 1
+};
 
-/// Wanted: as wanted_in(), the gain of the commands and changes of texture in it. Periods without a tick
-/// (evened()) are filled in. Received: the recorded drive, held between ticks, through the transducer's
+/// Wanted: as WantedReader, the gain of the commands and changes of texture in it. Periods without a tick
+/// are put in, of one stop at most so many that nothing before it reaches beyond. Received: the recorded
+/// drive, held between ticks, through the transducer's
 /// model: what the actuator would do without a finger on it, hysteresis or a second mode. The delay that the
 /// session was prepared with and did not look ahead by is part of the error. A stroke is at least 5 mm long.
-/// What the limits took: hear_wishes(), a note where it is not known.
-/// Errors: as SessionReader::open; unsuitable: no ticks, or over 30 minutes of them (memory). A texture that
-/// is gone or is another one by now, and a change that the session does not name (an older one), leave the
-/// wanted side of the strokes that they have a part in out, with a note.
-schema::Result<StrokeReport> report_strokes(const std::string& name);
+/// What the limits took: hear_every_wish(), a note where it is not known.
+/// Memory does not grow with the session, nor with a stroke: that of a block (JudgedBlocks; 200,000 rows at
+/// 10 kHz) and its textures, of the strokes kept, and of the commands. The reading of a block stays under
+/// 2^24 points.
+/// Errors: as session_overview. A texture that is gone or is another one by now, and a change that the
+/// session does not name (an older one), leave the wanted side of the strokes that they have a part in out,
+/// with a note. Of a session with ticks missing strokes are not judged, with a note.
+schema::Result<StrokeReport> report_strokes(const std::string& name, const StrokeListener& listener = {},
+                                            const JudgedBlocks& blocks = {});
 
 }  // namespace tacto::playback

@@ -67,6 +67,70 @@ def what_goes_on_beyond_its_ends_is_judged_too():
         print(f"{ends}: error of each stroke:", ", ".join(f"{s['error_db']:.1f} dB" for s in strokes))
 
 
+def write_counts_path(name, table):
+    """The middle of each tick's count, tick by tick: on it `render` counts what the device counted."""
+    rate = 2000
+    pathlib.Path(name).write_text("time_s,position_m\n" + "".join(
+        f"{i / rate!r},{x!r}\n" for i, x in enumerate(table["position_m"].tolist())))
+
+
+def rendered_is_what_is_played():
+    """The kernel that `render` runs and the one on the device: the same drive to the bit along the same counts, from the tick
+    on in which the device begins to play."""
+    x = np.arange(1300) * 10e-6
+    write_texture("short", 0.02 * np.sin(2 * np.pi * 1000 * x))  # 13 whole periods: looped, a sine without an end
+    write_grating("oak", 700, 0.02)
+    layers = [{"type": "texture", "texture": "oak", "at_m": at, "gain_m_per_n": gain} for at, gain in ((0.002, -5e-4), (0.016, 2.5e-4))]
+    pathlib.Path("two.scene.json").write_text(json.dumps(
+        {"kind": "scene", "version": "1.0", "layers": layers, "playback": {"interpolation": "sinc", "hold": "zero-order"}}))
+    write_strokes(4)
+    for name, what in (("loop", ("short", "--ends", "loop", "--gain", "0.5mm/N")),
+                       ("mirror", ("short", "--ends", "mirror", "--gain", "0.5mm/N", "--at", "1mm")),
+                       ("two", ("two.scene.json",))):
+        tacto.run("play", *what, "-d", "sim:", "--finger-path", "path.csv", "--time", "4s", "-o", name)
+        tacto.run("session", name, "-o", f"{name}.csv")
+        table = np.genfromtxt(f"{name}.csv", delimiter=",", names=True)
+        step_m = np.ptp(table["position_m"]) / np.ptp(table["encoder_count"])
+        table = table[int(np.flatnonzero(table["playing"])[0]):int(np.flatnonzero(table["playing"])[-1]) + 1]
+        write_counts_path("counts.csv", table)
+        said = tacto.run_json("render", *what, "--path", "counts.csv", "--transducer", "wiertlewski2011", "--engine", "kernel",
+                              "--rate", "2kHz", "--hold", "zero-order", "--onset", "20ms", "--encoder-step", f"{step_m * 1e9:.6g}nm",
+                              "-o", f"{name}.wav")
+        drive, rate = soundfile.read(f"{name}.wav", dtype="float32")
+        assert rate == 2000 and len(drive) == len(table), (rate, len(drive), len(table))
+        recorded = table["drive_v"].astype(np.float32)
+        differ = np.flatnonzero(drive.view(np.int32) != recorded.view(np.int32))
+        assert len(differ) == 0 and tacto.rms(drive) > 0.05, differ
+        assert said["samples_outside_texture"] == 0 or name == "two", said
+
+
+def a_loop_is_the_sine_that_it_is():
+    """Both engines on a looped sine under an even finger: what is wanted is the closed form, and the kernel's tray the reference's."""
+    x = np.arange(1300) * 10e-6
+    write_texture("short", 0.02 * np.sin(2 * np.pi * 1000 * x))
+    t = np.arange(0, 4.0005, 0.001)
+    place = 0.004 + 0.06 * t  # 60 Hz, over ten times the texture
+    pathlib.Path("even.csv").write_text("time_s,position_m\n" + "".join(f"{a!r},{b!r}\n" for a, b in zip(t.tolist(), place.tolist())))
+    errors = {}
+    for engine in ("reference", "kernel"):
+        said = tacto.run_json("render", "short", "--ends", "loop", "--gain", "0.5mm/N", "--path", "even.csv", "--transducer", "wiertlewski2011",
+                              "--engine", engine, "--rate", "10kHz", "--encoder-step", "10nm", "-o", f"{engine}.wav",
+                              "--wanted", "wanted.wav", "--displacement", f"{engine}-tray.wav")
+        wanted, rate = soundfile.read("wanted.wav", dtype="float64")
+        time_s = np.arange(len(wanted)) / rate
+        inside = slice(int(1.5 * rate), -int(1.5 * rate))  # of what the band takes beyond the path's ends less than 1e-5 is left
+        exact = 0.5e-3 * 0.02 * np.sin(2 * np.pi * 1000 * (0.004 + 0.06 * time_s))
+        # Besides that, cubic interpolation at 100 samples a period (1e-6) and single precision (1e-7).
+        assert tacto.rms((wanted - exact)[inside]) < 1e-5 * tacto.rms(exact), tacto.rms((wanted - exact)[inside]) / tacto.rms(exact)
+        tray, _ = soundfile.read(f"{engine}-tray.wav", dtype="float64")
+        errors[engine] = tacto.rms((tray - exact)[inside]) / tacto.rms(exact)
+        assert said["samples_outside_texture"] == 0, said
+    print("looped sine, error of the tray: " + ", ".join(f"{k} {20 * np.log10(v):.1f} dB" for k, v in errors.items()))
+    assert errors["reference"] < 1e-5 and errors["kernel"] < 10 ** (-50 / 20), errors  # row (a) of the table of fidelity
+    _, said = tacto.run("render", "two.scene.json", "--at", "1mm", "--path", "even.csv", "--transducer", "wiertlewski2011", "-o", "x.wav", code=2)
+    assert "a scene says itself where" in said and not pathlib.Path("x.wav").exists(), said
+
+
 def what_the_limits_took_is_told_in_db():
     """A weak amplifier: play and session tell what render tells of the same way, by stroke and as a whole."""
     write_grating()
@@ -238,6 +302,10 @@ def wrong_use():
     tacto.run("play", "oak", "-d", "sim:", "-o", "x", "--time", "0.1s")
     named = tacto.run_json("play", "oak", "-d", "sim:", "--time", "0.1s")["session"]
     assert named.startswith("oak-2") and tacto.run_json("replay", named)["same_to_the_bit"], named
+    write_grating("a.b")
+    for what in ("a.b", "./a.b.texture.json", "a.b.texture.wav"):  # a dot is part of a name
+        named = tacto.run_json("play", what, "-d", "sim:", "--time", "0.1s")["session"]
+        assert named.startswith("a.b-2") and pathlib.Path(named).exists(), named
     _, said = tacto.run("play", "oak", "-d", "sim:", "-o", "x", "--time", "0.1s", code=2)
     assert "is there already" in said
     _, said = tacto.run("session", "x", "-o", "x.mat", code=2)
@@ -265,6 +333,9 @@ def ten_minutes_at_10_khz():
     about = tacto.run_json("info", "long.session")
     assert about["lost_ticks"] == 0 and about["ending"] == "closed" and about["ticks"] >= 600_000 * MINUTES, about
     assert tacto.run_json("replay", "long")["same_to_the_bit"]
+    judged = tacto.peak_mb("session", "long", "-o", "long.nc")
+    print(f"judged and exported: {judged:.1f} MB")
+    assert tacto.SANITIZED or judged < 128
     tacto.run("session", "short", "-o", "short.csv")
     table = np.genfromtxt("short.csv", delimiter=",", names=True)
     assert np.all(np.diff(table["tick"]) == 1)
@@ -274,7 +345,7 @@ def ten_minutes_at_10_khz():
 
 
 if __name__ == "__main__":
-    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, what_goes_on_beyond_its_ends_is_judged_too, two_textures_in_a_scene, what_was_chosen_acts, what_the_limits_took_is_told_in_db, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
+    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, what_goes_on_beyond_its_ends_is_judged_too, two_textures_in_a_scene, rendered_is_what_is_played, a_loop_is_the_sine_that_it_is, what_was_chosen_acts, what_the_limits_took_is_told_in_db, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
         if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
             continue
         tacto.in_folder(test)

@@ -3,9 +3,13 @@
 // change.
 #include <fmt/format.h>
 
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <span>
 
 #include "data-schema/session_writer.hpp"
+#include "playback/daemon/session_export.hpp"
 #include "playback/daemon/stroke_report.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
@@ -17,9 +21,10 @@ using schema::SessionChange;
 /// A session read and written again, what it says of changes as `keep` makes it; false leaves it out.
 class Rewriting {
  public:
-  Rewriting(const std::string& from, const std::string& to)
+  Rewriting(const std::string& from, const std::string& to, std::size_t most_ticks = 4096)
       : reader_(std::move(*schema::SessionReader::open(from))),
-        writer_(std::move(*schema::SessionWriter::create(to, reader_.header()))) {}
+        writer_(std::move(*schema::SessionWriter::create(to, reader_.header()))),
+        most_ticks_(most_ticks) {}
   void all(const std::function<bool(SessionChange&)>& keep) {
     while (auto block = reader_.next()) {
       auto* change = std::get_if<SessionChange>(&*block);
@@ -28,7 +33,10 @@ class Rewriting {
   }
 
  private:
-  void add(const std::vector<schema::SessionTick>& ticks) { EXPECT_TRUE(writer_.add(ticks)); }
+  void add(const std::vector<schema::SessionTick>& ticks) {
+    for (std::span rest(ticks); !rest.empty(); rest = rest.subspan(std::min(rest.size(), most_ticks_)))
+      EXPECT_TRUE(writer_.add(rest.first(std::min(rest.size(), most_ticks_))));
+  }
   void add(const schema::SessionEnd& end) { EXPECT_TRUE(writer_.close(end)); }
   template <class Part>
   void add(const Part& part) {
@@ -36,6 +44,7 @@ class Rewriting {
   }
   schema::SessionReader reader_;
   schema::SessionWriter writer_;
+  std::size_t most_ticks_;
 };
 
 /// 30 mm there and back in 1.5 s, so that a stroke takes 0.75 s. In the second the grating gives way to the
@@ -189,6 +198,74 @@ TEST_F(StrokesOverChanges, TheSessionNamesWhatEachChangeBrings) {
   EXPECT_EQ(fine.high_hz, reader->header().high_hz);
   EXPECT_EQ(totals.changes[1].program.textures.at(0).gain_m_per_n, -5e-4);
   EXPECT_NEAR(static_cast<double>(totals.changes[0].not_before), 1.1 * kRateHz, 50);
+}
+
+// Half a minute of strokes, in which gain and texture change.
+class ManyStrokes : public StrokesOverChanges {
+ protected:
+  void play_for_long() {
+    begin();
+    ASSERT_TRUE(player_->play());
+    for (const double gain : {0.5, 0.9, 0.7, 1.0}) {
+      run(2.9);
+      ASSERT_TRUE(player_->gain(gain));
+      run(2.3);
+      const bool fine = gain < 0.8;
+      ASSERT_TRUE(player_->load(program(fine ? "fine" : "grating", fine ? 8e-4 : -5e-4), 0.3));
+      run(2.1);
+    }
+    ASSERT_TRUE(player_->disarm());
+  }
+  std::string in_blocks_of(std::size_t most_ticks) {
+    const std::string to = folder_ / fmt::format("rewritten-{}.session", ++alone_);
+    Rewriting(session_, to, most_ticks).all([](SessionChange&) { return true; });
+    return to;
+  }
+  std::string exported(const std::string& session, const std::string& ending) {
+    const std::string file = folder_ / fmt::format("export-{}{}", ++alone_, ending);
+    const auto said = export_session(session, file);
+    EXPECT_TRUE(said) << schema::message(said.error());
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+};
+
+// What the band's filters would take from farther than 5 s away: JudgedBlocks says 5e-4 of the largest value
+// there, if all of it were at an edge of the band. Of the error it is as much of the error; its level is that
+// of the displacement's difference, so it is told in dB of it.
+TEST_F(ManyStrokes, AreTheSameInSmallBlocks) {
+  constexpr double kFarAway = 5e-4, kFarAwayDb = 0.01;  // 20 log10(1 + 5e-4), twice
+  play_for_long();
+  const auto whole = report_strokes(session_, {}, {1e6, 5});
+  const auto small = report_strokes(session_, {}, {0.37, 5});
+  ASSERT_TRUE(whole && small);
+  ASSERT_GT(whole->strokes.size(), 30U);
+  ASSERT_EQ(small->strokes.size(), whole->strokes.size());
+  for (std::size_t i = 0; i < whole->strokes.size(); ++i) {
+    const PlayedStroke &a = small->strokes[i], &b = whole->strokes[i];
+    EXPECT_EQ(a.from_s, b.from_s);
+    EXPECT_EQ(a.to_m, b.to_m);
+    EXPECT_NEAR(a.wanted_rms_m, b.wanted_rms_m, kFarAway * b.wanted_rms_m) << i;
+    EXPECT_NEAR(a.received_rms_m, b.received_rms_m, kFarAway * b.received_rms_m) << i;
+    EXPECT_NEAR(a.error_db, b.error_db, kFarAwayDb) << i;
+    EXPECT_EQ(a.limits->ticks(), b.limits->ticks());
+  }
+  EXPECT_EQ(small->notes, whole->notes);
+}
+
+TEST_F(ManyStrokes, HowTheFileIsCutIsNotSeen) {
+  play_for_long();
+  const std::string cut = in_blocks_of(7);
+  const auto one = report_strokes(session_), other = report_strokes(cut);
+  ASSERT_TRUE(one && other);
+  ASSERT_EQ(one->strokes.size(), other->strokes.size());
+  for (std::size_t i = 0; i < one->strokes.size(); ++i)
+    EXPECT_EQ(one->strokes[i].error_db, other->strokes[i].error_db) << i;
+  for (const std::string ending : {".csv", ".wav", ".nc"}) {
+    const std::string bytes = exported(session_, ending);
+    EXPECT_GT(bytes.size(), 500000U);
+    EXPECT_TRUE(bytes == exported(cut, ending)) << ending;
+  }
 }
 
 }  // namespace

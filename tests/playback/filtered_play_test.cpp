@@ -59,16 +59,23 @@ class FilteredPlay : public testing::Test {
     EXPECT_TRUE(player_->play());
     while (player_->played_s() < kPlayS) EXPECT_TRUE(player_->step(0.01));
     EXPECT_TRUE(player_->disarm());
-    return judged(*read_session_columns(session));
+    return judged(session);
   }
-  double judged(const SessionColumns& columns) {
-    const spatial::Band band{columns.header.low_hz, columns.header.high_hz};
-    const std::size_t rows = columns.tick.size();
+  double judged(const std::string& session) {
+    const auto overview = session_overview(session);
+    RowMaker maker(*overview);
+    RowFollower follower(overview->header);
+    std::vector<JudgedRow> judged;
+    const auto read = read_rows(
+        maker, session, [&](const SessionRow& row) { judged.push_back(follower.next(row, maker.turns())); });
+    EXPECT_TRUE(read);
+    const spatial::Band band{overview->header.low_hz, overview->header.high_hz};
+    const std::size_t rows = judged.size();
     EXPECT_EQ(moved_m_.size(), rows);
     auto spectrum = spectrum_of(std::span(moved_m_).subspan(1), kFastHz, 4 * rows);
     keep_band(spectrum, band);
     const auto moved = signal_of(spectrum);  // without the last row
-    const auto wanted = wanted_in(columns).displacement_m;
+    const auto wanted = WantedReader(*overview).wanted_in(judged).displacement_m;
     double error = 0, whole = 0;
     for (std::size_t row = 8000; row < 14500; ++row)  // 0.8 to 1.45 s
       error += std::pow(moved[row] - wanted[row], 2), whole += std::pow(wanted[row], 2);

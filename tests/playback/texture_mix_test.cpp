@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -14,23 +15,28 @@ namespace {
 
 constexpr std::size_t kRows = 400;
 
-SessionColumns rows_with(const std::vector<TextureTurn>& turns) {
-  SessionColumns columns;
-  columns.header.rate_hz = 2000;
-  columns.turns = turns;
-  for (std::size_t row = 0; row < kRows; ++row) {
-    columns.tick.push_back(row);
-    columns.gain.push_back(row < 120 ? 1 : row < 128 ? 0.25 : 3);
+struct Rows {
+  std::vector<SessionRow> rows;
+  std::vector<TextureTurn> turns;
+};
+
+Rows rows_with(const std::vector<TextureTurn>& turns) {
+  Rows all{std::vector<SessionRow>(kRows), turns};
+  for (std::size_t i = 0; i < kRows; ++i) {
+    all.rows[i].tick = i;
+    all.rows[i].gain = i < 120 ? 1 : i < 128 ? 0.25 : 3;
+    all.rows[i].turns = static_cast<std::uint32_t>(
+        std::ranges::count_if(turns, [&](const TextureTurn& turn) { return turn.row <= i; }));
   }
-  return columns;
+  return all;
 }
 
 TextureTurn turn_at(std::size_t row, double fade_ticks) {
-  return {row, fade_ticks, schema::SessionProgram{}};
+  return {row, fade_ticks, schema::SessionProgram{}, 0};
 }
 
 /// What the kernel makes of textures that are 1, 10, 100 ... everywhere, under these gains.
-std::vector<double> played(const SessionColumns& columns) {
+std::vector<double> played(const Rows& columns) {
   std::vector<std::array<float, 8>> samples(columns.turns.size() + 1);
   float value = 1;
   for (auto& texture : samples) texture.fill(value), value *= 10;
@@ -44,15 +50,23 @@ std::vector<double> played(const SessionColumns& columns) {
   for (std::size_t row = 0, next = 0; row < kRows; ++row) {
     for (; next < columns.turns.size() && columns.turns[next].row == row; ++next)
       player.change(setup(next + 1), static_cast<float>(columns.turns[next].fade_ticks));
-    wanted.push_back(player.wanted(0, static_cast<float>(columns.gain[row])));
+    wanted.push_back(player.wanted(0, static_cast<float>(columns.rows[row].gain)));
   }
   return wanted;
 }
 
-std::vector<double> mixed(const SessionColumns& columns) {
-  const TextureMix mix = texture_mix(columns, std::vector<bool>(columns.turns.size() + 1, true));
-  const auto gain = followed_gain(columns);
-  std::vector<double> sum(kRows, 0.0);
+TextureMix mix_of(const Rows& all, const std::vector<bool>& known) {
+  MixFollower follower;
+  std::vector<MixRow> rows;
+  for (const SessionRow& row : all.rows) rows.push_back(follower.next(row, all.turns));
+  return texture_mix(rows, known);
+}
+
+std::vector<double> mixed(const Rows& all) {
+  const TextureMix mix = mix_of(all, std::vector<bool>(all.turns.size() + 1, true));
+  GainFollower follower(2000);
+  std::vector<double> gain, sum(kRows, 0.0);
+  for (const SessionRow& row : all.rows) gain.push_back(follower.next(row));
   double value = 1;
   for (const MixedSet& set : mix.sets) {
     for (std::size_t i = 0; i < set.part.size(); ++i)
@@ -64,7 +78,7 @@ std::vector<double> mixed(const SessionColumns& columns) {
 
 // Single precision: four operations' rounding, 2^-24 each of the largest texture, times the gain.
 void expect_as_played(const std::vector<TextureTurn>& turns) {
-  const SessionColumns columns = rows_with(turns);
+  const Rows columns = rows_with(turns);
   const auto wanted = played(columns), here = mixed(columns);
   const double rounding = 4 * 0x1p-24 * 3 * std::pow(10.0, static_cast<double>(turns.size()));
   for (std::size_t row = 0; row < kRows; ++row)
@@ -86,13 +100,13 @@ TEST(TextureMix, ASecondChangeInAFadeIsTheKernelsToo) {
 }
 
 TEST(TextureMix, WhatIsNotKnownIsStoodInFor) {
-  const SessionColumns columns = rows_with({turn_at(100, 64), turn_at(200, 64)});
-  const TextureMix mix = texture_mix(columns, {true, false, true});
+  const Rows columns = rows_with({turn_at(100, 64), turn_at(200, 64)});
+  const TextureMix mix = mix_of(columns, {true, false, true});
   EXPECT_TRUE(mix.sets[1].part.empty());
   EXPECT_EQ(mix.sets[0].part.size(), 264U);
   for (std::size_t row = 0; row < 200; ++row) ASSERT_FLOAT_EQ(mix.sets[0].part[row], 1) << row;
   for (std::size_t row = 0; row < kRows; ++row) ASSERT_EQ(mix.unknown[row], row >= 100 && row < 264) << row;
-  const TextureMix none = texture_mix(columns, {false, false, true});
+  const TextureMix none = mix_of(columns, {false, false, true});
   EXPECT_TRUE(none.sets[0].part.empty());
   EXPECT_EQ(none.sets[2].first, 200U);
   EXPECT_TRUE(none.unknown[0]);
@@ -100,9 +114,9 @@ TEST(TextureMix, WhatIsNotKnownIsStoodInFor) {
 
 // Rows that were put in where no tick was made do not go on with a fade.
 TEST(TextureMix, ARowWithoutATickIsNoTick) {
-  SessionColumns columns = rows_with({turn_at(100, 50)});
-  for (std::size_t row = 120; row < 140; ++row) columns.tick[row] = 119;
-  const TextureMix mix = texture_mix(columns, {true, true});
+  Rows columns = rows_with({turn_at(100, 50)});
+  for (std::size_t row = 120; row < 140; ++row) columns.rows[row].put_in = true;
+  const TextureMix mix = mix_of(columns, {true, true});
   for (std::size_t row = 120; row < 140; ++row)
     ASSERT_EQ(mix.sets[1].part[row - 100], mix.sets[1].part[19]) << row;
   EXPECT_GT(mix.sets[1].part[40], mix.sets[1].part[39]);

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/daemon/judged_rows.hpp"
+
+#include <algorithm>
+#include <complex>
+#include <numbers>
+
+#include "playback/chain.hpp"
+#include "playback/choices.hpp"
+#include "playback/reference/wanted.hpp"
+
+namespace tacto::playback {
+namespace {
+
+// Older sessions tell of no filter behind the converter. Words of a newer version: as if there was none.
+Chain chain_of(const schema::SessionHeader& header) {
+  const PrepareOptions played = with_choices({}, header.choices).value_or(PrepareOptions{});
+  return {header.transducer, played.reconstruction, played.reconstruction_cutoff_hz, played.hold,
+          header.rate_hz};
+}
+
+}  // namespace
+
+RowFollower::RowFollower(const schema::SessionHeader& header) : gain_(header.rate_hz) {
+  const schema::Transducer& t = header.transducer;
+  if (t.hysteresis) bender_.emplace(*t.hysteresis, schema::actuator_pole_hz(t), header.rate_hz);
+}
+
+JudgedRow RowFollower::next(const SessionRow& row, std::span<const TextureTurn> turns) {
+  return {row, mix_.next(row, turns), gain_.next(row), bender_ ? (*bender_)(row.drive_v) : row.drive_v};
+}
+
+std::vector<double> received_displacement_m(const schema::SessionHeader& header,
+                                            std::span<const JudgedRow> rows) {
+  const spatial::Band band{header.low_hz, header.high_hz};
+  const double duration_s = static_cast<double>(rows.size() - 1) / header.rate_hz;
+  const ReadingGrid grid = reading_grid(duration_s, header.rate_hz, band, 0);
+  const Chain chain = chain_of(header);
+  std::vector<double> drive_v(rows.size());
+  std::ranges::transform(rows, drive_v.begin(), &JudgedRow::linear_drive_v);
+  auto drive = spectrum_of(drive_v, header.rate_hz, grid.period);
+  keep_band(drive, band);
+  // A drive that was made elsewhere is felt later than the tick that it was made in.
+  return signal_of(through(drive, [&](double f) {
+    return chain_response(chain, f) * std::polar(1.0, -2 * std::numbers::pi * f * header.loop_delay_s);
+  }));
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sessions of hours: judged, exported and compared in memory that their length has no part in.
+
+A session of 20 s in emulated time is told again and again: the ticks of a whole number of strokes are repeated, numbered and
+timed on, until they are hours. So every stroke of the hours has one of the 20 s to be held against.
+"""
+import csv
+import hashlib
+import pathlib
+import struct
+
+import numpy as np
+import soundfile
+
+import tacto
+from play_test import write_grating, write_strokes
+
+RATE_HZ = 2000
+CYCLE = 2 * RATE_HZ * 2  # ticks of write_strokes' two seconds, twice
+HOURS = 0.25 if tacto.SANITIZED else 2.5
+MOST_MB = 96  # a block of 25 s of rows, its spectra, 10,000 strokes and their text
+TICK = np.dtype([("ns", "<u4"), ("encoder", "<i4"), ("drive", "<f4"), ("flags", "<u4"), ("lateness", "<i4")])
+
+
+def sealed(kind, payload):
+    check = hashlib.sha256(bytes([kind]) + struct.pack("<I", len(payload)) + payload).digest()[:8]
+    return struct.pack("<IB3xI", 0x31534354, kind, len(payload)) + check + payload
+
+
+def blocks_of(data):
+    at = 0
+    while at < len(data):
+        kind, size = data[at + 4], int.from_bytes(data[at + 8:at + 12], "little")
+        yield kind, data[at + 20:at + 20 + size]
+        at += 20 + size
+
+
+def ticks_block(first, ticks):
+    ticks = ticks.copy()
+    ticks["ns"] = np.arange(len(ticks)) * (1_000_000_000 // RATE_HZ)
+    return sealed(1, struct.pack("<QqI", first, first * 1_000_000_000 // RATE_HZ, len(ticks)) + ticks.tobytes())
+
+
+def write_long(source, target, hours, change=lambda ticks: ticks):
+    """The session's commands and first 4 s, then the 4 s after them again and again."""
+    data = pathlib.Path(source).read_bytes()
+    ticks = np.concatenate([np.frombuffer(p[20:], TICK) for kind, p in blocks_of(data) if kind == 1])
+    begin, cycle = ticks[:CYCLE], change(ticks[CYCLE:2 * CYCLE])
+    count = CYCLE
+    with open(target, "wb") as out:
+        for kind, payload in blocks_of(data):
+            if kind in (0, 2):
+                out.write(sealed(kind, payload))
+        for at in range(0, CYCLE, 4000):
+            out.write(ticks_block(at, begin[at:at + 4000]))
+        while count < hours * 3600 * RATE_HZ:
+            for at in range(0, CYCLE, 4000):
+                out.write(ticks_block(count + at, cycle[at:at + 4000]))
+            count += CYCLE
+        out.write(sealed(5, struct.pack("<QQQ", count, 0, 0)))
+    return count
+
+
+def write_short():
+    write_grating()
+    write_strokes(20)
+    tacto.run("play", "oak", "-d", "sim:", "--finger-path", "path.csv", "--time", "20s", "--gain", "0.5mm/N", "-o", "short")
+
+
+def judged_in_little_memory():
+    write_short()
+    tacto.run("session", "short", "--strokes", "short.csv")
+    count = write_long("short.session", "long.session", HOURS)
+    minutes = tacto.peak_mb("session", "short")
+    peak = tacto.peak_mb("session", "long", "--strokes", "long.csv", "-o", "long.wav")
+    print(f"{count} ticks, {HOURS} hours: peak of {peak:.1f} MB; 20 s: {minutes:.1f} MB")
+    assert tacto.SANITIZED or peak < MOST_MB, peak
+    wav = soundfile.info("long.wav")
+    assert (wav.frames, wav.samplerate, wav.channels) == (count, RATE_HZ, 2)
+    with open("short.csv", newline="") as short, open("long.csv", newline="") as long:
+        of_short, strokes = list(csv.DictReader(short)), list(csv.DictReader(long))
+    assert len(strokes) == 2 * (count // CYCLE) * 2
+    # Each is one of four of the short session (the repeated ones from its fifth on): what differs is where in a block it lies
+    # (5e-4 of what is wanted: JudgedBlocks) and which counts stand at the seams, one count of 10 um beside a period of 1 mm.
+    for i, stroke in enumerate(strokes[8:-1]):  # the last one has no turn at its end
+        same = of_short[4 + i % 4]
+        assert abs(float(stroke["error_db"]) - float(same["error_db"])) < 0.2, (stroke, same)
+        for key in ("wanted_rms_m", "received_rms_m"):
+            assert abs(float(stroke[key]) / float(same[key]) - 1) < 2e-3, (key, stroke, same)
+        assert abs(float(stroke["to_s"]) - float(stroke["from_s"]) - float(same["to_s"]) + float(same["from_s"])) < 0.01
+    _, said = tacto.run("session", "long", "--json")
+    assert ("are told here" in said) == (len(strokes) > 10000), said
+
+
+def compared_and_told():
+    write_short()
+    write_long("short.session", "long.session", HOURS)
+    peak = tacto.peak_mb("compare", "long.session", "oak")
+    print(f"compared: peak of {peak:.1f} MB")
+    assert tacto.SANITIZED or peak < MOST_MB, peak
+    whole, one = tacto.run_json("compare", "long.session", "oak"), tacto.run_json("compare", "short.session", "oak")
+    assert abs(whole["error_db"] - one["error_db"]) < 0.5, (whole, one)
+
+
+def a_stroke_without_an_end():
+    """A finger that never turns: counts that only grow, for the whole session. One stroke, judged; too long to be compared."""
+    write_short()
+
+    def ever_on(ticks):
+        ticks = ticks.copy()
+        ticks["encoder"] = ticks["encoder"][0]
+        return ticks
+    count = write_long("short.session", "still.session", HOURS, ever_on)
+    data = bytearray(pathlib.Path("still.session").read_bytes())
+    at, number = 0, 0
+    while at < len(data):
+        kind, size = data[at + 4], int.from_bytes(data[at + 8:at + 12], "little")
+        if kind == 1:
+            ticks = np.frombuffer(bytes(data[at + 40:at + 20 + size]), TICK).copy()
+            ticks["encoder"] = 4000 + (np.arange(number, number + len(ticks)) * 8 // 1000)  # 16 um/s
+            number += len(ticks)
+            data[at:at + 20 + size] = sealed(1, bytes(data[at + 20:at + 40]) + ticks.tobytes())
+        at += 20 + size
+    pathlib.Path("still.session").write_bytes(data)
+    report = tacto.run_json("session", "still")
+    peak = tacto.peak_mb("session", "still")
+    stroke, = report["strokes"]
+    print(f"one stroke of {stroke['to_s'] - stroke['from_s']:.0f} s: peak of {peak:.1f} MB")
+    assert stroke["to_s"] - stroke["from_s"] > 0.99 * count / RATE_HZ
+    assert tacto.SANITIZED or peak < MOST_MB, peak
+    _, said = tacto.run("compare", "still.session", "oak", code=5)
+    assert "without a turn" in said, said
+
+
+if __name__ == "__main__":
+    for test in (judged_in_little_memory, compared_and_told, a_stroke_without_an_end):
+        tacto.in_folder(test)
