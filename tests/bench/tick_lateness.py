@@ -18,6 +18,7 @@ import sys
 
 PARTS = {"p50": 0.5, "p99": 0.99, "p99.9": 0.999}
 MOST_US = 20000
+MOST_RATIO = 1.1  # of p99, asked of the clock; told, no more: a machine that others use cannot be held to it
 
 
 def printed(words):
@@ -77,12 +78,15 @@ def main():
         print(f"round {i + 1}: ours p99 {mine['p99']:.1f} us, cyclictest {rounds[-1][1]['p99']:.1f} us", flush=True)
     print(f"\n{o.rate} Hz, SCHED_FIFO {'granted' if rounds[0][2]['real_time'] else 'refused'}, deep idle {'kept off' if rounds[0][2]['awake'] else 'allowed'}, medians of {o.rounds} rounds of {o.seconds} s")
     print("| late by, us | daemon's clock | cyclictest | ratio |\n|---|---|---|---|")
+    ratios = {}
     for name in PARTS:
         mine, other = (statistics.median(r[k][name] for r in rounds) for k in (0, 1))
+        ratios[name] = mine / other
         print(f"| {name} | {mine:.1f} | {other:.1f} | {mine / other:.2f} |")
     work = [statistics.median(r[2][key] for r in rounds) for key in ("work_p50_s", "work_p99_s")]
     print(f"a tick of the kernel after the sleep: p50 {1e6 * work[0]:.2f} us, p99 {1e6 * work[1]:.2f} us; "
           f"missed {sum(r[2]['missed'] for r in rounds)} of {o.rounds * o.seconds * o.rate} ticks")
+    print(f"the clock's p99 is {'at most' if ratios['p99'] <= MOST_RATIO else 'NOT within'} {MOST_RATIO} times cyclictest's")
 
 
 if __name__ == "__main__":

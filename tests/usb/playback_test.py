@@ -38,6 +38,7 @@ def write_configs(folder):
               "sessions": "/guest/sessions", "files": "/guest", "rate_hz": RATES_HZ["device"], "watchdog_ms": 1000}
     for name in ("device", "killed", "after"):
         (folder / f"{name}.config.json").write_text(json.dumps(config))
+    (folder / "second.config.json").write_text(json.dumps({**config, "socket": "/guest/second"}))
     host = {"loop": "host", "rate_hz": RATES_HZ["host"], "most_late_percent": 100, "most_speed_mps": 100,
             "real_time_priority": 0}  # the only processor is shared with device and bus
     (folder / "host.config.json").write_text(json.dumps({**config, **host}))
@@ -96,6 +97,10 @@ def played_over_usb():
     assert replayed["same_to_the_bit"] and replayed["ticks_compared"] > LEAST_TICKS / 10, replayed
     assert expect_fall("killed") > 0.1
     expect_fall("unplugged")
+    for name in ("second", "beside"):
+        said = pathlib.Path(f"{name}.said").read_text()
+        assert "another program" in said and "device" in said, said
+    assert status("undisturbed")["state"] == "playing" and "fault" not in status("undisturbed"), status("undisturbed")
     assert status("unplugged")["state"] == "lost" and "unplugged" in json.dumps(status("unplugged")), status("unplugged")
     assert tacto.run_json("replay", "after.session")["same_to_the_bit"]
     assert status("replugged")["state"] == "playing", status("replugged")

@@ -71,6 +71,16 @@ begin
 sleep 1
 status after
 
+say "a second daemon with a socket of its own, and play, on the device that plays"
+refused() {
+  name=$1; shift
+  if timeout 60 "$@" >"$R/$name.said" 2>&1; then fail "a second one took the device: $*"; fi
+}
+refused second "$TACTOGRAPHD" --config "$R/second.config.json"
+refused beside "$TACTOGRAPH" play oak -d usb: --gain 0.5mm/N --time 1s -o beside
+[ ! -e beside.session ] || fail "play wrote a session of nothing"
+status undisturbed
+
 say "unplugged in mid-play"
 FALLS=$(falls)
 unplug
