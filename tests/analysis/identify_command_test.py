@@ -89,6 +89,9 @@ def quick_methods_agree():
         said = tacto.run_json("identify", "-d", "sim:tray_sensor=on,seed=3", "--method", method, "-o", method)
         assert said["verdict"] == "fits" and "third_harmonic_percent" not in said, said
         assert abs(values(said)["resonance_hz"]["value"] / 547.73 - 1) < 2e-3
+        for lacks, short in (("hysteresis=0.16", False), ("second_mode=850Hz", True)):
+            said = json.loads(tacto.run("identify", "-d", f"sim:tray_sensor=on,seed=3,{lacks}", "--method", method, "-o", f"{method}-{short}", "--json", code=5)[0])
+            assert said["verdict"].startswith("MISFIT") and said["model_one_mode_short"] is short and said["r_squared"] > 0.9, said
 
 
 def scipy_finds_the_same():
