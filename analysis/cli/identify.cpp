@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "analysis/cli/identify_names.hpp"
 #include "analysis/cli/identify_report.hpp"
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/stopped.hpp"
@@ -50,7 +51,7 @@ void declare_source(CLI::App& app, IdentifyOptions& o) {
                  "noise_um_per_v), loops (drive_v,displacement_um), taps, or a "
                  "recording with both channels");
   app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:tray_sensor=on ...");
-  app.add_option("-o,--output", o.stem, "What is written: NAME.transducer.json")->required();
+  app.add_option("-o,--output", o.stem, "What is written, obligatory: NAME.transducer.json");
   app.add_option("--start-from", o.base,
                  "Preset or file that the fit begins from, and that what can't be told apart is held at");
   app.add_option("--picture", o.picture, "Bode plot, or the loops: .svg or .png");
@@ -357,6 +358,8 @@ Result<void> check_names_free(const IdentifyOptions& o) {
 }
 
 Result<Report> run_identify(const IdentifyOptions& o) {
+  if (const auto named = check_named(o.stem, o.results, o.picture); !named)
+    return schema::forward_error(named);
   if (const auto free = check_names_free(o); !free) return schema::forward_error(free);
   auto asked = asked_of(o);
   if (!asked) return schema::forward_error(asked);

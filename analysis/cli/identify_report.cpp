@@ -61,8 +61,8 @@ void add_found(Report& report, const schema::Transducer& found) {
   report.add("actuator_scale", found.actuator_scale).add("sensor_scale", found.sensor_scale);
 }
 
-void add_paper(Report& report, const schema::Transducer& found, std::optional<double> lag_rad) {
-  const auto figures = paper_figures(found, lag_rad);
+void add_paper(Report& report, const schema::Transducer& found, const ResponseFit& fit) {
+  const auto figures = paper_figures(found, fit);
   if (!figures) return;
   std::vector<Report> rows;
   for (const PaperFigure& f : *figures) {
@@ -88,8 +88,7 @@ Report response_report(const ResponseFit& fit, const ModelChoice& choice, const 
   if (!fit.suggestion.empty()) report.add("model_one_mode_short", fit.one_mode_short);
   add_quality(report, fit);
   add_found(report, found);
-  const FittedParameter* const lag = fit.find("lag_rad");
-  if (is_the_papers(base)) add_paper(report, found, lag ? std::optional(lag->value) : std::nullopt);
+  if (is_the_papers(base)) add_paper(report, found, fit);
   return report;
 }
 

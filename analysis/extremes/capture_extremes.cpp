@@ -72,12 +72,12 @@ double conversion_error() {
 
 // Whole periods: Hann's window leaves nothing of the mean, and a quarter of the line's samples.
 double hann_error() {
-  constexpr std::size_t kSamples = 2'000'000;
+  constexpr std::size_t kHannSamples = 2'000'000;
   constexpr double kCycles = 0.005, kOffset = 1.9e9, kAmplitude = 65536;
-  std::vector<double> samples(kSamples);
-  for (std::size_t i = 0; i < kSamples; ++i)
+  std::vector<double> samples(kHannSamples);
+  for (std::size_t i = 0; i < kHannSamples; ++i)
     samples[i] = kOffset + kAmplitude * std::cos(2 * std::numbers::pi * static_cast<double>(i % 200) / 200);
-  return std::abs(capture::amplitude_of(capture::hann_line(samples, kCycles), kSamples) / kAmplitude - 1);
+  return std::abs(capture::amplitude_of(capture::hann_line(samples, kCycles), kHannSamples) / kAmplitude - 1);
 }
 
 // Speeds of whole um/s: their sum is exact.

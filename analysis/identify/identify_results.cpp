@@ -61,8 +61,7 @@ void add_residual_figures(const ResponseFit& fit, Results& results) {
 }
 
 void add_paper_figures(const ResponseFit& fit, const schema::Transducer& found, Results& results) {
-  const FittedParameter* const lag = fit.find("lag_rad");
-  const auto figures = paper_figures(found, lag ? std::optional(lag->value) : std::nullopt);
+  const auto figures = paper_figures(found, fit);
   if (!figures) return;
   const auto number = [](double value) {
     return std::isfinite(value) ? fmt::format("{:.4g}", value) : "nothing";

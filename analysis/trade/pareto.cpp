@@ -94,9 +94,8 @@ std::vector<std::string> knobs_of(std::span<const TradeRow> rows) {
 
 std::string knee_words(const TradeRow& row) {
   std::string off = fmt::format("{} ({:.3g} % off", row.choice, 100 * row.error);
-  if (row.by_speed.size() > 1)
-    off +=
-        fmt::format(" at {:g} mm/s, the worst of {}", 1e3 * row.worst_speed_mps(), speed_words(row.by_speed));
+  if (!row.by_speed.empty()) off += fmt::format(" at {:g} mm/s", 1e3 * row.worst_speed_mps());
+  if (row.by_speed.size() > 1) off += ", the worst of " + speed_words(row.by_speed);
   return row.cost_ns > 0 ? fmt::format("{}, {:.3g} ns a {})", off, row.cost_ns, row.per) : off + ")";
 }
 

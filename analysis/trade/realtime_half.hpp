@@ -21,7 +21,7 @@ namespace tacto::analysis {
 /// "loop". Errors against playback/reference over 15-500 Hz, re the wanted displacement; cost per tick,
 /// median CPU time of this thread; memory of the samples; latency of the tray behind the finger, of "loop"
 /// from the encoder's edge to its drive. A choice that is refused (an inverse that leaves more than a tenth)
-/// has an error of 1 and says so. Some 2 s. Errors: unsuitable, as prepare() has it, for a texture that can't
+/// has an error of 1 and says so. Some 5 s. Errors: unsuitable, as prepare() has it, for a texture that can't
 /// be played at all.
 schema::Result<std::vector<TradeRow>> measure_realtime(const schema::Texture& texture,
                                                        const schema::Transducer& transducer,

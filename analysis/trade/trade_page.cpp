@@ -143,7 +143,7 @@ spatial::LineFigure pareto_figure(const TradeHalf& half, const Trade& trade) {
   figure.x_label = "CPU time (ns a frame, sample, tick or ms of playing)";
   figure.y_label = error_axis(half);
   figure.x_scale = spatial::AxisScale::logarithmic;
-  figure.size = {900, 480};
+  figure.size = {1000, 480};
   const auto worth = worth_of(half.rows);
   std::size_t colour = 0;
   for (const auto& rows : by_knob(half)) {

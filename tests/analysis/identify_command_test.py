@@ -50,6 +50,10 @@ def table_one_comes_back():
         assert abs(row["value"] - truth) < half, (key, row)
     figures = {row["figure"]: row for row in said["paper_against_itself"]}
     assert figures["resonance_hz"]["reported"] == 500 and abs(figures["resonance_hz"]["by_table_i"] - 547.7) < 0.1
+    for key, reported, by_table, within in [("r_squared_actuator", 0.85, 0.99, 0.02), ("r_squared_sensor", 0.91, 0.99, 0.02), ("finger_at_resonance_db", -3, -2.9, 0.1),
+                                            ("reconstruction_filter_at_500hz_db", -3, -1.25, 0.01), ("stretch_factors", 6, 8, 0)]:
+        assert figures[key]["reported"] == reported and abs(figures[key]["by_table_i"] - by_table) <= within, figures[key]
+    assert figures["r_squared_actuator"]["identified"] == said["r_squared"] and "identified" not in figures["r_squared_sensor"], figures
     assert "simulated" in said and "SIMULATED" in pathlib.Path("bench.svg").read_text()
     assert json.load(open("bench.transducer.json"))["identification"]["misfit"] is False
     assert tacto.run_json("info", "bench.transducer.json")["identification_usable"] is True
@@ -72,6 +76,10 @@ def results_hold_what_was_found(said):
     tacto.run("report", ".", "-o", "page.html")
     page = pathlib.Path("page.html").read_text()
     assert "the paper against itself" in page and "not told apart" in page
+    assert all(f"the paper against itself: {key}" in page for key in ("r_squared_actuator", "r_squared_sensor", "finger_at_resonance_db", "reconstruction_filter_at_500hz_db", "stretch_factors"))
+    for beside, name in ((["--results", "tray.results.json"], "tray"), (["--picture", "plots/tray.svg"], "plots/tray"), ([], "NAME")):
+        words = tacto.run("identify", "-d", "sim:tray_sensor=on", *beside, code=2)[1]
+        assert f"add -o {name} for {name}.transducer.json" in words and " ".join(beside) in words and not pathlib.Path("tray.results.json").exists(), words
     for wrong, words in (("bench.txt", "results.json"), ("bench.transducer.json", "bench.transducer.json")):
         assert words in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "never", "--results", wrong, code=2)[1]
 
@@ -81,6 +89,9 @@ def quick_methods_agree():
         said = tacto.run_json("identify", "-d", "sim:tray_sensor=on,seed=3", "--method", method, "-o", method)
         assert said["verdict"] == "fits" and "third_harmonic_percent" not in said, said
         assert abs(values(said)["resonance_hz"]["value"] / 547.73 - 1) < 2e-3
+        for lacks, short in (("hysteresis=0.16", False), ("second_mode=850Hz", True)):
+            said = json.loads(tacto.run("identify", "-d", f"sim:tray_sensor=on,seed=3,{lacks}", "--method", method, "-o", f"{method}-{short}", "--json", code=5)[0])
+            assert said["verdict"].startswith("MISFIT") and said["model_one_mode_short"] is short and said["r_squared"] > 0.9, said
 
 
 def scipy_finds_the_same():

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What identification says of the emulated tray when it is not the model, by the signals that take seconds:
+// multisine and chirp, with each draw's own noise in every sample and the noise told by the periods.
+#include <gtest/gtest.h>
+
+#include "analysis/identify/excitation.hpp"
+#include "analysis/identify/response_estimate.hpp"
+#include "analysis/identify/response_fit.hpp"
+#include "firmware-host/sim/actuated_tray.hpp"
+#include "tests/analysis/identify_plants.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+constexpr double kNoiseM = 20e-9;  // the emulated vibrometer's
+constexpr int kPlants = 8, kNoises = 10;
+constexpr double kSecondModeHz = 850;
+
+using Signal = PeriodicDrive (*)(const ExcitationPlan&);
+
+schema::Transducer base() {
+  return schema::read_transducer("wiertlewski2011").value();
+}
+
+struct Drawn {
+  schema::Transducer truth;
+  PeriodicDrive plan;
+  DrivenTray tray;  // without noise
+};
+
+// Plants like the paper's, driven with 0.3 to 2 V, as in identify_device_test.
+std::vector<Drawn> driven_plants(Signal signal, const firmware_host::TrayPhysics& physics,
+                                 std::mt19937_64& random) {
+  std::uniform_real_distribution<double> amplitude(0.3, 2);
+  std::vector<Drawn> list;
+  while (list.size() < kPlants) {
+    const schema::Transducer truth = varied(base(), random);
+    const auto& mode = physics.second_mode;
+    if (mode && firmware_host::least_second_mode_hz(truth, *mode) > mode->frequency_hz) continue;
+    const PeriodicDrive plan = signal({.amplitude_v = amplitude(random)});
+    firmware_host::ActuatedTray tray(truth, 10e3, physics);
+    const std::vector<double> drive(plan.drive_v.begin(), plan.drive_v.end());
+    list.push_back({truth, plan, {10e3, drive, firmware_host::displacement_under(tray, drive), 0}});
+  }
+  return list;
+}
+
+BodeData measured_once(const Drawn& drawn, std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0, kNoiseM);
+  DrivenTray tray = drawn.tray;
+  for (double& displacement_m : tray.displacement_m) displacement_m += normal(random);
+  return response_of_periods(tray, drawn.plan);
+}
+
+struct Told {
+  int draws = 0, flagged = 0, one_mode_short = 0;
+  double least_r_squared = 1;
+};
+
+Told told_of(const std::vector<Drawn>& plants, int noises, std::mt19937_64& random) {
+  Told told;
+  for (const Drawn& drawn : plants)
+    for (int noise = 0; noise < noises; ++noise, ++told.draws) {
+      const ResponseFit fit = fit_response(measured_once(drawn, random), {}, base());
+      told.flagged += fit.misfit.found && !fit.claims_intervals();
+      told.one_mode_short += fit.misfit.found && fit.one_mode_short;
+      told.least_r_squared = std::min(told.least_r_squared, fit.r_squared);
+    }
+  std::printf("  flagged %d of %d, R^2 at least %.4f; one mode short in %d\n", told.flagged, told.draws,
+              told.least_r_squared, told.one_mode_short);
+  return told;
+}
+
+class IdentifyPeriodic : public testing::TestWithParam<std::pair<const char*, Signal>> {
+ protected:
+  Signal signal() const { return GetParam().second; }
+};
+
+TEST_P(IdentifyPeriodic, FindsATrayThatIsTheModel) {
+  std::mt19937_64 random(31);
+  const Told told = told_of(driven_plants(signal(), {}, random), 5, random);
+  EXPECT_LE(told.flagged, 1);  // three tests, each wrong in 5 of 10,000: 2 of 40 in one run of 600
+}
+
+TEST_P(IdentifyPeriodic, FlagsAHysteresisThatNobodyModelled) {
+  std::mt19937_64 random(32);
+  const auto plants =
+      driven_plants(signal(), {.second_mode = {}, .finger_load = {}, .hysteresis = 0.16}, random);
+  const Told told = told_of(plants, kNoises, random);
+  EXPECT_GE(told.flagged, 0.95 * told.draws);
+  EXPECT_EQ(told.one_mode_short, 0);
+  EXPECT_GT(told.least_r_squared, 0.98);  // what would have let it pass
+}
+
+TEST_P(IdentifyPeriodic, SaysThatTheModelIsOneModeShort) {
+  std::mt19937_64 random(33);
+  const auto plants = driven_plants(signal(),
+                                    {.second_mode = firmware_host::SecondMode{.frequency_hz = kSecondModeHz},
+                                     .finger_load = {},
+                                     .hysteresis = 0},
+                                    random);
+  const Told told = told_of(plants, kNoises / 2, random);
+  EXPECT_EQ(told.one_mode_short, told.draws);
+  for (const Drawn& drawn : plants) {
+    const ResponseFit two = fit_response(measured_once(drawn, random), {.second_mode = true}, base());
+    EXPECT_FALSE(two.misfit.found) << two.misfit.words;
+    EXPECT_NEAR(two.find("second_mode_hz")->value / kSecondModeHz, 1, 0.02);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, IdentifyPeriodic,
+                         testing::Values(std::pair{"multisine", Signal(multisine)},
+                                         std::pair{"chirp", Signal(periodic_chirp)}),
+                         [](const auto& tried) { return std::string(tried.param.first); });
+
+}  // namespace
+}  // namespace tacto::analysis
