@@ -130,6 +130,8 @@ void show_top(const ControlFields& fields) {
       "{:.0f}\n",
       number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
       number("energy_limited_ticks"), number("gated_ticks"), number("blind_ticks"));
+  if (const std::string tells = schema::control_text(fields, "limits_in_db"); !tells.empty())
+    fmt::print("how much the limits took, in dB: {}\n", tells);
   if (number("wake_p99_s") > 0) show_lateness(fields);
   std::fflush(stdout);
 }

@@ -54,14 +54,13 @@ Result<schema::Scene> scene_of(const ProgramRequest& request,
   return schema::read_scene(request.file);
 }
 
-// A session is read in other folders too.
+}  // namespace
+
 std::string full_path(const std::string& path) {
   std::error_code ignored;
   const auto full = std::filesystem::absolute(path, ignored);
   return ignored ? path : full.lexically_normal().string();
 }
-
-}  // namespace
 
 std::vector<PlacedTexture> LaidTextures::placed() const {
   std::vector<PlacedTexture> list;

@@ -46,6 +46,9 @@ class LaidTextures {
   schema::PlaybackChoices choices_;
 };
 
+/// From the root on: a session is read in other folders too.
+std::string full_path(const std::string& path);
+
 /// Errors: as read_texture, read_scene; usage: a place, gain or ends for a scene; unsuitable: a scene of
 /// several textures whose ends are not `stop`, that reach over 2^24 samples, or without any gain.
 schema::Result<LaidTextures> lay_textures(const ProgramRequest& request);

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <system_error>
 
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
@@ -23,13 +21,6 @@ using schema::Result;
 
 constexpr double kLongestOnsetS = 10;         // the wire's
 constexpr double kFarthestSamples = 1 << 29;  // from the encoder's zero: the wire's 2^61, in 2^32 a sample
-
-// A session is read in other folders too.
-std::string full_path(const std::string& path) {
-  std::error_code ignored;
-  const auto full = std::filesystem::absolute(path, ignored);
-  return ignored ? path : full.lexically_normal().string();
-}
 
 std::string transducer_sum(const std::string& name) {
   for (const std::string& path : {name, name + ".transducer.json"})

@@ -305,6 +305,7 @@ ControlFields Service::status() const {
   if (!status.session.empty()) fields.emplace_back("session", status.session);
   fields.emplace_back("round_trip_s", status.round_trip_s);
   add_ticks(fields, status.ticks, status.recorder ? status.recorder->lost() : 0);
+  add_limits(fields, status.ticks, status.session);
   if (status.recorder) add_recorder(fields, *status.recorder);
   fields.emplace_back("period_s", 1 / config_.rate_hz);
   if (here_) add_loop(fields, here_.loop->status());

@@ -24,6 +24,11 @@ void add_ticks(ControlFields& fields, const TickView& view, std::uint64_t not_re
   fields.emplace_back("drive_peak_v", view.drive_peak_v());
 }
 
+void add_limits(ControlFields& fields, const TickView& view, const std::string& session) {
+  if (view.limited() > 0 && !session.empty())
+    fields.emplace_back("limits_in_db", "tactograph session " + session);
+}
+
 void add_recorder(ControlFields& fields, const RecorderCounts& counts) {
   fields.emplace_back("recorded_ticks", static_cast<std::int64_t>(counts.ticks));
   fields.emplace_back("recorder_lost_ticks", static_cast<std::int64_t>(counts.lost()));

@@ -11,6 +11,10 @@ namespace tacto::playback {
 
 /// `not_recorded`: ticks that did not get into the session, which are lost too.
 void add_ticks(schema::ControlFields& fields, const TickView& view, std::uint64_t not_recorded);
+/// Where the device's flags tell that limits took something away: the command that tells how much, in dB.
+/// What was wished is known to the device's kernel alone, and computed again from the session, also while it
+/// goes on.
+void add_limits(schema::ControlFields& fields, const TickView& view, const std::string& session);
 void add_recorder(schema::ControlFields& fields, const RecorderCounts& counts);
 void add_loop(schema::ControlFields& fields, const HostLoopStatus& loop);
 

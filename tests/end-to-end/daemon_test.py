@@ -159,6 +159,31 @@ def from_load_to_a_session_that_replays():
     assert tacto.run_json("info", session)["ending"] == "closed"
 
 
+def what_the_limits_took_is_found():
+    """`status` counts ticks; the command that it names tells how many dB, while the session goes on and once it is closed."""
+    preset = pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json"
+    weak = {**json.loads(preset.read_text()), "name": "weak", "drive_limit_v": 0.3}
+    pathlib.Path("weak.transducer.json").write_text(json.dumps(weak))
+    prepare_files(transducer="weak")
+    with daemon():
+        client = Client()
+        begin(client)
+        status = client.must(request="status")
+        while status["limited_ticks"] == 0:
+            assert "limits_in_db" not in status, status
+            time.sleep(0.05)
+            status = client.must(request="status")
+        time.sleep(1)
+        asked = status["limits_in_db"].split()
+        assert asked[:2] == ["tactograph", "session"] and asked[2] == status["session"], status
+        live = tacto.run_json(*asked[1:])
+        assert "limits took, in dB: tactograph session" in tacto.run("ctl", "top", "--socket", "control", "--time", "0.5s")[0]
+        client.must(request="disarm")
+    closed = tacto.run_json(*asked[1:])
+    assert -20 < closed["removed_by_limits_db"] < -5 and -20 < live["removed_by_limits_db"] < -5, (live, closed)
+    print(f"limits took {live['removed_by_limits_db']:.1f} dB so far, {closed['removed_by_limits_db']:.1f} dB in all")
+
+
 def kill_9_in_mid_play():
     """What was synced is there and replays; the next daemon takes socket and device over."""
     prepare_files()
@@ -732,7 +757,7 @@ def by_tcp_with_a_token():
     assert second.returncode == 4 and "tcp_token_file" in second.stderr, second
 
 
-TESTS = [from_load_to_a_session_that_replays, kill_9_in_mid_play, sigstop_of_200_ms, encoder_jump_of_10_mm, a_texture_with_nan,
+TESTS = [from_load_to_a_session_that_replays, what_the_limits_took_is_found, kill_9_in_mid_play, sigstop_of_200_ms, encoder_jump_of_10_mm, a_texture_with_nan,
          garbage_and_endless_lines, many_requests_at_once, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
          the_loop_closed_on_the_host, the_service_manager_is_told, a_band_that_the_rate_cuts_is_told,
          late_ticks_beyond_a_limit_are_a_fault, gain_saved_in_the_scene, gain_kept_with_the_texture, a_texture_changed_in_mid_play,
