@@ -14,6 +14,7 @@
 #include "playback/reference/wanted.hpp"
 #include "playback/texture_layout.hpp"
 #include "playback/undone_chain.hpp"
+#include "spatial/dsp/fft.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -26,7 +27,7 @@ using playback::PrepareOptions;
 
 constexpr double kPlayedS = 0.8, kEndsS = 0.15, kFirstM = 5e-3;
 constexpr double kPartOfLimit = 0.02;
-constexpr double kReachesToHz = 4;
+constexpr double kReachesToPerM = 100, kReachesToHz = 4, kReachesFromHz = 10;
 
 FingerPath path_of(const FingerWay& way) {
   const double mean_mps = way.speed_mps;
@@ -50,11 +51,15 @@ void take_scale_of(FingerPath& path, const Prepared& prepared, double metres_per
   for (double& position_m : path.position_m) position_m *= per_count * prepared.pitch_m / metres_per_count;
 }
 
-// What lies beside the band is neither wanted nor an error: the reference reaches beyond it, and well below,
-// for what it cuts there rings through a record of a slow finger (from 10 Hz on: 1e-3 at 25 mm/s; here 3e-5).
+// What lies beside the band is neither wanted nor an error: the reference reaches beyond it, of a slow finger
+// well below, for what it cuts there rings through the record (from 10 Hz on: 1e-3 at 25 mm/s; from 4: 3e-5).
+double reaches_to_hz(const FingerPath& path) {
+  return std::clamp(kReachesToPerM * playback::greatest_speed_mps(path), kReachesToHz, kReachesFromHz);
+}
+
 PaddedSpectrum wanted_along(const FingerPath& path, const schema::SpaceSignal& loop,
                             const PrepareOptions& o) {
-  const spatial::Band beyond{kReachesToHz, 1.01 * o.band.high_hz};
+  const spatial::Band beyond{reaches_to_hz(path), 1.01 * o.band.high_hz};
   const double most_m = *std::ranges::max_element(path.position_m);
   const schema::SpaceSignal unrolled = playback::unrolled_loop(loop, most_m + 10e-3);
   const double finest_hz = playback::highest_spatial_frequency(loop) * playback::greatest_speed_mps(path);
@@ -92,13 +97,16 @@ std::vector<float> double_run(const Prepared& prepared, const std::vector<std::i
 }
 
 std::vector<double> moved_by(const std::vector<float>& drive_v, const schema::Transducer& transducer,
-                             const PrepareOptions& o, std::size_t period) {
+                             const PrepareOptions& o) {
   std::vector<double> drive(drive_v.begin(), drive_v.end());
   if (transducer.hysteresis)
     drive = playback::linear_drive_of(drive, *transducer.hysteresis, schema::actuator_pole_hz(transducer),
                                       o.rate_hz);
   playback::Chain chain = playback::undone_chain(transducer, o).chain;
   chain.led_pole_hz = 0;
+  constexpr double kSettledS = 1;  // of a tray that rings for 50 ms
+  const std::size_t period =
+      spatial::fast_length(drive.size() + static_cast<std::size_t>(kSettledS * o.rate_hz));
   return playback::signal_of(playback::through(playback::spectrum_of(drive, o.rate_hz, period),
                                                [&](double f) { return playback::chain_response(chain, f); }));
 }
@@ -158,14 +166,22 @@ double part_wanted(const std::vector<double>& exact, const schema::SpaceSignal& 
   return std::sqrt(mean_square) / (o.gain_m_per_n * rms_of(loop));
 }
 
-void compare_with(const PaddedSpectrum& wanted, const std::vector<double>& felt, const PrepareOptions& o,
-                  PlayedOutcome& outcome) {
-  const auto exact = playback::signal_of(wanted);
-  outcome.error = error_re(felt, exact, o);
-  outcome.amplitude_error = amplitude_error_re(felt, exact, o);
+// Without a delay the wanted is not later.
+double later_error_of(const PaddedSpectrum& wanted, const std::vector<double>& felt, const PrepareOptions& o,
+                      const PlayedOutcome& outcome) {
+  if (outcome.delay_left_s == 0) return outcome.error;
   const auto later = playback::through(
       wanted, [&](double f) { return std::polar(1.0, -2 * std::numbers::pi * f * outcome.delay_left_s); });
-  outcome.later_error = error_re(felt, playback::signal_of(later), o);
+  return error_re(felt, playback::signal_of(later), o);
+}
+
+void compare_with(const PaddedSpectrum& wanted, const std::vector<double>& felt,
+                  const schema::SpaceSignal& loop, const PrepareOptions& o, PlayedOutcome& outcome) {
+  const auto exact = playback::signal_of(wanted);
+  outcome.wanted_part = part_wanted(exact, loop, o);
+  outcome.error = error_re(felt, exact, o);
+  outcome.amplitude_error = amplitude_error_re(felt, exact, o);
+  outcome.later_error = later_error_of(wanted, felt, o, outcome);
 }
 
 }  // namespace
@@ -198,9 +214,8 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
       played.in_double ? double_run(*prepared, counts) : kernel_run(*prepared, counts, played.part);
   const auto felt = played.part == PlayedPart::reading
                         ? std::vector<double>(outcome.drive_v.begin(), outcome.drive_v.end())
-                        : moved_by(outcome.drive_v, transducer, options, wanted.period);
-  outcome.wanted_part = part_wanted(playback::signal_of(wanted), loop, options);
-  compare_with(wanted, felt, options, outcome);
+                        : moved_by(outcome.drive_v, transducer, options);
+  compare_with(wanted, felt, loop, options, outcome);
   return outcome;
 }
 
