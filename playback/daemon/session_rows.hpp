@@ -80,6 +80,7 @@ class RowMaker {
  private:
   SessionRow row_of(const schema::SessionTick& tick) const;
   void put_in_before(const SessionRow& row, const Sink& sink);
+  double time_between(double to_s, std::uint64_t i, std::uint64_t periods, std::uint64_t missing) const;
   void steer(SessionRow& row);
 
   const SessionOverview& overview_;
