@@ -138,6 +138,11 @@ double part_read(const schema::SessionReader& reader) {
   return std::min(1.0, static_cast<double>(reader.sound_bytes()) / std::max(size, 1.0));
 }
 
+std::function<void(double)> part_of(const std::function<void(double)>& whole, double from, double to) {
+  if (!whole) return {};
+  return [=](double part) { whole(std::lerp(from, to, part)); };
+}
+
 schema::Error no_ticks_in(const std::string& path, const std::optional<std::uint64_t>& damaged_at) {
   if (!damaged_at) return {Fault::unsuitable, "holds no ticks", path, ""};
   return {Fault::malformed, fmt::format("is damaged from byte {} on, before its first tick", *damaged_at),

@@ -100,4 +100,7 @@ schema::Result<void> read_rows(RowMaker& maker, const std::string& name, const R
 /// How far a reader has come, 0 to 1.
 double part_read(const schema::SessionReader& reader);
 
+/// What hears of a whole hears of a part of it, which goes from `from` to `to`.
+std::function<void(double)> part_of(const std::function<void(double)>& whole, double from, double to);
+
 }  // namespace tacto::playback
