@@ -123,7 +123,7 @@ class FrameWriter {
 
 Result<std::string> write_wav(const std::string& session, const std::string& temporary,
                               const Heard& progress) {
-  const auto overview = session_overview(session);
+  const auto overview = session_overview(session, part_of(progress, 0, 0.3));
   if (!overview) return schema::forward_error(overview);
   if (const auto even = check_even(*overview); !even) return schema::forward_error(even);
   auto wav = schema::WavWriter::create(temporary, overview->header.rate_hz, 2, schema::SampleFormat::float64);
@@ -131,7 +131,7 @@ Result<std::string> write_wav(const std::string& session, const std::string& tem
   FrameWriter frames(*wav);
   RowMaker maker(*overview, UINT64_MAX);
   const auto read = read_rows(
-      maker, session, [&](const SessionRow& row) { frames.add(row); }, progress);
+      maker, session, [&](const SessionRow& row) { frames.add(row); }, part_of(progress, 0.3, 1));
   if (!read) return schema::forward_error(read);
   if (const auto written = frames.close(); !written) return schema::forward_error(written);
   return words_of_missing(*overview);
@@ -147,7 +147,7 @@ std::vector<schema::SessionTurn> named_turns(const RowMaker& maker, double rate_
 
 Result<std::string> write_netcdf(const std::string& session, const std::string& temporary,
                                  const Heard& progress) {
-  const auto overview = session_overview(session);
+  const auto overview = session_overview(session, part_of(progress, 0, 0.3));
   if (!overview) return schema::forward_error(overview);
   schema::SessionNetcdf file(temporary, overview->header, overview->ticks,
                              {{"tick", "1", "tick since arming"},
@@ -166,7 +166,8 @@ Result<std::string> write_netcdf(const std::string& session, const std::string& 
                              static_cast<double>(row.flags)};
     file.add(row.time_s, values);
   };
-  if (const auto read = read_rows(maker, session, add, progress); !read) return schema::forward_error(read);
+  if (const auto read = read_rows(maker, session, add, part_of(progress, 0.3, 1)); !read)
+    return schema::forward_error(read);
   const auto written = file.close(named_turns(maker, overview->header.rate_hz));
   return written ? Result<std::string>() : schema::forward_error(written);
 }

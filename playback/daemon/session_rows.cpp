@@ -138,6 +138,11 @@ double part_read(const schema::SessionReader& reader) {
   return std::min(1.0, static_cast<double>(reader.sound_bytes()) / std::max(size, 1.0));
 }
 
+std::function<void(double)> part_of(const std::function<void(double)>& whole, double from, double to) {
+  if (!whole) return {};
+  return [=](double part) { whole(std::lerp(from, to, part)); };
+}
+
 schema::Error no_ticks_in(const std::string& path, const std::optional<std::uint64_t>& damaged_at) {
   if (!damaged_at) return {Fault::unsuitable, "holds no ticks", path, ""};
   return {Fault::malformed, fmt::format("is damaged from byte {} on, before its first tick", *damaged_at),
@@ -176,6 +181,15 @@ SessionRow RowMaker::row_of(const SessionTick& tick) const {
   return row;
 }
 
+// Of a stop that is not put in whole, the rows next to either side keep their times.
+double RowMaker::time_between(double to_s, std::uint64_t i, std::uint64_t periods,
+                              std::uint64_t missing) const {
+  const double from_s = last_.time_s, rate_hz = overview_.header.rate_hz;
+  const auto after = static_cast<double>(i), before = static_cast<double>(periods + 1 - i);
+  if (periods == missing) return std::lerp(from_s, to_s, after / static_cast<double>(periods + 1));
+  return after < before ? from_s + after / rate_hz : to_s - before / rate_hz;
+}
+
 void RowMaker::put_in_before(const SessionRow& row, const Sink& sink) {
   const double rate_hz = overview_.header.rate_hz;
   const std::uint64_t missing = periods_between(last_.time_s, row.time_s, rate_hz);
@@ -185,7 +199,7 @@ void RowMaker::put_in_before(const SessionRow& row, const Sink& sink) {
   if (missing > longest_gap(rate_hz)) between.flags &= ~std::uint32_t{wire::kTickPlaying};
   for (std::uint64_t i = 1; i <= periods; ++i, ++rows_) {
     const double u = static_cast<double>(i) / static_cast<double>(periods + 1);
-    between.time_s = std::lerp(last_.time_s, row.time_s, u);
+    between.time_s = time_between(row.time_s, i, periods, missing);
     between.position_m = std::lerp(last_.position_m, row.position_m, u);
     between.drive_v = std::lerp(last_.drive_v, row.drive_v, u);
     sink(between);

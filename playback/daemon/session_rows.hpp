@@ -80,6 +80,7 @@ class RowMaker {
  private:
   SessionRow row_of(const schema::SessionTick& tick) const;
   void put_in_before(const SessionRow& row, const Sink& sink);
+  double time_between(double to_s, std::uint64_t i, std::uint64_t periods, std::uint64_t missing) const;
   void steer(SessionRow& row);
 
   const SessionOverview& overview_;
@@ -98,5 +99,8 @@ schema::Result<void> read_rows(RowMaker& maker, const std::string& name, const R
 
 /// How far a reader has come, 0 to 1.
 double part_read(const schema::SessionReader& reader);
+
+/// What hears of a whole hears of a part of it, which goes from `from` to `to`.
+std::function<void(double)> part_of(const std::function<void(double)>& whole, double from, double to);
 
 }  // namespace tacto::playback

@@ -64,7 +64,7 @@ void keep_stroke(const PlayedStroke& stroke, const StrokeListener& listener, Str
 
 Result<StrokeReport> report_strokes(const std::string& name, const StrokeListener& listener,
                                     const JudgedBlocks& blocks) {
-  const auto overview = session_overview(name);
+  const auto overview = session_overview(name, part_of(listener.progress, 0, 0.1));
   if (!overview) return schema::forward_error(overview);
   StrokeReport report = begun_report(*overview);
   if (overview->lost_at) return report;
@@ -75,7 +75,7 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
     if (wished_v) whole.add(limited_tick(tick.drive_v, *wished_v, tick.flags));
     judge.take(tick, wished_v);
   };
-  const auto unknown = hear_every_wish(name, each, listener.progress);
+  const auto unknown = hear_every_wish(name, each, part_of(listener.progress, 0.1, 1));
   if (!unknown) return schema::forward_error(unknown);
   judge.finish();
   const auto notes = report.stroke_count > 0 ? judge.notes() : std::vector<std::string>();

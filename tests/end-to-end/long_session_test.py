@@ -7,8 +7,10 @@ timed on, until they are hours. So every stroke of the hours has one of the 20 s
 """
 import csv
 import hashlib
+import json
 import pathlib
 import struct
+import sys
 
 import numpy as np
 import soundfile
@@ -133,6 +135,32 @@ def a_stroke_without_an_end():
     assert "without a turn" in said, said
 
 
+def a_stop_of_days():
+    """A computer that sleeps for 23 days in mid-play: the strokes end there, and nothing is made of what is between."""
+    write_short()
+    count = write_long("short.session", "slept.session", 30 / 3600)
+    data = pathlib.Path("slept.session").read_bytes()
+    with open("slept.session", "wb") as out:
+        for kind, payload in blocks_of(data):
+            if kind == 1 and int.from_bytes(payload[:8], "little") >= count // 2:
+                payload = payload[:8] + struct.pack("<q", int.from_bytes(payload[8:16], "little") + 2_000_000 * 10**9) + payload[16:]
+            out.write(sealed(kind, payload))
+    peak = tacto.peak_mb("session", "slept")
+    print(f"a stop of 23 days: peak of {peak:.1f} MB")
+    assert tacto.SANITIZED or peak < MOST_MB, peak
+    report = json.loads(tacto.run("session", "slept", "--json")[0])
+    strokes = report["strokes"]
+    assert report["stroke_count"] == len(strokes) and any(s["from_s"] > 2e6 for s in strokes), report
+    assert all(s["to_s"] - s["from_s"] < 2 and s["error_db"] < -15 for s in strokes), strokes
+    _, said = tacto.run("session", "slept", "-o", "slept.wav", code=5)
+    assert "made up" in said and not pathlib.Path("slept.wav").exists(), said
+    pathlib.Path("mine.csv").write_text("my,own\n1,2\n")
+    tacto.run("session", "slept", "--strokes", "mine.csv", code=2)
+    assert pathlib.Path("mine.csv").read_text().startswith("my,own")
+
+
 if __name__ == "__main__":
-    for test in (judged_in_little_memory, compared_and_told, a_stroke_without_an_end):
+    for test in (judged_in_little_memory, compared_and_told, a_stroke_without_an_end, a_stop_of_days):
+        if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
+            continue
         tacto.in_folder(test)
