@@ -52,7 +52,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }  // namespace
 
 SessionNetcdf::SessionNetcdf(const std::string& path, const SessionHeader& header, std::uint64_t times,
-                             std::vector<SessionVariable> variables)
+                             const std::vector<SessionVariable>& variables)
     : path_(path), file_(std::make_unique<NetcdfWriter>(path)), values_(variables.size()) {
   const int time = file_->dimension("time", times);
   axis_ = file_->axis("time", time, "s", "time since the first tick, by the device's clock");

@@ -34,7 +34,7 @@ class NetcdfWriter;
 class SessionNetcdf {
  public:
   SessionNetcdf(const std::string& path, const SessionHeader& header, std::uint64_t times,
-                std::vector<SessionVariable> variables);
+                const std::vector<SessionVariable>& variables);
   SessionNetcdf(const SessionNetcdf&) = delete;
   SessionNetcdf& operator=(const SessionNetcdf&) = delete;
   ~SessionNetcdf();
