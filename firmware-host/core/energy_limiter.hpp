@@ -20,6 +20,7 @@ class EnergyLimiter {
   float limit(float wished_v, uint32_t& flags) noexcept {
     if (!(limit_v_ > 0)) return wished_v;
     mean_square_ += share_ * (wished_v * wished_v - mean_square_);
+    if (mean_square_ < kSilence) mean_square_ = 0;  // no denormals: see SectionChain
     const float least = limit_v_ * limit_v_;
     if (mean_square_ <= least && root_v_ <= limit_v_ * kAtLimit) return root_v_ = limit_v_, wished_v;
     root_v_ = 0.5F * (root_v_ + (mean_square_ > least ? mean_square_ : least) / root_v_);
@@ -28,6 +29,7 @@ class EnergyLimiter {
   }
 
  private:
+  static constexpr float kSilence = 1e-30F;     // V^2
   static constexpr float kAtLimit = 1.000001F;  // from here on Newton's steps are roundings
   float limit_v_ = 0, share_ = 1, mean_square_ = 0, root_v_ = 0;
 };
