@@ -102,26 +102,29 @@ double integrated_error() {
   return off / farthest;
 }
 
-/// Times of a table, piece by piece: tick i is at `at(i)`.
+// Gives `take` the times of `rows` ticks, piece by piece, tick i at `at(i)`, until it fails.
+template <class At, class Take>
+schema::Result<void> in_pieces(std::uint64_t rows, At at, Take take) {
+  constexpr std::uint64_t kPiece = 1 << 16;
+  std::vector<double> times;
+  for (std::uint64_t from = 0; from < rows; from += kPiece) {
+    times.clear();
+    for (std::uint64_t i = from; i < std::min(rows, from + kPiece); ++i) times.push_back(at(i));
+    if (const auto taken = take(times); !taken) return taken;
+  }
+  return {};
+}
+
 template <class At>
 schema::Result<capture::UniformClock> clock_of(std::uint64_t rows, At at) {
-  constexpr std::uint64_t kPiece = 1 << 16;
-  const auto in_pieces = [&](auto take) -> schema::Result<void> {
-    std::vector<double> times;
-    for (std::uint64_t from = 0; from < rows; from += kPiece) {
-      times.clear();
-      for (std::uint64_t i = from; i < std::min(rows, from + kPiece); ++i) times.push_back(at(i));
-      if (const auto taken = take(times); !taken) return taken;
-    }
-    return {};
-  };
   capture::ClockFinder finder;
-  (void)in_pieces([&](const auto& times) { return finder.survey(times), schema::Result<void>(); });
-  if (const auto ended = finder.end_survey("times"); !ended) return schema::forward_error(ended);
+  const auto survey = [&](const auto& times) { return finder.survey(times), schema::Result<void>(); };
   const auto place = [](std::uint64_t row) { return std::to_string(row); };
   const auto locate = [&](const auto& times) { return finder.locate(times, place, "times"); };
+  (void)in_pieces(rows, at, survey);
+  if (const auto ended = finder.end_survey("times"); !ended) return schema::forward_error(ended);
   if (finder.second_pass_needed())
-    if (const auto located = in_pieces(locate); !located) return schema::forward_error(located);
+    if (const auto located = in_pieces(rows, at, locate); !located) return schema::forward_error(located);
   return finder.clock();
 }
 

@@ -89,6 +89,7 @@ class RealtimeTrade {
   void add_looking_ahead();
   void add_counts();
   void add_rates();
+  void add_rate(double rate_hz);
   void add_pyramids();
   void add_precisions();
   void add_hysteresis();
@@ -176,28 +177,31 @@ void RealtimeTrade::add_counts() {
     }
 }
 
+void RealtimeTrade::add_rate(double rate_hz) {
+  const std::string rate = fmt::format("{:g} kHz", 1e-3 * rate_hz);
+  PlayedCase played = usual();
+  played.options.rate_hz = rate_hz;
+  add("tick rate", rate, played);
+  again("tick rate x inverse", rate + ", full");
+  again("tick rate x delay compensation", rate + ", on");
+  played.options.look_ahead = false;
+  add("tick rate x delay compensation", rate + ", off", played);
+  played.options.look_ahead = true;
+  for (const auto& [word, inverse] : {kInverses[1], kInverses[2]}) {
+    played.options.inverse = inverse;
+    add("tick rate x inverse", rate + ", " + word, played);
+  }
+}
+
 // Ticks of other rates are compared by what a millisecond of playing costs.
 void RealtimeTrade::add_rates() {
-  const std::size_t first = lines_.size();
   for (const double rate_hz : kRates) {
-    const std::string rate = fmt::format("{:g} kHz", 1e-3 * rate_hz);
-    PlayedCase played = usual();
-    played.options.rate_hz = rate_hz;
-    add("tick rate", rate, played);
-    again("tick rate x inverse", rate + ", full");
-    again("tick rate x delay compensation", rate + ", on");
-    played.options.look_ahead = false;
-    add("tick rate x delay compensation", rate + ", off", played);
-    played.options.look_ahead = true;
-    for (const auto& [word, inverse] : {kInverses[1], kInverses[2]}) {
-      played.options.inverse = inverse;
-      add("tick rate x inverse", rate + ", " + word, played);
+    const std::size_t first = lines_.size();
+    add_rate(rate_hz);
+    for (std::size_t i = first; i < lines_.size(); ++i) {
+      lines_[i].times = 1e-3 * rate_hz;
+      lines_[i].row.per = "ms";
     }
-  }
-  for (std::size_t i = first; i < lines_.size(); ++i) {
-    const double rate_hz = kRates[(i - first) * std::size(kRates) / (lines_.size() - first)];
-    lines_[i].times = 1e-3 * rate_hz;
-    lines_[i].row.per = "ms";
   }
 }
 

@@ -63,28 +63,37 @@ std::optional<std::size_t> samples_of_beginning(schema::Texture texture, int hun
   return made->samples.size();
 }
 
+struct Beginning {
+  int hundredths = 0;  // 0: none fits
+  std::size_t samples = 0;
+};
+
 // Found by halves, and prepared: a cut may be finer than what is cut, so its samples do not follow its
 // length.
+Beginning longest_beginning(const schema::Texture& texture, std::size_t room, const Program& program) {
+  Beginning longest;
+  for (int too_long = 100; too_long - longest.hundredths > 1;) {
+    const int middle = (longest.hundredths + too_long) / 2;
+    const auto samples = samples_of_beginning(texture, middle, program);
+    if (samples && *samples <= room)
+      longest = {middle, *samples};
+    else
+      too_long = middle;
+  }
+  return longest;
+}
+
 void add_beginning(std::vector<Report>& ways, const AskedProgram& asked, const Program& program) {
   if (program.session.textures.size() != 1) return;
   const auto texture = schema::read_texture(program.session.textures.front().file);
   if (!texture) return;
-  int fits = 0, too_long = 100;
-  std::size_t samples = 0;
-  while (too_long - fits > 1) {
-    const int middle = (fits + too_long) / 2;
-    const auto taken = samples_of_beginning(*texture, middle, program);
-    const bool fit = taken && *taken <= asked.room();
-    (fit ? fits : too_long) = middle;
-    if (fit) samples = *taken;
-  }
-  if (fits == 0) return;
-  ways.push_back(
-      Report()
-          .add("way", fmt::format("play its first {}",
-                                  schema::length_for_people(0.01 * fits * texture->signal.length_m())))
-          .add("samples", samples)
-          .add("fits", true));
+  const Beginning longest = longest_beginning(*texture, asked.room(), program);
+  if (longest.hundredths == 0) return;
+  const double length_m = 0.01 * longest.hundredths * texture->signal.length_m();
+  ways.push_back(Report()
+                     .add("way", "play its first " + schema::length_for_people(length_m))
+                     .add("samples", longest.samples)
+                     .add("fits", true));
 }
 
 // What lies between textures takes as much as they do.
