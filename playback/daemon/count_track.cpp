@@ -26,8 +26,13 @@ CountTrack::CountTrack(double rate_hz) noexcept
       window_(periods_in(kWindowS, rate_hz)),
       least_(kNone) {}
 
+void CountTrack::set_reserve(std::uint32_t periods) noexcept {
+  reserve_ = std::min(periods, static_cast<std::uint32_t>(most_behind_) / 2);
+}
+
 void CountTrack::put(std::uint32_t period, std::int32_t count, std::int64_t made_ns) noexcept {
-  if (!begun_) counts_[(period - 1) % kKept].store(count, std::memory_order_relaxed);  // it stood there
+  if (!begun_)
+    for (auto& stood : counts_) stood.store(count, std::memory_order_relaxed);
   const std::uint32_t passed = begun_ ? period - put_ : 1;
   const std::int32_t before = kept(put_);
   const std::int64_t way = std::int64_t{count} - before;
@@ -41,9 +46,10 @@ void CountTrack::put(std::uint32_t period, std::int32_t count, std::int64_t made
 }
 
 CountTrack::Sight CountTrack::begin() noexcept {
-  seen_ = at_ = newest_.load(std::memory_order_acquire);
+  seen_ = newest_.load(std::memory_order_acquire);
+  at_ = seen_ - reserve_;
   part_ = drift_ = 0, least_ = kNone, in_window_ = 0;
-  return {kept(at_), 0, newest_ns_.load(std::memory_order_relaxed), true};
+  return {kept(at_), 0, newest_ns_.load(std::memory_order_relaxed) - reserve_ * period_ns_, true};
 }
 
 // A count stands for its middle.
@@ -79,7 +85,7 @@ CountTrack::Sight CountTrack::see() noexcept {
   part_ -= whole;
   const auto ahead = static_cast<std::int32_t>(newest - at_);
   if (ahead > most_behind_ || ahead < -most_beyond_) {
-    at_ = ahead > 0 ? newest : newest + static_cast<std::uint32_t>(most_beyond_);
+    at_ = ahead > 0 ? newest - reserve_ : newest + static_cast<std::uint32_t>(most_beyond_);
     part_ = 0;
   }
   const auto left = static_cast<std::int32_t>(newest - at_);

@@ -13,11 +13,13 @@ namespace tacto::playback {
 /// goes on by one (also after ticks that were slept through), on a line between two counts, as close behind
 /// the newest one as never leaves it without (over half a second; it nears by at most 2 %, which no skin
 /// tells). Beyond the newest it goes on straight for 2 ms, then it stands. Where more than 20 ms lie ahead,
-/// as after a stall, it goes to the newest at once. put() is for one thread, the rest for another; none
-/// locks, allocates or calls the system.
+/// as after a stall, it goes at once to where it begins: a reserve behind the newest. put() is for one
+/// thread, the rest for another; none locks, allocates or calls the system.
 class CountTrack {
  public:
   explicit CountTrack(double rate_hz) noexcept;
+  /// How many periods come together, before which nothing lies ahead. Before see() and begin().
+  void set_reserve(std::uint32_t periods) noexcept;
   /// In their order; periods that are left out lie on a line. `made_ns`: when the device took it.
   void put(std::uint32_t period, std::int32_t count, std::int64_t made_ns) noexcept;
 
@@ -30,7 +32,7 @@ class CountTrack {
   };
   /// Goes on by one period.
   Sight see() noexcept;
-  /// The newest count, from which the next see() goes on.
+  /// The count that a reserve lies behind the newest, from which the next see() goes on.
   Sight begin() noexcept;
 
  private:
@@ -49,7 +51,7 @@ class CountTrack {
   // The taker's.
   std::int64_t period_ns_;
   std::int32_t most_behind_, most_beyond_, window_;
-  std::uint32_t at_ = 0, seen_ = 0;
+  std::uint32_t reserve_ = 0, at_ = 0, seen_ = 0;
   float part_ = 0, drift_ = 0, least_;
   std::int32_t in_window_ = 0;
 };

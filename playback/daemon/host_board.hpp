@@ -46,6 +46,8 @@ class HostBoard {
   void put_count(std::uint32_t period, std::int32_t encoder, std::int64_t made_ns) noexcept {
     counts_.put(period, encoder, made_ns);
   }
+  /// Before anything ticks: as CountTrack::set_reserve().
+  void set_reserve(std::uint32_t periods) noexcept { counts_.set_reserve(periods); }
   void set_enabled(bool enabled) noexcept { enabled_.store(enabled, std::memory_order_release); }
   /// Before put_count(): the codes of the device's channels in the same period.
   void set_codes(std::span<const std::int32_t> codes) noexcept {

@@ -101,6 +101,7 @@ Result<void> HostLoop::measure_delay() {
     trips.push_back(TickClock::now_ns() - asked_ns);
   }
   const double batch = batches.empty() ? 0 : static_cast<double>(median_of(batches));
+  board_->set_reserve(static_cast<std::uint32_t>(batch) + 1);
   delay_s_ = (batch + 1 + queue_target()) / options_.rate_hz + 2 * kCarryS +
              1e-9 * static_cast<double>(median_of(trips));
   return {};

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -103,6 +104,27 @@ TEST(CountTrack, ComesNearAgainAfterAStall) {
   sight = track.see();
   EXPECT_EQ(sight.count, static_cast<std::int32_t>(10 * period)) << "half a second: at once";
   EXPECT_GT(sight.passed, 900U);
+}
+
+// With what comes together in reserve nothing is waited for: from the first tick on the finger goes evenly,
+// as far behind as it stays. Without, the track first has to fall behind.
+TEST(CountTrack, BeginsAsFarBehindAsItStays) {
+  for (const bool reserved : {false, true}) {
+    constexpr std::int32_t kBatch = 20;
+    CountTrack track(20e3);
+    track.set_reserve(reserved ? kBatch + 1 : 0);
+    std::vector<std::int32_t> steps;
+    std::int32_t before = 0;
+    for (std::int32_t tick = 0; tick < 2000; ++tick) {
+      for (std::int32_t i = 1; tick % kBatch == 0 && i <= kBatch; ++i)
+        track.put(static_cast<std::uint32_t>(tick + i), (tick + i) * (tick + i) / 100, 0);  // it gets faster
+      const std::int32_t count = tick == 0 ? track.begin().count : track.see().count;
+      if (tick > 100) steps.push_back(count - before - (2 * tick - 2 * kBatch) / 100);
+      before = count;
+    }
+    const auto [least, most] = std::ranges::minmax_element(steps);
+    EXPECT_EQ(*most - *least <= 3, reserved) << *least << " " << *most;
+  }
 }
 
 TEST(CountTrack, PeriodsThatAreLeftOutLieOnALine) {
