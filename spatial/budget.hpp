@@ -54,8 +54,9 @@ struct TextureChoices {
 /// The error counts what method and grid lose of the force in its band, read between the grid's points by
 /// cubic Hermite (playback's way): the sum of both, each as of a sine at the band's upper edge, which is an
 /// upper bound where the rest lies below it, and a tenth more. It doesn't count the encoder's rounding and
-/// noise, the filter's ends, and places where the finger is slower than kPromisedSpeed. Errors: unsuitable,
-/// where no choice keeps the promise (with the least error there is), or the table lacks a stage.
+/// noise, what the band-pass takes (band_share), and places where the finger is slower than kPromisedSpeed.
+/// Errors: unsuitable, where no choice keeps the promise (with the least error there is), or the table lacks
+/// a stage.
 schema::Result<TextureChoices> choose_texture(const schema::TradeTable& table, const TextureNeed& need,
                                               const schema::Budget& budget);
 

@@ -75,7 +75,8 @@ Result<void> check_played(const EmulatedPass& pass, const std::string& device) {
 }  // namespace
 
 Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::PlayOptions options,
-                                   double speed_mps, const std::function<bool()>& stop_asked) {
+                                   double speed_mps, const std::function<bool()>& stop_asked,
+                                   const std::function<void(double)>& progress) {
   const auto scratch = ScratchFolder::make();
   if (!scratch) return schema::forward_error(scratch);
   const FingerPath path = straight_path(texture, options.program.at_m.value_or(0), speed_mps);
@@ -84,7 +85,7 @@ Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::Pla
   options.program.any_displacement = options.device_uri.starts_with("sim:");
   if (const auto written = write_path(options.finger_path, path); !written)
     return schema::forward_error(written);
-  auto outcome = playback::play_once(options, stop_asked);
+  auto outcome = playback::play_once(options, stop_asked, progress);
   if (!outcome) return schema::forward_error(outcome);
   if (stop_asked()) return schema::fail(Fault::usage, "stopped before the end", "fidelity");
   auto columns = playback::read_session_columns(options.session);

@@ -24,9 +24,11 @@ struct EmulatedPass {
 
 /// Texture, upload over the wire, the firmware's kernel on the emulated encoder's counts, session: as
 /// `tactograph play`. The finger goes at `speed_mps` from 0.25 s before the texture to 0.25 s behind it.
-/// `options` names program, device and preparation; path, time and session are filled in. Errors: as
-/// play_once; usage: stopped; internal: the session's counts are not the path's.
+/// `progress` hears which part of it was played. `options` names program, device and preparation; path, time
+/// and session are filled in. Errors: as play_once; usage: stopped; internal: the session's counts are not
+/// the path's.
 schema::Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::PlayOptions options,
-                                           double speed_mps, const std::function<bool()>& stop_asked);
+                                           double speed_mps, const std::function<bool()>& stop_asked,
+                                           const std::function<void(double)>& progress = {});
 
 }  // namespace tacto::analysis

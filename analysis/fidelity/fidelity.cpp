@@ -30,6 +30,10 @@ constexpr double kLeftOutS = 0.05, kFadeM = 1e-3;  // left out at either end of 
 constexpr double kFarthestShiftM = 50e-6;
 constexpr double kUsualFidelityGain = 1e-3;
 constexpr double kFastestMps = 10, kLeastKeptPercent = 1;
+// Of the emulated tray; each takes 100 bytes while it is judged (measured), so this 1 GB.
+constexpr double kMostFeltSamples = 1e7;
+constexpr double kAroundS = 2;           // before the texture, behind it, and the drive's ramps
+constexpr double kPlayedShare = 0.4;     // of a speed's time, playing; the rest is the trays'
 constexpr double kOtherUnitWish = 31.6;  // times the limit: 30 dB
 
 double gain_of(const FidelityOptions& options) {
@@ -157,10 +161,16 @@ tl::unexpected<schema::Error> fidelity_stopped() {
   return schema::fail(Fault::usage, "stopped before the end", "fidelity");
 }
 
+double share_done(std::size_t done, std::size_t all) {
+  return static_cast<double>(done) / static_cast<double>(all);
+}
+
 // Wanted once, felt once for each tray.
 Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Texture& texture,
-                                     const Trays& trays, double speed_mps) {
-  const auto pass = emulated_pass(texture, options.play, speed_mps, options.stop_asked);
+                                     const Trays& trays, double speed_mps,
+                                     const std::function<void(double)>& progress) {
+  const auto played = [&](double part) { progress(kPlayedShare * part); };
+  const auto pass = emulated_pass(texture, options.play, speed_mps, options.stop_asked, played);
   if (!pass) return schema::forward_error(pass);
   FidelitySpeed speed = speed_of(*pass, texture, speed_mps);
   const spatial::Band band{speed.low_hz, speed.high_hz};
@@ -173,6 +183,7 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
   if (!wanted) return schema::forward_error(wanted);
   for (const Tray& tray : trays.trays) {
     if (options.stop_asked()) return fidelity_stopped();
+    progress(kPlayedShare + (1 - kPlayedShare) * share_done(speed.rows.size(), trays.trays.size()));
     auto felt_m = felt_displacement_m(*pass, trays.transducer, tray.physics);
     if (tray.sensor) felt_m = through_sensor(felt_m, stretch->rate_hz, trays.transducer);
     const auto felt = along_stretch(in_band(felt_m, stretch->rate_hz, band), *stretch, band);
@@ -193,9 +204,10 @@ Result<Fidelity> emulated_fidelity(const FidelityOptions& options, const Texture
   whole.displacement =
       "the emulated tray's, integrated from its equations of motion under the session's drive";
   for (const double speed_mps : options.speeds_mps) {
-    if (progress)
-      progress(static_cast<double>(whole.speeds.size()) / static_cast<double>(options.speeds_mps.size()));
-    auto speed = emulated_speed(options, texture, *trays, speed_mps);
+    const double before = share_done(whole.speeds.size(), options.speeds_mps.size());
+    auto speed = emulated_speed(options, texture, *trays, speed_mps, [&](double part) {
+      if (progress) progress(before + part * share_done(1, options.speeds_mps.size()));
+    });
     if (!speed) return schema::forward_error(speed);
     whole.speeds.push_back(std::move(*speed));
   }
@@ -247,6 +259,23 @@ Result<void> check_speeds(const FidelityOptions& options) {
   return {};
 }
 
+// Slower ones would fill the memory, after minutes of playing.
+Result<void> check_duration(const FidelityOptions& options, const Texture& texture) {
+  const double rate_hz = options.play.prepare.rate_hz;
+  const double longest_s = kMostFeltSamples / (rate_hz * static_cast<double>(samples_a_tick(rate_hz)));
+  const double length_m = texture.signal.length_m(), slowest_mps = length_m / (longest_s - kAroundS);
+  const auto words = [](double mps) { return schema::for_people(mps, schema::Dimension::speed); };
+  for (const double speed : options.speeds_mps)
+    if (speed < slowest_mps)
+      return schema::fail(
+          Fault::unsuitable,
+          fmt::format("at {} the texture's {} take {:.3g} s; at {:g} Hz up to {:.3g} s are held in memory",
+                      words(speed), schema::length_for_people(length_m), length_m / speed, rate_hz,
+                      longest_s - kAroundS),
+          "speed", fmt::format("ask for {} or more", words(1.001 * slowest_mps)));
+  return {};
+}
+
 }  // namespace
 
 Result<Fidelity> fidelity(const FidelityOptions& options, const std::function<void(double)>& progress) {
@@ -254,6 +283,8 @@ Result<Fidelity> fidelity(const FidelityOptions& options, const std::function<vo
   const auto texture = schema::read_texture(options.play.program.file);
   if (!texture) return schema::forward_error(texture);
   const bool emulated = options.play.device_uri.starts_with("sim:");
+  if (emulated)
+    if (const auto fits = check_duration(options, *texture); !fits) return schema::forward_error(fits);
   auto whole = emulated ? emulated_fidelity(options, *texture, progress)
                         : modelled_fidelity(options, *texture, progress);
   if (!whole) return whole;

@@ -59,7 +59,8 @@ struct Fidelity {
 /// its longest stroke is judged by what the recorded drive makes of the transducer's model, which knows none
 /// of these: the row says so. Errors: as play_once and compare; usage: no speed, one that is not
 /// above 0 or above 10 m/s, or stopped;
-/// unsuitable: a texture too short for the speed.
+/// unsuitable: a texture too short for the speed, or so long for it that more than 1e7 samples (1 GB; 500 s
+/// at 20 kHz) would be felt.
 schema::Result<Fidelity> fidelity(const FidelityOptions& options,
                                   const std::function<void(double)>& progress = {});
 

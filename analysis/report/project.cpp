@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "data-schema/files.hpp"
@@ -18,7 +19,7 @@ bool hidden(const fs::path& path) {
   return path.filename().string().starts_with(".");
 }
 
-// Every file below the folder, by name.
+// All but folders below the folder, by name.
 Result<std::vector<std::string>> files_below(const std::string& folder, const std::string& leave_out) {
   std::error_code failure, ignored;
   fs::recursive_directory_iterator at(folder, failure);
@@ -33,14 +34,19 @@ Result<std::vector<std::string>> files_below(const std::string& folder, const st
       continue;
     }
     const bool left_out = !leave_out.empty() && fs::equivalent(at->path(), leave_out, ignored);
-    if (at->is_regular_file(ignored) && !left_out) files.push_back(at->path().string());
+    if (!at->is_directory(ignored) && !left_out) files.push_back(at->path().string());
   }
   std::ranges::sort(files);
   return files;
 }
 
-bool is_sidecars_wav(const std::string& path) {
-  return path.ends_with(".wav") && schema::is_file(path.substr(0, path.size() - 4) + ".json");
+// Samples: of a file that names them, or of one that can't be used and is named for itself.
+bool is_sidecars_wav(const std::string& path, const Project& project) {
+  const auto names = [&](const ProjectFile& file) { return file.data == path; };
+  if (std::ranges::any_of(project.files, names)) return true;
+  const std::string sidecar = fs::path(path).replace_extension(".json").string();
+  return path.ends_with(".wav") &&
+         std::ranges::find(project.broken, sidecar, &BrokenFile::path) != project.broken.end();
 }
 
 bool is_journal(const std::string& path) {
@@ -51,8 +57,22 @@ bool may_be_ours(const std::string& path) {
   return path.ends_with(".json") || path.ends_with(".nc") || path.ends_with(".session");
 }
 
+// A pipe would be waited for, and what a link leads nowhere from is missing in the project.
+std::optional<schema::Error> irregular(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored)) return std::nullopt;
+  if (!fs::exists(path, ignored))
+    return schema::Error{Fault::not_found, "is a link that leads nowhere", path,
+                         "put back what it led to, or remove it"};
+  return schema::Error{Fault::unsuitable, "is no file but a pipe, a socket or a device", path,
+                       "remove it, or store what comes out of it"};
+}
+
 void add_file(const std::string& path, Project& project) {
-  if (is_sidecars_wav(path)) return;
+  if (auto error = irregular(path)) {
+    project.broken.push_back({path, std::move(*error)});
+    return;
+  }
   if (is_journal(path)) {
     project.broken.push_back({path,
                               {Fault::malformed, "is of a recording that was never closed", path,
@@ -85,6 +105,7 @@ Result<Project> read_project(const std::string& folder, const std::string& leave
   }
   if (project.files.empty() && project.broken.empty())
     return schema::fail(Fault::unsuitable, "holds no file of tactograph", folder, "name a project's folder");
+  std::erase_if(project.foreign, [&](const std::string& path) { return is_sidecars_wav(path, project); });
   std::ranges::stable_sort(project.files, {}, &ProjectFile::kind);
   return project;
 }

@@ -26,9 +26,10 @@ struct Project {
 };
 
 /// Looks into the folder and those within it (hidden ones and links to folders are passed over). A file of
-/// ours is a .json that says a kind, a .nc, a .session; a .wav goes with its sidecar. One that cannot be read
-/// does not stop the rest. `leave_out` is a path that is not looked at: the page itself. `progress` hears 0
-/// to 1. Errors: not_found, where there is no such folder; unsuitable, where it holds no file of ours.
+/// ours is a .json that says a kind, a .nc, a .session; a .wav goes with the sidecar that names it. One that
+/// cannot be read does not stop the rest; nor do pipes, sockets, devices and links that lead nowhere, which
+/// are never opened. `leave_out` is a path that is not looked at: the page itself. `progress` hears 0 to 1.
+/// Errors: not_found, where there is no such folder; unsuitable, where it holds no file of ours.
 schema::Result<Project> read_project(const std::string& folder, const std::string& leave_out,
                                      const std::function<void(double)>& progress = {});
 

@@ -6,6 +6,8 @@
 #include "analysis/report/project_readers.hpp"
 #include "data-schema/check.hpp"
 #include "data-schema/files.hpp"
+#include "data-schema/recording.hpp"
+#include "data-schema/texture_wav.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -13,11 +15,13 @@ namespace {
 using schema::FileKind;
 using schema::Result;
 
-// Of recordings and textures the samples, of other kinds the file itself.
+// Of recordings and textures the samples that they name, of other kinds the file itself.
 std::string data_path(const schema::StoredFile& file) {
-  const bool has_wav = file.kind == FileKind::recording || file.kind == FileKind::texture;
-  if (!has_wav || !file.path.ends_with(".json")) return file.path;
-  return file.path.substr(0, file.path.size() - 5) + ".wav";
+  if (file.kind == FileKind::recording)
+    if (const auto recording = schema::open_recording(file.path)) return schema::wav_path(*recording);
+  if (file.kind == FileKind::texture)
+    if (const auto wav = schema::texture_wav(file.path)) return wav->path;
+  return file.path;
 }
 
 Result<void> check(const schema::StoredFile& file) {
@@ -68,7 +72,8 @@ Result<ProjectFile> project_file(const schema::StoredFile& stored) {
   ProjectFile file;
   file.path = stored.path;
   file.kind = stored.kind;
-  if (const auto sum = schema::sha256_of_file(data_path(stored))) file.checksum = sum->substr(0, 12);
+  file.data = data_path(stored);
+  if (const auto sum = schema::sha256_of_file(file.data)) file.checksum = sum->substr(0, 12);
   if (const auto read = read_into(stored.path, stored.kind, file); !read) return schema::forward_error(read);
   return file;
 }

@@ -17,6 +17,7 @@ struct ProjectFile {
   std::string date;       ///< of the measurement where it is known, else of the file's making; ISO 8601
   std::string origin;     ///< device or source file
   std::string simulated;  ///< by what; empty for real data
+  std::string data;       ///< path of its samples, or its own where it has none
   std::string checksum;   ///< first 12 digits of the SHA-256 of its data
   std::vector<schema::ResultFigure> figures;
   std::vector<schema::ResultPicture> pictures;

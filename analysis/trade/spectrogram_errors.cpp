@@ -19,7 +19,6 @@ using schema::Texture;
 using spatial::SpectrogramOptions;
 
 constexpr double kWindow_m = 5e-3, kFineHop_m = 25e-6;
-constexpr double kOctaves_per_m[] = {500, 1000, 2000, 4000, 8000};
 
 double row_power(const Spectrogram& of, std::size_t p) {
   const auto row = of.cells.begin() + static_cast<std::ptrdiff_t>(p * of.bins);
@@ -47,19 +46,18 @@ double power_between(const std::vector<double>& values, std::size_t left_out) {
   return power / static_cast<double>(values.size() - 2 * left_out);
 }
 
-std::vector<double> octave_powers(const Spectrogram& made, double from_m, double to_m) {
-  std::vector<double> powers(std::size(kOctaves_per_m) - 1);
-  std::size_t rows = 0;
-  for (std::size_t p = 0; p < made.position_m.size(); ++p) {
-    if (made.position_m[p] < from_m || made.position_m[p] > to_m) continue;
-    ++rows;
-    for (std::size_t k = 0; k < made.bins; ++k)
-      for (std::size_t i = 0; i < powers.size(); ++i)
-        if (made.frequency_per_m(k) >= kOctaves_per_m[i] && made.frequency_per_m(k) < kOctaves_per_m[i + 1])
-          powers[i] += static_cast<double>(made.at(p, k)) * made.frequency_step_per_m;
-  }
-  for (double& power : powers) power /= static_cast<double>(rows);
-  return powers;
+// Of the hat over one bin, in bins: its integral from -1 up to x.
+double hat_up_to(double x) {
+  const double y = std::clamp(x, -1.0, 1.0);
+  return y < 0 ? (1 + y) * (1 + y) / 2 : 1 - (1 - y) * (1 - y) / 2;
+}
+
+// How much of bin k lies in octave i, in bins.
+double share_of(const Spectrogram& made, std::size_t k, std::size_t i) {
+  const auto bins_to = [&](double per_m) {
+    return per_m / made.frequency_step_per_m - static_cast<double>(k);
+  };
+  return hat_up_to(bins_to(kOctaves_per_m[i + 1])) - hat_up_to(bins_to(kOctaves_per_m[i]));
 }
 
 }  // namespace
@@ -119,6 +117,20 @@ Result<OctaveEnergy> OctaveEnergy::of(const Texture& texture) {
     made.truth_.push_back(power_between(*values, left_out));
   }
   return made;
+}
+
+std::vector<double> octave_powers(const Spectrogram& made, double from_m, double to_m) {
+  std::vector<double> powers(std::size(kOctaves_per_m) - 1);
+  const auto inside = [&](double at_m) { return at_m >= from_m && at_m <= to_m; };
+  const auto rows = static_cast<double>(std::ranges::count_if(made.position_m, inside));
+  for (std::size_t k = 0; k < made.bins; ++k) {
+    double density = 0;
+    for (std::size_t p = 0; p < made.position_m.size(); ++p)
+      if (inside(made.position_m[p])) density += static_cast<double>(made.at(p, k));
+    for (std::size_t i = 0; i < powers.size(); ++i)
+      powers[i] += share_of(made, k, i) * made.frequency_step_per_m * density / rows;
+  }
+  return powers;
 }
 
 double OctaveEnergy::error(const Spectrogram& made) const {

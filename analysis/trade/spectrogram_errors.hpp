@@ -31,6 +31,14 @@ double error_between_rows(const schema::Spectrogram& made, const schema::Spectro
 /// The height of each row's highest peak, as an amplitude, its mean; re that of `finest`. Both: density.
 double error_of_peaks(const schema::Spectrogram& made, const schema::Spectrogram& finest);
 
+/// Where the octaves end whose energy is asked for, 1/m.
+inline constexpr double kOctaves_per_m[] = {500, 1000, 2000, 4000, 8000};
+
+/// The mean power of each octave, unit^2, in the rows between two places: the density, straight between its
+/// bins, integrated from one end of the octave to the other. Where it is even or goes straight along
+/// frequency this is exact whatever the padding; whole bins would be one too many or too few.
+std::vector<double> octave_powers(const schema::Spectrogram& made, double from_m, double to_m);
+
 /// The energy by octaves of the texture's middle, by filters in space: the truth for spectrograms of density.
 class OctaveEnergy {
  public:

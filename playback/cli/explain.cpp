@@ -107,14 +107,14 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
 
 // The error is said as by verbs that stop there; the table is printed all the same.
 Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgram& asked,
-                                      const schema::Error& refused) {
+                                      schema::Error refused) {
   const auto program = with_room_enough(asked);
   if (!program || program->prepared.samples.size() <= asked.room()) return tl::unexpected(refused);
   auto report = explained(o, *program);
   if (!report) return report;
-  cli::talk(fmt::format("tactograph: {}\n", cli::on_one_line(schema::message(refused))));
   add_room(*report, program->prepared, asked.room());
-  add_ways_to_fit(*report, asked, *program);
+  refused.remedy = add_ways_to_fit(*report, asked, *program);
+  cli::talk(fmt::format("tactograph: {}\n", cli::on_one_line(schema::message(refused))));
   return report->ends_with(refused.fault);
 }
 

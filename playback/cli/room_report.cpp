@@ -28,35 +28,36 @@ Report item(std::string name, std::size_t count, std::size_t room, std::size_t b
       .add("of_room_percent", 100 * static_cast<double>(count) / static_cast<double>(room));
 }
 
+struct Way {
+  std::string words;
+  std::size_t samples = 0;
+  bool fits = false;
+};
+
 // What does not come about for another reason is no way.
-void add_way(std::vector<Report>& ways, std::string way, const AskedProgram& asked) {
+void add_way(std::vector<Way>& ways, std::string way, const AskedProgram& asked) {
   const auto program = with_room_enough(asked);
   if (!program) return;
   const std::size_t samples = program->prepared.samples.size();
-  ways.push_back(
-      Report().add("way", std::move(way)).add("samples", samples).add("fits", samples <= asked.room()));
+  ways.push_back({std::move(way), samples, samples <= asked.room()});
 }
 
-void add_sinc(std::vector<Report>& ways, AskedProgram asked, const Program& program) {
+void add_sinc(std::vector<Way>& ways, AskedProgram asked, const Program& program) {
   if (program.prepared.scale.interpolation == wire::Interpolation::sinc) return;
   asked.request.choices.interpolation = std::string(word_of(wire::Interpolation::sinc));
   add_way(ways, "interpolate by sinc (--interpolation sinc)", asked);
 }
 
-void add_host(std::vector<Report>& ways, const AskedProgram& asked, const Program& program) {
+void add_host(std::vector<Way>& ways, const AskedProgram& asked, const Program& program) {
   const std::size_t samples = program.prepared.samples.size(), room = PrepareOptions{}.most_samples;
   if (asked.room() >= room) return;
-  ways.push_back(Report()
-                     .add("way", "let this computer close the loop (--loop host)")
-                     .add("samples", samples)
-                     .add("fits", samples <= room));
+  ways.push_back({"let this computer close the loop (--loop host)", samples, samples <= room});
 }
 
 std::optional<std::size_t> samples_of_beginning(schema::Texture texture, int hundredths,
-                                                const Program& program) {
+                                                const Program& program, PrepareOptions options) {
   std::vector<double>& values = texture.signal.values;
   values.resize(std::max<std::size_t>(2, values.size() * static_cast<std::size_t>(hundredths) / 100));
-  PrepareOptions options = program.options;
   options.most_samples = kRoomEnough;
   const auto made = prepare(texture, program.session.transducer, options);
   if (!made) return std::nullopt;
@@ -70,11 +71,12 @@ struct Beginning {
 
 // Found by halves, and prepared: a cut may be finer than what is cut, so its samples do not follow its
 // length.
-Beginning longest_beginning(const schema::Texture& texture, std::size_t room, const Program& program) {
+Beginning longest_beginning(const schema::Texture& texture, std::size_t room, const Program& program,
+                            const PrepareOptions& options) {
   Beginning longest;
   for (int too_long = 100; too_long - longest.hundredths > 1;) {
     const int middle = (longest.hundredths + too_long) / 2;
-    const auto samples = samples_of_beginning(texture, middle, program);
+    const auto samples = samples_of_beginning(texture, middle, program, options);
     if (samples && *samples <= room)
       longest = {middle, *samples};
     else
@@ -83,21 +85,29 @@ Beginning longest_beginning(const schema::Texture& texture, std::size_t room, co
   return longest;
 }
 
-void add_beginning(std::vector<Report>& ways, const AskedProgram& asked, const Program& program) {
-  if (program.session.textures.size() != 1) return;
+// Whether any hundredth fits.
+bool add_beginning(std::vector<Way>& ways, const AskedProgram& asked, const Program& program,
+                   const PrepareOptions& options, const char* how) {
   const auto texture = schema::read_texture(program.session.textures.front().file);
-  if (!texture) return;
-  const Beginning longest = longest_beginning(*texture, asked.room(), program);
-  if (longest.hundredths == 0) return;
+  if (!texture) return false;
+  const Beginning longest = longest_beginning(*texture, asked.room(), program, options);
+  if (longest.hundredths == 0) return false;
   const double length_m = 0.01 * longest.hundredths * texture->signal.length_m();
-  ways.push_back(Report()
-                     .add("way", "play its first " + schema::length_for_people(length_m))
-                     .add("samples", longest.samples)
-                     .add("fits", true));
+  ways.push_back(
+      {fmt::format("play its first {}{}", schema::length_for_people(length_m), how), longest.samples, true});
+  return true;
+}
+
+void add_beginnings(std::vector<Way>& ways, const AskedProgram& asked, const Program& program) {
+  if (program.session.textures.size() != 1) return;
+  PrepareOptions options = program.options;
+  if (add_beginning(ways, asked, program, options, "")) return;
+  options.interpolation = wire::Interpolation::sinc;
+  add_beginning(ways, asked, program, options, ", by sinc (--interpolation sinc)");
 }
 
 // What lies between textures takes as much as they do.
-void add_alone(std::vector<Report>& ways, const AskedProgram& asked, const Program& program) {
+void add_alone(std::vector<Way>& ways, const AskedProgram& asked, const Program& program) {
   if (program.session.textures.size() < 2) return;
   std::vector<std::string> seen;
   for (const schema::SessionTexture& texture : program.session.textures) {
@@ -108,6 +118,20 @@ void add_alone(std::vector<Report>& ways, const AskedProgram& asked, const Progr
     alone.request.at_m = texture.at_m;
     add_way(ways, "play by itself " + texture.file, alone);
   }
+}
+
+std::string words_of_fitting(const std::vector<Way>& ways) {
+  std::string words;
+  for (const Way& way : ways)
+    if (way.fits) words += (words.empty() ? "" : ", or ") + way.words;
+  return words;
+}
+
+std::vector<Report> rows_of(const std::vector<Way>& ways) {
+  std::vector<Report> rows;
+  for (const Way& way : ways)
+    rows.push_back(Report().add("way", way.words).add("samples", way.samples).add("fits", way.fits));
+  return rows;
 }
 
 }  // namespace
@@ -134,13 +158,18 @@ void add_room(Report& report, const Prepared& made, std::size_t device_samples) 
   report.add("memory", std::move(items));
 }
 
-void add_ways_to_fit(Report& report, const AskedProgram& asked, const Program& program) {
-  std::vector<Report> ways;
+std::string add_ways_to_fit(Report& report, const AskedProgram& asked, const Program& program) {
+  std::vector<Way> ways;
   add_sinc(ways, asked, program);
-  add_beginning(ways, asked, program);
+  add_beginnings(ways, asked, program);
   add_alone(ways, asked, program);
+  const bool on_device = !words_of_fitting(ways).empty();
   add_host(ways, asked, program);
-  report.add("ways_to_fit", std::move(ways));
+  report.add("ways_to_fit", rows_of(ways));
+  const std::string fitting = words_of_fitting(ways);
+  if (on_device) return fitting;
+  return "nothing that was tried fits, neither by sinc nor a part of it" +
+         (fitting.empty() ? "" : "; " + fitting);
 }
 
 }  // namespace tacto::playback

@@ -27,7 +27,8 @@ schema::Result<Program> with_room_enough(const AskedProgram& asked);
 void add_room(cli::Report& report, const Prepared& made, std::size_t device_samples);
 
 /// `ways_to_fit`, each with the samples that it takes, as prepared: reading by sinc, the longest beginning of
-/// a texture that fits (to a hundredth of it), each texture of a scene by itself, this computer's loop.
-void add_ways_to_fit(cli::Report& report, const AskedProgram& asked, const Program& program);
+/// a texture that fits (to a hundredth of it; by sinc where no other does), each texture of a scene by
+/// itself, this computer's loop. Returns what to do, in words: those that fit, or that none does.
+std::string add_ways_to_fit(cli::Report& report, const AskedProgram& asked, const Program& program);
 
 }  // namespace tacto::playback

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "spatial/band_share.hpp"
 #include "spatial/dsp/block_fourier_filter.hpp"
 
 namespace tacto::spatial {
@@ -42,21 +43,37 @@ std::string asked(const schema::Budget& budget) {
   return budget.most_exact() ? "the most exact" : fmt::format("at most {:g} %", 100 * budget.most_error());
 }
 
+// The promise is of the force behind the band-pass, so what this takes is told by itself, as measured.
+std::string counts_not(double lowest_hz, const BandShare& share) {
+  return fmt::format(
+      "what the band-pass itself takes: in this recording's worst stroke {:.3g} % of the RMS of what passes, "
+      "{:.3g} % in its middle half (what lies outside of the band: drift, slow friction, the force's steps "
+      "where the finger sets out and stops); what lies within {:.2g} s beyond the record's ends, which "
+      "nobody "
+      "knows; the encoder's rounding and noise; a speed that comes and goes within {:g} frames; slower "
+      "places "
+      "(the valid band says how far they reach)",
+      100 * share.whole, 100 * share.inside, kBandKernelPeriods / lowest_hz, kSteadyFrames);
+}
+
+Result<BandShare> share_of(const TextureOptions& wanted, const TouchRecord& record,
+                           const std::vector<StrokeJob>& jobs) {
+  std::vector<Stroke> strokes;
+  for (const StrokeJob& job : jobs) strokes.push_back(job.stroke);
+  return band_share(record, wanted.filter, strokes);
+}
+
 void explain(Report& report, const TextureChoices& choices, const TextureNeed& need, double lowest_hz,
-             const schema::FoundTradeTable& found) {
+             const BandShare& share, const schema::FoundTradeTable& found) {
   report.add("by_table", found.origin);
   report.add("counts",
              fmt::format("what method and grid lose of {:g} Hz and below, read between the grid's points, "
                          "where the finger goes at {} or more",
                          need.highest_hz,
                          schema::for_people(kPromisedSpeed * need.slowest_mps, schema::Dimension::speed)));
-  report.add(
-      "counts_not",
-      fmt::format(
-          "the band-pass itself, near its edges and within {:.2g} s of the record's ends (some tenths of "
-          "a percent), the encoder's rounding and noise, a speed that comes and goes within "
-          "{:g} frames, slower places (the valid band says how far they reach)",
-          kBandKernelPeriods / lowest_hz, kSteadyFrames));
+  report.add("band_pass_took_percent", 100 * share.whole)
+      .add("band_pass_took_inside_percent", 100 * share.inside);
+  report.add("counts_not", counts_not(lowest_hz, share));
   std::vector<Report> rows;
   for (const TextureChoice& choice : choices.tried) rows.push_back(row_of(choice, choices.taken));
   report.add("tried", std::move(rows));
@@ -81,9 +98,12 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
   chosen.options.pitch_m = choices->taken.pitch_m;
   chosen.report.add("method", std::string(name_of(choices->taken.method)))
       .add("promised_error_percent", 100 * choices->taken.error)
-      .add("asked_error", asked(budget));
-  if (options.chosen_by.explain)
-    explain(chosen.report, *choices, *need, wanted.filter.passed(need->sample_rate_hz).low_hz, *found);
+      .add("asked_error", asked(budget))
+      .add("promise_is", "against the force behind the same band-pass; what that takes: --explain");
+  if (!options.chosen_by.explain) return chosen;
+  const auto share = share_of(wanted, record, jobs);
+  if (!share) return schema::forward_error(share);
+  explain(chosen.report, *choices, *need, wanted.filter.passed(need->sample_rate_hz).low_hz, *share, *found);
   return chosen;
 }
 

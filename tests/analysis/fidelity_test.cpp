@@ -122,6 +122,14 @@ TEST_F(FidelityOfATexture, RefusesWhatCannotBePlayed) {
   EXPECT_EQ(fault(), schema::Fault::usage);
   options_.speeds_mps = {0.45};
   EXPECT_EQ(fault(), schema::Fault::unsuitable) << "40 mm pass before the tray has settled";
+  options_.speeds_mps = {0.05, 1e-6};
+  const auto endless = fidelity(options_);
+  ASSERT_FALSE(endless);
+  EXPECT_EQ(endless.error().fault, schema::Fault::unsuitable);
+  EXPECT_NE(endless.error().what.find("4e+04 s"), std::string::npos) << endless.error().what;
+  // 39.995 mm in the 500 s that 1e7 samples at 20 kHz are, less 2 s around them; a thousandth more for
+  // rounding.
+  EXPECT_NE(endless.error().remedy.find("80.39 um/s or more"), std::string::npos) << endless.error().remedy;
   options_.speeds_mps = {0.05};
   options_.play.device_uri = "sim:nonsense=1";
   EXPECT_EQ(fault(), schema::Fault::usage);

@@ -96,6 +96,41 @@ def broken_files_do_not_stop_the_rest():
         assert name in said or name == "torn.texture.json" and "C.texture.wav" in said, (name, said)
 
 
+def samples_are_those_that_the_sidecar_names():
+    """Under another name than the sidecar's; what lies where they would be by name is a stranger."""
+    make_project("study")
+    root = pathlib.Path("study")
+    for stem in ("C", "C.texture"):
+        side = json.loads((root / f"{stem}.json").read_text())
+        side["data"]["file"] = f"samples of {stem}.wav"
+        (root / f"{stem}.json").write_text(json.dumps(side))
+        (root / f"{stem}.wav").rename(root / side["data"]["file"])
+    (root / "C.wav").write_bytes(b"no samples of C")
+    out, said = tacto.run("report", root, "-o", "page.html", "--json")
+    rows = {row["file"]: row for row in json.loads(out)["files"]}
+    for stem in ("C", "C.texture"):
+        data = (root / f"samples of {stem}.wav").read_bytes()
+        assert hashlib.sha256(data).hexdigest()[:12] == rows[f"study/{stem}.json"]["sha256"] in pathlib.Path("page.html").read_text(), rows
+    assert "study/C.wav" in said and "samples of" not in said, said
+
+
+def what_is_no_file_is_named():
+    make_project("study")
+    root = pathlib.Path("study")
+    os.mkfifo(root / "pipe.json")
+    os.mkfifo(root / "pipe")
+    (root / "gone.texture.json").symlink_to("nowhere")
+    (root / "link.json").symlink_to("C.json")
+    done = subprocess.run([tacto.COMMAND, "report", root, "-o", "page.html", "--json"], capture_output=True, text=True, timeout=60)
+    report, text = json.loads(done.stdout), pathlib.Path("page.html").read_text()
+    assert done.returncode == 3, (done.returncode, done.stderr)  # of the first by name: the link
+    faults = {row["file"]: row["fault"] for row in report["broken"]}
+    assert faults.keys() == {"study/pipe.json", "study/pipe", "study/gone.texture.json"}, faults
+    assert "leads nowhere" in faults["study/gone.texture.json"] and "pipe" in faults["study/pipe.json"]
+    assert all(pathlib.Path(name).name in text and name in done.stderr for name in faults)
+    assert "study/link.json" in {row["file"] for row in report["files"]}
+
+
 def folders_that_are_none_are_refused():
     pathlib.Path("empty").mkdir()
     assert "no file of tactograph" in tacto.run("report", "empty", code=5)[1]
@@ -105,5 +140,6 @@ def folders_that_are_none_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (a_project_on_one_page, broken_files_do_not_stop_the_rest, folders_that_are_none_are_refused):
+    for test in (a_project_on_one_page, broken_files_do_not_stop_the_rest, samples_are_those_that_the_sidecar_names, what_is_no_file_is_named,
+                 folders_that_are_none_are_refused):
         tacto.in_folder(test)

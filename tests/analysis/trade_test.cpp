@@ -5,15 +5,18 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "analysis/trade/offline_choices.hpp"
 #include "analysis/trade/offline_half.hpp"
 #include "analysis/trade/pareto.hpp"
+#include "analysis/trade/spectrogram_errors.hpp"
 #include "analysis/trade/spectrogram_pairs.hpp"
 #include "analysis/trade/trade_page.hpp"
 #include "analysis/trade/worst_trade.hpp"
 #include "playback/budget_words.hpp"
 #include "spatial/budget.hpp"
+#include "spatial/spectrogram.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -162,6 +165,55 @@ TEST(SpectrogramPairs, PaddingErrsAsTheWindowsLobeSays) {
       EXPECT_TRUE(row.note.ends_with("padding " + wanted))
           << row.choice << ": " << row.note << ", " << wanted;
     }
+}
+
+// White noise has the density 2 sigma^2 p up to half the grid's frequency: an octave's power is that times
+// its width.
+TEST(OctavePowers, OfWhiteNoiseAreItsDensityTimesTheirWidth) {
+  schema::Texture noise;
+  noise.unit = "N";
+  noise.signal.pitch_m = 20e-6;
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> value;
+  for (int i = 0; i < 1'000'000; ++i) noise.signal.values.push_back(value(generator));
+  for (const double window_m : {2.5e-3, 5e-3})
+    for (const int padding : {1, 2, 4, 8}) {
+      spatial::SpectrogramOptions options;
+      options.window_m = window_m;
+      options.hop_m = window_m / 2;
+      options.padded_m = padding * window_m;
+      options.detrend = spatial::Detrend::none;  // else what lies within two bins of 0 is taken off, too
+      const auto made = spatial::spatial_spectrogram(noise, options);
+      ASSERT_TRUE(made) << schema::message(made.error());
+      const auto powers = octave_powers(*made, 0, 20);
+      for (std::size_t i = 0; i < powers.size(); ++i) {
+        const double width_per_m = kOctaves_per_m[i + 1] - kOctaves_per_m[i];
+        // 20 m of noise tell a band's power to sqrt(1 / (width 20 m)), and Blackman's overlap of a half costs
+        // 1.07 times as much at most (Welch 1967): four standard deviations.
+        const double four = 4 * 1.07 / std::sqrt(width_per_m * 20);
+        EXPECT_NEAR(powers[i] / (2 * 20e-6 * width_per_m), 1, four)
+            << window_m << " x " << padding << ", octave " << i;
+      }
+    }
+}
+
+// The same without chance: a density a + b k at each bin, a step that divides no octave among them.
+TEST(OctavePowers, OfAStraightDensityAreItsIntegral) {
+  for (const double step_per_m : {800.0, 400.0, 200.0, 137.0, 25.0}) {
+    schema::Spectrogram made;
+    made.position_m = {0.01, 0.02};
+    made.frequency_step_per_m = step_per_m;
+    made.bins = static_cast<std::size_t>(std::ceil(8000 / step_per_m)) + 1;
+    for (int p = 0; p < 2; ++p)
+      for (std::size_t k = 0; k < made.bins; ++k)
+        made.cells.push_back(static_cast<float>(1e-6 * (10e3 - made.frequency_per_m(k))));
+    const auto powers = octave_powers(made, 0, 1);
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+      const double low = kOctaves_per_m[i], high = kOctaves_per_m[i + 1];
+      const double closed = 1e-6 * (high - low) * (10e3 - (low + high) / 2);
+      EXPECT_NEAR(powers[i], closed, 1e-6 * closed) << step_per_m << " 1/m, octave " << i;  // floats
+    }
+  }
 }
 
 TEST(OfflineTradeInput, RefusesWhatIsTooShortOrTooCoarse) {

@@ -73,6 +73,13 @@ def check_room(folder, needed):
     assert made.report_of("explain", folder / "part", "--device-memory", str(room))["needed_samples"] == beginning["samples"]
     made.write_texture(folder / "part", whole[: len(whole) * (hundredths + 1) // 100])
     explained_without_room(folder / "part", room)
+    # Where nothing fits, it is said, and only this computer's loop is named; a room for 100 samples has none for a hundredth by sinc.
+    said, short = explained_without_room(folder / "t", 100)
+    assert "nothing that was tried fits" in said and "--loop host" in said and "--interpolation sinc" not in said and "shorter" not in said, said
+    assert [row["way"].split()[0] for row in short["ways_to_fit"] if row["fits"]] == ["let"], short
+    # What is said to fit fits: a part of it by sinc, where no part does by the cubic.
+    said, short = explained_without_room(folder / "t", 1000)
+    assert all((row["way"] in said) == row["fits"] for row in short["ways_to_fit"]), (said, short["ways_to_fit"])
     report = made.report_of("explain", folder / "t", "--interpolation", "sinc")
     assert "device_samples" not in report and "ways_to_fit" not in report, report
 
