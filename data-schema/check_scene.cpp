@@ -18,12 +18,16 @@ void check_layer(const std::string& path, std::size_t index, const TextureLayer&
         {where, fmt::format("{} is in {}: a scene plays forces, in N", layer.texture, texture->unit)});
 }
 
+Finding fault_of(const Error& error) {
+  return {error.where, error.remedy.empty() ? error.what : error.what + "; " + error.remedy};
+}
+
 }  // namespace
 
 std::vector<Finding> check_scene(const std::string& path, const Document& document) {
   std::vector<Finding> findings;
   const auto scene = parse_scene(document.body.dump(), path);
-  if (!scene) return {{scene.error().where, scene.error().what}};
+  if (!scene) return {fault_of(scene.error())};
   for (std::size_t i = 0; i < scene->layers.size(); ++i)
     std::visit([&](const TextureLayer& layer) { check_layer(path, i, layer, findings); }, scene->layers[i]);
   return findings;

@@ -32,7 +32,8 @@ struct ControlRequest {
   PlaybackChoices playback;  ///< load
   std::optional<double> gain;
   bool save = false;
-  std::string asked_by;  ///< who saves; in no line: the socket knows
+  std::vector<std::string> passed_over;  ///< members at top level that are not known
+  std::string asked_by;                  ///< who saves; in no line: the socket knows
 };
 
 /// One member of a reply or event.

@@ -7,6 +7,7 @@
 
 #include "data-schema/control.hpp"
 #include "data-schema/json_schema.hpp"
+#include "data-schema/known_members.hpp"
 #include "data-schema/playback_choices_json.hpp"
 
 namespace tacto::schema {
@@ -168,7 +169,13 @@ Result<ControlRequest> parse_control_request(std::string_view line, std::string*
     return fail(Fault::malformed, faults.front().what,
                 fmt::format("{}#{}", kRequestWhere, faults.front().pointer),
                 remedy_for(faults.front().pointer, *kRules));
+  if (body->contains("playback")) {
+    const auto known = check_members_known((*kRules)["properties"]["playback"], (*body)["playback"],
+                                           fmt::format("{}#/playback", kRequestWhere));
+    if (!known) return forward_error(known);
+  }
   ControlRequest request = request_of(*body);
+  request.passed_over = members_not_in(*kRules, *body);
   if (const auto sound = check_members(request); !sound) return forward_error(sound);
   return request;
 }

@@ -2,6 +2,8 @@
 #include "data-schema/daemon_config.hpp"
 
 #include "data-schema/json_document.hpp"
+#include "data-schema/json_schema.hpp"
+#include "data-schema/known_members.hpp"
 #include "data-schema/playback_choices_json.hpp"
 
 namespace tacto::schema {
@@ -20,12 +22,18 @@ std::optional<Quality> quality_in(const Json& body) {
   return word == "balanced" ? Quality::balanced : Quality::exact;
 }
 
+Result<void> check_playback(const Json& body, const std::string& path) {
+  if (!body.contains("playback")) return {};
+  return check_members_known(*schema_of("playback"), body["playback"], path + "#/playback");
+}
+
 }  // namespace
 
 Result<DaemonConfig> read_daemon_config(const std::string& path) {
   const auto document = open_document(path, "daemon");
   if (!document) return forward_error(document);
   const Json& body = document->body;
+  if (const auto known = check_playback(body, path); !known) return forward_error(known);
   DaemonConfig config;
   for (const auto& [name, member] :
        {std::pair{"device", &DaemonConfig::device}, std::pair{"transducer", &DaemonConfig::transducer},
@@ -48,9 +56,6 @@ Result<DaemonConfig> read_daemon_config(const std::string& path) {
   config.undo_hysteresis = body.value("undo_hysteresis", config.undo_hysteresis);
   config.budget = {quality_in(body), number_in(body, "max_error")};
   config.playback = playback_choices_in(body);
-  if (!config.playback.extra_json.empty())
-    return fail(Fault::malformed, "playback knows no " + config.playback.extra_json, path + "#/playback",
-                "its members are in data-schema/schemas/playback.schema.json");
   config.max_tick_ns = number_in(body, "max_tick_ns");
   return config;
 }

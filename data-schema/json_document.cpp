@@ -94,7 +94,9 @@ Result<Document> checked(Json body, const std::string& where, std::string_view k
   const auto rules = schema_of(kind);
   if (!rules) return fail(Fault::internal, fmt::format("there is no usable schema for '{}'", kind), where);
   const auto list = breaches(body, *rules);
-  if (!list.empty()) return fail(Fault::malformed, list.front().what, place(where, list.front().pointer));
+  if (!list.empty())
+    return fail(Fault::malformed, list.front().what, place(where, list.front().pointer),
+                remedy_at(list.front().pointer, *rules));
   return Document{std::move(body), std::move(*newer)};
 }
 

@@ -75,8 +75,10 @@ std::string explained(const std::string& said, const Json& value, const Json& ru
   if (said.find("enum") != std::string::npos && rule.contains("enum"))
     return fmt::format("{} is none of {}", brief(value), list_of(rule["enum"]));
   if (rule.contains("const")) return fmt::format("{} is not {}", brief(value), rule["const"].dump());
-  if (said.find("'not' constraint") != std::string::npos && rule.contains("not"))
-    return fmt::format("{} must not stand here", brief(value));
+  const bool barred = said.find("'not' constraint") != std::string::npos && rule.contains("not");
+  if (barred && rule["not"].contains("required"))
+    return fmt::format("{} exclude each other: say one of them", list_of(rule["not"]["required"]));
+  if (barred) return fmt::format("{} must not stand here", brief(value));
   if (said.find("regex") != std::string::npos && rule.contains("pattern"))
     return fmt::format("{} does not match {}", brief(value), rule["pattern"].dump());
   return fmt::format("{} ({})", said.substr(0, said.find_last_not_of('.') + 1), brief(value));
@@ -114,6 +116,19 @@ std::vector<Violation> validated(const Json& document, const Json& rules) {
   return list;
 }
 
+// Whichever of its ends the rule names.
+std::string range_of(const Json& rule) {
+  std::string range;
+  const auto add = [&](const char* member, const char* words) {
+    if (rule.contains(member))
+      range += fmt::format("{}{} {}", range.empty() ? "" : " ", words, rule[member].dump());
+  };
+  add("minimum", "from");
+  add("exclusiveMinimum", "above");
+  add("maximum", "to");
+  return range;
+}
+
 }  // namespace
 
 std::optional<Json> schema_of(std::string_view kind) try {
@@ -128,6 +143,13 @@ std::vector<Violation> breaches(const Json& document, const Json& rules) try {
   return validated(document, rules);
 } catch (const std::exception& thrown) {
   return {{"", fmt::format("the schema cannot be used: {}", thrown.what())}};
+}
+
+std::string remedy_at(const std::string& pointer, const Json& rules) {
+  const Json rule = rule_at(rules, Json::json_pointer(pointer));
+  const std::string range = rule.is_object() ? range_of(rule) : "";
+  if (range.empty()) return {};
+  return rule.contains("description") ? rule["description"].get<std::string>() + "; " + range : range;
 }
 
 }  // namespace tacto::schema

@@ -17,4 +17,7 @@ std::optional<Json> schema_of(std::string_view kind);
 /// Every breach of `rules`, in the order they were found.
 std::vector<Violation> breaches(const Json& document, const Json& rules);
 
+/// Of a number: what the rules say that it is, and its range; empty of everything else.
+std::string remedy_at(const std::string& pointer, const Json& rules);
+
 }  // namespace tacto::schema

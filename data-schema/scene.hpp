@@ -34,13 +34,14 @@ struct Scene {
   std::string created, creator;
   PlaybackChoices playback;
   std::string extra_json;
-  std::string newer_version;
+  std::string newer_version;  ///< with which it is written again
 };
 
 /// "stop", "mirror", "loop".
 std::string_view word_of(TextureEnds ends);
 
-/// By stem or NAME.scene.json. Errors: not_found; malformed, by JSON pointer; unsuitable, by JSON pointer,
+/// By stem or NAME.scene.json. Errors: not_found; malformed, by JSON pointer, also a member that is not known
+/// here (of a newer minor version it is kept); unsuitable, by JSON pointer,
 /// for a type of layer that this program does not know (with those that it does); unsupported_version.
 Result<Scene> read_scene(const std::string& name);
 

@@ -6,6 +6,8 @@
 
 #include "data-schema/files.hpp"
 #include "data-schema/json_document.hpp"
+#include "data-schema/json_schema.hpp"
+#include "data-schema/known_members.hpp"
 #include "data-schema/playback_choices_json.hpp"
 #include "data-schema/scene.hpp"
 
@@ -60,6 +62,23 @@ Result<Layer> layer_from(const Json& body, const std::string& place) {
   return texture_layer_from(body);
 }
 
+// A scene of our own version says nothing that we don't know, but for what is misspelt. What a newer one adds
+// is kept.
+Result<void> check_known(const Document& document, const std::string& where) {
+  if (!document.newer_version.empty()) return {};
+  static const auto kRules = schema_of(kSceneKind);
+  const Json& rules = (*kRules)["properties"];
+  const Json& body = document.body;
+  if (const auto known = check_members_known(*kRules, body, where); !known) return known;
+  for (std::size_t i = 0; i < body["layers"].size(); ++i) {
+    const auto known = check_members_known(rules["layers"]["items"], body["layers"][i],
+                                           fmt::format("{}#/layers/{}", where, i));
+    if (!known) return known;
+  }
+  if (!body.contains("playback")) return {};
+  return check_members_known(rules["playback"], body["playback"], where + "#/playback");
+}
+
 Result<Scene> scene_from(const Document& document, const std::string& where) {
   Scene scene;
   for (const Json& body : document.body["layers"]) {
@@ -67,6 +86,7 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
     if (!layer) return forward_error(layer);
     scene.layers.push_back(std::move(*layer));
   }
+  if (const auto known = check_known(document, where); !known) return forward_error(known);
   scene.name = text_or(document.body, "name");
   scene.notes = text_or(document.body, "notes");
   scene.created = text_or(document.body, "created");
@@ -79,6 +99,7 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
 
 Json scene_body(const Scene& scene) {
   Json body = Json::object();
+  put_text(body, "version", scene.newer_version);
   put_text(body, "name", scene.name);
   put_text(body, "notes", scene.notes);
   put_text(body, "created", scene.created);

@@ -24,9 +24,13 @@ double taps_response(const Prepared& prepared, double frequency_hz) {
   return std::abs(sum);
 }
 
+struct Peak {
+  double at_hz = 0, most = 0;
+};
+
 // Of a sharp resonance the top lies between the grid's places.
 template <class Response>
-double highest_peak(double highest_hz, const Response& response) {
+Peak highest_peak(double highest_hz, const Response& response) {
   constexpr int kRounds = 6, kPlaces = 8;
   double step_hz = highest_hz / kPeakGrid, best_hz = 0, most = response(0);
   const auto try_at = [&](double f) {
@@ -37,7 +41,17 @@ double highest_peak(double highest_hz, const Response& response) {
     const double middle_hz = best_hz;
     for (int i = -kPlaces; i <= kPlaces; ++i) try_at(middle_hz + step_hz * i / kPlaces);
   }
-  return most;
+  return {std::clamp(best_hz, 0.0, highest_hz), most};
+}
+
+Peak tray_response(const Prepared& prepared, const schema::Transducer& transducer,
+                   const PrepareOptions& options) {
+  Chain chain{transducer, options.reconstruction, options.reconstruction_cutoff_hz, options.hold,
+              prepared.rate_hz};
+  if (!prepared.sections.empty()) chain.led_pole_hz = schema::actuator_pole_hz(transducer);
+  const double highest_hz = std::min(prepared.stops_at_hz, prepared.rate_hz / 2);
+  return highest_peak(
+      highest_hz, [&](double f) { return std::abs(chain_response(chain, f)) * taps_response(prepared, f); });
 }
 
 // Rounded down in the fourth digit, so that what a message names does fit.
@@ -50,15 +64,20 @@ double fitting(double value) {
 
 double tray_peak_m(const Prepared& prepared, const schema::Transducer& transducer,
                    const PrepareOptions& options) {
-  Chain chain{transducer, options.reconstruction, options.reconstruction_cutoff_hz, options.hold,
-              prepared.rate_hz};
-  if (!prepared.sections.empty()) chain.led_pole_hz = schema::actuator_pole_hz(transducer);
-  const double highest_hz = std::min(prepared.stops_at_hz, prepared.rate_hz / 2);
-  const double most = highest_peak(
-      highest_hz, [&](double f) { return std::abs(chain_response(chain, f)) * taps_response(prepared, f); });
   float largest = 0;
   for (const float sample : prepared.samples) largest = std::max(largest, std::abs(sample));
-  return most * double{largest} * double{prepared.gain_m_per_n};
+  return tray_response(prepared, transducer, options).most * double{largest} * double{prepared.gain_m_per_n};
+}
+
+std::string rate_as_cause(const Prepared& prepared, const schema::Transducer& transducer,
+                          const PrepareOptions& options) {
+  const double at_hz = tray_response(prepared, transducer, options).at_hz;
+  if (prepared.passes_to_hz >= options.band.high_hz || at_hz <= prepared.passes_to_hz) return {};
+  const double whole_at_hz = options.band.high_hz * prepared.rate_hz / prepared.passes_to_hz;
+  return fmt::format(
+      "; it would go that far at {:.4g} Hz, above the band, which ends at {:.4g} Hz because {:g} ticks a "
+      "second are too few: from {:g} on (--rate; rate_hz in the configuration) it is whole",
+      at_hz, prepared.passes_to_hz, prepared.rate_hz, whole_at_hz);
 }
 
 schema::Result<void> check_displacement(double peak_m, double factor, double gain_m_per_n,

@@ -2,6 +2,8 @@
 // The transducer's limit of displacement, where nobody knows the finger's path beforehand.
 #pragma once
 
+#include <string>
+
 #include "playback/prepare.hpp"
 
 namespace tacto::playback {
@@ -18,5 +20,10 @@ double tray_peak_m(const Prepared& prepared, const schema::Transducer& transduce
 /// gain. Errors: unsuitable, with the largest factor and gain that fit.
 schema::Result<void> check_displacement(double peak_m, double factor, double gain_m_per_n,
                                         const schema::Transducer& transducer);
+
+/// What to add to the remedy where the rate cuts the band and the tray goes farthest above its end, where the
+/// inverse is no longer held to anything: a resonance may lie there. Else empty.
+std::string rate_as_cause(const Prepared& prepared, const schema::Transducer& transducer,
+                          const PrepareOptions& options);
 
 }  // namespace tacto::playback

@@ -33,9 +33,10 @@ class ScriptedRun final : public FrameSource {
   std::int32_t encoder_count() const override { return count_; }
 
  private:
+  // A counter of 32 bits that passes 2^31 goes on from its other end.
   std::int32_t count_at(std::uint64_t frame) const {
-    return static_cast<std::int32_t>(
-        std::floor(position_m_(static_cast<double>(frame) * period_s_) / quantum_m_));
+    const double count = std::floor(position_m_(static_cast<double>(frame) * period_s_) / quantum_m_);
+    return static_cast<std::int32_t>(static_cast<std::int64_t>(count));
   }
 
   std::function<double(double)> position_m_;

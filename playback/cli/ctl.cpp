@@ -143,6 +143,16 @@ void show_event(const schema::ControlReply& event, bool top) {
   std::fflush(stdout);
 }
 
+// Events come as long as something is armed: how it stands without one is asked.
+Result<void> show_top_now(ControlConnection& connection) {
+  ControlRequest request;
+  request.verb = ControlVerb::status;
+  const auto answer = connection.ask(request);
+  if (!answer) return schema::forward_error(answer);
+  show_top(*answer);
+  return {};
+}
+
 // Until it is interrupted, or the time is over: nothing can be asked meanwhile.
 Result<Report> watch(ControlConnection& connection, const CtlOptions& o) {
   const cli::StopSignals signals;
@@ -168,6 +178,8 @@ Result<Report> run_ctl(const CtlOptions& o) {
     add_fields(report, connection->hello());
     return report;
   }
+  if (o.action == "top")
+    if (const auto shown = show_top_now(*connection); !shown) return schema::forward_error(shown);
   const auto answer = connection->ask(*request);
   if (!answer) return schema::forward_error(answer);
   if (request->verb == ControlVerb::watch) return watch(*connection, o);

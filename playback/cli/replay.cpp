@@ -18,13 +18,24 @@ struct ReplayVerbOptions {
   std::string session;
 };
 
+// Of a session that is not all there a "yes" would be too much, and a "no" wrong: it says up to where.
+void add_sameness(Report& report, const ReplayOutcome& outcome) {
+  const bool yes = !outcome.first_difference;
+  if (yes && outcome.damaged_at)
+    report.add("same_to_the_bit_up_to_the_damage", yes);
+  else if (yes && outcome.lost_at)
+    report.add("same_to_the_bit_up_to_the_lost_tick", yes);
+  else
+    report.add("same_to_the_bit", yes);
+}
+
 Result<Report> run_replay(const ReplayVerbOptions& o) {
   cli::Progress progress("replaying");
   const auto outcome = replay_session(o.session, [&](double part) { progress.update(part); });
   if (!outcome) return schema::forward_error(outcome);
   Report report;
   report.add("session", schema::session_path(o.session)).add("ticks_compared", outcome->ticks);
-  report.add("same_to_the_bit", outcome->same());
+  add_sameness(report, *outcome);
   if (outcome->ending == schema::SessionEnding::unclosed)
     cli::warn("the session was never closed: what is in it was compared");
   if (outcome->damaged_at) {

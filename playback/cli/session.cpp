@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/files.hpp"
@@ -90,6 +92,17 @@ Report stroke_row(const PlayedStroke& stroke) {
       .add("gated_ticks", stroke.gated_ticks);
 }
 
+Result<void> check_outputs(const SessionVerbOptions& o) {
+  std::set<std::string> files;
+  std::vector<std::string> all = o.outputs;
+  if (!o.strokes.empty()) all.push_back(o.strokes);
+  for (const std::string& file : all)
+    if (!files.insert(std::filesystem::path(file).lexically_normal().string()).second)
+      return schema::fail(schema::Fault::usage, fmt::format("'{}' is named twice", file), "output",
+                          "give each table a file of its own");
+  return {};
+}
+
 Result<void> export_all(const SessionVerbOptions& o) {
   for (const std::string& output : o.outputs) {
     cli::Progress progress("exporting " + output);
@@ -120,6 +133,7 @@ void warn_of(const StrokeReport& strokes) {
 }
 
 Result<Report> run_session(const SessionVerbOptions& o) {
+  if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
   if (const auto exported = export_all(o); !exported) return schema::forward_error(exported);
   const auto strokes = judge_all(o);
   if (!strokes) return schema::forward_error(strokes);

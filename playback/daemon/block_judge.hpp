@@ -25,6 +25,7 @@ class BlockJudge {
   /// After the last one.
   void finish();
   std::vector<std::string> notes() const { return wanted_.notes(maker_.turns()); }
+  const StrokeFinder& strokes() const { return strokes_; }
 
  private:
   void judge(std::size_t rows);

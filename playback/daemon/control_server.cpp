@@ -38,6 +38,12 @@ bool wants_more(const ControlClient& client) {
   return !client.silent() && (client.waits_with_id ? client.has_room() : !client.has_line());
 }
 
+// Newer clients may say what we don't know; who misspelt something is told.
+schema::ControlFields with_passed_over(schema::ControlFields fields, const std::vector<std::string>& names) {
+  if (!names.empty()) fields.emplace_back("passed_over", fmt::format("{}", fmt::join(names, ", ")));
+  return fields;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<ControlServer>> ControlServer::listen(const SocketPlace& place) {
@@ -132,7 +138,7 @@ std::optional<std::string> ControlServer::answer_to(ControlClient& client, const
   if (!*fields) return schema::control_error_line(id, fields->error());
   client.greeted = client.greeted || request->verb == ControlVerb::hello;
   client.watching = client.watching || request->verb == ControlVerb::watch;
-  return schema::control_reply_line(id, **fields);
+  return schema::control_reply_line(id, with_passed_over(**fields, request->passed_over));
 }
 
 void ControlServer::answer_late(const Result<schema::ControlFields>& fields) {

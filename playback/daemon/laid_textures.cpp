@@ -54,6 +54,15 @@ Result<schema::Scene> scene_of(const ProgramRequest& request,
   return schema::read_scene(request.file);
 }
 
+// What a newer version limits must not be played without.
+Result<void> check_choices(const schema::Scene& scene) {
+  if (scene.playback.extra_json.empty()) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("is of version {}, and its playback says what this program does not know: {}",
+                          scene.newer_version, scene.playback.extra_json),
+              "scene#/playback", "play it with a newer tactograph, or take that out");
+}
+
 }  // namespace
 
 std::string full_path(const std::string& path) {
@@ -96,6 +105,7 @@ class TextureReader {
   explicit TextureReader(LaidTextures& laid) : laid_(laid) {}
 
   Result<void> read(const schema::Scene& scene) {
+    if (const auto known = check_choices(scene); !known) return known;
     laid_.choices_ = scene.playback;
     for (const schema::Layer& layer : scene.layers) {
       const auto added = std::visit([&](const TextureLayer& texture) { return add(texture); }, layer);

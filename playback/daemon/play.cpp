@@ -10,6 +10,7 @@
 #include "playback/daemon/loop_here.hpp"
 #include "playback/daemon/player_device.hpp"
 #include "playback/daemon/session_limits.hpp"
+#include "playback/daemon/silent_play.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -137,6 +138,7 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   auto program = program_for(options, *device, *here, (*player)->metres_per_count());
   if (!program) return schema::forward_error(program);
   PlayOutcome outcome = outcome_of(*program);
+  const Feelable what = feelable(*program);
   outcome.device = device->uri;
   outcome.simulated = device->device->capabilities().simulated;
   outcome.asked_s = time_of(options, *script);
@@ -147,6 +149,8 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   outcome.recorder = (*player)->last_session();
   if (*here) outcome.looped = looped_by(*here->loop);
   tell_limits(options.session, outcome);
+  if (auto silence = note_of_silence(outcome.status.ticks, what))
+    outcome.notes.push_back(std::move(*silence));
   return outcome;
 }
 

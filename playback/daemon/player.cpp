@@ -57,7 +57,10 @@ schema::Error naming(schema::Error error, const Program& program) {
 
 // By a factor on the program's gains.
 Result<void> within_reach(const Program& program, double peak_m, double factor) {
-  return check_displacement(peak_m, factor, program.prepared.gain_m_per_n, program.session.transducer);
+  const schema::Transducer& transducer = program.session.transducer;
+  auto near = check_displacement(peak_m, factor, program.prepared.gain_m_per_n, transducer);
+  if (!near) near.error().remedy += rate_as_cause(program.prepared, transducer, program.options);
+  return near;
 }
 
 }  // namespace

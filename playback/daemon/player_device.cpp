@@ -35,11 +35,20 @@ std::string lock_path(const std::string& device_name) {
   return (usual ? "/run/lock/tactograph-" : "/tmp/tactograph-") + name.substr(0, 100) + ".lock";
 }
 
+// Nearer than encoders count.
+constexpr double kMeetM = 1e-6;
+
+bool ends_where_it_began(const FingerPath& path) {
+  return std::abs(path.position_m.back() - path.position_m.front()) < kMeetM;
+}
+
 // Positions along a path at any time: the knots alone are kept, for a path may last for hours.
 class Script {
  public:
   explicit Script(const FingerScript& script)
-      : repeated_(script.repeated), knots_(std::make_shared<const Knots>(script.path)) {}
+      : repeated_(script.repeated),
+        closed_(ends_where_it_began(script.path)),
+        knots_(std::make_shared<const Knots>(script.path)) {}
 
   double operator()(double time_s) const { return knots_->curve(on_path(time_s)); }
   /// Precondition: the path tells it.
@@ -56,7 +65,10 @@ class Script {
  private:
   double on_path(double time_s) const {
     const double whole_s = knots_->path.duration_s();
-    if (repeated_) time_s = whole_s - std::abs(std::fmod(time_s, 2 * whole_s) - whole_s);
+    if (repeated_ && closed_)
+      time_s = std::fmod(time_s, whole_s);
+    else if (repeated_)
+      time_s = whole_s - std::abs(std::fmod(time_s, 2 * whole_s) - whole_s);
     return knots_->path.time_s.front() + std::clamp(time_s, 0.0, whole_s);
   }
 
@@ -65,7 +77,7 @@ class Script {
     FingerPath path;
     spatial::HermiteCurve curve;
   };
-  bool repeated_;
+  bool repeated_, closed_;
   std::shared_ptr<const Knots> knots_;
 };
 

@@ -30,7 +30,9 @@ class DeviceLock {
 /// What an emulated device's finger does.
 struct FingerScript {
   FingerPath path;
-  bool repeated = false;  ///< there and back, over and over; else it rests at the end
+  /// Over and over: from its beginning where its end meets that (within 1 um), else there and back. Not
+  /// repeated it rests at the end.
+  bool repeated = false;
 };
 
 /// The script of a finger path's CSV; none where no file is named. Errors: as read_finger_path.

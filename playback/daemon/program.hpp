@@ -34,6 +34,7 @@ struct Program {
   double tray_peak_m = 0;   ///< the furthest that the tray goes, at a factor of 1 (displacement_limit.hpp)
   double gain_m_per_n = 0;  ///< the largest of its textures, without sign
   std::optional<schema::PlaybackGain> kept_gain;  ///< the texture's own, where it is played with that
+  double start_m = 0;                             ///< of the first texture
   double length_m = 0;                            ///< from the first texture's start to the last one's end
   std::optional<TickDecision> decision;           ///< of the request's budget
   PrepareOptions options;                         ///< that it was prepared with, in the end

@@ -15,7 +15,7 @@ struct SessionColumns {
   schema::SessionHeader header;
   std::vector<std::uint64_t> tick;
   std::vector<double> time_s;      ///< since the first tick, by the device's clock
-  std::vector<double> position_m;  ///< the middle of the encoder's count
+  std::vector<double> position_m;  ///< as SessionRow::position_m
   std::vector<double> drive_v;
   std::vector<double> gain;  ///< factor on the textures' own gains
   std::vector<std::uint32_t> flags;

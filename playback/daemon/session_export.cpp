@@ -21,7 +21,7 @@ constexpr std::size_t kBlockRows = 65536;
 
 constexpr std::string_view kColumns =
     "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s,energy_limited,gated,"
-    "touching";
+    "touching,gain,device_time_s";
 
 // With which a table begins in every version.
 constexpr std::string_view kOldestColumns =
@@ -42,32 +42,31 @@ int flag(std::uint32_t flags, std::uint32_t which) {
   return (flags & which) != 0 ? 1 : 0;
 }
 
-std::string lines_of(const std::vector<SessionTick>& ticks, const schema::SessionHeader& header) {
-  std::string text;
-  auto out = std::back_inserter(text);
-  for (const SessionTick& t : ticks) {
-    const bool measured = t.lateness_ns != SessionTick::kLatenessUnknown;
-    fmt::format_to(
-        out, "{},{:.9f},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{}\n", t.tick,
-        1e-9 * static_cast<double>(t.time_ns), t.encoder, header.metres_per_count * (t.encoder + 0.5),
-        t.drive_v, flag(t.flags, wire::kTickPlaying), flag(t.flags, wire::kTickFault),
-        flag(t.flags, wire::kTickLate), flag(t.flags, wire::kTickAmplitudeLimited | wire::kTickSlewLimited),
-        measured ? fmt::format("{:.9g}", 1e-9 * t.lateness_ns) : "", flag(t.flags, wire::kTickEnergyLimited),
-        flag(t.flags, wire::kTickGated), flag(t.flags, wire::kTickTouching));
-  }
-  return text;
+std::string line_of(const SessionTick& t, const SessionRow& row) {
+  const bool measured = t.lateness_ns != SessionTick::kLatenessUnknown;
+  return fmt::format(
+      "{},{:.9f},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{:.9g},{:.9f}\n", t.tick, row.time_s, t.encoder,
+      row.position_m, t.drive_v, flag(t.flags, wire::kTickPlaying), flag(t.flags, wire::kTickFault),
+      flag(t.flags, wire::kTickLate), flag(t.flags, wire::kTickAmplitudeLimited | wire::kTickSlewLimited),
+      measured ? fmt::format("{:.9g}", 1e-9 * t.lateness_ns) : "", flag(t.flags, wire::kTickEnergyLimited),
+      flag(t.flags, wire::kTickGated), flag(t.flags, wire::kTickTouching), row.gain, row.device_time_s);
 }
 
 Result<std::string> write_csv(const std::string& session, const std::string& temporary,
                               const Heard& progress) {
+  const auto overview = session_overview(session, part_of(progress, 0, 0.3));
+  if (!overview) return schema::forward_error(overview);
   auto reader = schema::SessionReader::open(session);
   if (!reader) return schema::forward_error(reader);
   std::ofstream out(temporary, std::ios::binary);
   out << kColumns << '\n';
+  RowMaker maker(*overview);
+  const auto told = part_of(progress, 0.3, 1);
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
-      out << lines_of(*ticks, reader->header());
-    if (progress) progress(part_read(*reader));
+      for (const SessionTick& tick : *ticks)
+        maker.take(tick, [&](const SessionRow& row) { out << line_of(tick, row); });
+    if (told) told(part_read(*reader));
   }
   out.flush();
   return out ? Result<std::string>()
@@ -155,7 +154,8 @@ Result<std::string> write_netcdf(const std::string& session, const std::string& 
                               {"position", "m", "position of the finger: the middle of the count"},
                               {"drive", "V", "drive at the amplifier's input"},
                               {"gain", "1", "factor on the textures' gains"},
-                              {"flags", "1", "flags of the wire's ticks"}});
+                              {"flags", "1", "flags of the wire's ticks"},
+                              {"device_time", "s", "time by the device's own clock"}});
   RowMaker maker(*overview);
   const auto add = [&](const SessionRow& row) {
     const double values[] = {static_cast<double>(row.tick),
@@ -163,7 +163,8 @@ Result<std::string> write_netcdf(const std::string& session, const std::string& 
                              row.position_m,
                              row.drive_v,
                              row.gain,
-                             static_cast<double>(row.flags)};
+                             static_cast<double>(row.flags),
+                             row.device_time_s};
     file.add(row.time_s, values);
   };
   if (const auto read = read_rows(maker, session, add, part_of(progress, 0.3, 1)); !read)

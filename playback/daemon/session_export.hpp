@@ -10,11 +10,13 @@
 namespace tacto::playback {
 
 /// By the file's ending: `.csv`, a line a tick; `.wav`, 64-bit float at the ticks' rate, drive in
-/// volts and position in metres; `.nc`, netCDF-4 with units. All of any
-/// length, in little memory; `progress` hears fractions. Gives what there is to say of it, empty or a
-/// sentence: that a WAV holds periods in which there was no tick, on a line between their neighbours. Errors:
-/// as reading; usage: another ending; unsuitable: a WAV of a session with ticks missing, which it could not
-/// show, or with more periods without a tick than with one (and half an hour of them); cannot_write.
+/// volts and position in metres; `.nc`, netCDF-4 with units. Time is that of the strokes in all of them:
+/// seconds since the session's first tick; what the device's clock said is a column of its own
+/// (`device_time_s`, in netCDF `device_time`). All of any length, in little memory; `progress` hears
+/// fractions. Gives what there is to say of it, empty or a sentence: that a WAV holds periods in which there
+/// was no tick, on a line between their neighbours. Errors: as reading; usage: another ending; unsuitable: a
+/// WAV of a session with ticks missing, which it could not show, or with more periods without a tick than
+/// with one (and half an hour of them); cannot_write.
 schema::Result<std::string> export_session(const std::string& session, const std::string& file,
                                            const std::function<void(double)>& progress = {});
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "firmware-host/core/counts_between.hpp"
 #include "firmware-host/core/encoder_watch.hpp"
 #include "firmware-host/core/wire/host_messages.hpp"
 #include "playback/daemon/session_board.hpp"
@@ -170,11 +171,21 @@ Result<SessionOverview> session_overview(const std::string& name,
 RowMaker::RowMaker(const SessionOverview& overview, std::uint64_t most_put_in)
     : overview_(overview), most_put_in_(most_put_in), gain_(overview.header.initial_gain) {}
 
+void RowMaker::begin_at(const SessionTick& tick) {
+  first_ns_ = tick.time_ns;
+  count_ = last_.encoder = tick.encoder;
+}
+
+void RowMaker::count_to(std::int32_t encoder) {
+  count_ += core::counts_between(last_.encoder, encoder);
+}
+
 SessionRow RowMaker::row_of(const SessionTick& tick) const {
   SessionRow row;
   row.tick = tick.tick;
   row.time_s = seconds_since(first_ns_, tick.time_ns);
-  row.position_m = overview_.header.metres_per_count * (tick.encoder + 0.5);
+  row.device_time_s = seconds_since(0, tick.time_ns);
+  row.position_m = overview_.header.metres_per_count * (static_cast<double>(count_) + 0.5);
   row.drive_v = tick.drive_v;
   row.flags = tick.flags;
   row.encoder = tick.encoder;
@@ -200,6 +211,7 @@ void RowMaker::put_in_before(const SessionRow& row, const Sink& sink) {
   for (std::uint64_t i = 1; i <= periods; ++i, ++rows_) {
     const double u = static_cast<double>(i) / static_cast<double>(periods + 1);
     between.time_s = time_between(row.time_s, i, periods, missing);
+    between.device_time_s = row.device_time_s - (row.time_s - between.time_s);
     between.position_m = std::lerp(last_.position_m, row.position_m, u);
     between.drive_v = std::lerp(last_.drive_v, row.drive_v, u);
     sink(between);
@@ -221,7 +233,8 @@ void RowMaker::steer(SessionRow& row) {
 }
 
 void RowMaker::take(const SessionTick& tick, const Sink& sink) {
-  if (rows_ == 0) first_ns_ = tick.time_ns;
+  if (rows_ == 0) begin_at(tick);
+  count_to(tick.encoder);
   SessionRow row = row_of(tick);
   if (rows_ > 0 && most_put_in_ > 0) put_in_before(row, sink);
   steer(row);

@@ -53,8 +53,9 @@ schema::Error no_ticks_in(const std::string& path, const std::optional<std::uint
 
 struct SessionRow {
   std::uint64_t tick = 0;
-  double time_s = 0;      ///< since the first tick, by the device's clock
-  double position_m = 0;  ///< the middle of the encoder's count
+  double time_s = 0;         ///< since the first tick, by the device's clock
+  double device_time_s = 0;  ///< what that clock says
+  double position_m = 0;     ///< the middle of the encoder's count, which may have passed 2^31
   double drive_v = 0;
   double gain = 1;  ///< factor on the textures' own gains
   std::uint32_t flags = 0;
@@ -78,6 +79,8 @@ class RowMaker {
   std::uint64_t rows() const { return rows_; }
 
  private:
+  void begin_at(const schema::SessionTick& tick);
+  void count_to(std::int32_t encoder);
   SessionRow row_of(const schema::SessionTick& tick) const;
   void put_in_before(const SessionRow& row, const Sink& sink);
   double time_between(double to_s, std::uint64_t i, std::uint64_t periods, std::uint64_t missing) const;
@@ -86,6 +89,7 @@ class RowMaker {
   const SessionOverview& overview_;
   std::uint64_t most_put_in_, rows_ = 0;
   std::int64_t first_ns_ = 0;
+  std::int64_t count_ = 0;  // the encoder's, its turns of 2^32 counted
   SessionRow last_;
   double gain_;
   std::uint8_t taken_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/daemon/stroke_finder.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware-host/core/wire/message_types.hpp"
@@ -9,7 +10,6 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kShortestStrokeM = 5e-3;
 constexpr double kTurnM = 0.2e-3;  // a finger that goes back by less has not turned
 
 double square(double value) {
@@ -72,6 +72,7 @@ void StrokeFinder::add(const StrokeRow& row) {
     end();
     return start_at(row);
   }
+  ++played_;
   since_.add(row);
   const double started = way_m(so_far_.first, row), ahead = way_m(so_far_.last, row);
   if (direction_ == 0 && std::abs(started) > kTurnM) direction_ = started > 0 ? 1 : -1;
@@ -85,7 +86,10 @@ void StrokeFinder::add(const StrokeRow& row) {
 }
 
 void StrokeFinder::end() {
-  if (direction_ != 0 && std::abs(way_m(so_far_.first, so_far_.last)) >= kShortestStrokeM) found_(so_far_);
+  if (direction_ == 0) return;
+  const double length_m = std::abs(way_m(so_far_.first, so_far_.last));
+  longest_way_m_ = std::max(longest_way_m_, length_m);
+  if (length_m >= kShortestStrokeM) found_(so_far_);
   direction_ = 0;
 }
 

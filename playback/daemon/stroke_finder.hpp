@@ -34,6 +34,8 @@ struct StrokeSums {
   void add(const StrokeSums& later);
 };
 
+inline constexpr double kShortestStrokeM = 5e-3;
+
 /// A stroke is one way of the finger without turning (a finger that goes back by less than 0.2 mm has not
 /// turned), while playing, at least 5 mm long: the farthest place so far in a direction ends it once the
 /// finger has gone back from there. It is found then.
@@ -44,6 +46,10 @@ class StrokeFinder {
   void add(const StrokeRow& row);
   /// After the last one.
   void end();
+  /// Rows in which something was played.
+  std::uint64_t played() const { return played_; }
+  /// The longest way without turning that ended, whether it was a stroke or too short.
+  double longest_way_m() const { return longest_way_m_; }
 
  private:
   void start_at(const StrokeRow& row);
@@ -54,6 +60,8 @@ class StrokeFinder {
   StrokeSums since_;   // from there on
   int direction_ = 0;
   bool begun_ = false;
+  std::uint64_t played_ = 0;
+  double longest_way_m_ = 0;
 };
 
 }  // namespace tacto::playback

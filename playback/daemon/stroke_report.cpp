@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "data-schema/quantity.hpp"
 #include "playback/daemon/block_judge.hpp"
 #include "playback/daemon/session_limits.hpp"
 
@@ -12,6 +13,13 @@ namespace tacto::playback {
 namespace {
 
 using schema::Result;
+
+// What the band's filters leave beside a texture is no wish.
+constexpr double kLeastWantedM = 1e-12;
+
+bool nothing_was_wanted(const StrokeSums& sums) {
+  return sums.known && sums.wanted_m2 < kLeastWantedM * kLeastWantedM * static_cast<double>(sums.rows);
+}
 
 PlayedStroke stroke_of(const StrokeSums& sums) {
   const auto rms = [&](double sum) { return std::sqrt(sum / static_cast<double>(sums.rows)); };
@@ -24,6 +32,7 @@ PlayedStroke stroke_of(const StrokeSums& sums) {
   stroke.gated_ticks = sums.gated_ticks;
   if (sums.wishes_known) stroke.limits = sums.limits;
   if (!sums.known) return stroke;
+  if (nothing_was_wanted(sums)) return stroke;
   stroke.wanted_rms_m = rms(sums.wanted_m2);
   stroke.error_db = 20 * std::log10(rms(sums.difference_m2) / stroke.wanted_rms_m);
   stroke.level_db = 20 * std::log10(stroke.received_rms_m / stroke.wanted_rms_m);
@@ -54,6 +63,25 @@ StrokeReport begun_report(const SessionOverview& overview) {
   return report;
 }
 
+// No stroke is an answer, too, but not without its reason.
+std::string note_of_none(const StrokeFinder& strokes) {
+  if (strokes.played() == 0) return "nothing was played: there is no stroke to judge";
+  const double longest_m = strokes.longest_way_m();
+  return fmt::format(
+      "no stroke: the finger's longest way without turning, while playing, is {}, and a stroke is at least "
+      "{}",
+      longest_m > 0 ? schema::length_for_people(longest_m) : "under 0.2 mm",
+      schema::length_for_people(kShortestStrokeM));
+}
+
+std::string note_of_unwanted(std::uint64_t unwanted, std::uint64_t all) {
+  return fmt::format(
+      "in {} of {} strokes nothing was wanted: no texture of the session lies where the finger went, so "
+      "there "
+      "is no wanted RMS and no error to tell",
+      unwanted, all);
+}
+
 void keep_stroke(const PlayedStroke& stroke, const StrokeListener& listener, StrokeReport& report) {
   ++report.stroke_count;
   if (report.strokes.size() < kMostStrokesKept) report.strokes.push_back(stroke);
@@ -69,8 +97,11 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
   StrokeReport report = begun_report(*overview);
   if (overview->lost_at) return report;
   LimitTally whole;
-  BlockJudge judge(*overview, blocks,
-                   [&](const StrokeSums& sums) { keep_stroke(stroke_of(sums), listener, report); });
+  std::uint64_t unwanted = 0;
+  BlockJudge judge(*overview, blocks, [&](const StrokeSums& sums) {
+    unwanted += nothing_was_wanted(sums);
+    keep_stroke(stroke_of(sums), listener, report);
+  });
   const auto each = [&](const schema::SessionTick& tick, std::optional<float> wished_v) {
     if (wished_v) whole.add(limited_tick(tick.drive_v, *wished_v, tick.flags));
     judge.take(tick, wished_v);
@@ -80,6 +111,8 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
   judge.finish();
   const auto notes = report.stroke_count > 0 ? judge.notes() : std::vector<std::string>();
   report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+  if (report.stroke_count == 0) report.notes.push_back(note_of_none(judge.strokes()));
+  if (unwanted > 0) report.notes.push_back(note_of_unwanted(unwanted, report.stroke_count));
   if (*unknown) report.notes.push_back(schema::message(**unknown));
   if (!*unknown) report.limits = whole;
   return report;

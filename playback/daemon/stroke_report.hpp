@@ -17,10 +17,10 @@ namespace tacto::playback {
 struct PlayedStroke {
   double from_s = 0, to_s = 0;  ///< since the first tick
   double from_m = 0, to_m = 0;
-  double wanted_rms_m = 0, received_rms_m = 0;
-  double error_db = 0;  ///< RMS of received - wanted, re RMS of wanted; at most 0 where nothing was wanted
-  double level_db = 0;  ///< received over wanted
-  std::uint64_t limited_ticks = 0;                          ///< in amplitude or slew
+  double wanted_rms_m = 0, received_rms_m = 0;  ///< wanted: 0 where it is not known, or under 1 pm
+  double error_db = 0;                          ///< RMS of received - wanted, re RMS of wanted
+  double level_db = 0;                          ///< received over wanted
+  std::uint64_t limited_ticks = 0;              ///< in amplitude or slew
   std::uint64_t energy_limited_ticks = 0, gated_ticks = 0;  ///< turned down; not touching
   std::optional<LimitTally> limits;                         ///< none: what they took is not known
 };

@@ -26,6 +26,8 @@ void TickView::take(const schema::SessionTick& tick) {
   last_ = tick;
   expected_ = tick.tick + 1;
   counts_[tick.tick % kPlaces] = tick.encoder;
+  least_ = std::min(least_, tick.encoder);
+  greatest_ = std::max(greatest_, tick.encoder);
   ++ticks_;
   late_ += (tick.flags & wire::kTickLate) != 0;
   blind_ += (tick.flags & wire::kTickBlind) != 0;

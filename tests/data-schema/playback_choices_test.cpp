@@ -30,8 +30,8 @@ void expect_all(const PlaybackChoices& choices) {
   EXPECT_EQ(choices.contact_off_n, 0.2);
 }
 
-std::string scene_with(const std::string& playback) {
-  return R"({"kind":"scene","version":"1.0","playback":)" + playback +
+std::string scene_with(const std::string& playback, const std::string& version = "1.0") {
+  return R"({"kind":"scene","version":")" + version + R"(","playback":)" + playback +
          R"(,"layers":[{"type":"texture","texture":"oak","at_m":0,"gain_m_per_n":0.001}]})";
 }
 
@@ -40,7 +40,7 @@ TEST(PlaybackChoices, ASceneKeepsThemAndWhatIsNewer) {
   ASSERT_TRUE(scene) << message(scene.error());
   expect_all(scene->playback);
   tests::TemporaryFolder folder;
-  auto newer = parse_scene(scene_with(R"({"inverse":"gain","friction":"none"})"), "s");
+  auto newer = parse_scene(scene_with(R"({"inverse":"gain","friction":"none"})", "1.4"), "s");
   ASSERT_TRUE(newer) << message(newer.error());
   ASSERT_TRUE(write_scene(folder / "s", *newer));
   const auto again = read_scene(folder / "s");
@@ -72,6 +72,18 @@ TEST(PlaybackChoices, AConfigurationTakesThemAndNothingElse) {
   ASSERT_TRUE(config) << message(config.error());
   expect_all(config->playback);
   EXPECT_FALSE(config_of(R"({"friction":1})"));
+}
+
+TEST(PlaybackChoices, WhatIsMisspeltIsNamed) {
+  const std::string request = R"({"request":"load","file":"oak",)";
+  const auto wrong = parse_control_request(request + R"("playback":{"interpolaton":"sinc"}})");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().what.find("'interpolaton'"), std::string::npos) << message(wrong.error());
+  EXPECT_EQ(wrong.error().where, "request#/playback");
+  EXPECT_EQ(wrong.error().remedy, "is 'interpolation' meant?");
+  const auto passed = parse_control_request(request + R"("at_mm":3,"gian":1})");
+  ASSERT_TRUE(passed) << message(passed.error());
+  EXPECT_EQ(passed->passed_over, (std::vector<std::string>{"at_mm", "gian"}));
 }
 
 TEST(PlaybackChoices, WrongOnesAreNamedByJsonPointer) {

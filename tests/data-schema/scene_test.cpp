@@ -28,6 +28,7 @@ TEST(Scene, ReadsBackWhatWasWritten) {
   tests::TemporaryFolder folder;
   Scene scene;
   scene.name = "two";
+  scene.newer_version = "1.3";  // only such a one has members that are not known here
   scene.layers = {TextureLayer{"oak", 0.01, 1e-3, "mw", "2026-01-02T03:04:05Z", TextureEnds::loop, ""},
                   TextureLayer{"../beech", -0.02, -5e-4, "", "", TextureEnds::mirror, R"({"tint":"red"})"}};
   ASSERT_TRUE(write_scene(folder / "two", scene));
@@ -42,6 +43,7 @@ TEST(Scene, ReadsBackWhatWasWritten) {
     EXPECT_EQ(second.gain_m_per_n, -5e-4);
     EXPECT_EQ(second.extra_json, R"({"tint":"red"})");
     EXPECT_EQ(read->name, "two");
+    EXPECT_EQ(read->newer_version, "1.3");
   }
 }
 
@@ -57,6 +59,23 @@ TEST(Scene, FaultsAreNamedByJsonPointer) {
                  Fault::malformed, "s.scene.json#/layers/0/ends");
   expect_refused(scene_text(""), Fault::malformed, "s.scene.json#/layers");
   expect_refused(scene_text(kOak, "2.0"), Fault::unsupported_version, "s.scene.json");
+}
+
+TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
+  const std::string body = R"("type":"texture","texture":"oak","at_m":0,"gain_m_per_n":0.001)";
+  for (const auto& [text, where, remedy] :
+       {std::tuple{scene_text("{" + body + R"(,"end":"mirror"})"), "s#/layers/0", "is 'ends' meant?"},
+        std::tuple{
+            R"({"kind":"scene","version":"1.0","playback":{"energy_rms":1},"layers":[{)" + body + "}]}",
+            "s#/playback", "is 'energy_rms_v' meant?"},
+        std::tuple{R"({"kind":"scene","version":"1.0","light":"dim","layers":[{)" + body + "}]}", "s",
+                   "its members are kind, version, name, notes, created, creator, playback, layers"}}) {
+    const auto scene = parse_scene(text, "s");
+    ASSERT_FALSE(scene) << text;
+    EXPECT_EQ(scene.error().fault, Fault::malformed);
+    EXPECT_EQ(scene.error().where, where) << message(scene.error());
+    EXPECT_EQ(scene.error().remedy, remedy) << message(scene.error());
+  }
 }
 
 TEST(Scene, ALayerOfAnotherTypeIsRefusedByItsName) {

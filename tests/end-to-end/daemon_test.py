@@ -384,7 +384,7 @@ def full_disk_for_the_log():
     done = subprocess.run([tacto.COMMAND, "replay", session, "--json"], capture_output=True, text=True, timeout=60)
     replayed = json.loads(done.stdout)
     assert "first_difference_tick" not in replayed and replayed["ticks_compared"] > 1000, replayed
-    assert not replayed["same_to_the_bit"] and "lost_at_tick" in replayed and done.returncode == 5, replayed
+    assert replayed["same_to_the_bit_up_to_the_lost_tick"] and "lost_at_tick" in replayed and done.returncode == 5, replayed
     assert replayed["lost_ticks"] == described["lost_ticks"] >= status["lost_ticks"] > 0, (replayed, described, status)
     assert described["ending"] == "closed", described  # room for that is held back
     assert "ticks are missing" in tacto.run("session", session)[1]
@@ -610,6 +610,23 @@ def a_texture_changed_in_mid_play():
     assert np.max(steps) < 1.1 * np.max(np.abs(np.diff(one))), (np.max(steps), np.max(np.abs(np.diff(one))))
 
 
+def a_path_that_ends_where_it_began_is_a_loop():
+    """Up in 0.3 s, back in 0.9 s, over and over: back and forth it would go up slowly every other time."""
+    prepare_files()
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.3,0.034\n1.2,0.004\n")
+    with daemon():
+        shown = tacto.run("ctl", "top", "--time", "0.2s", "--socket", "control")[0]
+        assert "idle" in shown and "finger" in shown, shown
+        client = Client()
+        session = begin(client)
+        time.sleep(3.6)
+        client.must(request="disarm")
+    ticks = ticks_of(session)
+    speed_mps = np.diff(ticks["position_m"][::100]) / np.diff(ticks["time_s"][::100])
+    up, down = speed_mps[speed_mps > 0.001], speed_mps[speed_mps < -0.001]
+    assert np.mean(up) > 2 * np.mean(-down) and np.sum(up > 0.05) < 0.5 * len(speed_mps), (np.mean(up), np.mean(down))
+
+
 def what_was_chosen_is_told():
     """The configuration's choices, a scene's over them, a request's over both; what can't be is refused, and the rest plays on."""
     prepare_files(playback={"interpolation": "linear", "inverse": "gain", "contact_on_n": 0.6, "energy_rms_v": 5})
@@ -634,6 +651,9 @@ def what_was_chosen_is_told():
         assert client.must(request="status")["drive_peak_v"] > 0.01
         answer = client.ask(request="load", file="s", playback={"contact_on_n": 0.25})
         assert not answer["ok"] and "limits" in answer["error"]["what"] and "disarm" in answer["error"]["remedy"], answer
+        answer = client.ask(request="load", file="s", playback={"interpolaton": "sinc"})
+        assert not answer["ok"] and "'interpolation'" in answer["error"]["remedy"], answer
+        assert client.must(request="status", gian=1)["passed_over"] == "gian"
         answer = client.ask(request="load", file="s", playback={"contact_on_n": -1})
         assert not answer["ok"] and "from 0 to 100" in answer["error"]["remedy"], answer
         out, _ = tacto.run("ctl", "load", "s", "--interpolation", "nearest", "--json", "--socket", "control")
@@ -761,7 +781,7 @@ TESTS = [from_load_to_a_session_that_replays, what_the_limits_took_is_found, kil
          garbage_and_endless_lines, many_requests_at_once, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
          the_loop_closed_on_the_host, the_service_manager_is_told, a_band_that_the_rate_cuts_is_told,
          late_ticks_beyond_a_limit_are_a_fault, gain_saved_in_the_scene, gain_kept_with_the_texture, a_texture_changed_in_mid_play,
-         what_was_chosen_is_told, a_promise_in_the_configuration, a_load_holds_up_nobody, files_that_nobody_can_play,
+         a_path_that_ends_where_it_began_is_a_loop, what_was_chosen_is_told, a_promise_in_the_configuration, a_load_holds_up_nobody, files_that_nobody_can_play,
          by_tcp_with_a_token]
 
 if __name__ == "__main__":

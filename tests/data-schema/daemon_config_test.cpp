@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/daemon_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::schema {
+namespace {
+
+Error refused(const std::string& members) {
+  tests::TemporaryFolder folder;
+  const std::string path = folder / "d.json";
+  std::ofstream(path) << R"({"kind":"daemon","version":"1.0","device":"sim:","transducer":"t",)"
+                      << R"("socket":"s","sessions":"f",)" << members << "}";
+  const auto config = read_daemon_config(path);
+  return config ? Error{} : config.error();
+}
+
+TEST(DaemonConfig, TwoPromisesExcludeEachOther) {
+  const Error error = refused(R"("quality":"fast","max_error":0.01)");
+  EXPECT_EQ(error.what, "quality, max_error exclude each other: say one of them");
+}
+
+TEST(DaemonConfig, ANumberOutOfRangeIsToldItsRange) {
+  for (const char* rate : {R"("rate_hz":500)", R"("rate_hz":"fast")"}) {
+    const Error error = refused(rate);
+    EXPECT_TRUE(error.where.ends_with("#/rate_hz")) << error.where;
+    EXPECT_EQ(error.remedy, "Ticks; 2 kHz unless told; from 1000 to 20000") << error.what;
+  }
+  EXPECT_TRUE(refused(R"("max_error":0)").remedy.ends_with("above 0 to 0.1"));
+}
+
+TEST(DaemonConfig, AMisspeltChoiceIsNamedWithTheNearest) {
+  EXPECT_EQ(refused(R"("playback":{"contact_on":1})").remedy, "is 'contact_on_n' meant?");
+}
+
+}  // namespace
+}  // namespace tacto::schema
