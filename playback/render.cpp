@@ -17,6 +17,7 @@
 #include "playback/reference/spatial_content.hpp"
 #include "playback/reference/wanted.hpp"
 #include "playback/texture_check.hpp"
+#include "playback/texture_layout.hpp"
 
 namespace tacto::playback {
 
@@ -197,6 +198,11 @@ void warn_of_folding(Rendering& rendering, const ReadingGrid& grid, const spatia
       1e-3 * safe_hz / rendering.max_speed_mps, 1e3 * rendering.max_speed_mps));
 }
 
+void tell_loop_of(Rendering& rendering, const schema::SpaceSignal& whole) {
+  rendering.loop_seam_m = seam_of_loop(whole, PrepareOptions{}.seam_m);
+  rendering.loop_period_m = static_cast<double>(whole.values.size()) * whole.pitch_m - rendering.loop_seam_m;
+}
+
 Rendering described(std::span<const PlacedTexture> textures, const FingerPath& path,
                     const RenderOptions& options) {
   Rendering rendering;
@@ -206,6 +212,7 @@ Rendering described(std::span<const PlacedTexture> textures, const FingerPath& p
     rendering.texture_highest_per_m =
         std::max(rendering.texture_highest_per_m, highest_spatial_frequency(placed.texture->signal));
   rendering.onset_s = std::min(options.onset_s, path.duration_s() / 4);
+  if (options.ends == Ends::loop) tell_loop_of(rendering, textures.front().texture->signal);
   return rendering;
 }
 

@@ -74,6 +74,8 @@ struct Rendering {
   double texture_highest_per_m = 0;  ///< highest_spatial_frequency() of the texture
   double reading_rate_hz = 0;        ///< at which the texture was read along the path
   double fade_m = 0;                 ///< TextureLookup::fade_m
+  double loop_period_m = 0;          ///< after which a looped texture begins again; 0: no loop
+  double loop_seam_m = 0;            ///< of its end, what fades into its beginning (seam_of_loop)
   double onset_s = 0;                ///< as used
   std::vector<std::string> warnings;
   Engine engine = Engine::reference;     ///< that made the drive

@@ -9,6 +9,7 @@
 #include "playback/choices.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/gain_report.hpp"
+#include "playback/cli/loop_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/laid_textures.hpp"
 #include "playback/drive_files.hpp"
@@ -78,7 +79,8 @@ void add_ends(CLI::App& app, ProgramRequest& what) {
            what.ends =
                static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
          },
-         "Of a texture: what lies beyond its ends")
+         "Of a texture: what lies beyond its ends: nothing, the texture mirrored, or the texture again "
+         "(loop: as it is where its end meets its beginning, else its last 1 mm fades into its first)")
       ->type_name("stop|mirror|loop");
 }
 
@@ -160,6 +162,7 @@ void add_limits(Report& report, const Rendering& r) {
 }
 
 void add_way(Report& report, const Rendering& r) {
+  add_loop(report, r.loop_period_m, r.loop_seam_m);
   report.add("samples_outside_texture", r.samples_outside)
       .add("texture_end_fade_m", r.fade_m)
       .add("onset_s", r.onset_s)
