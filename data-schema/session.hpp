@@ -56,6 +56,7 @@ struct SessionTexture {
   std::string file, sha256;
   double at_m = 0, gain_m_per_n = 0;
   TextureEnds ends = TextureEnds::stop;
+  double seam_m = 1e-3;  ///< of a loop: what fades of its end into its beginning; older sessions: 1 mm
 };
 
 /// What is played, and how the drive is made of it.

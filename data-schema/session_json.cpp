@@ -55,11 +55,13 @@ Json device_body(const SessionHeader& header) {
 }
 
 Json texture_row(const SessionTexture& texture) {
-  return {{"file", texture.file},
-          {"sha256", texture.sha256},
-          {"at_m", texture.at_m},
-          {"gain_m_per_n", texture.gain_m_per_n},
-          {"ends", word_of(texture.ends)}};
+  Json row = {{"file", texture.file},
+              {"sha256", texture.sha256},
+              {"at_m", texture.at_m},
+              {"gain_m_per_n", texture.gain_m_per_n},
+              {"ends", word_of(texture.ends)}};
+  if (texture.ends == TextureEnds::loop) row["seam_m"] = texture.seam_m;
+  return row;
 }
 
 TextureEnds ends_from(const std::string& word) {
@@ -69,8 +71,12 @@ TextureEnds ends_from(const std::string& word) {
 }
 
 SessionTexture texture_of_row(const Json& row) {
-  return {text_or(row, "file"), text_or(row, "sha256"), number_or(row, "at_m", 0),
-          number_or(row, "gain_m_per_n", 0), ends_from(text_or(row, "ends"))};
+  return {text_or(row, "file"),
+          text_or(row, "sha256"),
+          number_or(row, "at_m", 0),
+          number_or(row, "gain_m_per_n", 0),
+          ends_from(text_or(row, "ends")),
+          number_or(row, "seam_m", SessionTexture{}.seam_m)};
 }
 
 Json playback_body(const SessionProgram& program) {

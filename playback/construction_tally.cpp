@@ -23,7 +23,8 @@ std::vector<LeftOut> left_out_of(const Prepared& prepared) {
   const auto tell = [&](std::size_t count, const char* part, const char* because) {
     if (count == 0) left_out.push_back({part, because});
   };
-  tell(built.seams, "a loop's seam", "nothing loops");
+  tell(built.seams, "a loop's seam",
+       prepared.loop_period_m > 0 ? "the texture's end meets its beginning" : "nothing loops");
   if (built.levels < wire::kMaxLevels) left_out.push_back(levels_left_out(prepared));
   tell(built.filters, "a filter that undoes the transducer", "its gain alone, or no inverse, was asked for");
   tell(built.hysteresis, "plays that undo a hysteresis", "the transducer's file tells none, or it is kept");

@@ -15,7 +15,8 @@ Result<FeltPath> FeltPath::make(std::span<const PlacedTexture> textures, const F
   const auto [low_m, high_m] = std::ranges::minmax(path.position_m);
   felt.start_m_ = textures.front().at_m, felt.end_m_ = felt.start_m_;
   for (const PlacedTexture& placed : textures) {
-    auto played = as_played(*placed.texture, placed.at_m, ends, low_m, high_m, "path");
+    auto played =
+        as_played(*placed.texture, placed.at_m, prepared_ends(*placed.texture, ends), low_m, high_m, "path");
     if (!played) return schema::forward_error(played);
     const PlayedSignal& signal = felt.signals_.emplace_back(std::move(*played));
     felt.layers_.push_back({TextureLookup(signal.signal, signal.at_m), placed.weight});

@@ -8,7 +8,7 @@
 
 namespace tacto::playback {
 
-/// RMS over the band of modelled - wanted, re that of wanted, 1. 0.5 s at either end is left out, of short
+/// RMS over the band of modelled - wanted, re that of wanted, 1. 1 s at either end is left out, of short
 /// renderings a quarter: where a path doesn't rest at its end, it ends with a step, which no drive in the
 /// band can follow. Not a number where nothing is wanted in between.
 double error_between_ends(const Rendering& rendering, const PaddedSpectrum& wanted,

@@ -22,4 +22,9 @@ struct KernelDrive {
 KernelDrive kernel_drive(const Prepared& prepared, const FingerPath& path, const PrepareOptions& options,
                          std::size_t ticks);
 
+/// The same at another gain, with no limit of amplitude or slew (an energy limit stays): what they are asked
+/// to hold, V.
+std::vector<double> unlimited_drive(const Prepared& prepared, double gain_m_per_n, const FingerPath& path,
+                                    const PrepareOptions& options, std::size_t ticks);
+
 }  // namespace tacto::playback

@@ -30,7 +30,7 @@ const Peak& Peaks::tightest() const {
 }
 
 Peaks peaks_of(std::span<const double> drive_v, std::span<const double> displacement_m, double rate_hz,
-               const schema::Transducer& transducer) {
+               const schema::Transducer& transducer, AfterDrive after) {
   Peaks peaks{{"drive", "V", 0, 0, transducer.drive_limit_v},
               {"slew", "V/s", 0, 0, transducer.slew_limit_v_per_s},
               {"displacement", "m", 0, 0, transducer.displacement_limit_m}};
@@ -41,23 +41,31 @@ Peaks peaks_of(std::span<const double> drive_v, std::span<const double> displace
     raise(peaks.slew_v_per_s, (drive_v[i] - before_v) * rate_hz, time_s);
     before_v = drive_v[i];
   }
-  raise(peaks.slew_v_per_s, before_v * rate_hz, static_cast<double>(drive_v.size()) / rate_hz);
+  if (after == AfterDrive::rest)
+    raise(peaks.slew_v_per_s, before_v * rate_hz, static_cast<double>(drive_v.size()) / rate_hz);
   for (std::size_t i = 0; i < displacement_m.size(); ++i)
     raise(peaks.displacement_m, displacement_m[i], static_cast<double>(i) / rate_hz);
   return peaks;
 }
 
+double proportional_fit(const Peaks& peaks, double gain_m_per_n) {
+  return rounded_down(gain_m_per_n / peaks.tightest().used());
+}
+
+tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n, bool may_clip) {
+  const std::string fits =
+      fitting_m_per_n > 0 ? fmt::format("the largest gain that fits is {:.4g}mm/N", 1e3 * fitting_m_per_n)
+                          : "take a smaller --gain";
+  return schema::fail(schema::Fault::unsuitable,
+                      fmt::format("the {} reaches {:.4g} {}, its limit is {:.4g} {}", peak.name, peak.value,
+                                  peak.unit, peak.limit, peak.unit),
+                      fmt::format("drive, {:.4f} s after its start", peak.time_s),
+                      fits + (may_clip ? "; --over-limit clip plays it clipped" : ""));
+}
+
 schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n) {
   if (peaks.fit()) return {};
-  const Peak& worst = peaks.tightest();
-  const double fitting_mm_per_n = rounded_down(1e3 * gain_m_per_n / worst.used());
-  return schema::fail(
-      schema::Fault::unsuitable,
-      fmt::format("the {} reaches {:.4g} {}, its limit is {:.4g} {}", worst.name, worst.value, worst.unit,
-                  worst.limit, worst.unit),
-      fmt::format("drive, {:.4f} s after its start", worst.time_s),
-      fmt::format("the largest gain that fits is {:.4g}mm/N; --over-limit clip plays it clipped",
-                  fitting_mm_per_n));
+  return limit_passed(peaks.tightest(), proportional_fit(peaks, gain_m_per_n), true);
 }
 
 std::size_t clip_drive(std::vector<double>& drive_v, double rate_hz, const schema::Transducer& transducer) {

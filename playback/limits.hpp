@@ -29,13 +29,24 @@ struct Peaks {
   bool fit() const { return tightest().used() <= 1; }
 };
 
-/// Of samples at rate_hz; slew is the step between neighbours, from and to rest at the ends included, times
-/// the rate.
+/// What follows a drive's last sample.
+enum class AfterDrive { rest, more };
+
+/// Of samples at rate_hz; slew is the step between neighbours, from rest before the first one and to what
+/// follows the last one included, times the rate.
 Peaks peaks_of(std::span<const double> drive_v, std::span<const double> displacement_m, double rate_hz,
-               const schema::Transducer& transducer);
+               const schema::Transducer& transducer, AfterDrive after = AfterDrive::rest);
 
 /// Errors: unsuitable, where a limit is passed: by which peak, at what time, and the largest gain that fits.
 schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n);
+
+/// The gain at which the tightest just fits, where all is proportional to it: gain / used, rounded down in
+/// the fourth digit.
+double proportional_fit(const Peaks& peaks, double gain_m_per_n);
+
+/// What check_limits() says of one peak, with the gain that fits (0: none is known), and that clipping would
+/// help where it would.
+tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n, bool may_clip);
 
 /// Holds every sample within drive_limit_v, then every step, from rest on, within slew_limit_v_per_s. Gives
 /// the number of samples that it changed.

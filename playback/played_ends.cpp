@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <span>
 
 #include "playback/texture_layout.hpp"
 
@@ -27,11 +26,15 @@ Ends ends_of(schema::TextureEnds ends) {
   return ends == schema::TextureEnds::mirror ? Ends::mirror : Ends::stop;
 }
 
-schema::Result<PlayedSignal> as_played(const schema::Texture& texture, double at_m, Ends ends, double from_m,
-                                       double to_m, const std::string& where) {
-  if (ends == Ends::stop) return PlayedSignal{texture.signal, at_m};
-  const PlacedTexture placed{&texture, at_m, 1};
-  const schema::SpaceSignal one = laid_out(std::span(&placed, 1), ends, PrepareOptions{}.seam_m);
+PlayedEnds prepared_ends(const schema::Texture& texture, Ends ends) {
+  return {ends, ends == Ends::loop ? seam_of_loop(texture.signal, PrepareOptions{}.seam_m) : 0};
+}
+
+schema::Result<PlayedSignal> as_played(const schema::Texture& texture, double at_m, const PlayedEnds& ends,
+                                       double from_m, double to_m, const std::string& where) {
+  if (ends.ends == Ends::stop) return PlayedSignal{texture.signal, at_m};
+  const schema::SpaceSignal one =
+      ends.ends == Ends::loop ? looped(texture.signal, ends.seam_m) : texture.signal;
   const double pitch_m = one.pitch_m;
   const auto first = static_cast<std::int64_t>(std::floor((from_m - kFarther_m - at_m) / pitch_m));
   const auto last = static_cast<std::int64_t>(std::ceil((to_m + kFarther_m - at_m) / pitch_m));
@@ -40,7 +43,7 @@ schema::Result<PlayedSignal> as_played(const schema::Texture& texture, double at
   PlayedSignal endless{{pitch_m, 0, {}}, at_m + static_cast<double>(first) * pitch_m};
   const auto size = static_cast<std::int64_t>(one.values.size());
   for (std::int64_t i = first; i <= last; ++i)
-    endless.signal.values.push_back(one.values[sample_at(i, size, ends == Ends::mirror)]);
+    endless.signal.values.push_back(one.values[sample_at(i, size, ends.ends == Ends::mirror)]);
   return endless;
 }
 

@@ -111,6 +111,11 @@ Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, co
   return {};
 }
 
+void tell_loop(Prepared& prepared, const schema::SpaceSignal& whole, const schema::SpaceSignal& period) {
+  prepared.loop_period_m = static_cast<double>(period.values.size()) * period.pitch_m;
+  prepared.loop_seam_m = static_cast<double>(whole.values.size() - period.values.size()) * period.pitch_m;
+}
+
 Result<void> lay_on_counts(Prepared& prepared, double first_m, const PrepareOptions& o) {
   core::ProfileScale& scale = prepared.scale;
   const double per_count = o.metres_per_count / prepared.pitch_m;
@@ -272,6 +277,7 @@ Result<Prepared> prepare(std::span<const PlacedTexture> textures, const schema::
   const UndoneChain undone = undone_chain(transducer, options);
   Prepared prepared = settled(transducer, undone, options);
   const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m, prepared.built);
+  if (options.ends == Ends::loop) tell_loop(prepared, textures.front().texture->signal, path);
   if (auto filled = fill_levels(prepared, path, options); !filled) return schema::forward_error(filled);
   if (auto laid = lay_on_counts(prepared, path.origin_m, options); !laid) return schema::forward_error(laid);
   if (auto done = undo_chain(prepared, transducer, undone, options); !done)

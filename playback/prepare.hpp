@@ -27,8 +27,8 @@ struct PlacedTexture {
 };
 
 /// What the finger feels beyond the texture. stop: nothing; the last millimetre fades (TextureLookup).
-/// loop: it begins again, the last millimetre fading into what would come before the first sample's
-/// neighbour: without a seam. mirror: it comes back.
+/// loop: it begins again, as it is where its end meets its beginning (seam_of_loop()); else without its last
+/// millimetre, which fades into the first. mirror: it comes back.
 using Ends = wire::ProfileEnds;
 
 /// Over which the tracker averages speed where counts come every tick.
@@ -42,7 +42,7 @@ struct PrepareOptions {
   double gain_m_per_n = 1e-3;  ///< G_psi, m/N; live: TickInput::gain
   spatial::Band band;          ///< its upper edge is kept whole, where the rate can
   Ends ends = Ends::stop;
-  double seam_m = 1e-3;  ///< of a loop; 0 where the texture is a loop already
+  double seam_m = 1e-3;  ///< of a loop whose end does not meet its beginning; 0: never
   wire::Interpolation interpolation = wire::Interpolation::hermite;
   double samples_per_period = 0;  ///< of the finest content; 0: usual for the interpolation (pyramid_shape)
   Inverse inverse = Inverse::full;
@@ -88,6 +88,8 @@ struct Prepared {
   double beyond_band_db = 0;    ///< largest |chain x inverse| from passes_to_hz to stops_at_hz
   double finest_per_m = 0;      ///< the texture's highest spatial frequency that is kept
   double pitch_m = 0;           ///< of the first level
+  double loop_period_m = 0;     ///< after which a looped texture begins again; 0: no loop
+  double loop_seam_m = 0;       ///< of its length, what was cut off its end and fades into its beginning
   std::vector<std::string> notes;
   ConstructionTally built;
 

@@ -14,6 +14,7 @@ namespace {
 using Ends = wire::ProfileEnds;
 
 constexpr double kMostPaddingM = 20e-3;
+constexpr double kMostDrift = 2e-5;  // 1.3e-4 of what is played there
 
 std::size_t continued_size(const schema::SpaceSignal& signal, Ends ends) {
   const std::size_t size = signal.values.size();
@@ -38,6 +39,28 @@ struct LevelGrid {
   double pitch_m = 0;
 };
 
+// By how much of the finest period the last place is off, where a count is rounded to 2^-32 samples.
+double drift_of(std::size_t period, double period_m, double length_m, const PyramidShape& shape) {
+  const double per_count = std::ldexp(shape.metres_per_count * static_cast<double>(period) / period_m, 32);
+  if (!(per_count > 0)) return 0;
+  return std::abs(std::round(per_count) / per_count - 1) * length_m * shape.finest_per_m;
+}
+
+// Of an encoder so fine that a count is few parts of a sample, a few samples more may hit it.
+std::size_t steps_that_fit(std::size_t least, std::size_t step, double period_m, double length_m,
+                           const PyramidShape& shape) {
+  const std::size_t fast = spatial::fast_length(least);
+  std::size_t best = fast;
+  double least_drift = drift_of(step * best, period_m, length_m, shape);
+  for (std::size_t steps = fast; steps <= fast + fast / 16 && least_drift > kMostDrift; ++steps) {
+    const double drift = drift_of(step * steps, period_m, length_m, shape);
+    if (drift >= least_drift) continue;
+    best = steps;
+    least_drift = drift;
+  }
+  return best;
+}
+
 LevelGrid first_grid(const schema::SpaceSignal& signal, const PyramidShape& shape) {
   const double period_m = static_cast<double>(continued_size(signal, shape.ends)) * signal.pitch_m;
   // Of a mirror half the period has whole steps on every level, too.
@@ -45,7 +68,7 @@ LevelGrid first_grid(const schema::SpaceSignal& signal, const PyramidShape& shap
   const double wished = period_m * shape.finest_per_m * shape.samples_per_period / static_cast<double>(step);
   const auto steps = static_cast<std::size_t>(std::ceil(std::max(wished, 8.0)));
   LevelGrid grid;
-  grid.period = step * spatial::fast_length(steps);
+  grid.period = step * steps_that_fit(steps, step, period_m, signal.length_m(), shape);
   grid.pitch_m = period_m / static_cast<double>(grid.period);
   if (shape.ends == Ends::loop) grid.kept = grid.period;
   if (shape.ends == Ends::mirror) grid.kept = grid.period / 2 + 1;

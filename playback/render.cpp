@@ -9,14 +9,15 @@
 
 #include "data-schema/statistics.hpp"
 #include "playback/felt_path.hpp"
-#include "playback/hysteresis_inverse.hpp"
 #include "playback/identified_band.hpp"
 #include "playback/kept_error.hpp"
-#include "playback/kernel_drive.hpp"
 #include "playback/reference/exact_drive.hpp"
 #include "playback/reference/spatial_content.hpp"
 #include "playback/reference/wanted.hpp"
+#include "playback/render_job.hpp"
+#include "playback/render_kernel.hpp"
 #include "playback/texture_check.hpp"
+#include "playback/texture_layout.hpp"
 
 namespace tacto::playback {
 
@@ -47,7 +48,8 @@ Result<void> check_options(const RenderOptions& o) {
   if (!(o.gain_m_per_n > 0 && o.gain_m_per_n <= kLargestGain))
     return wrong("the gain is not between 0 and 1 m/N", "a fingertip asks for about 1mm/N");
   if (!std::isfinite(o.at_m)) return wrong("the texture's place is not finite", "give --at a length");
-  if (!(o.onset_s >= 0 && std::isfinite(o.onset_s))) return wrong("the onset is below 0", "0s turns it off");
+  if (const double onset_s = o.onset_s.value_or(0); !(onset_s >= 0 && std::isfinite(onset_s)))
+    return wrong("the onset is below 0", "0s turns it off");
   if (!(o.encoder_step_m > 0 && o.encoder_step_m < 1))
     return wrong("the encoder's step is not above 0", "1um is usual");
   if (!(o.reconstruction_cutoff_hz > 0))
@@ -111,75 +113,6 @@ Result<ExactDrive> limited_drive(Rendering& rendering, const PaddedSpectrum& wan
   return held;
 }
 
-PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
-  PrepareOptions options;
-  options.rate_hz = o.rate_hz;
-  options.metres_per_count = o.encoder_step_m;
-  options.gain_m_per_n = o.gain_m_per_n;
-  options.band = o.band;
-  options.ends = o.ends;
-  options.inverse = o.inverse;
-  options.reconstruction = o.reconstruction;
-  options.reconstruction_cutoff_hz = o.reconstruction_cutoff_hz;
-  options.hold = o.hold;
-  options.onset_s = onset_s;
-  options.interpolation = o.interpolation;
-  options.energy_rms_v = o.energy_rms_v;
-  options.energy_window_s = o.energy_window_s;
-  options.undo_hysteresis = o.undo_hysteresis;
-  return options;
-}
-
-// The model is linear: of a bender with hysteresis it is told what that makes of the drive.
-ExactDrive moved_bender(const std::vector<double>& drive_v, const PaddedSpectrum& wanted,
-                        const Chain& chain) {
-  const schema::Transducer& t = chain.transducer;
-  ExactDrive moved = moved_by(drive_v, wanted, chain);
-  if (!t.hysteresis) return moved;
-  const double pole_hz = schema::actuator_pole_hz(t);
-  ExactDrive linear =
-      moved_by(linear_drive_of(drive_v, *t.hysteresis, pole_hz, chain.sample_rate_hz), wanted, chain);
-  moved.modelled_m = std::move(linear.modelled_m);
-  moved.peaks.displacement_m = linear.peaks.displacement_m;
-  return moved;
-}
-
-// What the budget chooses goes into the options.
-Result<void> decide_kernel(Rendering& rendering, std::span<const PlacedTexture> textures, const Chain& chain,
-                           const RenderOptions& o, PrepareOptions& options) {
-  if (!o.budget.asked()) return {};
-  const auto table = schema::find_trade_table();
-  if (!table) return schema::forward_error(table);
-  auto decision = decide(textures, chain.transducer, options, o.budget, *table);
-  if (!decision) return schema::forward_error(decision);
-  options = decision->chosen.in(options);
-  rendering.decision = std::move(*decision);
-  return {};
-}
-
-// What the kernel's limits took away is told; refused, unless it may.
-Result<ExactDrive> kernels_drive(Rendering& rendering, std::span<const PlacedTexture> textures,
-                                 const FingerPath& path, const PaddedSpectrum& wanted, const Chain& chain,
-                                 const RenderOptions& o) {
-  PrepareOptions options = kernel_options(o, rendering.onset_s);
-  if (auto chosen = decide_kernel(rendering, textures, chain, o, options); !chosen)
-    return schema::forward_error(chosen);
-  const auto prepared = prepare(textures, chain.transducer, options);
-  if (!prepared) return schema::forward_error(prepared);
-  rendering.warnings.insert(rendering.warnings.end(), prepared->notes.begin(), prepared->notes.end());
-  KernelDrive drive = kernel_drive(*prepared, path, options, wanted.samples);
-  const auto clipped =
-      static_cast<std::size_t>(std::max(drive.tally.amplitude_limited(), drive.tally.slew_limited()));
-  if (clipped > 0 && o.over_limit == OverLimit::refuse)
-    return fail(Fault::unsuitable, fmt::format("the limits took away {} samples of the drive", clipped),
-                "drive", "take a smaller --gain; --over-limit clip plays it clipped");
-  if (clipped > 0) rendering.clipping = {clipped, 0, drive.tally.removed_db()};
-  rendering.energy_limited_samples = drive.tally.energy_limited();
-  rendering.removed_db = drive.tally.removed_db();
-  rendering.delay_s = prepared->delay_left_s;
-  return moved_bender(drive.drive_v, wanted, chain);
-}
-
 double error_db(const Rendering& rendering, const PaddedSpectrum& wanted, const spatial::Band& band) {
   std::vector<double> difference(rendering.wanted_m.values.size());
   std::ranges::transform(rendering.modelled_m.values, rendering.wanted_m.values, difference.begin(),
@@ -197,15 +130,22 @@ void warn_of_folding(Rendering& rendering, const ReadingGrid& grid, const spatia
       1e-3 * safe_hz / rendering.max_speed_mps, 1e3 * rendering.max_speed_mps));
 }
 
+void tell_loop_of(Rendering& rendering, const schema::SpaceSignal& whole) {
+  rendering.loop_seam_m = seam_of_loop(whole, PrepareOptions{}.seam_m);
+  rendering.loop_period_m = static_cast<double>(whole.values.size()) * whole.pitch_m - rendering.loop_seam_m;
+}
+
 Rendering described(std::span<const PlacedTexture> textures, const FingerPath& path,
-                    const RenderOptions& options) {
+                    const RenderOptions& options, Engine engine) {
+  const double usual_onset_s = engine == Engine::kernel ? kKernelOnsetS : kReferenceOnsetS;
   Rendering rendering;
   rendering.max_speed_mps = greatest_speed_mps(path);
   rendering.highest_passed_per_m = options.band.high_hz / rendering.max_speed_mps;
   for (const PlacedTexture& placed : textures)
     rendering.texture_highest_per_m =
         std::max(rendering.texture_highest_per_m, highest_spatial_frequency(placed.texture->signal));
-  rendering.onset_s = std::min(options.onset_s, path.duration_s() / 4);
+  rendering.onset_s = std::min(options.onset_s.value_or(usual_onset_s), path.duration_s() / 4);
+  if (options.ends == Ends::loop) tell_loop_of(rendering, textures.front().texture->signal);
   return rendering;
 }
 
@@ -236,19 +176,9 @@ Result<void> check_engine(Engine engine, const RenderOptions& o) {
               o.budget.keep_reading ? "--interpolation" : "--energy-limit", "add --engine kernel");
 }
 
-/// What both engines are given.
-struct RenderJob {
-  std::span<const PlacedTexture> textures;
-  const FingerPath& path;
-  const PaddedSpectrum& wanted;
-  Chain chain;
-  const RenderOptions& options;
-};
-
 Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job) {
-  auto drive = engine == Engine::kernel
-                   ? kernels_drive(rendering, job.textures, job.path, job.wanted, job.chain, job.options)
-                   : limited_drive(rendering, job.wanted, job.chain, job.options);
+  auto drive = engine == Engine::kernel ? kernels_drive(rendering, job)
+                                        : limited_drive(rendering, job.wanted, job.chain, job.options);
   if (!drive) return schema::forward_error(drive);
   const double start_s = job.path.time_s.front(), rate_hz = job.options.rate_hz;
   rendering.engine = engine;
@@ -271,14 +201,32 @@ std::string words_of_miss(double error, const RenderOptions& o) {
                      100 * o.budget.error.most_error());
 }
 
-Result<void> refuse_miss(double error, const Rendering& rendering, const RenderOptions& o) {
+// Whether the encoder's step is to blame is tried: with a tenth of it.
+std::string ways_for_kernel(const Rendering& missed, RenderJob job) {
+  job.options.encoder_step_m /= 10;
+  Rendering finer = missed;
+  if (!check_counts(job.path, job.options) || !drive_by(Engine::kernel, finer, job))
+    return "allow more, or leave --engine and --max-tick away";
+  if (!missed_error(finer, job))
+    return fmt::format("--encoder-step {:.4g}um keeps it; or allow more", 1e6 * job.options.encoder_step_m);
+  return fmt::format(
+      "allow more, or leave --engine and --max-tick away: with a tenth of --encoder-step it is {:.3g} %",
+      100 * error_between_ends(finer, job.wanted, job.options.band));
+}
+
+std::string ways_for_reference(const RenderJob& job) {
+  if (job.chain.transducer.hysteresis)
+    return "allow more, or let the kernel undo the bender's hysteresis: leave --engine and --keep-hysteresis "
+           "away";
+  return "allow more, or name less: --inverse full, a smaller --gain within the limits";
+}
+
+Result<void> refuse_miss(double error, const Rendering& rendering, const RenderJob& job) {
   if (std::isnan(error))
     return fail(Fault::unsuitable, "nothing is wanted in the band: no error can be told", "error budget",
                 "render without a budget");
-  return fail(Fault::unsuitable, "the rendering's " + words_of_miss(error, o), "error budget",
-              rendering.engine == Engine::kernel
-                  ? "allow more, name a finer --encoder-step, or leave --engine and --max-tick away"
-                  : "allow more, or name less: --inverse full, a smaller --gain within the limits");
+  return fail(Fault::unsuitable, "the rendering's " + words_of_miss(error, job.options), "error budget",
+              rendering.engine == Engine::kernel ? ways_for_kernel(rendering, job) : ways_for_reference(job));
 }
 
 // Of a hysteresis or an energy limit the reference knows nothing: it can't take over, nor from a kernel that
@@ -291,25 +239,13 @@ Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
     rendering.warnings.push_back("the reference takes over: the kernel's " +
                                  words_of_miss(*missed, job.options));
     rendering.clipping.reset();
+    rendering.removed_db.reset();
     rendering.decision.reset();
     rendering.delay_s = 0;
     if (auto driven = drive_by(Engine::reference, rendering, job); !driven) return driven;
     missed = missed_error(rendering, job);
   }
-  return missed ? refuse_miss(*missed, rendering, job.options) : Result<void>();
-}
-
-// Beyond that the kernel is silent (core/profile.cpp).
-Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
-  constexpr double kFarthestCount = 1 << 29;
-  double farthest_m = 0;
-  for (const double position_m : path.position_m) farthest_m = std::max(farthest_m, std::abs(position_m));
-  if (farthest_m / o.encoder_step_m < kFarthestCount) return {};
-  return fail(
-      Fault::unsuitable,
-      fmt::format("the path goes to {:.4g} m, which is over 2^29 of the encoder's counts", farthest_m),
-      "--encoder-step",
-      fmt::format("{:.3g} nm and more reach as far", std::ceil(1e9 * farthest_m / kFarthestCount * 1.01)));
+  return missed ? refuse_miss(*missed, rendering, job) : Result<void>();
 }
 
 // The kernel's own notes tell of the band.
@@ -332,7 +268,13 @@ Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPa
   const auto report = [&](double fraction) {
     if (progress) progress(fraction);
   };
-  Rendering rendering = described(textures, path, options);
+  std::vector<std::string> reasons;
+  const Engine engine = engine_for(options, transducer, reasons);
+  if (auto knows = check_engine(engine, options); !knows) return schema::forward_error(knows);
+  if (engine == Engine::kernel)
+    if (auto near = check_counts(path, options); !near) return schema::forward_error(near);
+  Rendering rendering = described(textures, path, options, engine);
+  rendering.reasons = std::move(reasons);
   const auto felt = FeltPath::make(textures, path, options.ends);
   if (!felt) return schema::forward_error(felt);
   const double finest_hz = rendering.texture_highest_per_m * rendering.max_speed_mps;
@@ -345,10 +287,6 @@ Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPa
   report(0.1);
   const auto wanted = felt->wanted(grid, options.band, options.gain_m_per_n, rendering.onset_s);
   report(0.8);
-  const Engine engine = engine_for(options, transducer, rendering.reasons);
-  if (auto knows = check_engine(engine, options); !knows) return schema::forward_error(knows);
-  if (engine == Engine::kernel)
-    if (auto near = check_counts(path, options); !near) return schema::forward_error(near);
   warn_of_model(rendering, transducer, options.band, engine);
   const RenderJob job{textures, path, wanted, chain_of(transducer, options), options};
   rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};

@@ -27,6 +27,10 @@ enum class OverLimit { refuse, clip };
 /// Who computes the drive: the slow exact reference, or the kernel that runs in real time.
 enum class Engine { reference, kernel };
 
+/// Unless told. The kernel's, as `play` has it, is the drive's own: in less its slew is what the device would
+/// cut.
+inline constexpr double kReferenceOnsetS = 0.005, kKernelOnsetS = 0.02;
+
 struct RenderOptions {
   double rate_hz = 10e3;       ///< of the drive; Wiertlewski 2011 records at 10 kHz
   double gain_m_per_n = 1e-3;  ///< G_psi: displacement for force. A fingertip has about 1e3 N/m
@@ -45,10 +49,12 @@ struct RenderOptions {
   bool undo_hysteresis = true;  ///< by the kernel, of a transducer that says what hysteresis it has
   TickBudget budget;            ///< what the rendering has to keep, see render()
   bool keep_engine = false;     ///< the engine was named: it stays
-  /// Raised-cosine fade of the force at either end of the path, at most a quarter of it: nothing starts with
-  /// a jump where the finger starts inside the texture. What is left is the ringing of the band's edges: on a
-  /// real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3 of it.
-  double onset_s = 0.005;
+  /// Fade at the ends of the path, at most a quarter of it; kReferenceOnsetS or kKernelOnsetS unless told.
+  /// The reference's is a raised cosine of the force at either end, the kernel's its drive's onset: nothing
+  /// starts with a jump where the finger starts inside the texture. What is left is the ringing of the band's
+  /// edges: on a real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3
+  /// of it.
+  std::optional<double> onset_s;
 };
 
 /// What the limits took away from a clipped drive.
@@ -61,7 +67,7 @@ struct Clipping {
 struct Rendering {
   schema::TimeSignal drive_v;     ///< rounded to 32-bit float, as it is stored and played
   schema::TimeSignal wanted_m;    ///< gain x force along the path, in the band (keep_band)
-  schema::TimeSignal modelled_m;  ///< drive_v through the transducer's model, over all frequencies
+  schema::TimeSignal modelled_m;  ///< drive_v through the transducer's model and hysteresis, all frequencies
   double error_db = 0;  ///< RMS of modelled - wanted in the band, re RMS of wanted; from drive_v as it is
   /// Of the displacement behind the wanted one. The reference has none, its inverse is applied to spectra;
   /// the kernel looks ahead by what its filter takes.
@@ -74,14 +80,17 @@ struct Rendering {
   double texture_highest_per_m = 0;  ///< highest_spatial_frequency() of the texture
   double reading_rate_hz = 0;        ///< at which the texture was read along the path
   double fade_m = 0;                 ///< TextureLookup::fade_m
+  double loop_period_m = 0;          ///< after which a looped texture begins again; 0: no loop
+  double loop_seam_m = 0;            ///< of its end, what fades into its beginning (seam_of_loop)
   double onset_s = 0;                ///< as used
   std::vector<std::string> warnings;
   Engine engine = Engine::reference;     ///< that made the drive
   std::vector<std::string> reasons;      ///< why it was chosen, where a budget asked for it
   std::optional<TickDecision> decision;  ///< of the kernel's budget
-  /// Of the kernel's drive: turned down to hold its RMS, and what all limits took away, re the drive's RMS.
+  /// Of the kernel's drive: turned down to hold its RMS, and what all limits took away, re the drive's RMS;
+  /// none: nothing.
   std::uint64_t energy_limited_samples = 0;
-  double removed_db = -300;
+  std::optional<double> removed_db;
 };
 
 /// Renders in double precision, or (engine) by the tick kernel, as it would run: single precision, position

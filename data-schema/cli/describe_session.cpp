@@ -13,10 +13,12 @@ const char* words_of(SessionEnding ending) {
 }
 
 cli::Report& add_texture(cli::Report& row, const SessionTexture& texture) {
-  return row.add("texture", texture.file)
+  row.add("texture", texture.file)
       .add("at_m", texture.at_m)
       .add("gain_m_per_n", texture.gain_m_per_n)
       .add("ends", word_of(texture.ends));
+  if (texture.ends == TextureEnds::loop) row.add("loop_seam_m", texture.seam_m);
+  return row;
 }
 
 void add_device(cli::Report& report, const SessionHeader& header) {

@@ -203,7 +203,10 @@ cli::Action declare_ctl(CLI::App& app) {
   cli::add_quantity(app, "--at", o.at_m, Dimension::length, "load of a texture: where its position 0 lies");
   cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance,
                     "load of a texture: displacement for force");
-  app.add_option("--ends", o.ends, "load of a texture: stop, mirror or loop");
+  app.add_option("--ends", o.ends,
+                 "load of a texture: stop, mirror or loop (as it is where its end meets its beginning, else "
+                 "its last 1 mm fades "
+                 "into its first)");
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
                     "load while one plays: how long the change takes, 50ms unless told");
   declare_choices(app, o.choices, "load: ");

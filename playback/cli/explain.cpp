@@ -9,6 +9,7 @@
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/gain_report.hpp"
+#include "playback/cli/loop_report.hpp"
 #include "playback/cli/room_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/program.hpp"
@@ -94,6 +95,7 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   report.add("rate_hz", made.rate_hz).add("length_m", program.length_m);
   add_kept_gain(report, program.kept_gain);
   report.add("textures", rows_of_textures(program)).add("texture_files_read", made.built.texture_files);
+  add_loop(report, made.loop_period_m, made.loop_seam_m);
   report.add("levels", rows_of_levels(made));
   cli::add_choices(report, choices_in(program.options));
   add_chain(report, made);

@@ -13,6 +13,7 @@
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/limits_report.hpp"
+#include "playback/cli/loop_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/session_name.hpp"
 
@@ -55,7 +56,8 @@ void declare_texture(CLI::App& app, PlayOptions& o) {
            o.program.ends =
                static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
          },
-         "Of a texture: what lies beyond its ends")
+         "Of a texture: what lies beyond its ends: nothing, the texture mirrored, or the texture again "
+         "(loop: as it is where its end meets its beginning, else its last 1 mm fades into its first)")
       ->type_name("stop|mirror|loop");
 }
 
@@ -97,6 +99,7 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explai
   report.add("gain_m_per_n", outcome.gain_m_per_n);
   add_kept_gain(report, outcome.kept_gain);
   report.add("played_s", outcome.status.ticks.span_s());
+  add_loop(report, outcome.loop_period_m, outcome.loop_seam_m);
   add_played(report, outcome);
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
   for (const std::string& note : outcome.notes) cli::warn(note);

@@ -9,6 +9,7 @@
 #include "playback/choices.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/gain_report.hpp"
+#include "playback/cli/loop_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/laid_textures.hpp"
 #include "playback/drive_files.hpp"
@@ -25,7 +26,7 @@ namespace {
 /// Of a scene they go before what it says of itself.
 struct NamedChoices {
   CLI::Option *inverse = nullptr, *interpolation = nullptr, *reconstruction = nullptr, *cutoff = nullptr,
-              *hold = nullptr, *energy = nullptr, *energy_window = nullptr;
+              *hold = nullptr, *encoder_step = nullptr, *energy = nullptr, *energy_window = nullptr;
 };
 
 struct RenderVerbOptions {
@@ -67,8 +68,10 @@ void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
                     "Lowest frequency of the displacement");
   cli::add_quantity(app, "--high", o.band.high_hz, Dimension::frequency,
                     "Highest frequency of the displacement");
-  cli::add_quantity(app, "--onset", o.onset_s, Dimension::time,
-                    "Fade at either end of the path, for a finger that starts inside the texture");
+  cli::add_quantity(
+      app, "--onset", o.onset_s, Dimension::time,
+      "Fade of the force at either end of the path, for a finger that starts inside the texture (5ms "
+      "unless told); with --engine kernel the drive's onset, as in play (20ms)");
 }
 
 void add_ends(CLI::App& app, ProgramRequest& what) {
@@ -78,7 +81,8 @@ void add_ends(CLI::App& app, ProgramRequest& what) {
            what.ends =
                static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
          },
-         "Of a texture: what lies beyond its ends")
+         "Of a texture: what lies beyond its ends: nothing, the texture mirrored, or the texture again "
+         "(loop: as it is where its end meets its beginning, else its last 1 mm fades into its first)")
       ->type_name("stop|mirror|loop");
 }
 
@@ -91,12 +95,10 @@ void add_kernel(CLI::App& app, RenderVerbOptions& verb) {
                                             {"linear", wire::Interpolation::linear},
                                             {"hermite", wire::Interpolation::hermite},
                                             {"sinc", wire::Interpolation::sinc}},
-                                           "How the kernel reads the texture between samples")
-          ->needs(verb.engine);
+                                           "With --engine kernel: how it reads the texture between samples");
   verb.named.energy =
       cli::add_quantity(app, "--energy-limit", o.energy_rms_v, Dimension::voltage,
-                        "Turn the kernel's drive down where its RMS would pass this; 0V: never")
-          ->needs(verb.engine);
+                        "With --engine kernel: turn its drive down where its RMS would pass this; 0V: never");
   verb.named.energy_window = cli::add_quantity(app, "--energy-window", o.energy_window_s, Dimension::time,
                                                "Over which that RMS is taken")
                                  ->needs(verb.named.energy);
@@ -124,12 +126,11 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
                             "Whether the converter holds each sample until the next, undone as well");
   app.add_flag("!--keep-hysteresis", o.undo_hysteresis,
                "Do not undo the hysteresis that the transducer's file tells (the kernel does)");
-  CLI::Option* engine = verb.engine = cli::add_choice<Engine>(
+  verb.engine = cli::add_choice<Engine>(
       app, "--engine", o.engine, {{"reference", Engine::reference}, {"kernel", Engine::kernel}},
       "Who computes the drive: the exact reference, or the tick kernel as it runs in real time");
-  cli::add_quantity(app, "--encoder-step", o.encoder_step_m, Dimension::length,
-                    "One count of the kernel's encoder")
-      ->needs(engine);
+  verb.named.encoder_step = cli::add_quantity(app, "--encoder-step", o.encoder_step_m, Dimension::length,
+                                              "With --engine kernel: one count of its encoder");
   add_kernel(app, verb);
   cli::add_choice<OverLimit>(app, "--over-limit", o.over_limit,
                              {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
@@ -151,8 +152,9 @@ void add_limits(Report& report, const Rendering& r) {
       .add("displacement_limit_used_percent", 100 * r.peaks.displacement_m.used())
       .add("slew_peak_v_per_s", r.peaks.slew_v_per_s.value)
       .add("slew_limit_used_percent", 100 * r.peaks.slew_v_per_s.used());
-  if (r.engine == Engine::kernel)
-    report.add("energy_limited_samples", r.energy_limited_samples).add("limits_removed_db", r.removed_db);
+  if (r.engine == Engine::kernel) report.add("energy_limited_samples", r.energy_limited_samples);
+  if (r.removed_db) report.add("limits_removed_db", *r.removed_db);
+  if (r.engine == Engine::kernel && !r.removed_db) report.add("limits_removed", "none");
   if (!r.clipping) return;
   report.add("clipped_samples", r.clipping->samples)
       .add("clipped_peak_reduction_db", r.clipping->peak_reduced_db)
@@ -160,6 +162,7 @@ void add_limits(Report& report, const Rendering& r) {
 }
 
 void add_way(Report& report, const Rendering& r) {
+  add_loop(report, r.loop_period_m, r.loop_seam_m);
   report.add("samples_outside_texture", r.samples_outside)
       .add("texture_end_fade_m", r.fade_m)
       .add("onset_s", r.onset_s)
@@ -192,6 +195,17 @@ void warn_of(const Rendering& r) {
       "the limits clipped {} samples: the peak is {:.1f} dB lower, what was removed is {:.1f} dB re "
       "the whole drive",
       r.clipping->samples, r.clipping->peak_reduced_db, r.clipping->removed_db));
+}
+
+// What the reference knows nothing of.
+Result<void> check_kernels(const RenderVerbOptions& o) {
+  if (o.engine->count() > 0 && o.render.engine == Engine::kernel) return {};
+  for (const CLI::Option* named : {o.named.encoder_step, o.named.interpolation, o.named.energy})
+    if (named->count() > 0)
+      return schema::fail(
+          schema::Fault::usage, named->get_name() + " requires --engine kernel", {},
+          "the reference reads the texture exactly where the finger is, and has no energy limit");
+  return {};
 }
 
 // The signals' addresses serve as names only: nothing is rendered yet.
@@ -239,6 +253,7 @@ Result<Report> run_render(RenderVerbOptions o) {
   if (!budget) return schema::forward_error(budget);
   o.render.budget = *budget;
   o.render.keep_engine = o.engine->count() > 0;
+  if (const auto knows = check_kernels(o); !knows) return schema::forward_error(knows);
   if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
   const auto transducer = schema::read_transducer(o.transducer);
   if (!transducer) return schema::forward_error(transducer);

@@ -79,6 +79,7 @@ PlayOutcome outcome_of(const Program& program) {
   outcome.delay_s = made.delay_s;
   outcome.delay_left_s = made.delay_left_s;
   outcome.inverse_error_db = made.inverse_error_db;
+  outcome.loop_period_m = made.loop_period_m, outcome.loop_seam_m = made.loop_seam_m;
   outcome.notes = made.notes;
   outcome.gain_m_per_n = program.gain_m_per_n;
   outcome.kept_gain = program.kept_gain;

@@ -36,6 +36,7 @@ struct PlayOutcome {
   std::string device, simulated;
   double asked_s = 0;
   double passes_to_hz = 0, delay_s = 0, delay_left_s = 0, inverse_error_db = 0;
+  double loop_period_m = 0, loop_seam_m = 0;  ///< of a looped texture
   std::vector<std::string> notes;
   std::optional<TickDecision> decision;           ///< of the program's budget
   schema::PlaybackChoices choices;                ///< with which it was played

@@ -57,6 +57,7 @@ Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& te
 
 void name_files(Program& program, const LaidTextures& laid) {
   program.session.textures = laid.rows();
+  program.session.textures.front().seam_m = program.prepared.loop_seam_m;
   if (program.scene_path.empty()) return;
   program.session.scene_file = full_path(program.scene_path);
   program.session.scene_sha256 = schema::sha256_of_file(program.scene_path).value_or("");

@@ -56,6 +56,12 @@ void add_choices(ControlFields& fields, const schema::PlaybackChoices& choices) 
     if (choices.*member) fields.emplace_back(name, *(choices.*member));
 }
 
+void add_loop(ControlFields& fields, double period_m, double seam_m) {
+  if (!(period_m > 0)) return;
+  fields.emplace_back("loop_period_m", period_m);
+  fields.emplace_back("loop_seam_m", seam_m);
+}
+
 ControlFields fields_of(const std::string& file, const Program& program) {
   const Prepared& made = program.prepared;
   ControlFields fields{{"file", file},
@@ -66,6 +72,7 @@ ControlFields fields_of(const std::string& file, const Program& program) {
                        {"delay_s", made.delay_s},
                        {"delay_left_s", made.delay_left_s},
                        {"inverse_error_db", made.inverse_error_db}};
+  add_loop(fields, made.loop_period_m, made.loop_seam_m);
   if (program.kept_gain) {
     fields.emplace_back("gain_set_by", program.kept_gain->who);
     fields.emplace_back("gain_set_on", program.kept_gain->when);
@@ -182,6 +189,7 @@ Result<ControlFields> Service::load(Program program) {
   ControlFields fields = fields_of(file, program);
   const std::string scene_path = program.scene_path;
   const double passes_to_hz = program.prepared.passes_to_hz;
+  const double period_m = program.prepared.loop_period_m, seam_m = program.prepared.loop_seam_m;
   const schema::SessionTexture alone = program.session.textures.front();
   const auto filter = program.decision ? std::optional(program.decision->chosen.inverse) : std::nullopt;
   const bool changes = player_->state() != PlayerState::idle;
@@ -189,6 +197,7 @@ Result<ControlFields> Service::load(Program program) {
   if (const auto kept = player_->load(std::move(program), fade_s); !kept) return schema::forward_error(kept);
   loaded_ = file;
   passes_to_hz_ = passes_to_hz;
+  loop_period_m_ = period_m, loop_seam_m_ = seam_m;
   scene_path_ = scene_path;
   alone_ = alone;
   filter_ = filter;
@@ -302,6 +311,7 @@ ControlFields Service::status() const {
   if (!status.fault.empty()) fields.emplace_back("fault", status.fault);
   if (!loaded_.empty()) fields.emplace_back("loaded", loaded_);
   if (!loaded_.empty()) fields.emplace_back("passes_to_hz", passes_to_hz_);
+  add_loop(fields, loop_period_m_, loop_seam_m_);
   if (!status.session.empty()) fields.emplace_back("session", status.session);
   fields.emplace_back("round_trip_s", status.round_trip_s);
   add_ticks(fields, status.ticks, status.recorder ? status.recorder->lost() : 0);

@@ -70,8 +70,9 @@ class Service {
   std::string loaded_, scene_path_;
   std::optional<InverseChoice> filter_;  // that a budget chose for what is loaded: a change keeps it
   double passes_to_hz_ = 0;              // of what is loaded
-  schema::SessionTexture alone_;         // what is loaded, where it is no scene
-  double saved_gain_ = 1;                // that the scene's file holds, of the gains that were loaded
+  double loop_period_m_ = 0, loop_seam_m_ = 0;
+  schema::SessionTexture alone_;  // what is loaded, where it is no scene
+  double saved_gain_ = 1;         // that the scene's file holds, of the gains that were loaded
   double next_status_s_ = 0;
   std::optional<std::uint64_t> told_lost_;  // of the session; none where nothing went wrong
 };

@@ -178,8 +178,8 @@ bool WantedReader::add(const SessionTexture& played, const PartOfReadings& part,
   const auto texture = read_again(played);
   if (!texture) return false;  // finest_in() has told
   const auto [nearest, farthest] = std::ranges::minmax(places);
-  const auto signal =
-      as_played((*texture)->texture, played.at_m, ends_of(played.ends), nearest, farthest, played.file);
+  const auto signal = as_played((*texture)->texture, played.at_m, {ends_of(played.ends), played.seam_m},
+                                nearest, farthest, played.file);
   if (!signal) return note(schema::message(signal.error())), false;
   const TextureLookup lookup(signal->signal, signal->at_m);
   for (std::size_t i = part.first(), last = part.last(places.size()); i < last; ++i)

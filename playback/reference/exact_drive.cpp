@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "playback/hysteresis_inverse.hpp"
+
 namespace tacto::playback {
 namespace {
 
@@ -18,6 +20,16 @@ PaddedSpectrum modelled(const PaddedSpectrum& drive, const Chain& chain) {
   return through(drive, [&](double frequency_hz) { return chain_response(chain, frequency_hz); });
 }
 
+// The model is linear: of a bender with hysteresis it is told what that makes of the drive.
+PaddedSpectrum felt_by_bender(const PaddedSpectrum& drive, const std::vector<double>& drive_v,
+                              const Chain& chain) {
+  const schema::Transducer& t = chain.transducer;
+  if (!t.hysteresis) return drive;
+  const auto linear_v =
+      linear_drive_of(drive_v, *t.hysteresis, schema::actuator_pole_hz(t), chain.sample_rate_hz);
+  return spectrum_of(linear_v, drive.rate_hz, drive.period);
+}
+
 std::vector<double> inverted(const PaddedSpectrum& wanted, const Chain& chain, Inverse inverse) {
   return signal_of(through(wanted, [&](double f) { return inverse_response(chain, inverse, f); }));
 }
@@ -26,7 +38,7 @@ ExactDrive played(std::vector<double> drive_v, const PaddedSpectrum& wanted, con
                   std::size_t oversampling) {
   round_to_float(drive_v);
   const auto drive = spectrum_of(drive_v, wanted.rate_hz, wanted.period);
-  const auto displacement = modelled(drive, chain);
+  const auto displacement = modelled(felt_by_bender(drive, drive_v, chain), chain);
   const auto fine_m = signal_of(displacement, oversampling);
   const auto fine_v = oversampling > 1 ? signal_of(drive, oversampling) : drive_v;
   const double fine_rate_hz = wanted.rate_hz * static_cast<double>(oversampling);

@@ -12,7 +12,7 @@
 
 namespace tacto::playback {
 
-/// A drive as it is stored, and what it moves.
+/// A drive as it is stored, and what it moves: the transducer's model, with the hysteresis of its file.
 struct ExactDrive {
   std::vector<double> drive_v;     ///< rounded to 32-bit float
   std::vector<double> modelled_m;  ///< at the same rate

@@ -28,7 +28,7 @@ SessionHeader made_header() {
   header.metres_per_count = 1e-6;
   header.device_uri = "sim:";
   header.transducer = read_transducer("wiertlewski2011").value();
-  header.textures = {{"oak.texture.json", std::string(64, 'a'), 0.01, 1e-3, TextureEnds::loop}};
+  header.textures = {{"oak.texture.json", std::string(64, 'a'), 0.01, 1e-3, TextureEnds::loop, 0}};
   header.inverse = "full";
   header.delay_s = 1.5e-3;
   return header;
@@ -72,11 +72,23 @@ class Session : public testing::Test {
   std::string path_ = folder_ / "one.session";
 };
 
+// Sessions that say nothing of a loop's seam were played with one of 1 mm.
+TEST(SessionHeaderText, AnUntoldSeamIsAMillimetre) {
+  std::string text = *session_header_text(made_header());
+  const std::string told = "\"seam_m\"";
+  ASSERT_NE(text.find(told), std::string::npos) << text;
+  text.replace(text.find(told), told.size(), "\"other\"");
+  const auto header = parse_session_header(text, "session");
+  ASSERT_TRUE(header) << message(header.error());
+  EXPECT_EQ(header->textures[0].seam_m, 1e-3);
+}
+
 TEST_F(Session, ReadsBackToTheBit) {
   write_whole();
   auto reader = SessionReader::open(folder_ / "one");
   ASSERT_TRUE(reader) << message(reader.error());
   EXPECT_EQ(reader->header().textures[0].ends, TextureEnds::loop);
+  EXPECT_EQ(reader->header().textures[0].seam_m, 0);
   EXPECT_EQ(reader->header().transducer.mass_kg, 6.8e-3);
   EXPECT_EQ(reader->header().delay_s, 1.5e-3);
   auto expected = made_ticks(0, 10000);

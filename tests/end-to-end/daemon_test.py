@@ -443,13 +443,19 @@ def the_service_manager_is_told():
 
 
 def a_band_that_the_rate_cuts_is_told():
-    """Below 2 kHz the band shrinks, and the status says to what: rate / 3.5 (playback/README)."""
+    """Below 2 kHz the band shrinks, and the status says to what: rate / 3.5 (playback/README). So it does of a loop's period."""
     prepare_files(rate_hz=1500)
     with daemon():
         client = Client()
         assert "passes_to_hz" not in client.must(request="status")
         begin(client)
         assert abs(client.must(request="status")["passes_to_hz"] - 1500 / 3.5) < 0.1, client.must(request="status")
+        assert "loop_period_m" not in client.must(request="status")
+        for request in ("stop", "disarm"):
+            client.must(request=request)
+        loaded = client.must(request="load", file="oak", ends="loop")
+        assert abs(loaded["loop_period_m"] + loaded["loop_seam_m"] - loaded["length_m"]) < 1.1e-5 and loaded["loop_seam_m"] in (0, 0.001), loaded
+        assert client.must(request="status")["loop_period_m"] == loaded["loop_period_m"]
 
 
 def late_ticks_beyond_a_limit_are_a_fault():

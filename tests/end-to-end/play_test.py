@@ -59,7 +59,10 @@ def what_goes_on_beyond_its_ends_is_judged_too():
     write_texture("short", 0.02 * np.sin(2 * np.pi * 1030 * x + 1) * (1 + 20 * x))
     write_strokes(4)
     for ends in ("loop", "mirror"):
-        tacto.run("play", "short", "-d", "sim:", "--finger-path", "path.csv", "--time", "4s", "--gain", "0.5mm/N", "--ends", ends, "-o", ends)
+        said = tacto.run_json("play", "short", "-d", "sim:", "--finger-path", "path.csv", "--time", "4s", "--gain", "0.5mm/N", "--ends", ends, "-o", ends)
+        assert ("loop_seam_m" in said) == (ends == "loop"), said
+        if ends == "loop":
+            assert abs(said["loop_period_m"] - 0.012) < 1e-9 and abs(said["loop_seam_m"] - 0.001) < 1e-9, said
         strokes = tacto.run_json("session", ends)["strokes"]
         assert len(strokes) == 4, strokes
         for stroke in strokes:
@@ -107,26 +110,37 @@ def rendered_is_what_is_played():
 def a_loop_is_the_sine_that_it_is():
     """Both engines on a looped sine under an even finger: what is wanted is the closed form, and the kernel's tray the reference's."""
     x = np.arange(1300) * 10e-6
-    write_texture("short", 0.02 * np.sin(2 * np.pi * 1000 * x))
+    per_m = 10 / 0.013  # ten whole periods, none of them as long as a seam
+    write_texture("short", 0.02 * np.sin(2 * np.pi * per_m * x + 1))
     t = np.arange(0, 4.0005, 0.001)
-    place = 0.004 + 0.06 * t  # 60 Hz, over ten times the texture
+    place = 0.004 + 0.06 * t  # 46 Hz, over ten times the texture
     pathlib.Path("even.csv").write_text("time_s,position_m\n" + "".join(f"{a!r},{b!r}\n" for a, b in zip(t.tolist(), place.tolist())))
     errors = {}
-    for engine in ("reference", "kernel"):
+    for engine, step in (("reference", ()), ("kernel", ("--encoder-step", "10nm"))):
         said = tacto.run_json("render", "short", "--ends", "loop", "--gain", "0.5mm/N", "--path", "even.csv", "--transducer", "wiertlewski2011",
-                              "--engine", engine, "--rate", "10kHz", "--encoder-step", "10nm", "-o", f"{engine}.wav",
+                              "--engine", engine, "--rate", "10kHz", *step, "-o", f"{engine}.wav",
                               "--wanted", "wanted.wav", "--displacement", f"{engine}-tray.wav")
         wanted, rate = soundfile.read("wanted.wav", dtype="float64")
         time_s = np.arange(len(wanted)) / rate
         inside = slice(int(1.5 * rate), -int(1.5 * rate))  # of what the band takes beyond the path's ends less than 1e-5 is left
-        exact = 0.5e-3 * 0.02 * np.sin(2 * np.pi * 1000 * (0.004 + 0.06 * time_s))
+        exact = 0.5e-3 * 0.02 * np.sin(2 * np.pi * per_m * (0.004 + 0.06 * time_s) + 1)
         # Besides that, cubic interpolation at 100 samples a period (1e-6) and single precision (1e-7).
         assert tacto.rms((wanted - exact)[inside]) < 1e-5 * tacto.rms(exact), tacto.rms((wanted - exact)[inside]) / tacto.rms(exact)
         tray, _ = soundfile.read(f"{engine}-tray.wav", dtype="float64")
         errors[engine] = tacto.rms((tray - exact)[inside]) / tacto.rms(exact)
-        assert said["samples_outside_texture"] == 0, said
+        assert said["samples_outside_texture"] == 0 and abs(said["loop_period_m"] - 0.013) < 1e-12 and said["loop_seam_m"] == 0, said
     print("looped sine, error of the tray: " + ", ".join(f"{k} {20 * np.log10(v):.1f} dB" for k, v in errors.items()))
     assert errors["reference"] < 1e-5 and errors["kernel"] < 10 ** (-50 / 20), errors  # row (a) of the table of fidelity
+    played = tacto.run_json("play", "short", "-d", "sim:", "--ends", "loop", "--gain", "0.5mm/N", "--finger-path", "even.csv", "--time", "4s", "-o", "looped")
+    assert abs(played["loop_period_m"] - 0.013) < 1e-12 and played["loop_seam_m"] == 0, played
+    assert tacto.run_json("info", "looped.session")["textures"][0]["loop_seam_m"] == 0
+    assert tacto.run_json("replay", "looped")["same_to_the_bit"]
+    stroke, = tacto.run_json("session", "looped")["strokes"]
+    assert stroke["error_db"] < -15, stroke  # by a seam's length out of place it would be 0 dB and more
+    pathlib.Path("short.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": [
+        {"type": "texture", "texture": "short", "at_m": 0, "gain_m_per_n": 5e-4, "ends": "loop"}]}))
+    explained = tacto.run_json("explain", "short.scene.json")
+    assert abs(explained["loop_period_m"] - 0.013) < 1e-12 and "meets its beginning" in json.dumps(explained["left_out"]), explained
     _, said = tacto.run("render", "two.scene.json", "--at", "1mm", "--path", "even.csv", "--transducer", "wiertlewski2011", "-o", "x.wav", code=2)
     assert "a scene says itself where" in said and not pathlib.Path("x.wav").exists(), said
 

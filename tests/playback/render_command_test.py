@@ -80,9 +80,11 @@ def check_kernel(folder):
     assert 0.9 * limit < rms() < 1.02 * limit, (rms(), limit)
     errors = [made.report_of(*kernel, "--interpolation", word)["displacement_error_db"] for word in ("nearest", "sinc")]
     assert abs(errors[1] - free["displacement_error_db"]) < 1 and errors[0] < -20, errors  # 64 points a period for nearest
-    done = made.run("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "no.wav", "--engine", "reference",
-                    "--energy-limit", "1V")
-    assert done.returncode == USAGE and "--engine kernel" in done.stderr, done
+    assert "limits_removed_db" not in free and free["limits_removed"] == "none", free
+    for unknown, value in (("energy-limit", "1V"), ("encoder-step", "1um"), ("interpolation", "sinc")):
+        for engine in ({}, {"engine": "reference"}):
+            expect_refusal(folder, USAGE, f"--{unknown} requires --engine kernel", **engine, **{unknown: value})
+    expect_refusal(folder, UNSUITABLE, "largest gain that fits", gain="100mm/N", engine="kernel")
 
 
 def check_budget(folder):
@@ -94,8 +96,13 @@ def check_budget(folder):
     timed = made.report_of(*base, "--max-tick", "1us")
     assert timed["engine"] == "kernel" and "promised_error_percent" not in timed and timed["least_error_percent"] < 0.1, timed
     assert made.report_of(*base, "--engine", "kernel", "--max-error", "5%", "--encoder-step", "10nm")["engine"] == "kernel"
-    expect_refusal(folder, UNSUITABLE, "between the path's ends",
-                   **{"path": folder / "through.csv", "engine": "kernel", "max-error": "0.1%", "encoder-step": "5um"})
+    # Both steps are too coarse; what the message says of a tenth of them was tried.
+    for step, said in (("5um", "--encoder-step 0.5um keeps it"), ("40um", "with a tenth of --encoder-step")):
+        expect_refusal(folder, UNSUITABLE, said, **{"path": folder / "through.csv", "engine": "kernel", "max-error": "0.1%", "encoder-step": step})
+    # A count of 1 nm is few parts of a sample: what the wire rounds of it must not add up along the texture.
+    for step in ("100nm", "10nm", "1nm", "0.3nm"):
+        fine = made.report_of(*base, "--engine", "kernel", "--max-error", "0.1%", "--encoder-step", step)
+        assert fine["engine"] == "kernel" and fine["promised_error_percent"] <= 0.1, (step, fine)
     expect_refusal(folder, UNSUITABLE, "2^29", **{"path": folder / "through.csv", "engine": "kernel", "encoder-step": "0.08nm"})
     made.write_texture(folder / "nothing", np.zeros(50_001))
     expect_refusal(folder, UNSUITABLE, "no error can be told", texture=folder / "nothing", quality="balanced")

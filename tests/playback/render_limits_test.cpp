@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drives beyond the transducer's limits: refused by name and number, or clipped and counted.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <regex>
 
 #include "made_textures.hpp"
 #include "playback/render.hpp"
+#include "rayleigh_law.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -76,6 +78,66 @@ TEST_F(RenderLimits, ClippedDisplacementAndSlewFitToo) {
   EXPECT_LE(clipped->peaks.displacement_m.used(), 1);
   // 1e-5: a step of two neighbours that were each rounded to float.
   EXPECT_LE(clipped->peaks.slew_v_per_s.used(), 1 + 1e-5);
+}
+
+// The kernel's limits are told as the reference's are; so is the tray's, which no kernel holds.
+TEST_F(RenderLimits, TheKernelNamesItsLimitAndTheGainThatFits) {
+  options_.engine = Engine::kernel;
+  const Peaks free = rendered()->peaks;
+  for (auto [limit, peak] : {std::pair{&schema::Transducer::drive_limit_v, free.drive_v},
+                             std::pair{&schema::Transducer::slew_limit_v_per_s, free.slew_v_per_s},
+                             std::pair{&schema::Transducer::displacement_limit_m, free.displacement_m}}) {
+    transducer_ = *schema::read_transducer("wiertlewski2011");
+    options_.gain_m_per_n = 1e-3;
+    halve(limit, peak);
+    const auto refused = rendered();
+    ASSERT_FALSE(refused);
+    const std::string said = message(refused.error());
+    EXPECT_NE(said.find(fmt::format("the {} reaches {:.4g} {}, its limit is {:.4g}", peak.name, peak.value,
+                                    peak.unit, peak.value / 2)),
+              std::string::npos)
+        << said;
+    EXPECT_NE(said.find(fmt::format("{:.4f} s after", peak.time_s)), std::string::npos) << said;
+    options_.gain_m_per_n = gain_named_in(refused.error().remedy);
+    EXPECT_NEAR(options_.gain_m_per_n, 0.5e-3, 1e-6);
+    EXPECT_TRUE(rendered());
+    options_.gain_m_per_n *= 1.002;
+    EXPECT_FALSE(rendered());
+  }
+}
+
+// Neither an energy limit nor an undone hysteresis goes with the gain: a proportion would name too much.
+TEST_F(RenderLimits, TheKernelsGainFitsWhereNothingIsProportional) {
+  options_.engine = Engine::kernel;
+  for (const bool energy : {true, false}) {
+    transducer_ = *schema::read_transducer("wiertlewski2011");
+    if (!energy) transducer_.hysteresis = rayleigh(0.16, transducer_.drive_limit_v, 12);
+    options_.gain_m_per_n = 1e-3;
+    options_.energy_rms_v = 0;
+    const Peak free = rendered()->peaks.drive_v;
+    transducer_.drive_limit_v = free.value / 3;
+    if (energy) options_.energy_rms_v = free.value / 4;
+    const auto refused = rendered();
+    ASSERT_FALSE(refused);
+    options_.gain_m_per_n = gain_named_in(refused.error().remedy);
+    EXPECT_TRUE(rendered()) << energy;
+  }
+}
+
+// Once 5 ms, in which the drive rose by more than its slew may be.
+TEST_F(RenderLimits, WhatFitsTheReferenceFitsTheKernelWhereverTheFingerStarts) {
+  texture_ = texture_of(0.12, [](double x) { return 0.02 * std::cos(kTwoPi * 1e3 * x); });
+  path_ = steady_path(0.01, 0.05, 2);
+  const Peaks free = rendered()->peaks;
+  transducer_.slew_limit_v_per_s = 1.5 * free.slew_v_per_s.value;
+  ASSERT_TRUE(rendered());
+  options_.engine = Engine::kernel;
+  const auto kernel = rendered();
+  ASSERT_TRUE(kernel) << message(kernel.error());
+  EXPECT_EQ(kernel->onset_s, kKernelOnsetS);
+  EXPECT_FALSE(kernel->removed_db);
+  options_.onset_s = 0;
+  EXPECT_FALSE(rendered());
 }
 
 // At 1.1 kHz a 450 Hz drive has its samples far from its peaks: the peak between them decides.

@@ -63,6 +63,7 @@ TEST(Render, TheKernelsDriveIsTheReferences) {
   const auto path = steady_path(0.005, 0.0517, 2);
   RenderOptions options;
   options.hold = Hold::zero_order;
+  options.onset_s = kReferenceOnsetS;
   const auto exact = render(texture, path, paper(), options);
   options.engine = Engine::kernel;
   const auto kernel = render(texture, path, paper(), options);

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a looped texture's period is.
+#pragma once
+
+#include "data-schema/cli/report.hpp"
+
+namespace tacto::playback {
+
+/// `loop_period_m` and `loop_seam_m`; nothing of what does not loop (a period of 0).
+inline void add_loop(cli::Report& report, double period_m, double seam_m) {
+  if (period_m > 0) report.add("loop_period_m", period_m).add("loop_seam_m", seam_m);
+}
+
+}  // namespace tacto::playback
