@@ -42,6 +42,7 @@ BodeData table_of(const Plant& plant, double sigma, bool noise_column, std::mt19
   BodeData data;
   data.direction = plant.direction;
   data.source = "closed form";
+  data.table_in_degrees = true;
   data.frequency_hz = octaves(10, 1000, 60);
   for (const double hz : data.frequency_hz) {
     const double real = sigma * normal(random);
@@ -97,8 +98,9 @@ TEST_P(IdentifyAnywhere, FindsTheLeastMinimumAndCallsNoPlantAMisfit) {
     const Plant plant = any_plant(GetParam().direction, random);
     const BodeData data =
         table_of(plant, plant.gain * drawn(3e-4, 3e-3, random), GetParam().noise_column, random);
-    ASSERT_TRUE(check_bode(data) && check_phases(data, {.direction = plant.direction}, base));
-    const ResponseFit fit = fit_response(data, {.direction = plant.direction}, base);
+    const ModelChoice choice{.direction = plant.direction};
+    ASSERT_TRUE(check_bode(data) && check_units(data, choice, base) && check_phases(data, choice, base));
+    const ResponseFit fit = fit_response(data, choice, base);
     EXPECT_TRUE(fit.converged) << fit.ended;
     // A fit that leaves more than the truth does has missed the least minimum; none can be held to less.
     EXPECT_LE(left_by(fit.data, [&](auto i) { return fit.modelled[i]; }),
