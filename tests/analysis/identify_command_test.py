@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import time
@@ -61,13 +62,21 @@ def table_one_comes_back():
     results_hold_what_was_found(said)
 
 
+def interval_is_visible(words, row):
+    """Value, low and high as they are, to a twentieth of half the interval: its two digits."""
+    told = [float(word) for word in re.fullmatch(r"(\S+) \((\S+) to (\S+)\)", words).groups()]
+    half = (row["high_of_95"] - row["low_of_95"]) / 2
+    for number, key in zip(told, ("value", "low_of_95", "high_of_95")):
+        assert abs(number - row[key]) <= half / 20, (words, row)
+
+
 def results_hold_what_was_found(said):
     """Figures and curves outlive the terminal, and `report` draws them."""
     assert tacto.run_json("validate", "bench.results.json")["valid"] is True
     stored = json.load(open("bench.results.json"))
     figures = {row["name"]: row["value"] for row in stored["figures"]}
     found = values(said)["resonance_hz"]
-    assert figures["resonance_hz, 95 %"] == "{:.5g} ({:.5g} to {:.5g})".format(*(found[k] for k in ("value", "low_of_95", "high_of_95")))
+    interval_is_visible(figures["resonance_hz, 95 %"], found)
     assert "reported 500, by Table I 547.7" in figures["the paper against itself: resonance_hz"], figures
     assert "not told apart" in figures and "condition number" in figures and stored["details"]["parameters"] == said["parameters"]
     curves = {picture["title"]: [curve["name"] for curve in picture["curves"]] for picture in stored["pictures"]}
@@ -271,6 +280,18 @@ def bad_input_is_one_clear_error():
     assert abs(found["resonance_hz"]["value"] / 547.7 - 1) < 1e-6
 
 
+def intervals_are_printed_with_digits_that_show_them():
+    f, random = np.geomspace(10, 1000, 60), np.random.default_rng(3)
+    for noise, narrow in [(1e-6, True), (1e-9, True), (0.05, False)]:
+        h = response(f) + 20e-6 * noise * (random.standard_normal(60) + 1j * random.standard_normal(60))
+        write_table("t.csv", f, h)
+        said = tacto.run_json("identify", "t.csv", "-o", f"t{noise}")
+        assert all(("in_full" in row) is narrow for row in said["parameters"]), said["parameters"]
+        for row in said["parameters"]:
+            if narrow:
+                interval_is_visible(row["in_full"], row)
+
+
 def another_unit_is_named_with_its_option():
     """What the header says and what the numbers are: the likely unit, its option, and that this option puts it right."""
     f, random = np.geomspace(10, 2000, 40), np.random.default_rng(7)
@@ -348,5 +369,5 @@ def a_sensor_by_a_known_force():
 
 for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,
              hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, a_sensor_by_a_known_force, second_mode_is_told_and_found,
-             another_unit_is_named_with_its_option, bad_input_is_one_clear_error):
+             another_unit_is_named_with_its_option, intervals_are_printed_with_digits_that_show_them, bad_input_is_one_clear_error):
     tacto.in_folder(test)
