@@ -251,6 +251,7 @@ Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
   ModelChoice choice = o.model;
   choice.direction = data->direction;
   if (const auto sound = check_bode(*data); !sound) return schema::forward_error(sound);
+  if (const auto said = check_units(*data, choice, asked.base); !said) return schema::forward_error(said);
   if (const auto sound = check_phases(*data, choice, asked.base); !sound) return schema::forward_error(sound);
   const ResponseFit fit = fit_response(*data, choice, asked.base);
   if (const auto sized = o.force ? Result<void>() : check_size(fit, asked.base); !sized)

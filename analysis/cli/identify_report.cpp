@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "analysis/identify/angles.hpp"
+#include "analysis/identify/interval_words.hpp"
 #include "analysis/identify/paper_words.hpp"
 
 namespace tacto::analysis {
@@ -27,14 +29,25 @@ void add_head(Report& report, const schema::Transducer& found, const std::string
   if (!about.usable()) report.ends_with(schema::Fault::unsuitable);
 }
 
+constexpr int kTableDigits = 4;  // a report's
+
+// A table that is exact to many digits showed three numbers alike.
+bool table_hides_an_interval(const ResponseFit& fit) {
+  return fit.claims_intervals() && std::ranges::any_of(fit.parameters, [](const FittedParameter& p) {
+           return !p.held && interval_is_hidden(p, kTableDigits);
+         });
+}
+
 std::vector<Report> parameter_rows(const ResponseFit& fit) {
   std::vector<Report> rows;
+  const bool in_full = table_hides_an_interval(fit);
   for (const FittedParameter& p : fit.parameters) {
     Report row;
     row.add("parameter", p.name).add("value", p.value);
     const bool claimed = fit.claims_intervals() && !p.held;
     row.add("low_of_95", claimed ? p.low : std::nan("")).add("high_of_95", claimed ? p.high : std::nan(""));
     row.add("held", p.held);
+    if (in_full) row.add("in_full", interval_words(p, true));
     rows.push_back(std::move(row));
   }
   return rows;

@@ -30,7 +30,8 @@ struct BodeData {
   /// The third harmonic of the answer over its fundamental, the largest; what only a nonlinear device makes.
   /// None where it was not looked at: it takes one sine at a time.
   std::optional<double> third_harmonic;
-  bool of_device = false;  ///< measured just now, not read from a file
+  bool of_device = false;         ///< measured just now, not read from a file
+  bool table_in_degrees = false;  ///< its header says so of the phases, which may be radians all the same
 
   std::size_t size() const { return frequency_hz.size(); }
   bool has_noise() const { return !noise.empty(); }

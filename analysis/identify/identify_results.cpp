@@ -8,6 +8,7 @@
 
 #include "analysis/identify/angles.hpp"
 #include "analysis/identify/bode_curves.hpp"
+#include "analysis/identify/interval_words.hpp"
 #include "analysis/identify/paper_words.hpp"
 
 namespace tacto::analysis {
@@ -31,12 +32,6 @@ Results begun_results(const schema::Transducer& found) {
                      {"valid", fmt::format("{:.4g} to {:.4g} Hz", about.low_hz, about.high_hz)},
                      {"R^2", fmt::format("{:.6g}", about.r_squared)}};
   return results;
-}
-
-std::string interval_words(const FittedParameter& p, bool claimed) {
-  if (p.held) return fmt::format("{:.5g}, held", p.value);
-  if (!claimed) return fmt::format("{:.5g}, no interval is claimed", p.value);
-  return fmt::format("{:.5g} ({:.5g} to {:.5g})", p.value, p.low, p.high);
 }
 
 void add_told_apart(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,

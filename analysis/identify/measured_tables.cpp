@@ -118,6 +118,31 @@ Result<void> check_radians(const NumberTable& table, std::size_t phase, const st
   return {};
 }
 
+// All below 0: decibels of the unit without a prefix; some: of the one that is named.
+std::string likely_decibels(Direction direction, bool all) {
+  if (direction == Direction::sensor) return "dB V/N";
+  return all ? "dB m/V" : "dB um/V";
+}
+
+// A size is not below 0, but a level is.
+Result<void> check_sizes(const NumberTable& table, std::size_t amplitude, Direction direction,
+                         const std::string& path) {
+  std::size_t first = 0, below = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    if (table.at(row, amplitude) < 0 && ++below == 1) first = row;
+  if (below == 0) return {};
+  const std::string what = fmt::format("an amplitude of {:g}, below 0", table.at(first, amplitude)),
+                    where = fmt::format("{}, line {}", path, table.lines[first]);
+  if (below == 1)
+    return fail(Fault::unsuitable, what, where,
+                "measure it again, or leave its line out; a half turn belongs in the phase");
+  return fail(Fault::unsuitable,
+              fmt::format("{}, as in {} of {} lines: these will be decibels", what, below, table.rows()),
+              where,
+              fmt::format("give --amplitude-unit \"{}\"; a half turn belongs in the phase",
+                          likely_decibels(direction, below == table.rows())));
+}
+
 std::string chosen(const std::string& asked, const std::string& found) {
   return asked.empty() ? found : unit_in(asked);
 }
@@ -127,7 +152,7 @@ std::string chosen(const std::string& asked, const std::string& found) {
 Result<bool> is_bode_table(const std::string& path) {
   const auto names = table_names(path);
   if (!names) return schema::forward_error(names);
-  return column({*names, {}}, {"freq", "f_hz"}).has_value();
+  return column({*names, {}, {}}, {"freq", "f_hz"}).has_value();
 }
 
 Result<BodeData> read_bode_table(const std::string& path, const TableUnits& units) {
@@ -144,6 +169,10 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
   if (!radians) return schema::forward_error(radians);
   if (const auto sound = *radians == 1 ? check_radians(*table, phase->index, path) : Result<void>(); !sound)
     return schema::forward_error(sound);
+  if (const auto sound =
+          unit->decibels ? Result<void>() : check_sizes(*table, amplitude->index, unit->direction, path);
+      !sound)
+    return schema::forward_error(sound);
   const auto hertz = worth(kFrequencyUnits, frequency->unit);
   if (!hertz)
     return fail(Fault::usage, fmt::format("'{}' is no unit of frequency", frequency->unit), path,
@@ -152,6 +181,7 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
   BodeData data;
   data.direction = unit->direction;
   data.source = path;
+  data.table_in_degrees = *radians == kDegree;
   for (std::size_t row = 0; row < table->rows(); ++row) {
     const double value = table->at(row, amplitude->index);
     const double size = unit->si * (unit->decibels ? std::pow(10, value / 20) : value);

@@ -21,7 +21,8 @@ struct TableUnits {
 /// stand behind the name: frequency_hz, amplitude_um_per_v, "Gain (dB m/V)", phase_deg; a number without a
 /// unit is refused. m/V makes it an actuator's, V/N a sensor's. Errors: as of reading a file; malformed, with
 /// line and column (NaN, text, a ragged row); usage: a unit that is missing or unknown; unsuitable: phases of
-/// more than 100 in radians, which will be degrees. Frequencies in Hz, kHz or rad/s.
+/// more than 100 in radians, which will be degrees; an amplitude below 0 that is not in decibels, with its
+/// line. Frequencies in Hz, kHz or rad/s.
 schema::Result<BodeData> read_bode_table(const std::string& path, const TableUnits& units);
 
 /// Columns drive_v (V, mV) and displacement_m (m, mm, um, nm); with time_s the rate, without it 0. Errors:

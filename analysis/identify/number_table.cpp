@@ -42,7 +42,10 @@ Result<NumberTable> read_numbers(const std::string& path) {
   auto read = reader.feed(std::string_view(*text).substr(layout->data_offset));
   if (read) read = reader.finish();
   if (!read) return schema::forward_error(read);
-  return NumberTable{layout->columns, {reader.rows().begin(), reader.rows().end()}};
+  NumberTable table{layout->columns, {reader.rows().begin(), reader.rows().end()}, {}};
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    table.lines.push_back(capture::line_of_row(reader.landmarks(), row));
+  return table;
 }
 
 }  // namespace tacto::analysis

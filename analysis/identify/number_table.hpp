@@ -11,7 +11,8 @@ namespace tacto::analysis {
 
 struct NumberTable {
   std::vector<std::string> names;
-  std::vector<double> values;  ///< row by row
+  std::vector<double> values;      ///< row by row
+  std::vector<std::size_t> lines;  ///< of the file, from 1: where each row stands
 
   std::size_t rows() const { return values.size() / names.size(); }
   double at(std::size_t row, std::size_t column) const { return values[row * names.size() + column]; }

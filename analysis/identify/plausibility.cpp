@@ -104,6 +104,30 @@ Result<void> check_phases(const BodeData& measured, const ModelChoice& choice,
   return {};
 }
 
+namespace {
+
+// In the table's own degrees.
+double largest_angle(const BodeData& data) {
+  double most = 0;
+  for (const auto& value : data.response) most = std::max(most, kDegrees * std::abs(std::arg(value)));
+  return most;
+}
+
+constexpr double kMostRadians = kTurn;  // three poles lag by three quarters of it
+
+}  // namespace
+
+Result<void> check_units(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base) {
+  if (choice.finger || !data.table_in_degrees || largest_angle(data) > kMostRadians) return {};
+  const ResponseModel model({choice.direction, false, false, false}, base, data);
+  const BodeData radians =
+      changed(data, [](auto h) { return std::polar(std::abs(h), kDegrees * std::arg(h)); });
+  if (left_by_grid(model, radians) >= kClearly * left_by_grid(model, data)) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("no phase is beyond {:.3g} degrees: these will be radians", largest_angle(data)),
+              data.source, "give --phase-unit rad, or write phase_rad into the header");
+}
+
 Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base) {
   const bool actuator = fit.data.direction == Direction::actuator;
   return check_times(actuator ? fit.transducer.actuator_scale / base.actuator_scale

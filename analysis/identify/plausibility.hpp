@@ -7,6 +7,11 @@
 
 namespace tacto::analysis {
 
+/// Before a fit. Errors: unsuitable, with the option that puts it right: a table's degrees that are all
+/// within 2 pi, and that leave less than a quarter of what they leave where they are taken for radians.
+schema::Result<void> check_units(const BodeData& data, const ModelChoice& choice,
+                                 const schema::Transducer& base);
+
 /// Before a fit. Errors: unsuitable, with what would put it right: phases that grow where they must fall (the
 /// other sign convention), a response upside down, a step of half a turn between neighbours where the
 /// amplitude does not fall (phases unwrapped as if they had a period of 180 degrees): each only where the

@@ -14,6 +14,7 @@
 #include "analysis/identify/outlier.hpp"
 #include "analysis/identify/response_fitter.hpp"
 #include "analysis/identify/starting_values.hpp"
+#include "analysis/identify/three_poles.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -24,6 +25,7 @@ constexpr int kCurvePoints = 101;
 constexpr int kNoiseRounds = 2;    // of fit and noise in turn: a third moves nothing by a tenth of its error
 constexpr double kExplains = 0.5;  // of what a misfit leaves
 constexpr double kSuspect = 0.2;   // of what is left, in one value: of 16 values on a reason to look
+constexpr double kSame = 1e-6;     // of what is left, and of a pole's logarithm: the same minimum
 constexpr double kApart = 0.05;    // of two resonances that are two
 constexpr double kNonlinear = 5e-3;  // third harmonic: above what a 16-bit converter makes of itself
 
@@ -57,6 +59,16 @@ void put_curve(const ResponseFitter& fitter, const ResponseModel& model, Respons
   }
 }
 
+void note_overdamped(const ResponseModel& model, std::span<const double> values, ResponseFit& fit) {
+  if (model.choice().finger || model.choice().second_mode) return;
+  const auto splits = other_splits(model.choice().direction, values);
+  if (splits.empty()) return;
+  fit.notes.push_back(
+      fmt::format("the mode is overdamped: of three real poles at {:.4g}, {:.4g} and {:.4g} Hz no response "
+                  "tells which is the electrical one; pole_hz is the one nearest '{}'",
+                  splits[0][kPole], splits[1][kPole], values[kPole], model.base().name));
+}
+
 void put_parameters(const ResponseFitter& fitter, const ResponseModel& model, ResponseFit& fit) {
   for (std::size_t i = 0; i < fitter.values().size(); ++i) {
     const ModelParameter& p = model.parameters()[i];
@@ -72,6 +84,7 @@ void put_parameters(const ResponseFitter& fitter, const ResponseModel& model, Re
           "{} can't be told from the other parameters in this band: held at {:.4g}", p.name, fitted.value));
     fit.parameters.push_back(std::move(fitted));
   }
+  note_overdamped(model, fitter.values(), fit);
   put_curve(fitter, model, fit);
 }
 
@@ -105,14 +118,42 @@ std::vector<double> values_of(const ResponseFit& fit) {
   return values;
 }
 
-// Of several starts the fit that leaves least: a second mode has false minima, one mode none that was seen.
+// Of equal fits, as of three real poles, the one whose pole is nearest the base's.
+bool is_better(const ResponseFit& fit, const ResponseFit& than, const ResponseModel& model) {
+  const double left = left_by(fit), other = left_by(than);
+  if (std::abs(left - other) > kSame * other) return left < other;
+  const auto off = [&](const ResponseFit& of) {
+    return std::abs(std::log(of.parameters[kPole].value / model.parameters()[kPole].base));
+  };
+  return off(fit) < off(than) - kSame;
+}
+
+// A complex pair can only be the mode's: where it would have to be made of the pole and one of the mode's,
+// the fit stands in a corner, and goes on once the roles are swapped.
+ResponseFit with_roles_swapped(const BodeData& data, const ResponseModel& model, ResponseFit fit) {
+  for (auto& values : other_splits(data.direction, values_of(fit))) {
+    ResponseFit other = fitted_from(data, model, std::move(values));
+    if (is_better(other, fit, model)) fit = std::move(other);
+  }
+  return fit;
+}
+
+ResponseFit best_of_one_mode(const BodeData& data, const ResponseModel& model) {
+  std::optional<ResponseFit> best;
+  for (auto& start : one_mode_starts(model, data)) {
+    ResponseFit fit = fitted_from(data, model, std::move(start));
+    if (!best || left_by(fit) < (1 - kSame) * left_by(*best)) best = std::move(fit);
+  }
+  return model.choice().finger ? *best : with_roles_swapped(data, model, std::move(*best));
+}
+
+// Of several starts the fit that leaves least.
 ResponseFit best_fit(const BodeData& data, const ResponseModel& model) {
-  if (!model.choice().second_mode) return fitted_from(data, model, starting_values(model, data).values);
+  if (!model.choice().second_mode) return best_of_one_mode(data, model);
   ModelChoice one = model.choice();
   one.second_mode = one.lag = false;
   const ResponseModel single(one, model.base(), data);
-  const std::vector<double> first =
-      values_of(fitted_from(data, single, starting_values(single, data).values));
+  const std::vector<double> first = values_of(best_of_one_mode(data, single));
   std::optional<ResponseFit> best;
   for (const Start& start : second_mode_starts(model, data, first)) {
     ResponseFit fit = fitted_from(data, model, start.values);

@@ -43,12 +43,14 @@ struct ResponseFit {
 };
 
 /// Weighted non-linear least squares of complex values (Levenberg-Marquardt), weights 1 / noise^2; where
-/// nobody measured the noise, that of with_noise_of_residuals() of a first, relative fit. Started from the
-/// data (starting_values), the hold taken out with the model itself. A parameter whose standard error is more
-/// than a factor e is held at the base's value, and said. Intervals: from the Jacobian, normal where the
-/// noise is known, else with Student's t: by the noise's own degrees of freedom, or by the residuals' 2 n - p
-/// and their own variance; none where the fit did not converge or misfit_of() says that the model is wrong.
-/// Precondition: check_bode(data).
+/// nobody measured the noise, that of with_noise_of_residuals() of a first, relative fit. Of the fits
+/// from one_mode_starts() or second_mode_starts() the one that leaves least, and where its mode is overdamped
+/// of those from other_splits(): what is said of misfits and of values that are off is said of that one. Of
+/// equal ones the pole nearest the base's. The hold is taken out with the model itself. A parameter whose
+/// standard error is more than a factor e is held at the base's value, and said. Intervals: from the
+/// Jacobian, normal where the noise is known, else with Student's t: by the noise's own degrees of freedom,
+/// or by the residuals' 2 n - p and their own variance; none where the fit did not converge or misfit_of()
+/// says that the model is wrong. Precondition: check_bode(data).
 ResponseFit fit_response(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base);
 
 /// What no frequency response can tell apart, and what was done about it: one line each.

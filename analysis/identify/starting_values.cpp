@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/identify/three_poles.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -102,6 +104,24 @@ Start starting_values(const ResponseModel& model, const BodeData& data) {
   keep_within(model, best);
   best.left = left_of_all(model, data, best.values);
   return best;
+}
+
+std::vector<std::vector<double>> one_mode_starts(const ResponseModel& model, const BodeData& data) {
+  std::vector<Start> starts{starting_values(model, data)};
+  if (model.choice().finger) return {starts.front().values};
+  Start base{starts_of(model), 1};
+  base.left = Trial{model, data}.left(base.values);
+  starts.push_back(base);
+  if (const auto poles = poles_of_data(data)) {
+    starts.push_back(base);
+    std::ranges::copy(*poles, starts.back().values.begin());
+  }
+  std::vector<std::vector<double>> list;
+  for (Start& start : starts) {
+    keep_within(model, start);
+    list.push_back(std::move(start.values));
+  }
+  return list;
 }
 
 namespace {

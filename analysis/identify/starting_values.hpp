@@ -22,6 +22,12 @@ struct Start {
 /// check_bode(data).
 Start starting_values(const ResponseModel& model, const BodeData& data);
 
+/// Where a fit of one mode begins: the best of that grid; the base's own parameters, the gain by linear least
+/// squares; and poles_of_data(), where they are stable. The first two alone end in false minima, for which a
+/// sound table was refused; the third does not, but one value that is off spoils it. A finger's load has the
+/// first alone. Precondition: check_bode(data), no second mode.
+std::vector<std::vector<double>> one_mode_starts(const ResponseModel& model, const BodeData& data);
+
 /// The same for the second mode, the rest given: 24 frequencies by two damping ratios by four distances of
 /// the anti-resonance (10 % and 30 % below and above). The best of each kind: above or below the mode that is
 /// given, the anti-resonance above or below its own mode; and, where |H| f has two peaks, the modes there.

@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import time
@@ -61,13 +62,21 @@ def table_one_comes_back():
     results_hold_what_was_found(said)
 
 
+def interval_is_visible(words, row):
+    """Value, low and high as they are, to a twentieth of half the interval: its two digits."""
+    told = [float(word) for word in re.fullmatch(r"(\S+) \((\S+) to (\S+)\)", words).groups()]
+    half = (row["high_of_95"] - row["low_of_95"]) / 2
+    for number, key in zip(told, ("value", "low_of_95", "high_of_95")):
+        assert abs(number - row[key]) <= half / 20, (words, row)
+
+
 def results_hold_what_was_found(said):
     """Figures and curves outlive the terminal, and `report` draws them."""
     assert tacto.run_json("validate", "bench.results.json")["valid"] is True
     stored = json.load(open("bench.results.json"))
     figures = {row["name"]: row["value"] for row in stored["figures"]}
     found = values(said)["resonance_hz"]
-    assert figures["resonance_hz, 95 %"] == "{:.5g} ({:.5g} to {:.5g})".format(*(found[k] for k in ("value", "low_of_95", "high_of_95")))
+    interval_is_visible(figures["resonance_hz, 95 %"], found)
     assert "reported 500, by Table I 547.7" in figures["the paper against itself: resonance_hz"], figures
     assert "not told apart" in figures and "condition number" in figures and stored["details"]["parameters"] == said["parameters"]
     curves = {picture["title"]: [curve["name"] for curve in picture["curves"]] for picture in stored["pictures"]}
@@ -271,6 +280,50 @@ def bad_input_is_one_clear_error():
     assert abs(found["resonance_hz"]["value"] / 547.7 - 1) < 1e-6
 
 
+def intervals_are_printed_with_digits_that_show_them():
+    f, random = np.geomspace(10, 1000, 60), np.random.default_rng(3)
+    for noise, narrow in [(1e-6, True), (1e-9, True), (0.05, False)]:
+        h = response(f) + 20e-6 * noise * (random.standard_normal(60) + 1j * random.standard_normal(60))
+        write_table("t.csv", f, h)
+        said = tacto.run_json("identify", "t.csv", "-o", f"t{noise}")
+        assert all(("in_full" in row) is narrow for row in said["parameters"]), said["parameters"]
+        for row in said["parameters"]:
+            if narrow:
+                interval_is_visible(row["in_full"], row)
+
+
+def another_unit_is_named_with_its_option():
+    """What the header says and what the numbers are: the likely unit, its option, and that this option puts it right."""
+    f, random = np.geomspace(10, 2000, 40), np.random.default_rng(7)
+    noisy = response(f, damping=0.3) * (1 + 1e-6 * (random.standard_normal(40) + 1j * random.standard_normal(40)))
+
+    def as_table(name, h, amplitude, phase, head):
+        rows = np.column_stack([f, amplitude(np.abs(h)), phase(np.unwrap(np.angle(h)))])
+        np.savetxt(name, rows, delimiter=",", header=head, comments="", fmt="%.12g")
+
+    def decibels(re):
+        return lambda size: 20 * np.log10(size / re)
+
+    for head, amplitude, phase, words, option in [
+            ("amplitude_um_per_v", lambda size: size * 1e6, lambda rad: rad, "radians", ["--phase-unit", "rad"]),
+            ("amplitude_m_per_v", decibels(1), np.degrees, "as in 40 of 40 lines: these will be decibels", ["--amplitude-unit", "dB m/V"]),
+            ("amplitude_um_per_v", decibels(1e-6), np.degrees, "these will be decibels", ["--amplitude-unit", "dB um/V"])]:
+        as_table("unit.csv", noisy, amplitude, phase, f"frequency_hz,{head},phase_deg")
+        err = tacto.run("identify", "unit.csv", "-o", "unit", code=5)[1]
+        assert words in err and option[0] in err and option[1] in err and not pathlib.Path("unit.transducer.json").exists(), err
+        found = values(tacto.run_json("identify", "unit.csv", "-o", "unit", *option))
+        # Noise of 1e-6, five standard errors of a fit whose condition number is below 20.
+        assert all(abs(found[key]["value"] / truth - 1) < 1e-4 for key, truth in [("resonance_hz", 547.7), ("gain_m_per_v", 20e-6), ("damping_ratio", 0.3)]), found
+        pathlib.Path("unit.transducer.json").unlink()
+    write_table("one.csv", f, response(f))
+    lines = pathlib.Path("one.csv").read_text().splitlines()
+    cells = lines[7].split(",")
+    lines[7] = ",".join([cells[0], "-" + cells[1], cells[2]])
+    pathlib.Path("one.csv").write_text("# by a lock-in\n" + "\n".join(lines))
+    err = tacto.run("identify", "one.csv", "-o", "one", code=5)[1]
+    assert "one.csv, line 9" in err and "below 0" in err and "decibels" not in err, err
+
+
 def what_is_identified_is_undone():
     """From slow loops to a finger that feels the texture: the operator is found, stored, inverted and played."""
     tacto.run("identify", "-d", "sim:hysteresis=0.16,tray_sensor=on", "--method", "loop", "-o", "bench")
@@ -315,5 +368,6 @@ def a_sensor_by_a_known_force():
 
 
 for test in (table_one_comes_back, quick_methods_agree, scipy_finds_the_same, a_misfit_is_refused_unless_forced,
-             hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, a_sensor_by_a_known_force, second_mode_is_told_and_found, bad_input_is_one_clear_error):
+             hysteresis_is_written, loops_are_held_to_what_a_sweep_is, what_is_identified_is_undone, a_sensor_by_a_known_force, second_mode_is_told_and_found,
+             another_unit_is_named_with_its_option, intervals_are_printed_with_digits_that_show_them, bad_input_is_one_clear_error):
     tacto.in_folder(test)
