@@ -208,6 +208,28 @@ TEST(TextureKernel, ALoopHasNoSeam) {
   EXPECT_LT(steepest, 1.7 * 5e-6 / 1e-3);  // raised over 1 mm, pi / 2 of its mean slope, at 5 um a tick
 }
 
+// The wire's rounding of a count, added up along the texture, in parts of the finest period; random
+// densities.
+TEST(TextureKernel, ACountOfAFineEncoderDoesNotDrift) {
+  const auto texture = sine_texture(0.18, 8e3, 0.01);
+  double worst_unaided = 0;
+  for (const double step_m : {1e-6, 1e-7, 1e-8, 1e-9, 0.5e-9})
+    for (const double density : {12.5, 13.1, 16.0, 23.7}) {
+      PrepareOptions options = plain_options(10e3, Ends::stop);
+      options.metres_per_count = step_m, options.samples_per_period = density;
+      const auto prepared = prepare(texture, kernel_transducer(), options);
+      ASSERT_TRUE(prepared) << message(prepared.error());
+      const double exact = std::ldexp(step_m / prepared->pitch_m, 32),
+                   periods = 0.18 * prepared->finest_per_m;
+      const auto kept = static_cast<double>(prepared->scale.samples_per_count_q32);
+      EXPECT_LT(std::abs(kept / exact - 1) * periods, 2.2e-5)
+          << step_m << ", " << density;  // the margin's length
+      EXPECT_LT(1 / (prepared->pitch_m * prepared->finest_per_m), 1.2 * density);
+      worst_unaided = std::max(worst_unaided, 0.5 / exact * periods);
+    }
+  EXPECT_GT(worst_unaided, 5e-4);  // what rounding may do by itself
+}
+
 TEST(TextureKernel, TwoTexturesLieWhereTheyArePlaced) {
   const auto left = texture_of(0.01, [](double) { return 1.0; }),
              right = texture_of(0.01, [](double) { return 1.0; });
