@@ -254,6 +254,7 @@ Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
   if (const auto said = check_units(*data, choice, asked.base); !said) return schema::forward_error(said);
   if (const auto sound = check_phases(*data, choice, asked.base); !sound) return schema::forward_error(sound);
   const ResponseFit fit = fit_response(*data, choice, asked.base);
+  if (const auto said = check_levels(fit, choice, asked.base); !said) return schema::forward_error(said);
   if (const auto sized = o.force ? Result<void>() : check_size(fit, asked.base); !sized)
     return schema::forward_error(sized);
   if (const auto placed = o.force ? Result<void>() : check_frequencies(fit, asked.base); !placed)

@@ -30,7 +30,9 @@ struct BodeData {
   /// The third harmonic of the answer over its fundamental, the largest; what only a nonlinear device makes.
   /// None where it was not looked at: it takes one sine at a time.
   std::optional<double> third_harmonic;
-  bool of_device = false;         ///< measured just now, not read from a file
+  bool of_device = false;  ///< measured just now, not read from a file
+  double table_unit_si =
+      0;  ///< a table's amplitudes were multiplied by it; 0: levels in decibels, or no table
   bool table_in_degrees = false;  ///< its header says so of the phases, which may be radians all the same
 
   std::size_t size() const { return frequency_hz.size(); }

@@ -181,6 +181,7 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
   BodeData data;
   data.direction = unit->direction;
   data.source = path;
+  data.table_unit_si = unit->decibels ? 0 : unit->si;
   data.table_in_degrees = *radians == kDegree;
   for (std::size_t row = 0; row < table->rows(); ++row) {
     const double value = table->at(row, amplitude->index);

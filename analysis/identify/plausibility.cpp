@@ -113,6 +113,8 @@ double largest_angle(const BodeData& data) {
   return most;
 }
 
+constexpr double kLoudest = 400;        // dB: nothing measured is, and 10^20 times it is finite
+constexpr double kExplained = 0.99;     // R^2
 constexpr double kMostRadians = kTurn;  // three poles lag by three quarters of it
 
 }  // namespace
@@ -126,6 +128,20 @@ Result<void> check_units(const BodeData& data, const ModelChoice& choice, const 
   return fail(Fault::unsuitable,
               fmt::format("no phase is beyond {:.3g} degrees: these will be radians", largest_angle(data)),
               data.source, "give --phase-unit rad, or write phase_rad into the header");
+}
+
+Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base) {
+  const double unit_si = fit.data.table_unit_si;
+  if (!fit.misfit.found || !(unit_si > 0)) return {};
+  BodeData levels = changed(fit.data, [&](auto h) {
+    return std::polar(unit_si * std::pow(10, std::min(std::abs(h) / unit_si, kLoudest) / 20), std::arg(h));
+  });
+  levels.noise.clear();
+  levels.noise_from_residuals = false;
+  const ResponseFit other = fit_response(levels, choice, base);
+  if (!other.claims_intervals() || other.r_squared < kExplained) return {};
+  return fail(Fault::unsuitable, "the amplitudes fit as levels only: these will be decibels", fit.data.source,
+              "give --amplitude-unit with \"dB \" before the unit, as \"dB um/V\"");
 }
 
 Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base) {

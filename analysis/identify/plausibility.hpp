@@ -20,7 +20,12 @@ schema::Result<void> check_units(const BodeData& data, const ModelChoice& choice
 schema::Result<void> check_phases(const BodeData& data, const ModelChoice& choice,
                                   const schema::Transducer& base);
 
-/// After it. Errors: unsuitable: a gain more than 200 times the base's or less than a 200th, with the unit
+/// After it. Errors: unsuitable: a table that is a misfit, and whose amplitudes leave noise only (R^2 above
+/// 0.99) where they are taken for levels in decibels.
+schema::Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice,
+                                  const schema::Transducer& base);
+
+/// Errors: unsuitable: a gain more than 200 times the base's or less than a 200th, with the unit
 /// that would explain it.
 schema::Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base);
 /// A resonance more than 3.5 times the base's or less than that below it (a bender of this kind has none
