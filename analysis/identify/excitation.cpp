@@ -54,6 +54,15 @@ void add_sine(std::vector<float>& drive, double amplitude_v, double frequency_hz
 
 }  // namespace
 
+double stepped_sine_s(const ExcitationPlan& plan) {
+  double sum_s = kSilenceS;
+  for (std::size_t i = 0; i < plan.frequencies; ++i) {
+    const double hz = octave(plan, i);
+    sum_s += kSettleS + 1 / hz + std::max(kMeasureS, kMeasuredPeriods / hz);
+  }
+  return sum_s;
+}
+
 SteppedSine stepped_sine(const ExcitationPlan& plan) {
   SteppedSine stepped;
   for (std::size_t i = 0; i < plan.frequencies; ++i) {

@@ -29,6 +29,8 @@ struct SteppedSine {
 /// Evenly by octaves; each settles for 50 ms and a period, and is measured for 0.2 s and five periods at
 /// least. Ends in 50 ms of silence.
 SteppedSine stepped_sine(const ExcitationPlan& plan);
+/// How long that takes, s, to a sample a step; as if no two steps fell on one.
+double stepped_sine_s(const ExcitationPlan& plan);
 
 /// A signal that repeats, and the frequencies that are in it.
 struct PeriodicDrive {

@@ -19,6 +19,7 @@ using schema::Fault;
 using schema::Result;
 
 constexpr double kMostOfRate = 0.45;
+constexpr double kLongestSweepS = 3600;  // all of it is held: 36e6 samples at 10 kHz
 
 // What the base says the drive will do. A first identification of something unknown may be wrong about that:
 // the device keeps its own limits.
@@ -44,6 +45,20 @@ Result<void> check_amplitude(const ExcitationPlan& plan, const schema::Transduce
   if (kTurn * plan.high_hz * plan.amplitude_v > base.slew_limit_v_per_s)
     return fail(Fault::unsuitable, "the drive would be faster than its limit", "--amplitude", remedy);
   return {};
+}
+
+Result<void> check_sweep(const ExcitationPlan& plan) {
+  const double takes_s = stepped_sine_s(plan);
+  if (takes_s <= kLongestSweepS) return {};
+  ExcitationPlan higher = plan;
+  while (higher.low_hz < plan.high_hz && stepped_sine_s(higher) > kLongestSweepS) higher.low_hz *= 1.05;
+  return fail(
+      Fault::unsuitable,
+      fmt::format("a sine at each of {} frequencies from {:g} Hz on takes {:.3g} s, an hour is the most",
+                  plan.frequencies, plan.low_hz, takes_s),
+      "--low",
+      fmt::format("begin at {:.3g} Hz, ask for fewer --frequencies, or take --method multisine",
+                  higher.low_hz));
 }
 
 std::string method_words(IdentifyMethod method) {
@@ -85,6 +100,7 @@ Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod metho
   if (const auto sound = check_amplitude(plan, base); !sound) return schema::forward_error(sound);
   BodeData data;
   if (method == IdentifyMethod::sweep) {
+    if (const auto ends = check_sweep(plan); !ends) return schema::forward_error(ends);
     const SteppedSine stepped = stepped_sine(plan);
     const auto tray = drive_tray(device, stepped.drive_v, stop_asked, progress);
     if (!tray) return schema::forward_error(tray);

@@ -270,6 +270,9 @@ def bad_input_is_one_clear_error():
     for words, *options in (["--low", "--low", "100Hz", "--high", "50Hz"], ["--amplitude", "--amplitude", "0V"],
                             ["--frequencies", "--frequencies", "100000"]):
         assert words in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", *options, code=2)[1]
+    # 6 periods at each of 60 frequencies from 1 mHz on, evenly by octaves, and 0.05 s each: 28,746 s.
+    endless = tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--low", "1mHz", code=5)[1]
+    assert "takes 2.87e+04 s" in endless and "begin at" in endless, endless
     assert "half the device's rate" in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--high", "5kHz", code=5)[1]
     # Whole turns too many are no harm: values are complex.
     write_table("turns.csv", f, h)
