@@ -15,7 +15,6 @@ namespace tacto::analysis {
 namespace {
 
 using schema::ResultCurve;
-using schema::ResultFigure;
 using schema::ResultPicture;
 using schema::Results;
 

@@ -12,8 +12,8 @@ namespace tacto::core {
 /// c_k = b0_k c_(k-1) + s1_k. So a tick waits for one product and one sum in four sections, and their states
 /// go on side by side; what remains of a multiple of four goes one by one. The error against double precision
 /// grows as the poles come near the unit circle; TickKernel says its size. States below kSilence, some 500 dB
-/// under a volt, end in zero every kCalmTicks ticks: silence would else go on in denormals, with which a tick
-/// takes tens of times as long on processors that trap them. Safe in the tick.
+/// under a volt, end in zero, one section's every kCalmTicks ticks: silence would else go on in denormals,
+/// with which a tick takes tens of times as long on processors that trap them. Safe in the tick.
 class SectionChain {
  public:
   void set(const wire::Section* sections, uint8_t count) noexcept {
@@ -28,11 +28,11 @@ class SectionChain {
   /// Forgets the past.
   void rest() noexcept {
     for (uint8_t i = 0; i < wire::kMaxSections; ++i) s1_[i] = s2_[i] = 0;
-    until_calm_ = kCalmTicks;
+    until_calm_ = kCalmTicks, calm_ = 0;
   }
   /// Of a chain with the same sections: whatever comes in next, both give the same.
   bool is_where(const SectionChain& other) const noexcept {
-    bool same = until_calm_ == other.until_calm_;
+    bool same = until_calm_ == other.until_calm_ && calm_ == other.calm_;
     for (uint8_t i = 0; i < count_; ++i) same = same && s1_[i] == other.s1_[i] && s2_[i] == other.s2_[i];
     return same;
   }
@@ -46,12 +46,14 @@ class SectionChain {
 
  private:
   static constexpr float kSilence = 1e-25F;
-  static constexpr uint8_t kCalmTicks = 64;
+  static constexpr uint8_t kCalmTicks = 8;
 
-  static float calmed(float state) noexcept { return state < kSilence && state > -kSilence ? 0 : state; }
+  static bool is_silent(float state) noexcept { return state < kSilence && state > -kSilence; }
+  // Both or none: one alone would set the section going again.
   [[gnu::noinline]] void calm() noexcept {
     until_calm_ = kCalmTicks;
-    for (uint8_t i = 0; i < count_; ++i) s1_[i] = calmed(s1_[i]), s2_[i] = calmed(s2_[i]);
+    calm_ = static_cast<uint8_t>(calm_ + 1 < count_ ? calm_ + 1 : 0);
+    if (is_silent(s1_[calm_]) && is_silent(s2_[calm_])) s1_[calm_] = s2_[calm_] = 0;
   }
   float step(uint8_t i, float x) noexcept {
     const float y = b0_[i] * x + s1_[i];
@@ -73,7 +75,7 @@ class SectionChain {
   float a1_[wire::kMaxSections] = {}, a2_[wire::kMaxSections] = {};
   float through_[wire::kMaxSections] = {};  // b0 of all from the first of its four
   float s1_[wire::kMaxSections] = {}, s2_[wire::kMaxSections] = {};
-  uint8_t count_ = 0, until_calm_ = kCalmTicks;
+  uint8_t count_ = 0, until_calm_ = kCalmTicks, calm_ = 0;
 };
 
 /// True where the poles lie within the unit circle (Jury: |a2| < 1, |a1| < 1 + a2) and all is finite.
