@@ -32,7 +32,7 @@ double gamma_quantile(double looks, double normal_quantile) {
   return std::pow(1 - 1 / (9 * looks) + normal_quantile / (3 * std::sqrt(looks)), 3);
 }
 
-double level(double power) {
+double level_of(double power) {
   return 10 * std::log10(power);
 }
 
@@ -93,7 +93,7 @@ LineSpectrum::LineSpectrum(std::span<const double> values, double pitch, double 
   window_ = static_cast<double>(window) * pitch;
   resolution_ = kNoiseBandwidth / window_;
   looks_ = 1 + (static_cast<double>(values.size()) * pitch - window_) / (kIndependent * window_);
-  needed_db_ = level(gamma_quantile(looks_, kOneIn10000));
+  needed_db_ = level_of(gamma_quantile(looks_, kOneIn10000));
   low_ = std::max(low + resolution_, 3 / window_);
   high_ = std::min(high - resolution_, step_ * static_cast<double>(spectrum.mean_.size() - 3));
   first_bin_ = static_cast<std::size_t>(std::ceil(low_ / step_));
@@ -133,15 +133,15 @@ double LineSpectrum::background_at(double frequency) const {
 // Among neighbours within a main lobe (3 unpadded bins) only the largest counts.
 void LineSpectrum::find_lines(const std::vector<double>& mean, double step) {
   const auto lobe = static_cast<std::size_t>(std::lround(2 / (window_ * step)));
-  const double strongest = level(*std::ranges::max_element(mean));
+  const double strongest = level_of(*std::ranges::max_element(mean));
   for (std::size_t i = 1; i + 1 < background_.size(); ++i) {
     const std::size_t bin = first_bin_ + i;
     const auto from = mean.begin() + static_cast<std::ptrdiff_t>(bin - std::min(lobe, bin));
     const auto to = mean.begin() + static_cast<std::ptrdiff_t>(std::min(mean.size(), bin + lobe + 1));
     if (!(mean[bin] > 0) || std::max_element(from, to) != mean.begin() + static_cast<std::ptrdiff_t>(bin))
       continue;
-    const auto [offset, top] = parabolic_peak(level(mean[bin - 1]), level(mean[bin]), level(mean[bin + 1]));
-    const double prominence = top - level(background_[i]);
+    const auto [offset, top] = parabolic_peak(level_of(mean[bin - 1]), level_of(mean[bin]), level_of(mean[bin + 1]));
+    const double prominence = top - level_of(background_[i]);
     if (!(prominence >= needed_db_) || top < strongest - kLeakage_db) continue;
     const double ratio = std::pow(10, prominence / 10) * looks_;
     const double sigma = std::max(1.8 * 0.39 / (window_ * std::sqrt(ratio)), 0.03 * resolution_);
@@ -152,7 +152,7 @@ void LineSpectrum::find_lines(const std::vector<double>& mean, double step) {
 
 double LineSpectrum::prominence_db(double power, double frequency) const {
   const double background = background_at(frequency);
-  return background > 0 ? level(power / (resolution_ * background))
+  return background > 0 ? level_of(power / (resolution_ * background))
                         : -std::numeric_limits<double>::infinity();
 }
 
