@@ -132,7 +132,7 @@ def a_stroke_without_an_end():
     assert stroke["to_s"] - stroke["from_s"] > 0.99 * count / RATE_HZ
     assert tacto.SANITIZED or peak < MOST_MB, peak
     _, said = tacto.run("compare", "still.session", "oak", code=5)
-    assert "without a turn" in said, said
+    assert ("without a turn" if count > 1 << 22 else "no band in common") in said, said  # the sanitizers' session is a shorter one
 
 
 def a_stop_of_days():
