@@ -140,7 +140,8 @@ void LineSpectrum::find_lines(const std::vector<double>& mean, double step) {
     const auto to = mean.begin() + static_cast<std::ptrdiff_t>(std::min(mean.size(), bin + lobe + 1));
     if (!(mean[bin] > 0) || std::max_element(from, to) != mean.begin() + static_cast<std::ptrdiff_t>(bin))
       continue;
-    const auto [offset, top] = parabolic_peak(level_of(mean[bin - 1]), level_of(mean[bin]), level_of(mean[bin + 1]));
+    const auto [offset, top] =
+        parabolic_peak(level_of(mean[bin - 1]), level_of(mean[bin]), level_of(mean[bin + 1]));
     const double prominence = top - level_of(background_[i]);
     if (!(prominence >= needed_db_) || top < strongest - kLeakage_db) continue;
     const double ratio = std::pow(10, prominence / 10) * looks_;
