@@ -24,6 +24,7 @@ Report tray_row(const FidelitySpeed& speed, const FidelityRow& row, bool simulat
   Report report;
   if (speed.speed_mps > 0) report.add("speed_mps", speed.speed_mps);
   report.add("tray", row.tray).add("error_db", row.error_db).add("error_in_place_db", row.error_in_place_db);
+  if (row.rerecorded_db) report.add("rerecorded_db", *row.rerecorded_db);
   report.add("shift_m", row.shift_m).add("level_db", row.level_db);
   report.add("wanted_rms_m", row.wanted_rms_m).add("felt_rms_m", row.felt_rms_m);
   return report.add("displacement", simulated ? "simulated" : "modelled");

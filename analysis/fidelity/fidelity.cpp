@@ -105,6 +105,28 @@ Result<FidelityRow> compared_row(const std::string& tray, const Texture& wanted,
   return row;
 }
 
+struct Wanted {
+  const Texture& texture;
+  const Stretch& stretch;
+  spatial::Band band;
+};
+
+// As it moved, and as a sensor saw it.
+Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& wanted,
+                                       const std::vector<double>& felt_m, const std::vector<double>& seen_m) {
+  const auto row_of = [&](const std::vector<double>& moved_m) -> Result<FidelityRow> {
+    const auto felt =
+        along_stretch(in_band(moved_m, wanted.stretch.rate_hz, wanted.band), wanted.stretch, wanted.band);
+    if (!felt) return schema::forward_error(felt);
+    return compared_row(tray, wanted.texture, *felt);
+  };
+  auto row = row_of(felt_m);
+  const auto seen = row_of(seen_m);
+  if (!row || !seen) return !row ? std::move(row) : seen;
+  row->rerecorded_db = seen->error_db;
+  return row;
+}
+
 // How much of the texture's power, in what it knows, lies within the band at a speed.
 double kept_percent(const Texture& texture, double speed_mps, const spatial::Band& band) {
   const auto part = spatial::steady_part(texture).texture;
@@ -184,11 +206,9 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
   for (const Tray& tray : trays.trays) {
     if (options.stop_asked()) return fidelity_stopped();
     progress(kPlayedShare + (1 - kPlayedShare) * share_done(speed.rows.size(), trays.trays.size()));
-    auto felt_m = felt_displacement_m(*pass, trays.transducer, tray.physics);
-    if (tray.sensor) felt_m = through_sensor(felt_m, stretch->rate_hz, trays.transducer);
-    const auto felt = along_stretch(in_band(felt_m, stretch->rate_hz, band), *stretch, band);
-    if (!felt) return schema::forward_error(felt);
-    auto row = compared_row(tray.name, *wanted, *felt);
+    const auto felt_m = felt_displacement_m(*pass, trays.transducer, tray.physics);
+    const auto seen_m = through_sensor(felt_m, stretch->rate_hz, trays.transducer);
+    auto row = twice_compared_row(tray.name, {*wanted, *stretch, band}, felt_m, seen_m);
     if (!row) return schema::forward_error(row);
     speed.rows.push_back(std::move(*row));
   }

@@ -24,8 +24,10 @@ struct FidelityRow {
   std::string tray;              ///< "ideal", "hysteresis 16 %" ...
   double error_db = 0;           ///< felt - wanted over wanted, once one constant shift is taken out
   double error_in_place_db = 0;  ///< without taking it out
-  double shift_m = 0;            ///< of what was felt, along the finger's way
-  double level_db = 0;           ///< power of what was felt over what was wanted
+  /// The error as a displacement sensor tells it: what is felt, recorded again. None where nothing was felt.
+  std::optional<double> rerecorded_db;
+  double shift_m = 0;   ///< of what was felt, along the finger's way
+  double level_db = 0;  ///< power of what was felt over what was wanted
   double wanted_rms_m = 0, felt_rms_m = 0;
   Comparison comparison;
 };
@@ -52,9 +54,9 @@ struct Fidelity {
 };
 
 /// On `sim:` the whole way of playback runs in emulated time (emulated_pass), and the drive of its session
-/// moves the tray (integrated, at 20 kHz or more), once for each row: as the paper's equations have it; the
-/// same seen by a displacement sensor; with hysteresis (16 %), a second mode, a finger's load; with all
-/// three. Where the URI names one of them, there is one row: what it names. Judged within the texture, 50 ms
+/// moves the tray (integrated, at 20 kHz or more), once for each row: as the paper's equations have it; with
+/// hysteresis (16 %), a second mode, a finger's load; with all three. Each is seen by a displacement sensor,
+/// too. Where the URI names one of them, there is one row: what it names. Judged within the texture, 50 ms
 /// and its fading millimetre from either end. On a real device the finger is somebody's, for `play.time_s`;
 /// its longest stroke is judged by what the recorded drive makes of the transducer's model, which knows none
 /// of these: the row says so. Errors: as play_once and compare; usage: no speed, one that is not

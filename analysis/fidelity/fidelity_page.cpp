@@ -78,11 +78,12 @@ ResultPicture stretch_picture(const FidelitySpeed& speed) {
 }
 
 std::string rows_table(const FidelitySpeed& speed, const std::string& simulated) {
-  std::vector<std::vector<std::string>> rows = {
-      {"tray", "error re wanted", "in place", "shift", "level", "wanted, RMS", "felt, RMS", ""}};
+  std::vector<std::vector<std::string>> rows = {{"tray", "error re wanted", "in place", "re-recorded",
+                                                 "shift", "level", "wanted, RMS", "felt, RMS", ""}};
   for (const FidelityRow& row : speed.rows)
     rows.push_back(
         {row.tray, fmt::format("{:.1f} dB", row.error_db), fmt::format("{:.1f} dB", row.error_in_place_db),
+         row.rerecorded_db ? fmt::format("{:.1f} dB", *row.rerecorded_db) : "",
          for_people(row.shift_m, Dimension::length), fmt::format("{:+.2f} dB", row.level_db),
          for_people(row.wanted_rms_m, Dimension::length), for_people(row.felt_rms_m, Dimension::length),
          simulated.empty() ? "modelled" : "simulated"});
@@ -138,7 +139,8 @@ schema::Result<std::string> fidelity_page(const Fidelity& fidelity) {
   body +=
       "<p class=\"note\">Error: power of felt less wanted over wanted, in the judged band, once one constant "
       "shift along "
-      "the way is taken out; 'in place' leaves it in. Wanted is the exact reference at the finger's true "
+      "the way is taken out; 'in place' leaves it in, 're-recorded' is the error as a displacement sensor "
+      "tells it. Wanted is the exact reference at the finger's true "
       "places.</p>\n";
   return html_document("Fidelity of " + fidelity.texture, body);
 }

@@ -35,12 +35,11 @@ std::vector<Tray> usual_trays(const schema::Transducer& transducer) {
   mode.second_mode = all.second_mode = usual_mode(transducer);
   load.finger_load.emplace();
   all.finger_load.emplace();
-  return {{"ideal", {}, false},
-          {"ideal, re-recorded", {}, true},
-          {fmt::format("hysteresis {:g} %", 100 * kPaperHysteresis), hysteresis, false},
-          {fmt::format("mode at {:.0f} Hz", mode.second_mode->frequency_hz), mode, false},
-          {"finger's load", load, false},
-          {"all three", all, false}};
+  return {{"ideal", {}},
+          {fmt::format("hysteresis {:g} %", 100 * kPaperHysteresis), hysteresis},
+          {fmt::format("mode at {:.0f} Hz", mode.second_mode->frequency_hz), mode},
+          {"finger's load", load},
+          {"all three", all}};
 }
 
 }  // namespace
@@ -53,7 +52,7 @@ schema::Result<Trays> trays_of(const std::string& uri) {
   if (!transducer) return schema::forward_error(transducer);
   Trays trays{std::move(*transducer), fmt::format("by the emulated device of {}", kCreator), {}};
   const TrayPhysics named = parameters->tray();
-  trays.trays = names_physics(named) ? std::vector<Tray>{{"as " + uri + " says", named, false}}
+  trays.trays = names_physics(named) ? std::vector<Tray>{{"as " + uri + " says", named}}
                                      : usual_trays(trays.transducer);
   return trays;
 }

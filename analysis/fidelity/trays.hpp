@@ -14,7 +14,6 @@ namespace tacto::analysis {
 struct Tray {
   std::string name;
   firmware_host::TrayPhysics physics;
-  bool sensor = false;  ///< seen by a displacement sensor
 };
 
 struct Trays {
@@ -24,7 +23,7 @@ struct Trays {
 };
 
 /// Of a `sim:` URI. Where it names hysteresis, a second mode, a finger's load or a reconstruction filter: one
-/// tray, that one. Else: ideal; ideal, re-recorded; hysteresis of 16 % (Wiertlewski 2011, Figure 7); a second
+/// tray, that one. Else: ideal; hysteresis of 16 % (Wiertlewski 2011, Figure 7); a second
 /// mode at 800 Hz (section III-B), or a fifth above the lowest that the transducer can have; a finger's load;
 /// all three. Errors: as parse_sim_parameters and read_transducer.
 schema::Result<Trays> trays_of(const std::string& uri);
