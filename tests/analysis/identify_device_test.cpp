@@ -52,9 +52,7 @@ std::vector<Drawn> plants(const firmware_host::TrayPhysics& physics, std::mt1993
   std::uniform_real_distribution<double> amplitude(0.3, 2);
   std::vector<Drawn> list;
   while (list.size() < kPlants) {
-    const schema::Transducer truth = varied(base(), random);
-    const auto& mode = physics.second_mode;
-    if (mode && firmware_host::least_second_mode_hz(truth, *mode) > mode->frequency_hz) continue;
+    const schema::Transducer truth = varied(base(), physics, random);
     list.push_back({truth, without_noise(truth, physics, amplitude(random))});
   }
   return list;

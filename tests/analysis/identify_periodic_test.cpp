@@ -34,9 +34,7 @@ std::vector<Drawn> driven_plants(Signal signal, const firmware_host::TrayPhysics
   std::uniform_real_distribution<double> amplitude(0.3, 2);
   std::vector<Drawn> list;
   while (list.size() < kPlants) {
-    const schema::Transducer truth = varied(base(), random);
-    const auto& mode = physics.second_mode;
-    if (mode && firmware_host::least_second_mode_hz(truth, *mode) > mode->frequency_hz) continue;
+    const schema::Transducer truth = varied(base(), physics, random);
     const PeriodicDrive plan = signal({.amplitude_v = amplitude(random)});
     firmware_host::ActuatedTray tray(truth, 10e3, physics);
     const std::vector<double> drive(plan.drive_v.begin(), plan.drive_v.end());

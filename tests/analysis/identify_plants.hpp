@@ -8,6 +8,7 @@
 
 #include "analysis/identify/bode_data.hpp"
 #include "data-schema/transducer.hpp"
+#include "firmware-host/sim/tray_mechanics.hpp"
 
 namespace tacto::analysis {
 
@@ -25,6 +26,16 @@ inline schema::Transducer varied(schema::Transducer t, std::mt19937_64& random) 
                         &t.sensor_resistance_ohm, &t.actuator_scale, &t.sensor_scale})
     *value *= std::exp(even(random));
   return t;
+}
+
+/// The next that can have the tray's second mode.
+inline schema::Transducer varied(const schema::Transducer& t, const firmware_host::TrayPhysics& physics,
+                                 std::mt19937_64& random) {
+  for (;;) {
+    const schema::Transducer truth = varied(t, random);
+    const auto& mode = physics.second_mode;
+    if (!mode || firmware_host::least_second_mode_hz(truth, *mode) <= mode->frequency_hz) return truth;
+  }
 }
 
 inline std::complex<double> response_of(const schema::Transducer& t, Direction direction, double hz) {
