@@ -43,25 +43,11 @@ tl::unexpected<Error> bad_member(const char* member, std::string what, std::stri
               std::move(remedy));
 }
 
-Json rule_at(const Json& rules, std::string_view pointer) {
-  Json rule = rules;
-  while (!pointer.empty()) {
-    pointer.remove_prefix(1);
-    const std::string member(pointer.substr(0, pointer.find('/')));
-    pointer.remove_prefix(member.size());
-    rule = rule.value("properties", Json::object()).value(member, Json::object());
-  }
-  return rule;
-}
-
 // A member says what it is; without one the request itself is wrong.
 std::string remedy_for(const std::string& pointer, const Json& rules) {
-  const Json rule = pointer.empty() ? Json::object() : rule_at(rules, pointer);
-  if (!rule.contains("description"))
-    return fmt::format("the requests are {}", fmt::join(kControlVerbs, ", "));
-  const std::string meaning = rule["description"];
-  if (!rule.contains("minimum")) return meaning;
-  return fmt::format("{}; from {} to {}", meaning, rule["minimum"].dump(), rule["maximum"].dump());
+  if (auto range = remedy_at(pointer, rules); !range.empty()) return range;
+  if (auto meaning = meaning_at(pointer, rules); !meaning.empty()) return meaning;
+  return fmt::format("the requests are {}", fmt::join(kControlVerbs, ", "));
 }
 
 Result<void> check_version_of(const std::string& version) {

@@ -143,6 +143,10 @@ Result<void> check_readable(const std::string& path) {
   return file ? Result<void>{} : forward_error(file);
 }
 
+bool same_file(const std::string& a, const std::string& b) {
+  return std::filesystem::path(a).lexically_normal() == std::filesystem::path(b).lexically_normal();
+}
+
 bool is_file(const std::string& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);

@@ -20,6 +20,9 @@ Result<void> check_readable(const std::string& path);
 /// Whether `path` names a file (not a folder).
 bool is_file(const std::string& path);
 
+/// The same name, however it is written: a and ./a. Links are not followed.
+bool same_file(const std::string& a, const std::string& b);
+
 /// That a file may be changed: who renames a new one over it would not be stopped by its being read-only.
 /// Errors: cannot_write.
 Result<void> check_changeable(const std::string& path);

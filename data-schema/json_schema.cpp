@@ -145,11 +145,15 @@ std::vector<Violation> breaches(const Json& document, const Json& rules) try {
   return {{"", fmt::format("the schema cannot be used: {}", thrown.what())}};
 }
 
+std::string meaning_at(const std::string& pointer, const Json& rules) {
+  const Json rule = pointer.empty() ? Json() : rule_at(rules, Json::json_pointer(pointer));
+  return rule.is_object() ? rule.value("description", "") : "";
+}
+
 std::string remedy_at(const std::string& pointer, const Json& rules) {
   const Json rule = rule_at(rules, Json::json_pointer(pointer));
-  const std::string range = rule.is_object() ? range_of(rule) : "";
-  if (range.empty()) return {};
-  return rule.contains("description") ? rule["description"].get<std::string>() + "; " + range : range;
+  const std::string range = rule.is_object() ? range_of(rule) : "", meaning = meaning_at(pointer, rules);
+  return range.empty() || meaning.empty() ? range : meaning + "; " + range;
 }
 
 }  // namespace tacto::schema

@@ -17,6 +17,9 @@ std::optional<Json> schema_of(std::string_view kind);
 /// Every breach of `rules`, in the order they were found.
 std::vector<Violation> breaches(const Json& document, const Json& rules);
 
+/// What the rules say that a member is; empty where they do not, and of the whole document.
+std::string meaning_at(const std::string& pointer, const Json& rules);
+
 /// Of a number: what the rules say that it is, and its range; empty of everything else.
 std::string remedy_at(const std::string& pointer, const Json& rules);
 

@@ -19,7 +19,6 @@ class LimitTally {
     slew_ += (output.flags & wire::kTickSlewLimited) != 0;
     energy_ += (output.flags & wire::kTickEnergyLimited) != 0;
     gated_ += (output.flags & wire::kTickGated) != 0;
-    unsound_ += !output.sound;
     const double wished_v = output.wished_v, removed_v = wished_v - output.drive_v;
     wished_v2_ += wished_v * wished_v;
     removed_v2_ += removed_v * removed_v;
@@ -28,7 +27,7 @@ class LimitTally {
   void add(const LimitTally& other) noexcept {
     ticks_ += other.ticks_;
     amplitude_ += other.amplitude_, slew_ += other.slew_, energy_ += other.energy_;
-    gated_ += other.gated_, unsound_ += other.unsound_;
+    gated_ += other.gated_;
     wished_v2_ += other.wished_v2_, removed_v2_ += other.removed_v2_;
   }
   std::uint64_t ticks() const { return ticks_; }
@@ -36,10 +35,6 @@ class LimitTally {
   std::uint64_t slew_limited() const { return slew_; }
   std::uint64_t energy_limited() const { return energy_; }
   std::uint64_t gated() const { return gated_; }
-  std::uint64_t unsound() const { return unsound_; }
-  double wished_rms_v() const {
-    return std::sqrt(wished_v2_ / static_cast<double>(std::max<std::uint64_t>(ticks_, 1)));
-  }
   bool removed_any() const { return removed_v2_ > 0; }
   /// RMS of what amplitude, slew and energy took away, re RMS of the wished drive; at least -300.
   double removed_db() const {
@@ -48,7 +43,7 @@ class LimitTally {
   }
 
  private:
-  std::uint64_t ticks_ = 0, amplitude_ = 0, slew_ = 0, energy_ = 0, gated_ = 0, unsound_ = 0;
+  std::uint64_t ticks_ = 0, amplitude_ = 0, slew_ = 0, energy_ = 0, gated_ = 0;
   double wished_v2_ = 0, removed_v2_ = 0;
 };
 

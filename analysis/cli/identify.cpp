@@ -231,17 +231,17 @@ Result<void> draw(const std::string& picture, const spatial::Figure& figure, Rep
 }
 
 // The details are the report as it stands.
-Result<Report> with_results(const IdentifyOptions& o, schema::Results results, Report report) {
+Result<Report> with_results(const IdentifyOptions& o, const auto& make, Report report) {
   if (o.results.empty()) return report;
+  schema::Results results = make();
   results.verb = "identify";
   results.device = o.device_uri;
   for (const std::string& input : {o.file, o.base})
     if (!input.empty()) results.inputs.push_back(input);
-  const auto no_page = []() -> Result<std::string> { return std::string(); };
+  const auto no_page = [] { return Result<std::string>(); };
   if (auto written = write_outputs({o.results}, std::move(results), report, no_page); !written)
     return schema::forward_error(written);
-  report.add("results", o.results);
-  return report;
+  return report.add("results", o.results);
 }
 
 Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
@@ -265,7 +265,8 @@ Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
   Report report = response_report(fit, choice, asked.base, found, file_of(o));
   if (const auto drawn = draw(o.picture, BodeFigure(fit), report); !drawn)
     return schema::forward_error(drawn);
-  return with_results(o, identify_results(fit, choice, asked.base, found), std::move(report));
+  return with_results(
+      o, [&] { return identify_results(fit, choice, asked.base, found); }, std::move(report));
 }
 
 Result<DrivenTray> loops_of(const IdentifyOptions& o, Asked& asked, schema::Identification& about) {
@@ -313,7 +314,8 @@ Result<Report> identify_loops(const IdentifyOptions& o, Asked& asked) {
   Report report = loop_report(*fit, found, file_of(o));
   if (const auto drawn = draw(o.picture, loop_figure(*fit, found), report); !drawn)
     return schema::forward_error(drawn);
-  return with_results(o, identify_results(*fit, found), std::move(report));
+  return with_results(
+      o, [&] { return identify_results(*fit, found); }, std::move(report));
 }
 
 Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
@@ -337,8 +339,9 @@ Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
   const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);
   if (const auto written = schema::write_transducer(o.stem, found); !written)
     return schema::forward_error(written);
-  return with_results(o, identify_results(*fit, *foretold, found),
-                      taps_report(*fit, *foretold, found, file_of(o)));
+  Report report = taps_report(*fit, *foretold, found, file_of(o));
+  return with_results(
+      o, [&] { return identify_results(*fit, *foretold, found); }, std::move(report));
 }
 
 Result<Report> identify_by(const IdentifyOptions& o, Asked& asked) {
@@ -353,8 +356,8 @@ Result<void> check_names_free(const IdentifyOptions& o) {
     if (!o.replace && schema::is_file(path))
       return fail(Fault::usage, "is there already, and would be lost", path,
                   "choose another name, or give --replace");
-  if (o.results.empty() || o.results.ends_with(".json"))
-    return o.results.empty() ? Result<void>() : schema::check_results_free(o.results);
+  if (o.results.empty()) return {};
+  if (o.results.ends_with(".json")) return schema::check_results_free(o.results);
   return fail(Fault::usage, "has an ending that this verb does not write", o.results,
               "name results (NAME.results.json)");
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "analysis/identify/angles.hpp"
 #include "analysis/identify/interval_words.hpp"

@@ -39,7 +39,8 @@ Result<void> check_output(const std::string& path, std::span<const OutputKind> m
 
 Result<void> check_outputs(const std::vector<std::string>& outputs, std::span<const OutputKind> more) {
   for (auto path = outputs.begin(); path != outputs.end(); ++path) {
-    if (std::find(outputs.begin(), path, *path) != path)
+    if (std::any_of(outputs.begin(), path,
+                    [&](const auto& other) { return schema::same_file(*path, other); }))
       return schema::fail(Fault::usage, "is named twice", *path, "give each output a name of its own");
     if (const auto free = check_output(*path, more); !free) return free;
   }

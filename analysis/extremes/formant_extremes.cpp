@@ -79,8 +79,8 @@ double exact_top(const std::vector<double>& values, double centre_m, double near
   double low = near_per_m - 0.5 * kBinPerM, high = near_per_m + 0.5 * kBinPerM;
   while (high - low > 1e-4 * kBinPerM) {
     const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    (exact_power(values, centre_m, a) > exact_power(values, centre_m, b) ? high : low) =
-        exact_power(values, centre_m, a) > exact_power(values, centre_m, b) ? b : a;
+    const bool below = exact_power(values, centre_m, a) > exact_power(values, centre_m, b);
+    (below ? high : low) = below ? b : a;
   }
   return 0.5 * (low + high);
 }

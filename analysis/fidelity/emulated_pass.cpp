@@ -7,7 +7,7 @@
 
 #include "analysis/fidelity/scratch_folder.hpp"
 #include "data-schema/files.hpp"
-#include "playback/kernel_drive.hpp"
+#include "playback/finger_path.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -49,21 +49,6 @@ Result<void> check_counts(const EmulatedPass& pass) {
   return {};
 }
 
-// The same kernel once more, beside the device, for what it wished before the limits.
-Result<void> count_limits(const playback::PlayOptions& options, const FingerPath& path, EmulatedPass& pass) {
-  playback::PrepareOptions prepare = options.prepare;
-  prepare.metres_per_count = pass.columns.header.metres_per_count;
-  const auto& transducer =
-      options.transducer.empty() ? pass.columns.header.transducer.name : options.transducer;
-  const auto program = playback::make_program(options.program, transducer, prepare);
-  if (!program) return schema::forward_error(program);
-  const auto drive = playback::kernel_drive(program->prepared, path, prepare, pass.columns.tick.size());
-  pass.removed_db = drive.tally.removed_db();
-  pass.amplitude_limited = drive.tally.amplitude_limited();
-  pass.slew_limited = drive.tally.slew_limited();
-  return {};
-}
-
 Result<void> check_played(const EmulatedPass& pass, const std::string& device) {
   if (pass.outcome.status.state == playback::PlayerState::fault)
     return schema::fail(Fault::device, "playing ended in a fault: " + pass.outcome.status.fault, device);
@@ -90,14 +75,13 @@ Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::Pla
   if (stop_asked()) return schema::fail(Fault::usage, "stopped before the end", "fidelity");
   auto columns = playback::read_session_columns(options.session);
   if (!columns) return schema::forward_error(columns);
-  EmulatedPass pass{std::move(*columns), std::move(*outcome), {}, -300, 0, 0};
+  EmulatedPass pass{std::move(*columns), std::move(*outcome), {}};
   // The ramp at the end outlasts the path, where the finger rests.
   const auto along = static_cast<std::size_t>(path.duration_s() * pass.columns.header.rate_hz);
   pass.position_m =
       true_positions(path, pass.columns.header.rate_hz, std::min(along, pass.columns.tick.size()));
   if (const auto played = check_played(pass, options.device_uri); !played)
     return schema::forward_error(played);
-  if (const auto counted = count_limits(options, path, pass); !counted) return schema::forward_error(counted);
   return pass;
 }
 

@@ -16,10 +16,8 @@ namespace tacto::analysis {
 struct EmulatedPass {
   playback::SessionColumns columns;  ///< the drive as it was sent, tick by tick
   playback::PlayOutcome outcome;
-  std::vector<double>
-      position_m;            ///< where the finger was at each tick, exactly: the encoder knows it to a count
-  double removed_db = -300;  ///< RMS of what the limits took from the drive, re the drive that was wished
-  std::uint64_t amplitude_limited = 0, slew_limited = 0;  ///< ticks
+  /// Where the finger was at each tick, exactly: the encoder knows it to a count.
+  std::vector<double> position_m;
 };
 
 /// Texture, upload over the wire, the firmware's kernel on the emulated encoder's counts, session: as

@@ -153,9 +153,11 @@ FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double 
   speed.drive_peak_v = pass.outcome.status.ticks.drive_peak_v();
   speed.drive_limit_v = pass.columns.header.transducer.drive_limit_v;
   speed.ticks = pass.columns.tick.size();
-  speed.amplitude_limited = pass.amplitude_limited;
-  speed.slew_limited = pass.slew_limited;
-  speed.removed_db = pass.removed_db;
+  if (const auto& limits = pass.outcome.limits) {
+    speed.amplitude_limited = limits->amplitude_limited();
+    speed.slew_limited = limits->slew_limited();
+    speed.removed_db = limits->removed_db();
+  }
   speed.delay_left_s = pass.outcome.delay_left_s;
   speed.inverse_error_db = pass.outcome.inverse_error_db;
   speed.notes = pass.outcome.notes;

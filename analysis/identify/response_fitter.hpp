@@ -2,7 +2,6 @@
 // One fit: the model, its data, and which of its parameters are free.
 #pragma once
 
-#include <complex>
 #include <span>
 #include <string>
 #include <vector>

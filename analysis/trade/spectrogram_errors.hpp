@@ -2,7 +2,6 @@
 // What a spectrogram of a texture errs, by what people read from it; the rows that say so.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -145,7 +145,7 @@ cli::Action declare_explain(CLI::App& app) {
   cli::add_quantity(app, "--encoder-step", o.prepare.metres_per_count, Dimension::length,
                     "One count of the encoder");
   app.add_option("--device-memory", o.device_memory,
-                 "Samples that the device holds; 2^24, this computer's own loop, unless told")
+                 "Samples that the device holds; 2^24, the most that is ever prepared, unless told")
       ->check(cli::from_one());
   declare_choices(app, o.program.choices);
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,

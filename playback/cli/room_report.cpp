@@ -10,6 +10,7 @@
 
 #include "data-schema/quantity.hpp"
 #include "data-schema/texture.hpp"
+#include "firmware-host/hosted_board.hpp"
 #include "playback/budget_words.hpp"
 
 namespace tacto::playback {
@@ -49,7 +50,7 @@ void add_sinc(std::vector<Way>& ways, AskedProgram asked, const Program& program
 }
 
 void add_host(std::vector<Way>& ways, const AskedProgram& asked, const Program& program) {
-  const std::size_t samples = program.prepared.samples.size(), room = PrepareOptions{}.most_samples;
+  const std::size_t samples = program.prepared.samples.size(), room = firmware_host::HostedProfile::kSamples;
   if (asked.room() >= room) return;
   ways.push_back({"let this computer close the loop (--loop host)", samples, samples <= room});
 }

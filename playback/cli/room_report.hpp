@@ -18,7 +18,7 @@ struct AskedProgram {
   std::size_t room() const { return options.most_samples; }
 };
 
-/// The same as if the device had room for 2^26 samples (256 MB), four times what this computer's own loop
+/// The same as if the device had room for 2^26 samples (256 MB), sixteen times what this computer's own loop
 /// takes. Errors: as make_program; where it is for another reason than for room, the same as without.
 schema::Result<Program> with_room_enough(const AskedProgram& asked);
 

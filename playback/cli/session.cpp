@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
 #include <fstream>
 #include <memory>
-#include <set>
 
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/files.hpp"
@@ -93,12 +92,11 @@ Report stroke_row(const PlayedStroke& stroke) {
 }
 
 Result<void> check_outputs(const SessionVerbOptions& o) {
-  std::set<std::string> files;
   std::vector<std::string> all = o.outputs;
   if (!o.strokes.empty()) all.push_back(o.strokes);
-  for (const std::string& file : all)
-    if (!files.insert(std::filesystem::path(file).lexically_normal().string()).second)
-      return schema::fail(schema::Fault::usage, fmt::format("'{}' is named twice", file), "output",
+  for (auto file = all.begin(); file != all.end(); ++file)
+    if (std::any_of(all.begin(), file, [&](const auto& other) { return schema::same_file(*file, other); }))
+      return schema::fail(schema::Fault::usage, fmt::format("'{}' is named twice", *file), "output",
                           "give each table a file of its own");
   return {};
 }

@@ -24,7 +24,7 @@ ControlClient::ControlClient(ControlClient&& other) noexcept
       greets_by(other.greets_by),
       user(other.user),
       dropped_events(other.dropped_events),
-      waits_with_id(std::move(other.waits_with_id)),
+      waits_for(std::move(other.waits_for)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       in_(std::move(other.in_)),
       out_(std::move(other.out_)),
@@ -41,7 +41,7 @@ ControlClient& ControlClient::operator=(ControlClient&& other) noexcept {
   greets_by = other.greets_by;
   user = other.user;
   dropped_events = other.dropped_events;
-  std::swap(waits_with_id, other.waits_with_id);
+  std::swap(waits_for, other.waits_for);
   return *this;
 }
 

@@ -11,6 +11,12 @@
 
 namespace tacto::playback {
 
+/// A request whose answer comes later.
+struct LateRequest {
+  std::string id;
+  std::vector<std::string> passed_over;  ///< of its members: not known
+};
+
 /// Buffers of bounded size around a connected socket that never waits. Closes it.
 class ControlClient {
  public:
@@ -45,7 +51,7 @@ class ControlClient {
   std::optional<std::chrono::steady_clock::time_point> greets_by;  ///< with the token: who came by TCP
   std::optional<std::uint32_t> user;                               ///< who came by the Unix socket
   std::uint64_t dropped_events = 0;
-  std::optional<std::string> waits_with_id;  ///< for an answer that comes later: the request's id
+  std::optional<LateRequest> waits_for;
 
  private:
   int descriptor_;

@@ -35,7 +35,7 @@ const schema::Error kOnlyWatches{Fault::usage, "who watches can't ask", "request
 
 // Of who waits for an answer more is looked at, for a `stop` may be in it.
 bool wants_more(const ControlClient& client) {
-  return !client.silent() && (client.waits_with_id ? client.has_room() : !client.has_line());
+  return !client.silent() && (client.waits_for ? client.has_room() : !client.has_line());
 }
 
 // Newer clients may say what we don't know; who misspelt something is told.
@@ -132,7 +132,7 @@ std::optional<std::string> ControlServer::answer_to(ControlClient& client, const
   if (request->save) request->asked_by = client.user ? user_name(*client.user) : "token";
   const Answer fields = handler(*request);
   if (!fields) {
-    client.waits_with_id = id;
+    client.waits_for = {id, request->passed_over};
     return std::nullopt;
   }
   if (!*fields) return schema::control_error_line(id, fields->error());
@@ -143,11 +143,12 @@ std::optional<std::string> ControlServer::answer_to(ControlClient& client, const
 
 void ControlServer::answer_late(const Result<schema::ControlFields>& fields) {
   const auto client =
-      std::ranges::find_if(clients_, [](const ControlClient& one) { return one.waits_with_id.has_value(); });
+      std::ranges::find_if(clients_, [](const ControlClient& one) { return one.waits_for.has_value(); });
   if (client == clients_.end()) return;
-  const std::string id = *std::exchange(client->waits_with_id, std::nullopt);
-  const bool here = client->send(fields ? schema::control_reply_line(id, *fields)
-                                        : schema::control_error_line(id, fields.error()));
+  const LateRequest request = *std::exchange(client->waits_for, std::nullopt);
+  const bool here = client->send(
+      fields ? schema::control_reply_line(request.id, with_passed_over(*fields, request.passed_over))
+             : schema::control_error_line(request.id, fields.error()));
   if (!here) clients_.erase(client);
 }
 
@@ -157,12 +158,12 @@ bool ControlServer::stop_waits() const {
     return request && (request->verb == ControlVerb::stop || request->verb == ControlVerb::disarm);
   };
   return std::ranges::any_of(clients_, [&](const ControlClient& client) {
-    return client.waits_with_id && std::ranges::any_of(client.lines(), stops);
+    return client.waits_for && std::ranges::any_of(client.lines(), stops);
   });
 }
 
 bool ControlServer::answer_lines(ControlClient& client, const Handler& handler) {
-  for (int i = 0; i < kLinesAtOnce && !client.waits_with_id; ++i) {
+  for (int i = 0; i < kLinesAtOnce && !client.waits_for; ++i) {
     const auto line = client.take_line();
     if (!line) break;
     const auto answer = answer_to(client, *line, handler);
@@ -178,10 +179,10 @@ bool ControlServer::answer_lines(ControlClient& client, const Handler& handler) 
 // received only once the lines that are here are answered: so little is kept of anybody.
 bool ControlServer::attend(ControlClient& client, short events, const Handler& handler) {
   if ((events & (POLLOUT | POLLHUP | POLLERR)) != 0 && !client.flush()) return false;
-  if ((events & POLLHUP) != 0 && client.waits_with_id) return false;
+  if ((events & POLLHUP) != 0 && client.waits_for) return false;
   if ((events & kSomethingCame) != 0 && wants_more(client)) client.receive();
   if (!answer_lines(client, handler)) return false;
-  return !client.silent() || client.has_line() || client.wants_to_send() || client.waits_with_id;
+  return !client.silent() || client.has_line() || client.wants_to_send() || client.waits_for;
 }
 
 void ControlServer::attend_all(const std::vector<pollfd>& waiting, const Handler& handler) {
@@ -211,7 +212,7 @@ void ControlServer::serve(int timeout_ms, const Handler& handler) {
   });
   std::vector<pollfd> waiting = what_is_waited_for();
   const bool ready = std::ranges::any_of(
-      clients_, [](const ControlClient& one) { return one.has_line() && !one.waits_with_id; });
+      clients_, [](const ControlClient& one) { return one.has_line() && !one.waits_for; });
   if (poll(waiting.data(), waiting.size(), ready ? 0 : timeout_ms) > 0 || ready) {
     attend_all(waiting, handler);
     if ((waiting[0].revents & POLLIN) != 0) accept_all();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware-host/encoder_counts.hpp"
+
 namespace tacto::playback {
 namespace {
 
@@ -15,6 +17,11 @@ constexpr float kNone = std::numeric_limits<float>::max();
 
 std::int32_t periods_in(double time_s, double rate_hz) {
   return std::max(2, static_cast<std::int32_t>(time_s * rate_hz));
+}
+
+// A counter that passes 2^31 goes on.
+std::int32_t gone_on(std::int32_t count, std::int32_t way) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(way));
 }
 
 }  // namespace
@@ -35,9 +42,9 @@ void CountTrack::put(std::uint32_t period, std::int32_t count, std::int64_t made
     for (auto& stood : counts_) stood.store(count, std::memory_order_relaxed);
   const std::uint32_t passed = begun_ ? period - put_ : 1;
   const std::int32_t before = kept(put_);
-  const std::int64_t way = std::int64_t{count} - before;
+  const std::int64_t way = firmware_host::counts_between(before, count);
   for (std::uint32_t i = passed > kKept ? passed - kKept : 1; i < passed; ++i)
-    counts_[(put_ + i) % kKept].store(before + static_cast<std::int32_t>(way * i / passed),
+    counts_[(put_ + i) % kKept].store(gone_on(before, static_cast<std::int32_t>(way * i / passed)),
                                       std::memory_order_relaxed);
   counts_[period % kKept].store(count, std::memory_order_relaxed);
   newest_ns_.store(made_ns, std::memory_order_relaxed);
@@ -57,8 +64,8 @@ std::int32_t CountTrack::count_here(std::uint32_t newest) const noexcept {
   const auto beyond = static_cast<std::int32_t>(at_ - newest);
   const std::uint32_t from = beyond >= 0 ? newest - 1 : at_;
   const float along = part_ + static_cast<float>(beyond >= 0 ? beyond + 1 : 0);
-  const auto way = static_cast<float>(kept(from + 1) - kept(from));
-  return kept(from) + static_cast<std::int32_t>(std::floor(0.5F + along * way));
+  const auto way = static_cast<float>(firmware_host::counts_between(kept(from), kept(from + 1)));
+  return gone_on(kept(from), static_cast<std::int32_t>(std::floor(0.5F + along * way)));
 }
 
 // What lies ahead when least does: too much is latency, and is taken back over the next window; where there

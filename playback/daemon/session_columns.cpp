@@ -14,12 +14,8 @@ constexpr std::uint64_t kMostColumnTicks = std::uint64_t{1} << 24;
 
 void add_row(SessionColumns& columns, const SessionRow& row) {
   columns.tick.push_back(row.tick);
-  columns.time_s.push_back(row.time_s);
   columns.position_m.push_back(row.position_m);
   columns.drive_v.push_back(row.drive_v);
-  columns.gain.push_back(row.gain);
-  columns.flags.push_back(row.flags);
-  columns.encoder.push_back(row.encoder);
 }
 
 }  // namespace
@@ -34,11 +30,9 @@ Result<SessionColumns> read_session_columns(const std::string& name) {
   columns.header = overview->header;
   columns.lost_at = overview->lost_at;
   columns.lost = overview->lost;
-  columns.look_ahead_ticks = overview->look_ahead_ticks;
   RowMaker maker(*overview);
   const auto read = read_rows(maker, name, [&](const SessionRow& row) { add_row(columns, row); });
   if (!read) return schema::forward_error(read);
-  columns.turns = maker.turns();
   return columns;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware-host/core/counts_between.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 
 namespace tacto::playback {
@@ -23,11 +24,12 @@ void TickView::begin(double rate_hz, double metres_per_count) {
 }
 
 void TickView::take(const schema::SessionTick& tick) {
+  count_ = ticks_ == 0 ? tick.encoder : count_ + core::counts_between(last_.encoder, tick.encoder);
   last_ = tick;
   expected_ = tick.tick + 1;
   counts_[tick.tick % kPlaces] = tick.encoder;
-  least_ = std::min(least_, tick.encoder);
-  greatest_ = std::max(greatest_, tick.encoder);
+  least_ = std::min(least_, count_);
+  greatest_ = std::max(greatest_, count_);
   ++ticks_;
   late_ += (tick.flags & wire::kTickLate) != 0;
   blind_ += (tick.flags & wire::kTickBlind) != 0;
@@ -48,7 +50,7 @@ double TickView::speed_mps() const {
   const auto span =
       static_cast<std::uint64_t>(std::clamp(kSpeedOverS * rate_hz_, 1.0, static_cast<double>(kPlaces - 1)));
   if (ticks_ <= span) return 0;
-  const double moved = static_cast<double>(last_.encoder) - counts_[(last_.tick - span) % kPlaces];
+  const double moved = core::counts_between(counts_[(last_.tick - span) % kPlaces], last_.encoder);
   return moved * metres_per_count_ * rate_hz_ / static_cast<double>(span);
 }
 

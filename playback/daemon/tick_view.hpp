@@ -34,10 +34,10 @@ class TickView {
   double late_part() const { return late_part_; }
   const schema::SessionTick& last() const { return last_; }
   double span_s() const { return static_cast<double>(expected_) / rate_hz_; }
-  double position_m() const { return metres_per_count_ * last_.encoder; }
+  double position_m() const { return metres_per_count_ * static_cast<double>(count_); }
   /// The farthest places of all, before and behind.
-  double least_position_m() const { return metres_per_count_ * least_; }
-  double greatest_position_m() const { return metres_per_count_ * greatest_; }
+  double least_position_m() const { return metres_per_count_ * static_cast<double>(least_); }
+  double greatest_position_m() const { return metres_per_count_ * static_cast<double>(greatest_); }
   /// Over the last 20 ms; + as the encoder counts up.
   double speed_mps() const;
   /// Over the last 100 ms, about.
@@ -51,7 +51,7 @@ class TickView {
   std::uint64_t energy_limited_ = 0, gated_ = 0;
   std::uint64_t second_from_ = 0, late_before_ = 0;
   double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0;
-  std::int32_t least_ = INT32_MAX, greatest_ = INT32_MIN;
+  std::int64_t count_ = 0, least_ = INT64_MAX, greatest_ = INT64_MIN;  // a counter that passes 2^31 goes on
   schema::SessionTick last_;
   std::array<std::int32_t, kPlaces> counts_{};
 };

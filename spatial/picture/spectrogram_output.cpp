@@ -27,10 +27,6 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  return std::filesystem::path(a).lexically_normal() == std::filesystem::path(b).lexically_normal();
-}
-
 // A profile's own table may well begin with its position, but has no column at a spatial frequency.
 bool is_spectrogram_table(std::string_view line) {
   const bool begins = line.starts_with("position_mm,") || line.starts_with("stroke,position_mm,");
@@ -53,7 +49,7 @@ Result<void> check_output(const std::string& path, std::span<const std::string> 
                         extension.empty() ? "the name has no extension to say what to write"
                                           : "'" + extension + "' is not a form of a spectrogram",
                         path, "take .png, .svg, .nc or .csv");
-  if (std::ranges::any_of(earlier, [&](const std::string& other) { return same_file(path, other); }))
+  if (std::ranges::any_of(earlier, [&](const std::string& other) { return schema::same_file(path, other); }))
     return schema::fail(Fault::usage, "is named twice", path, "give each output a name of its own");
   if (extension == ".csv") return schema::check_table_free(path, is_spectrogram_table);
   return extension == ".nc" ? check_netcdf_free(path) : Result<void>();

@@ -171,7 +171,7 @@ def check_refusals(folder):
     assert "--force" in tacto.run(*realtime, cwd=folder, code=5)[1]
     assert "100 to 300 Hz" in tacto.run(*realtime, "--force", cwd=folder)[1]
     assert "nothing to feel" in tacto.run("trade", "even", "-o", "no.html", cwd=folder, code=5)[1]
-    assert "named twice" in tacto.run("trade", "C", "-o", "a.csv", "-o", "a.csv", cwd=folder, code=2)[1]
+    assert "named twice" in tacto.run("trade", "C", "-o", "a.csv", "-o", "./a.csv", cwd=folder, code=2)[1]
     assert "at most 10%" in tacto.run("spatial", "C", "-o", "no", "--max-error", "1000%", cwd=folder, code=2)[1]
 
 

@@ -649,8 +649,9 @@ def what_was_chosen_is_told():
         status = client.must(request="status")  # the emulated finger presses with 0.5 N
         assert status["gated_ticks"] > 100 and status["drive_peak_v"] == 0, status
         client.must(request="disarm")
-        answer = client.must(request="load", file="s", playback={"interpolation": "sinc"})
+        answer = client.must(request="load", file="s", playback={"interpolation": "sinc"}, at_mm=3)
         assert (answer["interpolation"], answer["inverse"], answer["contact_on_n"]) == ("sinc", "magnitude", 0.2), answer
+        assert answer["passed_over"] == "at_mm", answer
         session = client.must(request="arm")["session"]
         client.must(request="play")
         time.sleep(0.7)
@@ -659,7 +660,8 @@ def what_was_chosen_is_told():
         assert not answer["ok"] and "limits" in answer["error"]["what"] and "disarm" in answer["error"]["remedy"], answer
         answer = client.ask(request="load", file="s", playback={"interpolaton": "sinc"})
         assert not answer["ok"] and "'interpolation'" in answer["error"]["remedy"], answer
-        assert client.must(request="status", gian=1)["passed_over"] == "gian"
+        for request in ({"request": "status"}, {"request": "stop"}):
+            assert client.must(**request, gian=1)["passed_over"] == "gian", request
         answer = client.ask(request="load", file="s", playback={"contact_on_n": -1})
         assert not answer["ok"] and "from 0 to 100" in answer["error"]["remedy"], answer
         out, _ = tacto.run("ctl", "load", "s", "--interpolation", "nearest", "--json", "--socket", "control")

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "playback/daemon/tick_view.hpp"
+
 namespace tacto::playback {
 namespace {
 
@@ -135,6 +137,30 @@ TEST(CountTrack, PeriodsThatAreLeftOutLieOnALine) {
   std::vector<std::int32_t> seen;
   for (int i = 0; i < 5; ++i) seen.push_back(track.see().count);
   EXPECT_EQ(seen, (std::vector<std::int32_t>{120, 140, 160, 180, 200}));
+}
+
+TEST(CountTrack, ACounterThatPassesItsEndGoesOn) {
+  CountTrack track(kRateHz);
+  track.put(1, INT32_MAX - 29, 0);
+  track.begin();
+  track.put(6, INT32_MIN + 20, 0);  // 50 counts in 5 periods
+  std::vector<std::int32_t> seen;
+  for (int i = 0; i < 6; ++i) seen.push_back(track.see().count);
+  EXPECT_EQ(seen, (std::vector<std::int32_t>{INT32_MAX - 19, INT32_MAX - 9, INT32_MIN, INT32_MIN + 10,
+                                             INT32_MIN + 20, INT32_MIN + 30}))
+      << "the last one straight on";
+}
+
+TEST(TickView, ACounterThatPassesItsEndGoesOn) {
+  TickView view;
+  view.begin(kRateHz, 1e-6);
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    const std::uint32_t count = 0x7FFFFFFFU - 490 + 10 * static_cast<std::uint32_t>(i);  // 20 mm/s
+    view.take({.tick = i, .encoder = static_cast<std::int32_t>(count)});
+  }
+  EXPECT_NEAR(view.speed_mps(), 0.02, 1e-9);
+  EXPECT_NEAR(view.position_m(), 1e-6 * (2147483647.0 + 500), 1e-9);
+  EXPECT_NEAR(view.greatest_position_m() - view.least_position_m(), 990e-6, 1e-9);
 }
 
 TEST(CountTrack, AFingerThatStandsStands) {
