@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -115,6 +116,22 @@ void show_lateness(const ControlFields& fields) {
              1e3 * number("latency_p50_s"), 1e3 * number("latency_p99_s"), 1e3 * number("looked_ahead_s"));
 }
 
+// Of the wanted drive, as RMS; by stroke the command tells it.
+void show_limits(const ControlFields& fields) {
+  const std::string tells = schema::control_text(fields, "limits_in_db");
+  if (tells.empty()) return;
+  const auto took = [&](std::string_view name) {
+    const double db = schema::control_number(fields, name, NAN);
+    return std::isnan(db) ? std::string("nothing") : fmt::format("{:.1f} dB", db);
+  };
+  const std::string unknown = schema::control_text(fields, "limits_took");
+  fmt::print("limits   took {}   by stroke: {}\n",
+             unknown.empty() ? fmt::format("{} in the last second, {} since arming",
+                                           took("limits_took_last_second_db"), took("limits_took_db"))
+                             : unknown,
+             tells);
+}
+
 void show_top(const ControlFields& fields) {
   const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
   fmt::print("\033[H\033[2J{:<8} {}\n", schema::control_text(fields, "state"),
@@ -130,8 +147,7 @@ void show_top(const ControlFields& fields) {
       "{:.0f}\n",
       number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
       number("energy_limited_ticks"), number("gated_ticks"), number("blind_ticks"));
-  if (const std::string tells = schema::control_text(fields, "limits_in_db"); !tells.empty())
-    fmt::print("how much the limits took, in dB: {}\n", tells);
+  show_limits(fields);
   if (number("wake_p99_s") > 0) show_lateness(fields);
   std::fflush(stdout);
 }
