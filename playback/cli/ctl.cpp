@@ -12,6 +12,7 @@
 
 #include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/choice_options.hpp"
+#include "playback/cli/ends_option.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/control_connection.hpp"
 #include "playback/daemon/time_histogram.hpp"
@@ -33,7 +34,8 @@ constexpr std::array<std::string_view, 10> kCtlActions = {"hello",  "load", "arm
                                                           "disarm", "gain", "status", "watch", "top"};
 
 struct CtlOptions {
-  std::string socket = kUsualSocket, action, what, ends;
+  std::string socket = kUsualSocket, action, what;
+  std::optional<schema::TextureEnds> ends;
   std::optional<double> at_m, gain_m_per_n, fade_s;
   std::optional<double> time_s;
   bool save = false;
@@ -81,9 +83,7 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   request.gain_m_per_n = o.gain_m_per_n;
   request.fade_s = o.fade_s;
   request.playback = o.choices;
-  if (!o.ends.empty())
-    request.ends =
-        static_cast<schema::TextureEnds>(cli::choose("--ends", o.ends, {"stop", "mirror", "loop"}));
+  request.ends = o.ends;
   request.save = o.save;
   if (request.verb != ControlVerb::gain) return request;
   const auto gain = gain_in(o.what);
@@ -219,10 +219,7 @@ cli::Action declare_ctl(CLI::App& app) {
   cli::add_quantity(app, "--at", o.at_m, Dimension::length, "load of a texture: where its position 0 lies");
   cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance,
                     "load of a texture: displacement for force");
-  app.add_option("--ends", o.ends,
-                 "load of a texture: stop, mirror or loop (as it is where its end meets its beginning, else "
-                 "its last 1 mm fades "
-                 "into its first)");
+  declare_ends(app, o.ends, "load: ");
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
                     "load while one plays: how long the change takes, 50ms unless told");
   declare_choices(app, o.choices, "load: ");

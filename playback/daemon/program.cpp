@@ -8,6 +8,7 @@
 
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
+#include "data-schema/newer_version.hpp"
 #include "data-schema/version.hpp"
 #include "playback/daemon/laid_textures.hpp"
 #include "playback/displacement_limit.hpp"
@@ -53,6 +54,17 @@ Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& te
   if (!decision) return schema::forward_error(decision);
   options = decision->chosen.in(options);
   return std::move(*decision);
+}
+
+// Before what prepare() notes.
+void add_notes(Program& program, const LaidTextures& laid, const std::string& transducer) {
+  const schema::Transducer& read = program.session.transducer;
+  std::vector<std::string> first = laid.notes();
+  first.push_back(
+      schema::note_of_newer_version(transducer, read.newer_version, schema::member_names(read.extra_json)));
+  std::erase(first, "");
+  std::vector<std::string>& notes = program.prepared.notes;
+  notes.insert(notes.begin(), first.begin(), first.end());
 }
 
 void name_files(Program& program, const LaidTextures& laid) {
@@ -146,6 +158,7 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
   program.options = *chosen;
   const auto made = prepare_laid(program, *laid, budget_of(request, choices));
   if (!made) return schema::forward_error(made);
+  add_notes(program, *laid, transducer_name);
   if (request.any_displacement) program.tray_peak_m = 0;
   name_files(program, *laid);
   describe(program.session, program.prepared, program.options);
