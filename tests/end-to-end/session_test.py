@@ -49,6 +49,29 @@ def a_counter_that_passes_2_to_the_31_goes_on():
     assert np.any(np.diff(table["encoder_count"]) < -2**31) and np.max(np.abs(np.diff(table["position_m"]))) < 1e-3
 
 
+def where_the_device_reads_nothing_is_not_judged():
+    """At 1 um a device reads a texture as far as 2^29 um = 536.87 m from its zero (WIRE.md), and drives 0 V beyond: a loop there was not felt, and
+    no error is told of it as though it was."""
+    write_grating()
+    play = ("play", "oak", "--ends", "loop", "-d", "sim:", "--finger-path", "way.csv", "--gain", "0.5mm/N")
+    reach_m = 2**29 * 1e-6
+    for name, from_m, to_m, felt in (("near", reach_m - 0.04, reach_m - 0.01, True), ("over", reach_m - 0.02, reach_m + 0.01, False),
+                                     ("beyond", reach_m + 0.01, reach_m + 0.04, False), ("far", 2146.99, 2147.02, False),
+                                     ("behind", -reach_m - 0.01, -reach_m - 0.04, False)):
+        write_way(from_m, to_m)
+        silence = tacto.run(*play, "-o", name)[1]
+        assert ("farther than 536.9 m" in silence) == (name in ("beyond", "far", "behind")), (name, silence)
+        judged, said = tacto.run("session", name, "--json")
+        stroke = json.loads(judged)["strokes"][0]
+        assert ("wanted_rms_m" in stroke and stroke["wanted_rms_m"] != "unknown") == felt, (name, stroke)
+        assert ("farther than 536.9 m" in said) == (not felt), (name, said)
+        if felt:
+            assert stroke["error_db"] < -20, stroke  # it holds the onset; where nothing is felt it is 0 dB
+        tacto.run("compare", f"{name}.session", "oak", "--align", "none", code=0 if felt else 5)
+    said = tacto.run("play", "oak", "-d", "sim:", "--at", "536.85m", "-o", "cut", code=2)[1]
+    assert "within 536.9 m" in said, said
+
+
 def what_stands_before_a_damage_is_the_same():
     """Cut off, or with a bit turned, 1000 bytes before its end: each tick before it is the same, and the exit code tells the damage."""
     write_grating()
@@ -148,7 +171,7 @@ def a_table_named_twice():
 
 
 if __name__ == "__main__":
-    for test in (all_tables_share_one_time, a_counter_that_passes_2_to_the_31_goes_on, what_stands_before_a_damage_is_the_same,
+    for test in (all_tables_share_one_time, a_counter_that_passes_2_to_the_31_goes_on, where_the_device_reads_nothing_is_not_judged, what_stands_before_a_damage_is_the_same,
                  nothing_felt_has_its_reason, a_misspelling_is_not_played, a_newer_version_is_said_once, a_rate_that_leaves_the_resonance_in_is_named,
                  a_table_named_twice):
         if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
