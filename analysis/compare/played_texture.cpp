@@ -80,8 +80,9 @@ Result<schema::Texture> along(const SessionStroke& stroke) {
 
 }  // namespace
 
-Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke) {
-  const auto found = playback::read_session_stroke(session, stroke);
+Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke,
+                                     const std::function<void(double)>& progress) {
+  const auto found = playback::read_session_stroke(session, stroke, progress);
   if (!found) return schema::forward_error(found);
   auto header = header_of(*found, session);
   if (!header) return schema::forward_error(header);
