@@ -116,20 +116,21 @@ void show_lateness(const ControlFields& fields) {
              1e3 * number("latency_p50_s"), 1e3 * number("latency_p99_s"), 1e3 * number("looked_ahead_s"));
 }
 
-// Of the wanted drive, as RMS; by stroke the command tells it.
+// A limited tick is counted a little before it is told what was taken of it.
+std::string words_of_taken(const ControlFields& fields) {
+  if (const std::string unknown = schema::control_text(fields, "limits_took"); !unknown.empty())
+    return unknown;
+  const double all_db = schema::control_number(fields, "limits_took_db", NAN);
+  const double second_db = schema::control_number(fields, "limits_took_last_second_db", NAN);
+  if (std::isnan(all_db)) return "not told yet";
+  return fmt::format("{} in the last second, {:.1f} dB since arming",
+                     std::isnan(second_db) ? "nothing" : fmt::format("{:.1f} dB", second_db), all_db);
+}
+
+// Of the wished drive, as RMS; by stroke the command tells it.
 void show_limits(const ControlFields& fields) {
   const std::string tells = schema::control_text(fields, "limits_in_db");
-  if (tells.empty()) return;
-  const auto took = [&](std::string_view name) {
-    const double db = schema::control_number(fields, name, NAN);
-    return std::isnan(db) ? std::string("nothing") : fmt::format("{:.1f} dB", db);
-  };
-  const std::string unknown = schema::control_text(fields, "limits_took");
-  fmt::print("limits   took {}   by stroke: {}\n",
-             unknown.empty() ? fmt::format("{} in the last second, {} since arming",
-                                           took("limits_took_last_second_db"), took("limits_took_db"))
-                             : unknown,
-             tells);
+  if (!tells.empty()) fmt::print("limits   took {}   by stroke: {}\n", words_of_taken(fields), tells);
 }
 
 void show_top(const ControlFields& fields) {
