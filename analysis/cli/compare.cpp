@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <functional>
 #include <memory>
 
 #include "analysis/cli/compared_input.hpp"
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/compare/compare_page.hpp"
+#include "data-schema/cli/progress.hpp"
+#include "playback/daemon/session_rows.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
 
 namespace tacto::analysis {
@@ -117,13 +120,15 @@ schema::Results compare_results(const CompareVerbOptions& o, const ComparedNames
 
 Result<Report> run_compare(const CompareVerbOptions& o) {
   if (const auto free = check_outputs(o.outputs); !free) return schema::forward_error(free);
-  auto a = compared_input(o.a, o.stroke_a);
+  cli::Progress progress("comparing");
+  const std::function<void(double)> tell = [&](double part) { progress.update(part); };
+  auto a = compared_input(o.a, o.stroke_a, playback::part_of(tell, 0, 0.4));
   if (!a) return schema::forward_error(a);
-  auto b = compared_input(o.b, o.stroke_b);
+  auto b = compared_input(o.b, o.stroke_b, playback::part_of(tell, 0.4, 0.8));
   if (!b) return schema::forward_error(b);
   if (const auto matched = match_session(*a, *b); !matched) return schema::forward_error(matched);
   const ComparedNames names{a->name, b->name};
-  const auto comparison = compare(a->texture, b->texture, o.compare);
+  const auto comparison = compare(a->texture, b->texture, o.compare, playback::part_of(tell, 0.8, 1));
   if (!comparison) return schema::forward_error(comparison);
   for (const std::string& note : comparison->notes) cli::warn(note);
   Report report = compare_report(names, *comparison);

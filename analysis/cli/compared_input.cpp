@@ -19,8 +19,9 @@ bool names_a_session(const std::string& name) {
   return files && files->front().kind == schema::FileKind::session;
 }
 
-Result<ComparedInput> session_input(const std::string& name, std::size_t stroke) {
-  auto played = played_texture(name, stroke);
+Result<ComparedInput> session_input(const std::string& name, std::size_t stroke,
+                                    const std::function<void(double)>& progress) {
+  auto played = played_texture(name, stroke, progress);
   if (!played) return schema::forward_error(played);
   ComparedInput input{fmt::format("{}, stroke {}", name, played->stroke), "", played->texture, {}};
   input.played = std::move(*played);
@@ -46,8 +47,9 @@ Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, con
 
 }  // namespace
 
-Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke) {
-  if (names_a_session(name)) return session_input(name, stroke);
+Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke,
+                                     const std::function<void(double)>& progress) {
+  if (names_a_session(name)) return session_input(name, stroke, progress);
   auto inputs = spatial::TextureInputs::find({name}, {});
   if (!inputs) return schema::forward_error(inputs);
   auto texture = chosen_texture(*inputs, name, stroke);

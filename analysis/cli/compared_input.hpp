@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -21,8 +22,9 @@ struct ComparedInput {
 
 /// A texture, a recording's stroke (made into a texture as `tactograph spatial` does), or a session's.
 /// `stroke` is 1-based; 0: the only one, of a session the longest. Errors: of reading and making; usage:
-/// several textures, and none chosen, or no such one.
-schema::Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke);
+/// several textures, and none chosen, or no such one. `progress` hears fractions of a session's reading.
+schema::Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke,
+                                             const std::function<void(double)>& progress = {});
 
 /// Where exactly one of them is of a session, the other becomes what that session wanted. Errors: as
 /// wanted_of; unsuitable: the other is no stored texture.

@@ -17,6 +17,7 @@
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/file_kind.hpp"
 #include "data-schema/files.hpp"
+#include "data-schema/newer_version.hpp"
 #include "data-schema/scene.hpp"
 #include "playback/identified_band.hpp"
 
@@ -43,6 +44,8 @@ Result<std::vector<std::string>> textures_named(const std::string& what) {
   if (!files || files->front().kind != schema::FileKind::scene) return std::vector{what};
   const auto scene = schema::read_scene(what);
   if (!scene) return schema::forward_error(scene);
+  if (const auto note = schema::note_of_newer_version(files->front().path, *scene); !note.empty())
+    cli::warn(note);
   std::vector<std::string> names;
   for (const schema::Layer& layer : scene->layers) {
     const auto& laid = std::get<schema::TextureLayer>(layer);

@@ -8,6 +8,7 @@
 
 #include "analysis/compare/band_sums.hpp"
 #include "data-schema/quantity.hpp"
+#include "playback/daemon/session_rows.hpp"
 #include "spatial/spectrogram.hpp"
 #include "spatial/third_octaves.hpp"
 
@@ -126,22 +127,23 @@ Result<void> compare_spectra(Comparison& comparison, std::size_t window) {
 }
 
 Result<std::vector<schema::Formant>> formants_in(const std::vector<double>& values,
-                                                 const Comparison& comparison,
-                                                 const CompareOptions& options) {
+                                                 const Comparison& comparison, const CompareOptions& options,
+                                                 const std::function<void(double)>& progress) {
   schema::Texture texture;
   texture.signal = {comparison.pair.pitch_m, 0, values};
   texture.quantity = comparison.pair.quantity;
   texture.unit = comparison.pair.unit;
   texture.valid_band = {{0, comparison.pair.low_per_m, comparison.pair.high_per_m}};
-  const auto spectrogram = spatial::spatial_spectrogram(texture, options.spectrogram);
+  const auto spectrogram = spatial::spatial_spectrogram(texture, options.spectrogram, progress);
   if (!spectrogram) return schema::forward_error(spectrogram);
   return spatial::find_formants(*spectrogram, options.formant);
 }
 
-void compare_formants(Comparison& comparison, const CompareOptions& options) {
+void compare_formants(Comparison& comparison, const CompareOptions& options,
+                      const std::function<void(double)>& progress) {
   if (!options.formants) return;
-  auto of_a = formants_in(comparison.pair.a, comparison, options);
-  auto of_b = formants_in(comparison.pair.b, comparison, options);
+  auto of_a = formants_in(comparison.pair.a, comparison, options, playback::part_of(progress, 0, 0.5));
+  auto of_b = formants_in(comparison.pair.b, comparison, options, playback::part_of(progress, 0.5, 1));
   if (!of_a || !of_b) {
     comparison.notes.push_back("formants are not compared: " +
                                schema::message(of_a ? of_b.error() : of_a.error()));
@@ -181,8 +183,8 @@ void note_units(Comparison& comparison) {
 
 }  // namespace
 
-Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b,
-                           const CompareOptions& options) {
+Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b, const CompareOptions& options,
+                           const std::function<void(double)>& progress) {
   if (!(options.tolerance_db > 0 && std::isfinite(options.tolerance_db)))
     return schema::fail(Fault::usage, "the tolerance has to be above 0 dB", "tolerance");
   auto pair = pair_textures(a, b, options.pair);
@@ -199,7 +201,7 @@ Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b,
   if (const auto band = set_band(comparison); !band) return schema::forward_error(band);
   if (const auto done = compare_spectra(comparison, *window); !done) return schema::forward_error(done);
   comparison.verdict = verdict_of(comparison.evidence, comparison.tolerance_db);
-  compare_formants(comparison, options);
+  compare_formants(comparison, options, progress);
   note_likeness(comparison);
   note_units(comparison);
   return comparison;

@@ -2,6 +2,7 @@
 // Two textures compared: by band, by coherence, by formants, and in a word.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,8 +73,10 @@ struct Comparison {
 
 /// All of it, in the band that both know and the window sees. Errors: of pair_textures; usage: a window that
 /// is longer than a texture or under 16 samples, a tolerance that is not above 0; unsuitable: a texture that
-/// is silent there, fewer than 2 segments.
+/// is silent there, fewer than 2 segments. `progress` hears fractions: of the spectrograms in which formants
+/// are looked for.
 schema::Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b,
-                                   const CompareOptions& options = {});
+                                   const CompareOptions& options = {},
+                                   const std::function<void(double)>& progress = {});
 
 }  // namespace tacto::analysis

@@ -35,12 +35,24 @@ Result<void> check_steady(const SessionStroke& stroke, const std::string& sessio
   return {};
 }
 
+Result<void> check_reach(const SessionStroke& stroke, const playback::ProfileReach& reach,
+                         const std::string& session) {
+  const auto held = [&](const playback::SessionRow& row) { return reach.holds(row.encoder); };
+  if (std::ranges::all_of(stroke.rows, held)) return {};
+  return schema::fail(Fault::unsuitable,
+                      "the stroke goes to where the device reads no texture any more (`tactograph session` "
+                      "says how far it does)",
+                      session, "name another stroke");
+}
+
 // With the textures that the whole stroke is of.
 Result<schema::SessionHeader> header_of(const SessionStroke& stroke, const std::string& session) {
   if (const auto steady = check_steady(stroke, session); !steady) return schema::forward_error(steady);
   schema::SessionHeader header = stroke.overview.header;
   const auto later = std::ranges::find_if(
       stroke.turns, [&](const playback::TextureTurn& turn) { return turn.row > stroke.first_row; });
+  const auto& reach = later == stroke.turns.begin() ? stroke.overview.reach : std::prev(later)->reach;
+  if (const auto read = check_reach(stroke, reach, session); !read) return schema::forward_error(read);
   if (later == stroke.turns.begin()) return header;
   const auto& brings = std::prev(later)->brings;
   if (!brings)
@@ -68,8 +80,9 @@ Result<schema::Texture> along(const SessionStroke& stroke) {
 
 }  // namespace
 
-Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke) {
-  const auto found = playback::read_session_stroke(session, stroke);
+Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke,
+                                     const std::function<void(double)>& progress) {
+  const auto found = playback::read_session_stroke(session, stroke, progress);
   if (!found) return schema::forward_error(found);
   auto header = header_of(*found, session);
   if (!header) return schema::forward_error(header);

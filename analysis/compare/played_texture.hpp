@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 #include "data-schema/error.hpp"
@@ -22,7 +23,8 @@ struct PlayedTexture {
 
 /// `stroke` is 1-based; 0 takes the longest. Errors: as read_session_stroke, texture_along; unsuitable: a
 /// gain or texture that changes within the stroke, or to one that an older session does not name before it.
-schema::Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke);
+schema::Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke,
+                                             const std::function<void(double)>& progress = {});
 
 /// A texture as the session's finger was to feel it: force times gain, where it lay. `file` names it, by stem
 /// or in full. Errors: unsuitable: not the samples that were played (by SHA-256); not_found.

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "data-schema/files.hpp"
+#include "playback/daemon/session_rows.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -68,7 +69,7 @@ std::optional<schema::Error> irregular(const std::string& path) {
                        "remove it, or store what comes out of it"};
 }
 
-void add_file(const std::string& path, Project& project) {
+void add_file(const std::string& path, Project& project, const std::function<void(double)>& progress) {
   if (auto error = irregular(path)) {
     project.broken.push_back({path, std::move(*error)});
     return;
@@ -84,7 +85,7 @@ void add_file(const std::string& path, Project& project) {
     return;
   }
   const auto stored = schema::stored_files(path);
-  auto file = stored ? project_file(stored->front()) : tl::unexpected(stored.error());
+  auto file = stored ? project_file(stored->front(), progress) : tl::unexpected(stored.error());
   if (file)
     project.files.push_back(std::move(*file));
   else
@@ -99,9 +100,11 @@ Result<Project> read_project(const std::string& folder, const std::string& leave
   if (!paths) return schema::forward_error(paths);
   Project project;
   project.folder = folder;
+  const auto files = static_cast<double>(paths->size());
   for (std::size_t i = 0; i < paths->size(); ++i) {
-    if (progress) progress(static_cast<double>(i) / static_cast<double>(paths->size()));
-    add_file((*paths)[i], project);
+    const double from = static_cast<double>(i) / files, to = static_cast<double>(i + 1) / files;
+    add_file((*paths)[i], project, playback::part_of(progress, from, to));
+    if (progress) progress(to);
   }
   if (project.files.empty() && project.broken.empty())
     return schema::fail(Fault::unsuitable, "holds no file of tactograph", folder, "name a project's folder");

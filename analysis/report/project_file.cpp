@@ -8,12 +8,15 @@
 #include "data-schema/files.hpp"
 #include "data-schema/recording.hpp"
 #include "data-schema/texture_wav.hpp"
+#include "playback/daemon/session_rows.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 using schema::FileKind;
 using schema::Result;
+
+constexpr double kChecked = 0.5;  // of the time that a file takes
 
 // Of recordings and textures the samples that they name, of other kinds the file itself.
 std::string data_path(const schema::StoredFile& file) {
@@ -24,8 +27,8 @@ std::string data_path(const schema::StoredFile& file) {
   return file.path;
 }
 
-Result<void> check(const schema::StoredFile& file) {
-  const auto checked = schema::check_file(file);
+Result<void> check(const schema::StoredFile& file, const Progress& progress) {
+  const auto checked = schema::check_file(file, progress);
   if (!checked) return schema::forward_error(checked);
   if (checked->findings.empty()) return {};
   const auto& [where, what] = checked->findings.front();
@@ -37,10 +40,10 @@ Result<void> check(const schema::StoredFile& file) {
 
 }  // namespace
 
-Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file) {
+Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file, const Progress& progress) {
   switch (kind) {
     case FileKind::recording:
-      return add_recording(path, file);
+      return add_recording(path, file, progress);
     case FileKind::texture:
       return add_texture_file(path, file);
     case FileKind::transducer:
@@ -56,7 +59,7 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
     case FileKind::scene:
       return add_scene(path, file);
     case FileKind::session:
-      return add_session(path, file);
+      return add_session(path, file, progress);
     case FileKind::session_table:
       return add_session_table(path, file);
     case FileKind::trade:
@@ -67,14 +70,16 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
   return add_results(path, file);
 }
 
-Result<ProjectFile> project_file(const schema::StoredFile& stored) {
-  if (const auto sound = check(stored); !sound) return schema::forward_error(sound);
+Result<ProjectFile> project_file(const schema::StoredFile& stored, const Progress& progress) {
+  if (const auto sound = check(stored, playback::part_of(progress, 0, kChecked)); !sound)
+    return schema::forward_error(sound);
   ProjectFile file;
   file.path = stored.path;
   file.kind = stored.kind;
   file.data = data_path(stored);
   if (const auto sum = schema::sha256_of_file(file.data)) file.checksum = sum->substr(0, 12);
-  if (const auto read = read_into(stored.path, stored.kind, file); !read) return schema::forward_error(read);
+  const auto read = read_into(stored.path, stored.kind, file, playback::part_of(progress, kChecked, 1));
+  if (!read) return schema::forward_error(read);
   return file;
 }
 

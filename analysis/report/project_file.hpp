@@ -2,6 +2,7 @@
 // One file of a project, as a report shows it.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct ProjectFile {
 };
 
 /// Checks a file (schema, samples, checksum) and reads what is said of it. Errors: of reading; malformed,
-/// with the first finding of schema::check_file.
-schema::Result<ProjectFile> project_file(const schema::StoredFile& file);
+/// with the first finding of schema::check_file. `progress` hears fractions.
+schema::Result<ProjectFile> project_file(const schema::StoredFile& file,
+                                         const std::function<void(double)>& progress = {});
 
 }  // namespace tacto::analysis

@@ -6,10 +6,13 @@
 
 namespace tacto::analysis {
 
-/// Each fills in what the kind knows. Errors: of reading.
-schema::Result<void> read_into(const std::string& path, schema::FileKind kind, ProjectFile& file);
+using Progress = std::function<void(double)>;
 
-schema::Result<void> add_recording(const std::string& path, ProjectFile& file);
+/// Each fills in what the kind knows. Errors: of reading.
+schema::Result<void> read_into(const std::string& path, schema::FileKind kind, ProjectFile& file,
+                               const Progress& progress);
+
+schema::Result<void> add_recording(const std::string& path, ProjectFile& file, const Progress& progress);
 schema::Result<void> add_texture_file(const std::string& path, ProjectFile& file);
 schema::Result<void> add_transducer(const std::string& path, ProjectFile& file);
 schema::Result<void> add_spectrogram(const std::string& path, ProjectFile& file);
@@ -17,7 +20,7 @@ schema::Result<void> add_formants(const std::string& path, ProjectFile& file);
 schema::Result<void> add_descriptions(const std::string& path, ProjectFile& file);
 schema::Result<void> add_calibration(const std::string& path, ProjectFile& file);
 schema::Result<void> add_scene(const std::string& path, ProjectFile& file);
-schema::Result<void> add_session(const std::string& path, ProjectFile& file);
+schema::Result<void> add_session(const std::string& path, ProjectFile& file, const Progress& progress);
 schema::Result<void> add_session_table(const std::string& path, ProjectFile& file);
 schema::Result<void> add_results(const std::string& path, ProjectFile& file);
 schema::Result<void> add_trade_table(const std::string& path, ProjectFile& file);

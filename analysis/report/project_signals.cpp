@@ -49,7 +49,8 @@ std::string missing_words(const schema::RecordingHeader& header) {
   return header.gaps.empty() ? "none" : fmt::format("{} frames in {} gaps", missing, header.gaps.size());
 }
 
-Result<ResultCurve> channel_curve(const schema::Recording& recording, std::size_t channel, double scale) {
+Result<ResultCurve> channel_curve(const schema::Recording& recording, std::size_t channel, double scale,
+                                  const Progress& progress) {
   auto frames = schema::RecordingFrames::open(recording);
   if (!frames) return schema::forward_error(frames);
   Envelope envelope(recording.header.frames);
@@ -59,6 +60,7 @@ Result<ResultCurve> channel_curve(const schema::Recording& recording, std::size_
     if (const auto read = frames->read(channel, at, values); !read) return schema::forward_error(read);
     for (std::size_t i = 0; i < values.size(); ++i)
       envelope.add(schema::frame_time_s(recording.header, at + i), scale * values[i]);
+    if (progress) progress(static_cast<double>(at) / static_cast<double>(recording.header.frames));
   }
   return envelope.curve(recording.header.channels[channel].name);
 }
@@ -136,7 +138,7 @@ ResultCurve Envelope::curve(const std::string& name) const {
   return curve;
 }
 
-Result<void> add_recording(const std::string& path, ProjectFile& file) {
+Result<void> add_recording(const std::string& path, ProjectFile& file, const Progress& progress) {
   const auto recording = schema::open_recording(path);
   if (!recording) return schema::forward_error(recording);
   const schema::RecordingHeader& header = recording->header;
@@ -152,7 +154,7 @@ Result<void> add_recording(const std::string& path, ProjectFile& file) {
   const std::size_t channel = main_channel(header);
   const schema::Channel& shown = header.channels[channel];
   const ShownUnit unit = shown_unit(shown.unit);
-  auto curve = channel_curve(*recording, channel, unit.scale);
+  auto curve = channel_curve(*recording, channel, unit.scale, progress);
   if (!curve) return schema::forward_error(curve);
   curve->name.clear();
   file.pictures.push_back({name_of_file(path),
@@ -229,13 +231,14 @@ struct TicksShown {
 
 }  // namespace
 
-Result<void> add_session(const std::string& path, ProjectFile& file) {
-  const auto overview = playback::session_overview(path);
+Result<void> add_session(const std::string& path, ProjectFile& file, const Progress& progress) {
+  const auto overview = playback::session_overview(path, playback::part_of(progress, 0, 0.5));
   if (!overview) return schema::forward_error(overview);
   playback::RowMaker maker(*overview);
   TicksShown ticks(overview->ticks);
-  const auto read =
-      playback::read_rows(maker, path, [&](const playback::SessionRow& row) { ticks.add(row); });
+  const auto read = playback::read_rows(
+      maker, path, [&](const playback::SessionRow& row) { ticks.add(row); },
+      playback::part_of(progress, 0.5, 1));
   if (!read) return read;
   const schema::SessionHeader& header = overview->header;
   file.date = header.created;

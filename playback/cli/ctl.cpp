@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/choice_options.hpp"
+#include "playback/cli/ends_option.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/control_connection.hpp"
 #include "playback/daemon/time_histogram.hpp"
@@ -32,7 +34,8 @@ constexpr std::array<std::string_view, 10> kCtlActions = {"hello",  "load", "arm
                                                           "disarm", "gain", "status", "watch", "top"};
 
 struct CtlOptions {
-  std::string socket = kUsualSocket, action, what, ends;
+  std::string socket = kUsualSocket, action, what;
+  std::optional<schema::TextureEnds> ends;
   std::optional<double> at_m, gain_m_per_n, fade_s;
   std::optional<double> time_s;
   bool save = false;
@@ -80,9 +83,7 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   request.gain_m_per_n = o.gain_m_per_n;
   request.fade_s = o.fade_s;
   request.playback = o.choices;
-  if (!o.ends.empty())
-    request.ends =
-        static_cast<schema::TextureEnds>(cli::choose("--ends", o.ends, {"stop", "mirror", "loop"}));
+  request.ends = o.ends;
   request.save = o.save;
   if (request.verb != ControlVerb::gain) return request;
   const auto gain = gain_in(o.what);
@@ -115,6 +116,23 @@ void show_lateness(const ControlFields& fields) {
              1e3 * number("latency_p50_s"), 1e3 * number("latency_p99_s"), 1e3 * number("looked_ahead_s"));
 }
 
+// A limited tick is counted a little before it is told what was taken of it.
+std::string words_of_taken(const ControlFields& fields) {
+  if (const std::string unknown = schema::control_text(fields, "limits_took"); !unknown.empty())
+    return unknown;
+  const double all_db = schema::control_number(fields, "limits_took_db", NAN);
+  const double second_db = schema::control_number(fields, "limits_took_last_second_db", NAN);
+  if (std::isnan(all_db)) return "not told yet";
+  return fmt::format("{} in the last second, {:.1f} dB since arming",
+                     std::isnan(second_db) ? "nothing" : fmt::format("{:.1f} dB", second_db), all_db);
+}
+
+// Of the wished drive, as RMS; by stroke the command tells it.
+void show_limits(const ControlFields& fields) {
+  const std::string tells = schema::control_text(fields, "limits_in_db");
+  if (!tells.empty()) fmt::print("limits   took {}   by stroke: {}\n", words_of_taken(fields), tells);
+}
+
 void show_top(const ControlFields& fields) {
   const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
   fmt::print("\033[H\033[2J{:<8} {}\n", schema::control_text(fields, "state"),
@@ -130,8 +148,7 @@ void show_top(const ControlFields& fields) {
       "{:.0f}\n",
       number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
       number("energy_limited_ticks"), number("gated_ticks"), number("blind_ticks"));
-  if (const std::string tells = schema::control_text(fields, "limits_in_db"); !tells.empty())
-    fmt::print("how much the limits took, in dB: {}\n", tells);
+  show_limits(fields);
   if (number("wake_p99_s") > 0) show_lateness(fields);
   std::fflush(stdout);
 }
@@ -203,10 +220,7 @@ cli::Action declare_ctl(CLI::App& app) {
   cli::add_quantity(app, "--at", o.at_m, Dimension::length, "load of a texture: where its position 0 lies");
   cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance,
                     "load of a texture: displacement for force");
-  app.add_option("--ends", o.ends,
-                 "load of a texture: stop, mirror or loop (as it is where its end meets its beginning, else "
-                 "its last 1 mm fades "
-                 "into its first)");
+  declare_ends(app, o.ends, "load: ");
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
                     "load while one plays: how long the change takes, 50ms unless told");
   declare_choices(app, o.choices, "load: ");

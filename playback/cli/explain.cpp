@@ -8,6 +8,7 @@
 #include "data-schema/cli/talk.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
+#include "playback/cli/ends_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/room_report.hpp"
@@ -147,6 +148,7 @@ cli::Action declare_explain(CLI::App& app) {
   app.add_option("--device-memory", o.device_memory,
                  "Samples that the device holds; 2^24, the most that is ever prepared, unless told")
       ->check(cli::from_one());
+  declare_ends(app, o.program.ends);
   declare_choices(app, o.program.choices);
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
                "Do not undo the hysteresis that the transducer's file tells");

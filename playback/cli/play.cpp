@@ -11,6 +11,7 @@
 #include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
+#include "playback/cli/ends_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/limits_report.hpp"
 #include "playback/cli/loop_report.hpp"
@@ -50,15 +51,7 @@ void declare_texture(CLI::App& app, PlayOptions& o) {
                     "Of a texture: where its position 0 lies on the encoder's axis");
   cli::add_quantity(app, "--gain", o.program.gain_m_per_n, Dimension::compliance,
                     "Of a texture: displacement for force; unless told the one that it keeps, or 1mm/N");
-  app.add_option_function<std::string>(
-         "--ends",
-         [&o](const std::string& word) {
-           o.program.ends =
-               static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
-         },
-         "Of a texture: what lies beyond its ends: nothing, the texture mirrored, or the texture again "
-         "(loop: as it is where its end meets its beginning, else its last 1 mm fades into its first)")
-      ->type_name("stop|mirror|loop");
+  declare_ends(app, o.program.ends);
 }
 
 void declare_loop(CLI::App& app, PlayOptions& o) {

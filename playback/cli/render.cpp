@@ -5,9 +5,11 @@
 #include <memory>
 
 #include "data-schema/cli/progress.hpp"
+#include "data-schema/newer_version.hpp"
 #include "data-schema/statistics.hpp"
 #include "playback/choices.hpp"
 #include "playback/cli/budget_report.hpp"
+#include "playback/cli/ends_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/verbs.hpp"
@@ -72,18 +74,6 @@ void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
       app, "--onset", o.onset_s, Dimension::time,
       "Fade of the force at either end of the path, for a finger that starts inside the texture (5ms "
       "unless told); with --engine kernel the drive's onset, as in play (20ms)");
-}
-
-void add_ends(CLI::App& app, ProgramRequest& what) {
-  app.add_option_function<std::string>(
-         "--ends",
-         [&what](const std::string& word) {
-           what.ends =
-               static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
-         },
-         "Of a texture: what lies beyond its ends: nothing, the texture mirrored, or the texture again "
-         "(loop: as it is where its end meets its beginning, else its last 1 mm fades into its first)")
-      ->type_name("stop|mirror|loop");
 }
 
 // By the words of play. A path tells no normal force: there is no contact.
@@ -197,6 +187,12 @@ void warn_of(const Rendering& r) {
       r.clipping->samples, r.clipping->peak_reduced_db, r.clipping->removed_db));
 }
 
+void warn_of_version(const std::string& name, const schema::Transducer& transducer) {
+  const std::string note = schema::note_of_newer_version(name, transducer.newer_version,
+                                                         schema::member_names(transducer.extra_json));
+  if (!note.empty()) cli::warn(note);
+}
+
 // What the reference knows nothing of.
 Result<void> check_kernels(const RenderVerbOptions& o) {
   if (o.engine->count() > 0 && o.render.engine == Engine::kernel) return {};
@@ -238,6 +234,7 @@ Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& trans
   const auto laid = lay_textures(o.what);
   if (!laid) return schema::forward_error(laid);
   if (const auto taken = take_choices(o, laid->choices()); !taken) return schema::forward_error(taken);
+  for (const std::string& note : laid->notes()) cli::warn(note);
   o.kept_gain = laid->kept_gain();
   o.render.gain_m_per_n = laid->gain();
   o.render.ends = laid->ends();
@@ -259,6 +256,7 @@ Result<Report> run_render(RenderVerbOptions o) {
   if (!transducer) return schema::forward_error(transducer);
   if (const auto usable = schema::check_usable(*transducer, o.what.force); !usable)
     return schema::forward_error(usable);
+  warn_of_version(o.transducer, *transducer);
   const auto rendering = rendered(o, *transducer);
   if (!rendering) return schema::forward_error(rendering);
   if (const auto written = write_signal_files(files_of(o, *rendering)); !written)
@@ -271,7 +269,7 @@ cli::Action declare_render(CLI::App& app) {
   auto options = std::make_shared<RenderVerbOptions>();
   add_files(app, *options);
   add_quantities(app, *options);
-  add_ends(app, options->what);
+  declare_ends(app, options->what.ends);
   add_model(app, *options);
   return [options] { return run_render(*options); };
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <type_traits>
 #include <utility>
 
 #include "firmware-host/core/wire/message_types.hpp"
@@ -31,17 +32,17 @@ bool follows(const SessionTick& next, const std::vector<SessionTick>& batch) {
 
 }  // namespace
 
-FlightRecorder::FlightRecorder(schema::SessionWriter writer, FullQueue full)
-    : writer_(std::move(writer)), path_(writer_.path()), full_(full) {
+FlightRecorder::FlightRecorder(schema::SessionWriter writer, FullQueue full, LiveLimits* limits)
+    : writer_(std::move(writer)), path_(writer_.path()), full_(full), limits_(limits) {
   batch_.reserve(kBatch);
 }
 
 Result<std::unique_ptr<FlightRecorder>> FlightRecorder::begin(const std::string& path,
                                                               const schema::SessionHeader& header,
-                                                              FullQueue full) {
+                                                              FullQueue full, LiveLimits* limits) {
   auto writer = schema::SessionWriter::create(path, header);
   if (!writer) return schema::forward_error(writer);
-  std::unique_ptr<FlightRecorder> recorder(new FlightRecorder(std::move(*writer), full));
+  std::unique_ptr<FlightRecorder> recorder(new FlightRecorder(std::move(*writer), full, limits));
   recorder->thread_ = std::thread([self = recorder.get()] { self->run(); });
   return recorder;
 }
@@ -144,6 +145,7 @@ void FlightRecorder::write_ticks(std::uint32_t most) {
       --most;
     }
     write_run(batch_);
+    if (limits_ != nullptr) limits_->take(batch_);
   }
 }
 
@@ -163,6 +165,8 @@ void FlightRecorder::write_notes() {
   }
   for (const SessionLoss& loss : notes.losses) owe(loss);
   const auto put = [&](const auto& note) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(note)>, schema::SessionCommand>)
+      if (limits_ != nullptr) limits_->hear(note);
     if (const auto done = writer_.add(note); !done) failed(done.error());
   };
   for (const auto& command : notes.commands) std::visit(put, command);
@@ -200,6 +204,7 @@ Result<void> FlightRecorder::close() {
   if (missing_ > 0) confess();
   write_queued();
   write_owed();  // also what just found no room
+  if (limits_ != nullptr) limits_->end();
   return writer_.close(
       {written_.load(), queue_lost_.load() + disk_lost_.load() + link_lost_.load(), late_.load()});
 }

@@ -11,6 +11,7 @@
 
 #include "data-schema/session_writer.hpp"
 #include "firmware-host/core/ring.hpp"
+#include "playback/daemon/live_limits.hpp"
 
 namespace tacto::playback {
 
@@ -35,10 +36,11 @@ struct RecorderCounts {
 /// it writes.
 class FlightRecorder {
  public:
+  /// `limits`, where given, hears on the writer's thread what is to be written, and outlives the recorder.
   /// Errors: as SessionWriter::create.
   static schema::Result<std::unique_ptr<FlightRecorder>> begin(const std::string& path,
                                                                const schema::SessionHeader& header,
-                                                               FullQueue full);
+                                                               FullQueue full, LiveLimits* limits = nullptr);
   FlightRecorder(const FlightRecorder&) = delete;
   FlightRecorder& operator=(const FlightRecorder&) = delete;
   ~FlightRecorder();
@@ -65,7 +67,7 @@ class FlightRecorder {
     std::vector<schema::SessionLoss> losses;
     std::vector<schema::SessionEvent> events;
   };
-  FlightRecorder(schema::SessionWriter writer, FullQueue full);
+  FlightRecorder(schema::SessionWriter writer, FullQueue full, LiveLimits* limits);
   void run();
   void stop();
   void write_queued();
@@ -80,6 +82,7 @@ class FlightRecorder {
   schema::SessionWriter writer_;
   std::string path_;
   FullQueue full_;
+  LiveLimits* limits_;  // the writer's
   core::Ring<schema::SessionTick, kQueue> queue_;
   std::atomic<std::uint64_t> queue_lost_{0}, disk_lost_{0}, written_{0}, late_{0}, link_lost_{0};
   std::uint64_t missing_ = 0, missing_from_ = 0;  // the putter's: ticks that found no room

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "data-schema/files.hpp"
+#include "data-schema/newer_version.hpp"
 #include "data-schema/texture_wav.hpp"
 #include "playback/played_ends.hpp"
 
@@ -107,6 +108,7 @@ class TextureReader {
   Result<void> read(const schema::Scene& scene) {
     if (const auto known = check_choices(scene); !known) return known;
     laid_.choices_ = scene.playback;
+    note(schema::note_of_newer_version(laid_.scene_path_, scene));
     for (const schema::Layer& layer : scene.layers) {
       const auto added = std::visit([&](const TextureLayer& texture) { return add(texture); }, layer);
       if (!added) return added;
@@ -131,6 +133,8 @@ class TextureReader {
       if (!texture) return schema::forward_error(texture);
       const auto wav = schema::texture_wav(file);
       if (!wav) return schema::forward_error(wav);
+      note(schema::note_of_newer_version(stem + ".json", texture->newer_version,
+                                         schema::member_names(texture->extra_json)));
       laid_.files_.emplace(stem, LaidTextures::File{std::move(*texture), wav->sha256});
     }
     laid_.stems_.push_back(stem);
@@ -138,6 +142,9 @@ class TextureReader {
     laid_.rows_.push_back(
         {full_path(stem + ".json"), laid_.files_.at(stem).sum, layer.at_m, layer.gain_m_per_n, layer.ends});
     return {};
+  }
+  void note(std::string words) {
+    if (!words.empty()) laid_.notes_.push_back(std::move(words));
   }
   Result<void> check_ends() const {
     for (std::size_t i = 0; laid_.layers_.size() > 1 && i < laid_.layers_.size(); ++i)

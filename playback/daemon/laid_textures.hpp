@@ -28,6 +28,8 @@ class LaidTextures {
   /// The texture's own gain, where it is played with that.
   const std::optional<schema::PlaybackGain>& kept_gain() const { return kept_gain_; }
   const schema::PlaybackChoices& choices() const { return choices_; }  ///< the scene's
+  /// What to tell the user: which files are of a newer minor version.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   friend class TextureReader;
@@ -44,6 +46,7 @@ class LaidTextures {
   std::string scene_path_;
   std::optional<schema::PlaybackGain> kept_gain_;
   schema::PlaybackChoices choices_;
+  std::vector<std::string> notes_;
 };
 
 /// From the root on: a session is read in other folders too.

@@ -167,15 +167,25 @@ schema::SessionHeader Player::session_header() const {
   return header;
 }
 
+Result<void> Player::begin_session(const std::string& path) {
+  const schema::SessionHeader header = session_header();
+  const std::size_t samples = client_.description().welcome.profile_samples;
+  std::unique_ptr<LiveLimits> limits;
+  if (options_.tell_limits) limits = std::make_unique<LiveLimits>(header, samples);
+  auto recorder = FlightRecorder::begin(path, header, options_.full_queue, limits.get());
+  if (!recorder) return schema::forward_error(recorder);
+  recorder_ = std::move(*recorder);
+  limits_ = std::move(limits);
+  return {};
+}
+
 Result<void> Player::arm(const std::string& session_path) {
   if (const auto may = require(state_ == PlayerState::idle, "arm", "disarm first"); !may) return may;
   if (const auto may = require(loaded(), "arm", "load a texture or scene first"); !may) return may;
   if (const auto may = may_gain(gain_); !may) return may;
   // Another program may have been killed in mid-play: the device is then still on its way to rest.
   if (const auto rests = wait_for_idle(); !rests) return rests;
-  auto recorder = FlightRecorder::begin(session_path, session_header(), options_.full_queue);
-  if (!recorder) return schema::forward_error(recorder);
-  recorder_ = std::move(*recorder);
+  if (const auto begun = begin_session(session_path); !begun) return begun;
   fault_.clear();
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
   device_gain_m_per_n_ = program_->prepared.gain_m_per_n;
@@ -188,6 +198,7 @@ Result<void> Player::arm(const std::string& session_path) {
   if (!done) {
     recorder_->discard();
     recorder_.reset();
+    limits_.reset();
     return done;
   }
   session_path_ = session_path;
@@ -362,8 +373,8 @@ void Player::enter(PlayerState state, const std::string& why) {
 }
 
 PlayerStatus Player::status() const {
-  PlayerStatus status{state_, fault_, gain_, view_, std::nullopt, session_path_, round_trip_s_};
-  status.recorder = recorded();
+  PlayerStatus status{state_, fault_, gain_, view_, recorded(), {}, session_path_, round_trip_s_};
+  if (limits_) status.limits = limits_->told();
   return status;
 }
 

@@ -28,6 +28,7 @@ struct PlayerOptions {
   double heartbeat_s = 0.025;
   double most_late = 0.2;       ///< part of the ticks within a second; more of them is a fault
   std::string loop = "device";  ///< who closes it, for the session
+  bool tell_limits = false;     ///< live, by a second kernel on the recorder's thread (live_limits.hpp)
   /// How late a tick was, where somebody measures it.
   std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
   /// When a tick was due, by the device's clock, where somebody knows it better than its message.
@@ -42,6 +43,7 @@ struct PlayerStatus {
   double gain = 1;
   TickView ticks;  ///< since arming
   std::optional<RecorderCounts> recorder;
+  LimitsTook limits;        ///< since arming, where it is asked for
   std::string session;      ///< file being written, or written last
   double round_trip_s = 0;  ///< of the last heartbeat
 };
@@ -112,6 +114,7 @@ class Player {
   schema::Result<void> change(Program program, double fade_s);
   schema::Result<void> may_change(const Program& program, double fade_s) const;
   schema::SessionHeader session_header() const;
+  schema::Result<void> begin_session(const std::string& path);
   void take_ticks();
   void take(const wire::Ticks& message);
   void take_faults();
@@ -128,6 +131,7 @@ class Player {
   double metres_per_count_ = 0;
   Listener listener_;
   std::optional<Program> program_;
+  std::unique_ptr<LiveLimits> limits_;  // where they are told; before the recorder, which speaks to it
   std::unique_ptr<FlightRecorder> recorder_;
   std::string session_path_;
   RecorderCounts last_session_;

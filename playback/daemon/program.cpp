@@ -8,7 +8,9 @@
 
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
+#include "data-schema/newer_version.hpp"
 #include "data-schema/version.hpp"
+#include "firmware-host/core/profile.hpp"
 #include "playback/daemon/laid_textures.hpp"
 #include "playback/displacement_limit.hpp"
 
@@ -19,8 +21,7 @@ using schema::fail;
 using schema::Fault;
 using schema::Result;
 
-constexpr double kLongestOnsetS = 10;         // the wire's
-constexpr double kFarthestSamples = 1 << 29;  // from the encoder's zero: the wire's 2^61, in 2^32 a sample
+constexpr double kLongestOnsetS = 10;  // the wire's
 
 std::string transducer_sum(const std::string& name) {
   for (const std::string& path : {name, name + ".transducer.json"})
@@ -55,6 +56,17 @@ Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& te
   return std::move(*decision);
 }
 
+// Before what prepare() notes.
+void add_notes(Program& program, const LaidTextures& laid, const std::string& transducer) {
+  const schema::Transducer& read = program.session.transducer;
+  std::vector<std::string> first = laid.notes();
+  first.push_back(
+      schema::note_of_newer_version(transducer, read.newer_version, schema::member_names(read.extra_json)));
+  std::erase(first, "");
+  std::vector<std::string>& notes = program.prepared.notes;
+  notes.insert(notes.begin(), first.begin(), first.end());
+}
+
 void name_files(Program& program, const LaidTextures& laid) {
   program.session.textures = laid.rows();
   program.session.textures.front().seam_m = program.prepared.loop_seam_m;
@@ -71,8 +83,8 @@ Result<void> check_onset(const PrepareOptions& options) {
       fmt::format("0 s to {:g} s (--onset, or onset_s in the daemon's configuration)", kLongestOnsetS));
 }
 
-Result<void> check_place(const LaidTextures& laid, const Prepared& prepared) {
-  const double farthest_m = kFarthestSamples * prepared.pitch_m;
+// Farther away the kernel reads zero.
+Result<void> check_place(const LaidTextures& laid, double farthest_m) {
   const double at_m = std::max(std::abs(laid.start_m()), std::abs(laid.end_m()));
   if (at_m < farthest_m) return {};
   return fail(Fault::usage, fmt::format("lies as far as {:g} m from the encoder's zero", at_m),
@@ -115,7 +127,8 @@ Result<void> prepare_laid(Program& program, const LaidTextures& laid, const Tick
   program.decision = std::move(*decision);
   auto prepared = prepare(laid.placed(), transducer, options);
   if (!prepared) return tl::unexpected(naming_the_file(prepared.error(), laid, program.scene_path));
-  if (const auto near = check_place(laid, *prepared); !near) return near;
+  program.reach_m = std::abs(options.metres_per_count) * core::reach_counts(prepared->scale);
+  if (const auto near = check_place(laid, program.reach_m); !near) return near;
   program.prepared = std::move(*prepared);
   program.prepared.built.texture_files = laid.file_count();
   program.tray_peak_m = tray_peak_m(program.prepared, transducer, options);
@@ -146,6 +159,7 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
   program.options = *chosen;
   const auto made = prepare_laid(program, *laid, budget_of(request, choices));
   if (!made) return schema::forward_error(made);
+  add_notes(program, *laid, transducer_name);
   if (request.any_displacement) program.tray_peak_m = 0;
   name_files(program, *laid);
   describe(program.session, program.prepared, program.options);

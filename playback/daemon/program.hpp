@@ -36,6 +36,7 @@ struct Program {
   std::optional<schema::PlaybackGain> kept_gain;  ///< the texture's own, where it is played with that
   double start_m = 0;                             ///< of the first texture
   double length_m = 0;                            ///< from the first texture's start to the last one's end
+  double reach_m = 0;                             ///< from the encoder's zero: farther away nothing is read
   std::optional<TickDecision> decision;           ///< of the request's budget
   PrepareOptions options;                         ///< that it was prepared with, in the end
 

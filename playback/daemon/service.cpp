@@ -108,6 +108,7 @@ Result<void> Service::connect() {
   if (!device) return schema::forward_error(device);
   PlayerOptions player_options;
   player_options.heartbeat_s = 1e-3 * config_.watchdog_ms / 4;
+  player_options.tell_limits = true;
   player_options.most_late = 1e-2 * config_.most_late_percent;
   device_ = std::move(*device);
   if (config_.loop == "host") {
@@ -313,7 +314,7 @@ ControlFields Service::status() const {
   if (!status.session.empty()) fields.emplace_back("session", status.session);
   fields.emplace_back("round_trip_s", status.round_trip_s);
   add_ticks(fields, status.ticks, status.recorder ? status.recorder->lost() : 0);
-  add_limits(fields, status.ticks, status.session);
+  add_limits(fields, status);
   if (status.recorder) add_recorder(fields, *status.recorder);
   fields.emplace_back("period_s", 1 / config_.rate_hz);
   if (here_) add_loop(fields, here_.loop->status());

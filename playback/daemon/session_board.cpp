@@ -10,7 +10,6 @@
 namespace tacto::playback {
 namespace {
 
-constexpr std::size_t kProfileSamples = std::size_t{1} << 24;  // as much as prepare() makes at most
 constexpr std::uint32_t kReplayClockHz = 1'000'000;
 
 // No drive comes near them, and their ratio takes nothing of the time that a release may take.
@@ -45,10 +44,17 @@ bool is_frame(std::span<const std::uint8_t> bytes) {
          header.length <= wire::kMaxPayload && bytes.size() == around + header.length;
 }
 
-SessionBoard::SessionBoard(const schema::SessionHeader& header, BoardLimits limits)
+bool tells_touch(const schema::SessionHeader& header) {
+  const std::string& protocol = header.device_protocol;
+  return !protocol.empty() && protocol != "1.0" && protocol != "1.1";
+}
+
+SessionBoard::SessionBoard(const schema::SessionHeader& header, BoardLimits limits,
+                           std::size_t profile_samples)
     : header_(header),
       limits_(limits),
-      profile_(std::make_unique_for_overwrite<float[]>(kProfileSamples)),
+      profile_samples_(profile_samples),
+      profile_(std::make_unique_for_overwrite<float[]>(profile_samples)),
       encoder_(header.initial_encoder) {
   firmware_ = std::make_unique<core::Firmware>(board(), hal());
   say(wire::Hello{});
@@ -57,7 +63,7 @@ SessionBoard::SessionBoard(const schema::SessionHeader& header, BoardLimits limi
 core::Board SessionBoard::board() {
   core::Board board;
   board.profile_memory = profile_.get();
-  board.profile_samples = static_cast<std::uint32_t>(kProfileSamples);
+  board.profile_samples = static_cast<std::uint32_t>(profile_samples_);
   board.channels = &force_;
   board.channel_count = 1;
   wire::Welcome& about = board.about;

@@ -27,13 +27,25 @@ std::optional<Message> message_in_frame(std::span<const std::uint8_t> frame) {
   return message;
 }
 
+/// Precondition: its frame is_frame().
+inline wire::MessageType type_of(const schema::SessionCommand& command) {
+  return static_cast<wire::MessageType>(command.frame[3]);
+}
+
+/// Whether ticks say that the finger touches: from protocol 1.2 on. Older sessions do not name the protocol.
+bool tells_touch(const schema::SessionHeader& header);
+
 /// Whether amplitude, slew and energy hold the drive, or let through what the kernel wishes.
 enum class BoardLimits { recorded, lifted };
+
+inline constexpr std::size_t kMostProfileSamples = std::size_t{1}
+                                                   << 24;  // as much as prepare() makes at most
 
 /// Encoder, enable input and touch are as told; the drive is kept.
 class SessionBoard {
  public:
-  explicit SessionBoard(const schema::SessionHeader& header, BoardLimits limits = BoardLimits::recorded);
+  explicit SessionBoard(const schema::SessionHeader& header, BoardLimits limits = BoardLimits::recorded,
+                        std::size_t profile_samples = kMostProfileSamples);
   SessionBoard(const SessionBoard&) = delete;
   SessionBoard& operator=(const SessionBoard&) = delete;
 
@@ -60,6 +72,7 @@ class SessionBoard {
 
   schema::SessionHeader header_;
   BoardLimits limits_;
+  std::size_t profile_samples_;
   std::unique_ptr<float[]> profile_;
   std::vector<std::uint8_t> from_host_, to_host_;
   wire::FrameDecoder decoder_;

@@ -14,9 +14,6 @@ using schema::Fault;
 using schema::Result;
 using schema::SessionTick;
 
-constexpr std::uint32_t kEveryLimit =
-    wire::kTickAmplitudeLimited | wire::kTickSlewLimited | wire::kTickEnergyLimited;
-
 struct FlagsSeen {
   bool limited = false, whole = true;
 

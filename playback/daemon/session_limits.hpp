@@ -12,6 +12,10 @@
 
 namespace tacto::playback {
 
+/// The flags of a tick from whose drive amplitude, slew or energy took something.
+inline constexpr std::uint32_t kEveryLimit =
+    wire::kTickAmplitudeLimited | wire::kTickSlewLimited | wire::kTickEnergyLimited;
+
 /// A tick as LimitTally takes it: the recorded drive and its flags, and what was wished, V.
 core::TickOutput limited_tick(float drive_v, float wished_v, std::uint32_t flags);
 

@@ -11,6 +11,7 @@
 
 #include "firmware-host/core/counts_between.hpp"
 #include "firmware-host/core/encoder_watch.hpp"
+#include "firmware-host/core/profile.hpp"
 #include "firmware-host/core/wire/host_messages.hpp"
 #include "playback/daemon/session_board.hpp"
 
@@ -30,17 +31,26 @@ class SteeringSteps {
 
   void see(const schema::SessionCommand& command) {
     if (!is_frame(command.frame)) return;
+    if (const auto begin = message_in_frame<wire::ProfileBegin>(command.frame))
+      next_reach_ = reach_of(*begin);
     const auto type = static_cast<wire::MessageType>(command.frame[3]);
     if (armed_ && wire::steers(type)) steps_.push_back({factor_of(command), turn_of(command)});
     if (const auto tracking = message_in_frame<wire::Tracking>(command.frame); tracking && !armed_)
       look_ahead_ticks_ = tracking->look_ahead_ticks;
+    if (!armed_) reach_ = next_reach_;
     armed_ = armed_ || type == wire::MessageType::arm;
   }
   void see(const schema::SessionChange& change) { next_ = change.program; }
   std::vector<SteeringStep> take() { return std::move(steps_); }
   double look_ahead_ticks() const { return look_ahead_ticks_; }
+  const ProfileReach& reach() const { return reach_; }
 
  private:
+  static ProfileReach reach_of(const wire::ProfileBegin& begin) {
+    core::ProfileScale scale;
+    scale.samples_per_count_q32 = begin.samples_per_count_q32;
+    return {begin.origin_count, core::reach_counts(scale)};
+  }
   std::optional<double> factor_of(const schema::SessionCommand& command) const {
     const auto gain = message_in_frame<wire::Gain>(command.frame);
     return gain ? std::optional(gain->gain / textures_gain_) : std::nullopt;
@@ -48,7 +58,7 @@ class SteeringSteps {
   std::optional<TextureTurn> turn_of(const schema::SessionCommand& command) {
     const auto change = message_in_frame<wire::Change>(command.frame);
     if (!change) return std::nullopt;
-    TextureTurn turn{0, change->fade_s * rate_hz_, std::exchange(next_, std::nullopt)};
+    TextureTurn turn{0, change->fade_s * rate_hz_, std::exchange(next_, std::nullopt), 0, next_reach_};
     textures_ += turn.brings ? turn.brings->textures.size() : 0;
     if (textures_ > kMostTexturesKept) turn.brings.reset();
     return turn;
@@ -56,6 +66,7 @@ class SteeringSteps {
 
   double textures_gain_, rate_hz_, look_ahead_ticks_ = 0;
   bool armed_ = false;
+  ProfileReach reach_, next_reach_;
   std::vector<SteeringStep> steps_;
   std::optional<schema::SessionProgram> next_;  // what the next change brings
   std::size_t textures_ = 0;
@@ -107,6 +118,7 @@ class Surveyor {
     if (told_lost_ > seen_.lost && !seen_.lost_at) seen_.lost_at = next_tick_;
     seen_.lost = std::max(seen_.lost, told_lost_);
     seen_.look_ahead_ticks = steps_.look_ahead_ticks();
+    seen_.reach = steps_.reach();
     seen_.steps = steps_.take();
   }
 
@@ -132,6 +144,11 @@ class Surveyor {
 };
 
 }  // namespace
+
+bool ProfileReach::holds(std::int32_t encoder) const {
+  const std::int64_t away = core::counts_between(origin_count, encoder);
+  return away <= counts && away >= -counts;
+}
 
 double part_read(const schema::SessionReader& reader) {
   std::error_code ignored;

@@ -13,12 +13,21 @@
 
 namespace tacto::playback {
 
+/// The encoder counts in which a device reads a texture; elsewhere its drive is zero (core::reach_counts).
+struct ProfileReach {
+  std::int32_t origin_count = 0;
+  std::int64_t counts = INT64_MAX;  ///< to either side; older sessions may not say
+
+  bool holds(std::int32_t encoder) const;
+};
+
 /// A change of texture.
 struct TextureTurn {
   std::uint64_t row = 0;                         ///< the first that another texture is in
   double fade_ticks = 0;                         ///< over which it comes in (core::TexturePlayer)
   std::optional<schema::SessionProgram> brings;  ///< none: the session does not say, as older ones
   double time_s = 0;                             ///< of that row
+  ProfileReach reach = {};
 };
 
 /// A command that steers, in the order of the session.
@@ -32,6 +41,7 @@ struct SessionOverview {
   schema::SessionHeader header;
   std::string path;
   std::vector<SteeringStep> steps;
+  ProfileReach reach;           ///< of the textures that it begins with
   double look_ahead_ticks = 0;  ///< the drive is of where the finger will be then
   std::uint64_t ticks = 0;
   std::optional<std::uint64_t> lost_at;  ///< the first tick that is missing

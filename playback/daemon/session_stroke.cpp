@@ -32,7 +32,8 @@ struct Found {
   StrokeSums sums;
 };
 
-Result<Found> find_stroke(const std::string& name, const SessionOverview& overview, std::uint64_t asked) {
+Result<Found> find_stroke(const std::string& name, const SessionOverview& overview, std::uint64_t asked,
+                          const std::function<void(double)>& progress) {
   Found found;
   StrokeFinder finder([&](const StrokeSums& sums) {
     const bool taken =
@@ -41,9 +42,12 @@ Result<Found> find_stroke(const std::string& name, const SessionOverview& overvi
   });
   RowMaker maker(overview, 2 * rows_around(overview.header));
   std::uint64_t index = 0;
-  const auto read = read_rows(maker, name, [&](const SessionRow& row) {
-    finder.add({index++, row, 0, 0, true, {}});
-  });
+  const auto read = read_rows(
+      maker, name,
+      [&](const SessionRow& row) {
+        finder.add({index++, row, 0, 0, true, {}});
+      },
+      progress);
   if (!read) return schema::forward_error(read);
   finder.end();
   return found;
@@ -62,18 +66,22 @@ Result<void> check_found(const Found& found, std::uint64_t asked, const std::str
 }
 
 // With what is around it.
-Result<std::vector<JudgedRow>> rows_of(const std::string& name, const StrokeSums& sums, SessionStroke& of) {
+Result<std::vector<JudgedRow>> rows_of(const std::string& name, const StrokeSums& sums, SessionStroke& of,
+                                       const std::function<void(double)>& progress) {
   const std::uint64_t around = rows_around(of.overview.header);
   const std::uint64_t first = sums.first.index - std::min(sums.first.index, around);
   std::vector<JudgedRow> rows;
   RowMaker maker(of.overview, 2 * around);
   RowFollower follower(of.overview.header);
   std::uint64_t index = 0;
-  const auto read = read_rows(maker, name, [&](const SessionRow& row) {
-    const JudgedRow judged = follower.next(row, maker.turns());
-    if (index >= first && index <= sums.last.index + around) rows.push_back(judged);
-    ++index;
-  });
+  const auto read = read_rows(
+      maker, name,
+      [&](const SessionRow& row) {
+        const JudgedRow judged = follower.next(row, maker.turns());
+        if (index >= first && index <= sums.last.index + around) rows.push_back(judged);
+        ++index;
+      },
+      progress);
   if (!read) return schema::forward_error(read);
   of.turns = maker.turns();
   return rows;
@@ -90,17 +98,18 @@ void keep_stroke(const std::vector<JudgedRow>& rows, std::uint64_t before, std::
 
 }  // namespace
 
-Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t stroke) {
-  auto overview = session_overview(name);
+Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t stroke,
+                                          const std::function<void(double)>& progress) {
+  auto overview = session_overview(name, part_of(progress, 0, 1. / 3));
   if (!overview) return schema::forward_error(overview);
   if (overview->lost_at)
     return fail(Fault::unsuitable, fmt::format("{} ticks are missing", overview->lost), name,
                 "compare a session that is whole");
-  const auto found = find_stroke(name, *overview, stroke);
+  const auto found = find_stroke(name, *overview, stroke, part_of(progress, 1. / 3, 2. / 3));
   if (!found) return schema::forward_error(found);
   if (const auto fits = check_found(*found, stroke, name); !fits) return schema::forward_error(fits);
   SessionStroke of{std::move(*overview), {}, found->chosen, found->strokes, found->sums.first.index, {}, {}};
-  const auto rows = rows_of(name, found->sums, of);
+  const auto rows = rows_of(name, found->sums, of, part_of(progress, 2. / 3, 1));
   if (!rows) return schema::forward_error(rows);
   const auto before = std::min(of.first_row, rows_around(of.overview.header));
   keep_stroke(*rows, before, found->sums.rows, of);

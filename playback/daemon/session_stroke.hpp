@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct SessionStroke {
 
 /// `stroke` is 1-based; 0 takes the longest way. The session is read row by row; a stroke is held in memory.
 /// Errors: as session_overview; usage: no such stroke; unsuitable: none of 5 mm, ticks missing, a stroke of
-/// over 2^22 ticks (7 min at 10 kHz).
-schema::Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t stroke);
+/// over 2^22 ticks (7 min at 10 kHz). `progress` hears fractions.
+schema::Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t stroke,
+                                                  const std::function<void(double)>& progress = {});
 
 }  // namespace tacto::playback

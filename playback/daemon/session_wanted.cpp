@@ -96,8 +96,12 @@ class WantedReader::PartOfReadings {
 
 WantedReader::WantedReader(const SessionOverview& overview) : overview_(overview) {
   sets_.push_back(&overview.header.textures);
-  for (const SteeringStep& step : overview.steps)
-    if (step.turn) sets_.push_back(step.turn->brings ? &step.turn->brings->textures : nullptr);
+  reaches_.push_back(overview.reach);
+  for (const SteeringStep& step : overview.steps) {
+    if (!step.turn) continue;
+    sets_.push_back(step.turn->brings ? &step.turn->brings->textures : nullptr);
+    reaches_.push_back(step.turn->reach);
+  }
   set_notes_.resize(sets_.size());
   std::map<Key, std::string> faults;
   for (std::size_t set = 0; set < sets_.size(); ++set) known_.push_back(look_at(set, faults));
@@ -200,6 +204,29 @@ std::vector<double> WantedReader::mixed(std::span<const JudgedRow> rows, const T
   return readings;
 }
 
+bool WantedReader::reaches(const JudgedRow& row) const {
+  const bool fades = row.mix.leaving_part > 0;
+  return reaches_[row.mix.playing].holds(row.row.encoder) &&
+         (!fades || reaches_[row.mix.leaving].holds(row.row.encoder));
+}
+
+// A loop goes on for ever as a scene says it, and as a device has it as far as its numbers reach.
+std::vector<bool> WantedReader::driven_by_unknown(std::span<const JudgedRow> rows, const TextureMix& mix) {
+  std::vector<bool> unknown = mix.unknown;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (reaches(rows[i])) continue;
+    unknown[i] = true;
+    const double reach_m = std::abs(overview_.header.metres_per_count) *
+                           static_cast<double>(reaches_[rows[i].mix.playing].counts);
+    note(
+        fmt::format("the finger went farther than {:.4g} m from the encoder's zero, where the device reads "
+                    "no texture any "
+                    "more and its drive is 0 V: strokes there are not judged",
+                    reach_m));
+  }
+  return unknown;
+}
+
 SessionWanted WantedReader::wanted_in(std::span<const JudgedRow> rows) {
   const schema::SessionHeader& header = overview_.header;
   const TextureMix mix = mix_of(rows, known_);
@@ -211,7 +238,7 @@ SessionWanted WantedReader::wanted_in(std::span<const JudgedRow> rows) {
   auto readings = mixed(rows, mix, grid, path, sound);
   forget_unused();
   SessionWanted wanted{signal_of(wanted_of_readings(std::move(readings), grid, band, 0)),
-                       felt(mix.unknown, overview_.look_ahead_ticks)};
+                       felt(driven_by_unknown(rows, mix), overview_.look_ahead_ticks)};
   wanted.displacement_m.resize(rows.size());
   if (!sound) wanted.unknown.assign(rows.size(), true);
   return wanted;

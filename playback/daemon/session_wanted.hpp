@@ -17,7 +17,9 @@ namespace tacto::playback {
 
 struct SessionWanted {
   std::vector<double> displacement_m;  ///< one a row, in the session's band
-  std::vector<bool> unknown;           ///< a row: a texture that is not known had a part in what was felt
+  /// A row: a texture that is not known had a part in what was felt, or the finger was where the device reads
+  /// none any more.
+  std::vector<bool> unknown;
 };
 
 /// A texture that was played, read again.
@@ -55,10 +57,13 @@ class WantedReader {
                             const FingerPath& path, bool& sound);
   void forget_unused();
   void note(std::string words);
+  std::vector<bool> driven_by_unknown(std::span<const JudgedRow> rows, const TextureMix& mix);
+  bool reaches(const JudgedRow& row) const;
 
   const SessionOverview& overview_;
   std::vector<const Textures*> sets_;  // none: the session does not say
   std::vector<bool> known_;
+  std::vector<ProfileReach> reaches_;  // of the sets
   std::vector<std::vector<std::string>> set_notes_;
   std::vector<std::string> notes_;
   std::map<Key, ReadAgain> kept_;

@@ -22,6 +22,11 @@ std::string reason(const TickView& ticks, const Feelable& what) {
   if (what.stops && (to_m < what.start_m || from_m > what.end_m))
     return fmt::format("the finger went {}, and what is played lies {} (--at, or at_m in the scene)",
                        from_to(from_m, to_m), from_to(what.start_m, what.end_m));
+  if (from_m > what.reach_m || to_m < -what.reach_m)
+    return fmt::format(
+        "the finger went {}, and farther than {:.4g} m from the encoder's zero nothing is read (begin "
+        "nearer)",
+        from_to(from_m, to_m), what.reach_m);
   return fmt::format("the finger went {}", from_to(from_m, to_m));
 }
 
@@ -29,7 +34,7 @@ std::string reason(const TickView& ticks, const Feelable& what) {
 
 Feelable feelable(const Program& program) {
   return {program.start_m, program.start_m + program.length_m, program.options.ends == Ends::stop,
-          program.options.contact_on_n};
+          program.options.contact_on_n, program.reach_m};
 }
 
 std::optional<std::string> note_of_silence(const TickView& ticks, const Feelable& what) {

@@ -2,6 +2,7 @@
 // Why a play was felt nowhere.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -13,8 +14,9 @@ namespace tacto::playback {
 /// What a program says of where and when it can be felt.
 struct Feelable {
   double start_m = 0, end_m = 0;
-  bool stops = true;        ///< at its ends
-  double contact_on_n = 0;  ///< 0: always
+  bool stops = true;          ///< at its ends
+  double contact_on_n = 0;    ///< 0: always
+  double reach_m = INFINITY;  ///< from the encoder's zero
 };
 
 Feelable feelable(const Program& program);

@@ -24,9 +24,13 @@ void add_ticks(ControlFields& fields, const TickView& view, std::uint64_t not_re
   fields.emplace_back("drive_peak_v", view.drive_peak_v());
 }
 
-void add_limits(ControlFields& fields, const TickView& view, const std::string& session) {
-  if (view.limited() > 0 && !session.empty())
-    fields.emplace_back("limits_in_db", "tactograph session " + session);
+void add_limits(ControlFields& fields, const PlayerStatus& status) {
+  if (status.ticks.limited() + status.ticks.energy_limited() == 0) return;
+  const LimitsTook& took = status.limits;
+  if (took.db) fields.emplace_back("limits_took_db", *took.db);
+  if (took.last_second_db) fields.emplace_back("limits_took_last_second_db", *took.last_second_db);
+  if (!took.unknown.empty()) fields.emplace_back("limits_took", "unknown: " + took.unknown);
+  if (!status.session.empty()) fields.emplace_back("limits_in_db", "tactograph session " + status.session);
 }
 
 void add_recorder(ControlFields& fields, const RecorderCounts& counts) {

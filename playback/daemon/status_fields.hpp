@@ -5,16 +5,15 @@
 #include "data-schema/control.hpp"
 #include "playback/daemon/flight_recorder.hpp"
 #include "playback/daemon/host_loop.hpp"
-#include "playback/daemon/tick_view.hpp"
+#include "playback/daemon/player.hpp"
 
 namespace tacto::playback {
 
 /// `not_recorded`: ticks that did not get into the session, which are lost too.
 void add_ticks(schema::ControlFields& fields, const TickView& view, std::uint64_t not_recorded);
-/// Where the device's flags tell that limits took something away: the command that tells how much, in dB.
-/// What was wished is known to the device's kernel alone, and computed again from the session, also while it
-/// goes on.
-void add_limits(schema::ControlFields& fields, const TickView& view, const std::string& session);
+/// Where the device's flags tell that limits took something away: how much, in dB, live, or why it is not
+/// known; and the command that tells it by stroke.
+void add_limits(schema::ControlFields& fields, const PlayerStatus& status);
 void add_recorder(schema::ControlFields& fields, const RecorderCounts& counts);
 void add_loop(schema::ControlFields& fields, const HostLoopStatus& loop);
 

@@ -243,5 +243,18 @@ TEST(ComparePage, NeedsNothingBesideItAndEscapesNames) {
     EXPECT_EQ(page->compare(at, 10, "src=\"data:"), 0);
 }
 
+// Of both, one after the other.
+TEST(Compare, WhoWaitsHearsHowFarItIs) {
+  const auto a = made_texture(10e-6, 8000, [](double x) { return 0.02 * std::sin(12000 * x); });
+  std::vector<double> heard;
+  const auto found = compare(a, scaled(a, 2), {}, [&](double part) { heard.push_back(part); });
+  ASSERT_TRUE(found) << message(found.error());
+  EXPECT_TRUE(std::ranges::is_sorted(heard));
+  EXPECT_TRUE(std::ranges::any_of(heard, [](double part) { return part > 0 && part < 0.5; }));
+  ASSERT_FALSE(heard.empty());
+  EXPECT_GT(heard.back(), 0.9);
+  EXPECT_LE(heard.back(), 1);
+}
+
 }  // namespace
 }  // namespace tacto::analysis

@@ -160,28 +160,45 @@ def from_load_to_a_session_that_replays():
 
 
 def what_the_limits_took_is_found():
-    """`status` counts ticks; the command that it names tells how many dB, while the session goes on and once it is closed."""
+    """`status` tells in dB what the limits take, in both loops, and nothing where they take nothing; once the session is closed it is what
+    `session` tells of the whole. The command that it names also reads a session that goes on."""
     preset = pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json"
     weak = {**json.loads(preset.read_text()), "name": "weak", "drive_limit_v": 0.3}
     pathlib.Path("weak.transducer.json").write_text(json.dumps(weak))
-    prepare_files(transducer="weak")
+    live_members = ("limits_took_db", "limits_took_last_second_db", "limits_in_db")
+    on_host = {"loop": "host", "device": "sim:rate=2kHz", "most_late_percent": 100, "watchdog_ms": 500}
+    for limited in ({"transducer": "weak"}, {"transducer": "weak", **on_host}, {"playback": {"energy_rms_v": 0.1, "energy_window_s": 0.1}}):
+        prepare_files(**limited)
+        with daemon():
+            client = Client()
+            begin(client)
+            status = client.must(request="status")
+            while "limits_took_last_second_db" not in status:
+                limited_ticks = status["limited_ticks"] + status["energy_limited_ticks"]
+                assert ("limits_in_db" in status) == (limited_ticks > 0), status
+                time.sleep(0.05)
+                status = client.must(request="status")
+            time.sleep(1)
+            asked = status["limits_in_db"].split()
+            assert asked[:2] == ["tactograph", "session"] and asked[2] == status["session"], status
+            so_far = tacto.run_json(*asked[1:])["removed_by_limits_db"]
+            top, _ = tacto.run("ctl", "top", "--socket", "control", "--time", "0.5s")
+            assert "dB since arming" in top and f"by stroke: {' '.join(asked)}" in top, top
+            client.must(request="disarm")
+            live = client.must(request="status")
+        closed = tacto.run_json(*asked[1:])["removed_by_limits_db"]
+        assert abs(live["limits_took_db"] - closed) < 1e-9, (live, closed)
+        assert -20 < closed < -1 and -20 < so_far < -1, (so_far, closed)
+        print(f"{limited}: limits took {so_far:.1f} dB so far, {closed:.1f} dB in all")
+    prepare_files()
     with daemon():
         client = Client()
-        begin(client)
-        status = client.must(request="status")
-        while status["limited_ticks"] == 0:
-            assert "limits_in_db" not in status, status
-            time.sleep(0.05)
-            status = client.must(request="status")
+        session = begin(client)
         time.sleep(1)
-        asked = status["limits_in_db"].split()
-        assert asked[:2] == ["tactograph", "session"] and asked[2] == status["session"], status
-        live = tacto.run_json(*asked[1:])
-        assert "limits took, in dB: tactograph session" in tacto.run("ctl", "top", "--socket", "control", "--time", "0.5s")[0]
         client.must(request="disarm")
-    closed = tacto.run_json(*asked[1:])
-    assert -20 < closed["removed_by_limits_db"] < -5 and -20 < live["removed_by_limits_db"] < -5, (live, closed)
-    print(f"limits took {live['removed_by_limits_db']:.1f} dB so far, {closed['removed_by_limits_db']:.1f} dB in all")
+        live = client.must(request="status")
+    assert live["drive_peak_v"] > 0.1 and not any(member in live for member in live_members), live
+    assert tacto.run_json("session", session)["removed_by_limits"] == "none"
 
 
 def kill_9_in_mid_play():

@@ -49,6 +49,29 @@ def a_counter_that_passes_2_to_the_31_goes_on():
     assert np.any(np.diff(table["encoder_count"]) < -2**31) and np.max(np.abs(np.diff(table["position_m"]))) < 1e-3
 
 
+def where_the_device_reads_nothing_is_not_judged():
+    """At 1 um a device reads a texture as far as 2^29 um = 536.87 m from its zero (WIRE.md), and drives 0 V beyond: a loop there was not felt, and
+    no error is told of it as though it was."""
+    write_grating()
+    play = ("play", "oak", "--ends", "loop", "-d", "sim:", "--finger-path", "way.csv", "--gain", "0.5mm/N")
+    reach_m = 2**29 * 1e-6
+    for name, from_m, to_m, felt in (("near", reach_m - 0.04, reach_m - 0.01, True), ("over", reach_m - 0.02, reach_m + 0.01, False),
+                                     ("beyond", reach_m + 0.01, reach_m + 0.04, False), ("far", 2146.99, 2147.02, False),
+                                     ("behind", -reach_m - 0.01, -reach_m - 0.04, False)):
+        write_way(from_m, to_m)
+        silence = tacto.run(*play, "-o", name)[1]
+        assert ("farther than 536.9 m" in silence) == (name in ("beyond", "far", "behind")), (name, silence)
+        judged, said = tacto.run("session", name, "--json")
+        stroke = json.loads(judged)["strokes"][0]
+        assert ("wanted_rms_m" in stroke and stroke["wanted_rms_m"] != "unknown") == felt, (name, stroke)
+        assert ("farther than 536.9 m" in said) == (not felt), (name, said)
+        if felt:
+            assert stroke["error_db"] < -20, stroke  # it holds the onset; where nothing is felt it is 0 dB
+        tacto.run("compare", f"{name}.session", "oak", "--align", "none", code=0 if felt else 5)
+    said = tacto.run("play", "oak", "-d", "sim:", "--at", "536.85m", "-o", "cut", code=2)[1]
+    assert "within 536.9 m" in said, said
+
+
 def what_stands_before_a_damage_is_the_same():
     """Cut off, or with a bit turned, 1000 bytes before its end: each tick before it is the same, and the exit code tells the damage."""
     write_grating()
@@ -101,6 +124,35 @@ def a_misspelling_is_not_played():
     tacto.run("play", "newer", "-d", "sim:", "--time", "0.1s", "-o", "newer")
 
 
+def a_newer_version_is_said_once():
+    """Scene, texture and transducer of a newer minor version play with one warning each: which file, which version, what is passed over."""
+    write_grating()
+    write_way(0.004, 0.034)
+    layer = {"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 5e-4}
+    pathlib.Path("s.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": [layer]}))
+    preset = pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json"
+    pathlib.Path("mine.transducer.json").write_text(preset.read_text())
+
+    def add_newer(file, **extra):
+        body = {**json.loads(pathlib.Path(file).read_text()), "version": "1.9", **extra}
+        pathlib.Path(file).write_text(json.dumps(body))
+
+    newer = {}
+    for file, names, extra in ((None, "", {}), ("s.scene.json", "light, layers/0/warmth", {"light": "dim", "layers": [{**layer, "warmth": 3}]}),
+                               ("oak.texture.json", "humidity_map", {"humidity_map": [1]}), ("mine.transducer.json", "colour", {"colour": "red"})):
+        if file:
+            newer[file] = names
+            add_newer(file, **extra)
+        for number, verb in enumerate((["explain", "s", "--transducer", "mine"], ["play", "s", "-d", "sim:", "--time", "0.1s", "--transducer", "mine"],
+                                       ["render", "s", "--path", "way.csv", "--transducer", "mine", "-o", f"drive{len(newer)}.wav"])):
+            said = tacto.run(*verb, *(["-o", f"n{len(newer)}"] if number == 1 else []))[1]
+            lines = [line for line in said.splitlines() if "newer than this program's" in line]
+            assert len(lines) == len(newer), (verb, said)
+            for name, passed_over in newer.items():
+                told = [line for line in lines if name.split(".")[0] in line and "1.9" in line and f"passed over: {passed_over}" in line]
+                assert len(told) == 1, (name, lines)
+
+
 def a_rate_that_leaves_the_resonance_in_is_named():
     """At 1.4 kHz the band ends at 400 Hz (2/7 of the rate), below the transducer's resonance: the remedy says so, and 1750 Hz plays."""
     write_grating()
@@ -119,8 +171,8 @@ def a_table_named_twice():
 
 
 if __name__ == "__main__":
-    for test in (all_tables_share_one_time, a_counter_that_passes_2_to_the_31_goes_on, what_stands_before_a_damage_is_the_same,
-                 nothing_felt_has_its_reason, a_misspelling_is_not_played, a_rate_that_leaves_the_resonance_in_is_named,
+    for test in (all_tables_share_one_time, a_counter_that_passes_2_to_the_31_goes_on, where_the_device_reads_nothing_is_not_judged, what_stands_before_a_damage_is_the_same,
+                 nothing_felt_has_its_reason, a_misspelling_is_not_played, a_newer_version_is_said_once, a_rate_that_leaves_the_resonance_in_is_named,
                  a_table_named_twice):
         if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
             continue

@@ -159,6 +159,19 @@ def check_where_it_was_identified(folder):
     made.report_of("explain", folder / "t", "--rate", "50kHz")
 
 
+def check_ends(folder):
+    """--ends means what it means to play and render: of a texture alone, and the same loop."""
+    played = made.report_of("play", folder / "t", "-d", "sim:", "--time", "0.1s", "--ends", "loop", "-o", folder / "looped")
+    loop = made.report_of("explain", folder / "t", "--ends", "loop")
+    assert (loop["loop_period_m"], loop["loop_seam_m"]) == (played["loop_period_m"], played["loop_seam_m"]), (loop, played)
+    for ends in ("stop", "mirror", "loop"):
+        report = made.report_of("explain", folder / "t", "--ends", ends)
+        assert report["textures"][0]["ends"] == ends and ("loop_period_m" in report) == (ends == "loop"), report
+    assert made.report_of("explain", folder / "t") == made.report_of("explain", folder / "t", "--ends", "stop")
+    refused(USAGE, "change the scene", "explain", folder / "bench.scene.json", "--ends", "loop")
+    refused(USAGE, "mirror", "explain", folder / "t", "--ends", "miror")
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -166,6 +179,7 @@ def main():
         made.write_path(folder / "path.csv", [0, 0.1, 1.1, 1.2], [0.002, 0.002, 0.04, 0.04])
         check_explain(folder)
         check_scene(folder)
+        check_ends(folder)
         check_choice(folder)
         check_render(folder)
         check_play(folder)

@@ -34,6 +34,7 @@ class PlayerOnSim : public testing::Test {
     device_->board().set_script([this](double t) { return place_m(t); });
     PlayerOptions options;
     options.full_queue = FullQueue::wait;
+    options.tell_limits = tell_limits_;
     auto player = Player::make(device_->client(), "sim:", options);
     ASSERT_TRUE(player) << schema::message(player.error());
     player_ = std::move(*player);
@@ -103,6 +104,7 @@ class PlayerOnSim : public testing::Test {
   tests::TemporaryFolder folder_;
   std::string session_ = folder_ / "one.session";
   double jump_s_ = 1e9;
+  bool tell_limits_ = false;
   std::unique_ptr<firmware_host::SimDevice> device_;
   std::unique_ptr<Player> player_;
 };

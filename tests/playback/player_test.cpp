@@ -10,6 +10,7 @@
 #include "data-schema/session_writer.hpp"
 #include "firmware-host/sim/sim_transport.hpp"
 #include "playback/daemon/player_device.hpp"
+#include "playback/daemon/session_stroke.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {
@@ -302,6 +303,20 @@ TEST_F(PlayerOnSim, ADeviceThatDoesNotAnswerIsLostOnceAndForAll) {
   EXPECT_FALSE(player_->disarm());
   auto reader = schema::SessionReader::open(session_);
   EXPECT_EQ(session_totals(*reader).ending, schema::SessionEnding::closed);
+}
+
+TEST_F(PlayerOnSim, WhoReadsAStrokeHearsHowFarItIs) {
+  begin();
+  ASSERT_TRUE(player_->play());
+  run(1);
+  ASSERT_TRUE(player_->disarm());
+  std::vector<double> heard;
+  const auto stroke = read_session_stroke(session_, 0, [&](double part) { heard.push_back(part); });
+  ASSERT_TRUE(stroke) << schema::message(stroke.error());
+  ASSERT_FALSE(heard.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(heard));
+  EXPECT_GT(heard.front(), 0);
+  EXPECT_DOUBLE_EQ(heard.back(), 1);
 }
 
 }  // namespace

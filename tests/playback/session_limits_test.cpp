@@ -3,60 +3,12 @@
 #include "playback/daemon/session_limits.hpp"
 
 #include "playback/daemon/stroke_report.hpp"
-#include "tests/playback/player_on_sim.hpp"
+#include "tests/playback/limited_play.hpp"
 
 namespace tacto::playback {
 namespace {
 
-/// Plays the same twice: with limits that nothing reaches, where the drive is what is wished, and with those
-/// of a test. A device each, so that time and finger are the same to the tick.
-class SessionLimits : public PlayerOnSim {
- protected:
-  std::vector<double> drive_of(const schema::Transducer& transducer, const schema::PlaybackChoices& choices,
-                               const std::string& name) {
-    player_.reset();
-    SetUp();  // the finger begins anew
-    session_ = folder_ / (name + ".session");
-    PrepareOptions options;
-    options.metres_per_count = player_->metres_per_count();
-    options.onset_s = 0.02;
-    options.most_samples = device_->client().description().welcome.profile_samples;
-    const std::string file = folder_ / (name + ".transducer.json");
-    EXPECT_TRUE(schema::write_transducer(file, transducer));
-    const auto load = [&](const std::string& texture) {
-      ProgramRequest request{folder_ / texture, {}, 5e-4, {}};
-      request.choices = choices;
-      auto made = make_program(request, file, options);
-      EXPECT_TRUE(made) << schema::message(made.error());
-      EXPECT_TRUE(player_->load(std::move(*made)));
-    };
-    load("grating");
-    const auto armed = player_->arm(session_);
-    if (!armed) {
-      ADD_FAILURE() << schema::message(armed.error());
-      return {};
-    }
-    EXPECT_TRUE(player_->play());
-    run(1);
-    EXPECT_TRUE(player_->gain(1.2));
-    load("fine");
-    run(1.2);
-    EXPECT_TRUE(player_->disarm());
-    std::vector<double> drive;
-    for (const auto& tick : ticks()) drive.push_back(tick.drive_v);
-    return drive;
-  }
-  static double removed_db(const std::vector<double>& wished, const std::vector<double>& drive) {
-    double removed = 0, whole = 0;
-    for (std::size_t i = 0; i < wished.size(); ++i)
-      removed += (wished[i] - drive[i]) * (wished[i] - drive[i]), whole += wished[i] * wished[i];
-    return 10 * std::log10(removed / whole);
-  }
-  schema::Transducer bender_ = *schema::read_transducer("wiertlewski2011");
-};
-
-// The two sums differ by the roundings of double precision alone.
-constexpr double kRoundingsDb = 1e-6;
+using SessionLimits = LimitedPlay;
 
 TEST_F(SessionLimits, NothingIsTakenWhereNoneIsReached) {
   drive_of(bender_, {}, "free");

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/cli/ends_option.hpp"
+
+namespace tacto::playback {
+
+void declare_ends(CLI::App& app, std::optional<schema::TextureEnds>& ends, const std::string& of_what) {
+  app.add_option_function<std::string>(
+         "--ends",
+         [&ends](const std::string& word) {
+           ends = static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
+         },
+         of_what +
+             "Of a texture: what lies beyond its ends: nothing, the texture mirrored, or the texture again "
+             "(loop: as it is where its end meets its beginning, else its last 1 mm fades into its first)")
+      ->type_name("stop|mirror|loop");
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// --ends, alike in play, render, explain and ctl.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "data-schema/cli/verb.hpp"
+#include "data-schema/scene.hpp"
+
+namespace tacto::playback {
+
+/// `of_what` begins the help, as in "load: ". `ends` must outlive the parser.
+void declare_ends(CLI::App& app, std::optional<schema::TextureEnds>& ends, const std::string& of_what = "");
+
+}  // namespace tacto::playback

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One play with limits that nothing reaches, and with those of a test.
+#pragma once
+
+#include "tests/playback/player_on_sim.hpp"
+
+namespace tacto::playback {
+
+/// Plays the same twice: with limits that nothing reaches, where the drive is what is wished, and with those
+/// of a test. A device each, so that time and finger are the same to the tick.
+class LimitedPlay : public PlayerOnSim {
+ protected:
+  void load(const std::string& texture) {
+    PrepareOptions options;
+    options.metres_per_count = player_->metres_per_count();
+    options.onset_s = 0.02;
+    options.most_samples = device_->client().description().welcome.profile_samples;
+    ProgramRequest request{folder_ / texture, {}, 5e-4, {}};
+    request.choices = choices_;
+    auto made = make_program(request, transducer_, options);
+    ASSERT_TRUE(made) << schema::message(made.error());
+    ASSERT_TRUE(player_->load(std::move(*made)));
+  }
+  void begin_play(const schema::Transducer& transducer, const schema::PlaybackChoices& choices,
+                  const std::string& name) {
+    player_.reset();
+    SetUp();  // the finger begins anew
+    session_ = folder_ / (name + ".session");
+    transducer_ = folder_ / (name + ".transducer.json");
+    choices_ = choices;
+    ASSERT_TRUE(schema::write_transducer(transducer_, transducer));
+    load("grating");
+    const auto armed = player_->arm(session_);
+    ASSERT_TRUE(armed) << schema::message(armed.error());
+    ASSERT_TRUE(player_->play());
+  }
+  std::vector<double> drive_of(const schema::Transducer& transducer, const schema::PlaybackChoices& choices,
+                               const std::string& name) {
+    begin_play(transducer, choices, name);
+    if (HasFatalFailure()) return {};
+    run(1);
+    EXPECT_TRUE(player_->gain(1.2));
+    load("fine");
+    run(1.2);
+    EXPECT_TRUE(player_->disarm());
+    std::vector<double> drive;
+    for (const auto& tick : ticks()) drive.push_back(tick.drive_v);
+    return drive;
+  }
+  static double removed_db(const std::vector<double>& wished, const std::vector<double>& drive) {
+    double removed = 0, whole = 0;
+    for (std::size_t i = 0; i < wished.size(); ++i)
+      removed += (wished[i] - drive[i]) * (wished[i] - drive[i]), whole += wished[i] * wished[i];
+    return 10 * std::log10(removed / whole);
+  }
+  std::string transducer_;
+  schema::PlaybackChoices choices_;
+  schema::Transducer bender_ = *schema::read_transducer("wiertlewski2011");
+};
+
+// The two sums differ by the roundings of double precision alone.
+inline constexpr double kRoundingsDb = 1e-6;
+
+}  // namespace tacto::playback
