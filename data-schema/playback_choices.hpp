@@ -24,6 +24,7 @@ struct PlaybackChoices {
 
   /// These, and what they leave open as `base` has it. A contact_on_n here leaves base's contact_off_n out.
   PlaybackChoices over(const PlaybackChoices& base) const;
+  bool operator==(const PlaybackChoices&) const = default;
 };
 
 /// The members by their names in files.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -13,9 +13,9 @@
 #include "data-schema/cli/stop_signals.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
+#include "playback/cli/top_screen.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/control_connection.hpp"
-#include "playback/daemon/time_histogram.hpp"
 
 namespace tacto::playback {
 
@@ -71,10 +71,29 @@ Result<double> gain_in(const std::string& text) {
                       "a factor, as in 0.5");
 }
 
+Result<void> check_taken(const CtlOptions& o) {
+  const auto refuse = [&](const std::string& what, const std::string& who) {
+    return schema::fail(schema::Fault::usage, fmt::format("'{}' takes no '{}'", o.action, what),
+                        "command line", who);
+  };
+  const bool load = o.action == "load", gain = o.action == "gain";
+  if (!o.what.empty() && !load && !gain) return refuse(o.what, "only load and gain are told what");
+  for (const auto& [option, given] : {std::pair{"--at", o.at_m.has_value()},
+                                      {"--gain", o.gain_m_per_n.has_value()},
+                                      {"--ends", o.ends.has_value()},
+                                      {"--fade", o.fade_s.has_value()}})
+    if (given && !load) return refuse(option, "only load does");
+  if (!load && o.choices != schema::PlaybackChoices{})
+    return refuse("--interpolation or its like", "only load does");
+  if (o.save && !gain) return refuse("--save", "only gain does");
+  if (!o.time_s) return {};
+  if (o.action != "watch" && o.action != "top") return refuse("--time", "only watch and top do");
+  if (!(*o.time_s >= 0)) return refuse("--time below 0", "a time, as in 10s");
+  return {};
+}
+
 Result<ControlRequest> request_of(const CtlOptions& o) {
-  if (!o.what.empty() && o.action != "load" && o.action != "gain")
-    return schema::fail(schema::Fault::usage, fmt::format("'{}' takes no '{}'", o.action, o.what),
-                        "command line", "only load and gain are told what");
+  if (const auto taken = check_taken(o); !taken) return schema::forward_error(taken);
   ControlRequest request;
   const auto index = std::ranges::find(kCtlActions, o.action) - kCtlActions.begin();
   request.verb = o.action == "top" ? ControlVerb::watch : static_cast<ControlVerb>(index);
@@ -92,64 +111,15 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   return request;
 }
 
-// The parts between the bounds that the status has, as bars: one sign is 2 %, and what is rare shows as a
-// dot.
-void show_lateness(const ControlFields& fields) {
-  const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
-  fmt::print("late by  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f} us   busy p99 {:.2f} us\n",
-             1e6 * number("wake_p50_s"), 1e6 * number("wake_p99_s"), 1e6 * number("wake_p999_s"),
-             1e6 * number("busy_p99_s"));
-  double beyond_lower = 1;
-  const auto show = [&](const std::string& name, double beyond_upper) {
-    const double part = std::max(beyond_lower - beyond_upper, 0.0);
-    const auto signs = static_cast<std::size_t>(50 * part);
-    fmt::print("  {:<8} {:7.3f} % {}\n", name, 100 * part,
-               signs > 0  ? std::string(signs, '#')
-               : part > 0 ? "."
-                          : "");
-    beyond_lower = beyond_upper;
-  };
-  for (const double bound_s : kLateBoundsS)
-    show(fmt::format("< {:g} us", 1e6 * bound_s), number(late_part_name(bound_s)));
-  show("more", 0);
-  fmt::print("edge to drive  p50 {:.2f}  p99 {:.2f} ms, looked ahead by {:.2f} ms\n",
-             1e3 * number("latency_p50_s"), 1e3 * number("latency_p99_s"), 1e3 * number("looked_ahead_s"));
-}
-
-// A limited tick is counted a little before it is told what was taken of it.
-std::string words_of_taken(const ControlFields& fields) {
-  if (const std::string unknown = schema::control_text(fields, "limits_took"); !unknown.empty())
-    return unknown;
-  const double all_db = schema::control_number(fields, "limits_took_db", NAN);
-  const double second_db = schema::control_number(fields, "limits_took_last_second_db", NAN);
-  if (std::isnan(all_db)) return "not told yet";
-  return fmt::format("{} in the last second, {:.1f} dB since arming",
-                     std::isnan(second_db) ? "nothing" : fmt::format("{:.1f} dB", second_db), all_db);
-}
-
-// Of the wished drive, as RMS; by stroke the command tells it.
-void show_limits(const ControlFields& fields) {
-  const std::string tells = schema::control_text(fields, "limits_in_db");
-  if (!tells.empty()) fmt::print("limits   took {}   by stroke: {}\n", words_of_taken(fields), tells);
-}
-
+// A screen that shows the newest, or in a file or pipe one after the other.
 void show_top(const ControlFields& fields) {
-  const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
-  fmt::print("\033[H\033[2J{:<8} {}\n", schema::control_text(fields, "state"),
-             schema::control_text(fields, "fault"));
-  fmt::print("period   {:8.1f} us   round trip {:.2f} ms   band up to {:.4g} Hz\n", 1e6 * number("period_s"),
-             1e3 * number("round_trip_s"), number("passes_to_hz"));
-  fmt::print("finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"), 1e3 * number("speed_mps"));
-  fmt::print("drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V   gain {:g}\n", number("drive_v"),
-             number("drive_rms_v"), number("drive_peak_v"), number("gain"));
-  fmt::print(
-      "ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}   energy {:.0f}   gated {:.0f}   "
-      "blind "
-      "{:.0f}\n",
-      number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
-      number("energy_limited_ticks"), number("gated_ticks"), number("blind_ticks"));
-  show_limits(fields);
-  if (number("wake_p99_s") > 0) show_lateness(fields);
+  winsize size{};
+  if (isatty(STDOUT_FILENO) == 0)
+    fmt::print("{}\n", top_screen(fields));
+  else if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 && size.ws_col > 0)
+    fmt::print("\033[H\033[2J{}", clipped_to(top_screen(fields), size.ws_row, size.ws_col));
+  else
+    fmt::print("\033[H\033[2J{}", top_screen(fields));
   std::fflush(stdout);
 }
 

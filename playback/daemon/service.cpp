@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 
@@ -30,6 +31,7 @@ namespace fs = std::filesystem;
 
 constexpr double kStatusEveryS = 0.1;
 constexpr double kReleaseS = 0.01;
+constexpr double kLeastSaved = 1e-6;  // of a gain: what is less, or more than its inverse, is a slip
 constexpr double kObeyedS = 0.2, kLookS = 0.01;  // a device's ticks come every 10 ms, and a ramp takes 20 ms
 
 // An emulated device that runs ahead of the clock would play to nobody.
@@ -244,8 +246,9 @@ Result<ControlFields> Service::disarm() {
 Result<void> Service::save_gain(double factor, const std::string& who) {
   if (loaded_.empty())
     return fail(Fault::usage, "nothing is loaded that could keep a gain", {}, "load first");
-  if (factor == 0)
-    return fail(Fault::usage, "a gain of 0 would lose the layers' own gains", loaded_, "save another one");
+  if (!(std::abs(factor) >= kLeastSaved && std::abs(factor) <= 1 / kLeastSaved))
+    return fail(Fault::usage, fmt::format("a gain of {:g} would lose the layers' own gains", factor), loaded_,
+                fmt::format("save one from {:g} to {:g}", kLeastSaved, 1 / kLeastSaved));
   if (!scene_path_.empty()) return save_scene_gain(factor, who);
   return schema::write_playback_gain(alone_.file,
                                      {alone_.gain_m_per_n * factor, who, schema::creation_time()});

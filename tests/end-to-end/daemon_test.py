@@ -3,17 +3,21 @@
 """tactographd on the emulated device, as clients see it: the way from load to a session that replays, and what happens when
 something goes wrong."""
 import contextlib
+import fcntl
 import hashlib
 import json
 import os
 import pathlib
+import pty
 import pwd
 import select
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
+import termios
 import time
 
 import numpy as np
@@ -633,13 +637,28 @@ def a_texture_changed_in_mid_play():
     assert np.max(steps) < 1.1 * np.max(np.abs(np.diff(one))), (np.max(steps), np.max(np.abs(np.diff(one))))
 
 
+def terminal_shows(rows, columns, *arguments):
+    """Whether a terminal of that size is enough: what is shown has no line too long, and none too many."""
+    ours, its = pty.openpty()
+    fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    subprocess.run([os.environ["TACTOGRAPH"], *arguments], stdout=its, check=True, timeout=30)
+    os.close(its)
+    shown = os.read(ours, 65536).decode()
+    screens = shown.replace("\r", "").split("\033[H\033[2J")[1:]
+    return bool(screens) and all(len(s.split("\n")) <= rows and max(map(len, s.split("\n"))) <= columns for s in screens)
+
+
 def a_path_that_ends_where_it_began_is_a_loop():
     """Up in 0.3 s, back in 0.9 s, over and over: back and forth it would go up slowly every other time."""
     prepare_files()
     pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.3,0.034\n1.2,0.004\n")
     with daemon():
         shown = tacto.run("ctl", "top", "--time", "0.2s", "--socket", "control")[0]
-        assert "idle" in shown and "finger" in shown, shown
+        assert "idle" in shown and "finger" in shown and "\033" not in shown, shown
+        assert terminal_shows(5, 20, "ctl", "top", "--time", "0.2s", "--socket", "control"), "a small terminal"
+        for ignored in (["arm", "--gain", "1mm/N"], ["play", "--at", "3mm"], ["gain", "0.5", "--inverse", "gain"], ["stop", "--save"],
+                        ["status", "--time", "1s"], ["top", "--time", "-1s"]):
+            assert "takes no" in tacto.run("ctl", *ignored, "--socket", "control", code=2)[1], ignored
         client = Client()
         session = begin(client)
         time.sleep(3.6)

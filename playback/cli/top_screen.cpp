@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/cli/top_screen.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "playback/daemon/time_histogram.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::ControlFields;
+
+// The parts between the bounds that the status has, as bars: one sign is 2 %, and what is rare shows as a
+// dot.
+std::string lateness_bars(const ControlFields& fields) {
+  std::string bars;
+  double beyond_lower = 1;
+  const auto add = [&](const std::string& name, double beyond_upper) {
+    const double part = std::max(beyond_lower - beyond_upper, 0.0);
+    const auto signs = static_cast<std::size_t>(50 * part);
+    bars += fmt::format("  {:<8} {:7.3f} % {}\n", name, 100 * part,
+                        signs > 0  ? std::string(signs, '#')
+                        : part > 0 ? "."
+                                   : "");
+    beyond_lower = beyond_upper;
+  };
+  for (const double bound_s : kLateBoundsS)
+    add(fmt::format("< {:g} us", 1e6 * bound_s), schema::control_number(fields, late_part_name(bound_s)));
+  add("more", 0);
+  return bars;
+}
+
+std::string lateness_lines(const ControlFields& fields) {
+  const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
+  if (!(number("wake_p99_s") > 0)) return {};
+  return fmt::format("late by  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f} us   busy p99 {:.2f} us\n",
+                     1e6 * number("wake_p50_s"), 1e6 * number("wake_p99_s"), 1e6 * number("wake_p999_s"),
+                     1e6 * number("busy_p99_s")) +
+         lateness_bars(fields) +
+         fmt::format("edge to drive  p50 {:.2f}  p99 {:.2f} ms, looked ahead by {:.2f} ms\n",
+                     1e3 * number("latency_p50_s"), 1e3 * number("latency_p99_s"),
+                     1e3 * number("looked_ahead_s"));
+}
+
+// A limited tick is counted a little before it is told what was taken of it.
+std::string words_of_taken(const ControlFields& fields) {
+  if (const std::string unknown = schema::control_text(fields, "limits_took"); !unknown.empty())
+    return unknown;
+  const double all_db = schema::control_number(fields, "limits_took_db", NAN);
+  const double second_db = schema::control_number(fields, "limits_took_last_second_db", NAN);
+  if (std::isnan(all_db)) return "not told yet";
+  return fmt::format("{} in the last second, {:.1f} dB since arming",
+                     std::isnan(second_db) ? "nothing" : fmt::format("{:.1f} dB", second_db), all_db);
+}
+
+// Of the wished drive, as RMS; by stroke the command tells it.
+std::string limits_line(const ControlFields& fields) {
+  const std::string tells = schema::control_text(fields, "limits_in_db");
+  if (tells.empty()) return {};
+  return fmt::format("limits   took {}   by stroke: {}\n", words_of_taken(fields), tells);
+}
+
+}  // namespace
+
+std::string top_screen(const ControlFields& fields) {
+  const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
+  std::string text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "{:<8} {}\n", schema::control_text(fields, "state"),
+                 schema::control_text(fields, "fault"));
+  fmt::format_to(out, "period   {:8.1f} us   round trip {:.2f} ms   band up to {:.4g} Hz\n",
+                 1e6 * number("period_s"), 1e3 * number("round_trip_s"), number("passes_to_hz"));
+  fmt::format_to(out, "finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"),
+                 1e3 * number("speed_mps"));
+  fmt::format_to(out, "drive    {:8.3f} V    rms {:.3f} V   peak {:.3f} V   gain {:g}\n", number("drive_v"),
+                 number("drive_rms_v"), number("drive_peak_v"), number("gain"));
+  fmt::format_to(out, "ticks    {:8.0f}      late {:.0f}   lost {:.0f}   limited {:.0f}   energy {:.0f}",
+                 number("ticks"), number("late_ticks"), number("lost_ticks"), number("limited_ticks"),
+                 number("energy_limited_ticks"));
+  fmt::format_to(out, "   gated {:.0f}   blind {:.0f}\n", number("gated_ticks"), number("blind_ticks"));
+  return text + limits_line(fields) + lateness_lines(fields);
+}
+
+std::string clipped_to(const std::string& text, std::size_t rows, std::size_t columns) {
+  std::string clipped;
+  for (std::size_t at = 0; at < text.size() && rows > 0; --rows) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    clipped += (clipped.empty() ? "" : "\n") + text.substr(at, std::min(end - at, columns));
+    at = end + 1;
+  }
+  return clipped;
+}
+
+}  // namespace tacto::playback
