@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware-host/core/profile.hpp"
 #include "playback/kernel_drive.hpp"
 #include "playback/limits.hpp"
 
@@ -103,13 +104,31 @@ Result<ExactDrive> within_limits(Rendering& rendering, const KernelRun& run, con
   return moved;
 }
 
+double farthest_of(const FingerPath& path) {
+  double farthest_m = 0;
+  for (const double position_m : path.position_m) farthest_m = std::max(farthest_m, std::abs(position_m));
+  return farthest_m;
+}
+
+// Of a texture with several samples a count it reads less far than it counts.
+Result<void> check_read(const Prepared& prepared, const FingerPath& path, const PrepareOptions& options) {
+  const double farthest_m = farthest_of(path);
+  const double reach_m = options.metres_per_count * core::reach_counts(prepared.scale);
+  if (farthest_m <= reach_m) return {};
+  return fail(
+      Fault::unsuitable,
+      fmt::format("the path goes to {:.4g} m, and the kernel reads the texture as far as {:.4g} m from "
+                  "the encoder's zero",
+                  farthest_m, reach_m),
+      "--path", "lay path and texture (--at) nearer to it, or render with --engine reference");
+}
+
 }  // namespace
 
 // Beyond that the kernel is silent (core/profile.cpp).
 Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
   constexpr double kFarthestCount = 1 << 29;
-  double farthest_m = 0;
-  for (const double position_m : path.position_m) farthest_m = std::max(farthest_m, std::abs(position_m));
+  const double farthest_m = farthest_of(path);
   if (farthest_m / o.encoder_step_m < kFarthestCount) return {};
   return fail(
       Fault::unsuitable,
@@ -123,6 +142,7 @@ Result<ExactDrive> kernels_drive(Rendering& rendering, const RenderJob& job) {
   if (auto chosen = decide_kernel(rendering, job, options); !chosen) return schema::forward_error(chosen);
   const auto prepared = prepare(job.textures, job.chain.transducer, options);
   if (!prepared) return schema::forward_error(prepared);
+  if (const auto near = check_read(*prepared, job.path, options); !near) return schema::forward_error(near);
   const KernelDrive drive = kernel_drive(*prepared, job.path, options, job.wanted.samples);
   auto moved = within_limits(rendering, {*prepared, options, job}, drive);
   if (!moved) return moved;

@@ -213,18 +213,22 @@ bool WantedReader::reaches(const JudgedRow& row) const {
 // A loop goes on for ever as a scene says it, and as a device has it as far as its numbers reach.
 std::vector<bool> WantedReader::driven_by_unknown(std::span<const JudgedRow> rows, const TextureMix& mix) {
   std::vector<bool> unknown = mix.unknown;
+  const JudgedRow* beyond = nullptr;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (reaches(rows[i])) continue;
     unknown[i] = true;
-    const double reach_m = std::abs(overview_.header.metres_per_count) *
-                           static_cast<double>(reaches_[rows[i].mix.playing].counts);
-    note(
-        fmt::format("the finger went farther than {:.4g} m from the encoder's zero, where the device reads "
-                    "no texture any "
-                    "more and its drive is 0 V: strokes there are not judged",
-                    reach_m));
+    beyond = &rows[i];
   }
+  if (beyond != nullptr) note_reach(reaches_[beyond->mix.playing]);
   return unknown;
+}
+
+void WantedReader::note_reach(const ProfileReach& reach) {
+  const double reach_m = std::abs(overview_.header.metres_per_count) * static_cast<double>(reach.counts);
+  note(fmt::format(
+      "the finger went farther than {:.4g} m from the encoder's zero, where the device reads no texture any "
+      "more and its drive is 0 V: strokes there are not judged",
+      reach_m));
 }
 
 SessionWanted WantedReader::wanted_in(std::span<const JudgedRow> rows) {

@@ -59,6 +59,7 @@ class WantedReader {
   void note(std::string words);
   std::vector<bool> driven_by_unknown(std::span<const JudgedRow> rows, const TextureMix& mix);
   bool reaches(const JudgedRow& row) const;
+  void note_reach(const ProfileReach& reach);
 
   const SessionOverview& overview_;
   std::vector<const Textures*> sets_;  // none: the session does not say

@@ -104,6 +104,16 @@ def check_budget(folder):
         fine = made.report_of(*base, "--engine", "kernel", "--max-error", "0.1%", "--encoder-step", step)
         assert fine["engine"] == "kernel" and fine["promised_error_percent"] <= 0.1, (step, fine)
     expect_refusal(folder, UNSUITABLE, "2^29", **{"path": folder / "through.csv", "engine": "kernel", "encoder-step": "0.08nm"})
+    # Of 8 samples a count (5 um over 0.62 um) the kernel reads as far as 2^29 / 9 counts = 298.3 m, and is silent beyond.
+    made.write_texture(folder / "fine", 0.01 * np.sin(2 * np.pi * 1e5 * np.arange(50_000) * made.PITCH_M))
+    far = {"texture": folder / "fine", "ends": "loop", "engine": "kernel", "encoder-step": "5um", "gain": "0.1mm/N"}
+    for from_m, beyond in ((298.35, True), (298.2, False)):
+        made.write_path(folder / "far.csv", [0, 1], [from_m, from_m + 0.03])
+        if beyond:
+            expect_refusal(folder, UNSUITABLE, "as far as 298.3 m", path=folder / "far.csv", **far)
+        else:
+            made.report_of("render", folder / "fine", "--path", folder / "far.csv", "--transducer", "wiertlewski2011", "-o", folder / "far.wav",
+                           *[part for key, value in far.items() if key != "texture" for part in ("--" + key, value)])
     made.write_texture(folder / "nothing", np.zeros(50_001))
     expect_refusal(folder, UNSUITABLE, "no error can be told", texture=folder / "nothing", quality="balanced")
 
