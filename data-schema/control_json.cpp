@@ -70,7 +70,7 @@ Result<void> check_members(const ControlRequest& request) {
   return {};
 }
 
-std::optional<double> optional_number(const Json& body, const char* name) {
+std::optional<double> asked_number(const Json& body, const char* name) {
   return body.contains(name) ? std::optional(body[name].get<double>()) : std::nullopt;
 }
 
@@ -82,11 +82,11 @@ ControlRequest request_of(const Json& body) {
   request.version = text_or(body, "version");
   request.token = text_or(body, "token");
   request.file = text_or(body, "file");
-  request.at_m = optional_number(body, "at_m");
-  request.gain_m_per_n = optional_number(body, "gain_m_per_n");
-  request.fade_s = optional_number(body, "fade_s");
+  request.at_m = asked_number(body, "at_m");
+  request.gain_m_per_n = asked_number(body, "gain_m_per_n");
+  request.fade_s = asked_number(body, "fade_s");
   request.playback = playback_choices_in(body);
-  request.gain = optional_number(body, "gain");
+  request.gain = asked_number(body, "gain");
   request.save = body.value("save", false);
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
     if (text_or(body, "ends") == word_of(ends)) request.ends = ends;

@@ -107,7 +107,7 @@ Json band_body(const std::vector<BandPoint>& band) {
   return body;
 }
 
-std::vector<BandPoint> band_from(const Json& body) {
+std::vector<BandPoint> band_points_from(const Json& body) {
   std::vector<BandPoint> band;
   for (const Json& point : body)
     band.push_back({point["position_m"].get<double>(), point["low_per_m"].get<double>(),
@@ -129,7 +129,7 @@ Json stroke_body(const AveragedStroke& stroke) {
   return body;
 }
 
-AveragedStroke stroke_from(const Json& body) {
+AveragedStroke averaged_stroke_from(const Json& body) {
   AveragedStroke stroke{static_cast<int>(number_or(body, "stroke", 0)), number_or(body, "from_s", 0),
                         number_or(body, "to_s", 0), static_cast<int>(number_or(body, "direction", 1)),
                         number_or(body, "shift_m", 0)};
@@ -148,7 +148,7 @@ Json average_body(const TextureAverage& average) {
 TextureAverage average_from(const Json& body) {
   TextureAverage average;
   average.align = text_or(body, "align");
-  for (const Json& stroke : body["strokes"]) average.strokes.push_back(stroke_from(stroke));
+  for (const Json& stroke : body["strokes"]) average.strokes.push_back(averaged_stroke_from(stroke));
   for (const Json& count : body["counts"])
     average.counts.push_back({count["position_m"].get<double>(), count["strokes"].get<int>()});
   return average;
@@ -194,7 +194,7 @@ Texture texture_from(const Json& body) {
   texture.unit = text_or(body, "unit");
   texture.direction = body["direction"].get<int>();
   texture.source_origin_m = number_or(body, "source_origin_m", 0);
-  if (body.contains("valid_band")) texture.valid_band = band_from(body["valid_band"]);
+  if (body.contains("valid_band")) texture.valid_band = band_points_from(body["valid_band"]);
   if (body.contains("source")) texture.source = source_from(body["source"]);
   if (body.contains("average")) texture.average = average_from(body["average"]);
   if (body.contains("certificate")) texture.certificate = certificate_from(body["certificate"]);

@@ -22,7 +22,7 @@ constexpr std::size_t kFewestCells = 8;
 constexpr double kOneIn10000 = 3.719;  // quantile of the normal distribution
 constexpr double kLeakage_db = 55;     // Blackman's highest side lobe is 58 dB down
 
-double blackman(double part) {
+double blackman_at(double part) {
   const double phase = 2 * std::numbers::pi * part;
   return 0.42 - 0.5 * std::cos(phase) + 0.08 * std::cos(2 * phase);
 }
@@ -42,7 +42,7 @@ class MeanSpectrum {
   MeanSpectrum(std::span<const double> values, double pitch, std::size_t window, std::size_t hop)
       : weights_(window), fft_(fast_length(2 * window)), frame_(fft_.length(), 0.0), spectrum_(fft_.bins()) {
     for (std::size_t n = 0; n < window; ++n)
-      weights_[n] = blackman(static_cast<double>(n) / static_cast<double>(window));
+      weights_[n] = blackman_at(static_cast<double>(n) / static_cast<double>(window));
     mean_.assign(fft_.bins(), 0);
     std::size_t count = 0;
     for (std::size_t from = 0; from + window <= values.size(); from += hop, ++count)

@@ -10,7 +10,7 @@
 namespace tacto::analysis {
 namespace {
 
-constexpr double kSettleS = 0.05, kMeasureS = 0.2, kSilenceS = 0.05;
+constexpr double kDriveSettleS = 0.05, kMeasureS = 0.2, kSilenceS = 0.05;
 constexpr double kMeasuredPeriods = 5;
 
 double octave(const ExcitationPlan& plan, std::size_t i) {
@@ -58,7 +58,7 @@ double stepped_sine_s(const ExcitationPlan& plan) {
   double sum_s = kSilenceS;
   for (std::size_t i = 0; i < plan.frequencies; ++i) {
     const double hz = octave(plan, i);
-    sum_s += kSettleS + 1 / hz + std::max(kMeasureS, kMeasuredPeriods / hz);
+    sum_s += kDriveSettleS + 1 / hz + std::max(kMeasureS, kMeasuredPeriods / hz);
   }
   return sum_s;
 }
@@ -71,7 +71,7 @@ SteppedSine stepped_sine(const ExcitationPlan& plan) {
     const double periods = std::round(wanted_hz * samples / plan.rate_hz);
     SineStep step{periods * plan.rate_hz / samples, stepped.drive_v.size(), 0, 0};
     if (!stepped.steps.empty() && step.frequency_hz <= stepped.steps.back().frequency_hz) continue;
-    const double settle = std::ceil((kSettleS + 1 / wanted_hz) * plan.rate_hz);
+    const double settle = std::ceil((kDriveSettleS + 1 / wanted_hz) * plan.rate_hz);
     add_sine(stepped.drive_v, plan.amplitude_v, step.frequency_hz, plan.rate_hz,
              (settle + samples) * step.frequency_hz / plan.rate_hz);
     step.end = stepped.drive_v.size();

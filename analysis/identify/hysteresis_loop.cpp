@@ -47,11 +47,11 @@ std::vector<double> centred(std::span<const double> x) {
 }
 
 // The stretch from one passage upwards through zero to the next that swings farthest.
-struct Stretch {
+struct LoopStretch {
   std::size_t first = 0, end = 0;
 };
 
-Stretch largest_loop(std::span<const double> v, double amplitude_v) {
+LoopStretch largest_loop(std::span<const double> v, double amplitude_v) {
   std::vector<std::size_t> upward;
   for (std::size_t i = 1; i < v.size(); ++i)
     if (v[i - 1] < 0 && v[i] >= 0) upward.push_back(i);
@@ -83,7 +83,7 @@ std::complex<double> fundamental(std::span<const double> x) {
   return sum;
 }
 
-void put_loop(std::span<const double> v, std::span<const double> x, Stretch loop, LoopFit& fit) {
+void put_loop(std::span<const double> v, std::span<const double> x, LoopStretch loop, LoopFit& fit) {
   const auto lv = v.subspan(loop.first, loop.end - loop.first),
              lx = x.subspan(loop.first, loop.end - loop.first);
   fit.loop_v.assign(lv.begin(), lv.end());
@@ -158,7 +158,7 @@ LoopTable loop_table(std::span<const double> v, std::span<const double> x, doubl
 }
 
 // What the table makes of the largest loop, in the answer's own sign; the last weight is the offset's.
-void put_loop_model(const LoopTable& table, std::span<const double> v, Stretch loop,
+void put_loop_model(const LoopTable& table, std::span<const double> v, LoopStretch loop,
                     std::span<const double> weights, LoopFit& fit) {
   schema::Hysteresis made{table.thresholds_v, {weights.begin(), weights.end() - 1}};
   const auto whole = playback::played_through(made, v);
@@ -195,7 +195,7 @@ Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const doubl
   const std::vector<double> v = delayed(drive_v, delay_s * rate_hz);
   LoopFit fit;
   fit.amplitude_v = std::abs(*std::ranges::max_element(v, {}, [](double value) { return std::abs(value); }));
-  const Stretch loop = largest_loop(v, fit.amplitude_v);
+  const LoopStretch loop = largest_loop(v, fit.amplitude_v);
   if (loop.end <= loop.first)
     return fail(Fault::unsuitable, "the drive makes no whole loop between its largest values, both ways",
                 "loop",

@@ -8,11 +8,12 @@
 #include "analysis/identify/plausibility.hpp"
 #include "analysis/identify/response_fit.hpp"
 #include "tests/analysis/identify_plants.hpp"
+#include "tests/sanitized.hpp"
 
 namespace tacto::analysis {
 namespace {
 
-constexpr int kDraws = 1000;
+const int kDraws = draws(1000, 50);
 
 // Written out, so that no preset's number gets in.
 struct Plant {
@@ -114,8 +115,7 @@ TEST_P(IdentifyAnywhere, FindsTheLeastMinimumAndCallsNoPlantAMisfit) {
   for (const int covered : {tally.gain, tally.resonance, tally.damping, tally.pole}) {
     const double percent = 100.0 * covered / tally.oscillating;
     std::printf("  covered in %.1f %% of %d\n", percent, tally.oscillating);
-    EXPECT_GE(percent, 92.4);
-    EXPECT_LE(percent, 97.1);
+    EXPECT_TRUE(sanitized() || (percent >= 92.4 && percent <= 97.1)) << percent;
   }
 }
 

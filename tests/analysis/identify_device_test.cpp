@@ -9,12 +9,13 @@
 #include "analysis/identify/response_fit.hpp"
 #include "firmware-host/sim/actuated_tray.hpp"
 #include "tests/analysis/identify_plants.hpp"
+#include "tests/sanitized.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 constexpr double kNoiseM = 20e-9;  // the emulated vibrometer's
-constexpr int kPlants = 8, kNoises = 15;
+const int kPlants = draws(8, 3), kNoises = draws(15, 3);
 
 schema::Transducer base() {
   return schema::read_transducer("wiertlewski2011").value();
@@ -51,7 +52,7 @@ struct Drawn {
 std::vector<Drawn> plants(const firmware_host::TrayPhysics& physics, std::mt19937_64& random) {
   std::uniform_real_distribution<double> amplitude(0.3, 2);
   std::vector<Drawn> list;
-  while (list.size() < kPlants) {
+  while (std::ssize(list) < kPlants) {
     const schema::Transducer truth = varied(base(), physics, random);
     list.push_back({truth, without_noise(truth, physics, amplitude(random))});
   }

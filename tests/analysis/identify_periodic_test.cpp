@@ -8,12 +8,13 @@
 #include "analysis/identify/response_fit.hpp"
 #include "firmware-host/sim/actuated_tray.hpp"
 #include "tests/analysis/identify_plants.hpp"
+#include "tests/sanitized.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 constexpr double kNoiseM = 20e-9;  // the emulated vibrometer's
-constexpr int kPlants = 8, kNoises = 10;
+const int kPlants = draws(8, 3), kNoises = draws(10, 2);
 constexpr double kSecondModeHz = 850;
 
 using Signal = PeriodicDrive (*)(const ExcitationPlan&);
@@ -33,7 +34,7 @@ std::vector<Drawn> driven_plants(Signal signal, const firmware_host::TrayPhysics
                                  std::mt19937_64& random) {
   std::uniform_real_distribution<double> amplitude(0.3, 2);
   std::vector<Drawn> list;
-  while (list.size() < kPlants) {
+  while (std::ssize(list) < kPlants) {
     const schema::Transducer truth = varied(base(), physics, random);
     const PeriodicDrive plan = signal({.amplitude_v = amplitude(random)});
     firmware_host::ActuatedTray tray(truth, 10e3, physics);
@@ -76,7 +77,7 @@ class IdentifyPeriodic : public testing::TestWithParam<std::pair<const char*, Si
 
 TEST_P(IdentifyPeriodic, FindsATrayThatIsTheModel) {
   std::mt19937_64 random(31);
-  const Told told = told_of(driven_plants(signal(), {}, random), 5, random);
+  const Told told = told_of(driven_plants(signal(), {}, random), kNoises / 2, random);
   EXPECT_LE(told.flagged, 1);  // three tests, each wrong in 5 of 10,000: 2 of 40 in one run of 600
 }
 

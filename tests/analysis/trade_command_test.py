@@ -70,7 +70,10 @@ def check_speeds(rows, done, answers):
 
 
 def check_scene(folder):
-    """A choice has to serve each texture of a scene: its error is the worst of theirs, its memory that of all."""
+    """A choice has to serve each texture of a scene: its error is the worst of theirs, its memory that of all.
+
+    Three times the real-time half: under the sanitizers the scene alone, whose figures are the plain run's to judge.
+    """
     tacto.run("record", "-d", "sim:surface=E,speed=50mm/s,seed=5", "--strokes", "1", "-o", "E", "--no-calibration", cwd=folder)
     tacto.run("spatial", "E", "-o", "E", cwd=folder)
     layers = [{"type": "texture", "texture": name, "at_m": at, "gain_m_per_n": 0.001} for name, at in (("C", 0), ("E", 0.2), ("C", 0.4))]
@@ -82,6 +85,8 @@ def check_scene(folder):
 
     name, scene = measured("bench.scene.json")
     assert "the worst of its 2 textures" in name, name
+    if tacto.SANITIZED:
+        return
     (_, c), (_, e) = measured("C"), measured("E")
     c, e = ({key: row for key, row in rows.items() if key[0] != "loop"} for rows in (c, e))
     scene = {key: row for key, row in scene.items() if key[0] != "loop"}

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/capture/sim_take.hpp"
+#include "tests/sanitized.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -20,7 +21,7 @@ schema::Result<ReferenceScale> against_net(const Take& take, double relative_unc
 TEST(ReferenceScale, FindsThePiezosGainWithinItsUncertainty) {
   Coverage coverage;
   double worst_percent = 0;
-  for (int seed = 1; seed <= 20; ++seed) {
+  for (int seed = 1; seed <= draws(20, 4); ++seed) {
     const Take take = sim_take(fmt::format("surface=C,strokes=20,sensor_gain=0.92,seed={}", seed), 8);
     const auto found = against_net(take);
     ASSERT_TRUE(found) << schema::message(found.error());
@@ -28,9 +29,8 @@ TEST(ReferenceScale, FindsThePiezosGainWithinItsUncertainty) {
     worst_percent = std::max(worst_percent, 100 * std::abs(found->ratio * 0.92 - 1));
     EXPECT_LT(std::abs(found->scale.uncertainty / found->scale.value), 0.01);
   }
-  EXPECT_GE(coverage.inside(), 0.8);  // of 20: three sigma below 95 %
-  EXPECT_LT(coverage.rms(), 1.6);
-  EXPECT_GT(coverage.rms(), 0.5);
+  EXPECT_TRUE(sanitized() || coverage.inside() >= 0.8);  // of 20: three sigma below 95 %
+  EXPECT_TRUE(sanitized() || (coverage.rms() > 0.5 && coverage.rms() < 1.6));
   EXPECT_LT(worst_percent, 1.5);
   coverage.print("reference");
   std::printf("reference: worst %.2f %%\n", worst_percent);

@@ -11,6 +11,7 @@
 #include "playback/reference/padded_spectrum.hpp"
 #include "playback/undone_chain.hpp"
 #include "playback/wandering_hand.hpp"
+#include "tests/sanitized.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -218,11 +219,11 @@ Tally tried(int machines, int cases, const schema::TradeTable& table) {
 }
 
 TEST(BudgetPromise, HoldsForRandomTexturesPathsAndTransducers) {
-  const Tally tally = tried(8, 75, *schema::shipped_trade_table());
+  const Tally tally = tried(draws(8, 4), draws(75, 15), *schema::shipped_trade_table());
   EXPECT_EQ(tally.broken, 0) << tally.last;
-  EXPECT_GE(tally.kept, 500);
+  EXPECT_GE(tally.kept, draws(500, 50));
   std::vector<double> hands = tally.hands;
-  ASSERT_GE(hands.size(), 200U);
+  ASSERT_GE(std::ssize(hands), draws(200, 20));
   std::ranges::sort(hands);
   std::printf("what wandering hands cost re the estimate: median %.2f, of all %.2f to %.2f\n",
               hands[hands.size() / 2], hands.front(), hands.back());

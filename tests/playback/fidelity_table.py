@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The table of fidelity (README): texture C of the emulated device and a real finger's, looped, through the emulated
-transducer. Takes the program that measures; fails where row (a) is worse than -50 dB. Without the real data texture C
-alone is measured.
+transducer. Takes the program that measures; fails where row (a) is worse than -50 dB. Without the real data, and under
+the sanitizers, which have nothing to find in other numbers, texture C alone is measured.
 """
 import os
 import pathlib
@@ -19,7 +19,7 @@ def make_textures(folder):
     made.report_of("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--strokes", "1", "-o", folder / "C", "--no-calibration")
     made.report_of("spatial", folder / "C", "-o", folder / "texture-C")
     names = [folder / "texture-C"]
-    if DATA.is_file():
+    if DATA.is_file() and "TACTO_SANITIZED" not in os.environ:
         made.report_of("import", DATA, "-o", folder / "finger", "--rate", "10kHz", "--channel",
                        "tangential_force=lateral_V*0.444444N", "--channel", "position=encoder_count*0.5um")
         made.report_of("spatial", folder / "finger", "-o", folder / "real-finger", "--from", "4.55s", "--to", "6.85s")

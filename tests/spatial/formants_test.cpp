@@ -11,6 +11,7 @@
 
 #include "spatial/spectrogram.hpp"
 #include "spatial/spectrogram_summary.hpp"
+#include "tests/sanitized.hpp"
 #include "tests/spatial/texture_samples.hpp"
 
 namespace tacto::spatial {
@@ -167,15 +168,17 @@ TEST(Formants, BridgeAShortDropout) {
 // 40 textures of 250 mm: together about 200,000 independent cells up to 15 /mm.
 TEST(Formants, NoiseHasNone) {
   std::size_t alarms = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) alarms += formants_of(white(25000, 1000 + seed)).size();
-  std::printf("white noise: %zu false alarms in 10 m of texture, up to 15 /mm\n", alarms);
+  const int count = draws(40, 4);
+  for (int seed = 0; seed < count; ++seed) alarms += formants_of(white(25000, 1000 + seed)).size();
+  std::printf("white noise: %zu false alarms in %g m of texture, up to 15 /mm\n", alarms, 0.25 * count);
   EXPECT_LE(alarms, 1U);
 }
 
 // Noise that falls with frequency and whose strength changes along the texture has none either.
 TEST(Formants, ColouredAndUnevenNoiseHasNone) {
   std::size_t alarms = 0;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  const int count = draws(20, 4);
+  for (int seed = 0; seed < count; ++seed) {
     auto values = white(25000, 2000 + seed);
     double slow = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -184,7 +187,7 @@ TEST(Formants, ColouredAndUnevenNoiseHasNone) {
     }
     alarms += formants_of(std::move(values)).size();
   }
-  std::printf("coloured, uneven noise: %zu false alarms in 5 m of texture\n", alarms);
+  std::printf("coloured, uneven noise: %zu false alarms in %g m of texture\n", alarms, 0.25 * count);
   EXPECT_LE(alarms, 2U);
 }
 
