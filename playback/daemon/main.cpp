@@ -51,13 +51,19 @@ double steady_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// A command or an event may be lost where no tick is.
+std::string lost_words(double ticks) {
+  return ticks > 0 ? fmt::format("{:.0f} ticks are", ticks) : "a command or event is";
+}
+
 // To the journal what changes; to watchers everything.
 void tell(ControlServer& server, const ServiceManager& manager, std::string_view event,
           const schema::ControlFields& fields) {
   server.publish(event, fields);
   if (event == "recorder")
-    cli::talk(fmt::format("tactographd: {:.0f} ticks are not in the session: {}\n",
-                          schema::control_number(fields, "lost_ticks"), schema::control_text(fields, "why")));
+    cli::talk(fmt::format("tactographd: {} not in the session: {}\n",
+                          lost_words(schema::control_number(fields, "lost_ticks")),
+                          schema::control_text(fields, "why")));
   if (event != "state") return;
   const std::string state = schema::control_text(fields, "state"), why = schema::control_text(fields, "why");
   cli::talk(fmt::format("tactographd: {}{}{}\n", state, why.empty() ? "" : ": ", why));

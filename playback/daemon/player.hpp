@@ -72,8 +72,8 @@ class Player {
   /// Whether it may be loaded in this state. Errors: usage.
   schema::Result<void> may_load() const;
   bool loaded() const { return program_.has_value(); }
-  /// Begins a session (never over a file that is there), and arms. In idle, loaded. Errors: usage; device;
-  /// cannot_write.
+  /// Begins a session (never over a file that is there), and arms once its header and upload are on the disk.
+  /// In idle, loaded. Errors: usage; device; cannot_write. After one there is no session.
   schema::Result<void> arm(const std::string& session_path);
   schema::Result<void> play();
   schema::Result<void> stop();

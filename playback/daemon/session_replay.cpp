@@ -11,6 +11,7 @@
 #include "firmware-host/wire_words.hpp"
 #include "playback/daemon/session_board.hpp"
 #include "playback/daemon/session_rows.hpp"
+#include "playback/daemon/upload_watch.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -58,6 +59,7 @@ struct Overview {
   std::uint64_t lost = 0;
   schema::SessionEnding ending = schema::SessionEnding::unread;
   std::optional<std::uint64_t> damaged_at;
+  UploadWatch upload;
 };
 
 Result<Overview> overview_of(const std::string& name) {
@@ -71,6 +73,7 @@ Result<Overview> overview_of(const std::string& name) {
     if (const auto* end = std::get_if<schema::SessionEnd>(&*block)) seen.lost = end->lost_ticks;
     const auto* command = std::get_if<SessionCommand>(&*block);
     if (command == nullptr) continue;
+    seen.upload.see(*command);
     if (!is_frame(command->frame))
       return fail(Fault::malformed, "a command in it is no frame of the wire", reader->path());
     if (const auto limits = message_in_frame<wire::Limits>(command->frame))
@@ -185,6 +188,22 @@ Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) 
   return {};
 }
 
+// A damaged file may lack what stood behind the damage.
+Result<void> check_replayable(const Overview& seen, const schema::SessionReader& reader) {
+  const std::string missing = seen.upload.missing();
+  if (!missing.empty() && !seen.damaged_at)
+    return fail(Fault::unsuitable,
+                fmt::format("lacks {}: the disk did not take it (was it full?), and without it the drive "
+                            "can't be computed again",
+                            missing),
+                reader.path(), "the ticks that are in it can be exported: tactograph session");
+  if (!seen.gated || tells_touch(reader.header())) return {};
+  return fail(Fault::unsuitable,
+              "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
+              "computed again",
+              reader.path(), "play anew, on firmware of protocol 1.2 or newer");
+}
+
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
@@ -193,11 +212,7 @@ Result<ReplayOutcome> replay_session(const std::string& name, const std::functio
   if (!seen) return schema::forward_error(seen);
   auto reader = schema::SessionReader::open(name);
   if (!reader) return schema::forward_error(reader);
-  if (seen->gated && !tells_touch(reader->header()))
-    return fail(Fault::unsuitable,
-                "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
-                "computed again",
-                reader->path(), "play anew, on firmware of protocol 1.2 or newer");
+  if (const auto may = check_replayable(*seen, *reader); !may) return schema::forward_error(may);
   SessionPlayer player(reader->header(), seen->fault, wishes);
   if (const auto handed = hand_over_commands(name, player); !handed) return schema::forward_error(handed);
   while (const auto block = reader->next()) {

@@ -13,6 +13,7 @@
 #include "firmware-host/core/encoder_watch.hpp"
 #include "firmware-host/core/wire/host_messages.hpp"
 #include "playback/daemon/session_board.hpp"
+#include "playback/daemon/upload_watch.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -93,7 +94,10 @@ class Surveyor {
   }
   void operator()(const schema::SessionLoss& loss) { told_lost_ += loss.count; }
   void operator()(const schema::SessionEnd& end) { told_lost_ = end.lost_ticks; }
-  void operator()(const schema::SessionCommand& command) { steps_.see(command); }
+  void operator()(const schema::SessionCommand& command) {
+    steps_.see(command);
+    upload_.see(command);
+  }
   void operator()(const schema::SessionChange& change) { steps_.see(change); }
   void operator()(const schema::SessionEvent&) {}
   void operator()(const std::vector<SessionTick>& ticks) {
@@ -108,6 +112,7 @@ class Surveyor {
     seen_.lost = std::max(seen_.lost, told_lost_);
     seen_.look_ahead_ticks = steps_.look_ahead_ticks();
     seen_.steps = steps_.take();
+    seen_.not_uploaded = upload_.missing();
   }
 
  private:
@@ -127,6 +132,7 @@ class Surveyor {
 
   SessionOverview& seen_;
   SteeringSteps steps_;
+  UploadWatch upload_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::uint64_t told_lost_ = 0, next_tick_ = 0;
 };

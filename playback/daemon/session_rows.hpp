@@ -36,6 +36,7 @@ struct SessionOverview {
   std::uint64_t ticks = 0;
   std::optional<std::uint64_t> lost_at;  ///< the first tick that is missing
   std::uint64_t lost = 0;                ///< also after the last one
+  std::string not_uploaded;              ///< UploadWatch::missing
   /// The byte from which on the file is damaged; what comes after it is not read.
   std::optional<std::uint64_t> damaged_at;
   bool closed = false;  ///< by its last block; else its writer is still at it, or was killed

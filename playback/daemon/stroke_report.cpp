@@ -56,6 +56,11 @@ StrokeReport begun_report(const SessionOverview& overview) {
     report.notes.push_back(
         fmt::format("{} is damaged from byte {} on: what comes after it is not in the report", overview.path,
                     *overview.damaged_at));
+  if (!overview.not_uploaded.empty() && !report.damaged)
+    report.notes.push_back(
+        fmt::format("{} lacks {}: the disk did not take it (was it full?), and `replay` can't "
+                    "compute its drive again",
+                    overview.path, overview.not_uploaded));
   if (overview.lost_at)
     report.notes.push_back(fmt::format("{} ticks are missing: strokes are not judged", overview.lost));
   else if (overview.missing_periods > 0)
