@@ -29,18 +29,25 @@ void step_back() {
 }  // namespace
 
 ProgramLoader::~ProgramLoader() {
-  if (busy())
+  if (works())
     thread_.detach();
   else
     forget();
 }
 
 void ProgramLoader::begin(Make make, Beside beside) {
-  forget();
-  work_ = std::make_shared<Work>();
+  next_ = {std::move(make), beside};
   wanted_ = true;
   given_up_ = false;
-  thread_ = std::thread([work = work_, make = std::move(make), beside] {
+  start_next();
+}
+
+void ProgramLoader::start_next() {
+  if (!next_ || works()) return;
+  forget();
+  work_ = std::make_shared<Work>();
+  thread_ = std::thread([work = work_, next = *std::exchange(next_, std::nullopt)] {
+    const auto& [make, beside] = next;
     if (beside == Beside::playing) step_back();
     work->result = made_within_memory(make);
     work->done.store(true);
@@ -53,6 +60,10 @@ void ProgramLoader::forget() {
 }
 
 bool ProgramLoader::busy() const {
+  return next_ || works();
+}
+
+bool ProgramLoader::works() const {
   return work_ != nullptr && !work_->done.load();
 }
 
@@ -61,8 +72,10 @@ void ProgramLoader::give_up() {
 }
 
 std::optional<Result<Program>> ProgramLoader::take() {
+  start_next();
   if (!wanted_ || (busy() && !given_up_)) return std::nullopt;
   wanted_ = false;
+  next_.reset();
   if (given_up_) return fail(Fault::usage, "the load was given up, for a stop came", "load", "load again");
   std::optional<Result<Program>> result = std::move(work_->result);
   forget();

@@ -13,7 +13,8 @@
 namespace tacto::playback {
 
 /// One program at a time, on a thread of its own that nobody has to wait for: a long texture takes seconds,
-/// and can't be interrupted. One thread calls.
+/// and can't be interrupted. What is begun after one that was given up follows once that one's thread is
+/// done, so that memory holds one at a time. One thread calls.
 class ProgramLoader {
  public:
   using Make = std::function<schema::Result<Program>()>;
@@ -27,10 +28,12 @@ class ProgramLoader {
   /// Whether something plays meanwhile, that comes first.
   enum class Beside { nothing, playing };
 
-  /// `make` owns all that it uses. Precondition: !busy().
+  /// `make` owns all that it uses. Precondition: !wanted().
   void begin(Make make, Beside beside);
   /// Something is being made, be it for nobody any more.
   bool busy() const;
+  /// Somebody waits for what take() is to give.
+  bool wanted() const { return wanted_; }
   /// What is being made is nobody's any more: take() gives an error at once.
   void give_up();
   /// What came of it, once; none while it is being made, or where nothing was. Errors: of `make`; unsuitable:
@@ -42,9 +45,16 @@ class ProgramLoader {
     std::atomic<bool> done{false};
     std::optional<schema::Result<Program>> result;
   };
+  struct Next {
+    Make make;
+    Beside beside;
+  };
+  bool works() const;
+  void start_next();
   void forget();
 
   std::shared_ptr<Work> work_;
+  std::optional<Next> next_;
   std::thread thread_;
   bool wanted_ = false, given_up_ = false;
 };

@@ -721,6 +721,8 @@ def a_load_holds_up_nobody():
         answers = [json.loads(client.lines.readline()) for _ in range(3)]
         assert not answers[0]["ok"] and "given up" in answers[0]["error"]["what"], answers
         assert answers[1]["state"] == "playing" and answers[2]["state"] == "armed", answers
+        # The long one's thread goes on for itself, and is in nobody's way.
+        assert client.must(request="load", file="oak", gain_m_per_n=0.0005)["changed"]
     assert tacto.run_json("replay", session)["same_to_the_bit"]
 
 
