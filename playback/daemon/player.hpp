@@ -98,7 +98,7 @@ class Player {
   const RecorderCounts& last_session() const { return last_session_; }
   PlayerStatus status() const;
   /// Seconds of ticks since arming, by the device's clock.
-  double played_s() const { return view_.span_s(); }
+  double armed_s() const { return view_.span_s(); }
 
  private:
   Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres);

@@ -135,6 +135,9 @@ def from_load_to_a_session_that_replays():
         assert "can't play in the state idle" in said and "arm first" in said, said
         assert "500" in ctl("load", "oak", "--gain", "0.5mm/N")[0]
         ctl("arm")
+        time.sleep(0.2)
+        armed = Client().must(request="status")
+        assert armed["played_s"] == 0 < armed["armed_s"], armed
         assert "playing" in ctl("play")[0]
         time.sleep(1)
         ctl("gain", "0.5")

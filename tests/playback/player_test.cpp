@@ -182,7 +182,7 @@ TEST_F(PlayerOnSim, WhatAnEarlierProgramsRunHasStillToSayBelongsToNobody) {
   const auto armed = (*next)->arm(folder_ / "two.session");
   ASSERT_TRUE(armed) << schema::message(armed.error());
   ASSERT_TRUE((*next)->play());
-  while ((*next)->played_s() < 0.5) ASSERT_TRUE((*next)->step(0.01));
+  while ((*next)->armed_s() < 0.5) ASSERT_TRUE((*next)->step(0.01));
   EXPECT_EQ((*next)->status().ticks.lost(), 0U);
   EXPECT_GE((*next)->status().ticks.ticks(), 1000U);
   EXPECT_EQ((*next)->state(), PlayerState::playing);
