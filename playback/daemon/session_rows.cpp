@@ -22,6 +22,7 @@ using schema::Fault;
 using schema::Result;
 using schema::SessionTick;
 
+constexpr std::uint32_t kPlaysBlind = wire::kTickBlind | wire::kTickPlaying;
 constexpr std::size_t kMostTexturesKept = 65536;  // of all changes: a file may hold any number
 
 // Each command that steers, in their order.
@@ -128,6 +129,7 @@ class Surveyor {
     last_ns_ = tick.time_ns;
     seen_.missing_periods += missing;
     seen_.stops += missing > longest_gap(rate_hz);
+    seen_.blind_ticks += (tick.flags & kPlaysBlind) == kPlaysBlind;
   }
 
   SessionOverview& seen_;

@@ -53,6 +53,13 @@ std::string note_of_loss(const SessionOverview& overview) {
       overview.lost, *overview.lost_at);
 }
 
+std::string note_of_blindness(const SessionOverview& overview) {
+  return fmt::format(
+      "in {} ticks no count of the encoder had come for 10 ms, and the drive fell: strokes end there, "
+      "and the way until the next count is not judged",
+      overview.blind_ticks);
+}
+
 StrokeReport begun_report(const SessionOverview& overview) {
   StrokeReport report;
   report.low_hz = overview.header.low_hz, report.high_hz = overview.header.high_hz;
@@ -72,6 +79,7 @@ StrokeReport begun_report(const SessionOverview& overview) {
     report.notes.push_back(note_of_loss(overview));
   else if (overview.missing_periods > 0)
     report.notes.push_back(note_of_stops(overview));
+  if (overview.blind_ticks > 0) report.notes.push_back(note_of_blindness(overview));
   return report;
 }
 

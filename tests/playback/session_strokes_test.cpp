@@ -90,5 +90,26 @@ TEST_F(SessionStrokes, WithTheFirstTickMissingNoneIs) {
   EXPECT_TRUE(noted(cut, "1 ticks are missing, from tick 0 on"));
 }
 
+// As a computer that stood still feeds the counts that came meanwhile: a way of 12 mm in 6 ms.
+TEST_F(SessionStrokes, EndWhereTicksAreBlind) {
+  const StrokeReport whole = report_of(session_);
+  const PlayedStroke& stroke = whole.strokes.at(1);
+  const auto middle = static_cast<std::size_t>((stroke.from_s + stroke.to_s) / 2 * kRateHz);
+  Ticks all = ticks();
+  for (std::size_t i = 0; i < 12; ++i) {
+    SessionTick& tick = all.at(middle + i);
+    tick.flags |= wire::kTickBlind;
+    tick.encoder += static_cast<std::int32_t>(1000 * (i + 1));
+  }
+  const StrokeReport blind = report_of(with_ticks(all, 0));
+  ASSERT_EQ(blind.stroke_count, whole.stroke_count + 1) << "one is two now";
+  const PlayedStroke &before = blind.strokes[1], &after = blind.strokes[2];
+  EXPECT_NEAR(before.to_s, static_cast<double>(middle - 1) / kRateHz, 1e-6);
+  EXPECT_NEAR(after.from_s, static_cast<double>(middle + 12) / kRateHz, 1e-6);
+  EXPECT_EQ(before.from_m, stroke.from_m);
+  EXPECT_EQ(after.to_m, stroke.to_m);
+  EXPECT_TRUE(noted(blind, "in 12 ticks no count of the encoder had come"));
+}
+
 }  // namespace
 }  // namespace tacto::playback
