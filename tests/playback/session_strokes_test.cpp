@@ -111,5 +111,22 @@ TEST_F(SessionStrokes, EndWhereTicksAreBlind) {
   EXPECT_TRUE(noted(blind, "in 12 ticks no count of the encoder had come"));
 }
 
+// A count of 1 um at 100 m.
+TEST_F(SessionStrokes, ATableHoldsEachCountsPlace) {
+  Ticks all = ticks();
+  const double metres_per_count = schema::SessionReader::open(session_)->header().metres_per_count;
+  const auto far = static_cast<std::int32_t>(std::lround(100 / metres_per_count));
+  for (SessionTick& tick : all) tick.encoder += far;
+  const std::string csv = folder_ / "far.csv";
+  ASSERT_TRUE(export_session(with_ticks(all, 0), csv, {}));
+  std::ifstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  std::getline(lines, line);
+  std::vector<std::string> cells;
+  for (std::istringstream rest(line); std::getline(rest, line, ',');) cells.push_back(line);
+  EXPECT_NEAR(std::stod(cells.at(3)), metres_per_count * (std::stod(cells.at(2)) + 0.5), 1e-9);
+}
+
 }  // namespace
 }  // namespace tacto::playback
