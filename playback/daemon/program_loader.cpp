@@ -21,9 +21,9 @@ Result<Program> made_within_memory(const ProgramLoader::Make& make) try {
 }
 
 // Some three to one, so that it is made in the end on a busy machine too.
-void step_back() {
+void step_back(pid_t thread) {
   constexpr int kNice = 5;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+  setpriority(PRIO_PROCESS, static_cast<id_t>(thread), kNice);
 }
 
 }  // namespace
@@ -48,7 +48,8 @@ void ProgramLoader::start_next() {
   work_ = std::make_shared<Work>();
   thread_ = std::thread([work = work_, next = *std::exchange(next_, std::nullopt)] {
     const auto& [make, beside] = next;
-    if (beside == Beside::playing) step_back();
+    work->thread.store(gettid());
+    if (beside == Beside::playing) step_back(gettid());
     work->result = made_within_memory(make);
     work->done.store(true);
   });
@@ -69,6 +70,7 @@ bool ProgramLoader::works() const {
 
 void ProgramLoader::give_up() {
   given_up_ = wanted_;
+  if (given_up_ && works() && work_->thread.load() != 0) step_back(work_->thread.load());
 }
 
 std::optional<Result<Program>> ProgramLoader::take() {

@@ -2,6 +2,8 @@
 // Makes a program beside whoever plays.
 #pragma once
 
+#include <sys/types.h>
+
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -34,7 +36,8 @@ class ProgramLoader {
   bool busy() const;
   /// Somebody waits for what take() is to give.
   bool wanted() const { return wanted_; }
-  /// What is being made is nobody's any more: take() gives an error at once.
+  /// What is being made is nobody's any more: take() gives an error at once, and its thread steps back behind
+  /// what may play from now on.
   void give_up();
   /// What came of it, once; none while it is being made, or where nothing was. Errors: of `make`; unsuitable:
   /// no memory for it; usage: it was given up.
@@ -43,6 +46,7 @@ class ProgramLoader {
  private:
   struct Work {
     std::atomic<bool> done{false};
+    std::atomic<pid_t> thread{0};
     std::optional<schema::Result<Program>> result;
   };
   struct Next {

@@ -3,6 +3,8 @@
 #include "playback/daemon/program_loader.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <future>
@@ -50,6 +52,27 @@ TEST(ProgramLoading, WhatIsBegunAfterOneThatWasGivenUpIsMade) {
   end.set_value();
   EXPECT_EQ(taken_in_the_end(loader), "second");
   EXPECT_FALSE(loader.busy());
+}
+
+// Who gave it up may arm and play at once.
+TEST(ProgramLoading, AThreadThatWasGivenUpStepsBack) {
+  std::promise<void> begun, end;
+  std::promise<int> nice;
+  ProgramLoader loader;
+  loader.begin(
+      [&]() -> Result<Program> {
+        begun.set_value();
+        end.get_future().wait();
+        nice.set_value(getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())));
+        return schema::fail(Fault::not_found, "first", "here");
+      },
+      ProgramLoader::Beside::nothing);
+  begun.get_future().wait();
+  const int before = getpriority(PRIO_PROCESS, static_cast<id_t>(gettid()));
+  loader.give_up();
+  end.set_value();
+  EXPECT_GT(nice.get_future().get(), before);
+  while (loader.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 TEST(ProgramLoading, WhatWaitsForAThreadCanBeGivenUpToo) {
