@@ -60,6 +60,7 @@ struct Overview {
   schema::SessionEnding ending = schema::SessionEnding::unread;
   std::optional<std::uint64_t> damaged_at;
   UploadWatch upload;
+  bool ticks = false;  // it holds some
 };
 
 Result<Overview> overview_of(const std::string& name) {
@@ -68,7 +69,10 @@ Result<Overview> overview_of(const std::string& name) {
   Overview seen;
   FirstFault& fault = seen.fault;
   while (const auto block = reader->next()) {
-    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) fault.see(*ticks);
+    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) {
+      seen.ticks = true;
+      fault.see(*ticks);
+    }
     if (const auto* loss = std::get_if<schema::SessionLoss>(&*block)) seen.lost += loss->count;
     if (const auto* end = std::get_if<schema::SessionEnd>(&*block)) seen.lost = end->lost_ticks;
     const auto* command = std::get_if<SessionCommand>(&*block);
@@ -191,7 +195,7 @@ Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) 
 // A damaged file may lack what stood behind the damage.
 Result<void> check_replayable(const Overview& seen, const schema::SessionReader& reader) {
   const std::string missing = seen.upload.missing();
-  if (!missing.empty() && !seen.damaged_at)
+  if (!missing.empty() && seen.ticks && !seen.damaged_at)
     return fail(Fault::unsuitable,
                 fmt::format("lacks {}: the disk did not take it (was it full?), and without it the drive "
                             "can't be computed again",
