@@ -20,8 +20,8 @@ struct TextureLayer {
   double at_m = 0;          ///< where its position 0 lies on the path
   double gain_m_per_n = 0;  ///< G_psi: displacement for force
   std::string gain_set_by, gain_set_on;
-  TextureEnds ends = TextureEnds::stop;
-  std::string extra_json;  ///< members of a newer version
+  TextureEnds ends = TextureEnds::stop;  ///< stop, unless it is the only layer
+  std::string extra_json;                ///< members of a newer version
 };
 
 /// One kind of thing in a scene. Height maps, walls, friction and contact transients become further
@@ -42,7 +42,8 @@ std::string_view word_of(TextureEnds ends);
 
 /// By stem or NAME.scene.json. Errors: not_found; malformed, by JSON pointer, also a member that is not known
 /// here (of a newer minor version it is kept); unsuitable, by JSON pointer,
-/// for a type of layer that this program does not know (with those that it does); unsupported_version.
+/// for a type of layer that this program does not know (with those that it does), and for one of several
+/// textures that would go on beyond its ends; unsupported_version.
 Result<Scene> read_scene(const std::string& name);
 
 /// The same from a text; `where` names it in errors.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -79,6 +80,18 @@ Result<void> check_known(const Document& document, const std::string& where) {
   return check_members_known(rules["playback"], body["playback"], where + "#/playback");
 }
 
+// Where several lie along a path, what lies beyond one's ends is another's place.
+Result<void> check_ends(const Scene& scene, const std::string& where) {
+  const auto goes_on = [](const Layer& layer) {
+    return std::visit([](const TextureLayer& texture) { return texture.ends != TextureEnds::stop; }, layer);
+  };
+  if (scene.layers.size() == 1) return {};
+  const auto layer = std::ranges::find_if(scene.layers, goes_on);
+  if (layer == scene.layers.end()) return {};
+  return fail(Fault::unsuitable, "one of several textures can't go on beyond its ends",
+              fmt::format("{}#/layers/{}/ends", where, layer - scene.layers.begin()), R"(make it "stop")");
+}
+
 Result<Scene> scene_from(const Document& document, const std::string& where) {
   Scene scene;
   for (const Json& body : document.body["layers"]) {
@@ -87,6 +100,7 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
     scene.layers.push_back(std::move(*layer));
   }
   if (const auto known = check_known(document, where); !known) return forward_error(known);
+  if (const auto sound = check_ends(scene, where); !sound) return forward_error(sound);
   scene.name = text_or(document.body, "name");
   scene.notes = text_or(document.body, "notes");
   scene.created = text_or(document.body, "created");

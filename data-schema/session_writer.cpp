@@ -59,7 +59,6 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
   return writer;
 }
 
-// Where a file system promises nothing, a write will tell.
 Result<void> SessionWriter::make_room(std::int64_t bytes) {
   const std::int64_t needed = size_ + bytes;
   rlimit most{};

@@ -26,6 +26,9 @@ class SessionWriter {
   Result<void> add(const SessionEvent& event);
   /// Before the commands of its upload. Errors: cannot_write; as session_program_text.
   Result<void> add(const SessionChange& change);
+  /// Whether there is room for so many bytes more, where the file system tells (else a write will); it is
+  /// held. Errors: cannot_write.
+  Result<void> make_room(std::int64_t bytes);
   /// Returns when all that was added is on the disk. Errors: cannot_write.
   Result<void> sync();
   /// The last block, and sync(). Errors: cannot_write.
@@ -35,7 +38,6 @@ class SessionWriter {
  private:
   SessionWriter(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
   Result<void> append(const std::string& block, std::int64_t to_keep_free);
-  Result<void> make_room(std::int64_t bytes);
   std::string path_;
   int descriptor_ = -1;
   std::int64_t size_ = 0, held_ = 0;  // held_: as far as the disk has promised room

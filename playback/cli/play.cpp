@@ -91,7 +91,7 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explai
   if (!outcome.simulated.empty()) report.add("simulated", outcome.simulated);
   report.add("gain_m_per_n", outcome.gain_m_per_n);
   add_kept_gain(report, outcome.kept_gain);
-  report.add("played_s", outcome.status.ticks.span_s());
+  report.add("played_s", outcome.status.ticks.playing_s());
   add_loop(report, outcome.loop_period_m, outcome.loop_seam_m);
   add_played(report, outcome);
   if (outcome.decision) add_decision(report, *outcome.decision, explain);

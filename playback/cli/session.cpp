@@ -34,8 +34,8 @@ constexpr std::string_view kStrokeColumns =
 std::string stroke_line(std::uint64_t number, const PlayedStroke& s) {
   const auto cell = [](bool known, double value) { return known ? fmt::format("{:.9g}", value) : ""; };
   const bool judged = s.wanted_rms_m > 0;
-  return fmt::format("{},{:.9f},{:.9f},{:.9g},{:.9g},{:.9g},{},{},{},{},{},{},{}\n", number, s.from_s, s.to_s,
-                     s.from_m, s.to_m, s.received_rms_m, cell(judged, s.wanted_rms_m),
+  return fmt::format("{},{:.9f},{:.9f},{:.12g},{:.12g},{:.9g},{},{},{},{},{},{},{}\n", number, s.from_s,
+                     s.to_s, s.from_m, s.to_m, s.received_rms_m, cell(judged, s.wanted_rms_m),
                      cell(judged, s.error_db), cell(judged, s.level_db),
                      cell(s.limits && s.limits->removed_any(), s.limits ? s.limits->removed_db() : 0),
                      s.limited_ticks, s.energy_limited_ticks, s.gated_ticks);

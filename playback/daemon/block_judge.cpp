@@ -34,9 +34,9 @@ void BlockJudge::take(const schema::SessionTick& tick, std::optional<float> wish
   });
 }
 
-void BlockJudge::finish() {
+void BlockJudge::finish(LastWay last) {
   judge(rows_.size() - judged_);
-  strokes_.end();
+  if (last == LastWay::whole) strokes_.end();
 }
 
 void BlockJudge::judge(std::size_t rows) {

@@ -14,6 +14,9 @@
 
 namespace tacto::playback {
 
+/// Whether the way that the finger is on in the last row is known to its end.
+enum class LastWay { whole, cut };
+
 class BlockJudge {
  public:
   /// The overview stays where it is.
@@ -22,8 +25,8 @@ class BlockJudge {
 
   /// Ticks in their order; `wished_v` before the limits, where it is known.
   void take(const schema::SessionTick& tick, std::optional<float> wished_v);
-  /// After the last one.
-  void finish();
+  /// After the last one. Precondition: there was one.
+  void finish(LastWay last);
   std::vector<std::string> notes() const { return wanted_.notes(maker_.turns()); }
   const StrokeFinder& strokes() const { return strokes_; }
 

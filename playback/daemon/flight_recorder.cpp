@@ -22,6 +22,7 @@ constexpr auto kSyncEvery = std::chrono::milliseconds(100);
 constexpr auto kRoomAgain = std::chrono::microseconds(200);
 constexpr std::size_t kBatch = 4096;
 constexpr std::int64_t kMostBlockNs = 4'000'000'000;  // a block counts 32 bits of ns
+constexpr std::int64_t kFirstBlock = 8192;            // bytes
 constexpr std::size_t kMostOwed = 1000;               // disjoint losses; later ones are only counted
 
 // Whether a tick may stand in the block that begins with another: without a hole, and not for too long.
@@ -42,9 +43,23 @@ Result<std::unique_ptr<FlightRecorder>> FlightRecorder::begin(const std::string&
                                                               FullQueue full, LiveLimits* limits) {
   auto writer = schema::SessionWriter::create(path, header);
   if (!writer) return schema::forward_error(writer);
-  std::unique_ptr<FlightRecorder> recorder(new FlightRecorder(std::move(*writer), full, limits));
-  recorder->thread_ = std::thread([self = recorder.get()] { self->run(); });
-  return recorder;
+  return std::unique_ptr<FlightRecorder>(new FlightRecorder(std::move(*writer), full, limits));
+}
+
+Result<void> FlightRecorder::write_beginning() {
+  write_notes();
+  if (failure_) return tl::unexpected(*failure_);
+  if (const auto room = writer_.make_room(kFirstBlock); !room) return room;
+  return writer_.sync();
+}
+
+Result<void> FlightRecorder::start() {
+  if (auto begun = write_beginning(); !begun) {
+    begun.error().remedy = "make room there, or let the session be elsewhere";
+    return begun;
+  }
+  thread_ = std::thread([this] { run(); });
+  return {};
 }
 
 FlightRecorder::~FlightRecorder() {
@@ -101,12 +116,13 @@ void FlightRecorder::event(schema::SessionEvent event) {
 
 RecorderCounts FlightRecorder::counts() const {
   const std::lock_guard lock(notes_mutex_);
-  return {written_.load(), queue_lost_.load(), disk_lost_.load(), late_.load(), failure_};
+  return {written_.load(), queue_lost_.load(), disk_lost_.load(), late_.load(),
+          failure_ ? schema::message(*failure_) : ""};
 }
 
 void FlightRecorder::failed(const schema::Error& error) {
   const std::lock_guard lock(notes_mutex_);
-  failure_ = schema::message(error);
+  failure_ = error;
 }
 
 void FlightRecorder::owe(const SessionLoss& loss) {

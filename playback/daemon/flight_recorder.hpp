@@ -5,6 +5,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -36,8 +37,9 @@ struct RecorderCounts {
 /// it writes.
 class FlightRecorder {
  public:
-  /// `limits`, where given, hears on the writer's thread what is to be written, and outlives the recorder.
-  /// Errors: as SessionWriter::create.
+  /// `limits`, where given, hears on the writer's thread (of the beginning on start()'s) what is to be written,
+  /// and outlives the recorder. Of what is recorded nothing is written before start(). Errors: as
+  /// SessionWriter::create.
   static schema::Result<std::unique_ptr<FlightRecorder>> begin(const std::string& path,
                                                                const schema::SessionHeader& header,
                                                                FullQueue full, LiveLimits* limits = nullptr);
@@ -45,6 +47,10 @@ class FlightRecorder {
   FlightRecorder& operator=(const FlightRecorder&) = delete;
   ~FlightRecorder();
 
+  /// Before the first tick, once: returns when what was recorded so far is on the disk, without which no tick
+  /// can be replayed; from then on all is written by itself. Errors: cannot_write, also where there is no
+  /// room for a first block of ticks.
+  schema::Result<void> start();
   void tick(const schema::SessionTick& tick) noexcept;
   void command(schema::SessionCommand command);
   /// What the commands that come next are to change to.
@@ -68,6 +74,7 @@ class FlightRecorder {
     std::vector<schema::SessionEvent> events;
   };
   FlightRecorder(schema::SessionWriter writer, FullQueue full, LiveLimits* limits);
+  schema::Result<void> write_beginning();
   void run();
   void stop();
   void write_queued();
@@ -91,7 +98,7 @@ class FlightRecorder {
   bool disk_full_ = false;                        // the writer's
   mutable std::mutex notes_mutex_;
   Notes notes_;
-  std::string failure_;
+  std::optional<schema::Error> failure_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

@@ -113,7 +113,6 @@ class TextureReader {
       const auto added = std::visit([&](const TextureLayer& texture) { return add(texture); }, layer);
       if (!added) return added;
     }
-    if (const auto apart = check_ends(); !apart) return apart;
     if (const auto near = check_reach(); !near) return near;
     if (laid_.gain() == 0)
       return fail(Fault::unsuitable, "every gain is 0", laid_.scene_path_, "give one a gain");
@@ -145,13 +144,6 @@ class TextureReader {
   }
   void note(std::string words) {
     if (!words.empty()) laid_.notes_.push_back(std::move(words));
-  }
-  Result<void> check_ends() const {
-    for (std::size_t i = 0; laid_.layers_.size() > 1 && i < laid_.layers_.size(); ++i)
-      if (laid_.layers_[i].ends != schema::TextureEnds::stop)
-        return fail(Fault::unsuitable, "one of several textures can't go on beyond its ends",
-                    fmt::format("{}#/layers/{}/ends", laid_.scene_path_, i), "make it \"stop\"");
-    return {};
   }
   // Before memory is taken for all that lies between the textures.
   Result<void> check_reach() const {

@@ -33,13 +33,21 @@ constexpr const char* kHelp =
     "tactographd --config FILE\n\n"
     "Plays textures on a device, steered by `tactograph ctl` or any client of its socket.\n"
     "FILE is JSON, as data-schema/schemas/daemon.schema.json says: device, transducer, socket, sessions ...\n"
-    "It answers SIGTERM and Ctrl-C by ramping the drive to zero. Messages go to stderr, which systemd "
+    "It answers SIGTERM, SIGHUP (the terminal went) and Ctrl-C by ramping the drive to zero. Messages go to "
+    "stderr, which systemd "
     "keeps.\n";
 
 volatile std::sig_atomic_t stop_asked = 0;
 
 void ask_to_stop(int) {
   stop_asked = 1;
+}
+
+// Whoever began it with nohup wants it to outlive the terminal.
+void stop_at_hangup(const struct sigaction& action) {
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 int failed(const schema::Error& error) {
@@ -51,13 +59,19 @@ double steady_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// A command or an event may be lost where no tick is.
+std::string lost_words(double ticks) {
+  return ticks > 0 ? fmt::format("{:.0f} ticks are", ticks) : "a command or event is";
+}
+
 // To the journal what changes; to watchers everything.
 void tell(ControlServer& server, const ServiceManager& manager, std::string_view event,
           const schema::ControlFields& fields) {
   server.publish(event, fields);
   if (event == "recorder")
-    cli::talk(fmt::format("tactographd: {:.0f} ticks are not in the session: {}\n",
-                          schema::control_number(fields, "lost_ticks"), schema::control_text(fields, "why")));
+    cli::talk(fmt::format("tactographd: {} not in the session: {}\n",
+                          lost_words(schema::control_number(fields, "lost_ticks")),
+                          schema::control_text(fields, "why")));
   if (event != "state") return;
   const std::string state = schema::control_text(fields, "state"), why = schema::control_text(fields, "why");
   cli::talk(fmt::format("tactographd: {}{}{}\n", state, why.empty() ? "" : ": ", why));
@@ -131,6 +145,7 @@ int main(int argc, char** argv) {
   action.sa_handler = ask_to_stop;
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGINT, &action, nullptr);
+  stop_at_hangup(action);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   return run(argv[2]);

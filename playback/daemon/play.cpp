@@ -54,10 +54,10 @@ Result<Program> program_for(const PlayOptions& options, const PlayerDevice& devi
 
 Result<void> run_until(Player& player, double time_s, const std::function<bool()>& stop_asked,
                        const std::function<void(double)>& progress) {
-  while (player.played_s() < time_s && !stop_asked()) {
+  while (player.armed_s() < time_s && !stop_asked()) {
     if (const auto done = player.step(kPlayStepS); !done) return done;
     if (player.state() == PlayerState::fault) break;
-    if (progress) progress(player.played_s() / time_s);
+    if (progress) progress(player.armed_s() / time_s);
   }
   return {};
 }
@@ -65,8 +65,8 @@ Result<void> run_until(Player& player, double time_s, const std::function<bool()
 // The ramp is part of the session.
 Result<void> ramp_down(Player& player) {
   if (const auto stopped = player.stop(); !stopped) return stopped;
-  const double until_s = player.played_s() + kReleaseWaitS;
-  while (player.played_s() < until_s)
+  const double until_s = player.armed_s() + kReleaseWaitS;
+  while (player.armed_s() < until_s)
     if (const auto done = player.step(kPlayStepS); !done) return done;
   return {};
 }

@@ -194,6 +194,7 @@ Result<void> Player::arm(const std::string& session_path) {
   auto done = upload(client_, program_->prepared);
   if (done) done = client_.command(device_gain());
   client_.take_ticks();  // of an earlier run, be it another program's that was killed
+  if (done) done = recorder_->start();
   if (done) done = client_.command(arm);
   if (!done) {
     recorder_->discard();

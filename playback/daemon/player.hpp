@@ -74,8 +74,8 @@ class Player {
   /// Whether it may be loaded in this state. Errors: usage.
   schema::Result<void> may_load() const;
   bool loaded() const { return program_.has_value(); }
-  /// Begins a session (never over a file that is there), and arms. In idle, loaded. Errors: usage; device;
-  /// cannot_write.
+  /// Begins a session (never over a file that is there), and arms once its header and upload are on the disk.
+  /// In idle, loaded. Errors: usage; device; cannot_write. After one there is no session.
   schema::Result<void> arm(const std::string& session_path);
   schema::Result<void> play();
   schema::Result<void> stop();
@@ -100,7 +100,7 @@ class Player {
   const RecorderCounts& last_session() const { return last_session_; }
   PlayerStatus status() const;
   /// Seconds of ticks since arming, by the device's clock.
-  double played_s() const { return view_.span_s(); }
+  double armed_s() const { return view_.span_s(); }
 
  private:
   Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres);

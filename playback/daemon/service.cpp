@@ -155,7 +155,7 @@ std::string Service::resolved(const std::string& file) const {
 }
 
 Result<void> Service::may_begin(const char* what) const {
-  if (!loader_.busy()) return {};
+  if (!loader_.wanted()) return {};
   return fail(Fault::usage, fmt::format("can't {} while a texture is being prepared", what),
               load_request_.file, "wait for the answer to that load");
 }

@@ -45,7 +45,7 @@ int flag(std::uint32_t flags, std::uint32_t which) {
 std::string line_of(const SessionTick& t, const SessionRow& row) {
   const bool measured = t.lateness_ns != SessionTick::kLatenessUnknown;
   return fmt::format(
-      "{},{:.9f},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{:.9g},{:.9f}\n", t.tick, row.time_s, t.encoder,
+      "{},{:.9f},{},{:.12g},{:.9g},{},{},{},{},{},{},{},{},{:.9g},{:.9f}\n", t.tick, row.time_s, t.encoder,
       row.position_m, t.drive_v, flag(t.flags, wire::kTickPlaying), flag(t.flags, wire::kTickFault),
       flag(t.flags, wire::kTickLate), flag(t.flags, wire::kTickAmplitudeLimited | wire::kTickSlewLimited),
       measured ? fmt::format("{:.9g}", 1e-9 * t.lateness_ns) : "", flag(t.flags, wire::kTickEnergyLimited),

@@ -10,6 +10,7 @@
 #include "playback/daemon/session_board.hpp"
 #include "playback/daemon/session_commands.hpp"
 #include "playback/daemon/session_rows.hpp"
+#include "playback/daemon/upload_watch.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -27,6 +28,8 @@ struct Overview {
   std::uint64_t lost = 0;
   schema::SessionEnding ending = schema::SessionEnding::unread;
   std::optional<std::uint64_t> damaged_at;
+  UploadWatch upload;
+  bool ticks = false;  // it holds some
 };
 
 Result<Overview> overview_of(const std::string& name) {
@@ -34,12 +37,15 @@ Result<Overview> overview_of(const std::string& name) {
   if (!reader) return schema::forward_error(reader);
   Overview seen;
   while (const auto block = reader->next()) {
-    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
+    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) {
+      seen.ticks = true;
       for (const SessionTick& tick : *ticks) seen.beats.see(tick);
+    }
     if (const auto* loss = std::get_if<schema::SessionLoss>(&*block)) seen.lost += loss->count;
     if (const auto* end = std::get_if<schema::SessionEnd>(&*block)) seen.lost = end->lost_ticks;
     const auto* command = std::get_if<SessionCommand>(&*block);
     if (command == nullptr) continue;
+    seen.upload.see(*command);
     if (!is_frame(command->frame))
       return fail(Fault::malformed, "a command in it is no frame of the wire", reader->path());
     seen.beats.see(*command, reader->header().rate_hz);
@@ -124,6 +130,22 @@ Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) 
   return {};
 }
 
+// A damaged file may lack what stood behind the damage.
+Result<void> check_replayable(const Overview& seen, const schema::SessionReader& reader) {
+  const std::string missing = seen.upload.missing();
+  if (!missing.empty() && seen.ticks && !seen.damaged_at)
+    return fail(Fault::unsuitable,
+                fmt::format("lacks {}: the disk did not take it (was it full?), and without it the drive "
+                            "can't be computed again",
+                            missing),
+                reader.path(), "the ticks that are in it can be exported: tactograph session");
+  if (!seen.gated || tells_touch(reader.header())) return {};
+  return fail(Fault::unsuitable,
+              "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
+              "computed again",
+              reader.path(), "play anew, on firmware of protocol 1.2 or newer");
+}
+
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
@@ -132,11 +154,7 @@ Result<ReplayOutcome> replay_session(const std::string& name, const std::functio
   if (!seen) return schema::forward_error(seen);
   auto reader = schema::SessionReader::open(name);
   if (!reader) return schema::forward_error(reader);
-  if (seen->gated && !tells_touch(reader->header()))
-    return fail(Fault::unsuitable,
-                "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
-                "computed again",
-                reader->path(), "play anew, on firmware of protocol 1.2 or newer");
+  if (const auto may = check_replayable(*seen, *reader); !may) return schema::forward_error(may);
   SessionPlayer player(reader->header(), seen->beats, wishes);
   if (const auto handed = hand_over_commands(name, player); !handed) return schema::forward_error(handed);
   while (const auto block = reader->next()) {

@@ -40,11 +40,12 @@ using WishListener = std::function<void(const schema::SessionTick& tick, float w
 /// recorded one to the bit. A fault is met again where its
 /// cause is in the ticks (enable input, jump, no number) or in the silence of the host. Of a contact gate the
 /// ticks tell what it decided, not the force. Nothing but the session is read. Errors: unsuitable, where
-/// there are no ticks, or where a contact gated a session whose ticks do not tell (before protocol 1.2);
-/// malformed, where a command in it is no frame; unsuitable, where the core refuses one, with its reason.
-/// `progress` hears fractions; `wishes` costs the same again: a second device, without limits, is given the
-/// same. It comes to rest a little sooner where the slew held the other one, at most drive limit / slew
-/// limit, and then takes a count that was unseen so much sooner.
+/// there are no ticks, where a part of what is sent up to arming is not in it, or where a contact gated a
+/// session whose ticks do not tell (before protocol 1.2); malformed, where a command in it is no frame;
+/// unsuitable, where the core refuses one, with its reason. `progress` hears fractions; `wishes` costs the
+/// same again: a second device, without limits, is given the same. It comes to rest a little sooner where the
+/// slew held the other one, at most drive limit / slew limit, and then takes a count that was unseen so much
+/// sooner.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
                                              const std::function<void(double)>& progress = {},
                                              const WishListener& wishes = {});

@@ -14,6 +14,7 @@
 #include "firmware-host/core/profile.hpp"
 #include "firmware-host/core/wire/host_messages.hpp"
 #include "playback/daemon/session_board.hpp"
+#include "playback/daemon/upload_watch.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -22,6 +23,7 @@ using schema::Fault;
 using schema::Result;
 using schema::SessionTick;
 
+constexpr std::uint32_t kPlaysBlind = wire::kTickBlind | wire::kTickPlaying;
 constexpr std::size_t kMostTexturesKept = 65536;  // of all changes: a file may hold any number
 
 // Each command that steers, in their order.
@@ -104,7 +106,10 @@ class Surveyor {
   }
   void operator()(const schema::SessionLoss& loss) { told_lost_ += loss.count; }
   void operator()(const schema::SessionEnd& end) { told_lost_ = end.lost_ticks; }
-  void operator()(const schema::SessionCommand& command) { steps_.see(command); }
+  void operator()(const schema::SessionCommand& command) {
+    steps_.see(command);
+    upload_.see(command);
+  }
   void operator()(const schema::SessionChange& change) { steps_.see(change); }
   void operator()(const schema::SessionEvent&) {}
   void operator()(const std::vector<SessionTick>& ticks) {
@@ -120,6 +125,7 @@ class Surveyor {
     seen_.look_ahead_ticks = steps_.look_ahead_ticks();
     seen_.reach = steps_.reach();
     seen_.steps = steps_.take();
+    seen_.not_uploaded = upload_.missing();
   }
 
  private:
@@ -135,10 +141,12 @@ class Surveyor {
     last_ns_ = tick.time_ns;
     seen_.missing_periods += missing;
     seen_.stops += missing > longest_gap(rate_hz);
+    seen_.blind_ticks += (tick.flags & kPlaysBlind) == kPlaysBlind;
   }
 
   SessionOverview& seen_;
   SteeringSteps steps_;
+  UploadWatch upload_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   std::uint64_t told_lost_ = 0, next_tick_ = 0;
 };

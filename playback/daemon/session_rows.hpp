@@ -46,12 +46,14 @@ struct SessionOverview {
   std::uint64_t ticks = 0;
   std::optional<std::uint64_t> lost_at;  ///< the first tick that is missing
   std::uint64_t lost = 0;                ///< also after the last one
+  std::string not_uploaded;              ///< UploadWatch::missing
   /// The byte from which on the file is damaged; what comes after it is not read.
   std::optional<std::uint64_t> damaged_at;
   bool closed = false;  ///< by its last block; else its writer is still at it, or was killed
   /// A computer that closes the loop may stand still: then periods pass without a tick, as the times tell.
   std::uint64_t missing_periods = 0;
-  std::size_t stops = 0;  ///< stretches of over 10 ms of them
+  std::size_t stops = 0;          ///< stretches of over 10 ms of them
+  std::uint64_t blind_ticks = 0;  ///< that play, in which no count had come for 10 ms
 };
 
 /// Reads all of it once. `progress` hears fractions. Errors: as SessionReader::open; no_ticks_in.

@@ -14,7 +14,8 @@ void add_ticks(ControlFields& fields, const TickView& view, std::uint64_t not_re
   fields.emplace_back("energy_limited_ticks", count(view.energy_limited()));
   fields.emplace_back("gated_ticks", count(view.gated()));
   fields.emplace_back("blind_ticks", count(view.blind()));
-  fields.emplace_back("played_s", view.span_s());
+  fields.emplace_back("played_s", view.playing_s());
+  fields.emplace_back("armed_s", view.span_s());
   fields.emplace_back("device_s", 1e-9 * static_cast<double>(view.last().time_ns));
   fields.emplace_back("encoder_count", std::int64_t{view.last().encoder});
   fields.emplace_back("position_m", view.position_m());

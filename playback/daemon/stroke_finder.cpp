@@ -67,6 +67,11 @@ void StrokeFinder::turn() {
 }
 
 void StrokeFinder::add(const StrokeRow& row) {
+  if ((row.row.flags & wire::kTickBlind) != 0) {
+    end();
+    begun_ = false;
+    return;
+  }
   const bool playing = (row.row.flags & wire::kTickPlaying) != 0;
   if (!std::exchange(begun_, true) || !playing) {
     end();

@@ -38,7 +38,8 @@ inline constexpr double kShortestStrokeM = 5e-3;
 
 /// A stroke is one way of the finger without turning (a finger that goes back by less than 0.2 mm has not
 /// turned), while playing, at least 5 mm long: the farthest place so far in a direction ends it once the
-/// finger has gone back from there. It is found then.
+/// finger has gone back from there. It is found then. A blind tick, in which the finger's place is not known,
+/// ends it too, and none begins before the next that sees.
 class StrokeFinder {
  public:
   explicit StrokeFinder(std::function<void(const StrokeSums&)> found) : found_(std::move(found)) {}

@@ -46,6 +46,20 @@ std::string note_of_stops(const SessionOverview& overview) {
       overview.missing_periods, overview.stops);
 }
 
+std::string note_of_loss(const SessionOverview& overview) {
+  return fmt::format(
+      "{} ticks are missing, from tick {} on: only strokes that end before it are judged, for what "
+      "the device knew after it is not known",
+      overview.lost, *overview.lost_at);
+}
+
+std::string note_of_blindness(const SessionOverview& overview) {
+  return fmt::format(
+      "in {} ticks no count of the encoder had come for 10 ms, and the drive fell: strokes end there, "
+      "and the way until the next count is not judged",
+      overview.blind_ticks);
+}
+
 StrokeReport begun_report(const SessionOverview& overview) {
   StrokeReport report;
   report.low_hz = overview.header.low_hz, report.high_hz = overview.header.high_hz;
@@ -56,15 +70,22 @@ StrokeReport begun_report(const SessionOverview& overview) {
     report.notes.push_back(
         fmt::format("{} is damaged from byte {} on: what comes after it is not in the report", overview.path,
                     *overview.damaged_at));
+  if (!overview.not_uploaded.empty() && !report.damaged)
+    report.notes.push_back(
+        fmt::format("{} lacks {}: the disk did not take it (was it full?), and `replay` can't "
+                    "compute its drive again",
+                    overview.path, overview.not_uploaded));
   if (overview.lost_at)
-    report.notes.push_back(fmt::format("{} ticks are missing: strokes are not judged", overview.lost));
+    report.notes.push_back(note_of_loss(overview));
   else if (overview.missing_periods > 0)
     report.notes.push_back(note_of_stops(overview));
+  if (overview.blind_ticks > 0) report.notes.push_back(note_of_blindness(overview));
   return report;
 }
 
 // No stroke is an answer, too, but not without its reason.
-std::string note_of_none(const StrokeFinder& strokes) {
+std::string note_of_none(const StrokeFinder& strokes, bool lost) {
+  if (lost) return "no stroke ends before it";
   if (strokes.played() == 0) return "nothing was played: there is no stroke to judge";
   const double longest_m = strokes.longest_way_m();
   return fmt::format(
@@ -95,7 +116,8 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
   const auto overview = session_overview(name, part_of(listener.progress, 0, 0.1));
   if (!overview) return schema::forward_error(overview);
   StrokeReport report = begun_report(*overview);
-  if (overview->lost_at) return report;
+  const std::uint64_t end = overview->lost_at.value_or(UINT64_MAX);
+  if (end == 0) return report;
   LimitTally whole;
   std::uint64_t unwanted = 0;
   BlockJudge judge(*overview, blocks, [&](const StrokeSums& sums) {
@@ -104,14 +126,15 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
   });
   const auto each = [&](const schema::SessionTick& tick, std::optional<float> wished_v) {
     if (wished_v) whole.add(limited_tick(tick.drive_v, *wished_v, tick.flags));
-    judge.take(tick, wished_v);
+    if (tick.tick < end) judge.take(tick, wished_v);
   };
   const auto unknown = hear_every_wish(name, each, part_of(listener.progress, 0.1, 1));
   if (!unknown) return schema::forward_error(unknown);
-  judge.finish();
+  judge.finish(overview->lost_at ? LastWay::cut : LastWay::whole);
   const auto notes = report.stroke_count > 0 ? judge.notes() : std::vector<std::string>();
   report.notes.insert(report.notes.end(), notes.begin(), notes.end());
-  if (report.stroke_count == 0) report.notes.push_back(note_of_none(judge.strokes()));
+  if (report.stroke_count == 0)
+    report.notes.push_back(note_of_none(judge.strokes(), overview->lost_at.has_value()));
   if (unwanted > 0) report.notes.push_back(note_of_unwanted(unwanted, report.stroke_count));
   if (*unknown) report.notes.push_back(schema::message(**unknown));
   if (!*unknown) report.limits = whole;

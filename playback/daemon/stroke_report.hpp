@@ -60,7 +60,9 @@ struct StrokeListener {
 /// 2^24 points.
 /// Errors: as session_overview. A texture that is gone or is another one by now, and a change that the
 /// session does not name (an older one), leave the wanted side of the strokes that they have a part in out,
-/// with a note. Of a session with ticks missing strokes are not judged, with a note.
+/// with a note. Of a session with ticks missing the strokes that end before the first of them are judged, as
+/// if the drive ended there, with a note; what the limits took in them is not told. Blind ticks are in no
+/// stroke, with a note.
 schema::Result<StrokeReport> report_strokes(const std::string& name, const StrokeListener& listener = {},
                                             const JudgedBlocks& blocks = {});
 

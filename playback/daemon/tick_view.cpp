@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSpeedOverS = 0.02, kLevelOverS = 0.1, kLateOverS = 1;
 constexpr std::uint32_t kHeldBack = wire::kTickGated | wire::kTickPlaying;
+constexpr std::uint32_t kPlaysOrFails = wire::kTickPlaying | wire::kTickFault;
 constexpr std::uint32_t kAnyLimit = wire::kTickAmplitudeLimited | wire::kTickSlewLimited;
 
 }  // namespace
@@ -32,6 +33,7 @@ void TickView::take(const schema::SessionTick& tick) {
   greatest_ = std::max(greatest_, count_);
   ++ticks_;
   late_ += (tick.flags & wire::kTickLate) != 0;
+  playing_ += (tick.flags & kPlaysOrFails) == wire::kTickPlaying;
   blind_ += (tick.flags & wire::kTickBlind) != 0;
   limited_ += (tick.flags & kAnyLimit) != 0;
   energy_limited_ += (tick.flags & wire::kTickEnergyLimited) != 0;

@@ -33,6 +33,8 @@ class TickView {
   /// Of the last whole second: the part of the ticks that were late.
   double late_part() const { return late_part_; }
   const schema::SessionTick& last() const { return last_; }
+  /// In play; what was lost counts as not played.
+  double playing_s() const { return static_cast<double>(playing_) / rate_hz_; }
   double span_s() const { return static_cast<double>(expected_) / rate_hz_; }
   double position_m() const { return metres_per_count_ * static_cast<double>(count_); }
   /// The farthest places of all, before and behind.
@@ -48,7 +50,7 @@ class TickView {
   static constexpr std::size_t kPlaces = 512;  // 25 ms at 20 kHz
   double rate_hz_ = 1, metres_per_count_ = 0;
   std::uint64_t expected_ = 0, ticks_ = 0, lost_ = 0, late_ = 0, limited_ = 0, blind_ = 0;
-  std::uint64_t energy_limited_ = 0, gated_ = 0;
+  std::uint64_t energy_limited_ = 0, gated_ = 0, playing_ = 0;
   std::uint64_t second_from_ = 0, late_before_ = 0;
   double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0;
   std::int64_t count_ = 0, least_ = INT64_MAX, greatest_ = INT64_MIN;  // a counter that passes 2^31 goes on

@@ -29,8 +29,8 @@ TEST(Scene, ReadsBackWhatWasWritten) {
   Scene scene;
   scene.name = "two";
   scene.newer_version = "1.3";  // only such a one has members that are not known here
-  scene.layers = {TextureLayer{"oak", 0.01, 1e-3, "mw", "2026-01-02T03:04:05Z", TextureEnds::loop, ""},
-                  TextureLayer{"../beech", -0.02, -5e-4, "", "", TextureEnds::mirror, R"({"tint":"red"})"}};
+  scene.layers = {TextureLayer{"oak", 0.01, 1e-3, "mw", "2026-01-02T03:04:05Z", TextureEnds::stop, ""},
+                  TextureLayer{"../beech", -0.02, -5e-4, "", "", TextureEnds::stop, R"({"tint":"red"})"}};
   ASSERT_TRUE(write_scene(folder / "two", scene));
   for (const char* name : {"two", "two.scene.json", "two.scene"}) {
     const auto read = read_scene(folder / name);
@@ -39,12 +39,34 @@ TEST(Scene, ReadsBackWhatWasWritten) {
     const auto& first = std::get<TextureLayer>(read->layers[0]);
     const auto& second = std::get<TextureLayer>(read->layers[1]);
     EXPECT_EQ(first.gain_set_by, "mw");
-    EXPECT_EQ(first.ends, TextureEnds::loop);
+    EXPECT_EQ(first.ends, TextureEnds::stop);
     EXPECT_EQ(second.gain_m_per_n, -5e-4);
     EXPECT_EQ(second.extra_json, R"({"tint":"red"})");
     EXPECT_EQ(read->name, "two");
     EXPECT_EQ(read->newer_version, "1.3");
   }
+}
+
+TEST(Scene, OneTextureMayGoOnBeyondItsEnds) {
+  tests::TemporaryFolder folder;
+  for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop}) {
+    Scene scene;
+    scene.layers = {TextureLayer{"oak", 0.01, 1e-3, "", "", ends, ""}};
+    ASSERT_TRUE(write_scene(folder / "one", scene));
+    const auto read = read_scene(folder / "one");
+    ASSERT_TRUE(read) << message(read.error());
+    EXPECT_EQ(std::get<TextureLayer>(read->layers[0]).ends, ends);
+  }
+}
+
+// `validate` refuses what `play` would.
+TEST(Scene, OneOfSeveralTexturesMayNotGoOnBeyondItsEnds) {
+  const std::string stops = R"({"type":"texture","texture":"o","at_m":0,"gain_m_per_n":1,"ends":"stop"})";
+  const std::string loops = R"({"type":"texture","texture":"o","at_m":0.1,"gain_m_per_n":1,"ends":"loop"})";
+  const std::string mirrors =
+      R"({"type":"texture","texture":"o","at_m":0.1,"gain_m_per_n":1,"ends":"mirror"})";
+  expect_refused(scene_text(stops + "," + loops), Fault::unsuitable, "s.scene.json#/layers/1/ends");
+  expect_refused(scene_text(mirrors + "," + stops), Fault::unsuitable, "s.scene.json#/layers/0/ends");
 }
 
 TEST(Scene, FaultsAreNamedByJsonPointer) {

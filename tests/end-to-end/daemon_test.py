@@ -139,6 +139,9 @@ def from_load_to_a_session_that_replays():
         assert "can't play in the state idle" in said and "arm first" in said, said
         assert "500" in ctl("load", "oak", "--gain", "0.5mm/N")[0]
         ctl("arm")
+        time.sleep(0.2)
+        armed = Client().must(request="status")
+        assert armed["played_s"] == 0 < armed["armed_s"], armed
         assert "playing" in ctl("play")[0]
         time.sleep(1)
         ctl("gain", "0.5")
@@ -757,7 +760,26 @@ def a_load_holds_up_nobody():
         answers = [json.loads(client.lines.readline()) for _ in range(3)]
         assert not answers[0]["ok"] and "given up" in answers[0]["error"]["what"], answers
         assert answers[1]["state"] == "playing" and answers[2]["state"] == "armed", answers
+        # The long one's thread goes on for itself, and is in nobody's way.
+        assert client.must(request="load", file="oak", gain_m_per_n=0.0005)["changed"]
     assert tacto.run_json("replay", session)["same_to_the_bit"]
+
+
+def the_terminal_goes_away():
+    """SIGHUP is as SIGTERM: the drive ramps to zero, the session is closed, the socket goes. Under nohup it goes on."""
+    prepare_files()
+    with daemon() as process:
+        session = begin(Client())
+        time.sleep(0.3)
+        process.send_signal(signal.SIGHUP)
+        process.wait(timeout=20)
+        assert not pathlib.Path("control").exists()
+    assert tacto.run_json("info", session)["ending"] == "closed"
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+    with daemon(preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)) as process:
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.2)
+        assert Client().must(request="status")["state"] == "idle"
 
 
 def files_that_nobody_can_play():
@@ -825,8 +847,8 @@ TESTS = [from_load_to_a_session_that_replays, what_the_limits_took_is_found, kil
          garbage_and_endless_lines, many_requests_at_once, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
          the_loop_closed_on_the_host, the_service_manager_is_told, a_band_that_the_rate_cuts_is_told,
          late_ticks_beyond_a_limit_are_a_fault, gain_saved_in_the_scene, gain_kept_with_the_texture, a_texture_changed_in_mid_play,
-         a_path_that_ends_where_it_began_is_a_loop, what_was_chosen_is_told, a_promise_in_the_configuration, a_load_holds_up_nobody, files_that_nobody_can_play,
-         by_tcp_with_a_token]
+         a_path_that_ends_where_it_began_is_a_loop, what_was_chosen_is_told, a_promise_in_the_configuration, a_load_holds_up_nobody, the_terminal_goes_away,
+         files_that_nobody_can_play, by_tcp_with_a_token]
 
 if __name__ == "__main__":
     for test in TESTS:

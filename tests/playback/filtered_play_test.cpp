@@ -57,7 +57,7 @@ class FilteredPlay : public testing::Test {
     moved_m_.clear();
     EXPECT_TRUE(player_->arm(session));
     EXPECT_TRUE(player_->play());
-    while (player_->played_s() < kPlayS) EXPECT_TRUE(player_->step(0.01));
+    while (player_->armed_s() < kPlayS) EXPECT_TRUE(player_->step(0.01));
     EXPECT_TRUE(player_->disarm());
     return judged(session);
   }

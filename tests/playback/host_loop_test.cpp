@@ -96,7 +96,7 @@ class HostLoopOnSim : public testing::Test {
     return std::move(*made);
   }
   void run(double seconds) {
-    for (const double end = player_->played_s() + seconds; player_->played_s() < end;)
+    for (const double end = player_->armed_s() + seconds; player_->armed_s() < end;)
       ASSERT_TRUE(player_->step(0.01));
   }
 

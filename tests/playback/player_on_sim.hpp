@@ -63,7 +63,7 @@ class PlayerOnSim : public testing::Test {
   }
   std::size_t ticks_here() const { return player_->status().ticks.expected(); }
   void run(double seconds) {
-    for (const double end = player_->played_s() + seconds; player_->played_s() < end;)
+    for (const double end = player_->armed_s() + seconds; player_->armed_s() < end;)
       ASSERT_TRUE(player_->step(0.01));
   }
   std::vector<schema::SessionTick> ticks() {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The player on the emulated device, in emulated time: states, refusals, faults, sessions that replay.
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "firmware-host/sim/sim_transport.hpp"
 #include "playback/daemon/player_device.hpp"
 #include "playback/daemon/session_stroke.hpp"
+#include "playback/daemon/stroke_report.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {
@@ -181,7 +183,7 @@ TEST_F(PlayerOnSim, WhatAnEarlierProgramsRunHasStillToSayBelongsToNobody) {
   const auto armed = (*next)->arm(folder_ / "two.session");
   ASSERT_TRUE(armed) << schema::message(armed.error());
   ASSERT_TRUE((*next)->play());
-  while ((*next)->played_s() < 0.5) ASSERT_TRUE((*next)->step(0.01));
+  while ((*next)->armed_s() < 0.5) ASSERT_TRUE((*next)->step(0.01));
   EXPECT_EQ((*next)->status().ticks.lost(), 0U);
   EXPECT_GE((*next)->status().ticks.ticks(), 1000U);
   EXPECT_EQ((*next)->state(), PlayerState::playing);
@@ -275,6 +277,66 @@ TEST_F(PlayerOnSim, ASessionThatNeverBeganLeavesNoFile) {
   begin();
   ASSERT_TRUE(player_->disarm());
   EXPECT_EQ(player_->status().session, session_);
+}
+
+// A limit of the file's size stands in for the disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit now{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &now);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(PlayerOnSim, WithoutRoomForTheSessionsBeginningNothingIsArmed) {
+  begin();
+  ASSERT_TRUE(player_->disarm());
+  const std::uintmax_t whole = std::filesystem::file_size(session_);
+  session_ = folder_ / "two.session";
+  for (const std::uintmax_t bytes : {whole / 4, whole / 2, whole - 100}) {
+    const FullDisk full(bytes);
+    const auto armed = player_->arm(session_);
+    ASSERT_FALSE(armed) << bytes << " of " << whole;
+    EXPECT_EQ(armed.error().fault, schema::Fault::cannot_write);
+    EXPECT_NE(armed.error().remedy.find("make room"), std::string::npos);
+    EXPECT_EQ(player_->state(), PlayerState::idle);
+    EXPECT_FALSE(std::filesystem::exists(session_));
+  }
+  begin();
+  ASSERT_TRUE(player_->disarm());
+  expect_same_to_the_bit();
+}
+
+// Of a session without them, as a full disk left it before arming was refused there.
+TEST_F(PlayerOnSim, AReplayNamesTheCommandsThatAreMissing) {
+  begin();
+  run(0.1);
+  ASSERT_TRUE(player_->disarm());
+  auto reader = schema::SessionReader::open(session_);
+  const std::string without = folder_ / "without.session";
+  auto writer = schema::SessionWriter::create(without, reader->header());
+  std::size_t commands = 0;
+  while (auto block = reader->next()) {
+    const auto* command = std::get_if<schema::SessionCommand>(&*block);
+    const auto* some = std::get_if<std::vector<schema::SessionTick>>(&*block);
+    const bool kept = command == nullptr || commands++ < 4;
+    if (command != nullptr && kept) writer->add(*command);
+    if (some != nullptr) writer->add(*some);
+  }
+  const auto replayed = replay_session(without);
+  ASSERT_FALSE(replayed);
+  EXPECT_EQ(replayed.error().fault, schema::Fault::unsuitable);
+  EXPECT_NE(replayed.error().what.find("samples of its upload"), std::string::npos) << replayed.error().what;
+  const auto told = report_strokes(without);
+  ASSERT_TRUE(told);
+  EXPECT_TRUE(std::ranges::any_of(told->notes, [](const std::string& note) {
+    return note.find("samples of its upload: the disk") != std::string::npos;
+  }));
 }
 
 // The largest gain is negative: the texture is turned over.
