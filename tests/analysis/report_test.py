@@ -146,6 +146,12 @@ def what_is_no_file_is_named():
     assert "study/link.json" in {row["file"] for row in report["files"]}
 
 
+def a_speed_that_is_missing_is_named():
+    for speeds in ("50mm/s,,", "50mm/s,,25mm/s", ",50mm/s"):
+        said = tacto.run("fidelity", "absent", "--speed", speeds, code=2)[1]
+        assert "beside a comma is missing" in said, (speeds, said)
+
+
 def folders_that_are_none_are_refused():
     pathlib.Path("empty").mkdir()
     assert "no file of tactograph" in tacto.run("report", "empty", code=5)[1]
@@ -156,5 +162,5 @@ def folders_that_are_none_are_refused():
 
 if __name__ == "__main__":
     for test in (a_project_on_one_page, broken_files_do_not_stop_the_rest, a_torn_curve_leaves_out_its_file_only, samples_are_those_that_the_sidecar_names, what_is_no_file_is_named,
-                 folders_that_are_none_are_refused):
+                 a_speed_that_is_missing_is_named, folders_that_are_none_are_refused):
         tacto.in_folder(test)
