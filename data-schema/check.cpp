@@ -2,6 +2,7 @@
 #include "data-schema/check.hpp"
 
 #include "data-schema/check_parts.hpp"
+#include "data-schema/results.hpp"
 #include "data-schema/session_netcdf.hpp"
 #include "data-schema/transducer.hpp"
 
@@ -30,6 +31,12 @@ std::vector<Finding> check_transducer(const std::string& path) {
   return {{transducer.error().where, transducer.error().what}};
 }
 
+std::vector<Finding> check_results(const std::string& path) {
+  const auto results = read_results(path);
+  if (results) return {};
+  return {{results.error().where, results.error().what}};
+}
+
 Result<Checked> check_document(const StoredFile& file, const Progress& progress) {
   const auto violations = violations_of(file.path);
   if (!violations) return judged(violations.error());
@@ -43,6 +50,7 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   if (file.kind == FileKind::recording) checked.findings = check_recording(file.path, *document, progress);
   if (file.kind == FileKind::scene) checked.findings = check_scene(file.path, *document);
   if (file.kind == FileKind::transducer) checked.findings = check_transducer(file.path);
+  if (file.kind == FileKind::results) checked.findings = check_results(file.path);
   if (file.kind == FileKind::texture) checked.findings = check_texture(file.path, *document, progress);
   return checked;
 }

@@ -40,7 +40,7 @@ struct Results {
 };
 
 /// NAME.results.json, by stem or in full, or another .json that is named in full. Errors: not_found;
-/// malformed; unsupported_version.
+/// malformed, with "FILE#/json/pointer" where a curve's x and y differ in length; unsupported_version.
 Result<Results> read_results(const std::string& name);
 
 /// The file's text. Points of curves that are not finite are left out. Errors: unsuitable, where the schema

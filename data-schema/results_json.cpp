@@ -49,6 +49,18 @@ ResultPicture picture_from(const Json& body) {
   return picture;
 }
 
+// What no schema can say: a curve's points are pairs.
+Result<void> check_curves(const Json& body, const std::string& path) {
+  for (std::size_t p = 0; p < body["pictures"].size(); ++p) {
+    const Json& curves = body["pictures"][p]["curves"];
+    for (std::size_t c = 0; c < curves.size(); ++c)
+      if (const std::size_t x = curves[c]["x"].size(), y = curves[c]["y"].size(); x != y)
+        return fail(Fault::malformed, fmt::format("x has {} values, y has {}", x, y),
+                    fmt::format("{}#/pictures/{}/curves/{}", path, p, c));
+  }
+  return {};
+}
+
 std::string results_path(const std::string& name) {
   if (is_file(name)) return name;
   return name.ends_with(".results.json") ? name : name + ".results.json";
@@ -67,6 +79,7 @@ Result<Results> read_results(const std::string& name) {
   const auto document = open_document(results_path(name), kResultsKind);
   if (!document) return forward_error(document);
   const Json& body = document->body;
+  if (const auto sound = check_curves(body, results_path(name)); !sound) return forward_error(sound);
   Results results;
   results.verb = text_or(body, "verb");
   results.inputs = body["inputs"].get<std::vector<std::string>>();

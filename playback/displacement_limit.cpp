@@ -86,7 +86,7 @@ schema::Result<void> check_displacement(double peak_m, double factor, double gai
   if (!(reached_m > kSinglePrecision * limit_m)) return {};
   const double most = fitting(limit_m / peak_m);
   return schema::fail(schema::Fault::unsuitable,
-                      fmt::format("the tray would go as far as {}, its limit is {}",
+                      fmt::format("the tray could go as far as {}, at worst; its limit is {}",
                                   schema::for_people(reached_m, schema::Dimension::length),
                                   schema::for_people(limit_m, schema::Dimension::length)),
                       transducer.name,

@@ -68,9 +68,26 @@ schema::Results fidelity_results(const Fidelity& fidelity) {
   return results;
 }
 
+// Empty ones, too: a list that ends in a comma lacks one.
+std::vector<std::string> between_commas(const std::vector<std::string>& lists) {
+  std::vector<std::string> pieces;
+  for (const std::string& list : lists) {
+    pieces.emplace_back();
+    for (const char c : list)
+      if (c == ',')
+        pieces.emplace_back();
+      else
+        pieces.back() += c;
+  }
+  return pieces;
+}
+
 Result<void> read_speeds(FidelityVerbOptions& o) {
   o.fidelity.speeds_mps.clear();
-  for (const std::string& text : o.speeds) {
+  for (const std::string& text : between_commas(o.speeds)) {
+    if (text.empty())
+      return schema::fail(schema::Fault::usage, "a speed beside a comma is missing", "--speed",
+                          "name one, or several between commas: 25mm/s,100mm/s");
     const auto speed = schema::parse_quantity(text, Dimension::speed);
     if (!speed)
       return schema::fail(schema::Fault::usage, speed.error().what, "--speed " + text, speed.error().remedy);
@@ -116,8 +133,7 @@ cli::Action declare_fidelity(CLI::App& app) {
   app.add_option(
       "--transducer", play.transducer,
       "The model that is inverted: a preset or NAME.transducer.json; the device's own unless told");
-  app.add_option("--speed", options->speeds, "Of an emulated finger: one, or several between commas")
-      ->delimiter(',');
+  app.add_option("--speed", options->speeds, "Of an emulated finger: one, or several between commas");
   cli::add_quantity(app, "--time", play.time_s, Dimension::time, "On a real device: how long [10 s]");
   cli::add_quantity(app, "--gain", play.program.gain_m_per_n, Dimension::compliance,
                     "Displacement for force, 1mm/N unless told");

@@ -250,9 +250,8 @@ Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
   add_conditions(o, *data);
   ModelChoice choice = o.model;
   choice.direction = data->direction;
-  if (const auto sound = check_bode(*data); !sound) return schema::forward_error(sound);
-  if (const auto said = check_units(*data, choice, asked.base); !said) return schema::forward_error(said);
-  if (const auto sound = check_phases(*data, choice, asked.base); !sound) return schema::forward_error(sound);
+  const auto sound = check_measured(*data, choice, asked.base, {o.phase_sign < 0, o.invert});
+  if (!sound) return schema::forward_error(sound);
   const ResponseFit fit = fit_response(*data, choice, asked.base);
   if (const auto said = check_levels(fit, choice, asked.base); !said) return schema::forward_error(said);
   if (const auto sized = o.force ? Result<void>() : check_size(fit, asked.base); !sized)
@@ -305,7 +304,8 @@ Result<Report> identify_loops(const IdentifyOptions& o, Asked& asked) {
   const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz,
                              delay_at_rest_s(asked.base) + held_s, asked.base.drive_limit_v);
   if (!fit) return schema::forward_error(fit);
-  if (const auto upright = check_upright(*fit, about.source); !upright) return schema::forward_error(upright);
+  if (const auto upright = check_upright(*fit, about.source, o.invert); !upright)
+    return schema::forward_error(upright);
   if (const auto sized = o.force ? Result<void>() : check_size(*fit, asked.base, about.source); !sized)
     return schema::forward_error(sized);
   const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);

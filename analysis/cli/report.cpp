@@ -47,10 +47,8 @@ void tell(const Project& project) {
 }
 
 Result<void> write_page(const Project& project, const std::string& output) {
-  const auto page = project_page(project);
-  if (!page) return schema::forward_error(page);
   schema::PendingFiles files;
-  if (auto written = files.write(output, *page); !written) return written;
+  if (auto written = files.write(output, project_page(project)); !written) return written;
   return files.commit();
 }
 
@@ -59,8 +57,9 @@ Result<Report> run_report(const ReportVerbOptions& o) {
     return schema::fail(schema::Fault::usage, "doesn't end in .html", o.output, "a report is a page");
   if (const auto free = check_outputs({o.output}); !free) return schema::forward_error(free);
   cli::Progress progress("reading");
-  const auto project = read_project(o.folder, o.output, [&](double part) { progress.update(part); });
+  auto project = read_project(o.folder, o.output, [&](double part) { progress.update(part); });
   if (!project) return schema::forward_error(project);
+  draw_pictures(*project);
   tell(*project);
   if (const auto written = write_page(*project, o.output); !written) return schema::forward_error(written);
   return project_report(*project, o.output);

@@ -127,16 +127,14 @@ Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& wa
   return row;
 }
 
-// How much of the texture's power, in what it knows, lies within the band at a speed.
+// How much of the texture's power lies within the band at a speed: of all of its samples, as they are played,
+// whether or not it knows them throughout; from one bin up.
 double kept_percent(const Texture& texture, double speed_mps, const spatial::Band& band) {
   const auto part = spatial::steady_part(texture).texture;
   const std::size_t window = part.signal.values.size() / 4;
   if (window < spatial::kShortestWelchWindow) return 100;
   const spatial::WelchSpectrum spectrum(part.signal.values, part.signal.pitch_m, window);
-  schema::BandPoint known{0, 0, INFINITY};
-  if (!part.valid_band.empty()) known = spatial::band_throughout(part.valid_band);
-  const double low = std::max(known.low_per_m, spectrum.step());
-  const double high = std::min(known.high_per_m, 0.5 / part.signal.pitch_m);
+  const double low = spectrum.step(), high = 0.5 / part.signal.pitch_m;
   if (!(low < high)) return 100;
   const double from = std::clamp(band.low_hz / speed_mps, low, high);
   const double to = std::clamp(band.high_hz / speed_mps, low, high);

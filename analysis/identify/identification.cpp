@@ -66,10 +66,18 @@ std::string method_words(IdentifyMethod method) {
   return kWords[static_cast<std::size_t>(method)];
 }
 
+std::string overstated_words(const ResponseFit& fit) {
+  if (!(fit.noise_overstated > 0)) return "";
+  return fmt::format(
+      "; the noise that came with the data is {:.2g} times what is left: too large, and was left out",
+      fit.noise_overstated);
+}
+
 std::string verdict_of(const ResponseFit& fit) {
   if (!fit.converged) return fit.ended;
-  if (!fit.misfit.found) return "the residuals are noise";
-  return fit.misfit.words + "; " + fit.suggestion;
+  std::string words = fit.misfit.found ? fit.misfit.words + "; " + fit.suggestion : "the residuals are noise";
+  if (!fit.misfit.found && fit.evenness.uneven) words += ", but uneven: " + evenness_words(fit.evenness);
+  return words + overstated_words(fit);
 }
 
 schema::Transducer named(schema::Transducer t, const std::string& name, const schema::Identification& about,

@@ -18,6 +18,7 @@ constexpr double kStep = 1e-5;
 constexpr double kTolerance = 1e-12;
 constexpr int kMostEvaluations = 200;
 constexpr double kNearBound = 1e-3;
+constexpr double kLeastLeft = 1e-6;  // of a value that the model follows wherever it goes
 
 // Residuals and their derivatives, in the coordinates themselves.
 struct Problem {
@@ -134,6 +135,22 @@ Solution least_squares(const Residuals& residuals, std::size_t residual_count, s
   if (solution.at_bound) solution.ended = "a parameter ran into its bound";
   add_uncertainty(problem, c, solution);
   return solution;
+}
+
+RobustErrors robust_errors(const Residuals& residuals, std::size_t residual_count, const Solution& solution) {
+  const Bounds unused;
+  const Problem problem{residuals, unused, static_cast<Index>(residual_count)};
+  const auto n = static_cast<Index>(solution.coordinates.size());
+  const VectorXd c = Eigen::Map<const VectorXd>(solution.coordinates.data(), n);
+  const MatrixXd j = problem.jacobian(c);
+  const MatrixXd pull = j * Eigen::Map<const MatrixXd>(solution.covariance.data(), n, n);
+  const VectorXd leverage = pull.cwiseProduct(j).rowwise().sum();
+  const VectorXd left = problem.at(c).array() / (1 - leverage.array()).max(kLeastLeft);
+  const MatrixXd moved = left.asDiagonal() * pull;
+  const MatrixXd covariance = moved.transpose() * moved;
+  const MatrixXd shares = moved.array().square();
+  const auto freedom = 3 * shares.colwise().sum().array().square() / shares.colwise().squaredNorm().array();
+  return {{covariance.data(), covariance.data() + covariance.size()}, freedom.minCoeff()};
 }
 
 namespace {

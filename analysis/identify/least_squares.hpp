@@ -37,6 +37,16 @@ struct Solution {
 Solution least_squares(const Residuals& residuals, std::size_t residual_count, std::vector<double> start,
                        const Bounds& bounds);
 
+/// Of a solution whose residuals are not all of one variance: the coordinates' covariance A J^T W J A, row by
+/// row, where A is the inverse of J^T J and W holds (r / (1 - h))^2, h being the diagonal of J A J^T (HC3 of
+/// MacKinnon and White 1985); and the fewest degrees of freedom that a coordinate's variance is told by
+/// (Satterthwaite's, the fourth moments being Gaussian ones). Preconditions: as of least_squares().
+struct RobustErrors {
+  std::vector<double> covariance;
+  double freedom = 0;
+};
+RobustErrors robust_errors(const Residuals& residuals, std::size_t residual_count, const Solution& solution);
+
 /// x >= 0 that minimises |A x - b| (Lawson and Hanson 1974, active set). `columns` of A, each as long as b.
 /// The last `free_columns` of x may be negative.
 std::vector<double> non_negative_least_squares(const std::vector<std::vector<double>>& columns,

@@ -3,16 +3,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 namespace tacto::analysis {
 namespace {
 
 constexpr double kQuantile = 3.2905;  // of the normal distribution: 5 in 10,000 beyond
 
-double chi_squared_limit(double freedom) {
+double chi_squared_at(double quantile, double freedom) {
   const double spread = 2 / (9 * freedom);
-  return std::pow(1 - spread + kQuantile * std::sqrt(spread), 3);
+  return std::pow(std::max(0.0, 1 - spread + quantile * std::sqrt(spread)), 3);
+}
+
+// Of |r|^2, which is exponential: the median over what it should be, 1 / ln 2 of ...
+double median_square(std::span<const std::complex<double>> residuals) {
+  std::vector<double> squares;
+  for (const auto& r : residuals) squares.push_back(std::norm(r));
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::ranges::nth_element(squares, middle);
+  return *middle / (2 * std::numbers::ln2);
+}
+
+// ... and the least that it is. Its place in the distribution is a beta's, of standard deviation
+// 1 / (2 sqrt(n + 2)); of ten values or fewer there is none.
+double lowest_median_square(double values) {
+  const double place = 0.5 - kQuantile / (2 * std::sqrt(values + 2));
+  return place > 0 ? -std::log1p(-place) / std::numbers::ln2 : 0;
+}
+
+double times_overstated(double chi_squared, double freedom, std::span<const std::complex<double>> residuals) {
+  const double n = static_cast<double>(residuals.size()), median = median_square(residuals) * 2 * n / freedom;
+  if (chi_squared >= lowest_chi_squared(freedom) && median >= lowest_median_square(n)) return 0;
+  return 1 / std::sqrt(std::min(chi_squared, median));
 }
 
 double neighbours(std::span<const std::complex<double>> residuals, double (*part)(std::complex<double>)) {
@@ -41,13 +66,24 @@ std::string words_of(const Misfit& m) {
 
 }  // namespace
 
+double highest_chi_squared(double freedom) {
+  return chi_squared_at(kQuantile, freedom);
+}
+
+double lowest_chi_squared(double freedom) {
+  return chi_squared_at(-kQuantile, freedom);
+}
+
 Misfit misfit_of(std::span<const std::complex<double>> residuals, std::size_t parameters, bool noise_known) {
   Misfit m;
   const double freedom = 2 * static_cast<double>(residuals.size()) - static_cast<double>(parameters);
   double squares = 0;
   for (const auto& r : residuals) squares += std::norm(r);
-  m.chi_squared_limit = chi_squared_limit(freedom);
-  if (noise_known) m.reduced_chi_squared = squares / freedom;
+  m.chi_squared_limit = highest_chi_squared(freedom);
+  if (noise_known) {
+    m.reduced_chi_squared = squares / freedom;
+    m.noise_overstated = times_overstated(m.reduced_chi_squared, freedom, residuals);
+  }
   m.correlation_limit = kQuantile / std::sqrt(static_cast<double>(residuals.size()));
   m.amplitude_correlation = neighbours(residuals, [](std::complex<double> r) { return r.real(); });
   m.phase_correlation = neighbours(residuals, [](std::complex<double> r) { return r.imag(); });

@@ -54,7 +54,9 @@ BodeData without_half_turns(BodeData data, std::size_t& first_step) {
   return data;
 }
 
-constexpr const char* kTurnRound = "turn the sensor's polarity round, or give --invert";
+std::string invert_remedy(bool inverted) {
+  return inverted ? "leave --invert out" : "turn the sensor's polarity round, or give --invert";
+}
 
 std::string unit_words(double times) {
   const double powers = std::round(std::log10(times) / 3) * 3;
@@ -72,8 +74,44 @@ Result<void> check_times(double times, const schema::Transducer& base, const std
 
 }  // namespace
 
-Result<void> check_phases(const BodeData& measured, const ModelChoice& choice,
-                          const schema::Transducer& base) {
+namespace {
+
+std::string turns_remedy(Turned needed, Turned given) {
+  if (!needed.conjugated) return invert_remedy(given.inverted);
+  if (!needed.inverted) return given.conjugated ? "leave --phase-sign out" : "give --phase-sign -1";
+  if (given.conjugated && given.inverted) return "leave --phase-sign and --invert out";
+  if (given.conjugated) return "leave --phase-sign out, and give --invert";
+  if (given.inverted) return "give --phase-sign -1, and leave --invert out";
+  return "give --phase-sign -1 and --invert";
+}
+
+std::string turns_words(Turned needed, Direction direction) {
+  const std::string grows = "the phase grows where a lag must fall", down = "the response is upside down",
+                    why = direction == Direction::actuator
+                              ? ": a positive drive gives a negative answer"
+                              : ": its volts have the other sign than the transducer's for the same force";
+  if (!needed.inverted) return grows + ": it has the other sign convention";
+  return needed.conjugated ? grows + ", and " + down : down + why;
+}
+
+// The turns that leave clearly less than the data do as they are, and of those the least; none: {}.
+Turned turns_needed(const ResponseModel& model, const BodeData& data, double left) {
+  double least = kClearly * left;
+  Turned needed;
+  for (const Turned turn : {Turned{true, false}, Turned{false, true}, Turned{true, true}}) {
+    const double by_turn =
+        left_by_grid(model, changed(data, [&](auto h) {
+                       return (turn.inverted ? -1.0 : 1.0) * (turn.conjugated ? std::conj(h) : h);
+                     }));
+    if (by_turn < least) least = by_turn, needed = turn;
+  }
+  return needed;
+}
+
+}  // namespace
+
+Result<void> check_phases(const BodeData& measured, const ModelChoice& choice, const schema::Transducer& base,
+                          Turned turned) {
   if (choice.finger) return {};
   const BodeData data =
       without_hold(measured, [&](double hz) { return schema::actuator_response(base, hz); });
@@ -90,17 +128,10 @@ Result<void> check_phases(const BodeData& measured, const ModelChoice& choice,
             "was unwrapped wrongly",
             data.frequency_hz[step - 1], data.frequency_hz[step]),
         data.source, "take the phase of the complex ratio (atan2), not of a quotient");
-  if (left_by_grid(model, changed(data, [](auto h) { return std::conj(h); })) < kClearly * left)
-    return fail(Fault::unsuitable, "the phase grows where a lag must fall: it has the other sign convention",
-                data.source, "give --phase-sign -1");
-  if (left_by_grid(model, changed(data, [](auto h) { return -h; })) < kClearly * left)
-    return fail(
-        Fault::unsuitable,
-        data.direction == Direction::actuator
-            ? "the response is upside down: a positive drive gives a negative answer"
-            : "the response is upside down: its volts have the other sign than the transducer's for the "
-              "same force",
-        data.source, kTurnRound);
+  const Turned needed = turns_needed(model, data, left);
+  if (needed.conjugated || needed.inverted)
+    return fail(Fault::unsuitable, turns_words(needed, data.direction), data.source,
+                turns_remedy(needed, turned));
   return {};
 }
 
@@ -128,6 +159,13 @@ Result<void> check_units(const BodeData& data, const ModelChoice& choice, const 
   return fail(Fault::unsuitable,
               fmt::format("no phase is beyond {:.3g} degrees: these will be radians", largest_angle(data)),
               data.source, "give --phase-unit rad, or write phase_rad into the header");
+}
+
+Result<void> check_measured(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
+                            Turned turned) {
+  if (const auto sound = check_bode(data); !sound) return sound;
+  if (const auto said = check_units(data, choice, base); !said) return said;
+  return check_phases(data, choice, base, turned);
 }
 
 Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base) {
@@ -172,10 +210,10 @@ Result<void> check_size(const LoopFit& fit, const schema::Transducer& base, cons
                      "put the unit into the table's first line, or give --force where the gain is right");
 }
 
-Result<void> check_upright(const LoopFit& fit, const std::string& source) {
+Result<void> check_upright(const LoopFit& fit, const std::string& source, bool inverted) {
   if (fit.gain_m_per_v > 0) return {};
   return fail(Fault::unsuitable, "the loops are upside down: a positive drive gives a negative answer",
-              source, kTurnRound);
+              source, invert_remedy(inverted));
 }
 
 }  // namespace tacto::analysis

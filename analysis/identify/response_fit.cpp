@@ -100,7 +100,10 @@ ResponseFit fitted_from(const BodeData& data, const ResponseModel& model, std::v
   fit.iterations = fitter.solution().iterations;
   fit.condition = fitter.solution().condition;
   fit.r_squared = r_squared_of(data, fit.modelled);
-  fit.misfit = misfit_of(turned_residuals(data, fit.modelled), fitter.free_count(), data.noise_is_measured());
+  const auto residuals = turned_residuals(data, fit.modelled);
+  fit.misfit = misfit_of(residuals, fitter.free_count(), data.noise_is_measured());
+  if (data.noise_from_residuals) fit.evenness = evenness_of(residuals, data.frequency_hz);
+  if (fit.evenness.uneven) fitter.take_uneven_noise();
   fit.transducer = model.transducer(fitter.values());
   put_parameters(fitter, model, fit);
   return fit;
@@ -280,6 +283,12 @@ BodeData with_noise_known(BodeData data, const ModelChoice& choice, const schema
   return data;
 }
 
+BodeData without_noise(BodeData data) {
+  data.noise.clear();
+  data.noise_freedom = 0;
+  return data;
+}
+
 // Relative residuals of values far too large are small: R^2 tells those.
 void distrust(ResponseFit& fit) {
   if (fit.misfit.found || fit.data.noise_is_measured() || fit.r_squared > kExplains) return;
@@ -293,6 +302,11 @@ ResponseFit fit_response(const BodeData& measured, const ModelChoice& choice,
                          const schema::Transducer& base) {
   const BodeData data = with_noise_known(measured, choice, base);
   ResponseFit fit = fit_once(data, choice, base);
+  if (const double times = fit.misfit.noise_overstated; times > 0) {
+    fit = fit_response(without_noise(measured), choice, base);
+    fit.noise_overstated = times;
+    return fit;
+  }
   const bool sound = fit.claims_intervals();
   if (!finds_outlier(data, choice, base, fit)) {
     distrust(fit);

@@ -7,6 +7,7 @@
 
 #include "analysis/identify/bode_data.hpp"
 #include "analysis/identify/misfit.hpp"
+#include "analysis/identify/noise_evenness.hpp"
 #include "analysis/identify/response_model.hpp"
 
 namespace tacto::analysis {
@@ -26,6 +27,8 @@ struct ResponseFit {
   double r_squared = 0;  ///< of complex values, unweighted
   double condition = 0;  ///< of the Jacobian with columns of length 1
   Misfit misfit;
+  NoiseEvenness evenness;       ///< of the residuals, where nobody measured the noise
+  double noise_overstated = 0;  ///< times: the noise that came with the data was left out; 0: it was not
   bool one_mode_short =
       false;               ///< a second mode takes at least half of what a misfit leaves, and more than a lag
   std::string suggestion;  ///< what the model lacks, where there is a misfit
@@ -49,7 +52,9 @@ struct ResponseFit {
 /// equal ones the pole nearest the base's. The hold is taken out with the model itself. A parameter whose
 /// standard error is more than a factor e is held at the base's value, and said. Intervals: from the
 /// Jacobian, normal where the noise is known, else with Student's t: by the noise's own degrees of freedom,
-/// or by the residuals' 2 n - p and their own variance; none where the fit did not converge or misfit_of()
+/// or by the residuals' 2 n - p and their own variance (robust_errors() where evenness_of() says that it
+/// differs over the band). Noise that misfit_of() calls overstated is left out, as if nobody had measured it.
+/// No interval where the fit did not converge or misfit_of()
 /// says that the model is wrong. Precondition: check_bode(data).
 ResponseFit fit_response(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base);
 

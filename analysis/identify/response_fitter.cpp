@@ -32,6 +32,12 @@ void ResponseFitter::run() {
   }
 }
 
+void ResponseFitter::take_uneven_noise() {
+  RobustErrors errors = robust_errors([&](auto c, auto r) { residuals(c, r); }, 2 * data_.size(), solution_);
+  solution_.covariance = std::move(errors.covariance);
+  uneven_freedom_ = errors.freedom;
+}
+
 std::size_t ResponseFitter::free_count() const {
   return static_cast<std::size_t>(std::count(held_.begin(), held_.end(), false));
 }
@@ -41,7 +47,7 @@ double ResponseFitter::freedom() const {
 }
 
 double ResponseFitter::variance() const {  // of the whitened residuals
-  return data_.noise_is_measured() ? 1 : solution_.squares / freedom();
+  return data_.noise_is_measured() || uneven_freedom_ > 0 ? 1 : solution_.squares / freedom();
 }
 
 double ResponseFitter::standard_error(std::size_t i) const {
@@ -60,6 +66,7 @@ double ResponseFitter::spread(double hz) const {
 }
 
 double ResponseFitter::times_95() const {
+  if (uneven_freedom_ > 0) return student_95(uneven_freedom_);
   if (!data_.noise_is_measured()) return student_95(freedom());
   return data_.noise_freedom > 0 ? student_95(data_.noise_freedom) : kNormal95;
 }

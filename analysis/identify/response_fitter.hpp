@@ -24,6 +24,10 @@ class ResponseFitter {
   /// Fits, and again with the vaguest parameter held at the base's value for as long as there is one.
   void run();
 
+  /// From now on errors are told by the residuals where they are: the noise is not of the size that was
+  /// taken.
+  void take_uneven_noise();
+
   std::size_t free_count() const;
   double freedom() const;                      ///< 2 n - p
   double standard_error(std::size_t i) const;  ///< of a coordinate
@@ -49,6 +53,7 @@ class ResponseFitter {
   std::vector<double> values_;
   std::vector<bool> held_;
   Solution solution_;
+  double uneven_freedom_ = 0;  // 0: the noise is of the size that was taken
 };
 
 }  // namespace tacto::analysis

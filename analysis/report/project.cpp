@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "analysis/picture_svg.hpp"
 #include "data-schema/files.hpp"
 #include "playback/daemon/session_rows.hpp"
 
@@ -111,6 +112,20 @@ Result<Project> read_project(const std::string& folder, const std::string& leave
   std::erase_if(project.foreign, [&](const std::string& path) { return is_sidecars_wav(path, project); });
   std::ranges::stable_sort(project.files, {}, &ProjectFile::kind);
   return project;
+}
+
+void draw_pictures(Project& project) {
+  std::erase_if(project.files, [&](ProjectFile& file) {
+    auto drawn = pictures_html(file.pictures, file.simulated);
+    if (drawn) {
+      file.pictures_html = std::move(*drawn);
+      return false;
+    }
+    schema::Error error = drawn.error();
+    error.where = file.path + ", " + error.where;
+    project.broken.push_back({file.path, std::move(error)});
+    return true;
+  });
 }
 
 }  // namespace tacto::analysis

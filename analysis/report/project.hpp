@@ -33,8 +33,12 @@ struct Project {
 schema::Result<Project> read_project(const std::string& folder, const std::string& leave_out,
                                      const std::function<void(double)>& progress = {});
 
+/// Draws the files' pictures. A file with one that cannot be drawn goes from `files` to `broken`: it does not
+/// stop the rest.
+void draw_pictures(Project& project);
+
 /// One page that needs nothing beside it: what was measured where as a table, then each file with its figures
-/// and pictures. Errors: of drawing.
-schema::Result<std::string> project_page(const Project& project);
+/// and pictures, as far as draw_pictures() has drawn them.
+std::string project_page(const Project& project);
 
 }  // namespace tacto::analysis

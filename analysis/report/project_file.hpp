@@ -23,6 +23,7 @@ struct ProjectFile {
   std::vector<schema::ResultFigure> figures;
   std::vector<schema::ResultPicture> pictures;
   std::vector<std::string> drawings;  ///< SVG, where a picture is more than curves
+  std::string pictures_html;          ///< `pictures` as the page shows them: by draw_pictures()
 };
 
 /// Checks a file (schema, samples, checksum) and reads what is said of it. Errors: of reading; malformed,

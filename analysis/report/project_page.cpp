@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 
 #include "analysis/html.hpp"
 #include "analysis/picture_svg.hpp"
@@ -12,8 +13,6 @@
 
 namespace tacto::analysis {
 namespace {
-
-using schema::Result;
 
 std::string within(const Project& project, const std::string& path) {
   return std::filesystem::path(path).lexically_relative(project.folder).string();
@@ -62,7 +61,7 @@ std::string foreign_list(const Project& project) {
   return html + "</p>\n";
 }
 
-Result<std::string> section(const Project& project, const ProjectFile& file) {
+std::string section(const Project& project, const ProjectFile& file) {
   const std::string name = within(project, file.path);
   std::string html = fmt::format("<h2>{}: {}</h2>\n", escaped(schema::kind_name(file.kind)), escaped(name));
   if (!file.simulated.empty())
@@ -70,9 +69,7 @@ Result<std::string> section(const Project& project, const ProjectFile& file) {
         fmt::format("<p class=\"simulated\"><strong>Simulated</strong> {}.</p>\n", escaped(file.simulated));
   if (!file.figures.empty()) html += figures_html(file.figures);
   for (const std::string& svg : file.drawings) html += inline_svg(svg, name);
-  const auto pictures = pictures_html(file.pictures, file.simulated);
-  if (!pictures) return pictures;
-  return html + *pictures;
+  return html + file.pictures_html;
 }
 
 std::string counted(const Project& project) {
@@ -84,16 +81,12 @@ std::string counted(const Project& project) {
 
 }  // namespace
 
-Result<std::string> project_page(const Project& project) {
+std::string project_page(const Project& project) {
   const std::string title = std::filesystem::weakly_canonical(project.folder).filename().string();
   std::string body = fmt::format("<h1>{}</h1>\n<p>{}. Made {} by {}.</p>\n", escaped(title), counted(project),
                                  schema::creation_time(), escaped(kCreator));
   body += overview(project) + broken_list(project) + foreign_list(project);
-  for (const ProjectFile& file : project.files) {
-    const auto part = section(project, file);
-    if (!part) return part;
-    body += *part;
-  }
+  for (const ProjectFile& file : project.files) body += section(project, file);
   return html_document(title, body);
 }
 

@@ -37,8 +37,8 @@ struct RecorderCounts {
 /// it writes.
 class FlightRecorder {
  public:
-  /// `limits`, where given, hears on the writer's thread (of the beginning on start()'s) what is to be written,
-  /// and outlives the recorder. Of what is recorded nothing is written before start(). Errors: as
+  /// `limits`, where given, hears on the writer's thread (of the beginning on start()'s) what is to be
+  /// written, and outlives the recorder. Of what is recorded nothing is written before start(). Errors: as
   /// SessionWriter::create.
   static schema::Result<std::unique_ptr<FlightRecorder>> begin(const std::string& path,
                                                                const schema::SessionHeader& header,

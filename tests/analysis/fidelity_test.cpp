@@ -98,6 +98,19 @@ TEST_F(FidelityOfATexture, TheBandTakesWhatIsTooFast) {
       << "of an even spectrum";
 }
 
+// What a texture does not know throughout is played all the same, and counts.
+TEST_F(FidelityOfATexture, TheBandIsToldOfAllThatIsPlayed) {
+  options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
+  options_.speeds_mps = {0.2};
+  schema::Texture texture = schema::read_texture(folder_ / "made").value();
+  texture.valid_band = {{0, 2000, 6000}, {0.04, 2000, 6000}};
+  ASSERT_TRUE(schema::write_texture(folder_ / "half-known", texture));
+  options_.play.program.file = folder_ / "half-known";
+  const Fidelity found = measured();
+  ASSERT_EQ(found.speeds.size(), 1U);
+  EXPECT_NEAR(found.speeds.front().band_kept_percent, 100 * (2500.0 - 300) / (6000 - 300), 4);
+}
+
 TEST_F(FidelityOfATexture, PageSaysSimulatedAtEveryFigure) {
   const Fidelity found = measured();
   const auto page = fidelity_page(found);

@@ -240,6 +240,16 @@ def bad_input_is_one_clear_error():
     write_table("bad.csv", f, np.conj(h))
     refused("--phase-sign")
     tacto.run("identify", "bad.csv", "-o", "turned", "--phase-sign", "-1")
+    for turn, given, advice in [(h, ["--phase-sign", "-1"], "leave --phase-sign out"), (h, ["--invert"], "leave --invert out"),
+                                (h, ["--phase-sign", "-1", "--invert"], "leave --phase-sign and --invert out"),
+                                (-np.conj(h), [], "give --phase-sign -1 and --invert"),
+                                (-np.conj(h), ["--invert"], "give --phase-sign -1"),
+                                (-np.conj(h), ["--phase-sign", "-1"], "give --invert"),
+                                (-h, ["--phase-sign", "-1"], "leave --phase-sign out, and give --invert"), (-h, [], "give --invert")]:
+        write_table("bad.csv", f, turn)
+        refused(advice, *given)
+    write_table("bad.csv", f, -np.conj(h))
+    tacto.run("identify", "bad.csv", "-o", "both", "--phase-sign", "-1", "--invert")
     write_table("bad.csv", f, h * np.where(np.arange(40) > 17, -1, 1))
     refused("unwrapped wrongly")
     write_table("bad.csv", f, h, times=1e9)  # nanometres, said to be micrometres

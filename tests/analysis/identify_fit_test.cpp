@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/identify/hold.hpp"
+#include "analysis/identify/identification.hpp"
 #include "analysis/identify/least_squares.hpp"
 #include "analysis/identify/plausibility.hpp"
 #include "analysis/identify/response_fit.hpp"
@@ -174,6 +175,42 @@ TEST(IdentifyFit, SeveralValuesThatAreOffAreAMisfit) {
   data.noise.clear();
   for (const std::size_t at : {12U, 30U, 41U}) data.response[at] *= 1000;
   EXPECT_TRUE(fit_response(data, {}, preset()).misfit.found);
+}
+
+// A column of noise that is ten times too large makes every residual look like noise.
+TEST(IdentifyFit, OverstatedNoiseIsLeftOut) {
+  std::mt19937_64 random(11);
+  BodeData data = measured(preset(), Direction::actuator, octaves(10, 1000, 60), 0.005, random);
+  const ResponseFit right = fit_response(data, {}, preset());
+  EXPECT_EQ(right.noise_overstated, 0);
+  for (double& sigma : data.noise) sigma *= 10;
+  const ResponseFit fit = fit_response(data, {}, preset());
+  EXPECT_NEAR(fit.noise_overstated, 10,
+              4);  // the median of 60 squares to 19 %: three times that, of its root
+  ASSERT_TRUE(fit.claims_intervals()) << fit.misfit.words;
+  const auto width = [](const ResponseFit& of) {
+    return of.find("resonance_hz")->high - of.find("resonance_hz")->low;
+  };
+  EXPECT_NEAR(width(fit) / width(right), 1, 0.3);  // 116 values tell it to 7 %, and its shape
+  const auto words = identified(fit, preset(), "x").identification->words;
+  EXPECT_NE(words.find("too large"), std::string::npos) << words;
+}
+
+// It hides a mode, too: what that leaves is many times the rest, and within the column.
+TEST(IdentifyFit, OverstatedNoiseHidesNoMode) {
+  std::mt19937_64 random(12);
+  BodeData data = measured(preset(), Direction::actuator, octaves(10, 1000, 60), 0.002, random);
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const auto pair = [&](double hz) {
+      const std::complex<double> s(0, data.frequency_hz[i] / hz);
+      return 1.0 + 0.06 * s + s * s;
+    };
+    data.response[i] *= pair(780) / pair(810);
+    data.noise[i] = 0.15 * std::abs(data.response[i]);
+  }
+  const ResponseFit fit = fit_response(data, {}, preset());
+  EXPECT_GT(fit.noise_overstated, 3);
+  EXPECT_TRUE(fit.misfit.found && fit.one_mode_short) << fit.misfit.words;
 }
 
 }  // namespace

@@ -80,5 +80,17 @@ TEST_F(PaperFigures, TheLagDoesNotExplainRSquared) {
   EXPECT_EQ(figure("r_squared_sensor").reported, 0.91);
 }
 
+// A fit of one direction leaves the other at the base's values: those are not identified.
+TEST_F(PaperFigures, OfADirectionThatWasNotMeasuredNothingIsIdentified) {
+  for (const char* name : {"sensor_at_100hz_v_per_n", "sensor_at_500_over_100_hz", "resolution_n"}) {
+    EXPECT_TRUE(std::isnan(figure(name).identified)) << name;
+    EXPECT_TRUE(std::isfinite(figure(name, Direction::sensor).identified)) << name;
+  }
+  for (const char* name : {"actuator_gain_m_per_v", "actuator_at_300hz_db"}) {
+    EXPECT_TRUE(std::isnan(figure(name, Direction::sensor).identified)) << name;
+    EXPECT_TRUE(std::isfinite(figure(name).identified)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace tacto::analysis

@@ -96,6 +96,21 @@ def broken_files_do_not_stop_the_rest():
         assert name in said or name == "torn.texture.json" and "C.texture.wav" in said, (name, said)
 
 
+def a_torn_curve_leaves_out_its_file_only():
+    """Points without a partner: `validate` names the place, `report` goes on without the file."""
+    make_project("study")
+    torn = pathlib.Path("study/more/CC.results.json")
+    body = json.loads(torn.read_text())
+    body["pictures"][0]["curves"][0]["x"].pop()
+    torn.write_text(json.dumps(body))
+    out, said = tacto.run("validate", torn, "--json", code=4)
+    assert "#/pictures/0/curves/0" in out + said, (out, said)
+    out, said = tacto.run("report", "study", "-o", "page.html", "--json", code=4)
+    report, page = json.loads(out), pathlib.Path("page.html").read_text()
+    assert [row["file"] for row in report["broken"]] == [str(torn)] and "CC.results.json" in said, report["broken"]
+    assert "more/CC.results.json" in page and "fidelity.results.json" in page and len(Page(page).pictures) >= 5
+
+
 def samples_are_those_that_the_sidecar_names():
     """Under another name than the sidecar's; what lies where they would be by name is a stranger."""
     make_project("study")
@@ -131,6 +146,12 @@ def what_is_no_file_is_named():
     assert "study/link.json" in {row["file"] for row in report["files"]}
 
 
+def a_speed_that_is_missing_is_named():
+    for speeds in ("50mm/s,,", "50mm/s,,25mm/s", ",50mm/s"):
+        said = tacto.run("fidelity", "absent", "--speed", speeds, code=2)[1]
+        assert "beside a comma is missing" in said, (speeds, said)
+
+
 def folders_that_are_none_are_refused():
     pathlib.Path("empty").mkdir()
     assert "no file of tactograph" in tacto.run("report", "empty", code=5)[1]
@@ -140,6 +161,6 @@ def folders_that_are_none_are_refused():
 
 
 if __name__ == "__main__":
-    for test in (a_project_on_one_page, broken_files_do_not_stop_the_rest, samples_are_those_that_the_sidecar_names, what_is_no_file_is_named,
-                 folders_that_are_none_are_refused):
+    for test in (a_project_on_one_page, broken_files_do_not_stop_the_rest, a_torn_curve_leaves_out_its_file_only, samples_are_those_that_the_sidecar_names, what_is_no_file_is_named,
+                 a_speed_that_is_missing_is_named, folders_that_are_none_are_refused):
         tacto.in_folder(test)

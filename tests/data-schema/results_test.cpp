@@ -65,6 +65,24 @@ TEST(Results, RefusesWhatIsUnsound) {
   EXPECT_EQ(read_results(folder / "absent").error().fault, Fault::not_found);
 }
 
+TEST(Results, RefusesACurveOfUnequalLengths) {
+  const tests::TemporaryFolder folder;
+  const std::string path = folder / "a.results.json";
+  Results made = results();
+  made.pictures.push_back({"More", "", "", false, {{"whole", {1, 2}, {3, 4}}, {"short", {5.5, 6}, {7, 8}}}});
+  std::string text = results_json(made).value();
+  const auto at = text.find("5.5,");
+  ASSERT_NE(at, std::string::npos);
+  put(path, text.erase(at, 4));
+  const auto read = read_results(path);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().fault, Fault::malformed);
+  EXPECT_EQ(read.error().where, path + "#/pictures/1/curves/1");
+  const auto checked = check_file({FileKind::results, path});
+  ASSERT_EQ(checked->findings.size(), 1u);
+  EXPECT_EQ(checked->findings.front().where, path + "#/pictures/1/curves/1");
+}
+
 TEST(Results, ReplacesOnlyItsLike) {
   const tests::TemporaryFolder folder;
   EXPECT_TRUE(check_results_free(folder / "absent.json"));
