@@ -32,7 +32,8 @@ std::vector<LeftOut> left_out_of(const Prepared& prepared) {
   tell(built.energy_limits, "an energy limit", "none is named");
   tell(built.touch_gates, "a touch gate", "no normal force is asked for");
   tell(built.following, "looking ahead and the timing of edges", "turned off");
-  left_out.push_back({"a second texture", "only one that is loaded while this plays takes room beside it"});
+  left_out.push_back(
+      {"a texture besides those named", "only one that is loaded while this plays takes room beside them"});
   return left_out;
 }
 

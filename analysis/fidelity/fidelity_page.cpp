@@ -25,10 +25,10 @@ std::string speed_words(const FidelitySpeed& speed) {
 }
 
 std::string taken_words(const FidelitySpeed& s) {
-  std::string words =
-      fmt::format("the band of {:.0f}-{:.0f} Hz keeps {:.1f} % of the power of all that is played; drive peak {} of {}; ",
-                  s.low_hz, s.high_hz, s.band_kept_percent, for_people(s.drive_peak_v, Dimension::voltage),
-                  for_people(s.drive_limit_v, Dimension::voltage));
+  std::string words = fmt::format(
+      "the band of {:.0f}-{:.0f} Hz keeps {:.1f} % of the power of all that is played; drive peak {} of {}; ",
+      s.low_hz, s.high_hz, s.band_kept_percent, for_people(s.drive_peak_v, Dimension::voltage),
+      for_people(s.drive_limit_v, Dimension::voltage));
   if (s.amplitude_limited + s.slew_limited == 0) return words + "no tick limited";
   words += fmt::format("{} ticks limited in range, {} in slew, of {}", s.amplitude_limited, s.slew_limited,
                        s.ticks);
