@@ -22,7 +22,8 @@ std::optional<Quality> quality_in(const Json& body) {
   return word == "balanced" ? Quality::balanced : Quality::exact;
 }
 
-Result<void> check_playback(const Json& body, const std::string& path) {
+Result<void> check_known(const Json& body, const std::string& path) {
+  if (auto known = check_members_known(*schema_of("daemon"), body, path); !known) return known;
   if (!body.contains("playback")) return {};
   return check_members_known(*schema_of("playback"), body["playback"], path + "#/playback");
 }
@@ -33,7 +34,7 @@ Result<DaemonConfig> read_daemon_config(const std::string& path) {
   const auto document = open_document(path, "daemon");
   if (!document) return forward_error(document);
   const Json& body = document->body;
-  if (const auto known = check_playback(body, path); !known) return forward_error(known);
+  if (const auto known = check_known(body, path); !known) return forward_error(known);
   DaemonConfig config;
   for (const auto& [name, member] :
        {std::pair{"device", &DaemonConfig::device}, std::pair{"transducer", &DaemonConfig::transducer},

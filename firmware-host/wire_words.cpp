@@ -23,7 +23,9 @@ FaultWords words_of(FaultCode code, std::uint32_t detail) {
       return {"the hardware enable input is open", "close it, disarm and arm again"};
     case FaultCode::encoder_jump:
       return {fmt::format("the encoder jumped by {} counts in one tick", detail),
-              "check the encoder's cable and its mount; then disarm and arm again"};
+              "check the encoder's cable and its mount, and whether the finger may go faster than the limit "
+              "(of the "
+              "daemon: most_speed_mps); then disarm and arm again"};
     case FaultCode::drive_underrun:
       return {fmt::format("the drive from this computer did not come for {} ticks", detail),
               "send further ahead, or let the device close the loop"};

@@ -229,6 +229,19 @@ Result<void> refuse_miss(double error, const Rendering& rendering, const RenderJ
               rendering.engine == Engine::kernel ? ways_for_kernel(rendering, job) : ways_for_reference(job));
 }
 
+// A choice's promise is of even speed and true places: what the path and the encoder add is told where it is
+// more than all of it.
+void warn_beyond_promise(Rendering& rendering, const RenderJob& job) {
+  if (!rendering.decision) return;
+  const double error = error_between_ends(rendering, job.wanted, job.options.band);
+  const double promised = rendering.decision->chosen.error;
+  if (!(error > promised)) return;
+  rendering.warnings.push_back(
+      fmt::format("the rendering errs by {:.3g} % between the path's ends: of that the choice's {:.3g} % are "
+                  "promised, the rest is what the encoder's step of {:.4g} um and changes of speed add",
+                  100 * error, 100 * promised, 1e6 * job.options.encoder_step_m));
+}
+
 // Of a hysteresis or an energy limit the reference knows nothing: it can't take over, nor from a kernel that
 // was named.
 Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
@@ -245,7 +258,9 @@ Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
     if (auto driven = drive_by(Engine::reference, rendering, job); !driven) return driven;
     missed = missed_error(rendering, job);
   }
-  return missed ? refuse_miss(*missed, rendering, job) : Result<void>();
+  if (missed) return refuse_miss(*missed, rendering, job);
+  warn_beyond_promise(rendering, job);
+  return {};
 }
 
 // The kernel's own notes tell of the band.

@@ -31,14 +31,7 @@ Result<void> check_room(const Client& client, const Prepared& prepared) {
                 fmt::format("the texture takes {} samples, '{}' holds {}", prepared.samples.size(),
                             device.name, device.profile_samples),
                 client.where(), ways_to_fit(prepared.scale.interpolation));
-  const double rate_millihertz = 1e3 * prepared.rate_hz;
-  if (rate_millihertz < device.least_rate_millihertz || rate_millihertz > device.most_rate_millihertz)
-    return fail(Fault::unsuitable,
-                fmt::format("'{}' ticks at {:g} to {:g} Hz, not at {:g} Hz", device.name,
-                            1e-3 * device.least_rate_millihertz, 1e-3 * device.most_rate_millihertz,
-                            prepared.rate_hz),
-                client.where());
-  return {};
+  return check_rate(client, prepared.rate_hz);
 }
 
 std::uint32_t check_with(std::span<const float> samples, std::uint32_t check) {
@@ -138,6 +131,17 @@ Result<void> send_contact(Client& client, const Prepared& prepared) {
 }
 
 }  // namespace
+
+Result<void> check_rate(const Client& client, double rate_hz) {
+  const wire::Welcome& device = client.description().welcome;
+  const double rate_millihertz = 1e3 * rate_hz;
+  if (rate_millihertz >= device.least_rate_millihertz && rate_millihertz <= device.most_rate_millihertz)
+    return {};
+  return fail(Fault::unsuitable,
+              fmt::format("'{}' ticks at {:g} to {:g} Hz, not at {:g} Hz", device.name,
+                          1e-3 * device.least_rate_millihertz, 1e-3 * device.most_rate_millihertz, rate_hz),
+              client.where(), "ask for a rate of these");
+}
 
 Result<void> check_upload(const Client& client, const Prepared& prepared) {
   if (auto room = check_room(client, prepared); !room) return room;

@@ -7,6 +7,9 @@
 
 namespace tacto::playback {
 
+/// Errors: unsuitable: not a rate at which the device ticks.
+schema::Result<void> check_rate(const firmware_host::Client& client, double rate_hz);
+
 /// Whether a device can play it by itself. Errors: unsuitable, for more samples than it holds, a touch that
 /// it cannot feel, or ticks outside its rates; device, for firmware that does not know what is asked of it;
 /// each with what to do.

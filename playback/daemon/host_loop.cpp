@@ -10,6 +10,7 @@
 #include "firmware-host/realtime_priority.hpp"
 #include "firmware-host/wire_fields.hpp"
 #include "firmware-host/wire_words.hpp"
+#include "playback/upload.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -76,6 +77,7 @@ Result<std::unique_ptr<HostLoop>> HostLoop::begin(firmware_host::Client& device,
                                                   const HostLoopOptions& options) {
   const auto channel = position_channel(device.description());
   if (!channel) return schema::forward_error(channel);
+  if (const auto fits = check_rate(device, options.rate_hz); !fits) return schema::forward_error(fits);
   std::unique_ptr<HostLoop> loop(new HostLoop(device, options, *channel));
   if (const auto started = device.start_stream(firmware_host::millihertz(options.rate_hz), 1); !started)
     return schema::forward_error(started);

@@ -97,9 +97,9 @@ std::string note_of_none(const StrokeFinder& strokes, bool lost) {
 
 std::string note_of_unwanted(std::uint64_t unwanted, std::uint64_t all) {
   return fmt::format(
-      "in {} of {} strokes nothing was wanted: no texture of the session lies where the finger went, so "
-      "there "
-      "is no wanted RMS and no error to tell",
+      "in {} of {} strokes nothing was wanted: no texture of the session lies where the finger went, or "
+      "those "
+      "that do cancel each other, so there is no wanted RMS and no error to tell",
       unwanted, all);
 }
 

@@ -35,6 +35,7 @@ TEST(DaemonConfig, ANumberOutOfRangeIsToldItsRange) {
 
 TEST(DaemonConfig, AMisspeltChoiceIsNamedWithTheNearest) {
   EXPECT_EQ(refused(R"("playback":{"contact_on":1})").remedy, "is 'contact_on_n' meant?");
+  EXPECT_EQ(refused(R"("rate_Hz":2000)").remedy, "is 'rate_hz' meant?");
 }
 
 }  // namespace
