@@ -12,6 +12,7 @@
 #include "analysis/identify/hold.hpp"
 #include "analysis/identify/noise_shape.hpp"
 #include "analysis/identify/outlier.hpp"
+#include "analysis/identify/pure_delay.hpp"
 #include "analysis/identify/response_fitter.hpp"
 #include "analysis/identify/starting_values.hpp"
 #include "analysis/identify/three_poles.hpp"
@@ -216,6 +217,21 @@ bool is_a_mode(const Extension& mode, const ResponseFit& plain) {
   return mode.fit.converged && second_hz < mode.fit.data.frequency_hz.back() && apart > kApart;
 }
 
+// Of what is left when neither a second mode nor a lag explains it.
+std::string words_of_delay(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
+                           const ResponseFit& plain) {
+  constexpr const char* kUnexplained = "neither a second mode nor a lag explains it";
+  if (choice.finger || data.size() < 2 * kLeastFrequencies) return kUnexplained;
+  const double left = left_by(plain);
+  const PureDelay found = best_delay(
+      data, [&](const BodeData& earlier) { return left_by(fit_once(earlier, choice, base)) / left; });
+  if (found.left >= kExplains) return std::string(kUnexplained) + ", nor a delay";
+  return fmt::format(
+      "without a delay of {:.4g} us, as converters and filters have one, {} of the residuals are left: add "
+      "{:.4g} degrees a Hz to the phases",
+      1e6 * found.delay_s, percent(found.left), 360 * found.delay_s);
+}
+
 // What would explain the misfit: tried, not guessed.
 void suggest(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
              ResponseFit& fit) {
@@ -232,7 +248,7 @@ void suggest(const BodeData& data, const ModelChoice& choice, const schema::Tran
         "a lag of {:.2g} degrees leaves {} of the residuals: a hysteresis (--lag, or --method loop)",
         kDegrees * lag->fit.find("lag_rad")->value, percent(by_lag));
   else
-    fit.suggestion = "neither a second mode nor a lag explains it";
+    fit.suggestion = words_of_delay(data, choice, base, fit);
   if (data.third_harmonic.value_or(0) > kNonlinear)
     fit.suggestion += fmt::format("; the answer has a third harmonic of {}: the device is not linear{}",
                                   percent(*data.third_harmonic),

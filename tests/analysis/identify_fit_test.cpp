@@ -2,6 +2,8 @@
 // The fit's parts against closed forms, and what it refuses.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "analysis/identify/hold.hpp"
 #include "analysis/identify/identification.hpp"
 #include "analysis/identify/least_squares.hpp"
@@ -37,6 +39,22 @@ TEST(IdentifyFit, ClosedFormComesBack) {
     EXPECT_NEAR(fit.transducer.amplifier_resistance_ohm / truth.amplifier_resistance_ohm, 1, 1e-8);
     EXPECT_NEAR(fit.transducer.actuator_scale / truth.actuator_scale, 1, 1e-8);
     EXPECT_LT(fit.condition, 50);
+  }
+}
+
+// A delay that the chain adds is no part of the model: it is found, and said.
+TEST(IdentifyFit, ADelayIsFoundWhereNothingElseExplainsTheMisfit) {
+  for (const double delay_s : {50e-6, 1e-3, -0.2e-3}) {
+    std::mt19937_64 random(5);
+    BodeData data = measured(preset(), Direction::actuator, octaves(10, 1000, 60), 0.005, random);
+    for (std::size_t i = 0; i < data.size(); ++i)
+      data.response[i] *= std::polar(1.0, -2 * std::numbers::pi * data.frequency_hz[i] * delay_s);
+    const ResponseFit fit = fit_response(data, {}, preset());
+    EXPECT_TRUE(fit.misfit.found);
+    const auto at = fit.suggestion.find("without a delay of ");
+    ASSERT_NE(at, std::string::npos) << fit.suggestion;
+    // 0.5 % of noise at 60 frequencies up to 1 kHz: some 0.2 us; the search ends at 1 us.
+    EXPECT_NEAR(1e-6 * std::stod(fit.suggestion.substr(at + 19)), delay_s, 2e-6) << fit.suggestion;
   }
 }
 
