@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "data-schema/quantity.hpp"
 #include "playback/hysteresis_inverse.hpp"
 #include "playback/identified_band.hpp"
 #include "playback/pyramid.hpp"
@@ -109,6 +110,18 @@ Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, co
   const double full_mps = kSpeedMargin * prepared.passes_to_hz / shape.finest_per_m;
   prepared.full_detail_counts_per_tick = static_cast<float>(full_mps / (o.metres_per_count * o.rate_hz));
   return {};
+}
+
+// Textures far apart are one profile, with what lies between them.
+std::string words_of_way_between(std::span<const PlacedTexture> textures) {
+  double own_m = 0;
+  for (const PlacedTexture& placed : textures) own_m += placed.texture->signal.length_m();
+  const double bare_m = way_between(textures);
+  if (bare_m < own_m) return {};
+  return fmt::format(
+      "{} between the textures take as many samples as textures do: nearer together, or in "
+      "scenes of their own, they take less",
+      schema::length_for_people(bare_m));
 }
 
 void tell_loop(Prepared& prepared, const schema::SpaceSignal& whole, const schema::SpaceSignal& period) {
@@ -278,7 +291,12 @@ Result<Prepared> prepare(std::span<const PlacedTexture> textures, const schema::
   Prepared prepared = settled(transducer, undone, options);
   const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m, prepared.built);
   if (options.ends == Ends::loop) tell_loop(prepared, textures.front().texture->signal, path);
-  if (auto filled = fill_levels(prepared, path, options); !filled) return schema::forward_error(filled);
+  const std::string between = words_of_way_between(textures);
+  if (!between.empty()) prepared.notes.push_back(between);
+  if (auto filled = fill_levels(prepared, path, options); !filled) {
+    if (!between.empty()) filled.error().remedy += "; " + between;
+    return schema::forward_error(filled);
+  }
   if (auto laid = lay_on_counts(prepared, path.origin_m, options); !laid) return schema::forward_error(laid);
   if (auto done = undo_chain(prepared, transducer, undone, options); !done)
     return schema::forward_error(done);

@@ -113,4 +113,16 @@ schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends,
   return laid_out(textures, ends, seam_m, uncounted);
 }
 
+double way_between(std::span<const PlacedTexture> textures) {
+  std::vector<const PlacedTexture*> along;
+  for (const PlacedTexture& placed : textures) along.push_back(&placed);
+  std::ranges::sort(along, {}, &PlacedTexture::at_m);
+  double bare_m = 0, reached_m = along.front()->at_m;
+  for (const PlacedTexture* placed : along) {
+    bare_m += std::max(0.0, placed->at_m - reached_m);
+    reached_m = std::max(reached_m, placed->at_m + placed->texture->signal.length_m());
+  }
+  return bare_m;
+}
+
 }  // namespace tacto::playback

@@ -28,4 +28,7 @@ schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends,
 schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m,
                              ConstructionTally& built);
 
+/// m, between the first texture and the last, that none of them covers: laid_out() samples it as well.
+double way_between(std::span<const PlacedTexture> textures);
+
 }  // namespace tacto::playback

@@ -88,7 +88,17 @@ def check_room(folder, needed):
 def check_scene(folder):
     layers = [{"type": "texture", "texture": "t", "at_m": at, "gain_m_per_n": 1e-3} for at in (0.0, 0.06)]
     (folder / "bench.scene.json").write_text(json.dumps({"kind": "scene", "version": "1.0", "layers": layers}))
+    far = {**json.loads((folder / "bench.scene.json").read_text()), "layers": [layers[0], {**layers[1], "at_m": 0.3}]}
+    (folder / "far.scene.json").write_text(json.dumps(far))
+    whole = made.report_of("explain", folder / "far.scene.json")
+    assert any("between the textures take as many samples" in note for note in whole["notes"]), whole["notes"]
+    _, short = explained_without_room(folder / "far.scene.json", whole["sample_bytes"] // 4 - 1)
+    assert any("in scenes of their own" in note for note in short["notes"]), short["notes"]
+    far["layers"][1]["at_m"] = 10
+    (folder / "far.scene.json").write_text(json.dumps(far))
+    refused(UNSUITABLE, "in scenes of their own", "play", folder / "far.scene.json", "-d", "sim:", "--time", "1s", "-o", folder / "far")
     report = made.report_of("explain", folder / "bench.scene.json")
+    assert not any("between the textures" in note for note in report.get("notes", [])), report["notes"]
     assert report["texture_files_read"] == 1 and len(report["textures"]) == 2, report
     _, short = explained_without_room(folder / "bench.scene.json", report["sample_bytes"] // 4 - 1)
     alone = [row for row in short["ways_to_fit"] if "t.texture.json" in row["way"]]
