@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "data-schema/control.hpp"
 #include "data-schema/json_schema.hpp"
@@ -67,6 +68,27 @@ Result<void> check_members(const ControlRequest& request) {
   if (request.verb == ControlVerb::gain && !request.gain)
     return bad_member("gain", "gain has no gain", R"(add a factor, as in "gain":0.5)");
   if (request.verb == ControlVerb::hello) return check_version_of(request.version);
+  return {};
+}
+
+// Who says what another request is told means that one: it is not lost, for it may be a limit.
+Result<void> check_taken(const Json& body, ControlVerb verb) {
+  constexpr std::array<std::pair<const char*, ControlVerb>, 10> kTakenBy = {
+      {{"version", ControlVerb::hello},
+       {"token", ControlVerb::hello},
+       {"file", ControlVerb::load},
+       {"at_m", ControlVerb::load},
+       {"gain_m_per_n", ControlVerb::load},
+       {"ends", ControlVerb::load},
+       {"fade_s", ControlVerb::load},
+       {"playback", ControlVerb::load},
+       {"gain", ControlVerb::gain},
+       {"save", ControlVerb::gain}}};
+  const auto word = [](ControlVerb of) { return kControlVerbs[static_cast<std::size_t>(of)]; };
+  for (const auto& [name, taker] : kTakenBy)
+    if (body.contains(name) && verb != taker)
+      return bad_member(name, fmt::format("'{}' takes no '{}'", word(verb), name),
+                        fmt::format("send it with '{}'", word(taker)));
   return {};
 }
 
@@ -161,6 +183,7 @@ Result<ControlRequest> parse_control_request(std::string_view line, std::string*
     if (!known) return forward_error(known);
   }
   ControlRequest request = request_of(*body);
+  if (const auto taken = check_taken(*body, request.verb); !taken) return forward_error(taken);
   request.passed_over = members_not_in(*kRules, *body);
   if (const auto sound = check_members(request); !sound) return forward_error(sound);
   return request;

@@ -3,13 +3,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "data-schema/files.hpp"
 
 namespace tacto::analysis {
 
+namespace {
+
+// One would be lost to the other.
+schema::Result<void> check_apart(const std::vector<std::string>& files) {
+  for (auto file = files.begin(); file != files.end(); ++file)
+    if (!file->empty() && std::any_of(files.begin(), file, [&](const auto& other) {
+          return !other.empty() && schema::same_file(*file, other);
+        }))
+      return schema::fail(schema::Fault::usage, "is named twice", *file,
+                          "give transducer, picture and results names of their own");
+  return {};
+}
+
+}  // namespace
+
 schema::Result<void> check_named(const std::string& stem, const std::string& results,
                                  const std::string& picture) {
-  if (!stem.empty()) return {};
+  if (!stem.empty())
+    return check_apart({schema::stem_of(stem, ".transducer") + ".transducer.json", picture, results});
   std::string name = "NAME", beside;
   if (!picture.empty()) {
     name = picture.substr(0, picture.rfind('.'));

@@ -9,7 +9,7 @@
 namespace tacto::analysis {
 
 /// Errors: usage, where the transducer file has no name: with one to take, after what is to be written beside
-/// it.
+/// it; where two of the three are one file.
 schema::Result<void> check_named(const std::string& stem, const std::string& results,
                                  const std::string& picture);
 

@@ -227,9 +227,9 @@ std::string words_of_delay(const BodeData& data, const ModelChoice& choice, cons
       data, [&](const BodeData& earlier) { return left_by(fit_once(earlier, choice, base)) / left; });
   if (found.left >= kExplains) return std::string(kUnexplained) + ", nor a delay";
   return fmt::format(
-      "without a delay of {:.4g} us, as converters and filters have one, {} of the residuals are left: add "
-      "{:.4g} degrees a Hz to the phases",
-      1e6 * found.delay_s, percent(found.left), 360 * found.delay_s);
+      "without {} of {:.4g} us {} of the residuals are left: take it out of the phases ({:.4g} degrees a Hz)",
+      found.delay_s > 0 ? "a delay, as converters and filters have one," : "a lead",
+      1e6 * std::abs(found.delay_s), percent(found.left), 360 * std::abs(found.delay_s));
 }
 
 // What would explain the misfit: tried, not guessed.

@@ -85,6 +85,11 @@ double LaidTextures::gain() const {
   return most;
 }
 
+double LaidTextures::signed_gain() const {
+  const auto size = [](const TextureLayer& layer) { return std::abs(layer.gain_m_per_n); };
+  return std::ranges::max(layers_, {}, size).gain_m_per_n;
+}
+
 Ends LaidTextures::ends() const {
   return ends_of(layers_.front().ends);
 }

@@ -18,6 +18,8 @@ class LaidTextures {
   std::vector<PlacedTexture> placed() const;
   /// The greatest of all, without sign: the gain that they share.
   double gain() const;
+  /// The same, with its sign.
+  double signed_gain() const;
   Ends ends() const;
   double start_m() const;
   double end_m() const;

@@ -373,8 +373,10 @@ void Player::enter(PlayerState state, const std::string& why) {
   if (listener_) listener_(state, why, device_s);
 }
 
+// What was lost stays told until the next session begins.
 PlayerStatus Player::status() const {
   PlayerStatus status{state_, fault_, gain_, view_, recorded(), {}, session_path_, round_trip_s_};
+  if (!status.recorder && !session_path_.empty()) status.recorder = last_session_;
   if (limits_) status.limits = limits_->told();
   return status;
 }

@@ -132,7 +132,7 @@ Result<void> prepare_laid(Program& program, const LaidTextures& laid, const Tick
   program.prepared = std::move(*prepared);
   program.prepared.built.texture_files = laid.file_count();
   program.tray_peak_m = tray_peak_m(program.prepared, transducer, options);
-  program.gain_m_per_n = laid.gain();
+  program.gain_m_per_n = laid.signed_gain();
   program.start_m = laid.start_m();
   program.length_m = laid.end_m() - laid.start_m();
   return {};

@@ -32,7 +32,7 @@ struct Program {
   schema::SessionHeader session;
   std::string scene_path;   ///< empty for a texture by itself
   double tray_peak_m = 0;   ///< the furthest that the tray goes, at a factor of 1 (displacement_limit.hpp)
-  double gain_m_per_n = 0;  ///< the largest of its textures, without sign
+  double gain_m_per_n = 0;  ///< the largest of its textures, with its sign
   std::optional<schema::PlaybackGain> kept_gain;  ///< the texture's own, where it is played with that
   double start_m = 0;                             ///< of the first texture
   double length_m = 0;                            ///< from the first texture's start to the last one's end

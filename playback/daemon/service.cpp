@@ -219,6 +219,7 @@ Result<ControlFields> Service::arm() {
   const std::string path = next_session();
   if (const auto armed = player_->arm(path); !armed) return schema::forward_error(armed);
   told_lost_.reset();
+  if (here_) missed_before_ = here_.loop->status().missed_ticks;
   lock_memory();  // also what came since the daemon began
   return ControlFields{{"state", std::string(word_of(player_->state()))}, {"session", path}};
 }
@@ -320,7 +321,11 @@ ControlFields Service::status() const {
   add_limits(fields, status);
   if (status.recorder) add_recorder(fields, *status.recorder);
   fields.emplace_back("period_s", 1 / config_.rate_hz);
-  if (here_) add_loop(fields, here_.loop->status());
+  if (here_) {
+    HostLoopStatus loop = here_.loop->status();
+    loop.missed_ticks -= missed_before_;
+    add_loop(fields, loop);
+  }
   return fields;
 }
 

@@ -64,6 +64,7 @@ class Service {
   Publish publish_;
   PlayerDevice device_;
   LoopHere here_;
+  std::uint64_t missed_before_ = 0;  // periods, by the loop here, before the session
   std::unique_ptr<Player> player_;
   ProgramLoader loader_;
   schema::ControlRequest load_request_;  // that is being prepared

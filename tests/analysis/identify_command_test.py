@@ -89,7 +89,7 @@ def results_hold_what_was_found(said):
     for beside, name in ((["--results", "tray.results.json"], "tray"), (["--picture", "plots/tray.svg"], "plots/tray"), ([], "NAME")):
         words = tacto.run("identify", "-d", "sim:tray_sensor=on", *beside, code=2)[1]
         assert f"add -o {name} for {name}.transducer.json" in words and " ".join(beside) in words and not pathlib.Path("tray.results.json").exists(), words
-    for wrong, words in (("bench.txt", "results.json"), ("bench.transducer.json", "bench.transducer.json")):
+    for wrong, words in (("bench.txt", "results.json"), ("bench.transducer.json", "bench.transducer.json"), ("./never.transducer.json", "is named twice")):
         assert words in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "never", "--results", wrong, code=2)[1]
 
 

@@ -398,6 +398,8 @@ def full_disk_for_the_log():
         assert status["state"] == "playing" and status["recorder_lost_ticks"] > 0, status
         assert "recorder_failure" in status and status["lost_ticks"] == status["recorder_lost_ticks"]
         client.ask(request="disarm")
+        kept = client.must(request="status")
+        assert kept["recorder_lost_ticks"] >= status["recorder_lost_ticks"] and kept["lost_ticks"] == kept["recorder_lost_ticks"], kept
         told = [e for e in watcher.rest_of_events() if e["event"] == "recorder"]
         assert told and told[0]["lost_ticks"] > 0 and "can't be written" in told[0]["why"], told
         said = [process.stderr.readline() for _ in range(5)]
@@ -691,6 +693,10 @@ def what_was_chosen_is_told():
         answer = client.must(request="load", file="s", playback={"interpolation": "sinc"}, at_mm=3)
         assert (answer["interpolation"], answer["inverse"], answer["contact_on_n"]) == ("sinc", "magnitude", 0.2), answer
         assert answer["passed_over"] == "at_mm", answer
+        for misplaced in ({"request": "arm", "playback": {"energy_rms_v": 0.1}}, {"request": "gain", "gain": 1, "playback": {}},
+                          {"request": "load", "file": "s", "gain": 0.5}, {"request": "play", "gain": 0.01}, {"request": "status", "save": True}):
+            refused = client.ask(**misplaced)
+            assert not refused["ok"] and "takes no" in refused["error"]["what"] and "send it with" in refused["error"]["remedy"], refused
         session = client.must(request="arm")["session"]
         client.must(request="play")
         time.sleep(0.7)

@@ -53,6 +53,12 @@ def plays_what_was_wanted():
     np.testing.assert_allclose(np.diff(table["time_s"]), 1 / 2000, atol=1.1e-6)  # the emulated clock counts microseconds
 
 
+def the_sign_of_a_gain_is_told():
+    write_grating()
+    report = tacto.run_json("play", "oak", "-d", "sim:", "--gain=-0.5mm/N", "--time", "1s", "-o", "turned")
+    assert report["gain_m_per_n"] == -0.0005, report
+
+
 def what_goes_on_beyond_its_ends_is_judged_too():
     """13 mm under a finger that goes 30: looped and mirrored, the strokes err as inside; taken for the other, not at all."""
     x = np.arange(1300) * 10e-6
