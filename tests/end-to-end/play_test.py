@@ -366,7 +366,7 @@ def ten_minutes_at_10_khz():
 
 
 if __name__ == "__main__":
-    for test in (plays_what_was_wanted, a_slow_finger_on_a_coarse_encoder, what_goes_on_beyond_its_ends_is_judged_too, two_textures_in_a_scene, rendered_is_what_is_played, a_loop_is_the_sine_that_it_is, what_was_chosen_acts, what_the_limits_took_is_told_in_db, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
+    for test in (plays_what_was_wanted, the_sign_of_a_gain_is_told, a_slow_finger_on_a_coarse_encoder, what_goes_on_beyond_its_ends_is_judged_too, two_textures_in_a_scene, rendered_is_what_is_played, a_loop_is_the_sine_that_it_is, what_was_chosen_acts, what_the_limits_took_is_told_in_db, a_full_disk_is_an_error, any_damage_is_told, wrong_use, ten_minutes_at_10_khz):
         if len(sys.argv) > 1 and test.__name__ not in sys.argv[1:]:
             continue
         tacto.in_folder(test)
