@@ -121,8 +121,9 @@ Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& wa
     return compared_row(tray, wanted.texture, *felt);
   };
   auto row = row_of(felt_m);
+  if (!row) return row;
   const auto seen = row_of(seen_m);
-  if (!row || !seen) return !row ? std::move(row) : seen;
+  if (!seen) return seen;
   row->rerecorded_db = seen->error_db;
   return row;
 }
