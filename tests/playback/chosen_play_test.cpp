@@ -165,15 +165,9 @@ TEST(PlaybackChoices, AReconstructionFilterIsUndoneWhereItIsNamed) {
 class ChosenPlay : public PlayerOnSim {
  protected:
   Program chosen(const PlaybackChoices& choices, const std::string& name = "grating") {
-    PrepareOptions options;
-    options.metres_per_count = player_->metres_per_count();
-    options.onset_s = 0.02;
-    options.most_samples = device_->client().description().welcome.profile_samples;
     ProgramRequest request{folder_ / name, {}, 5e-4, {}};
     request.choices = choices;
-    auto made = make_program(request, "wiertlewski2011", options);
-    EXPECT_TRUE(made) << schema::message(made.error());
-    return std::move(*made);
+    return made(request);
   }
   void press(std::function<double(double)> normal_n) {
     device_->board().set_script([this](double t) { return place_m(t); }, std::move(normal_n));

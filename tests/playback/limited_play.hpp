@@ -11,15 +11,9 @@ namespace tacto::playback {
 class LimitedPlay : public PlayerOnSim {
  protected:
   void load(const std::string& texture) {
-    PrepareOptions options;
-    options.metres_per_count = player_->metres_per_count();
-    options.onset_s = 0.02;
-    options.most_samples = device_->client().description().welcome.profile_samples;
     ProgramRequest request{folder_ / texture, {}, 5e-4, {}};
     request.choices = choices_;
-    auto made = make_program(request, transducer_, options);
-    ASSERT_TRUE(made) << schema::message(made.error());
-    ASSERT_TRUE(player_->load(std::move(*made)));
+    ASSERT_TRUE(player_->load(made(request, transducer_)));
   }
   void begin_play(const schema::Transducer& transducer, const schema::PlaybackChoices& choices,
                   const std::string& name) {

@@ -46,15 +46,19 @@ class PlayerOnSim : public testing::Test {
     const double way = 2e-3 + 0.03 - std::abs(std::fmod(0.04 * t, 0.06) - 0.03);
     return way + (t >= jump_s_ ? 0.01 : 0);
   }
-  Program program(const std::string& name = "grating", double gain_m_per_n = 5e-4, double rate_hz = kRateHz) {
+  Program made(const ProgramRequest& request, const std::string& transducer = "wiertlewski2011",
+               double rate_hz = kRateHz) {
     PrepareOptions options;
     options.rate_hz = rate_hz;
     options.metres_per_count = player_->metres_per_count();
     options.onset_s = 0.02;
     options.most_samples = device_->client().description().welcome.profile_samples;
-    auto made = make_program({folder_ / name, {}, gain_m_per_n, {}}, "wiertlewski2011", options);
-    EXPECT_TRUE(made) << schema::message(made.error());
-    return std::move(*made);
+    auto program = make_program(request, transducer, options);
+    EXPECT_TRUE(program) << schema::message(program.error());
+    return std::move(*program);
+  }
+  Program program(const std::string& name = "grating", double gain_m_per_n = 5e-4, double rate_hz = kRateHz) {
+    return made({folder_ / name, {}, gain_m_per_n, {}}, "wiertlewski2011", rate_hz);
   }
   void begin() {
     ASSERT_TRUE(player_->load(program()));
