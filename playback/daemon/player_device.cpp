@@ -83,9 +83,11 @@ class Script {
 
 Result<std::unique_ptr<firmware_host::Device>> open_scripted(const std::string& uri,
                                                              const FingerScript& script) {
-  if (!uri.starts_with(kSimScheme))
+  if (!uri.starts_with(kSimScheme)) {
+    if (const auto other = firmware_host::open_device(uri); !other) return schema::forward_error(other);
     return fail(Fault::unsuitable, "only an emulated finger goes where it is told", uri,
                 "leave the finger's path out, or play on sim:");
+  }
   auto device = firmware_host::make_sim_device(uri, std::string_view(uri).substr(kSimScheme.size()));
   if (!device) return schema::forward_error(device);
   const Script way(script);

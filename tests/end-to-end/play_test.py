@@ -311,6 +311,7 @@ def wrong_use():
             (("play", "oak", "-d", "sim:", "-o", "x", "--contact", "0.3N", "--contact-off", "0.4N"), 2, "--contact-off"),
             (("play", "oak", "-d", "sim:", "-o", "x", "--energy-limit", "2000V"), 2, "0V turns it off"),
             (("play", "oak", "-d", "sim:", "-o", "x", "--loop", "host"), 2, "paced=1"),
+            (("play", "oak", "-d", "sin:", "-o", "x", "--finger-path", "path.csv"), 2, "the transports are"),
             (("play", "oak", "-d", "sim:paced=1", "-o", "x", "--loop", "host", "--rate", "200Hz"), 5, "ticks at 1000 to 20000 Hz, not at 200 Hz"),
             (("ctl", "status", "junk"), 2, "takes no 'junk'"),
             (("replay", "none"), 3, "none.session"),
