@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of verbs.
+// The table of verbs, and of what `help` explains beside them.
 #include <array>
 
 #include "analysis/cli/verbs.hpp"
@@ -27,9 +27,11 @@ constexpr std::array<const tacto::cli::Verb*, 28> kVerbs = {
     &tacto::analysis::kDemoVerb,
 };
 
+constexpr std::array<const tacto::cli::HelpTopic*, 1> kTopics = {&tacto::firmware_host::kSimTopic};
+
 }  // namespace
 
 int main(int argc, char** argv) {
   tacto::schema::open_closed_descriptors();
-  return tacto::cli::run_command(kVerbs, argc, argv);
+  return tacto::cli::run_command(kVerbs, argc, argv, kTopics);
 }

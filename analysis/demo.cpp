@@ -16,6 +16,7 @@
 #include "data-schema/texture.hpp"
 #include "data-schema/version.hpp"
 #include "firmware-host/device.hpp"
+#include "firmware-host/open_device.hpp"
 #include "firmware-host/sim/actuated_tray.hpp"
 #include "playback/render.hpp"
 #include "spatial/make_texture.hpp"
@@ -42,6 +43,7 @@ constexpr std::array<Sample, 5> kSamples = {{
     {"D", "Random scratches of P40 sandpaper"},
     {"E", "Drilled by a conical end mill: a quincunx of pits, 0.5 mm apart and 0.1 mm deep"},
 }};
+constexpr const char* kNotes = "made by tactograph demo";
 constexpr double kRecordSpeedMps = 50e-3;
 constexpr double kRecordTimeS = 1.0;
 constexpr double kReplayTimeS = 1.6;
@@ -75,6 +77,23 @@ void remove_earlier(const std::string& stem) {
   for (const char* ending : {".wav", ".json"}) fs::remove(stem + ending, ignored);
 }
 
+bool is_of_a_demo(const std::string& stem) {
+  const auto recording = schema::open_recording(stem);
+  return recording && recording->header.notes == kNotes;
+}
+
+// What an earlier demo left is replaced, other files of these names are not.
+Result<void> check_replaceable(const std::string& stem) {
+  if (is_of_a_demo(stem)) return {};
+  std::error_code ignored;
+  for (const char* ending :
+       {".json", ".wav", ".events.jsonl", ".texture.json", ".texture.wav", ".nc", ".png"})
+    if (fs::exists(stem + ending, ignored))
+      return schema::fail(schema::Fault::usage, "is there already, and no earlier demo made it",
+                          stem + ending, "choose another folder with -o");
+  return {};
+}
+
 Result<schema::Recording> recorded(const Sample& sample, const std::string& stem) {
   auto device = firmware_host::open_device(
       fmt::format("sim:surface={},speed={}mm/s,seed=1", sample.surface, kRecordSpeedMps * 1e3));
@@ -82,7 +101,7 @@ Result<schema::Recording> recorded(const Sample& sample, const std::string& stem
   capture::RecordRequest request;
   request.name = stem;
   request.time_s = kRecordTimeS;
-  request.notes = "made by tactograph demo";
+  request.notes = kNotes;
   auto done = capture::record(**device, request);
   if (!done) return schema::forward_error(done);
   return std::move(done->recording);
@@ -119,11 +138,11 @@ Result<Made> surface_made(const Sample& sample, const std::string& stem, DemoSur
   if (!texture) return schema::forward_error(texture);
   auto spectrogram = spatial::spatial_spectrogram(*texture, {});
   if (!spectrogram) return schema::forward_error(spectrogram);
-  spectrogram->name = fmt::format("surface {}", sample.surface);
+  spectrogram->name = sample.surface;
   Made made{std::move(*texture), std::move(*spectrogram)};
   const spatial::SpectrogramFigure figure({{&made.texture, &made.spectrogram}});
   if (auto written = write_made(stem, made, figure); !written) return schema::forward_error(written);
-  auto svg = spatial::to_svg(figure);
+  auto svg = spatial::to_page_svg(figure);
   if (!svg) return schema::forward_error(svg);
   row.spectrogram_svg = std::move(*svg);
   describe_spectrogram(made, row);
@@ -150,7 +169,7 @@ spatial::LineFigure replay_figure(const playback::Rendering& rendering, const sc
   figure.x_label = "time (ms)";
   figure.y_label = "displacement (µm)";
   figure.simulated = simulated;
-  figure.series = {series("wanted", rendering.wanted_m, 1.1, 1.3, 0),
+  figure.series = {series("target", rendering.wanted_m, 1.1, 1.3, 0),
                    series("emulated tray", came, 1.1, 1.3, 1)};
   return figure;
 }
@@ -185,7 +204,7 @@ Result<void> replayed(const Made& made, const schema::Transducer& transducer, De
   row.error_rms_m = error.error_rms;
   row.error_db = error.error_db;
   row.delay_s = error.delay_s;
-  auto svg = spatial::to_svg(replay_figure(*rendering, came, row, made.texture.simulated));
+  auto svg = spatial::to_page_svg(replay_figure(*rendering, came, row, made.texture.simulated));
   if (!svg) return schema::forward_error(svg);
   row.replay_svg = std::move(*svg);
   return {};
@@ -197,6 +216,16 @@ Result<void> make_folder(const std::string& folder) {
   if (!failure) return {};
   return schema::fail(schema::Fault::cannot_write, "the folder can't be made: " + failure.message(), folder,
                       "choose another with -o");
+}
+
+Result<void> check_folder(const std::string& folder, const std::string& page) {
+  for (const Sample& sample : kSamples)
+    if (auto free = check_replaceable(folder + "/" + sample.surface); !free) return free;
+  std::error_code ignored;
+  const bool again = is_of_a_demo(folder + "/" + kSamples.front().surface);
+  if (again || !fs::exists(page, ignored)) return {};
+  return schema::fail(schema::Fault::usage, "is there already, and no earlier demo made it", page,
+                      "choose another folder with -o");
 }
 
 Result<void> write_page(const DemoSummary& summary) {
@@ -214,6 +243,7 @@ Result<DemoSummary> run_demo(const std::string& folder, const std::function<void
   if (!transducer) return schema::forward_error(transducer);
   DemoSummary summary;
   summary.page = folder + "/index.html";
+  if (const auto free = check_folder(folder, summary.page); !free) return schema::forward_error(free);
   summary.simulated = fmt::format("by the emulated device of {}", kCreator);
   for (const Sample& sample : kSamples) {
     progress(static_cast<double>(summary.surfaces.size()) / kSamples.size());

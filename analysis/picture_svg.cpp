@@ -48,7 +48,7 @@ schema::Result<std::string> pictures_html(std::span<const schema::ResultPicture>
       html += fmt::format("<p class=\"note\">{}: there is nothing to draw</p>\n", escaped(picture.title));
       continue;
     }
-    const auto svg = spatial::to_svg(figure_of(picture, simulated));
+    const auto svg = spatial::to_page_svg(figure_of(picture, simulated));
     if (!svg) return schema::forward_error(svg);
     html += inline_svg(*svg, picture.title + (simulated.empty() ? "" : ", simulated"));
   }
@@ -56,9 +56,8 @@ schema::Result<std::string> pictures_html(std::span<const schema::ResultPicture>
 }
 
 std::string figures_html(std::span<const schema::ResultFigure> figures) {
-  std::vector<std::vector<std::string>> rows = {{"", "value"}};
-  for (const auto& [name, value] : figures) rows.push_back({name, value});
-  return html_table(rows);
+  return html_table(std::vector(figures.begin(), figures.end()),
+                    {{"", &schema::ResultFigure::name}, {"value", &schema::ResultFigure::value}});
 }
 
 }  // namespace tacto::analysis

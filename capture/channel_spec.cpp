@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "capture/column_unit.hpp"
 #include "capture/csv_number.hpp"
 #include "capture/source.hpp"
 #include "data-schema/recording.hpp"
@@ -29,6 +30,12 @@ struct Cut {
 
 bool may_follow_column(std::string_view rest) {
   return rest.empty() || rest[0] == '*' || rest[0] == '+' || rest[0] == '-';
+}
+
+std::vector<std::string> names_without_units(const std::vector<std::string>& names) {
+  std::vector<std::string> all;
+  for (const std::string& name : names) all.push_back(split_unit(name).name);
+  return all;
 }
 
 // A header's name may have any sign in it, so the longest name that the text begins with is meant.
@@ -53,12 +60,13 @@ std::optional<Cut> cut_by_number(std::string_view text, std::size_t columns) {
 
 Result<Cut> cut_column(std::string_view text, const std::vector<std::string>& columns) {
   text = trimmed(text);
-  const auto named = cut_by_name(text, columns);
-  if (named && std::ranges::count(columns, columns[named->column]) > 1)
-    return fail(Fault::usage,
-                fmt::format("the name '{}' stands over several columns", columns[named->column]), {},
-                "choose one by its number: " + columns_in_words(columns));
-  if (named) return *named;
+  for (const auto& names : {columns, names_without_units(columns)}) {
+    const auto named = cut_by_name(text, names);
+    if (named && std::ranges::count(names, names[named->column]) > 1)
+      return fail(Fault::usage, fmt::format("several columns have the name '{}'", names[named->column]), {},
+                  "choose one by its number: " + columns_in_words(columns));
+    if (named) return *named;
+  }
   if (const auto numbered = cut_by_number(text, columns.size())) return *numbered;
   return fail(Fault::usage, fmt::format("there is no column '{}'", trimmed(text.substr(0, text.find('*')))),
               {}, "the columns are: " + columns_in_words(columns));
@@ -104,17 +112,25 @@ std::string fitting(Dimension dimension) {
   return "the units that fit: " + schema::units_of(dimension);
 }
 
-Result<double> si_worth(std::string_view unit, Dimension dimension) {
+Result<double> worth_of_columns_unit(const std::string& column_unit, Dimension dimension) {
+  const std::string example = ", as in '*1" + std::string(schema::si_symbol(dimension)) + "'";
+  if (column_unit.empty()) return fail(Fault::usage, "has no unit", {}, fitting(dimension) + example);
+  const auto known = known_unit(column_unit, dimension);
+  if (known && known->dimension == dimension) return known->si;
+  return fail(Fault::usage,
+              fmt::format("has no unit, and the column's own, '{}', {}", column_unit,
+                          known ? "is of another quantity" : "is not known"),
+              {}, fitting(dimension) + example);
+}
+
+Result<double> si_worth(std::string_view unit, Dimension dimension, const std::string& column_unit) {
   if (unit.empty() && dimension == Dimension::none) return 1.0;
-  if (unit.empty())
-    return fail(Fault::usage, "has no unit", {},
-                fitting(dimension) + ", as in '*1" + std::string(schema::si_symbol(dimension)) + "'");
-  const auto known = schema::parse_unit(unit);
-  if (!known) return fail(Fault::usage, fmt::format("'{}' is no known unit", unit), {}, fitting(dimension));
-  if (known->dimension != dimension)
-    return fail(Fault::usage, fmt::format("'{}' is a unit of another quantity", unit), {},
-                fitting(dimension));
-  return known->si;
+  if (unit.empty()) return worth_of_columns_unit(column_unit, dimension);
+  if (const auto worth = schema::parse_quantity("1 " + std::string(unit), dimension)) return *worth;
+  const bool of_another = schema::parse_unit(unit).has_value();
+  return fail(Fault::usage,
+              fmt::format("'{}' is {}", unit, of_another ? "a unit of another quantity" : "no known unit"),
+              {}, fitting(dimension));
 }
 
 // What was wrong with a part, said of the whole text that the user wrote.
@@ -124,15 +140,14 @@ tl::unexpected<schema::Error> in_option(const schema::Error& error, std::string_
   return tl::unexpected(whole);
 }
 
-Result<ScaledColumn> scaled(std::string_view text, Dimension dimension,
-                            const std::vector<std::string>& columns) {
-  const auto cut = cut_column(text, columns);
+Result<ScaledColumn> scaled(std::string_view text, Dimension dimension, const ColumnNames& columns) {
+  const auto cut = cut_column(text, columns.names);
   if (!cut) return schema::forward_error(cut);
   const auto calibration = read_calibration(cut->rest);
   if (!calibration)
     return fail(Fault::usage, fmt::format("'{}' is no scale and offset", cut->rest), {},
                 fmt::format("write COLUMN*SCALE+OFFSET and a unit of {}", schema::units_of(dimension)));
-  const auto si = si_worth(calibration->unit, dimension);
+  const auto si = si_worth(calibration->unit, dimension, columns.units[cut->column]);
   if (!si) return schema::forward_error(si);
   if (calibration->scale == 0) return fail(Fault::usage, "has a scale of zero: the column would be lost");
   return ScaledColumn{cut->column, calibration->scale * *si, calibration->offset * *si};
@@ -151,12 +166,12 @@ Result<ChannelSpec> channel_without_column(std::string_view name) {
 }  // namespace
 
 Result<ScaledColumn> parse_scaled_column(std::string_view text, Dimension dimension,
-                                         const std::vector<std::string>& columns) {
+                                         const ColumnNames& columns) {
   auto column = scaled(text, dimension, columns);
   return column ? column : in_option(column.error(), text);
 }
 
-Result<ChannelSpec> parse_channel(std::string_view text, const std::vector<std::string>& columns) {
+Result<ChannelSpec> parse_channel(std::string_view text, const ColumnNames& columns) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos)
     return in_option({Fault::usage, "names no column", {}, "write QUANTITY=COLUMN*SCALE and a unit"}, text);
@@ -169,7 +184,7 @@ Result<ChannelSpec> parse_channel(std::string_view text, const std::vector<std::
 }
 
 Result<std::vector<ChannelSpec>> parse_channels(const std::vector<std::string>& texts,
-                                                const std::vector<std::string>& columns) {
+                                                const ColumnNames& columns) {
   std::vector<ChannelSpec> specs;
   for (const std::string& text : texts) {
     auto spec = parse_channel(text, columns);

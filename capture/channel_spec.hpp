@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "data-schema/error.hpp"
@@ -29,20 +30,30 @@ struct ChannelSpec {
   ScaledColumn source;
 };
 
-/// Reads COLUMN[*SCALE][+OFFSET|-OFFSET]UNIT. COLUMN is a name of `columns`, the longest that fits, or a
-/// 1-based number; the unit holds for scale and offset both ("*-0.31+1.6647N"), and is left out only for a
-/// dimension of none. Errors: usage, for a column that doesn't exist or a name that stands twice (with the
-/// columns there are), a unit that is missing, unknown or of another quantity (with those that fit), a scale
-/// of zero.
+/// What a source calls its columns, and the units that it writes to them; both may be empty.
+struct ColumnNames {
+  ColumnNames(const std::vector<std::string>& their_names, std::vector<std::string> their_units = {})
+      : names(their_names), units(std::move(their_units)) {
+    units.resize(names.size());
+  }
+  std::vector<std::string> names, units;
+};
+
+/// Reads COLUMN[*SCALE][+OFFSET|-OFFSET]UNIT. COLUMN is a name of `columns`, the longest that fits, also
+/// without the unit in it ("Force" of "Force (N)"), or a 1-based number; the unit holds for scale and offset
+/// both
+/// ("*-0.31+1.6647N"). It may be left out for a dimension of none, and where the column's own is known.
+/// Errors: usage, for a column that doesn't exist or a name that several columns have (with the columns there
+/// are), a unit that is missing, unknown or of another quantity (with those that fit), a scale of zero.
 schema::Result<ScaledColumn> parse_scaled_column(std::string_view text, schema::Dimension dimension,
-                                                 const std::vector<std::string>& columns);
+                                                 const ColumnNames& columns);
 
 /// Reads QUANTITY=... or LABEL:QUANTITY=..., the rest as parse_scaled_column(). Errors: usage, as there, and
 /// for an unknown quantity (with those there are).
-schema::Result<ChannelSpec> parse_channel(std::string_view text, const std::vector<std::string>& columns);
+schema::Result<ChannelSpec> parse_channel(std::string_view text, const ColumnNames& columns);
 
 /// All channels of a recording. Errors: usage, as parse_channel(), and for two channels of one name.
 schema::Result<std::vector<ChannelSpec>> parse_channels(const std::vector<std::string>& texts,
-                                                        const std::vector<std::string>& columns);
+                                                        const ColumnNames& columns);
 
 }  // namespace tacto::capture

@@ -69,6 +69,16 @@ std::string_view trimmed(std::string_view field) {
   return field;
 }
 
+bool is_name(std::string_view field) {
+  char mark = 0;
+  double value = 0;
+  return read_number(field, mark, value) == NumberFault::text;
+}
+
+bool is_numeric(std::string_view field) {
+  return !trimmed(field).empty() && !is_name(field);
+}
+
 NumberFault read_number(std::string_view field, char& mark, double& value) {
   field = trimmed(field);
   if (field.empty()) return NumberFault::missing;

@@ -21,6 +21,11 @@ enum class NumberFault {
 /// by the first field that has one. Rounds to the nearest double, as strtod does. Pure; never throws.
 NumberFault read_number(std::string_view field, char& mark, double& value);
 
+/// Whether a field is text, so that it may name a column: neither empty nor a number, NaN or infinite.
+bool is_name(std::string_view field);
+/// Whether it is a number, or NaN or infinite.
+bool is_numeric(std::string_view field);
+
 /// The field without spaces and tabs at either end.
 std::string_view trimmed(std::string_view field);
 

@@ -193,11 +193,15 @@ bool CsvReader::refuse_number(NumberFault fault, std::string_view line, std::str
 }
 
 bool CsvReader::refuse_ragged(std::string_view line) {
+  constexpr std::size_t kFirstRows = 5;  // where lines before the table may have been taken for rows
   const std::size_t fields = field_count(line, layout_.delimiter);
+  std::string remedy =
+      fmt::format("the delimiter was taken to be {}",
+                  layout_.delimiter == '\t' ? std::string("a tab") : fmt::format("'{}'", layout_.delimiter));
+  if (rows_ < kFirstRows) remedy += "; --skip N passes over N lines before the table";
   return refuse(
       fmt::format("has {} field{} where {} are due", fields, fields == 1 ? "" : "s", places_.size()),
-      fmt::format("the delimiter was taken to be {}",
-                  layout_.delimiter == '\t' ? std::string("a tab") : fmt::format("'{}'", layout_.delimiter)));
+      std::move(remedy));
 }
 
 bool CsvReader::refuse_blank() {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "capture/doctor.hpp"
+#include "firmware-host/open_device.hpp"
 
 #include <fmt/format.h>
 
@@ -51,6 +52,7 @@ void look_at(Device& device, const DoctorRequest& request, std::vector<Check>& c
   checks.push_back(check_round_trip(device, request.questions));
   checks.push_back(check_real_time(request.root));
   checks.push_back(check_disk(request.folder, bytes_per_s(said)));
+  checks.push_back(check_temporary_files(request.folder));
   checks.push_back(check_calibration(said, request));
 }
 
@@ -61,17 +63,18 @@ void look_without(const schema::Error& why, const DoctorRequest& request, std::v
   checks.push_back(skipped("round trip"));
   checks.push_back(check_real_time(request.root));
   checks.push_back(check_disk(request.folder, kUsualBytesPerS));
+  checks.push_back(check_temporary_files(request.folder));
   checks.push_back(skipped("calibration"));
 }
 
-std::string next_of(const Diagnosis& diagnosis, const DoctorRequest& request) {
+std::string next_of(const Diagnosis& diagnosis, const DoctorRequest& request, bool in_real_time) {
   if (const Check* const obstacle = diagnosis.obstacle())
     return obstacle->name == "device" && request.device.starts_with("usb:")
                ? "plug it in, or try the emulated one: tactograph doctor -d sim:surface=C"
                : obstacle->remedy;
   const auto calibration = std::ranges::find(diagnosis.checks, "calibration", &Check::name);
   if (calibration->health == Health::warns) return calibration->remedy;
-  return fmt::format("tactograph record -d {} -o oak", request.device);
+  return fmt::format("tactograph record -d {} -o oak{}", request.device, in_real_time ? "" : " --time 2s");
 }
 
 }  // namespace
@@ -83,11 +86,12 @@ const Check* Diagnosis::obstacle() const {
 
 Diagnosis examine(const DoctorRequest& request) {
   Diagnosis diagnosis;
-  if (const auto device = firmware_host::open_device(request.device))
+  const auto device = firmware_host::open_device(request.device);
+  if (device)
     look_at(**device, request, diagnosis.checks);
   else
     look_without(device.error(), request, diagnosis.checks);
-  diagnosis.next = next_of(diagnosis, request);
+  diagnosis.next = next_of(diagnosis, request, !device || (*device)->keeps_time());
   return diagnosis;
 }
 

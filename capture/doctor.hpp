@@ -24,7 +24,8 @@ struct DoctorRequest {
 enum class Health { works, warns, fails, skipped };
 
 struct Check {
-  std::string name;  ///< "device", "permission", "firmware", "round trip", "real time", "disk", "calibration"
+  std::string name;  ///< "device", "permission", "firmware", "round trip", "real time", "disk",
+                     ///< "temporary files", "calibration"
   Health health = Health::works;
   std::string found;
   std::string remedy;                           ///< what to do; empty where all is well
@@ -45,6 +46,9 @@ Diagnosis examine(const DoctorRequest& request);
 Check check_round_trip(firmware_host::Device& device, std::size_t questions);
 Check check_real_time(const std::string& root);
 Check check_disk(const std::string& folder, double bytes_per_s);
+/// Removes the temporary files that killed runs left in the folder; warns of those whose run may go on
+/// elsewhere.
+Check check_temporary_files(const std::string& folder);
 Check check_calibration(const firmware_host::Capabilities& capabilities, const DoctorRequest& request);
 /// Whether a device is there that this user may not open.
 bool is_denied(const schema::Error& why);

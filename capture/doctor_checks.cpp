@@ -12,6 +12,7 @@
 #include "capture/udev_rule.hpp"
 #include "data-schema/creation_time.hpp"
 #include "data-schema/files.hpp"
+#include "data-schema/leftover_files.hpp"
 #include "data-schema/live_recording.hpp"
 #include "data-schema/quantity.hpp"
 
@@ -91,6 +92,13 @@ std::string advice_on(const DiskSpeed& disk, double bytes_per_s) {
   return {};
 }
 
+// "3 files, 1.2 MB".
+std::string size_in_words(const std::vector<schema::Leftover>& files) {
+  double bytes = 0;
+  for (const schema::Leftover& file : files) bytes += static_cast<double>(file.bytes);
+  return fmt::format("{} file{}, {:.3g} MB", files.size(), files.size() == 1 ? "" : "s", bytes / 1e6);
+}
+
 // The channel's newest scale and zero, once where they are one.
 std::vector<const schema::CalibrationEntry*> newest_of(const schema::CalibrationFile& file,
                                                        const std::string& channel) {
@@ -154,6 +162,16 @@ Check check_disk(const std::string& folder, double bytes_per_s) {
   if (disk->free_bytes < kLeastRoom_s * bytes_per_s || disk->write_bytes_per_s < bytes_per_s)
     return {"disk", Health::fails, found, "record to another disk", schema::Fault::cannot_write};
   return judged("disk", found, advice_on(*disk, bytes_per_s));
+}
+
+Check check_temporary_files(const std::string& folder) {
+  const auto removed = schema::remove_ended(schema::leftovers_in(folder));
+  const auto kept = schema::leftovers_in(folder);
+  std::string found = removed.empty() ? "" : fmt::format("removed {} of killed runs", size_in_words(removed));
+  if (kept.empty()) return judged("temporary files", found.empty() ? "none are left" : found, {});
+  found += fmt::format("{}{} of runs that may still go on, here or on another machine, the first {}",
+                       found.empty() ? "" : "; ", size_in_words(kept), kept.front().path);
+  return judged("temporary files", found, "if no such run goes on, remove them: rm " + kept.front().path);
 }
 
 Check check_calibration(const firmware_host::Capabilities& said, const DoctorRequest& request) {

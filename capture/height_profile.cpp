@@ -41,7 +41,7 @@ struct Columns {
 };
 
 Result<Columns> columns_of(const ImportRequest& request, const Source& source) {
-  const auto specs = parse_channels(request.channels, source.columns);
+  const auto specs = parse_channels(request.channels, {source.columns, source.units});
   if (!specs) return schema::forward_error(specs);
   std::optional<ScaledColumn> height, position;
   for (const ChannelSpec& spec : *specs) {
@@ -143,7 +143,7 @@ Result<HeightProfile> profile_of(const ImportRequest& request, Table table) {
 
 Result<HeightProfile> read_profile_table(const ImportRequest& request,
                                          const std::function<void(double)>& progress) {
-  const auto source = open_source(request.file);
+  const auto source = open_source(request.file, request.skip_lines);
   if (!source) return schema::forward_error(source);
   if (!source->csv)
     return fail(Fault::unsuitable, "is no table", request.file, "a profile is a CSV table or XML");

@@ -12,6 +12,7 @@
 #include "capture/derived_position.hpp"
 #include "capture/import_header.hpp"
 #include "capture/import_plan.hpp"
+#include "capture/outlier_mask.hpp"
 #include "capture/plausibility.hpp"
 #include "capture/uniform_clock.hpp"
 
@@ -52,15 +53,19 @@ class Import {
  private:
   void choose_derived();
   Result<void> first_clock();
+  Result<void> find_outliers();
+  Result<void> survey(const RowBlock& block);
+  Result<void> mask_what_was_found();
   Result<void> write_all();
   Result<void> take(const RowBlock& block);
   void take_times(const RowBlock& block);
   void derive(std::size_t rows);
   Result<void> write_block(std::size_t rows);
   bool second_pass_needed() const;
-  Result<void> second_pass();
+  Result<void> second_pass(double from, double to);
   Result<void> name(const RowBlock& block, bool clock);
   void add_warnings(RecordingHeader& header) const;
+  std::uint64_t outliers() const;
   Result<Imported> close();
   Progress share(double from, double to) const;
   Result<void> read(const TakeRows& take_rows, const Progress& progress, schema::Sha256* sum = nullptr);
@@ -72,6 +77,9 @@ class Import {
   RecordingHeader header_;  // until the writer has it: its channels are what `judged` looks at
   std::vector<Measured> measured_;
   std::optional<Derived> derived_;
+  std::vector<std::unique_ptr<Plausibility>> judged_unmasked_;  // with the mask: of all rows
+  OutlierMask mask_;
+  std::uint64_t rows_ = 0;
   ClockFinder clock_;
   bool clock_known_ = true, decimal_comma_ = false;
   std::vector<double> times_s_, interleaved_;
@@ -141,6 +149,48 @@ Result<void> Import::first_clock() {
   return {};
 }
 
+Result<void> Import::survey(const RowBlock& block) {
+  const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
+  if (plan_.time) {
+    take_times(block);
+    clock_.survey(times_s_);
+  }
+  for (Measured& channel : measured_) {
+    gather(block, channel.column, channel.stored);
+    channel.judged->survey(channel.stored, block.first_row, place_of);
+  }
+  rows_ += block.rows();
+  return {};
+}
+
+// What is to be left out is known before the first sample is written, and so are the times of what stays.
+Result<void> Import::find_outliers() {
+  const auto take_rows = [this](const RowBlock& block) { return survey(block); };
+  if (const auto surveyed = read(take_rows, share(0, 0.2)); !surveyed) return surveyed;
+  for (Measured& channel : measured_) channel.judged->end_survey();
+  if (plan_.time)
+    if (const auto ended = clock_.end_survey(request_.file); !ended) return ended;
+  if (second_pass_needed())
+    if (const auto named = second_pass(0.2, 0.3); !named) return named;
+  return mask_what_was_found();
+}
+
+Result<void> Import::mask_what_was_found() {
+  std::vector<std::uint64_t> rows;
+  for (std::size_t k = 0; k < measured_.size(); ++k) {
+    judged_unmasked_.push_back(
+        std::exchange(measured_[k].judged, std::make_unique<Plausibility>(header_.channels[k])));
+    std::ranges::copy(judged_unmasked_[k]->outlier_samples(), std::back_inserter(rows));
+  }
+  auto mask = OutlierMask::of(std::move(rows), rows_, request_.file);
+  if (!mask) return forward_error(mask);
+  mask_ = std::move(*mask);
+  if (plan_.time) header_.sample_rate_hz = clock_.clock().rate_hz;
+  header_.gaps = mask_.gaps_with(plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{});
+  clock_known_ = true;
+  return {};
+}
+
 void Import::derive(std::size_t rows) {
   const auto& speeds = measured_[derived_->speed].stored;
   derived_->stored.resize(rows);
@@ -171,10 +221,13 @@ Result<void> Import::take(const RowBlock& block) {
   }
   for (Measured& channel : measured_) {
     gather(block, channel.column, channel.stored);
-    channel.judged->survey(channel.stored, block.first_row, place_of);
+    mask_.erase_from(channel.stored, block.first_row);
+    if (!channel.stored.empty()) channel.judged->survey(channel.stored, block.first_row, place_of);
   }
-  if (derived_) derive(block.rows());
-  return write_block(block.rows());
+  const std::size_t rows = measured_[0].stored.size();
+  if (rows == 0) return {};
+  if (derived_) derive(rows);
+  return write_block(rows);
 }
 
 Result<void> Import::write_all() {
@@ -210,7 +263,7 @@ Result<void> Import::name(const RowBlock& block, bool clock) {
   return {};
 }
 
-Result<void> Import::second_pass() {
+Result<void> Import::second_pass(double from, double to) {
   const bool clock = !clock_known_ && clock_.second_pass_needed();
   const auto name_both = [&](const RowBlock& block) -> Result<void> {
     if (block.landmarks != nullptr) last_landmarks_ = *block.landmarks;
@@ -218,7 +271,7 @@ Result<void> Import::second_pass() {
       if (const auto located = name(block, true); !located) return located;
     return name(block, false);
   };
-  if (const auto done = read(name_both, share(0.8, 0.9)); !done) return done;
+  if (const auto done = read(name_both, share(from, to)); !done) return done;
   RowBlock after{{}, columns_.size(), 0, plan_.source.csv ? &last_landmarks_ : nullptr};
   for (Measured& channel : measured_)
     if (channel.judged->second_pass_needed())
@@ -227,14 +280,22 @@ Result<void> Import::second_pass() {
 }
 
 void Import::add_warnings(RecordingHeader& header) const {
+  RecordingHeader source = header;  // before rows of it were left out
+  if (request_.mask_outliers) source.gaps = plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{};
   const auto time_of = [&](std::uint64_t sample) {
-    return fmt::format("{:.6g} s", schema::frame_time_s(header, sample));
+    return fmt::format("{:.6g} s", schema::frame_time_s(source, sample));
   };
   if (derived_)
     header.warnings.push_back("no position was measured: it is " + derived_->position.channel().derivation);
-  std::ranges::move(gap_warnings(header.gaps), std::back_inserter(header.warnings));
-  for (const Measured& channel : measured_)
-    std::ranges::move(channel.judged->warnings(time_of), std::back_inserter(header.warnings));
+  std::ranges::move(gap_warnings(source.gaps), std::back_inserter(header.warnings));
+  for (std::size_t k = 0; k < measured_.size(); ++k) {
+    const Plausibility& judged = request_.mask_outliers ? *judged_unmasked_[k] : *measured_[k].judged;
+    std::ranges::move(judged.warnings(time_of), std::back_inserter(header.warnings));
+  }
+  if (mask_.count() > 0)
+    header.warnings.push_back(
+        fmt::format("outliers masked: {} row{} left out and recorded as gaps, not filled in", mask_.count(),
+                    mask_.count() == 1 ? "" : "s"));
 }
 
 ChannelRange range_of(const schema::Channel& channel, double low, double high) {
@@ -243,9 +304,16 @@ ChannelRange range_of(const schema::Channel& channel, double low, double high) {
   return {smallest, largest};
 }
 
+std::uint64_t Import::outliers() const {
+  std::uint64_t count = 0;
+  for (const Measured& channel : measured_) count += channel.judged->outliers();
+  for (const auto& judged : judged_unmasked_) count += judged->outliers();
+  return count;
+}
+
 Result<Imported> Import::close() {
   RecordingHeader& header = writer_->header();
-  if (plan_.time) {
+  if (plan_.time && !request_.mask_outliers) {
     header.sample_rate_hz = clock_.clock().rate_hz;
     header.gaps = clock_.clock().gaps;
   }
@@ -253,7 +321,7 @@ Result<Imported> Import::close() {
   add_warnings(header);
   auto recording = writer_->close();
   if (!recording) return forward_error(recording);
-  Imported imported{std::move(*recording), {}, plan_.source.format};
+  Imported imported{std::move(*recording), {}, plan_.source.format, outliers(), mask_.count()};
   if (decimal_comma_) imported.format += ", decimal commas";
   for (std::size_t k = 0; k < measured_.size(); ++k) {
     const Plausibility& judged = *measured_[k].judged;
@@ -266,11 +334,14 @@ Result<Imported> Import::close() {
 }
 
 Result<Imported> Import::run() {
-  if (plan_.time && derived_)
+  if (request_.mask_outliers) {
+    if (const auto found = find_outliers(); !found) return forward_error(found);
+  } else if (plan_.time && derived_) {
     if (const auto known = first_clock(); !known) return forward_error(known);
+  }
   if (const auto written = write_all(); !written) return forward_error(written);
-  if (second_pass_needed())
-    if (const auto named = second_pass(); !named) return forward_error(named);
+  if (!request_.mask_outliers && second_pass_needed())
+    if (const auto named = second_pass(0.8, 0.9); !named) return forward_error(named);
   return close();
 }
 

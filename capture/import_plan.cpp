@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "capture/column_unit.hpp"
 #include "data-schema/files.hpp"
 
 namespace tacto::capture {
@@ -58,11 +59,19 @@ Result<void> check_clock(const ImportRequest& request, const Source& source) {
       "add --rate, as in --rate 10kHz, or --time-column, as in --time-column " + typed(source, 0) + "*1s");
 }
 
+// The first column of forces by its unit, which then needs none; else the first.
+std::string force_example(const Source& source) {
+  for (std::size_t i = 0; i < source.units.size(); ++i) {
+    const auto unit = known_unit(source.units[i], schema::Dimension::force);
+    if (unit && unit->dimension == schema::Dimension::force) return "tangential_force=" + typed(source, i);
+  }
+  return fmt::format("tangential_force={}*1N", typed(source, 0));
+}
+
 tl::unexpected<schema::Error> no_channels(const Source& source) {
   const std::string rate = source.rate_hz ? "" : "--rate 10kHz ";
   return fail(Fault::usage, "which columns are which channels? They are: " + columns_in_words(source.columns),
-              source.file,
-              fmt::format("name them, as in {}--channel 'tangential_force={}*1N'", rate, typed(source, 0)));
+              source.file, fmt::format("name them, as in {}--channel '{}'", rate, force_example(source)));
 }
 
 // Integer codes are scaled to what an audio editor shows, -1 to 1.
@@ -72,7 +81,7 @@ ChannelSpec whole_signal(const Source& source) {
 }
 
 Result<std::vector<ChannelSpec>> choose_channels(const ImportRequest& request, const Source& source) {
-  if (!request.channels.empty()) return parse_channels(request.channels, source.columns);
+  if (!request.channels.empty()) return parse_channels(request.channels, {source.columns, source.units});
   if (source.csv || source.columns.size() > 1) return no_channels(source);
   return std::vector{whole_signal(source)};
 }
@@ -134,14 +143,15 @@ Result<void> check_with_source(const ImportRequest& request, const ImportPlan& p
 
 Result<ImportPlan> plan_import(const ImportRequest& request) {
   if (const auto fits = check_without_source(request); !fits) return forward_error(fits);
-  auto source = open_source(request.file);
+  auto source = open_source(request.file, request.skip_lines);
   if (!source) return forward_error(source);
   auto channels = choose_channels(request, *source);
   if (!channels) return forward_error(channels);
   ImportPlan plan{std::move(*source), std::move(*channels), std::nullopt};
   if (const auto fits = check_with_source(request, plan); !fits) return forward_error(fits);
   if (request.time_column.empty()) return plan;
-  const auto time = parse_scaled_column(request.time_column, schema::Dimension::time, plan.source.columns);
+  const auto time = parse_scaled_column(request.time_column, schema::Dimension::time,
+                                        {plan.source.columns, plan.source.units});
   if (!time) return forward_error(time);
   plan.time = *time;
   return plan;

@@ -47,6 +47,11 @@ void Plausibility::Sightings::add(std::uint64_t sample, double value, const Plac
   if (++count <= kNamed) first.push_back({sample, value, place_of(sample)});
 }
 
+void Plausibility::note(Sightings& sightings, std::uint64_t sample, double value, const PlaceOf& place_of) {
+  sightings.add(sample, value, place_of);
+  if (outlier_samples_.size() < kMostOutliers) outlier_samples_.push_back(sample);
+}
+
 bool Plausibility::is_beyond(double stored) const {
   return std::abs(physical(stored)) > bound_;
 }
@@ -61,7 +66,7 @@ void Plausibility::survey(std::span<const double> stored, std::uint64_t first, c
   largest_ = std::max(largest_, high);
   if (is_beyond(low) || is_beyond(high))
     for (std::size_t i = 0; i < stored.size(); ++i)
-      if (is_beyond(stored[i])) beyond_.add(first + i, stored[i], place_of);
+      if (is_beyond(stored[i])) note(beyond_, first + i, stored[i], place_of);
   count_ += stored.size();
   lone_.survey(stored);
 }
@@ -71,11 +76,11 @@ void Plausibility::end_survey() {
 }
 
 void Plausibility::find(std::span<const double> stored, const PlaceOf& place_of) {
-  lone_.find(stored, [&](std::uint64_t sample, double value) { alone_.add(sample, value, place_of); });
+  lone_.find(stored, [&](std::uint64_t sample, double value) { note(alone_, sample, value, place_of); });
 }
 
 void Plausibility::end_find(const PlaceOf& place_of) {
-  lone_.end_find([&](std::uint64_t sample, double value) { alone_.add(sample, value, place_of); });
+  lone_.end_find([&](std::uint64_t sample, double value) { note(alone_, sample, value, place_of); });
 }
 
 std::string Plausibility::people(double in_si) const {

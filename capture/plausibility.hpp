@@ -39,6 +39,12 @@ class Plausibility {
   void find(std::span<const double> stored, const PlaceOf& place_of);
   void end_find(const PlaceOf& place_of);
 
+  /// Of the samples named or counted in warnings() as beyond or alone: all that there are, and the first
+  /// kMostOutliers of them.
+  std::uint64_t outliers() const { return beyond_.count + alone_.count; }
+  const std::vector<std::uint64_t>& outlier_samples() const { return outlier_samples_; }
+  static constexpr std::size_t kMostOutliers = 1'000'000;  // 8 MB
+
   /// One line for each thing to warn of, with the first few samples by name, and how many there are.
   std::vector<std::string> warnings(const TimeOf& time_of) const;
   double smallest_stored() const { return smallest_; }
@@ -57,6 +63,7 @@ class Plausibility {
   };
   double physical(double stored) const { return stored * channel_.scale + channel_.offset; }
   bool is_beyond(double stored) const;
+  void note(Sightings& sightings, std::uint64_t sample, double value, const PlaceOf& place_of);
   std::string people(double in_si) const;
   std::string listed(const Sightings& sightings, const TimeOf& time_of) const;
 
@@ -66,6 +73,7 @@ class Plausibility {
   double largest_ = -std::numeric_limits<double>::infinity();
   std::uint64_t count_ = 0;
   Sightings beyond_, alone_;
+  std::vector<std::uint64_t> outlier_samples_;
   LoneSamples lone_;
 };
 

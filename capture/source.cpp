@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "capture/audio_source.hpp"
+#include "capture/foreign_format.hpp"
 #include "capture/input_file.hpp"
 #include "data-schema/recording.hpp"
 
@@ -20,13 +21,30 @@ std::string table_format(const CsvLayout& layout) {
   const char* const delimiter = layout.delimiter == '\t'  ? "tab"
                                 : layout.delimiter == ';' ? "semicolon"
                                                           : "comma";
-  return fmt::format("table, {}, {} header", delimiter, layout.header ? "with" : "without");
+  std::string format = fmt::format("table, {}, {} header", delimiter, layout.header ? "with" : "without");
+  if (layout.lines_before > 0 && layout.header) format += fmt::format(" in line {}", layout.header_line);
+  if (layout.lines_before > 0 && !layout.header) format += fmt::format(", from line {}", layout.data_line);
+  if (layout.lines_before > 0) format += " (lines before it passed over)";
+  if (layout.units_line > 0) format += fmt::format(", units in line {}", layout.units_line);
+  return format;
 }
 
-Result<Source> open_table(const std::string& file, std::string_view head, bool whole) {
-  auto layout = find_csv_layout(head, whole, file);
+Result<Source> open_table(const std::string& file, std::string_view head, bool whole, std::size_t skip) {
+  auto layout = find_csv_layout(head, whole, file, skip);
   if (!layout) return schema::forward_error(layout);
-  return Source{file, layout->columns, *layout, std::nullopt, 0, table_format(*layout)};
+  return Source{file, layout->columns, *layout, std::nullopt, 0, table_format(*layout), layout->units};
+}
+
+Result<Source> open_sound(const std::string& file, std::size_t skip) {
+  if (skip == 0) return open_audio(file);
+  return fail(Fault::usage, "has no lines that could be skipped", file, "leave --skip out: this is no table");
+}
+
+// Of MATLAB's files libsndfile takes any numbers for sound: only its own name their rate so.
+Result<Source> open_foreign(const std::string& file, const ForeignFormat& format, std::string_view head) {
+  if (format.may_be_sound && head.find("samplerate") != std::string_view::npos) return open_audio(file);
+  return fail(Fault::unsuitable, fmt::format("is {}, which import does not read", format.what), file,
+              std::string(format.remedy));
 }
 
 // Sound files have zero bytes among their first, text has none; UTF-16 has both and is a table to be
@@ -68,7 +86,7 @@ std::string columns_in_words(const std::vector<std::string>& columns) {
   return list;
 }
 
-Result<Source> open_source(const std::string& file) {
+Result<Source> open_source(const std::string& file, std::size_t skip) {
   auto input = InputFile::open(file);
   if (!input) return schema::forward_error(input);
   std::string head(kLayoutBytes, '\0');
@@ -76,8 +94,9 @@ Result<Source> open_source(const std::string& file) {
   if (!got) return schema::forward_error(got);
   const bool whole = *got < head.size();
   head.resize(*got);
-  if (const auto foreign = refuse_own(file, head); !foreign) return schema::forward_error(foreign);
-  return is_binary(head) ? open_audio(file) : open_table(file, head, whole);
+  if (const auto others = refuse_own(file, head); !others) return schema::forward_error(others);
+  if (const auto foreign = foreign_format(file, head)) return open_foreign(file, *foreign, head);
+  return is_binary(head) ? open_sound(file, skip) : open_table(file, head, whole, skip);
 }
 
 namespace {

@@ -21,11 +21,12 @@ namespace tacto::capture {
 /// What a file holds, as its first lines or its header say.
 struct Source {
   std::string file;
-  std::vector<std::string> columns;  ///< names, empty where a column has none; audio: "ch1", "ch2" ...
-  std::optional<CsvLayout> csv;      ///< of a table; without it the file is audio
-  std::optional<double> rate_hz;     ///< of audio
-  int code_bits = 0;                 ///< of audio that holds integer codes
-  std::string format;                ///< for people: "table, comma", "WAV (Microsoft), Signed 16 bit PCM"
+  std::vector<std::string> columns;     ///< names, empty where a column has none; audio: "ch1", "ch2" ...
+  std::optional<CsvLayout> csv;         ///< of a table; without it the file is audio
+  std::optional<double> rate_hz;        ///< of audio
+  int code_bits = 0;                    ///< of audio that holds integer codes
+  std::string format;                   ///< for people: "table, comma", "WAV (Microsoft), Signed 16 bit PCM"
+  std::vector<std::string> units = {};  ///< of a table's columns, as it writes them; empty where it has none
 };
 
 /// A stretch of a source's rows: the numbers of the columns that were asked for, exactly as the file has them
@@ -45,9 +46,10 @@ struct RowBlock {
 
 using TakeRows = std::function<schema::Result<void>(const RowBlock&)>;
 
-/// Looks into a file: audio where libsndfile reads it, else a table. Errors: not_found; malformed, for what
-/// is neither; unsuitable, for files of tactograph's own.
-schema::Result<Source> open_source(const std::string& file);
+/// Looks into a file: audio where libsndfile reads it, else a table that begins after `skip` lines. Errors:
+/// not_found; malformed, for what is neither; unsuitable, for files of tactograph's own and for those of
+/// other kinds that are known (foreign_format); usage, where sound has lines to skip.
+schema::Result<Source> open_source(const std::string& file, std::size_t skip = 0);
 
 /// Reads columns (0-based, each once) block by block; `sum`, where given, is fed the file's bytes on the way.
 /// `progress` takes 0 to 1. Errors: those of `take`; not_found; malformed, with line and column or sample, at

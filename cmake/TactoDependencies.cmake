@@ -16,6 +16,7 @@ pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(NETTLE REQUIRED IMPORTED_TARGET nettle)
 pkg_check_modules(PANGOCAIRO REQUIRED IMPORTED_TARGET pangocairo)
 pkg_check_modules(CAIRO_SVG REQUIRED IMPORTED_TARGET cairo-svg cairo-png)
+pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 
 # Debian ships OpenCVConfig.cmake only with all of OpenCV (libopencv-dev); two modules are named here instead.
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)

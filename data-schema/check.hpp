@@ -21,6 +21,7 @@ struct Finding {
 struct Checked {
   std::vector<Finding> findings;  ///< none where the file is sound
   std::string newer_version;      ///< where its minor version is newer than ours
+  std::string note = {};          ///< what could not be checked, and why
 };
 
 /// Compares a file with its schema, its samples and its checksum. `progress`, where given, hears fractions

@@ -22,6 +22,9 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
 /// Errors: as of check_file.
 Result<Checked> check_session(const std::string& path);
 Result<Checked> check_spectrogram(const std::string& path);
+/// Of a spectrogram that is readable: its checksum, and whether decibels and flags are those of its cells. A
+/// file without a checksum (before version 1.2) gives a note. Errors: malformed, of reading.
+Result<Checked> check_spectrogram_cells(const std::string& path);
 
 /// What a sidecar says of its WAV.
 struct ExpectedWav {

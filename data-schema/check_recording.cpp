@@ -7,6 +7,7 @@
 
 #include "data-schema/check_parts.hpp"
 #include "data-schema/recording_json.hpp"
+#include "data-schema/transducer_plausible.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -38,6 +39,9 @@ std::vector<Finding> check_recording(const std::string& path, const Document& do
     findings.push_back({fmt::format("{}#{}", path, pointer), what});
   if (const auto breach = sequence_breach(header))
     findings.push_back({fmt::format("{}#{}", path, breach->pointer), breach->what});
+  if (header.transducer)
+    if (const auto plausible = check_plausible(*header.transducer, path + "#/transducer"); !plausible)
+      findings.push_back({plausible.error().where, plausible.error().what});
   const std::string wav = (std::filesystem::path(path).parent_path() / header.wav_file).string();
   const auto more = check_wav(
       {wav, header.sha256, header.format, header.frames, std::round(header.sample_rate_hz), header.channels},

@@ -17,6 +17,10 @@ Result<Checked> check_session(const std::string& path) {
   if (totals.end && totals.end->ticks != totals.ticks)
     checked.findings.push_back(
         {path, fmt::format("its last block counts {} ticks, there are {}", totals.end->ticks, totals.ticks)});
+  if (totals.samples > 0 && !reader->header().sensor)
+    checked.findings.push_back({path, "holds measured samples, and its header does not describe the sensor"});
+  if (!totals.samples_grow)
+    checked.findings.push_back({path, "its measured samples are not in the order of their frames"});
   return checked;
 }
 

@@ -38,6 +38,15 @@ void add_cells(const std::string& path, const Spectrogram& spectrogram, std::vec
        fmt::format("{} is no density", *found)});
 }
 
+// The checksum, and what was computed of the cells.
+Result<Checked> check_stored_cells(const std::string& path, Checked checked) {
+  const auto stored = check_spectrogram_cells(path);
+  if (!stored) return forward_error(stored);
+  checked.note = stored->note;
+  checked.findings.insert(checked.findings.end(), stored->findings.begin(), stored->findings.end());
+  return checked;
+}
+
 }  // namespace
 
 Result<Checked> check_spectrogram(const std::string& path) {
@@ -52,7 +61,7 @@ Result<Checked> check_spectrogram(const std::string& path) {
     add_windowing(where, *spectrogram, checked.findings);
     add_cells(where, *spectrogram, checked.findings);
   }
-  return checked;
+  return check_stored_cells(path, std::move(checked));
 }
 
 }  // namespace tacto::schema

@@ -15,7 +15,7 @@
 
 namespace tacto::schema {
 
-inline constexpr std::string_view kControlVersion = "1.1";
+inline constexpr std::string_view kControlVersion = "1.2";
 inline constexpr std::size_t kMostControlLine = 16384;  ///< bytes, newline included
 
 enum class ControlVerb { hello, load, arm, play, stop, disarm, gain, status, watch };
@@ -29,11 +29,16 @@ struct ControlRequest {
   std::optional<double> at_m, gain_m_per_n;
   std::optional<double> fade_s;  ///< load while armed
   std::optional<TextureEnds> ends;
-  PlaybackChoices playback;  ///< load
+  PlaybackChoices playback;          ///< load
+  bool while_connected = false;      ///< arm
+  std::optional<double> dead_man_s;  ///< arm
   std::optional<double> gain;
   bool save = false;
   std::vector<std::string> passed_over;  ///< members at top level that are not known
-  std::string asked_by;                  ///< who saves; in no line: the socket knows
+  /// What the socket knows of who asks; in no line.
+  std::string asked_by;  ///< who saves
+  std::uint64_t client = 0;
+  bool by_tcp = false;
 };
 
 /// One member of a reply or event.

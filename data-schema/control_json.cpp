@@ -8,6 +8,7 @@
 
 #include "data-schema/control.hpp"
 #include "data-schema/json_schema.hpp"
+#include "data-schema/json_text.hpp"
 #include "data-schema/known_members.hpp"
 #include "data-schema/playback_choices_json.hpp"
 
@@ -19,14 +20,10 @@ constexpr std::array<std::string_view, 9> kControlVerbs = {"hello",  "load", "ar
 constexpr int kDeepestRequest = 3;
 constexpr std::string_view kRequestWhere = "request";
 
-// Nested deeper than any request is, the text is given up before it costs anything.
-Result<Json> request_json(std::string_view line) try {
-  const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepestRequest) throw std::length_error("nested too deeply");
-    return true;
-  };
-  return Json::parse(line, shallow);
-} catch (const std::exception&) {
+// What an object says twice is named; all else that is no request is answered alike.
+Result<Json> request_json(std::string_view line) {
+  auto body = parse_json(line, std::string(kRequestWhere), kDeepestRequest);
+  if (body || !body.error().remedy.empty()) return body;
   return fail(Fault::malformed, "the line is not one JSON object", std::string(kRequestWhere),
               R"(send lines such as {"request":"status"})");
 }
@@ -73,7 +70,7 @@ Result<void> check_members(const ControlRequest& request) {
 
 // Who says what another request is told means that one: it is not lost, for it may be a limit.
 Result<void> check_taken(const Json& body, ControlVerb verb) {
-  constexpr std::array<std::pair<const char*, ControlVerb>, 10> kTakenBy = {
+  constexpr std::array<std::pair<const char*, ControlVerb>, 12> kTakenBy = {
       {{"version", ControlVerb::hello},
        {"token", ControlVerb::hello},
        {"file", ControlVerb::load},
@@ -82,6 +79,8 @@ Result<void> check_taken(const Json& body, ControlVerb verb) {
        {"ends", ControlVerb::load},
        {"fade_s", ControlVerb::load},
        {"playback", ControlVerb::load},
+       {"while_connected", ControlVerb::arm},
+       {"dead_man_s", ControlVerb::arm},
        {"gain", ControlVerb::gain},
        {"save", ControlVerb::gain}}};
   const auto word = [](ControlVerb of) { return kControlVerbs[static_cast<std::size_t>(of)]; };
@@ -108,6 +107,8 @@ ControlRequest request_of(const Json& body) {
   request.gain_m_per_n = asked_number(body, "gain_m_per_n");
   request.fade_s = asked_number(body, "fade_s");
   request.playback = playback_choices_in(body);
+  request.while_connected = body.value("while_connected", false);
+  request.dead_man_s = asked_number(body, "dead_man_s");
   request.gain = asked_number(body, "gain");
   request.save = body.value("save", false);
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
@@ -171,7 +172,7 @@ Result<ControlRequest> parse_control_request(std::string_view line, std::string*
   const auto body = request_json(line);
   if (!body) return forward_error(body);
   if (id_json != nullptr) *id_json = id_in(*body);
-  static const auto kRules = schema_of("control");
+  static const auto& kRules = schema_of("control");
   const auto faults = breaches(*body, *kRules);
   if (!faults.empty())
     return fail(Fault::malformed, faults.front().what,
@@ -199,6 +200,8 @@ std::string control_request_line(const ControlRequest& request) {
   if (request.ends) body["ends"] = word_of(*request.ends);
   if (request.fade_s) body["fade_s"] = *request.fade_s;
   if (Json playback = playback_choices_body(request.playback); !playback.empty()) body["playback"] = playback;
+  if (request.while_connected) body["while_connected"] = true;
+  if (request.dead_man_s) body["dead_man_s"] = *request.dead_man_s;
   if (request.gain) body["gain"] = *request.gain;
   if (request.save) body["save"] = true;
   return line_of(body);
@@ -228,11 +231,12 @@ std::string control_event_line(std::string_view name, const ControlFields& field
 }
 
 Result<ControlReply> parse_control_reply(std::string_view line) try {
-  const Json body = Json::parse(line);
-  if (body.is_object()) return reply_from(body);
-  return fail(Fault::malformed, "the daemon's reply is no JSON object", "reply");
-} catch (const std::exception&) {
-  return fail(Fault::malformed, "the daemon's reply is not JSON", "reply",
+  const auto body = parse_json(line, "reply");
+  if (body && body->is_object()) return reply_from(*body);
+  return fail(Fault::malformed, body ? "the daemon's reply is no JSON object" : body.error().what, "reply",
+              "is it tactographd that listens there?");
+} catch (const std::exception&) {  // a member of another type than ours has
+  return fail(Fault::malformed, "the daemon's reply is none of tactographd's", "reply",
               "is it tactographd that listens there?");
 }
 

@@ -57,6 +57,7 @@ Result<DaemonConfig> read_daemon_config(const std::string& path) {
   config.undo_hysteresis = body.value("undo_hysteresis", config.undo_hysteresis);
   config.budget = {quality_in(body), number_in(body, "max_error")};
   config.playback = playback_choices_in(body);
+  config.dead_man_s = number_in(body, "dead_man_s");
   config.max_tick_ns = number_in(body, "max_tick_ns");
   return config;
 }

@@ -23,6 +23,7 @@ struct DaemonConfig {
   int real_time_priority = 50;
   int watchdog_ms = 100;
   double most_speed_mps = 2;
+  std::optional<double> dead_man_s;  ///< longest silence of the clients while armed
   double onset_s = 0.02;
   double most_late_percent = 20;
   std::string finger_path;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
 
 #include "data-schema/description.hpp"
@@ -9,11 +8,6 @@
 
 namespace tacto::schema {
 namespace {
-
-// A cell that is empty where there is no number.
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
-}
 
 // Every band that a texture has, by number, with its centre.
 std::map<int, double> all_bands(const DescriptionFile& file) {
@@ -43,11 +37,12 @@ std::string row(const Description& each, const std::map<int, double>& bands) {
        {1e3 * each.length_m, 1e3 * each.from_m, 1e3 * each.to_m, 1e3 * each.mean_speed_mps,
         1e-3 * each.low_per_m, 1e-3 * each.high_per_m, 1e3 * each.window_m, each.rms, each.total_rms,
         1e-3 * each.centroid_per_m, each.slope_db_per_octave})
-    text += "," + number(value);
+    text += "," + csv_number(value);
   std::map<int, const ThirdOctaveBand*> own;
   for (const ThirdOctaveBand& band : each.bands) own[band.number] = &band;
   for (const auto& [band, centre_per_m] : bands)
-    text += own.contains(band) ? fmt::format(",{},{:d}", number(own[band]->rms), own[band]->partial) : ",,";
+    text +=
+        own.contains(band) ? fmt::format(",{},{:d}", csv_number(own[band]->rms), own[band]->partial) : ",,";
   return text + "\n";
 }
 

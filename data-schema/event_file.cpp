@@ -80,9 +80,17 @@ Result<void> EventFile::remove() {
   return unlink(path_.c_str()) == 0 ? Result<void>{} : unwritable_log(path_, errno);
 }
 
+// By device and inode, which need no /proc.
 bool EventFile::is_at_its_path() const {
-  std::error_code absent;
-  return std::filesystem::equivalent(kernel_name_of(descriptor_), path_, absent);
+  struct stat here {
+  }, there{};
+  return fstat(descriptor_, &here) == 0 && stat(path_.c_str(), &there) == 0 && here.st_dev == there.st_dev &&
+         here.st_ino == there.st_ino;
+}
+
+bool EventFile::is_deleted() const {
+  struct stat status {};
+  return fstat(descriptor_, &status) == 0 && status.st_nlink == 0;
 }
 
 std::string EventFile::place() const {

@@ -27,7 +27,9 @@ class EventFile {
 
   /// Whether its path still names this file: somebody may rename its folder, or delete it.
   bool is_at_its_path() const;
-  /// Where it is now, in full; empty where it was deleted.
+  /// Whether no name is left of it in any folder.
+  bool is_deleted() const;
+  /// Where it is now, in full; empty where it was deleted, or where there is no /proc to ask.
   std::string place() const;
 
  private:

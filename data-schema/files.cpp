@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <system_error>
 #include <vector>
 
+#include "data-schema/leftover_files.hpp"
 #include "data-schema/pending_names.hpp"
 #include "data-schema/sha256.hpp"
 
@@ -80,12 +80,6 @@ tl::unexpected<Error> unwritable(const std::string& path, int error_number) {
   return fail(Fault::cannot_write, "can't be written: " + reason(error_number), path);
 }
 
-// ".oak.wav.PID.N.tmp": hidden, in the same folder so that a rename suffices, and never two alike.
-fs::path temporary_for(const fs::path& path) {
-  static std::atomic<unsigned> count{0};
-  return path.parent_path() / fmt::format(".{}.{}.{}.tmp", path.filename().string(), getpid(), count++);
-}
-
 Result<void> check_target(const fs::path& path) {
   std::error_code ignored;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
@@ -113,17 +107,21 @@ Result<void> sync(const std::string& temporary, const std::string& path) {
   return failed == 0 ? Result<void>{} : unwritable(path, failed);
 }
 
+tl::unexpected<Error> taken(const std::string& path) {
+  return fail(Fault::usage, "is there already, and is not overwritten", path,
+              "choose another name, or replace it with --force");
+}
+
 // Some file systems can't refuse to replace; there a look beforehand has to do.
 Result<void> move(const std::string& temporary, const std::string& path, Existing existing) {
   const unsigned flags = existing == Existing::keep ? RENAME_NOREPLACE : 0;
   int failed = renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, path.c_str(), flags) == 0 ? 0 : errno;
   if (failed == EINVAL || failed == ENOSYS) {
     std::error_code ignored;
-    const bool taken = existing == Existing::keep && fs::exists(path, ignored);
-    failed = taken ? EEXIST : std::rename(temporary.c_str(), path.c_str()) == 0 ? 0 : errno;
+    const bool kept = existing == Existing::keep && fs::exists(path, ignored);
+    failed = kept ? EEXIST : std::rename(temporary.c_str(), path.c_str()) == 0 ? 0 : errno;
   }
-  if (failed == EEXIST)
-    return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
+  if (failed == EEXIST) return taken(path);
   return failed == 0 ? Result<void>{} : unwritable(path, failed);
 }
 
@@ -143,8 +141,16 @@ Result<void> check_readable(const std::string& path) {
   return file ? Result<void>{} : forward_error(file);
 }
 
+// A path that can't be resolved counts by its words.
+std::string canonical_path(const std::string& path) {
+  std::error_code failed;
+  const fs::path absolute = fs::absolute(path, failed);
+  const fs::path resolved = fs::weakly_canonical(absolute, failed);
+  return (failed ? absolute.lexically_normal() : resolved).string();
+}
+
 bool same_file(const std::string& a, const std::string& b) {
-  return std::filesystem::path(a).lexically_normal() == std::filesystem::path(b).lexically_normal();
+  return canonical_path(a) == canonical_path(b);
 }
 
 bool is_file(const std::string& path) {
@@ -170,15 +176,30 @@ std::string sha256_of(std::string_view text) {
   return sum.hexadecimal();
 }
 
-Result<void> check_table_free(const std::string& path,
+// A link to nothing has the name, too.
+Result<void> check_output_free(const std::string& path, Existing existing) {
+  std::error_code ignored;
+  const bool there = fs::exists(fs::symlink_status(path, ignored));
+  return there && existing == Existing::keep ? taken(path) : Result<void>{};
+}
+
+Result<void> check_wav_free(const std::string& path, Existing existing) {
+  std::error_code ignored;
+  for (const char* ending : {".json", ".events.jsonl"})
+    if (fs::exists(fs::path(path).replace_extension(ending), ignored))
+      return fail(Fault::usage, "this name belongs to a recording or texture", path, "choose another name");
+  return check_output_free(path, existing);
+}
+
+Result<void> check_table_free(const std::string& path, Existing existing,
                               const std::function<bool(std::string_view beginning)>& ours) {
   std::error_code ignored;
-  if (!fs::exists(path, ignored)) return {};
+  if (!fs::exists(path, ignored)) return check_output_free(path, existing);
   const auto file = opened(path);
   if (!file) return forward_error(file);
   std::string line(kLongestBeginning, '\0');
   line.resize(std::fread(line.data(), 1, line.size(), file->get()));
-  if (line.empty() || ours(line.substr(0, line.find('\n')))) return {};
+  if (line.empty() || ours(line.substr(0, line.find('\n')))) return check_output_free(path, existing);
   return fail(Fault::usage, "holds something else, and would be lost", path,
               "choose another name, or remove it first");
 }
@@ -204,7 +225,8 @@ PendingFiles::~PendingFiles() {
 
 Result<std::string> PendingFiles::add(const std::string& path) {
   if (const auto fits = check_target(path); !fits) return forward_error(fits);
-  const std::string temporary = temporary_for(path).string();
+  remove_leftovers_of_file(path);
+  const std::string temporary = temporary_name_for(path);
   PendingName* const name = pending_names().keep(temporary);
   pending_.push_back({temporary, path, name});
   if (const auto made = write_all(temporary, path, ""); !made) return forward_error(made);

@@ -20,7 +20,10 @@ Result<void> check_readable(const std::string& path);
 /// Whether `path` names a file (not a folder).
 bool is_file(const std::string& path);
 
-/// The same name, however it is written: a and ./a. Links are not followed.
+/// The path without links and "..", as far as its folders exist: one for all spellings of a file.
+std::string canonical_path(const std::string& path);
+
+/// Whether both paths name one file, which need not exist: a, ./a, x/../a, and paths through links.
 bool same_file(const std::string& a, const std::string& b);
 
 /// That a file may be changed: who renames a new one over it would not be stopped by its being read-only.
@@ -38,13 +41,22 @@ std::string sha256_of(std::string_view text);
 /// Whether a file's SHA-256 is what a sidecar says. Errors: malformed; not_found.
 Result<void> check_sum(const std::string& path, const std::string& sha256);
 
-/// Whether a file of the name `path` may be replaced by a table: there is none, or `ours` says so of how its
-/// first line begins. Errors: usage: something else would be lost.
-Result<void> check_table_free(const std::string& path,
-                              const std::function<bool(std::string_view beginning)>& ours);
-
-/// What commit() does with files that have the names already.
+/// What happens to files that have the names of outputs already. In verbs: keep, with --force replace.
 enum class Existing { replace, keep };
+
+/// Whether an output may take the name `path`, before any work is done. Errors: usage, where a file has it
+/// already and is to be kept.
+Result<void> check_output_free(const std::string& path, Existing existing);
+
+/// The same for a sound file, which never replaces the data of a recording or texture: what has a sidecar
+/// NAME.json, or the events of a recording that was not closed. Errors: usage.
+Result<void> check_wav_free(const std::string& path, Existing existing);
+
+/// The same for an output that replaces only its own kind: a table or a page that `ours` knows by how its
+/// first line begins; an empty file always. Errors: usage, where a file has the name and is to be kept, or
+/// holds something else, which would be lost.
+Result<void> check_table_free(const std::string& path, Existing existing,
+                              const std::function<bool(std::string_view beginning)>& ours);
 
 /// Removes what all pending files of this process have written. For the handler of a signal that ends it:
 /// async-signal-safe.

@@ -14,11 +14,12 @@ std::string formants_csv(const FormantFile& file) {
       reference, reference);
   for (const FormantTable& table : file.tables)
     for (const Formant& f : table.formants)
-      text += fmt::format(
-          "{},{:.9g},{:.9g},{:d},{:d},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.9g},{:.6g}\n",
-          csv_cell(table.texture), 1e3 * f.from_m, 1e3 * f.to_m, f.open_from, f.open_to,
-          1e-3 * f.frequency_per_m, 1e-3 * f.lowest_per_m, 1e-3 * f.highest_per_m, 1e-3 * f.width_per_m,
-          f.level_db, f.peak_level_db, 1e3 * f.peak_position_m, f.prominence_db);
+      text += fmt::format("{},{},{},{:d},{:d},{},{},{},{},{},{},{},{}\n", csv_cell(table.texture),
+                          csv_number(1e3 * f.from_m), csv_number(1e3 * f.to_m), f.open_from, f.open_to,
+                          csv_number(1e-3 * f.frequency_per_m), csv_number(1e-3 * f.lowest_per_m),
+                          csv_number(1e-3 * f.highest_per_m), csv_number(1e-3 * f.width_per_m),
+                          csv_number(f.level_db, 6), csv_number(f.peak_level_db, 6),
+                          csv_number(1e3 * f.peak_position_m), csv_number(f.prominence_db, 6));
   return text;
 }
 

@@ -9,41 +9,10 @@
 
 #include "data-schema/files.hpp"
 #include "data-schema/json_schema.hpp"
+#include "data-schema/json_text.hpp"
 
 namespace tacto::schema {
 namespace {
-
-// Ours nest five deep. Deeper ones are refused before anything that recurses gets to see them.
-constexpr int kDeepestNesting = 32;
-
-std::string line_and_column(std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, byte == 0 ? 0 : byte - 1);
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const auto start = before.rfind('\n');
-  return fmt::format("line {}, column {}", line, before.size() - (start == before.npos ? 0 : start + 1) + 1);
-}
-
-// The library's words without its "[json.exception...] " and "parse error at line 1, column 2: ".
-std::string reason_of(const std::string& said) {
-  const std::string words = said.starts_with("[json") ? said.substr(said.find("] ") + 2) : said;
-  return words.starts_with("parse error") ? words.substr(words.find(": ") + 2) : words;
-}
-
-Result<Json> parsed(std::string_view text, const std::string& where) try {
-  int deepest = 0;
-  const auto watch = [&](int depth, Json::parse_event_t, Json&) {
-    deepest = std::max(deepest, depth);
-    return depth <= kDeepestNesting;
-  };
-  Json body = Json::parse(text, watch);
-  if (deepest > kDeepestNesting) return fail(Fault::malformed, "the JSON is nested too deeply", where);
-  return body;
-} catch (const Json::parse_error& thrown) {
-  return fail(Fault::malformed, "not JSON: " + reason_of(thrown.what()),
-              fmt::format("{}, {}", where, line_and_column(text, thrown.byte)));
-} catch (const std::exception& thrown) {
-  return fail(Fault::malformed, "not JSON: " + reason_of(thrown.what()), where);
-}
 
 std::string place(const std::string& where, const std::string& pointer) {
   return pointer.empty() ? where : where + "#" + pointer;
@@ -69,13 +38,18 @@ std::optional<Version> version_from(std::string_view text) {
   return version;
 }
 
+struct KindVersion {
+  std::string_view kind, version;
+};
+constexpr KindVersion kNewerKinds[] = {{"session", "1.1"}};  // 1.1: measured displacement
+
 /// The file's version where its minor version is newer than ours, else "".
-Result<std::string> newer_version(const Json& body, const std::string& where) {
+Result<std::string> newer_version(const Json& body, std::string_view kind, const std::string& where) {
   const std::string text =
       body.contains("version") && body["version"].is_string() ? body["version"].get<std::string>() : "";
   const auto version = version_from(text);
   if (!version) return fail(Fault::malformed, "`version` is not \"major.minor\"", place(where, "/version"));
-  const Version ours = *version_from(kVersion);
+  const Version ours = *version_from(version_of_kind(kind));
   if (version->major != ours.major)
     return fail(Fault::unsupported_version,
                 fmt::format("its format has version {}, this program reads {}.x", text, ours.major), where,
@@ -89,9 +63,9 @@ Result<Document> checked(Json body, const std::string& where, std::string_view k
   if (*found != kind)
     return fail(Fault::malformed, fmt::format("its kind is '{}', not '{}'", *found, kind),
                 place(where, "/kind"));
-  auto newer = newer_version(body, where);
+  auto newer = newer_version(body, kind, where);
   if (!newer) return forward_error(newer);
-  const auto rules = schema_of(kind);
+  const auto& rules = schema_of(kind);
   if (!rules) return fail(Fault::internal, fmt::format("there is no usable schema for '{}'", kind), where);
   const auto list = breaches(body, *rules);
   if (!list.empty())
@@ -103,7 +77,7 @@ Result<Document> checked(Json body, const std::string& where, std::string_view k
 Result<Json> read_json(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return forward_error(text);
-  return parsed(*text, path);
+  return parse_json(*text, path);
 }
 
 // JSON has no NaN and no infinity; the library would write null.
@@ -115,7 +89,7 @@ std::optional<std::string> first_not_finite(const Json& node) {
 }
 
 Json merged(std::string_view kind, const Json& body, const std::string& extra_json) {
-  Json document = {{"kind", kind}, {"version", kVersion}};
+  Json document = {{"kind", kind}, {"version", version_of_kind(kind)}};
   for (const auto& [name, value] : body.items()) document[name] = value;
   if (extra_json.empty()) return document;
   const Json extra = Json::parse(extra_json);
@@ -127,7 +101,7 @@ Json merged(std::string_view kind, const Json& body, const std::string& extra_js
 Result<std::string> written(const Json& document, std::string_view kind) {
   if (const auto pointer = first_not_finite(document))
     return fail(Fault::unsuitable, "a number that is not finite can't be stored", *pointer);
-  const auto rules = schema_of(kind);
+  const auto& rules = schema_of(kind);
   if (!rules) return fail(Fault::internal, fmt::format("there is no usable schema for '{}'", kind));
   const auto list = breaches(document, *rules);
   if (!list.empty()) return fail(Fault::unsuitable, list.front().what, list.front().pointer);
@@ -136,13 +110,19 @@ Result<std::string> written(const Json& document, std::string_view kind) {
 
 }  // namespace
 
+std::string_view version_of_kind(std::string_view kind) {
+  for (const KindVersion& newer : kNewerKinds)
+    if (newer.kind == kind) return newer.version;
+  return kVersion;
+}
+
 Result<Document> open_document(const std::string& path, std::string_view kind) {
   auto body = read_json(path);
   return body ? checked(std::move(*body), path, kind) : forward_error(body);
 }
 
 Result<Document> parse_document(std::string_view text, const std::string& where, std::string_view kind) {
-  auto body = parsed(text, where);
+  auto body = parse_json(text, where);
   return body ? checked(std::move(*body), where, kind) : forward_error(body);
 }
 
@@ -156,10 +136,10 @@ Result<std::vector<Violation>> violations_of(const std::string& path) {
   if (!body) return forward_error(body);
   const auto kind = kind_in(*body, path);
   if (!kind) return forward_error(kind);
-  const auto rules = schema_of(*kind);
+  const auto& rules = schema_of(*kind);
   if (!rules)
     return fail(Fault::malformed, fmt::format("'{}' is no kind of tactograph's", *kind), path + "#/kind");
-  if (const auto newer = newer_version(*body, path); !newer) return forward_error(newer);
+  if (const auto newer = newer_version(*body, *kind, path); !newer) return forward_error(newer);
   return breaches(*body, *rules);
 }
 
@@ -167,11 +147,11 @@ Result<std::string> document_text(std::string_view kind, const Json& body,
                                   const std::string& extra_json) try {
   return written(merged(kind, body, extra_json), kind);
 } catch (const std::exception& thrown) {  // text that is not UTF-8
-  return fail(Fault::unsuitable, fmt::format("can't be written as JSON: {}", reason_of(thrown.what())));
+  return fail(Fault::unsuitable, fmt::format("can't be written as JSON: {}", json_reason(thrown.what())));
 }
 
 std::string unknown_members(const Json& body, std::string_view kind) {
-  const auto rules = schema_of(kind);
+  const auto& rules = schema_of(kind);
   Json unknown = Json::object();
   for (const auto& [name, value] : body.items())
     if (rules && !(*rules)["properties"].contains(name)) unknown[name] = value;

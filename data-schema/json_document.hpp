@@ -14,8 +14,12 @@ namespace tacto::schema {
 
 using Json = nlohmann::ordered_json;
 
-/// The format's version, "major.minor", the same for every kind so far. A minor version only adds members.
+/// The formats' version, "major.minor", of every kind that has none of its own. A minor version only adds
+/// members.
 inline constexpr std::string_view kVersion = "1.0";
+
+/// The version of a kind's format.
+std::string_view version_of_kind(std::string_view kind);
 
 /// One breach of a schema: the JSON pointer ("" for the whole document) and what is wrong there.
 struct Violation {

@@ -4,6 +4,10 @@
 #define VALIJSON_USE_EXCEPTIONS 1
 #include <fmt/format.h>
 
+#include <map>
+#include <memory>
+#include <mutex>
+
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -101,13 +105,69 @@ std::vector<Violation> told(const valijson::ValidationResults& results, const Js
   return list;
 }
 
+using valijson::adapters::NlohmannJsonAdapter;
+
+// What the validator works by: it reads it only, so that threads may share it.
+class Compiled {
+ public:
+  explicit Compiled(const Json& rules) : plain_(rules) {
+    valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+        .populateSchema(NlohmannJsonAdapter(plain_), schema_);
+  }
+  const valijson::Schema& schema() const { return schema_; }
+
+ private:
+  const nlohmann::json plain_;
+  valijson::Schema schema_;
+};
+
+struct KnownSchema {
+  std::optional<Json> rules;
+  std::unique_ptr<Compiled> compiled;
+};
+
+// Parsing and compiling takes longer than most documents do: each schema once.
+class KnownSchemas {
+ public:
+  const std::optional<Json>& of(std::string_view kind) {
+    const std::lock_guard lock(mutex_);
+    const auto known = known_.find(kind);
+    if (known != known_.end()) return known->second.rules;
+    const Json root = embedded_json(std::string(kind) + ".schema.json");
+    if (root.is_null()) return none_;
+    KnownSchema& made = known_[std::string(kind)];
+    made.rules = expanded(root, root);
+    return made.rules;
+  }
+
+  // Null where they are none of these.
+  const Compiled* compiled(const Json& rules) {
+    const std::lock_guard lock(mutex_);
+    for (auto& [kind, known] : known_) {
+      if (!known.rules || &*known.rules != &rules) continue;
+      if (!known.compiled) known.compiled = std::make_unique<Compiled>(rules);
+      return known.compiled.get();
+    }
+    return nullptr;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, KnownSchema, std::less<>> known_;
+  const std::optional<Json> none_;
+};
+
+KnownSchemas& known_schemas() {
+  static KnownSchemas schemas;
+  return schemas;
+}
+
 std::vector<Violation> validated(const Json& document, const Json& rules) {
-  using valijson::adapters::NlohmannJsonAdapter;
-  const nlohmann::json plain_rules = rules;
   const nlohmann::json plain_document = document;
-  valijson::Schema schema;
-  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-      .populateSchema(NlohmannJsonAdapter(plain_rules), schema);
+  const Compiled* known = known_schemas().compiled(rules);
+  const std::optional<Compiled> own =
+      known == nullptr ? std::optional<Compiled>(std::in_place, rules) : std::nullopt;
+  const valijson::Schema& schema = known != nullptr ? known->schema() : own->schema();
   valijson::ValidationResults results;
   valijson::Validator validator;
   const bool sound = validator.validate(schema, NlohmannJsonAdapter(plain_document), &results);
@@ -131,12 +191,13 @@ std::string range_of(const Json& rule) {
 
 }  // namespace
 
-std::optional<Json> schema_of(std::string_view kind) try {
-  const Json root = embedded_json(std::string(kind) + ".schema.json");
-  if (root.is_null()) return std::nullopt;
-  return expanded(root, root);
-} catch (const std::exception&) {
-  return std::nullopt;
+const std::optional<Json>& schema_of(std::string_view kind) {
+  static const std::optional<Json> kNone;
+  try {
+    return known_schemas().of(kind);
+  } catch (const std::exception&) {
+    return kNone;
+  }
 }
 
 std::vector<Violation> breaches(const Json& document, const Json& rules) try {

@@ -11,10 +11,12 @@
 namespace tacto::schema {
 
 /// The embedded `KIND.schema.json` with every $ref replaced by what it names ("other.schema.json",
-/// "#/definitions/x"); none where no such schema is embedded. Schemas must not refer to themselves.
-std::optional<Json> schema_of(std::string_view kind);
+/// "#/definitions/x"); none where no such schema is embedded. Schemas must not refer to themselves. Made once
+/// a process: the reference stays valid, from any thread.
+const std::optional<Json>& schema_of(std::string_view kind);
 
-/// Every breach of `rules`, in the order they were found.
+/// Every breach of `rules`, in the order they were found. Quick where `rules` is what schema_of() gave, by
+/// reference: else they are compiled for this call.
 std::vector<Violation> breaches(const Json& document, const Json& rules);
 
 /// What the rules say that a member is; empty where they do not, and of the whole document.

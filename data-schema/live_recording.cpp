@@ -100,13 +100,19 @@ std::uint64_t LiveRecording::frames() const {
 
 // Files that are open can be written whatever becomes of their names; to be closed they have to be found.
 Result<void> LiveRecording::State::check_place() const {
-  const std::string wav_name = stem + ".wav", now = recording_stem_of(events.place());
-  if (events.is_at_its_path() && is_file(wav_name)) return {};
-  if (!is_file(now + ".wav"))
+  const std::string wav_name = stem + ".wav", place = events.place();
+  const bool at_its_path = events.is_at_its_path();
+  if (at_its_path && is_file(wav_name)) return {};
+  const std::string now = recording_stem_of(place);
+  if (events.is_deleted() || at_its_path || (!place.empty() && !is_file(now + ".wav")))
     return fail(Fault::cannot_write, "was deleted while it was recorded: its frames are lost", wav_name,
                 "record again");
+  const char* const renamed = "was renamed, or its folder was, while it was recorded";
+  if (place.empty())
+    return fail(Fault::cannot_write, renamed, wav_name,
+                "find its .events.jsonl: 'tactograph recover' makes a recording of it and its WAV");
   return fail(
-      Fault::cannot_write, "was renamed, or its folder was, while it was recorded", wav_name,
+      Fault::cannot_write, renamed, wav_name,
       fmt::format("its frames are in {0}.wav: 'tactograph recover {0}' makes a recording of them", now));
 }
 

@@ -13,6 +13,8 @@ namespace {
 
 // In each dimension from small to large: for_people picks the largest unit that leaves the value at 1 or
 // above.
+constexpr double kStandardGravity = 9.80665;  // m/s^2, by definition (3rd CGPM 1901; ISO 80000-3)
+
 constexpr Unit kUnits[] = {
     {"nm", Dimension::length, 1e-9},
     {"um", Dimension::length, 1e-6},
@@ -40,6 +42,8 @@ constexpr Unit kUnits[] = {
     {"m/s", Dimension::speed, 1},
     {"mm/s^2", Dimension::acceleration, 1e-3},
     {"m/s^2", Dimension::acceleration, 1},
+    {"mg", Dimension::acceleration, 1e-3 * kStandardGravity},
+    {"g", Dimension::acceleration, kStandardGravity},
     {"uN", Dimension::force, 1e-6},
     {"mN", Dimension::force, 1e-3},
     {"N", Dimension::force, 1},
@@ -62,9 +66,11 @@ constexpr Unit kUnits[] = {
 };
 
 // Units that are read but never chosen to write with: "cm" would surprise where "12 mm" is expected.
-bool for_reading_only(std::string_view symbol) {
-  return symbol == "cm" || symbol == "cm/s" || symbol == "/cm" || symbol == "/m" || symbol == "min" ||
-         symbol == "h" || symbol == "days" || symbol == "/um";
+bool for_reading_only(const Unit& unit) {
+  const std::string_view symbol = unit.symbol;
+  const bool of_gravity = unit.dimension == Dimension::acceleration && symbol.ends_with('g');
+  return of_gravity || symbol == "cm" || symbol == "cm/s" || symbol == "/cm" || symbol == "/m" ||
+         symbol == "min" || symbol == "h" || symbol == "days" || symbol == "/um";
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -73,20 +79,27 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// Both Unicode micro signs (U+00B5 and U+03BC) become "u"; "1/mm" and "mm^-1" become "/mm".
+// Both Unicode micro signs (U+00B5 and U+03BC) become "u", a raised 2 "^2"; "1/mm" and "mm^-1" become "/mm".
 std::string canonical(std::string_view symbol) {
   std::string text(trimmed(symbol));
   for (std::string_view micro : {"\xC2\xB5", "\xCE\xBC"})
     for (auto at = text.find(micro); at != std::string::npos; at = text.find(micro)) text.replace(at, 2, "u");
+  constexpr std::string_view kSquared = "\xC2\xB2";
+  if (text.ends_with(kSquared)) text.replace(text.size() - kSquared.size(), kSquared.size(), "^2");
   if (text.size() > 2 && text.starts_with("1/")) text.erase(0, 1);
   if (text.ends_with("^-1")) text = "/" + text.substr(0, text.size() - 3);
   return text;
 }
 
-std::optional<Unit> unit_named(std::string_view symbol) {
-  for (const Unit& unit : kUnits)
-    if (unit.symbol == symbol) return unit;
-  return std::nullopt;
+// "g" is a mass and an acceleration: the dimension that is wanted decides, else the first that has it.
+std::optional<Unit> unit_named(std::string_view symbol, Dimension wanted = Dimension::mass) {
+  std::optional<Unit> any;
+  for (const Unit& unit : kUnits) {
+    if (unit.symbol != symbol) continue;
+    if (unit.dimension == wanted) return unit;
+    if (!any) any = unit;
+  }
+  return any;
 }
 
 struct NumberAndUnit {
@@ -127,7 +140,7 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
     if (dimension == Dimension::none) return parts->number;
     return wrong(text, "has no unit", dimension);
   }
-  const auto unit = unit_named(parts->unit);
+  const auto unit = unit_named(parts->unit, dimension);
   if (!unit) return wrong(text, fmt::format("has the unknown unit '{}'", parts->unit), dimension);
   if (unit->dimension != dimension) return wrong(text, "has a unit of another quantity", dimension);
   return parts->number * unit->si;
@@ -136,7 +149,9 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
 Result<Unit> parse_unit(std::string_view symbol) {
   if (const auto unit = unit_named(canonical(symbol))) return *unit;
   std::string known;
-  for (const Unit& unit : kUnits) known += (known.empty() ? "" : ", ") + std::string(unit.symbol);
+  for (const Unit& unit : kUnits)
+    if (unit_named(unit.symbol)->dimension == unit.dimension)  // once each
+      known += (known.empty() ? "" : ", ") + std::string(unit.symbol);
   return fail(Fault::usage, fmt::format("'{}' is no known unit", symbol), {}, "the units are: " + known);
 }
 
@@ -149,7 +164,7 @@ std::string_view si_symbol(Dimension dimension) {
 std::string for_people(double value_si, Dimension dimension) {
   const Unit* best = nullptr;
   for (const Unit& unit : kUnits) {
-    if (unit.dimension != dimension || for_reading_only(unit.symbol)) continue;
+    if (unit.dimension != dimension || for_reading_only(unit)) continue;
     if (best == nullptr || std::abs(value_si) >= unit.si || (value_si == 0 && unit.si <= 1)) best = &unit;
   }
   if (best->dimension == Dimension::none) return fmt::format("{:.4g}", value_si);

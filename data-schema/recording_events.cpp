@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "data-schema/files.hpp"
+#include "data-schema/json_text.hpp"
 #include "data-schema/recording_json.hpp"
 
 namespace tacto::schema {
@@ -17,7 +18,9 @@ std::string line_of(const char* event, const Json& body) {
 }
 
 Result<RecordingHeader> header_in(std::string_view line, const std::string& path) try {
-  const auto document = parse_document(Json::parse(line).at("recording").dump(), path, "recording");
+  const auto body = parse_json(line, path);
+  if (!body) return forward_error(body);
+  const auto document = parse_document(body->at("recording").dump(), path, "recording");
   return document ? recording_header_from(*document, path) : forward_error(document);
 } catch (const std::exception&) {
   return fail(Fault::malformed, "its first line doesn't say what was to be recorded", path);
@@ -25,12 +28,13 @@ Result<RecordingHeader> header_in(std::string_view line, const std::string& path
 
 // Events of a newer version are passed over; false for what is no event.
 bool add_event(RecordingHeader& header, std::string_view line) try {
-  const Json body = Json::parse(line);
-  const std::string event = body.at("event");
-  if (event == "gap") header.gaps.push_back(gap_from(body));
-  if (event == "mark") header.marks.push_back(mark_from(body));
-  if (event == "clock") header.clock_pairs.push_back(clock_pair_from(body));
-  if (event == "fault") header.faults.push_back(fault_from(body));
+  const auto body = parse_json(line, {});
+  if (!body) return false;
+  const std::string event = body->at("event");
+  if (event == "gap") header.gaps.push_back(gap_from(*body));
+  if (event == "mark") header.marks.push_back(mark_from(*body));
+  if (event == "clock") header.clock_pairs.push_back(clock_pair_from(*body));
+  if (event == "fault") header.faults.push_back(fault_from(*body));
   return true;
 } catch (const std::exception&) {
   return false;

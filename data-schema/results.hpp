@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "data-schema/error.hpp"
+#include "data-schema/files.hpp"
 
 namespace tacto::schema {
 
@@ -47,7 +48,8 @@ Result<Results> read_results(const std::string& name);
 /// does not allow it, or where details_json is no object.
 Result<std::string> results_json(const Results& results);
 
-/// Whether a file of this name may be written: there is none, or it is one of results. Errors: usage.
-Result<void> check_results_free(const std::string& path);
+/// Whether a file of this name may be written: there is none, or one of results, which `existing` says to
+/// replace. Errors: usage.
+Result<void> check_results_free(const std::string& path, Existing existing);
 
 }  // namespace tacto::schema

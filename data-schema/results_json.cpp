@@ -113,10 +113,10 @@ Result<std::string> results_json(const Results& results) {
   return document_text(kResultsKind, body, results.extra_json);
 }
 
-Result<void> check_results_free(const std::string& path) {
-  if (!is_file(path)) return {};
+Result<void> check_results_free(const std::string& path, Existing existing) {
+  if (!is_file(path)) return check_output_free(path, existing);
   const auto there = stored_files(path);
-  if (there && there->front().kind == FileKind::results) return {};
+  if (there && there->front().kind == FileKind::results) return check_output_free(path, existing);
   return fail(Fault::usage,
               there ? fmt::format("is a {}, and would be lost", kind_name(there->front().kind))
                     : "is there, is no file of results, and would be lost",

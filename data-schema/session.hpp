@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,20 @@ struct SessionCommand {
   std::uint64_t not_before = 0;
   std::int64_t time_ns = 0;  ///< host's steady clock, when it was answered
   std::vector<std::uint8_t> frame;
+};
+
+/// What the sensor of the driven tray measured: frames that follow each other at the sensor's rate.
+struct SessionSamples {
+  std::uint64_t first_frame = 0;  ///< since the sensor began; frames between two of these are missing
+  std::int64_t time_ns = 0;       ///< of the first frame, by the clock of the ticks
+  std::vector<std::int32_t> codes;
+  bool operator==(const SessionSamples&) const = default;
+};
+
+/// That sensor, as the device describes its channel: displacement in m = code x scale + offset.
+struct SessionSensor {
+  std::string channel, source, calibrated;
+  double rate_hz = 0, scale = 1, offset = 0;
 };
 
 /// Ticks that are not in the file, and why.
@@ -78,6 +93,7 @@ struct SessionHeader : SessionProgram {
   std::string device_protocol;  ///< "1.2", of the wire; empty: not told, older
   Transducer transducer;
   std::string transducer_sha256;
+  std::optional<SessionSensor> sensor;  ///< none: the device does not report its tray; older sessions
   double initial_gain = 1;
   std::int32_t initial_encoder = 0;
   std::string extra_json;

@@ -195,6 +195,28 @@ std::optional<SessionChange> change_from(std::string_view payload) {
   return change;
 }
 
+std::string samples_payload(std::uint64_t first_frame, std::int64_t time_ns,
+                            std::span<const std::int32_t> codes) {
+  std::string bytes;
+  append_number(bytes, first_frame);
+  append_number(bytes, time_ns);
+  append_number(bytes, static_cast<std::uint32_t>(codes.size()));
+  return bytes.append(reinterpret_cast<const char*>(codes.data()), codes.size_bytes());
+}
+
+std::optional<SessionSamples> samples_from(std::string_view payload) {
+  if (payload.size() < kTicksHead) return std::nullopt;
+  NumberReader take(payload);
+  SessionSamples samples;
+  samples.first_frame = take.number<std::uint64_t>();
+  samples.time_ns = take.number<std::int64_t>();
+  const auto count = take.number<std::uint32_t>();
+  if (count == 0 || take.rest().size() != count * sizeof(std::int32_t)) return std::nullopt;
+  samples.codes.resize(count);
+  std::memcpy(samples.codes.data(), take.rest().data(), take.rest().size());
+  return samples;
+}
+
 std::string end_payload(const SessionEnd& end) {
   std::string bytes;
   for (const std::uint64_t number : {end.ticks, end.lost_ticks, end.late_ticks}) append_number(bytes, number);

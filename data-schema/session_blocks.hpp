@@ -20,7 +20,8 @@ enum class BlockType : std::uint8_t {
   loss = 3,
   event = 4,
   end = 5,
-  change = 6
+  change = 6,
+  samples = 7
 };
 
 inline constexpr std::uint32_t kBlockMagic = 0x31534354;
@@ -45,6 +46,9 @@ std::string ticks_payload(std::span<const SessionTick> ticks);
 std::string command_payload(const SessionCommand& command);
 std::string loss_payload(const SessionLoss& loss);
 std::string event_payload(const SessionEvent& event);
+/// At most kMostBlockTicks codes, at least one.
+std::string samples_payload(std::uint64_t first_frame, std::int64_t time_ns,
+                            std::span<const std::int32_t> codes);
 std::string end_payload(const SessionEnd& end);
 /// Errors: as session_program_text.
 Result<std::string> change_payload(const SessionChange& change);
@@ -56,5 +60,6 @@ std::optional<SessionLoss> loss_from(std::string_view payload);
 std::optional<SessionEvent> event_from(std::string_view payload);
 std::optional<SessionEnd> end_from(std::string_view payload);
 std::optional<SessionChange> change_from(std::string_view payload);
+std::optional<SessionSamples> samples_from(std::string_view payload);
 
 }  // namespace tacto::schema

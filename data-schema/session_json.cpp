@@ -93,6 +93,25 @@ void put_textures(Json& body, const SessionProgram& program) {
   for (const SessionTexture& texture : program.textures) body["textures"].push_back(texture_row(texture));
 }
 
+Json sensor_body(const SessionSensor& sensor) {
+  Json body = {{"channel", sensor.channel},
+               {"unit", "m"},
+               {"rate_hz", sensor.rate_hz},
+               {"scale", sensor.scale},
+               {"offset", sensor.offset}};
+  put_text(body, "source", sensor.source);
+  put_text(body, "calibrated", sensor.calibrated);
+  return body;
+}
+
+std::optional<SessionSensor> sensor_in(const Json& body) {
+  if (!body.contains("measured")) return std::nullopt;
+  const Json& measured = body["measured"];
+  return SessionSensor{text_or(measured, "channel"),    text_or(measured, "source"),
+                       text_or(measured, "calibrated"), number_or(measured, "rate_hz", 0),
+                       number_or(measured, "scale", 1), number_or(measured, "offset", 0)};
+}
+
 Json session_body(const SessionHeader& header) {
   Json body = Json::object();
   for (const auto& [name, member] : kSessionTexts) body[name] = header.*member;
@@ -100,6 +119,7 @@ Json session_body(const SessionHeader& header) {
   body["device"] = device_body(header);
   body["transducer"] = transducer_body(header.transducer);
   put_text(body, "transducer_sha256", header.transducer_sha256);
+  if (header.sensor) body["measured"] = sensor_body(*header.sensor);
   put_textures(body, header);
   body["initial"] = {
       {"state", "idle"}, {"gain", header.initial_gain}, {"encoder_count", header.initial_encoder}};
@@ -157,6 +177,7 @@ SessionHeader session_from(const Json& body) {
   read_program(body, header);
   header.transducer = transducer_from(body["transducer"]);
   header.transducer_sha256 = text_or(body, "transducer_sha256");
+  header.sensor = sensor_in(body);
   header.initial_gain = number_or(body["initial"], "gain", 1);
   header.initial_encoder = body["initial"].value("encoder_count", std::int32_t{0});
   return header;

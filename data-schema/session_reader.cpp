@@ -34,6 +34,8 @@ std::optional<SessionBlock> decoded(BlockType type, std::string_view payload) {
       return block_of(end_from(payload));
     case BlockType::change:
       return block_of(change_from(payload));
+    case BlockType::samples:
+      return block_of(samples_from(payload));
     case BlockType::header:
       break;
   }
@@ -41,7 +43,7 @@ std::optional<SessionBlock> decoded(BlockType type, std::string_view payload) {
 }
 
 bool is_known(BlockType type) {
-  return type >= BlockType::ticks && type <= BlockType::change;
+  return type >= BlockType::ticks && type <= BlockType::samples;
 }
 
 }  // namespace
@@ -139,10 +141,22 @@ struct Count {
   }
   void operator()(SessionChange& change) { next = std::move(change); }
   void operator()(const SessionLoss& loss) { totals.lost_ticks += loss.count; }
+  // Of many, how it began and how it ended.
   void operator()(const SessionEvent& event) {
-    if (totals.events.size() < kMostEventsKept) totals.events.push_back(event);
+    ++totals.event_count;
+    if (totals.events.size() == kMostEventsKept)
+      totals.events.erase(totals.events.begin() + kMostEventsKept / 2);
+    totals.events.push_back(event);
   }
   void operator()(const SessionEnd& end) { totals.end = end; }
+  void operator()(const SessionSamples& samples) {
+    totals.samples_grow = totals.samples_grow && samples.first_frame >= next_frame;
+    if (totals.samples > 0 && samples.first_frame > next_frame)
+      totals.lost_samples += samples.first_frame - next_frame;
+    totals.samples += samples.codes.size();
+    next_frame = samples.first_frame + samples.codes.size();
+  }
+  std::uint64_t next_frame = 0;
 };
 
 }  // namespace

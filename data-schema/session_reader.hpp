@@ -11,7 +11,7 @@
 namespace tacto::schema {
 
 using SessionBlock = std::variant<std::vector<SessionTick>, SessionCommand, SessionLoss, SessionEvent,
-                                  SessionEnd, SessionChange>;
+                                  SessionEnd, SessionChange, SessionSamples>;
 
 /// How a session's file ends.
 enum class SessionEnding {
@@ -47,8 +47,12 @@ class SessionReader {
 /// What a whole session holds, counted.
 struct SessionTotals {
   std::uint64_t ticks = 0, commands = 0, lost_ticks = 0, late_ticks = 0;
+  std::uint64_t samples = 0;       ///< of the tray's sensor
+  std::uint64_t lost_samples = 0;  ///< missing between them
+  bool samples_grow = true;        ///< each frame after the one before it
   std::int64_t first_ns = 0, last_ns = 0;
-  std::vector<SessionEvent> events;    ///< the first 1000
+  std::vector<SessionEvent> events;    ///< of many the first 500 and the last 500
+  std::uint64_t event_count = 0;       ///< of all
   std::vector<SessionChange> changes;  ///< the first 1000 that came to be
   std::optional<SessionEnd> end;
   SessionEnding ending = SessionEnding::unread;

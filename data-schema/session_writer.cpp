@@ -96,6 +96,13 @@ Result<void> SessionWriter::add(std::span<const SessionTick> ticks) {
   return {};
 }
 
+Result<void> SessionWriter::add(const SessionSamples& samples) {
+  const std::span<const std::int32_t> codes(samples.codes);
+  if (codes.empty()) return {};
+  const auto payload = samples_payload(samples.first_frame, samples.time_ns, codes);
+  return append(sealed_block(BlockType::samples, payload), kFreeOfTicks);
+}
+
 Result<void> SessionWriter::add(const SessionCommand& command) {
   return append(sealed_block(BlockType::command, command_payload(command)), kFreeOfNotes);
 }

@@ -21,6 +21,8 @@ class SessionWriter {
 
   /// Any number of ticks, one following the other without holes. Errors: cannot_write.
   Result<void> add(std::span<const SessionTick> ticks);
+  /// What the tray's sensor measured. Errors: cannot_write.
+  Result<void> add(const SessionSamples& samples);
   Result<void> add(const SessionCommand& command);
   Result<void> add(const SessionLoss& loss);
   Result<void> add(const SessionEvent& event);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <memory>
@@ -21,7 +22,7 @@ using File = std::unique_ptr<std::FILE, CloseTable>;
 
 // Nine digits drop the noise of rounding ("0.30000000000000004") and keep picometres on a metre.
 void append_axis(Buffer& row, double value) {
-  fmt::format_to(std::back_inserter(row), "{:.9g}", value);
+  if (std::isfinite(value)) fmt::format_to(std::back_inserter(row), "{:.9g}", value);
 }
 
 class CsvWriter : public SpectrogramWriter {
@@ -74,12 +75,18 @@ class CsvWriter : public SpectrogramWriter {
     }
   }
 
+  // Empty where there is no finite number.
+  void append_cell(float cell) {
+    row_.push_back(',');
+    if (std::isfinite(cell)) fmt::format_to(std::back_inserter(row_), "{}", cell);
+  }
+
   void append_row(std::size_t p, std::span<const float> cells) {
     if (several_) fmt::format_to(std::back_inserter(row_), "{},", strokes_);
     append_axis(row_, header_.position_m[p] * kMillimetres);
     if (knows()) append_known(p);
     const float factor = cell_factor(header_.scaling);
-    for (const float cell : cells) fmt::format_to(std::back_inserter(row_), ",{}", cell * factor);
+    for (const float cell : cells) append_cell(cell * factor);
     row_.push_back('\n');
   }
 

@@ -12,7 +12,7 @@
 namespace tacto::schema {
 namespace {
 
-constexpr int kMajor = 1, kMinor = 1;
+constexpr int kMajor = 1, kMinor = 2;
 
 struct Version {
   int major = 0, minor = 0;

@@ -7,15 +7,18 @@
 #include <optional>
 #include <vector>
 
+#include "data-schema/decibels.hpp"
 #include "data-schema/netcdf_file.hpp"
 #include "data-schema/spectrogram_axes.hpp"
+#include "data-schema/spectrogram_sum.hpp"
 #include "data-schema/spectrogram_writer.hpp"
 #include "data-schema/version.hpp"
 
 namespace tacto::schema {
 namespace {
 
-constexpr const char* kVersion = "1.1";  // 1.1: amplitudes, what is known
+// 1.1: amplitudes, what is known; 1.2: decibels, the checksum
+constexpr const char* kVersion = "1.2";
 
 std::vector<double> in_millimetres(const std::vector<double>& position_m) {
   std::vector<double> values(position_m.size());
@@ -49,6 +52,7 @@ class NcWriter : public SpectrogramWriter {
 
   Result<void> begin(const SpectrogramHeader& header) override {
     if (auto fitting = check_axes(first_, header); !fitting) return fitting;
+    end_sum();
     if (!first_) define(header);
     header_ = header;
     rows_.push_back(header.position_m.size());
@@ -56,7 +60,7 @@ class NcWriter : public SpectrogramWriter {
     names_ += (names_.empty() ? "" : "\n") + header.name;
     if (simulated_.empty()) simulated_ = header.simulated;
     if (header.known.empty()) return {};
-    const Part part = part_of(stroke(), 0, {header.known.size()});
+    const Part part = part_of(stroke(), {0}, {header.known.size()});
     file_.put(known_from_, part, limits_per_mm(header.known, &KnownBand::low_per_m));
     file_.put(known_to_, part, limits_per_mm(header.known, &KnownBand::high_per_m));
     return {};
@@ -67,8 +71,10 @@ class NcWriter : public SpectrogramWriter {
     const std::size_t count = cells.size() / header_.bins;
     scaled_.resize(cells.size());
     std::ranges::transform(cells, scaled_.begin(), [factor](float cell) { return cell * factor; });
-    const Part part = part_of(stroke(), first, {count, header_.bins});
+    const Part part = part_of(stroke(), {first, 0}, {count, header_.bins});
     file_.put(cells_, part, std::span<const float>(scaled_));
+    sum_.add(scaled_);
+    put_decibels(first, count);
     flags_.assign(cells.size(), 0);
     for (std::size_t row = 0; row < count; ++row) flag(first + row, row);
     file_.put(known_, part, std::span<const signed char>(flags_));
@@ -77,6 +83,7 @@ class NcWriter : public SpectrogramWriter {
 
   Result<void> close() override {
     if (!first_) return fail(Fault::unsuitable, "there is no spectrogram to write", named_);
+    end_sum();
     flag_absent_rows();
     if (options_.several) {
       std::vector<double> strokes(rows_.size());
@@ -93,16 +100,37 @@ class NcWriter : public SpectrogramWriter {
   std::size_t stroke() const { return rows_.size() - 1; }
 
   // Part of a variable over (stroke,) position and what follows.
-  Part part_of(std::size_t stroke, std::size_t position, std::vector<std::size_t> count) const {
-    Part part{std::vector<std::size_t>(count.size(), 0), std::move(count)};
-    part.start.front() = position;
+  Part part_of(std::size_t stroke, std::vector<std::size_t> start, std::vector<std::size_t> count) const {
+    Part part{std::move(start), std::move(count)};
     if (!options_.several) return part;
     part.start.insert(part.start.begin(), stroke);
     part.count.insert(part.count.begin(), 1);
     return part;
   }
 
-  // Of several, nobody knows yet how many come, and how long the longest is.
+  // Frequency by frequency, as a plot with the position along its lower edge wants it.
+  void put_decibels(std::size_t first, std::size_t rows) {
+    decibels_.resize(scaled_.size());
+    turned_.resize(scaled_.size());
+    to_decibels(scaled_, header_.scaling == Scaling::amplitude ? 20.0F : 10.0F, decibels_);
+    transpose(decibels_, rows, header_.bins, turned_);
+    file_.put(decibels_variable_, part_of(stroke(), {0, first}, {header_.bins, rows}),
+              std::span<const float>(turned_));
+  }
+
+  // Of the spectrogram that was written last.
+  void end_sum() {
+    if (!first_) return;
+    const std::vector<double> absent(header_.known.empty() ? rows_.back() : 0,
+                                     std::numeric_limits<double>::quiet_NaN());
+    for (const auto limit : {&KnownBand::low_per_m, &KnownBand::high_per_m})
+      sum_.add(header_.known.empty() ? absent : limits_per_mm(header_.known, limit));
+    sum_.add(in_millimetres(header_.position_m));
+    sum_.add(frequencies_per_mm(header_));
+    sums_ += (sums_.empty() ? "" : "\n") + sum_.hexadecimal();
+  }
+
+  // How many come, and how long the longest is, shows only at the end.
   void define(const SpectrogramHeader& header) {
     first_ = header;
     const std::size_t positions = header.position_m.size();
@@ -117,6 +145,7 @@ class NcWriter : public SpectrogramWriter {
     blocks.dimensions.push_back(file_.dimension("spatial_frequency", header.bins));
     blocks.lengths.push_back(header.bins);
     define_variables(limits, blocks);
+    define_decibels(blocks);
     file_.put(frequency_axis_, frequencies_per_mm(header));
   }
 
@@ -133,6 +162,16 @@ class NcWriter : public SpectrogramWriter {
         file_.values("known_from", limits, "1/mm", "lowest spatial frequency that the recording could know");
     known_to_ =
         file_.values("known_to", limits, "1/mm", "highest spatial frequency that the recording could know");
+  }
+
+  void define_decibels(Blocks blocks) {
+    const bool amplitude = first_->scaling == Scaling::amplitude;
+    std::swap(blocks.dimensions.back(), *(blocks.dimensions.end() - 2));
+    std::swap(blocks.lengths.back(), *(blocks.lengths.end() - 2));
+    decibels_variable_ =
+        file_.cells(amplitude ? "amplitude_db" : "density_db", blocks, options_.compress, "dB",
+                    fmt::format("{} {} re 1 {}", amplitude ? "amplitude of" : "power spectral density of",
+                                first_->quantity, cell_unit(*first_)));
   }
 
   void flag(std::size_t p, std::size_t row) {
@@ -158,7 +197,8 @@ class NcWriter : public SpectrogramWriter {
     for (std::size_t each = 0; each < rows_.size(); ++each)
       for (std::size_t row = rows_[each]; row < position_m_.size(); row += most) {
         const std::size_t count = std::min(most, position_m_.size() - row);
-        file_.put(known_, part_of(each, row, {count, first_->bins}), std::span<const signed char>(flags_));
+        file_.put(known_, part_of(each, {row, 0}, {count, first_->bins}),
+                  std::span<const signed char>(flags_));
       }
   }
 
@@ -169,6 +209,7 @@ class NcWriter : public SpectrogramWriter {
     file_.attribute("title", fmt::format("Spatial spectrogram of {}", first_->name));
     file_.attribute("source", std::string(kCreator));
     file_.attribute("texture", names_);  // one a line
+    file_.attribute("sha256", sums_);    // likewise
     if (!simulated_.empty()) file_.attribute("simulated", simulated_);
   }
 
@@ -191,13 +232,14 @@ class NcWriter : public SpectrogramWriter {
   std::string named_;
   SpectrogramFileOptions options_;
   int stroke_axis_ = -1, position_axis_ = -1, frequency_axis_ = -1;  // variables
-  int cells_ = -1, known_ = -1, known_from_ = -1, known_to_ = -1;
+  int cells_ = -1, decibels_variable_ = -1, known_ = -1, known_from_ = -1, known_to_ = -1;
   std::optional<SpectrogramHeader> first_;
   SpectrogramHeader header_;        // of the spectrogram being written
   std::vector<std::size_t> rows_;   // of each so far
   std::vector<double> position_m_;  // of the longest so far
-  std::string names_, simulated_;
-  std::vector<float> scaled_;
+  std::string names_, simulated_, sums_;
+  SpectrogramSum sum_;  // of the spectrogram being written
+  std::vector<float> scaled_, decibels_, turned_;
   std::vector<signed char> flags_;
 };
 

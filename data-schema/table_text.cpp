@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/table_text.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace tacto::schema {
 
 std::string csv_cell(const std::string& text) {
@@ -8,6 +12,10 @@ std::string csv_cell(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
+}
+
+std::string csv_number(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "";
 }
 
 }  // namespace tacto::schema

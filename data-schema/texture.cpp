@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "data-schema/file_kind.hpp"
 #include "data-schema/files.hpp"
@@ -58,6 +59,31 @@ Result<void> check_finite(const std::vector<double>& samples, const std::string&
   return fail(fault, fmt::format("sample {} is not a finite number", broken - samples.begin()), where);
 }
 
+// The WAV holds single precision: up to 3.4e38, and whole digits from 1.2e-38 on.
+Result<void> check_single(const std::vector<double>& samples, const std::string& unit,
+                          const std::string& where) {
+  const auto beyond = [](double each) { return !std::isfinite(static_cast<float>(each)); };
+  const auto found = std::ranges::find_if(samples, beyond);
+  if (found == samples.end()) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("sample {} is {:.4g} {}, beyond the 3.4e38 that a texture's file holds",
+                          found - samples.begin(), *found, unit),
+              where, "look at the channel's scale: 'tactograph info' of the recording shows it");
+}
+
+Result<void> check_not_lost(const std::vector<double>& samples, const std::string& unit,
+                            const std::string& where) {
+  double largest = 0;
+  for (const double each : samples) largest = std::max(largest, std::abs(each));
+  if (largest == 0 || largest >= static_cast<double>(std::numeric_limits<float>::min())) return {};
+  return fail(
+      Fault::unsuitable,
+      fmt::format("its largest value is {:.4g} {}, below the 1.2e-38 that a texture's file holds: all "
+                  "would be stored as zeros, or nearly",
+                  largest, unit),
+      where, "look at the channel's scale: 'tactograph info' of the recording shows it");
+}
+
 Result<std::vector<double>> read_samples(const std::string& wav, std::size_t channel) {
   auto samples = read_wav_channel(wav, channel);
   if (!samples) return samples;
@@ -87,11 +113,13 @@ Result<void> check_writable(const std::string& stem, const Texture& texture) {
   const SpaceSignal& signal = texture.signal;
   if (signal.values.empty()) return fail(Fault::unsuitable, "the texture has no samples", stem);
   if (!(signal.pitch_m > 0)) return fail(Fault::unsuitable, "the texture's pitch is not above 0", stem);
-  if (auto finite = check_finite(signal.values, stem, Fault::unsuitable); !finite || !texture.average)
-    return finite;
+  if (auto finite = check_finite(signal.values, stem, Fault::unsuitable); !finite) return finite;
+  if (auto held = check_single(signal.values, texture.unit, stem); !held) return held;
+  if (auto kept = check_not_lost(signal.values, texture.unit, stem); !kept || !texture.average) return kept;
   if (texture.average->spread.size() != signal.values.size())
     return fail(Fault::unsuitable, "the texture's spread has another length than its mean", stem);
-  return check_finite(texture.average->spread, stem, Fault::unsuitable);
+  if (auto finite = check_finite(texture.average->spread, stem, Fault::unsuitable); !finite) return finite;
+  return check_single(texture.average->spread, texture.unit, stem);
 }
 
 std::string sidecar_path(const std::string& name) {
@@ -179,13 +207,19 @@ Result<void> write_texture(const std::string& name, const Texture& texture) {
   return pending.commit();
 }
 
-Result<void> check_texture_free(const std::string& name) {
+std::string whole_rms_band(const Texture& texture) {
+  const TextureSource& source = texture.source;
+  if (source.filter.empty() || source.filter == "none") return "all samples, unfiltered";
+  if (source.high_per_m)
+    return fmt::format("all samples, filtered to {:.4g}-{:.4g} /mm", 1e-3 * source.low_per_m.value_or(0),
+                       1e-3 * *source.high_per_m);
+  return fmt::format("all samples, filtered to {:.4g}-{:.4g} Hz", source.low_hz, source.high_hz);
+}
+
+Result<void> check_texture_free(const std::string& name, Existing existing) {
   const std::string stem = stem_of(name, kTextureSuffix);
-  std::error_code ignored;
   for (const char* ending : {".texture.json", ".texture.wav"})
-    if (fs::exists(stem + ending, ignored))
-      return fail(Fault::usage, "is there already, and is not overwritten", stem + ending,
-                  "choose another name, or replace it with --force");
+    if (auto free = check_output_free(stem + ending, existing); !free) return free;
   return {};
 }
 

@@ -50,8 +50,9 @@ struct AveragedStroke {
   int stroke = 0;  ///< 1-based, in its recording
   double from_s = 0, to_s = 0;
   int direction = 1;
-  double shift_m = 0;                                ///< added to its positions on the bench
-  std::optional<double> correlation = std::nullopt;  ///< with the strokes before it, where it was aligned so
+  double shift_m = 0;                                 ///< added to its positions on the bench
+  std::optional<double> correlation = std::nullopt;   ///< with the strokes before it, where it was aligned so
+  std::string recording = {}, recording_sha256 = {};  ///< where strokes of several recordings were averaged
 };
 
 /// So many strokes were averaged from a position on, up to the next such point.
@@ -116,7 +117,10 @@ Result<std::optional<PlaybackGain>> read_playback_gain(const std::string& name);
 /// that is read-only; unsuitable, for a gain that is no number.
 Result<void> write_playback_gain(const std::string& name, const PlaybackGain& gain);
 
-/// That no texture lies under the name. Errors: usage, naming the file.
-Result<void> check_texture_free(const std::string& stem);
+/// Of what an RMS of all samples is: "all samples, filtered to 15-500 Hz", for reports.
+std::string whole_rms_band(const Texture& texture);
+
+/// That no texture lies under the name, or that it is to be replaced. Errors: usage, naming the file.
+Result<void> check_texture_free(const std::string& stem, Existing existing = Existing::keep);
 
 }  // namespace tacto::schema

@@ -126,6 +126,8 @@ Json stroke_body(const AveragedStroke& stroke) {
                {"direction", stroke.direction},
                {"shift_m", stroke.shift_m}};
   if (stroke.correlation) body["correlation"] = *stroke.correlation;
+  put_text(body, "recording", stroke.recording);
+  put_text(body, "recording_sha256", stroke.recording_sha256);
   return body;
 }
 
@@ -134,6 +136,8 @@ AveragedStroke averaged_stroke_from(const Json& body) {
                         number_or(body, "to_s", 0), static_cast<int>(number_or(body, "direction", 1)),
                         number_or(body, "shift_m", 0)};
   if (body.contains("correlation")) stroke.correlation = body["correlation"].get<double>();
+  stroke.recording = text_or(body, "recording");
+  stroke.recording_sha256 = text_or(body, "recording_sha256");
   return stroke;
 }
 

@@ -84,9 +84,13 @@ Result<void> check_extras(const Transducer& transducer, const std::string& where
 /// did not converge or that the model is wrong, and nobody forces it.
 Result<void> check_usable(const Transducer& transducer, bool forced);
 
+/// Which numbers a file may hold: those of a transducer that can be made, or, where somebody insists, all
+/// that can be computed with (transducer_plausible.hpp).
+enum class Numbers { plausible, computable };
+
 /// By preset name, stem or file (NAME.transducer.json). Errors: not_found (with the presets), malformed (also
-/// by check_extras), unsupported_version.
-Result<Transducer> read_transducer(const std::string& name);
+/// by check_extras), unsupported_version; unsuitable, by check_plausible and check_computable.
+Result<Transducer> read_transducer(const std::string& name, Numbers numbers = Numbers::plausible);
 
 /// Errors: cannot_write; malformed: by check_extras.
 Result<void> write_transducer(const std::string& stem, const Transducer& transducer);

@@ -39,7 +39,8 @@ Result<void> check_usable(const Transducer& transducer, bool forced) {
   return fail(Fault::unsuitable,
               found->converged ? "its identification says that the model does not fit: " + found->words
                                : "its identification did not converge: " + found->words,
-              fmt::format("transducer '{}'", transducer.name), "identify it anew, or force it with --force");
+              fmt::format("transducer '{}'", transducer.name),
+              "identify it anew, or take it all the same with --unfit-transducer");
 }
 
 }  // namespace tacto::schema

@@ -8,6 +8,7 @@
 #include "data-schema/files.hpp"
 #include "data-schema/json_document.hpp"
 #include "data-schema/transducer_json.hpp"
+#include "data-schema/transducer_plausible.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -21,12 +22,20 @@ const EmbeddedFile* preset_named(std::string_view name) {
   return found == files.end() ? nullptr : &*found;
 }
 
-Result<Transducer> transducer_of(const Result<Document>& document, const std::string& where) {
+Result<void> check_numbers(const Transducer& transducer, const std::string& where, Numbers numbers) {
+  if (numbers == Numbers::plausible)
+    if (const auto plausible = check_plausible(transducer, where); !plausible) return plausible;
+  return check_computable(transducer, where);
+}
+
+Result<Transducer> transducer_of(const Result<Document>& document, const std::string& where,
+                                 Numbers numbers) {
   if (!document) return forward_error(document);
   Transducer transducer = transducer_from(document->body);
   transducer.extra_json = unknown_members(document->body, kTransducerKind);
   transducer.newer_version = document->newer_version;
   if (const auto sound = check_extras(transducer, where); !sound) return forward_error(sound);
+  if (const auto sound = check_numbers(transducer, where, numbers); !sound) return forward_error(sound);
   return transducer;
 }
 
@@ -53,16 +62,17 @@ std::vector<std::string_view> preset_names() {
   return names;
 }
 
-Result<Transducer> read_transducer(const std::string& name) {
+Result<Transducer> read_transducer(const std::string& name, Numbers numbers) {
   if (const EmbeddedFile* preset = preset_named(name))
-    return transducer_of(parse_document(preset->text, std::string(preset->name), kTransducerKind), name);
+    return transducer_of(parse_document(preset->text, std::string(preset->name), kTransducerKind), name,
+                         numbers);
   const std::string path = existing_path(name);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     return fail(
         Fault::not_found, "there is no such transducer", name,
         fmt::format("the presets are {}; a file is NAME.transducer.json", fmt::join(preset_names(), ", ")));
-  return transducer_of(open_document(path, kTransducerKind), path);
+  return transducer_of(open_document(path, kTransducerKind), path, numbers);
 }
 
 Result<void> write_transducer(const std::string& stem, const Transducer& transducer) {

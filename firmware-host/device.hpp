@@ -95,10 +95,4 @@ class Device {
   virtual Client* conversation() { return nullptr; }
 };
 
-/// Opens by URI; there are `usb:`, the only device on USB, or one by `serial=` or `port=`; `sim:`, with every
-/// parameter by key=value (see sim/sim_parameters.hpp); and `replay:FILE`, a recording as a device.
-/// Errors: usage: a transport, key or value that does not exist, naming what there is, or several devices on
-/// USB; not_found: no such device, or not permitted; the transducer's file; as WireDevice::open().
-schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri);
-
 }  // namespace tacto::firmware_host

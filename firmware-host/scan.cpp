@@ -3,6 +3,7 @@
 
 #include "firmware-host/sim/surface.hpp"
 #include "firmware-host/usb/usb_device.hpp"
+#include "firmware-host/open_device.hpp"
 
 namespace tacto::firmware_host {
 namespace {

@@ -47,7 +47,20 @@ std::string note_of(const Description& description, wire::NoteKind kind) {
   return {};
 }
 
+// The device, and behind a colon what its samples are of.
+std::string simulated_samples(const Description& description) {
+  std::string said;
+  for (const wire::Note& note : description.notes)
+    if (note.kind == wire::NoteKind::simulated_by && note.text[0] != '\0')
+      said += (said.empty() ? "" : ": ") + std::string(note.text);
+  return said;
+}
+
 }  // namespace
+
+std::string simulated_device(const Description& description) {
+  return note_of(description, wire::NoteKind::simulated_by);
+}
 
 Result<Capabilities> capabilities_of(const Description& description, std::string uri) {
   Capabilities capabilities;
@@ -68,7 +81,7 @@ Result<Capabilities> capabilities_of(const Description& description, std::string
   capabilities.name = description.welcome.name;
   capabilities.serial = description.welcome.serial;
   capabilities.firmware = description.welcome.firmware;
-  capabilities.simulated = note_of(description, wire::NoteKind::simulated_by);
+  capabilities.simulated = simulated_samples(description);
   capabilities.surface = note_of(description, wire::NoteKind::surface);
   capabilities.clock = "device";
   return capabilities;

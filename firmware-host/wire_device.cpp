@@ -108,11 +108,10 @@ StreamEvents WireDevice::take_events() {
 }
 
 Result<double> WireDevice::round_trip_s() {
-  using Clock = std::chrono::steady_clock;
-  const auto asked = Clock::now();
+  const auto asked = std::chrono::steady_clock::now();
   const auto pulse = client_->heartbeat();
   if (!pulse) return schema::forward_error(pulse);
-  return std::chrono::duration<double>(Clock::now() - asked).count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
 }
 
 }  // namespace tacto::firmware_host

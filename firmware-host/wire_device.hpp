@@ -43,8 +43,11 @@ class WireDevice final : public Device {
   double next_pair_s_ = 0;
 };
 
-/// Capabilities from a description. Errors: device: no rate, no channel, a channel of an unknown quantity or
-/// with a scale that is no number; as read_transducer().
+/// By what the device is simulated, whatever it does: its first note of that. Empty for a real one.
+std::string simulated_device(const Description& description);
+
+/// Capabilities from a description; `simulated` says also what the samples are of. Errors: device: no rate,
+/// no channel, a channel of an unknown quantity or with a scale that is no number; as read_transducer().
 schema::Result<Capabilities> capabilities_of(const Description& description, std::string uri);
 
 }  // namespace tacto::firmware_host

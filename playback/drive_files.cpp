@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <set>
+#include <limits>
 
-#include "data-schema/files.hpp"
 #include "data-schema/wav.hpp"
 
 namespace tacto::playback {
@@ -17,17 +18,26 @@ using schema::Result;
 
 namespace {
 
-Result<void> check_name(const std::string& path) {
-  namespace fs = std::filesystem;
-  if (fs::path(path).extension() != ".wav")
+Result<void> check_name(const std::string& path, schema::Existing existing) {
+  if (std::filesystem::path(path).extension() != ".wav")
     return fail(Fault::usage, "the name doesn't end in .wav", path, "only WAV is written");
-  std::error_code ignored;
-  if (fs::exists(fs::path(path).replace_extension(".json"), ignored))
-    return fail(Fault::usage, "this name belongs to a recording or texture", path, "choose another name");
-  return {};
+  return schema::check_wav_free(path, existing);
+}
+
+// What a 32-bit float can't hold it would keep as an infinity.
+Result<void> check_storable(const SignalFile& file) {
+  const auto& values = file.signal->values;
+  const auto broken = std::ranges::find_if(
+      values, [](double each) { return !(std::abs(each) <= std::numeric_limits<float>::max()); });
+  if (broken == values.end()) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("sample {} would be {:g}, which is no finite number of 32 bits",
+                          broken - values.begin(), *broken),
+              file.path, "correct the transducer's numbers, or take a smaller --gain");
 }
 
 Result<void> write_one(schema::PendingFiles& pending, const SignalFile& file) {
+  if (const auto storable = check_storable(file); !storable) return storable;
   const auto temporary = pending.add(file.path);
   if (!temporary) return schema::forward_error(temporary);
   auto writer =
@@ -39,21 +49,21 @@ Result<void> write_one(schema::PendingFiles& pending, const SignalFile& file) {
 
 }  // namespace
 
-Result<void> check_signal_files(std::span<const SignalFile> files) {
-  std::set<std::string> names;
-  for (const SignalFile& file : files) {
-    if (auto sound = check_name(file.path); !sound) return sound;
-    if (!names.insert(std::filesystem::path(file.path).lexically_normal().string()).second)
-      return fail(Fault::usage, "the name is given to two outputs", file.path, "name each file differently");
+Result<void> check_signal_files(std::span<const SignalFile> files, schema::Existing existing) {
+  for (auto file = files.begin(); file != files.end(); ++file) {
+    if (auto sound = check_name(file->path, existing); !sound) return sound;
+    const auto same = [&](const SignalFile& other) { return schema::same_file(file->path, other.path); };
+    if (std::any_of(files.begin(), file, same))
+      return fail(Fault::usage, "the name is given to two outputs", file->path, "name each file differently");
   }
   return {};
 }
 
-Result<void> write_signal_files(std::span<const SignalFile> files) {
+Result<void> write_signal_files(std::span<const SignalFile> files, schema::Existing existing) {
   schema::PendingFiles pending;
   for (const SignalFile& file : files)
     if (auto written = write_one(pending, file); !written) return written;
-  return pending.commit();
+  return pending.commit(existing);
 }
 
 }  // namespace tacto::playback

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "data-schema/error.hpp"
+#include "data-schema/files.hpp"
 #include "data-schema/signal.hpp"
 
 namespace tacto::playback {
@@ -15,12 +16,13 @@ struct SignalFile {
   const schema::TimeSignal* signal = nullptr;
 };
 
-/// Before the work: names that end in .wav, all different, none of them the data of a recording or texture
-/// (which has its NAME.json beside it). Errors: usage.
-schema::Result<void> check_signal_files(std::span<const SignalFile> files);
+/// Before the work: names that end in .wav, all different, free where what exists is to be kept, none of them
+/// the data of a recording or texture (which has its NAME.json beside it). Errors: usage.
+schema::Result<void> check_signal_files(std::span<const SignalFile> files, schema::Existing existing);
 
 /// Writes all; they appear together or not at all. Errors: cannot_write; usage, for a rate that no header
-/// holds.
-schema::Result<void> write_signal_files(std::span<const SignalFile> files);
+/// holds, or where a file that is to be kept has a name; unsuitable, for a sample that is no finite number
+/// of 32 bits.
+schema::Result<void> write_signal_files(std::span<const SignalFile> files, schema::Existing existing);
 
 }  // namespace tacto::playback

@@ -11,8 +11,7 @@ namespace {
 
 constexpr double kLeftOutAtEnds_s = 1;
 
-double rms_between_ends(const std::vector<double>& values, double rate_hz) {
-  const auto left_out = std::min(static_cast<std::size_t>(kLeftOutAtEnds_s * rate_hz), values.size() / 4);
+double rms_between_ends(const std::vector<double>& values, std::size_t left_out) {
   return schema::statistics_of(std::span(values).subspan(left_out, values.size() - 2 * left_out)).rms();
 }
 
@@ -39,10 +38,15 @@ std::vector<double> error_of(const Rendering& rendering, const PaddedSpectrum& w
 
 }  // namespace
 
+double left_out_at_ends_s(const Rendering& rendering) {
+  return std::min(std::max(kLeftOutAtEnds_s, rendering.onset_s), rendering.wanted_m.duration_s() / 4);
+}
+
 double error_between_ends(const Rendering& rendering, const PaddedSpectrum& wanted,
                           const spatial::Band& band) {
-  return rms_between_ends(error_of(rendering, wanted, band), wanted.rate_hz) /
-         rms_between_ends(rendering.wanted_m.values, wanted.rate_hz);
+  const auto left_out = static_cast<std::size_t>(left_out_at_ends_s(rendering) * wanted.rate_hz);
+  return rms_between_ends(error_of(rendering, wanted, band), left_out) /
+         rms_between_ends(rendering.wanted_m.values, left_out);
 }
 
 }  // namespace tacto::playback

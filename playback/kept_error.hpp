@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a budget is held against: the error of a rendering where no end is near.
+// The error of a rendering away from its ends: what a budget is held against, and what `render` reports
+// first.
 #pragma once
 
 #include "playback/reference/padded_spectrum.hpp"
@@ -8,9 +9,12 @@
 
 namespace tacto::playback {
 
-/// RMS over the band of modelled - wanted, re that of wanted, 1. 1 s at either end is left out, of short
-/// renderings a quarter: where a path doesn't rest at its end, it ends with a step, which no drive in the
-/// band can follow. Not a number where nothing is wanted in between.
+/// What is left out at either end: 1 s, or the onset where that is longer; of short renderings a quarter.
+/// Where a path does not rest at its end, it ends with a step, which no drive in the band can follow.
+double left_out_at_ends_s(const Rendering& rendering);
+
+/// RMS over the band of modelled - wanted, re that of wanted, 1; without left_out_at_ends_s() at either end.
+/// Not a number where nothing is wanted in between.
 double error_between_ends(const Rendering& rendering, const PaddedSpectrum& wanted,
                           const spatial::Band& band);
 

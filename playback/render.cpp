@@ -186,6 +186,8 @@ Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job)
   rendering.modelled_m = {rate_hz, start_s, std::move(drive->modelled_m)};
   rendering.peaks = drive->peaks;
   rendering.error_db = error_db(rendering, job.wanted, job.options.band);
+  const double interior_db = level_db(error_between_ends(rendering, job.wanted, job.options.band));
+  if (std::isfinite(interior_db)) rendering.interior_error_db = interior_db;
   return {};
 }
 

@@ -69,6 +69,9 @@ struct Rendering {
   schema::TimeSignal wanted_m;    ///< gain x force along the path, in the band (keep_band)
   schema::TimeSignal modelled_m;  ///< drive_v through the transducer's model and hysteresis, all frequencies
   double error_db = 0;  ///< RMS of modelled - wanted in the band, re RMS of wanted; from drive_v as it is
+  /// The same without the path's ends (error_between_ends), left_out_at_ends_s of each; none where nothing is
+  /// wanted in between.
+  std::optional<double> interior_error_db;
   /// Of the displacement behind the wanted one. The reference has none, its inverse is applied to spectra;
   /// the kernel looks ahead by what its filter takes.
   double delay_s = 0;

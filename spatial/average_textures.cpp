@@ -63,6 +63,21 @@ void TextureAverager::narrow_band(const schema::Texture& texture) {
   }
 }
 
+// Takes may differ in whose finger was on what; several recordings are named by the strokes.
+void TextureAverager::keep_what_all_say(const schema::Texture& texture) {
+  const auto keep = [](std::string& kept, const std::string& said) {
+    if (kept != said) kept.clear();
+  };
+  keep(model_.surface, texture.surface);
+  keep(model_.subject, texture.subject);
+  keep(model_.finger, texture.finger);
+  keep(model_.notes, texture.notes);
+  keep(model_.source.recording_sha256, texture.source.recording_sha256);
+  if (model_.simulated.empty()) model_.simulated = texture.simulated;
+  const std::string& name = texture.source.recording;
+  if (recordings_.insert(name).second && recordings_.size() > 1) model_.source.recording += ", " + name;
+}
+
 schema::Result<void> TextureAverager::add(const schema::Texture& texture,
                                           const schema::AveragedStroke& stroke) {
   const std::int64_t first = whole(texture.source_origin_m / texture.signal.pitch_m);
@@ -73,6 +88,7 @@ schema::Result<void> TextureAverager::add(const schema::Texture& texture,
     model_.signal.values.clear();
     model_.source.stroke = 0;
   }
+  keep_what_all_say(texture);
   cover(first, texture.signal.values.size());
   auto* cell = &cells_[static_cast<std::size_t>(first - first_)];
   for (const double value : texture.signal.values) {

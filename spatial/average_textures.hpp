@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@
 
 namespace tacto::spatial {
 
-/// Takes textures one by one, holds sums only (24 bytes a sample of what they cover).
+/// Takes textures one by one, of one recording or several, holds sums only (24 bytes a sample of what they
+/// cover).
 class TextureAverager {
  public:
   /// A texture that lies on the common grid, and how it was shifted onto it. Errors: unsuitable, where its
@@ -43,6 +45,7 @@ class TextureAverager {
   Stretch well_covered() const;
   std::vector<schema::StrokeCount> counts(Stretch stretch) const;
   std::vector<schema::BandPoint> band(double origin_m, double length_m) const;
+  void keep_what_all_say(const schema::Texture& texture);
   schema::Texture described() const;
 
   schema::Texture model_;   // of all strokes, without values
@@ -51,6 +54,7 @@ class TextureAverager {
   std::vector<schema::AveragedStroke> strokes_;
   std::map<std::int64_t, schema::BandPoint> band_;  // by tenths of a millimetre on the bench
   double speeds_mps_ = 0;
+  std::set<std::string> recordings_;
 };
 
 }  // namespace tacto::spatial

@@ -10,6 +10,7 @@
 
 #include "data-schema/creation_time.hpp"
 #include "data-schema/quantity.hpp"
+#include "data-schema/transducer_plausible.hpp"
 #include "data-schema/version.hpp"
 #include "spatial/dsp/thinned.hpp"
 #include "spatial/equaliser.hpp"
@@ -73,7 +74,12 @@ schema::Result<void> TextureMaker::choose_equaliser() {
                             " did not pass through the transducer, whose response says "
                             "nothing of it",
                         record_.where(), "leave --equalise away, or take tangential_force");
-  if (header.transducer && of_transducer) equaliser_ = equaliser(*header.transducer);
+  if (!header.transducer || !of_transducer) return {};
+  const auto plausible = schema::check_plausible(*header.transducer, record_.where() + "#/transducer");
+  if (!plausible)
+    return schema::fail(Fault::unsuitable, plausible.error().what, plausible.error().where,
+                        "correct it, or leave the response in with --equalise off");
+  equaliser_ = equaliser(*header.transducer);
   return {};
 }
 
@@ -165,6 +171,7 @@ schema::Result<void> TextureMaker::check_band(double usual_mps) const {
 }
 
 schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int number, double shift_m) {
+  if (stroke.jump) return tl::unexpected(record_.refusal(*stroke.jump));
   if (const auto fine = check_duration(stroke); !fine) return schema::forward_error(fine);
   const auto path = path_of(stroke, shift_m);
   if (!path) return schema::forward_error(path);

@@ -24,7 +24,7 @@ namespace tacto::spatial {
 enum class Equalise { automatic, on, off };
 
 struct TextureOptions {
-  std::string channel = "tangential_force";
+  std::string channel;  ///< empty: tangential_force, else the only one that can be a texture
   TimeFilter filter;
   /// Where it is set, the band is in space: the filter is run along position on each texture, none in time.
   std::optional<SpaceFilter> space;
@@ -48,8 +48,9 @@ class TextureMaker {
   /// The texture of a stroke or stretch of record(). All between two gaps is filtered, then the stroke is
   /// resampled; strokes by time are the fast way. Its position 0 is a multiple of the pitch on the bench.
   /// `number` is kept as the stroke's, 0 for a stretch. `shift_m` is added to its positions on the bench.
-  /// Errors: unsuitable, for a stroke shorter than one period of the lowest frequency, for one so slow that
-  /// its whole band lies beyond what the grid can hold, and of grid_along(); of reading.
+  /// Errors: unsuitable, for a stroke that a jump of the position cuts off, for one shorter than one period
+  /// of the lowest frequency, for one so slow that its whole band lies beyond what the grid can hold, and of
+  /// grid_along(); of reading.
   schema::Result<schema::Texture> make(const Stroke& stroke, int number, double shift_m = 0);
 
  private:

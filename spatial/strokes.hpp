@@ -11,6 +11,7 @@
 #include "data-schema/recording.hpp"
 #include "spatial/frame_range.hpp"
 #include "spatial/position_facts.hpp"
+#include "spatial/position_jumps.hpp"
 
 namespace tacto::spatial {
 
@@ -21,6 +22,8 @@ struct Stroke {
   double from_m = 0, to_m = 0;                   ///< positions of the first and last frame
   std::optional<double> force_n = std::nullopt;  ///< mean normal force, where it is known
   bool finger_up = false;                        ///< by that force; see finger_contact.hpp
+  std::optional<PositionJump> jump =
+      std::nullopt;  ///< of the position, that cuts it off: it is no whole stroke
 
   double advance_m() const { return direction * (to_m - from_m); }
 };

@@ -23,6 +23,7 @@ constexpr double kBackwardSigmas = 10;  // the noise of the furthest forward and
 constexpr double kBackwardOfWay = 0.002;
 // Less is dither, or the creep of a resting finger.
 constexpr double kShortestTravelResolutions = 20;
+constexpr double kNearJump_s = 0.1;  // the pause that ends a stroke
 // Half a sample period belongs to its frame: a time that was written with few digits still names it.
 constexpr double kWithinFrame = 0.5;
 
@@ -60,19 +61,42 @@ schema::Result<void> TouchRecord::survey() {
   const ReadFrames read = [this](std::size_t first, std::span<double> out) {
     return track_->read(first, out);
   };
-  auto facts = spatial::position_facts(read, pieces_, header_.sample_rate_hz, track_->furthest_m());
+  auto jumps = find_position_jumps(read, pieces_, header_.sample_rate_hz);
+  if (!jumps) return schema::forward_error(jumps);
+  jumps_ = std::move(*jumps);
+  const auto sound = pieces_between_jumps(pieces_, jumps_);
+  auto facts = spatial::position_facts(read, sound, header_.sample_rate_hz, track_->furthest_m());
   if (!facts) return schema::forward_error(facts);
   facts_ = *facts;
-  auto strokes = find_strokes(read, pieces_, header_.sample_rate_hz, facts_);
+  auto strokes = find_strokes(read, sound, header_.sample_rate_hz, facts_);
   if (!strokes) return schema::forward_error(strokes);
   strokes_ = std::move(strokes->strokes);
   short_runs_ = strokes->short_runs;
+  mark_cut_strokes();
   if (source_->channel(Track::normal_force) == nullptr) return {};
   for (Stroke& stroke : strokes_)
     if (auto done = weigh(stroke); !done) return done;
   up_below_n_ = spatial::finger_up_below_n(strokes_);
   for (Stroke& stroke : strokes_) stroke.finger_up = stroke.force_n < *up_below_n_;
   return {};
+}
+
+// A stroke that ends or begins where the position jumps went on there, or came from there.
+void TouchRecord::mark_cut_strokes() {
+  const auto near = static_cast<std::size_t>(kNearJump_s * header_.sample_rate_hz) + 1;
+  for (Stroke& stroke : strokes_)
+    for (const PositionJump& jump : jumps_)
+      if (jump.frame + near > stroke.frames.begin && jump.frame < stroke.frames.end + near)
+        stroke.jump = jump;
+}
+
+schema::Error TouchRecord::refusal(const PositionJump& jump) const {
+  return {Fault::unsuitable,
+          fmt::format("the position jumps by {} from sample {} to sample {}, at {}, as no finger does",
+                      schema::length_for_people(jump.step_m), jump.frame - 1, jump.frame,
+                      seconds(schema::frame_time_s(header_, jump.frame))),
+          where_,
+          "look at the encoder and its cable; --from and --to make a texture of what lies before or after"};
 }
 
 // Sets the stroke's mean normal force.
@@ -183,10 +207,17 @@ schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
   return stroke;
 }
 
+schema::Result<void> TouchRecord::check_jumpless(FrameRange frames) const {
+  for (const PositionJump& jump : jumps_)
+    if (jump.frame > frames.begin && jump.frame < frames.end) return tl::unexpected(refusal(jump));
+  return {};
+}
+
 schema::Result<Stroke> TouchRecord::stretch(double from_s, double to_s) const {
   const auto frames = frames_between(from_s, to_s);
   if (!frames) return schema::forward_error(frames);
   if (const auto gapless = check_gapless(*frames); !gapless) return schema::forward_error(gapless);
+  if (const auto jumpless = check_jumpless(*frames); !jumpless) return schema::forward_error(jumpless);
   return directed(*frames);
 }
 

@@ -12,6 +12,7 @@
 #include "data-schema/recording.hpp"
 #include "spatial/monotone_path.hpp"
 #include "spatial/position_facts.hpp"
+#include "spatial/position_jumps.hpp"
 #include "spatial/position_track.hpp"
 #include "spatial/strokes.hpp"
 #include "spatial/touch_source.hpp"
@@ -22,7 +23,7 @@ namespace tacto::spatial {
 /// not shared between threads.
 class TouchRecord {
  public:
-  /// Reads the position (five times, once more for each stroke), finds the strokes, and where there is a
+  /// Reads the position (six times, once more for each stroke), finds the strokes, and where there is a
   /// normal force tells those with the finger up. `channel` (by name) is what is to become a texture. Errors:
   /// unsuitable, without such a channel, without a position or with one that never moves; of reading.
   static schema::Result<TouchRecord> open(const schema::Recording& recording, const std::string& channel);
@@ -44,6 +45,10 @@ class TouchRecord {
   std::size_t short_runs() const { return short_runs_; }
   /// What tells the finger up; absent without a normal force.
   std::optional<double> finger_up_below_n() const { return up_below_n_; }
+  /// Where the position steps as no finger does.
+  const std::vector<PositionJump>& jumps() const { return jumps_; }
+  /// "the position jumps by 1 m from sample 3999 to 4000, at 0.4 s ..."
+  schema::Error refusal(const PositionJump& jump) const;
   /// The stretches between gaps.
   const std::vector<FrameRange>& pieces() const { return pieces_; }
 
@@ -58,16 +63,18 @@ class TouchRecord {
   /// The stroke of a 1-based number. Errors: unsuitable, with those there are.
   schema::Result<Stroke> stroke(int number) const;
   /// All frames from one time to another, both included. Errors: usage, where they do not rise;
-  /// unsuitable, outside of the recording, with a gap inside, or where the finger turns round, stays where
-  /// it is, or moves by less than 20 resolutions of its position; of reading.
+  /// unsuitable, outside of the recording, with a gap or a jump inside, or where the finger turns round,
+  /// stays where it is, or moves by less than 20 resolutions of its position; of reading.
   schema::Result<Stroke> stretch(double from_s, double to_s) const;
 
  private:
   TouchRecord() = default;
   schema::Result<void> survey();
+  void mark_cut_strokes();
   schema::Result<void> weigh(Stroke& stroke) const;
   schema::Result<FrameRange> frames_between(double from_s, double to_s) const;
   schema::Result<void> check_gapless(FrameRange frames) const;
+  schema::Result<void> check_jumpless(FrameRange frames) const;
   schema::Result<Stroke> directed(FrameRange frames) const;
   std::string list_of_strokes() const;
 
@@ -77,6 +84,7 @@ class TouchRecord {
   std::optional<PositionTrack> track_;
   PositionFacts facts_;
   std::vector<FrameRange> pieces_;
+  std::vector<PositionJump> jumps_;
   std::vector<Stroke> strokes_;
   std::size_t short_runs_ = 0;
   std::optional<double> up_below_n_;

@@ -35,8 +35,10 @@ class TouchSource {
   }
 };
 
-/// A recording on disk; `value` names the channel that is made a texture. Errors: unsuitable, without such a
-/// channel or without a position; of opening the file.
+/// A recording on disk; `value` names the channel that is made a texture. Empty: tangential_force, else the
+/// one channel that can be a texture (a force along the surface, an acceleration, a displacement, a height, a
+/// signal). Errors: unsuitable, without such a channel, with several, or without a position; of opening the
+/// file.
 schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Recording& recording,
                                                                const std::string& value);
 

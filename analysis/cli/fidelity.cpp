@@ -5,8 +5,10 @@
 #include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/fidelity/fidelity_page.hpp"
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/stop_signals.hpp"
+#include "data-schema/cli/warnings.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -18,6 +20,7 @@ using schema::Result;
 struct FidelityVerbOptions {
   FidelityOptions fidelity;
   std::vector<std::string> speeds = {"50mm/s"}, outputs;
+  schema::Existing existing = schema::Existing::keep;
 };
 
 Report tray_row(const FidelitySpeed& speed, const FidelityRow& row, bool simulated) {
@@ -106,17 +109,19 @@ Result<Fidelity> found_until_stopped(FidelityVerbOptions& o, bool& stopped) {
 }
 
 Result<Report> run_fidelity(FidelityVerbOptions o) {
-  if (const auto free = check_outputs(o.outputs); !free) return schema::forward_error(free);
+  if (const auto free = check_outputs(o.outputs, o.existing); !free) return schema::forward_error(free);
   if (const auto read = read_speeds(o); !read) return schema::forward_error(read);
   bool stopped = false;
   const auto found = found_until_stopped(o, stopped);
   if (!found && stopped) end_as_stopped();
   if (!found) return schema::forward_error(found);
+  std::vector<std::string> notes;
   for (const FidelitySpeed& speed : found->speeds)
-    for (const std::string& note : speed.notes) cli::warn(note);
+    notes.insert(notes.end(), speed.notes.begin(), speed.notes.end());
+  cli::warn_grouped(notes);
   Report report = fidelity_report(*found);
-  const auto written =
-      write_outputs(o.outputs, fidelity_results(*found), report, [&] { return fidelity_page(*found); });
+  const auto written = write_outputs(o.outputs, o.existing, fidelity_results(*found), report,
+                                     [&] { return fidelity_page(*found); });
   if (!written) return schema::forward_error(written);
   if (!o.outputs.empty()) report.add("written", o.outputs);
   return report;
@@ -137,11 +142,11 @@ cli::Action declare_fidelity(CLI::App& app) {
   cli::add_quantity(app, "--time", play.time_s, Dimension::time, "On a real device: how long [10 s]");
   cli::add_quantity(app, "--gain", play.program.gain_m_per_n, Dimension::compliance,
                     "Displacement for force, 1mm/N unless told");
-  app.add_flag("--force", play.program.force,
-               "Take a transducer that says of itself that its model does not fit");
+  cli::declare_unfit_transducer(app, play.program.unfit_transducer);
   cli::add_quantity(app, "--rate", play.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
   app.add_option("-o,--output,--page", options->outputs,
                  "What to write: a page (.html), results for 'report' (.results.json); may be given again");
+  cli::declare_force(app, options->existing);
   return [options] { return run_fidelity(*options); };
 }
 

@@ -2,20 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
+#include "analysis/cli/identify_loops.hpp"
 #include "analysis/cli/identify_names.hpp"
+#include "analysis/cli/identify_options.hpp"
 #include "analysis/cli/identify_report.hpp"
-#include "analysis/cli/results_output.hpp"
 #include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/identify/bode_figure.hpp"
 #include "analysis/identify/identify_results.hpp"
-#include "analysis/identify/loop_figure.hpp"
-#include "analysis/identify/measured_tables.hpp"
 #include "analysis/identify/plausibility.hpp"
 #include "analysis/identify/record_response.hpp"
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/stop_signals.hpp"
 #include "data-schema/files.hpp"
@@ -32,19 +31,6 @@ using schema::Result;
 
 constexpr const char* kUsualBase = "wiertlewski2011";
 
-struct IdentifyOptions {
-  std::string file, device_uri, stem, base, picture, results;
-  IdentifyMethod method = IdentifyMethod::sweep;
-  ModelChoice model;
-  TableUnits units;
-  ExcitationPlan plan;
-  std::optional<double> amplitude_v, rate_hz;
-  std::string input = "drive", output = "displacement";
-  int phase_sign = 1;
-  std::size_t taps_fitted = 0;
-  bool invert = false, force = false, replace = false;
-};
-
 void declare_source(CLI::App& app, IdentifyOptions& o) {
   app.add_option("FILE", o.file,
                  "A response (frequency_hz,amplitude_um_per_v,phase_deg, and where it is known "
@@ -58,15 +44,18 @@ void declare_source(CLI::App& app, IdentifyOptions& o) {
   app.add_option(
       "--results", o.results,
       "Also what was found, for 'report': NAME.results.json, parameters with intervals and curves");
-  cli::add_choice<IdentifyMethod>(
-      app, "--method", o.method,
-      {{"sweep", IdentifyMethod::sweep},
-       {"multisine", IdentifyMethod::multisine},
-       {"chirp", IdentifyMethod::chirp},
-       {"loop", IdentifyMethod::loop},
-       {"taps", IdentifyMethod::taps}},
-      "How: a sine at each frequency, all at once, or a chirp (nine times 1 s); loop: the "
-      "hysteresis; taps: a sensor's ringing");
+  cli::add_choice<IdentifyMethod>(app, "--method", o.method,
+                                  {{"joint", IdentifyMethod::joint},
+                                   {"sweep", IdentifyMethod::sweep},
+                                   {"multisine", IdentifyMethod::multisine},
+                                   {"chirp", IdentifyMethod::chirp},
+                                   {"loop", IdentifyMethod::loop},
+                                   {"taps", IdentifyMethod::taps}},
+                                  "How. joint: a sine at each frequency and slow loops, fitted together, "
+                                  "with what is on the tray (a finger "
+                                  "that comes only later costs accuracy); sweep, multisine, chirp (nine "
+                                  "times 1 s): the linear model alone; "
+                                  "loop: the hysteresis alone; taps: a sensor's ringing");
 }
 
 void declare_model(CLI::App& app, IdentifyOptions& o) {
@@ -75,13 +64,15 @@ void declare_model(CLI::App& app, IdentifyOptions& o) {
   app.add_flag("--lag", o.model.lag, "The model lags by the same angle at all frequencies, for a hysteresis");
   app.add_flag("--finger", o.model.finger,
                "A finger rests on the tray of a transducer that is known (--start-from): find what it adds");
-  app.add_flag("--force", o.force, "Take a gain or a resonance that is far from what the base says");
-  app.add_flag("--replace", o.replace, "Replace a transducer or a picture of that name");
+  app.add_flag("--implausible", o.implausible, "Take a gain or a resonance far from the base's");
+  cli::declare_force(app, o.existing);
 }
 
 void declare_measuring(CLI::App& app, IdentifyOptions& o) {
-  cli::add_quantity(app, "--amplitude", o.amplitude_v, Dimension::voltage,
-                    "Peak of the drive; 0.5V, and for loops as far as the limits go");
+  cli::add_quantity(
+      app, "--amplitude", o.amplitude_v, Dimension::voltage,
+      "Peak of the drive; joint: a fifth of the loops' (1V), others: 0.5V. Loops go as far as the limits; "
+      "with --method loop this is their peak");
   cli::add_quantity(app, "--low", o.plan.low_hz, Dimension::frequency, "Lowest frequency");
   cli::add_quantity(app, "--high", o.plan.high_hz, Dimension::frequency, "Highest frequency");
   app.add_option("--frequencies", o.plan.frequencies, "How many, evenly by octaves")->check(cli::from_one());
@@ -112,14 +103,6 @@ Result<schema::Transducer> base_of(const IdentifyOptions& o, const firmware_host
   return schema::read_transducer(kUsualBase);
 }
 
-// What is asked of: a device, or a file.
-struct Asked {
-  playback::PlayerDevice device;
-  schema::Transducer base;
-  bool stopped = false;  // by a signal, while it was measured
-  bool has_device() const { return device.device != nullptr; }
-};
-
 Result<void> check_band(const IdentifyOptions& o) {
   constexpr std::size_t kMostFrequencies = 1000;
   if (o.plan.frequencies < kLeastFrequencies || o.plan.frequencies > kMostFrequencies)
@@ -134,14 +117,14 @@ Result<void> check_band(const IdentifyOptions& o) {
   return {};
 }
 
-Result<Asked> asked_of(const IdentifyOptions& o) {
+Result<IdentifySource> asked_of(const IdentifyOptions& o) {
   if (o.file.empty() == o.device_uri.empty())
     return fail(Fault::usage, "name either a file or a device", "identify", "-d sim:tray_sensor=on, or FILE");
   if (const auto sound = check_band(o); !sound) return schema::forward_error(sound);
   if (o.model.finger && (o.model.second_mode || o.base.empty()))
     return fail(Fault::usage, "a finger's load is found on a transducer that is known", "--finger",
                 "name it with --start-from; its second mode is taken from there");
-  Asked asked;
+  IdentifySource asked;
   if (!o.device_uri.empty()) {
     auto opened = playback::open_player_device(o.device_uri, std::nullopt);
     if (!opened) return schema::forward_error(opened);
@@ -151,13 +134,6 @@ Result<Asked> asked_of(const IdentifyOptions& o) {
   if (!base) return schema::forward_error(base);
   asked.base = std::move(*base);
   return asked;
-}
-
-ExcitationPlan plan_of(const IdentifyOptions& o, const firmware_host::Device& device) {
-  ExcitationPlan plan = o.plan;
-  plan.rate_hz = drive_rate_hz(device);
-  plan.amplitude_v = o.amplitude_v.value_or(plan.amplitude_v);
-  return plan;
 }
 
 bool is_table(const std::string& file) {
@@ -190,13 +166,14 @@ Result<BodeData> tabled_response(const IdentifyOptions& o) {
                             o.file);
 }
 
-Result<BodeData> response_of(const IdentifyOptions& o, Asked& asked) {
+Result<BodeData> response_of(const IdentifyOptions& o, IdentifySource& asked) {
   if (asked.has_device()) {
     const cli::StopSignals signals;
     cli::Progress progress("identifying");
     firmware_host::Device& device = *asked.device.device;
     auto measured = measured_on(
-        device, o.method, plan_of(o, device), asked.base, [&] { return signals.stop_asked(); },
+        device, o.method == IdentifyMethod::joint ? IdentifyMethod::sweep : o.method,
+        plan_on(o, device, o.plan.amplitude_v), asked.base, [&] { return signals.stop_asked(); },
         [&](double part) { progress.update(part); });
     asked.stopped = signals.stop_asked();
     return measured;
@@ -209,116 +186,28 @@ Result<BodeData> response_of(const IdentifyOptions& o, Asked& asked) {
   return data;
 }
 
-std::string name_of(const IdentifyOptions& o) {
-  return std::filesystem::path(schema::stem_of(o.stem, ".transducer")).filename().string();
-}
-
-std::string file_of(const IdentifyOptions& o) {
-  return schema::stem_of(o.stem, ".transducer") + ".transducer.json";
-}
-
-void add_conditions(const IdentifyOptions& o, BodeData& data) {
-  if (o.model.lag) data.conditions += ", with a constant lag";
-  if (o.model.finger) data.conditions += ", a finger on the tray";
-  if (o.model.second_mode) data.conditions += ", with a second mode";
-}
-
-Result<void> draw(const std::string& picture, const spatial::Figure& figure, Report& report) {
-  if (picture.empty()) return {};
-  if (auto drawn = spatial::write_figure(picture, figure); !drawn) return drawn;
-  report.add("picture", picture);
-  return {};
-}
-
-// The details are the report as it stands.
-Result<Report> with_results(const IdentifyOptions& o, const auto& make, Report report) {
-  if (o.results.empty()) return report;
-  schema::Results results = make();
-  results.verb = "identify";
-  results.device = o.device_uri;
-  for (const std::string& input : {o.file, o.base})
-    if (!input.empty()) results.inputs.push_back(input);
-  const auto no_page = [] { return Result<std::string>(); };
-  if (auto written = write_outputs({o.results}, std::move(results), report, no_page); !written)
-    return schema::forward_error(written);
-  return report.add("results", o.results);
-}
-
-Result<Report> identify_response(const IdentifyOptions& o, Asked& asked) {
+Result<Report> identify_response(const IdentifyOptions& o, IdentifySource& asked) {
   auto data = response_of(o, asked);
   if (!data) return schema::forward_error(data);
-  add_conditions(o, *data);
+  add_model_conditions(o, *data);
   ModelChoice choice = o.model;
   choice.direction = data->direction;
   const auto sound = check_measured(*data, choice, asked.base, {o.phase_sign < 0, o.invert});
   if (!sound) return schema::forward_error(sound);
   const ResponseFit fit = fit_response(*data, choice, asked.base);
-  if (const auto said = check_levels(fit, choice, asked.base); !said) return schema::forward_error(said);
-  if (const auto sized = o.force ? Result<void>() : check_size(fit, asked.base); !sized)
-    return schema::forward_error(sized);
-  if (const auto placed = o.force ? Result<void>() : check_frequencies(fit, asked.base); !placed)
-    return schema::forward_error(placed);
-  const schema::Transducer found = identified(fit, asked.base, name_of(o));
+  if (const auto fitted = check_fitted(o, fit, choice, asked.base); !fitted)
+    return schema::forward_error(fitted);
+  const schema::Transducer found = identified(fit, asked.base, transducer_name_of(o));
   if (const auto written = schema::write_transducer(o.stem, found); !written)
     return schema::forward_error(written);
-  Report report = response_report(fit, choice, asked.base, found, file_of(o));
-  if (const auto drawn = draw(o.picture, BodeFigure(fit), report); !drawn)
+  Report report = response_report(fit, choice, asked.base, found, transducer_file_of(o));
+  if (const auto drawn = draw_identified(o, BodeFigure(fit), report); !drawn)
     return schema::forward_error(drawn);
-  return with_results(
+  return with_identify_results(
       o, [&] { return identify_results(fit, choice, asked.base, found); }, std::move(report));
 }
 
-Result<DrivenTray> loops_of(const IdentifyOptions& o, Asked& asked, schema::Identification& about) {
-  if (!asked.has_device()) {
-    about.source = o.file;
-    auto tray = read_driven_table(o.file);
-    if (tray && !(tray->rate_hz > 0)) tray->rate_hz = o.rate_hz.value_or(0);
-    if (tray && o.invert)
-      for (double& value : tray->displacement_m) value = -value;
-    return tray;
-  }
-  firmware_host::Device& device = *asked.device.device;
-  const double amplitude_v = o.amplitude_v.value_or(loop_amplitude_v(asked.base));
-  about.source = device.capabilities().uri;
-  about.simulated = device.capabilities().simulated;
-  about.conditions = "loops of " + schema::for_people(amplitude_v, Dimension::voltage) + " at 1 Hz";
-  const cli::StopSignals signals;
-  cli::Progress progress("identifying");
-  auto tray = drive_tray(
-      device, slow_loops(drive_rate_hz(device), amplitude_v), [&] { return signals.stop_asked(); },
-      [&](double part) { progress.update(part); });
-  asked.stopped = signals.stop_asked();
-  return tray;
-}
-
-Result<Report> identify_loops(const IdentifyOptions& o, Asked& asked) {
-  schema::Identification about;
-  about.conditions = "loops measured elsewhere";
-  const auto tray = loops_of(o, asked, about);
-  if (!tray) return schema::forward_error(tray);
-  if (!(tray->rate_hz > 0))
-    cli::warn("no rate is known: the linear model's own lag is counted as hysteresis");
-  if (tray->limited > 0)
-    cli::warn("the device held the drive to a limit: see what was driven, not what was asked");
-  const double held_s = asked.has_device() ? 0.5 / tray->rate_hz : 0;
-  const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz,
-                             delay_at_rest_s(asked.base) + held_s, asked.base.drive_limit_v);
-  if (!fit) return schema::forward_error(fit);
-  if (const auto upright = check_upright(*fit, about.source, o.invert); !upright)
-    return schema::forward_error(upright);
-  if (const auto sized = o.force ? Result<void>() : check_size(*fit, asked.base, about.source); !sized)
-    return schema::forward_error(sized);
-  const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);
-  if (const auto written = schema::write_transducer(o.stem, found); !written)
-    return schema::forward_error(written);
-  Report report = loop_report(*fit, found, file_of(o));
-  if (const auto drawn = draw(o.picture, loop_figure(*fit, found), report); !drawn)
-    return schema::forward_error(drawn);
-  return with_results(
-      o, [&] { return identify_results(*fit, found); }, std::move(report));
-}
-
-Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
+Result<Report> identify_taps(const IdentifyOptions& o, const IdentifySource& asked) {
   if (!o.picture.empty())
     return fail(Fault::usage, "taps have no picture", "--picture", "leave it out; the table has each tap");
   if (o.file.empty() || !o.rate_hz)
@@ -336,28 +225,28 @@ Result<Report> identify_taps(const IdentifyOptions& o, const Asked& asked) {
   schema::Identification about;
   about.source = o.file;
   about.conditions = "ringing after taps";
-  const schema::Transducer found = identified(*fit, asked.base, name_of(o), about);
+  const schema::Transducer found = identified(*fit, asked.base, transducer_name_of(o), about);
   if (const auto written = schema::write_transducer(o.stem, found); !written)
     return schema::forward_error(written);
-  Report report = taps_report(*fit, *foretold, found, file_of(o));
-  return with_results(
+  Report report = taps_report(*fit, *foretold, found, transducer_file_of(o));
+  return with_identify_results(
       o, [&] { return identify_results(*fit, *foretold, found); }, std::move(report));
 }
 
-Result<Report> identify_by(const IdentifyOptions& o, Asked& asked) {
+Result<Report> identify_by(const IdentifyOptions& o, IdentifySource& asked) {
   if (o.method == IdentifyMethod::taps) return identify_taps(o, asked);
   if (o.method == IdentifyMethod::loop) return identify_loops(o, asked);
+  if (o.method == IdentifyMethod::joint && asked.has_device() && !o.model.lag)
+    return identify_jointly(o, asked);
   return identify_response(o, asked);
 }
 
 // A transducer that was measured is not lost to one that does not fit.
 Result<void> check_names_free(const IdentifyOptions& o) {
-  for (const std::string& path : {file_of(o), o.picture})
-    if (!o.replace && schema::is_file(path))
-      return fail(Fault::usage, "is there already, and would be lost", path,
-                  "choose another name, or give --replace");
+  for (const std::string& path : {transducer_file_of(o), o.picture})
+    if (auto free = schema::check_output_free(path, o.existing); !free) return free;
   if (o.results.empty()) return {};
-  if (o.results.ends_with(".json")) return schema::check_results_free(o.results);
+  if (o.results.ends_with(".json")) return schema::check_results_free(o.results, o.existing);
   return fail(Fault::usage, "has an ending that this verb does not write", o.results,
               "name results (NAME.results.json)");
 }
@@ -388,9 +277,10 @@ cli::Action declare_identify(CLI::App& app) {
 
 const cli::Verb kIdentifyVerb{
     "identify", "Find a transducer's parameters, with their uncertainty, from a device or measured data",
-    "tactograph identify -d sim:tray_sensor=on -o bench --picture bench.svg --results bench.results.json\n"
-    "  tactograph identify -d sim:tray_sensor=on,hysteresis=0.16 --method loop --start-from bench -o "
-    "bench-loop\n"
+    "tactograph identify -d sim:tray_sensor=on,hysteresis=0.16 -o bench --picture bench.svg --results "
+    "bench.results.json\n"
+    "  tactograph identify -d sim:tray_sensor=on,hysteresis=0.16,second_mode=800Hz,finger_load=on "
+    "--second-mode -o loaded\n"
     "  tactograph identify response.csv --start-from wiertlewski2011 -o mine\n"
     "  tactograph record -d sim:force=chirp,force_amplitude=30mN -o pull --time 8s\n"
     "  tactograph identify pull --input applied_force --output-channel tangential_force -o sensor\n"

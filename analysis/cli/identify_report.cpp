@@ -16,8 +16,8 @@ namespace {
 using cli::Report;
 
 std::string verdict_word(const schema::Identification& found) {
-  if (!found.converged) return "DID NOT CONVERGE: nothing plays through it unless forced";
-  return found.misfit ? "MISFIT: nothing plays through it unless forced" : "fits";
+  if (!found.converged) return "DID NOT CONVERGE: playback refuses it without --unfit-transducer";
+  return found.misfit ? "MISFIT: playback refuses it without --unfit-transducer" : "fits";
 }
 
 void add_head(Report& report, const schema::Transducer& found, const std::string& file) {
@@ -26,6 +26,28 @@ void add_head(Report& report, const schema::Transducer& found, const std::string
   if (!about.simulated.empty()) report.add("simulated", about.simulated);
   report.add("conditions", about.conditions).add("verdict", verdict_word(about)).add("words", about.words);
   if (!about.usable()) report.ends_with(schema::Fault::unsuitable);
+}
+
+// The figures: tests/analysis/identify_bench_test.py.
+constexpr const char* kLoadWords =
+    "what was on the tray while this was measured: let the finger rest there, or not, as it will when it "
+    "plays. A "
+    "finger that comes only later costs accuracy (emulated: -37 to -25 dB where -47 to -40 dB were possible)";
+
+void add_loop_rows(Report& report, const LoopFit& fit) {
+  report.add("loop_opening_percent", 100 * fit.opening).add("loop_amplitude_v", fit.amplitude_v);
+  report.add("lag_degrees", kDegrees * fit.lag_rad)
+      .add("lag_of_an_ellipse_degrees", kDegrees * fit.ellipse_lag_rad);
+  report.add("gain_of_a_full_swing_m_per_v", fit.gain_m_per_v);
+  report.add("left_by_the_operator_percent", 100 * fit.residual_part)
+      .add("left_by_a_line_percent", 100 * fit.linear_residual_part);
+  std::vector<Report> rows;
+  for (std::size_t i = 0; i < fit.hysteresis.weights.size(); ++i) {
+    Report row;
+    row.add("threshold_v", fit.hysteresis.thresholds_v[i]).add("weight", fit.hysteresis.weights[i]);
+    rows.push_back(std::move(row));
+  }
+  report.add("operator", std::move(rows));
 }
 
 constexpr int kTableDigits = 4;  // a report's
@@ -107,19 +129,17 @@ Report response_report(const ResponseFit& fit, const ModelChoice& choice, const 
 Report loop_report(const LoopFit& fit, const schema::Transducer& found, const std::string& file) {
   Report report;
   add_head(report, found, file);
-  report.add("loop_opening_percent", 100 * fit.opening).add("loop_amplitude_v", fit.amplitude_v);
-  report.add("lag_degrees", kDegrees * fit.lag_rad)
-      .add("lag_of_an_ellipse_degrees", kDegrees * fit.ellipse_lag_rad);
-  report.add("gain_of_a_full_swing_m_per_v", fit.gain_m_per_v).add("r_squared", fit.r_squared);
-  report.add("left_by_the_operator_percent", 100 * fit.residual_part)
-      .add("left_by_a_line_percent", 100 * fit.linear_residual_part);
-  std::vector<Report> rows;
-  for (std::size_t i = 0; i < fit.hysteresis.weights.size(); ++i) {
-    Report row;
-    row.add("threshold_v", fit.hysteresis.thresholds_v[i]).add("weight", fit.hysteresis.weights[i]);
-    rows.push_back(std::move(row));
-  }
-  report.add("operator", std::move(rows));
+  add_loop_rows(report, fit);
+  report.add("r_squared", fit.r_squared);
+  return report;
+}
+
+Report joint_report(const JointFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                    const schema::Transducer& found, const std::string& file) {
+  Report report = response_report(fit.response, choice, base, found, file);
+  report.add("rounds", fit.rounds);
+  add_loop_rows(report, fit.loops);
+  report.add("load", kLoadWords);
   return report;
 }
 

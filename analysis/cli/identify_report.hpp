@@ -11,6 +11,8 @@ namespace tacto::analysis {
 cli::Report response_report(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
                             const schema::Transducer& found, const std::string& file);
 cli::Report loop_report(const LoopFit& fit, const schema::Transducer& found, const std::string& file);
+cli::Report joint_report(const JointFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                         const schema::Transducer& found, const std::string& file);
 cli::Report taps_report(const TapsFit& fit, const TapsPrediction& foretold, const schema::Transducer& found,
                         const std::string& file);
 

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/report/project.hpp"
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/files.hpp"
 
@@ -18,6 +20,7 @@ using schema::Result;
 
 struct ReportVerbOptions {
   std::string folder, output;
+  schema::Existing existing = schema::Existing::keep;
 };
 
 Report file_row(const ProjectFile& file) {
@@ -40,28 +43,36 @@ Report project_report(const Project& project, const std::string& output) {
   return report;
 }
 
+// The page names all of them.
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 6;
+  const std::span shown(names.data(), std::min(kNamed, names.size()));
+  const std::string words = fmt::format("{}", fmt::join(shown, ", "));
+  return names.size() <= kNamed ? words : fmt::format("{}, and {} others", words, names.size() - kNamed);
+}
+
 void tell(const Project& project) {
   for (const BrokenFile& file : project.broken) cli::warn("left out: " + schema::message(file.error));
   if (!project.foreign.empty())
-    cli::warn(fmt::format("not described on the page, only named: {}", fmt::join(project.foreign, ", ")));
+    cli::warn("not described on the page, only named: " + some_of(project.foreign));
 }
 
-Result<void> write_page(const Project& project, const std::string& output) {
+Result<void> write_page(const Project& project, const ReportVerbOptions& o) {
   schema::PendingFiles files;
-  if (auto written = files.write(output, project_page(project)); !written) return written;
-  return files.commit();
+  if (auto written = files.write(o.output, project_page(project)); !written) return written;
+  return files.commit(o.existing);
 }
 
 Result<Report> run_report(const ReportVerbOptions& o) {
   if (!o.output.ends_with(".html"))
     return schema::fail(schema::Fault::usage, "doesn't end in .html", o.output, "a report is a page");
-  if (const auto free = check_outputs({o.output}); !free) return schema::forward_error(free);
+  if (const auto free = check_outputs({o.output}, o.existing); !free) return schema::forward_error(free);
   cli::Progress progress("reading");
   auto project = read_project(o.folder, o.output, [&](double part) { progress.update(part); });
   if (!project) return schema::forward_error(project);
   draw_pictures(*project);
   tell(*project);
-  if (const auto written = write_page(*project, o.output); !written) return schema::forward_error(written);
+  if (const auto written = write_page(*project, o); !written) return schema::forward_error(written);
   return project_report(*project, o.output);
 }
 
@@ -72,6 +83,7 @@ cli::Action declare_report(CLI::App& app) {
                  "A project: recordings, textures, transducers, sessions, results ...")
       ->required();
   app.add_option("-o,--output", options->output, "The page: NAME.html")->capture_default_str();
+  cli::declare_force(app, options->existing);
   return [options] { return run_report(*options); };
 }
 

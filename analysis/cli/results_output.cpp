@@ -23,12 +23,14 @@ const OutputKind* kind_of(const std::string& path, std::span<const OutputKind> m
   return nullptr;
 }
 
-Result<void> check_output(const std::string& path, std::span<const OutputKind> more) {
-  if (const OutputKind* kind = kind_of(path, more)) return schema::check_table_free(path, kind->ours);
+Result<void> check_output(const std::string& path, schema::Existing existing,
+                          std::span<const OutputKind> more) {
+  if (const OutputKind* kind = kind_of(path, more))
+    return schema::check_table_free(path, existing, kind->ours);
   if (is_page(path))
     return schema::check_table_free(
-        path, [](std::string_view line) { return line.starts_with("<!DOCTYPE html>"); });
-  if (path.ends_with(".json")) return schema::check_results_free(path);
+        path, existing, [](std::string_view line) { return line.starts_with("<!DOCTYPE html>"); });
+  if (path.ends_with(".json")) return schema::check_results_free(path, existing);
   std::string endings;
   for (const OutputKind& kind : more) endings += ", NAME" + kind.ending;
   return schema::fail(Fault::usage, "has an ending that this verb does not write", path,
@@ -37,18 +39,20 @@ Result<void> check_output(const std::string& path, std::span<const OutputKind> m
 
 }  // namespace
 
-Result<void> check_outputs(const std::vector<std::string>& outputs, std::span<const OutputKind> more) {
+Result<void> check_outputs(const std::vector<std::string>& outputs, schema::Existing existing,
+                           std::span<const OutputKind> more) {
   for (auto path = outputs.begin(); path != outputs.end(); ++path) {
     if (std::any_of(outputs.begin(), path,
                     [&](const auto& other) { return schema::same_file(*path, other); }))
       return schema::fail(Fault::usage, "is named twice", *path, "give each output a name of its own");
-    if (const auto free = check_output(*path, more); !free) return free;
+    if (const auto free = check_output(*path, existing, more); !free) return free;
   }
   return {};
 }
 
-Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Results results,
-                           const cli::Report& details, const std::function<Result<std::string>()>& page,
+Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Existing existing,
+                           schema::Results results, const cli::Report& details,
+                           const std::function<Result<std::string>()>& page,
                            std::span<const OutputKind> more) {
   results.details_json = details.json();
   results.created = schema::creation_time();
@@ -60,7 +64,7 @@ Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Resu
     if (!text) return schema::forward_error(text);
     if (auto written = files.write(path, *text); !written) return written;
   }
-  return files.commit();
+  return files.commit(existing);
 }
 
 }  // namespace tacto::analysis

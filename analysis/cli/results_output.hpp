@@ -22,15 +22,17 @@ struct OutputKind {
   std::function<schema::Result<std::string>()> make;
 };
 
-/// That each may be written: .html (a file that begins with a doctype may be replaced) or .json (results
-/// may), or one of `more`. Errors: usage, for another ending or a file that would be lost.
-schema::Result<void> check_outputs(const std::vector<std::string>& outputs,
+/// That each may be written: .html (where `existing` says so, a file that begins with a doctype is replaced)
+/// or .json (results are), or one of `more`. Errors: usage, for another ending, a file that is to be kept, or
+/// one that would be lost.
+schema::Result<void> check_outputs(const std::vector<std::string>& outputs, schema::Existing existing,
                                    std::span<const OutputKind> more = {});
 
 /// All of them together, or none. `details` is what the verb prints with --json; verb, figures, pictures and
-/// inputs are the caller's. Errors: those of `page`; cannot_write.
-schema::Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Results results,
-                                   const cli::Report& details,
+/// inputs are the caller's. Errors: those of `page`; cannot_write; usage, where
+/// a file that is to be kept has a name.
+schema::Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Existing existing,
+                                   schema::Results results, const cli::Report& details,
                                    const std::function<schema::Result<std::string>()>& page,
                                    std::span<const OutputKind> more = {});
 

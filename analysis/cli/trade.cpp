@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tactograph trade: what each choice costs and errs, on this machine.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
@@ -14,6 +15,7 @@
 #include "analysis/trade/measured_trade.hpp"
 #include "analysis/trade/pareto.hpp"
 #include "analysis/trade/worst_trade.hpp"
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/file_kind.hpp"
 #include "data-schema/files.hpp"
@@ -32,8 +34,13 @@ struct TradeVerbOptions {
   std::string what, transducer = "wiertlewski2011";
   std::size_t stroke = 0;
   TradeHalves halves = TradeHalves::both;
-  bool calibrate = false, force = false;
+  bool calibrate = false, unfit_transducer = false, implausible = false;
+  schema::Existing existing = schema::Existing::keep;
   std::vector<std::string> outputs;
+  const CLI::App* app = nullptr;
+
+  /// For machines everything, for people the answer.
+  bool json() const { return app->count("--json") > 0; }
 };
 
 constexpr const char* kTradeTableEnding = ".trade.json";
@@ -90,7 +97,7 @@ Report trade_report(const Trade& trade) {
                             .add("knee", answer.knee)
                             .add("never_worth_it", answer.never));
   }
-  return report.add("choices", std::move(rows)).add("answers", std::move(answers));
+  return report.add("answers", std::move(answers)).add("choices", std::move(rows));
 }
 
 std::vector<OutputKind> trade_outputs(const Trade& trade) {
@@ -122,11 +129,74 @@ Result<Trade> measured_on(const std::string& name, const TradeVerbOptions& o,
   return trade;
 }
 
+constexpr std::size_t kWidestLine = 120;
+
+// As many words a line as fit, with the label before the first.
+void add_wrapped(Report& report, const std::string& label, std::string_view text, std::size_t room) {
+  std::string key = label;
+  while (text.size() > room) {
+    const std::size_t space = text.rfind(' ', room);
+    const std::size_t cut = space == std::string_view::npos || space == 0 ? room : space;
+    report.add(std::exchange(key, ""), text.substr(0, cut));
+    text.remove_prefix(cut);
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  }
+  report.add(std::move(key), text);
+}
+
+// Of the choices by themselves; pairs of them ("window x hop") are in the table.
+std::string best_words(const TradeHalf& half) {
+  std::string words;
+  for (const PlainAnswer& answer : plain_answers(half.rows))
+    if (answer.knee_row && answer.knob.find(" x ") == std::string::npos)
+      words +=
+          fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob, half.rows[*answer.knee_row].choice);
+  return words.empty() ? "none stands out" : words;
+}
+
+std::vector<Report> answer_rows(const Trade& trade) {
+  std::vector<Report> rows;
+  for (const TradeHalf& half : trade.halves)
+    for (const PlainAnswer& answer : plain_answers(half.rows)) {
+      Report row;
+      row.add("half", half.name).add("choice_of", answer.knob);
+      if (answer.knee_row) {
+        const TradeRow& best = half.rows[*answer.knee_row];
+        row.add("best", best.choice).add("error_percent", 100 * best.error);
+        row.add("cost", fmt::format("{:.3g} ns a {}", best.cost_ns, best.per));
+      }
+      row.add("never_worth_it", fmt::format("{} of {}", answer.never_worth_it, answer.choices));
+      rows.push_back(std::move(row));
+    }
+  return rows;
+}
+
+// The answer: for each choice the best for its cost. With files the rows are in them; without, the table of
+// the answers follows.
+Report trade_for_people(const TradeVerbOptions& o, const Trade& trade) {
+  constexpr std::string_view kLongestLabel = "best, real time  ";
+  constexpr std::size_t kRoom = kWidestLine - kLongestLabel.size();
+  Report report;
+  add_wrapped(report, "texture", trade.texture, kRoom);
+  add_wrapped(report, "machine", trade.machine, kRoom);
+  if (!trade.simulated.empty()) add_wrapped(report, "simulated", trade.simulated, kRoom);
+  std::size_t rows = 0;
+  for (const TradeHalf& half : trade.halves) {
+    add_wrapped(report, "best, " + half.name, best_words(half), kRoom);
+    rows += half.rows.size();
+  }
+  report.add("choices", fmt::format("{} measured; --json, NAME.csv and NAME.html have them all", rows));
+  if (o.outputs.empty()) return report.add("answers", answer_rows(trade));
+  add_wrapped(report, "written", fmt::format("{}", fmt::join(o.outputs, "; ")), kRoom);
+  return report;
+}
+
 // Only the real-time half plays through it, in the band that played_case() leaves as it is.
 Result<schema::Transducer> transducer_of(const TradeVerbOptions& o) {
-  auto transducer = schema::read_transducer(o.transducer);
+  auto transducer = schema::read_transducer(
+      o.transducer, o.implausible ? schema::Numbers::computable : schema::Numbers::plausible);
   if (!transducer || o.halves == TradeHalves::offline) return transducer;
-  if (const auto usable = schema::check_usable(*transducer, o.force); !usable)
+  if (const auto usable = schema::check_usable(*transducer, o.unfit_transducer); !usable)
     return schema::forward_error(usable);
   if (const auto beyond = playback::beyond_identified(*transducer, spatial::Band{})) cli::warn(*beyond);
   return transducer;
@@ -156,14 +226,16 @@ Result<Trade> measured_on_all(const TradeVerbOptions& o) {
 Result<Report> measure(const TradeVerbOptions& o) {
   Trade trade;
   const auto kinds = trade_outputs(trade);
-  if (const auto free = check_outputs(o.outputs, kinds); !free) return schema::forward_error(free);
+  if (const auto free = check_outputs(o.outputs, o.existing, kinds); !free)
+    return schema::forward_error(free);
   auto measured = measured_on_all(o);
   if (!measured) return schema::forward_error(measured);
   trade = std::move(*measured);
   Report report = trade_report(trade);
   const auto written = write_outputs(
-      o.outputs, trade_results(o, trade), report, [&] { return trade_page(trade); }, kinds);
+      o.outputs, o.existing, trade_results(o, trade), report, [&] { return trade_page(trade); }, kinds);
   if (!written) return schema::forward_error(written);
+  if (!o.json()) return trade_for_people(o, trade);
   if (!o.outputs.empty()) report.add("written", o.outputs);
   return report;
 }
@@ -186,7 +258,7 @@ Result<std::string> write_table(const TradeVerbOptions& o, const schema::TradeTa
   if (!text) return schema::forward_error(text);
   schema::PendingFiles files;
   if (const auto put = files.write(o.outputs.front(), *text); !put) return schema::forward_error(put);
-  if (const auto done = files.commit(); !done) return schema::forward_error(done);
+  if (const auto done = files.commit(o.existing); !done) return schema::forward_error(done);
   return o.outputs.front();
 }
 
@@ -201,7 +273,8 @@ Result<void> check_table_output(const TradeVerbOptions& o) {
                         "name one file NAME.trade.json, or none for this machine's own");
   const auto there =
       schema::is_file(path) ? schema::stored_files(path) : Result<std::vector<schema::StoredFile>>{};
-  if (!schema::is_file(path) || (there && there->front().kind == schema::FileKind::trade)) return {};
+  if (!schema::is_file(path) || (there && there->front().kind == schema::FileKind::trade))
+    return schema::check_output_free(path, o.existing);
   return schema::fail(Fault::usage, "is no table of measured choices, and would be lost", path,
                       "choose another name");
 }
@@ -229,16 +302,20 @@ Result<Report> run_trade(const TradeVerbOptions& o) {
 
 cli::Action declare_trade(CLI::App& app) {
   auto options = std::make_shared<TradeVerbOptions>();
+  options->app = &app;
   app.add_option("WHAT", options->what,
                  "Texture, recording (its stroke becomes one) or scene (the worst of its textures)");
   app.add_option(
       "-o,--output", options->outputs,
-      "What to write: a page (.html), results for 'report' (.results.json), a table (.csv), the first "
-      "half's Pareto picture (.svg, .png); with --calibrate NAME.trade.json; may be given again");
+      "What to write: a page (.html), results for 'report' (.results.json), a table of all choices (.csv), "
+      "error against cost of the first half's unit with most choices (.svg, .png); with --calibrate "
+      "NAME.trade.json; may be given again");
   app.add_option("--transducer", options->transducer, "A preset or NAME.transducer.json")
       ->capture_default_str();
-  app.add_flag("--force", options->force,
-               "Take a transducer file that says of itself that its model does not fit");
+  cli::declare_unfit_transducer(app, options->unfit_transducer);
+  cli::declare_force(app, options->existing);
+  app.add_flag("--implausible", options->implausible,
+               "Take a transducer file whose numbers no transducer has (a mass of 1e-12 kg, say)");
   app.add_option("--stroke", options->stroke, "Which of several strokes")->check(cli::from_one());
   cli::add_choice<TradeHalves>(
       app, "--half", options->halves,

@@ -107,6 +107,15 @@ void compare_bands(Comparison& comparison, const SegmentSpectra& spectra,
   comparison.spectral_distance_db = std::sqrt(squares / static_cast<double>(bands.size()));
 }
 
+// Close to half the grid's frequency a bin is real and scatters twice as much.
+void compare_narrow(Comparison& comparison, const SegmentSpectra& spectra, std::size_t window) {
+  const TexturePair& pair = comparison.pair;
+  const double high = std::min(comparison.high_per_m, 0.5 / pair.pitch_m - kHannBandwidth * spectra.step);
+  comparison.evidence.narrow = strongest_band(spectra, comparison.low_per_m, high, comparison.tolerance_db);
+  comparison.evidence.line =
+      strongest_line(pair.a, pair.b, pair.pitch_m, comparison.low_per_m, high, static_cast<double>(window));
+}
+
 Result<void> compare_spectra(Comparison& comparison, std::size_t window) {
   const TexturePair& pair = comparison.pair;
   const SegmentSpectra spectra = segment_spectra(pair.a, pair.b, pair.paired, pair.pitch_m, window,
@@ -123,6 +132,7 @@ Result<void> compare_spectra(Comparison& comparison, std::size_t window) {
         whole.aa > 0 ? "B" : "A", "nothing can be compared with silence");
   compare_whole(comparison, whole);
   compare_bands(comparison, spectra, spatial::third_octaves(comparison.low_per_m, comparison.high_per_m));
+  compare_narrow(comparison, spectra, window);
   return {};
 }
 

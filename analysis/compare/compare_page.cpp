@@ -91,6 +91,12 @@ ResultPicture difference_picture(const Comparison& c) {
                                       [](const auto& b) { return b.level_db + 2 * b.scatter_db; }));
   picture.curves.push_back(
       band_curve(c, "", true, [](const auto& b) { return b.level_db - 2 * b.scatter_db; }));
+  if (band_differs(c.evidence, c.tolerance_db)) {
+    const NarrowBand& band = *c.evidence.narrow;
+    const double level_db = c.evidence.level_db + band.level_db;
+    picture.curves.push_back(
+        {"narrow band", {kPerMm * band.low_per_m, kPerMm * band.high_per_m}, {level_db, level_db}, false});
+  }
   if (c.pair.paired)
     picture.curves.push_back(
         band_curve(c, "error of B re A", false, [](const auto& b) { return b.error_db.value_or(NAN); }));
@@ -164,6 +170,40 @@ std::string formants_table(const Comparison& c) {
   return rows.size() == 1 ? "<p>Neither has formants.</p>\n" : html_table(rows);
 }
 
+std::string strongest_words(const Comparison& c) {
+  const auto& band = c.evidence.narrow;
+  if (!band) return "not looked for: fewer than 6 cells";
+  return fmt::format("B {:+.1f} dB from {} to {}, score {:.1f}, chance {:.1f}: {}", band->level_db,
+                     for_people(band->low_per_m, Dimension::spatial_frequency),
+                     for_people(band->high_per_m, Dimension::spatial_frequency), band->score,
+                     band->chance_score,
+                     band_differs(c.evidence, c.tolerance_db) ? "a difference" : "no difference");
+}
+
+std::string line_figure(const Comparison& c) {
+  const auto& line = c.evidence.line;
+  if (!line) return "not looked for: too short";
+  return fmt::format("in {} at {}, {:.1f} dB above the density, score {:.1f}, chance {:.1f}: {}",
+                     line->in_b ? "B" : "A", for_people(line->frequency_per_m, Dimension::spatial_frequency),
+                     line->level_db, line->score, line->chance_score,
+                     line_differs(c.evidence, c.tolerance_db) ? "a difference" : "no difference");
+}
+
+std::string rms_figure(const Comparison& c) {
+  const auto words = [&](double rms) {
+    if (c.pair.unit == "N") return for_people(rms, Dimension::force);
+    if (c.pair.unit == "m") return for_people(rms, Dimension::length);
+    return fmt::format("{:.4g} {}", rms, c.pair.unit);
+  };
+  return fmt::format("A {}, B {}", words(c.a_rms), words(c.b_rms));
+}
+
+// The verdict and its first reason.
+std::string answer_words(const Comparison& c) {
+  const std::string& because = c.verdict.because;
+  return fmt::format("{}: {}.", word_of(c.verdict.likeness), because.substr(0, because.find("; ")));
+}
+
 std::string simulated_of(const Comparison& c) {
   if (c.a_simulated.empty() || c.b_simulated.empty()) {
     if (c.a_simulated.empty() && c.b_simulated.empty()) return "";
@@ -190,7 +230,11 @@ std::vector<schema::ResultFigure> comparison_figures(const Comparison& c) {
                    for_people(c.pair.a_from_m, Dimension::length),
                    for_people(c.low_per_m, Dimension::spatial_frequency),
                    for_people(c.high_per_m, Dimension::spatial_frequency))},
+      {"would have been found", detectable_words(c.evidence, c.tolerance_db)},
       {"level, B over A", fmt::format("{:+.2f} dB", c.evidence.level_db)},
+      {"RMS in that band", rms_figure(c)},
+      {"strongest narrow band, relative to the mean level", strongest_words(c)},
+      {"strongest line that one has", line_figure(c)},
       {"spectral distance",
        fmt::format("{:.2f} dB RMS over {} bands", c.spectral_distance_db, c.bands.size())},
       {"formants", fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),
@@ -201,7 +245,7 @@ std::vector<schema::ResultFigure> comparison_figures(const Comparison& c) {
                                 c.point_by_point ? "one place, point by point" : "not point by point")});
   figures.push_back({"gain, least squares", fmt::format("{:.3g}", *c.gain)});
   figures.push_back({"error of B re A", optional_db(c.error_db)});
-  figures.push_back({"what no gain takes away, re B", optional_db(c.residual_db)});
+  figures.push_back({"residual after the best gain, re B", optional_db(c.residual_db)});
   return figures;
 }
 
@@ -209,13 +253,14 @@ schema::Result<std::string> comparison_page(const Comparison& c, const ComparedN
   const std::string simulated = simulated_of(c);
   const auto pictures = pictures_html(comparison_pictures(c, names), simulated);
   if (!pictures) return schema::forward_error(pictures);
-  std::string body = fmt::format("<h1>{}</h1>\n<p>A is {}, B is {}.</p>\n", word_of(c.verdict.likeness),
-                                 escaped(names.a), escaped(names.b));
-  if (!simulated.empty())
-    body += fmt::format("<p class=\"simulated\"><strong>Simulated</strong> {}.</p>\n", escaped(simulated));
+  std::string body = fmt::format("<h1>{} against {}</h1>\n", escaped(names.b), escaped(names.a)) +
+                     answer(answer_words(c)) +
+                     fmt::format("<p>A is {}, B is {}.</p>\n", escaped(names.a), escaped(names.b)) +
+                     simulated_box(simulated);
   body += figures_html(comparison_figures(c));
   for (const std::string& note : c.notes) body += fmt::format("<p class=\"note\">{}</p>\n", escaped(note));
-  body += *pictures + "<h2>By band</h2>\n" + bands_table(c) + "<h2>Formants</h2>\n" + formants_table(c);
+  body +=
+      *pictures + folded("By one-third-octave band", bands_table(c)) + folded("Formants", formants_table(c));
   return html_document(fmt::format("{} against {}: {}", names.b, names.a, word_of(c.verdict.likeness)), body);
 }
 

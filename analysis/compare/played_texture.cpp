@@ -68,7 +68,7 @@ Result<schema::Texture> along(const SessionStroke& stroke) {
   std::vector<double> position_m(stroke.rows.size());
   std::ranges::transform(stroke.rows, position_m.begin(), &playback::SessionRow::position_m);
   SignalAlongPath signal;
-  signal.values = stroke.received_m;
+  signal.values = stroke.predicted_m;
   signal.position_m = position_m;
   signal.rate_hz = header.rate_hz;
   signal.quantum_m = header.metres_per_count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session's finger received, as a texture, and what it was to receive.
+// What a session makes of the tray by the model, as a texture, and what was wanted.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace tacto::analysis {
 
 /// One stroke of a session: the displacement that the recorded drive makes of the transducer's model (no
-/// finger's load, no hysteresis: playback::received_displacement_m), m, against the encoder's position.
+/// finger's load, no hysteresis: playback::predicted_displacement_m), m, against the encoder's position.
 struct PlayedTexture {
   schema::Texture texture;
   schema::SessionHeader header;         ///< its textures, choices and scene are those of the stroke

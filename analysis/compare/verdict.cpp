@@ -10,6 +10,8 @@
 #include <random>
 #include <span>
 
+#include "data-schema/quantity.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -128,6 +130,40 @@ void judge_shape(Evidence& evidence, const std::vector<Bands>& draws, const Band
   evidence.finest_shape_db = std::sqrt(std::max(0.0, std::pow(evidence.shape_chance_db, 2) - mean_square));
 }
 
+std::string frequency_words(double per_m) {
+  return schema::for_people(per_m, schema::Dimension::spatial_frequency);
+}
+
+std::string band_words(const NarrowBand& band) {
+  return fmt::format(
+      "from {} to {} B is {:.1f} dB {} A, relative to the mean level (score {:.1f}, chance {:.1f})",
+      frequency_words(band.low_per_m), frequency_words(band.high_per_m), std::abs(band.level_db),
+      band.level_db > 0 ? "above" : "below", band.score, band.chance_score);
+}
+
+std::string line_words(const SpectralLine& line) {
+  return fmt::format(
+      "{} has a line at {} that {} does not have, {:.1f} dB above the density (score {:.1f}, chance {:.1f})",
+      line.in_b ? "B" : "A", frequency_words(line.frequency_per_m), line.in_b ? "A" : "B", line.level_db,
+      line.score, line.chance_score);
+}
+
+// What narrow bands and lines say of a difference; empty where they say nothing.
+std::string narrow_words(const Evidence& e, double tolerance_db) {
+  std::string words;
+  if (band_differs(e, tolerance_db)) words = band_words(*e.narrow);
+  if (line_differs(e, tolerance_db)) words += (words.empty() ? "" : "; ") + line_words(*e.line);
+  return words;
+}
+
+std::string shape_words(const Evidence& e, double tolerance_db) {
+  return fmt::format(
+      "the one-third-octave bands differ by {:.1f} dB RMS about their mean (chance {:.1f} dB; {:.2f} dB "
+      "beyond it, "
+      "tolerance {:g} dB)",
+      e.shape_db, e.shape_chance_db, e.shape_excess_db, tolerance_db);
+}
+
 std::string level_words(const Evidence& e) {
   return fmt::format("level of B over A {:+.1f} dB ({:+.1f} to {:+.1f})", e.level_db, e.level_low_db,
                      e.level_high_db);
@@ -168,6 +204,28 @@ Evidence evidence_of(const BandPowers& powers, double tolerance_db) {
   return evidence;
 }
 
+bool band_differs(const Evidence& e, double tolerance_db) {
+  return e.narrow && e.narrow->score > e.narrow->chance_score && std::abs(e.narrow->level_db) > tolerance_db;
+}
+
+bool line_differs(const Evidence& e, double tolerance_db) {
+  return e.line && e.line->score > e.line->chance_score && e.line->level_db > tolerance_db;
+}
+
+std::string detectable_words(const Evidence& e, double tolerance_db) {
+  std::vector<std::string> parts;
+  if (e.narrow) {
+    const auto& all = e.narrow->detectable;
+    for (const std::size_t i : {std::size_t{0}, all.size() / 2, all.size() - 1})
+      parts.push_back(fmt::format("{:.1f} dB over {}", all[i].level_db, frequency_words(all[i].width_per_m)));
+  }
+  if (e.line)
+    parts.push_back(
+        fmt::format("or a line {:.1f} dB above the density", std::max(e.line->detectable_db, tolerance_db)));
+  return parts.empty() ? ""
+                       : fmt::format("{} (each is found in at least 8 of 10 pairs)", fmt::join(parts, ", "));
+}
+
 Verdict verdict_of(const Evidence& e, double tolerance_db) {
   if (e.segments < kFewestSegments)
     return {Likeness::undecided, fmt::format("too short: {} segments of the window, {} are the fewest",
@@ -176,12 +234,11 @@ Verdict verdict_of(const Evidence& e, double tolerance_db) {
     return {Likeness::undecided,
             fmt::format("too little in common: {} one-third-octave bands, an octave ({}) is the least",
                         e.bands, kFewestBands)};
-  if (e.shape_db > e.shape_chance_db && e.shape_excess_db > tolerance_db)
-    return {Likeness::different,
-            fmt::format("the bands differ by {:.1f} dB RMS about their mean; the "
-                        "scatter of the parts makes up to {:.1f} dB; {:.2f} dB are "
-                        "beyond it, {:g} dB are tolerated; {}",
-                        e.shape_db, e.shape_chance_db, e.shape_excess_db, tolerance_db, level_words(e))};
+  const std::string narrow = narrow_words(e, tolerance_db);
+  const bool shape = e.shape_db > e.shape_chance_db && e.shape_excess_db > tolerance_db;
+  if (shape || !narrow.empty())
+    return {Likeness::different, fmt::format("{}{}{}; {}", narrow, shape && !narrow.empty() ? "; " : "",
+                                             shape ? shape_words(e, tolerance_db) : "", level_words(e))};
   if (e.finest_shape_db > tolerance_db)
     return {Likeness::undecided, fmt::format("too noisy: only differences in shape above {:.1f} dB would "
                                              "show over the scatter of the parts; {}",

@@ -3,8 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "analysis/compare/narrow_bands.hpp"
+#include "analysis/compare/spectral_lines.hpp"
 
 namespace tacto::analysis {
 
@@ -30,6 +34,9 @@ struct Evidence {
   /// shape_db without the scatter's mean share: sqrt(shape^2 - mean chance^2), 0 at least.
   double shape_excess_db = 0;
   double finest_shape_db = 0;  ///< the least excess that would be seen over the scatter
+  /// What the one-third-octave bands are too wide for: filled in by compare().
+  std::optional<NarrowBand> narrow;
+  std::optional<SpectralLine> line;
 };
 
 /// Bootstrap over segments (Efron 1979; 1,000 draws, the same each time): segments are drawn with
@@ -42,7 +49,8 @@ Evidence evidence_of(const BandPowers& powers, double tolerance_db);
 
 /// The rule, in this order:
 /// - undecided: fewer than 8 segments, or less than an octave (3 bands) in common.
-/// - different: shape_db above shape_chance_db, and shape_excess_db above the tolerance.
+/// - different: shape_db above shape_chance_db, and shape_excess_db above the tolerance; or the strongest
+///   narrow band or line has a score above its chance_score and a level beyond the tolerance.
 /// - undecided: finest_shape_db above the tolerance: a difference that counts would not show.
 /// - louder, quieter: the level beyond the tolerance, and its interval does not hold 0.
 /// - same: the level's interval lies within the tolerance: two one-sided tests (Schuirmann 1987, J.
@@ -53,6 +61,14 @@ struct Verdict {
   std::string because;  ///< with the numbers that decided
 };
 Verdict verdict_of(const Evidence& evidence, double tolerance_db);
+
+/// Whether the strongest narrow band, or line, makes the textures different.
+bool band_differs(const Evidence& evidence, double tolerance_db);
+bool line_differs(const Evidence& evidence, double tolerance_db);
+
+/// The smallest differences that would have been found, in a sentence: in a narrow, a middle and a wide band,
+/// and of a line; none is smaller than the tolerance. Empty where neither was looked for.
+std::string detectable_words(const Evidence& evidence, double tolerance_db);
 
 inline constexpr std::size_t kFewestSegments = 8, kFewestBands = 3;
 

@@ -9,15 +9,14 @@
 #include "analysis/compare/along_path.hpp"
 #include "analysis/compare/band_sums.hpp"
 #include "analysis/compare/played_texture.hpp"
+#include "analysis/fidelity/band_kept.hpp"
 #include "analysis/fidelity/emulated_pass.hpp"
 #include "analysis/fidelity/felt.hpp"
 #include "analysis/fidelity/scratch_folder.hpp"
 #include "analysis/fidelity/trays.hpp"
 #include "data-schema/quantity.hpp"
 #include "playback/finger_path.hpp"
-#include "spatial/steady_part.hpp"
 #include "spatial/valid_band.hpp"
-#include "spatial/welch.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -128,27 +127,12 @@ Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& wa
   return row;
 }
 
-// How much of the texture's power lies within the band at a speed: of all of its samples, as they are played,
-// whether or not it knows them throughout; from one bin up.
-double kept_percent(const Texture& texture, double speed_mps, const spatial::Band& band) {
-  const auto part = spatial::steady_part(texture).texture;
-  const std::size_t window = part.signal.values.size() / 4;
-  if (window < spatial::kShortestWelchWindow) return 100;
-  const spatial::WelchSpectrum spectrum(part.signal.values, part.signal.pitch_m, window);
-  const double low = spectrum.step(), high = 0.5 / part.signal.pitch_m;
-  if (!(low < high)) return 100;
-  const double from = std::clamp(band.low_hz / speed_mps, low, high);
-  const double to = std::clamp(band.high_hz / speed_mps, low, high);
-  const double all = spectrum.power(low, high);
-  return all > 0 ? 100 * spectrum.power(from, to) / all : 100;
-}
-
 FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double speed_mps) {
   FidelitySpeed speed;
   speed.speed_mps = speed_mps;
   speed.low_hz = pass.columns.header.low_hz;
   speed.high_hz = pass.columns.header.high_hz;
-  speed.band_kept_percent = kept_percent(texture, speed_mps, {speed.low_hz, speed.high_hz});
+  speed.band_kept_percent = band_kept_percent(texture, speed_mps, {speed.low_hz, speed.high_hz});
   speed.drive_peak_v = pass.outcome.status.ticks.drive_peak_v();
   speed.drive_limit_v = pass.columns.header.transducer.drive_limit_v;
   speed.ticks = pass.columns.tick.size();

@@ -36,7 +36,7 @@ struct FidelityRow {
 struct FidelitySpeed {
   double speed_mps = 0;
   double low_hz = 0, high_hz = 0;  ///< the band that is judged
-  double band_kept_percent = 100;  ///< of the power of all that is played, from a bin up, at this speed
+  double band_kept_percent = 100;  ///< of the power of all that is played (band_kept.hpp)
   double drive_peak_v = 0, drive_limit_v = 0;
   std::uint64_t ticks = 0, amplitude_limited = 0, slew_limited = 0;
   std::optional<double>

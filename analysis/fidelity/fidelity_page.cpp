@@ -38,7 +38,7 @@ std::string taken_words(const FidelitySpeed& s) {
 
 ResultPicture error_picture(const FidelitySpeed& speed) {
   ResultPicture picture{
-      "Error by band, " + speed_words(speed), "spatial frequency (1/mm)", "error re wanted (dB)", true, {}};
+      "Error by band, " + speed_words(speed), "spatial frequency (1/mm)", "error re target (dB)", true, {}};
   for (const FidelityRow& row : speed.rows) {
     ResultCurve curve{row.tray, {}, {}, false};
     for (const BandComparison& band : row.comparison.bands) {
@@ -68,26 +68,50 @@ ResultPicture stretch_picture(const FidelitySpeed& speed) {
   const FidelityRow& last = speed.rows.back();
   ResultPicture picture{
       "The middle of the way, " + speed_words(speed), "way (mm)", "displacement (µm)", false, {}};
-  picture.curves.push_back(stretch_curve("wanted", first.comparison, first.comparison.pair.a, false));
+  picture.curves.push_back(stretch_curve("target", first.comparison, first.comparison.pair.a, false));
   picture.curves.push_back(
-      stretch_curve("felt: " + first.tray, first.comparison, first.comparison.pair.b, true));
+      stretch_curve("tray: " + first.tray, first.comparison, first.comparison.pair.b, true));
   if (speed.rows.size() > 1)
     picture.curves.push_back(
-        stretch_curve("felt: " + last.tray, last.comparison, last.comparison.pair.b, false));
+        stretch_curve("tray: " + last.tray, last.comparison, last.comparison.pair.b, false));
   return picture;
 }
 
+std::string in_db(double value) {
+  return fmt::format("{:.1f} dB", value);
+}
+
 std::string rows_table(const FidelitySpeed& speed, const std::string& simulated) {
-  std::vector<std::vector<std::string>> rows = {{"tray", "error re wanted", "in place", "re-recorded",
-                                                 "shift", "level", "wanted, RMS", "felt, RMS", ""}};
-  for (const FidelityRow& row : speed.rows)
-    rows.push_back(
-        {row.tray, fmt::format("{:.1f} dB", row.error_db), fmt::format("{:.1f} dB", row.error_in_place_db),
-         row.rerecorded_db ? fmt::format("{:.1f} dB", *row.rerecorded_db) : "",
-         for_people(row.shift_m, Dimension::length), fmt::format("{:+.2f} dB", row.level_db),
-         for_people(row.wanted_rms_m, Dimension::length), for_people(row.felt_rms_m, Dimension::length),
-         simulated.empty() ? "modelled" : "simulated"});
-  return html_table(rows);
+  using Row = FidelityRow;
+  return html_table(
+      speed.rows,
+      {{"tray", &Row::tray},
+       {"error re target", [](const Row& row) { return in_db(row.error_db); }},
+       {"in place", [](const Row& row) { return in_db(row.error_in_place_db); }},
+       {"re-recorded", [](const Row& row) { return row.rerecorded_db ? in_db(*row.rerecorded_db) : ""; }},
+       {"shift", [](const Row& row) { return for_people(row.shift_m, Dimension::length); }},
+       {"level", [](const Row& row) { return fmt::format("{:+.2f} dB", row.level_db); }},
+       {"target, RMS", [](const Row& row) { return for_people(row.wanted_rms_m, Dimension::length); }},
+       {"displacement, RMS", [](const Row& row) { return for_people(row.felt_rms_m, Dimension::length); }},
+       {"from", [&](const Row&) { return simulated.empty() ? "modelled" : "simulated"; }}});
+}
+
+// The largest error of all trays and speeds, and the smallest beside it.
+std::string fidelity_answer(const Fidelity& fidelity) {
+  const FidelitySpeed *best_at = nullptr, *worst_at = nullptr;
+  const FidelityRow *best = nullptr, *worst = nullptr;
+  for (const FidelitySpeed& speed : fidelity.speeds)
+    for (const FidelityRow& row : speed.rows) {
+      if (best == nullptr || row.error_db < best->error_db) best = &row, best_at = &speed;
+      if (worst == nullptr || row.error_db > worst->error_db) worst = &row, worst_at = &speed;
+    }
+  if (worst == nullptr) return "";
+  if (best == worst)
+    return answer(fmt::format("The error of the displacement is {:.1f} dB.", worst->error_db));
+  return answer(fmt::format(
+      "The error of the displacement is {:.1f} dB at the worst ({}, {}) and {:.1f} dB at the best ({}, {}).",
+      worst->error_db, worst->tray, speed_words(*worst_at), best->error_db, best->tray,
+      speed_words(*best_at)));
 }
 
 }  // namespace
@@ -98,7 +122,7 @@ std::vector<schema::ResultFigure> fidelity_figures(const Fidelity& fidelity) {
   for (const FidelitySpeed& speed : fidelity.speeds) {
     for (const FidelityRow& row : speed.rows)
       figures.push_back({fmt::format("{}, {}", speed_words(speed), row.tray),
-                         fmt::format("error {:.1f} dB re wanted ({})", row.error_db, kind)});
+                         fmt::format("error {:.1f} dB re the target ({})", row.error_db, kind)});
     figures.push_back({speed_words(speed) + ", taken away", taken_words(speed)});
   }
   return figures;
@@ -119,11 +143,7 @@ schema::Result<std::string> fidelity_page(const Fidelity& fidelity) {
                   escaped(fidelity.texture), escaped(fidelity.device),
                   for_people(fidelity.gain_m_per_n, Dimension::compliance),
                   for_people(fidelity.rate_hz, Dimension::frequency), escaped(fidelity.displacement));
-  if (!fidelity.simulated.empty())
-    body += fmt::format(
-        "<p class=\"simulated\"><strong>Simulated</strong> {}. No figure here was measured on "
-        "hardware.</p>\n",
-        escaped(fidelity.simulated));
+  body += simulated_box(fidelity.simulated) + fidelity_answer(fidelity);
   const auto pictures = fidelity_pictures(fidelity);
   for (std::size_t i = 0; i < fidelity.speeds.size(); ++i) {
     const FidelitySpeed& speed = fidelity.speeds[i];
@@ -137,11 +157,13 @@ schema::Result<std::string> fidelity_page(const Fidelity& fidelity) {
     body += *drawn;
   }
   body +=
-      "<p class=\"note\">Error: power of felt less wanted over wanted, in the judged band, once one constant "
-      "shift along "
-      "the way is taken out; 'in place' leaves it in, 're-recorded' is the error as a displacement sensor "
-      "tells it. Wanted is the exact reference at the finger's true "
-      "places.</p>\n";
+      "<p class=\"note\">Error: the power of the displacement minus its target over the target's, in the "
+      "judged "
+      "band, after one constant shift along the way is removed; 'in place' keeps that shift; 're-recorded' "
+      "is the "
+      "error of the displacement that a sensor records. The target is the exact reference at the finger's "
+      "true "
+      "positions.</p>\n";
   return html_document("Fidelity of " + fidelity.texture, body);
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "analysis/identify/angles.hpp"
-#include "analysis/identify/response_fitter.hpp"
+#include "analysis/identify/shared_errors.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -38,8 +38,8 @@ void put_data(const ResponseFit& fit, double reference, BodeCurves& c) {
     const auto model = fit.modelled[i], measured = fit.data.response[i];
     c.data_db.push_back(decibels(std::abs(measured) / reference));
     c.data_deg.push_back(model_deg[i] + std::arg(measured / model) * kDegrees);
-    const double sigma = sigma_at(fit.data, i);
-    const auto residual = (measured - model) / sigma * std::polar(1.0, -std::arg(model));
+  }
+  for (const auto& residual : turned_residuals(fit.data, fit.modelled)) {
     c.along.push_back(residual.real());
     c.across.push_back(residual.imag());
   }

@@ -77,4 +77,8 @@ Result<void> check_bode(const BodeData& data) {
             "take --method loop");
 }
 
+double sigma_at(const BodeData& data, std::size_t i) {
+  return data.has_noise() ? data.noise[i] : std::abs(data.response[i]);
+}
+
 }  // namespace tacto::analysis

@@ -26,10 +26,16 @@ struct BodeData {
   bool noise_from_residuals = false;  ///< nobody measured it: it is what a fit left
   /// The drive was held from sample to sample at this rate, and the answer sampled with it; 0: continuous.
   double held_rate_hz = 0;
+  std::size_t limited = 0;  ///< ticks that were held to a limit of the device
+  /// Relative errors that the values share, as those of a hysteresis that was divided out: each list has one
+  /// for each frequency, all of them times the same number of the standard normal distribution.
+  std::vector<std::vector<std::complex<double>>> shared_errors;
   std::string source, conditions, simulated;
   /// The third harmonic of the answer over its fundamental, the largest; what only a nonlinear device makes.
   /// None where it was not looked at: it takes one sine at a time.
   std::optional<double> third_harmonic;
+  bool noise_is_a_bound =
+      false;               ///< errors that may be smaller are in it: less is left than it says, at times
   bool of_device = false;  ///< measured just now, not read from a file
   double table_unit_si =
       0;  ///< a table's amplitudes were multiplied by it; 0: levels in decibels, or no table
@@ -39,6 +45,10 @@ struct BodeData {
   bool has_noise() const { return !noise.empty(); }
   bool noise_is_measured() const { return has_noise() && !noise_from_residuals; }
 };
+
+/// Standard deviation of the real and of the imaginary part at a frequency: the noise, or where it is not
+/// known the amplitude itself.
+double sigma_at(const BodeData& data, std::size_t i);
 
 inline constexpr std::size_t kLeastFrequencies = 8;  // twice the parameters of the model
 

@@ -35,10 +35,10 @@ struct Panel {
   Box box;
   Axis x, y;
 
-  Panel(Canvas& on, const std::vector<double>& frequencies, int row,
+  Panel(Canvas& on, const std::vector<double>& frequencies, double first_top, int row,
         std::initializer_list<const std::vector<double>*> shown)
       : canvas(on), hz(frequencies) {
-    double top = kTop;
+    double top = first_top;
     for (int above = 0; above < row; ++above) top += kHeights[above] + kGap;
     box = {kLeft, top, kWidth, kHeights[row]};
     double low = INFINITY, high = -INFINITY;
@@ -92,14 +92,14 @@ struct Legend {
   spatial::Pen pen;
 };
 
-void draw_bode_legend(Canvas& canvas, bool with_band) {
+void draw_bode_legend(Canvas& canvas, double top, bool with_band) {
   spatial::Colour shade = spatial::series_colour(4);
   shade.alpha = 0.45;
   const Legend entries[] = {{"measured", {spatial::kInk, 2 * kDot}},
                             {"model", {spatial::series_colour(0), 1.5}},
                             {"95 % band of the model", {shade, 7}},
                             {"inverse", {spatial::series_colour(1), 1.5, true}}};
-  Point at{kLeft, kTop - 11};
+  Point at{kLeft, top - 11};
   for (const Legend& entry : entries) {
     if (!with_band && entry.pen.width > 5) continue;
     canvas.line(at, {at.x + 20, at.y}, entry.pen);
@@ -122,40 +122,45 @@ std::string facts_of(const ResponseFit& fit) {
   return fmt::format("{}; R^2 {:.5f}", facts, fit.r_squared);
 }
 
+spatial::Heading heading_of(const ResponseFit& fit) {
+  return spatial::heading_of(title_of(fit), facts_of(fit), fit.data.simulated, kBodePage.width - 2 * kMargin);
+}
+
 }  // namespace
 
 spatial::Size BodeFigure::page() const {
-  return kBodePage;
+  return {kBodePage.width, kBodePage.height + heading_of(fit).extra()};
 }
 
 schema::Result<void> BodeFigure::draw(Canvas& canvas) const {
   const BodeCurves c = bode_curves(fit);
   const auto& hz = fit.data.frequency_hz;
-  spatial::draw_heading(canvas, {kMargin, kMargin, kBodePage.width - 2 * kMargin, spatial::kHeadingHeight},
-                        title_of(fit), facts_of(fit), fit.data.simulated);
-  draw_bode_legend(canvas, !fit.band.empty());
-  const Panel amplitude(canvas, hz, 0, {&c.model_db, &c.data_db, &c.inverse_db, &c.low_db, &c.high_db});
+  const spatial::Heading heading = heading_of(fit);
+  const double top = kTop + heading.extra();
+  spatial::draw_heading(canvas, {kMargin, kMargin}, heading);
+  draw_bode_legend(canvas, top, !fit.band.empty());
+  const Panel amplitude(canvas, hz, top, 0, {&c.model_db, &c.data_db, &c.inverse_db, &c.low_db, &c.high_db});
   amplitude.grid();
   amplitude.band(fit.curve_hz, c.low_db, c.high_db);
   amplitude.curve(fit.curve_hz, c.inverse_db, 1, true);
   amplitude.curve(fit.curve_hz, c.model_db, 0);
   amplitude.dots(c.data_db, spatial::kInk);
   amplitude.frame("amplitude (dB re rest)", false);
-  const Panel phase(canvas, hz, 1, {&c.model_deg, &c.data_deg, &c.inverse_deg});
+  const Panel phase(canvas, hz, top, 1, {&c.model_deg, &c.data_deg, &c.inverse_deg});
   phase.grid();
   phase.curve(fit.curve_hz, c.inverse_deg, 1, true);
   phase.curve(fit.curve_hz, c.model_deg, 0);
   phase.dots(c.data_deg, spatial::kInk);
   phase.frame("phase (degrees)", false);
   const std::vector<double> near(hz.size(), kNearResidual), below(hz.size(), -kNearResidual);
-  const Panel residual(canvas, hz, 2, {&c.along, &c.across, &near, &below});
+  const Panel residual(canvas, hz, top, 2, {&c.along, &c.across, &near, &below});
   residual.grid();
   residual.curve(hz, near, 4, true);
   residual.curve(hz, below, 4, true);
   residual.dots(c.along, spatial::series_colour(2));
   residual.dots(c.across, spatial::series_colour(3));
   residual.frame("residual / sigma", true);
-  canvas.text({kLeft + kWidth, kBodePage.height - 12},
+  canvas.text({kLeft + kWidth, page().height - 12},
               "residual along the model (green: amplitude) and across it (pink: phase)",
               {.size = 9, .colour = spatial::kGreyInk, .align_x = 1});
   return {};

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "analysis/identify/angles.hpp"
 
@@ -50,6 +53,12 @@ void add_sine(std::vector<float>& drive, double amplitude_v, double frequency_hz
   for (std::size_t i = 0; i < count; ++i)
     drive.push_back(
         static_cast<float>(amplitude_v * std::sin(kTurn * frequency_hz * static_cast<double>(i) / rate_hz)));
+}
+
+void add_half_cosine(std::vector<float>& drive, double from_v, double to_v, double samples) {
+  for (double i = 0; i < samples; ++i)
+    drive.push_back(static_cast<float>(std::midpoint(from_v, to_v) +
+                                       (from_v - to_v) / 2 * std::cos(std::numbers::pi * i / samples)));
 }
 
 }  // namespace
@@ -105,10 +114,23 @@ PeriodicDrive periodic_chirp(const ExcitationPlan& plan) {
   return repeated(period, plan);
 }
 
-std::vector<float> slow_loops(double rate_hz, double amplitude_v) {
+std::vector<float> slow_loops(double rate_hz, double amplitude_v, double small_v) {
+  std::vector<double> sizes_v = {amplitude_v};
+  for (const double part : {1.0, 0.8, 0.6, 0.4, 0.2}) sizes_v.push_back(part * amplitude_v);
+  if (small_v > 0)
+    for (const double part : {1.0, 0.7, 0.4, 0.2}) sizes_v.push_back(part * small_v);
+  std::ranges::sort(sizes_v, std::greater{});
   std::vector<float> drive;
-  add_sine(drive, amplitude_v, kLoopHz, rate_hz, 2);
-  for (const double part : {0.8, 0.6, 0.4, 0.2}) add_sine(drive, part * amplitude_v, kLoopHz, rate_hz, 1);
+  double at_v = 0;
+  const auto go_to = [&](double end_v, double duration_s) {
+    add_half_cosine(drive, std::exchange(at_v, end_v), end_v, duration_s * rate_hz);
+  };
+  go_to(sizes_v.front(), 0.25 / kLoopHz);
+  for (const double size_v : sizes_v) {
+    go_to(-size_v, 0.5 / kLoopHz);
+    go_to(size_v, 0.5 / kLoopHz);
+  }
+  go_to(0, 0.25 / kLoopHz);
   add_silence(drive, rate_hz);
   return drive;
 }

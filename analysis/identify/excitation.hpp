@@ -47,9 +47,10 @@ PeriodicDrive multisine(const ExcitationPlan& plan);
 /// An exponential chirp up in 1 s, over and over; measured at frequencies evenly by octaves.
 PeriodicDrive periodic_chirp(const ExcitationPlan& plan);
 
-/// A slow sine of 1 Hz: two periods at the amplitude (the first wipes out what was before), then one at each
-/// of 0.8, 0.6, 0.4 and 0.2 of it. Ends in silence.
-std::vector<float> slow_loops(double rate_hz, double amplitude_v);
+/// Slow loops of 1 Hz: two at the amplitude (the first wipes out what was before), then one at each of 0.8,
+/// 0.6, 0.4 and 0.2 of it, and at 1, 0.7, 0.4 and 0.2 of `small_v` where that is above 0, the largest first.
+/// Half cosines from each end to the next, so that no step of speed shakes the tray. Ends in silence.
+std::vector<float> slow_loops(double rate_hz, double amplitude_v, double small_v = 0);
 inline constexpr double kLoopHz = 1;
 
 }  // namespace tacto::analysis

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "analysis/identify/least_squares.hpp"
+#include "analysis/identify/misfit.hpp"
 #include "playback/hysteresis_inverse.hpp"
 
 namespace tacto::analysis {
@@ -23,6 +24,7 @@ constexpr std::size_t kFewestLoopSamples = 100;
 constexpr double kNearZero = 0.1;    // of the amplitude: where a branch is taken for straight
 constexpr double kFullSwing = 0.98;  // of the amplitude: a loop that counts as the largest
 constexpr double kSmallResidual = 0.01;
+constexpr std::size_t kFineThresholds = 8;
 
 std::vector<double> delayed(std::span<const double> v, double samples) {
   std::vector<double> out(v.size());
@@ -120,6 +122,25 @@ Result<void> check_loops(std::span<const double> v, std::span<const double> x) {
 
 }  // namespace
 
+namespace {
+
+std::vector<double> even_thresholds(std::size_t count, double amplitude_v) {
+  std::vector<double> list;
+  for (std::size_t i = 0; i < count; ++i)
+    list.push_back(amplitude_v * static_cast<double>(i) / static_cast<double>(count));
+  return list;
+}
+
+}  // namespace
+
+std::vector<double> thresholds_finer_below(double fine_v, double amplitude_v) {
+  if (fine_v > amplitude_v / 2) return even_thresholds(2 * kFineThresholds + 1, amplitude_v);
+  std::vector<double> list = even_thresholds(kFineThresholds, fine_v);
+  for (std::size_t i = 0; i <= kFineThresholds; ++i)
+    list.push_back(fine_v + (amplitude_v - fine_v) * static_cast<double>(i) / (kFineThresholds + 1));
+  return list;
+}
+
 double delay_at_rest_s(const schema::Transducer& t) {
   return 2 * t.amplifier_resistance_ohm * t.capacitance_f +
          t.damping_n_s_per_m / (t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m);
@@ -140,12 +161,13 @@ std::ptrdiff_t first_known(std::span<const double> v, double amplitude_v) {
   return std::ranges::find_if(v, [&](double value) { return -value > kFullSwing * amplitude_v; }) - v.begin();
 }
 
-LoopTable loop_table(std::span<const double> v, std::span<const double> x, double amplitude_v) {
+LoopTable loop_table(std::span<const double> v, std::span<const double> x, double amplitude_v,
+                     std::vector<double> thresholds_v) {
   LoopTable table;
   const std::ptrdiff_t from = first_known(v, amplitude_v);
-  for (std::size_t i = 0; i < kThresholds; ++i) {
-    table.thresholds_v.push_back(amplitude_v * static_cast<double>(i) / static_cast<double>(kThresholds));
-    const auto play = playback::played_through({{table.thresholds_v.back()}, {1}}, v);
+  table.thresholds_v = std::move(thresholds_v);
+  for (const double threshold_v : table.thresholds_v) {
+    const auto play = playback::played_through({{threshold_v}, {1}}, v);
     table.columns.emplace_back(play.begin() + from, play.end());
   }
   table.answer.assign(x.begin() + from, x.end());
@@ -174,23 +196,63 @@ std::vector<double> left_of(const LoopTable& table, std::span<const std::size_t>
   return rest;
 }
 
-void put_quality(const LoopTable& table, std::span<const double> weights, LoopFit& fit) {
+double squares_of(std::span<const double> x) {
+  return std::inner_product(x.begin(), x.end(), x.begin(), 0.0);
+}
+
+// A change of the operator that a fit found, once this is scaled as put_operator() does.
+schema::Hysteresis scaled_change(const schema::Hysteresis& found, schema::Hysteresis change, double limit_v) {
+  const auto at_limit = [&](const schema::Hysteresis& of) {
+    double sum = 0;
+    for (std::size_t i = 0; i < of.weights.size(); ++i)
+      sum += of.weights[i] * std::max(0.0, limit_v - of.thresholds_v[i]);
+    return sum;
+  };
+  const double whole = at_limit(found), changed = at_limit(change) / whole;
+  for (std::size_t i = 0; i < found.weights.size(); ++i) {
+    change.thresholds_v.push_back(found.thresholds_v[i]);
+    change.weights.push_back(-changed * found.weights[i]);
+  }
+  for (double& weight : change.weights) weight *= limit_v / whole;
+  return change;
+}
+
+void put_errors(const LoopTable& table, std::span<const double> v, std::span<const double> weights,
+                std::span<const double> left, double limit_v, LoopFit& fit) {
+  const schema::Hysteresis found{table.thresholds_v, {weights.begin(), weights.end() - 1}};
+  fit.errors = operator_errors({v, v.size() - left.size(), found, left});
+  for (auto* changes : {&fit.errors.by_noise, &fit.errors.by_misfit})
+    for (schema::Hysteresis& change : *changes) change = scaled_change(found, std::move(change), limit_v);
+  const double size = rms(centred(table.answer));
+  fit.errors.noise /= size;
+  fit.errors.misfit /= size;
+}
+
+void put_quality(const LoopTable& table, std::span<const double> v, std::span<const double> weights,
+                 double limit_v, LoopFit& fit) {
   std::vector<std::size_t> all(table.columns.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::size_t line[] = {0, table.columns.size() - 1};
   const auto straight =
       non_negative_least_squares({table.columns.front(), table.columns.back()}, table.answer, 1);
   const double size = rms(centred(table.answer));
-  fit.residual_part = rms(left_of(table, all, weights)) / size;
-  fit.linear_residual_part = rms(left_of(table, line, straight)) / size;
+  const std::vector<double> left = left_of(table, all, weights),
+                            left_by_line = left_of(table, line, straight);
+  fit.residual_part = rms(left) / size;
+  fit.linear_residual_part = rms(left_by_line) / size;
   fit.r_squared = 1 - fit.residual_part * fit.residual_part;
+  put_errors(table, v, weights, left, limit_v, fit);
+  const auto plays = static_cast<double>(table.thresholds_v.size() - 1);
+  fit.explains_more = squares_of(left_by_line) - squares_of(left) >
+                      std::pow(fit.errors.noise * size, 2) * plays * highest_chi_squared(plays);
   fit.usable = fit.residual_part < std::max(kSmallResidual, fit.linear_residual_part / 3);
 }
 
 }  // namespace
 
 Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const double> displacement_m,
-                          double rate_hz, double delay_s, double drive_limit_v) {
+                          double rate_hz, double delay_s, double drive_limit_v,
+                          std::vector<double> thresholds_v) {
   if (const auto sound = check_loops(drive_v, displacement_m); !sound) return schema::forward_error(sound);
   const std::vector<double> v = delayed(drive_v, delay_s * rate_hz);
   LoopFit fit;
@@ -200,9 +262,10 @@ Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const doubl
     return fail(Fault::unsuitable, "the drive makes no whole loop between its largest values, both ways",
                 "loop",
                 "drive it slowly with a sine or a triangle about 0, two periods at the largest swing first");
-  const LoopTable table = loop_table(v, displacement_m, fit.amplitude_v);
+  if (thresholds_v.empty()) thresholds_v = even_thresholds(kThresholds, fit.amplitude_v);
+  const LoopTable table = loop_table(v, displacement_m, fit.amplitude_v, std::move(thresholds_v));
   std::vector<double> weights = non_negative_least_squares(table.columns, table.answer, 1);
-  put_quality(table, weights, fit);
+  put_quality(table, v, weights, drive_limit_v, fit);
   put_loop_model(table, v, loop, weights, fit);
   weights.pop_back();
   put_operator(table.thresholds_v, std::move(weights), drive_limit_v, fit);

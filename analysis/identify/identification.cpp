@@ -21,6 +21,13 @@ using schema::Result;
 constexpr double kMostOfRate = 0.45;
 constexpr double kLongestSweepS = 3600;  // all of it is held: 36e6 samples at 10 kHz
 
+double largest_gain(const ExcitationPlan& plan, const schema::Transducer& base) {
+  double most_m_per_v = 0;
+  for (double hz = plan.low_hz; hz < plan.high_hz; hz *= 1.02)
+    most_m_per_v = std::max(most_m_per_v, std::abs(schema::actuator_response(base, hz)));
+  return most_m_per_v;
+}
+
 // What the base says the drive will do. A first identification of something unknown may be wrong about that:
 // the device keeps its own limits.
 Result<void> check_amplitude(const ExcitationPlan& plan, const schema::Transducer& base) {
@@ -29,9 +36,7 @@ Result<void> check_amplitude(const ExcitationPlan& plan, const schema::Transduce
         Fault::unsuitable,
         fmt::format("{:g} Hz are too near half the device's rate of {:g} Hz", plan.high_hz, plan.rate_hz),
         "--high", fmt::format("at most {:g} Hz", kMostOfRate * plan.rate_hz));
-  double most_m = 0;
-  for (double hz = plan.low_hz; hz < plan.high_hz; hz *= 1.02)
-    most_m = std::max(most_m, plan.amplitude_v * std::abs(schema::actuator_response(base, hz)));
+  const double most_m = plan.amplitude_v * largest_gain(plan, base);
   const char* const remedy = "give a smaller --amplitude";
   if (plan.amplitude_v > base.drive_limit_v)
     return fail(Fault::unsuitable,
@@ -62,7 +67,8 @@ Result<void> check_sweep(const ExcitationPlan& plan) {
 }
 
 std::string method_words(IdentifyMethod method) {
-  constexpr const char* kWords[] = {"stepped sine", "multisine", "repeated chirp", "slow loops", "taps"};
+  constexpr const char* kWords[] = {"stepped sine", "multisine", "repeated chirp",
+                                    "slow loops",   "taps",      "stepped sine"};
   return kWords[static_cast<std::size_t>(method)];
 }
 
@@ -75,7 +81,10 @@ std::string overstated_words(const ResponseFit& fit) {
 
 std::string verdict_of(const ResponseFit& fit) {
   if (!fit.converged) return fit.ended;
-  std::string words = fit.misfit.found ? fit.misfit.words + "; " + fit.suggestion : "the residuals are noise";
+  const char* const fits = fit.data.noise_is_a_bound
+                               ? "the residuals are within the noise and the operator's errors"
+                               : "the residuals are noise";
+  std::string words = fit.misfit.found ? fit.misfit.words + "; " + fit.suggestion : fits;
   if (!fit.misfit.found && fit.evenness.uneven) words += ", but uneven: " + evenness_words(fit.evenness);
   return words + overstated_words(fit);
 }
@@ -102,22 +111,26 @@ void carry_over(const schema::Transducer& base, schema::Identification& found) {
 
 }  // namespace
 
-Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod method, const ExcitationPlan& plan,
-                             const schema::Transducer& base, const std::function<bool()>& stop_asked,
-                             const std::function<void(double)>& progress) {
+Result<DrivenResponse> driven_response(firmware_host::Device& device, IdentifyMethod method,
+                                       const ExcitationPlan& plan, const schema::Transducer& base,
+                                       const std::function<bool()>& stop_asked,
+                                       const std::function<void(double)>& progress) {
   if (const auto sound = check_amplitude(plan, base); !sound) return schema::forward_error(sound);
-  BodeData data;
+  DrivenResponse answer;
+  BodeData& data = answer.data;
   if (method == IdentifyMethod::sweep) {
     if (const auto ends = check_sweep(plan); !ends) return schema::forward_error(ends);
     const SteppedSine stepped = stepped_sine(plan);
-    const auto tray = drive_tray(device, stepped.drive_v, stop_asked, progress);
+    auto tray = drive_tray(device, stepped.drive_v, stop_asked, progress);
     if (!tray) return schema::forward_error(tray);
     data = response_of_steps(*tray, stepped);
+    answer.drive = {tray->rate_hz, std::move(tray->drive_v), lines_of(stepped, tray->rate_hz)};
   } else {
     const PeriodicDrive drive = method == IdentifyMethod::chirp ? periodic_chirp(plan) : multisine(plan);
-    const auto tray = drive_tray(device, drive.drive_v, stop_asked, progress);
+    auto tray = drive_tray(device, drive.drive_v, stop_asked, progress);
     if (!tray) return schema::forward_error(tray);
     data = response_of_periods(*tray, drive);
+    answer.drive = {tray->rate_hz, std::move(tray->drive_v), lines_of(drive)};
   }
   data.of_device = true;
   data.source = device.capabilities().uri;
@@ -126,12 +139,29 @@ Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod metho
                                 schema::for_people(plan.amplitude_v, schema::Dimension::voltage),
                                 schema::for_people(plan.low_hz, schema::Dimension::frequency),
                                 schema::for_people(plan.high_hz, schema::Dimension::frequency));
-  return data;
+  return answer;
+}
+
+Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod method, const ExcitationPlan& plan,
+                             const schema::Transducer& base, const std::function<bool()>& stop_asked,
+                             const std::function<void(double)>& progress) {
+  auto answer = driven_response(device, method, plan, base, stop_asked, progress);
+  if (!answer) return schema::forward_error(answer);
+  return std::move(answer->data);
 }
 
 double loop_amplitude_v(const schema::Transducer& base) {
   return std::min(base.drive_limit_v,
                   base.displacement_limit_m / std::abs(schema::actuator_response(base, 0)));
+}
+
+double joint_amplitude_v(const ExcitationPlan& plan, const schema::Transducer& base) {
+  constexpr double kOfLoops = 0.2, kOfLimits = 0.9;
+  const double most_v = std::min({kOfLoops * loop_amplitude_v(base),
+                                  kOfLimits * base.slew_limit_v_per_s / (kTurn * plan.high_hz),
+                                  kOfLimits * base.displacement_limit_m / largest_gain(plan, base)});
+  const double digit_v = std::pow(10, std::floor(std::log10(most_v)) - 2);  // three are enough
+  return digit_v * std::round(most_v / digit_v);
 }
 
 schema::Transducer identified(const ResponseFit& fit, const schema::Transducer& base,
@@ -170,6 +200,17 @@ schema::Transducer identified(const LoopFit& fit, const schema::Transducer& base
   }
   carry_over(base, found);
   return named(t, name, found, base.name);
+}
+
+schema::Transducer identified(const JointFit& fit, const schema::Transducer& base, const std::string& name) {
+  schema::Transducer t = identified(fit.response, base, name);
+  t.hysteresis.reset();
+  if (fit.has_hysteresis) t.hysteresis = fit.loops.hysteresis;
+  t.identification->words +=
+      fit.has_hysteresis ? fmt::format("; a loop of {:.3g} %, of which the operator leaves {:.2g} %",
+                                       100 * fit.loops.opening, 100 * fit.loops.residual_part)
+                         : fmt::format("; the loops show no hysteresis: {:.2g} %", 100 * fit.loops.opening);
+  return t;
 }
 
 schema::Transducer identified(const TapsFit& fit, const schema::Transducer& base, const std::string& name,

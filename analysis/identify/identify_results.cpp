@@ -90,6 +90,19 @@ std::vector<ResultPicture> bode_pictures(const ResponseFit& fit) {
   return {amplitude_picture(fit, c), phase, residuals};
 }
 
+void add_loops(const LoopFit& fit, Results& results) {
+  results.figures.push_back(
+      {"loop", fmt::format("{:.3g} % open at {:.3g} V", 100 * fit.opening, fit.amplitude_v)});
+  results.figures.push_back({"lag", fmt::format("{:.3g} degrees", kDegrees * fit.lag_rad)});
+  results.figures.push_back({"left", fmt::format("{:.2g} % by the operator, {:.3g} % by a line",
+                                                 100 * fit.residual_part, 100 * fit.linear_residual_part)});
+  results.pictures.push_back({"Operator",
+                              "threshold (V)",
+                              "weight",
+                              false,
+                              {{"", fit.hysteresis.thresholds_v, fit.hysteresis.weights}}});
+}
+
 std::string spread_words(const Spread& s, const char* unit) {
   return fmt::format("{:.4g}{}, spread {:.2g}, standard deviation {:.2g}, {:.4g} to {:.4g}", s.median, unit,
                      s.spread, s.standard_deviation, s.least, s.most);
@@ -121,16 +134,14 @@ Results identify_results(const ResponseFit& fit, const ModelChoice& choice, cons
 
 Results identify_results(const LoopFit& fit, const schema::Transducer& found) {
   Results results = begun_results(found);
-  results.figures.push_back(
-      {"loop", fmt::format("{:.3g} % open at {:.3g} V", 100 * fit.opening, fit.amplitude_v)});
-  results.figures.push_back({"lag", fmt::format("{:.3g} degrees", kDegrees * fit.lag_rad)});
-  results.figures.push_back({"left", fmt::format("{:.2g} % by the operator, {:.3g} % by a line",
-                                                 100 * fit.residual_part, 100 * fit.linear_residual_part)});
-  results.pictures.push_back({"Operator",
-                              "threshold (V)",
-                              "weight",
-                              false,
-                              {{"", found.hysteresis->thresholds_v, found.hysteresis->weights}}});
+  add_loops(fit, results);
+  return results;
+}
+
+Results identify_results(const JointFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                         const schema::Transducer& found) {
+  Results results = identify_results(fit.response, choice, base, found);
+  if (fit.has_hysteresis) add_loops(fit.loops, results);
   return results;
 }
 

@@ -13,6 +13,9 @@ schema::Results identify_results(const ResponseFit& fit, const ModelChoice& choi
                                  const schema::Transducer& base, const schema::Transducer& found);
 /// The loop's opening and what the operator leaves.
 schema::Results identify_results(const LoopFit& fit, const schema::Transducer& found);
+/// Both.
+schema::Results identify_results(const JointFit& fit, const ModelChoice& choice,
+                                 const schema::Transducer& base, const schema::Transducer& found);
 /// Resonance and damping over the taps, and what the first foretell of the others.
 schema::Results identify_results(const TapsFit& fit, const TapsPrediction& foretold,
                                  const schema::Transducer& found);

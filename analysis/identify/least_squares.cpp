@@ -239,4 +239,28 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
   return {x.data(), x.data() + x.size()};
 }
 
+namespace {
+
+std::vector<std::vector<double>> columns_of(const MatrixXd& m) {
+  std::vector<std::vector<double>> list;
+  for (Index j = 0; j < m.cols(); ++j) list.emplace_back(m.col(j).data(), m.col(j).data() + m.rows());
+  return list;
+}
+
+}  // namespace
+
+ColumnErrors column_errors(const std::vector<std::vector<double>>& columns,
+                           const std::vector<std::vector<double>>& omitted) {
+  std::vector<std::vector<double>> all = columns;
+  all.insert(all.end(), omitted.begin(), omitted.end());
+  const MatrixXd r = Triangle(all, all.front()).r;
+  const auto own = static_cast<Index>(columns.size()), others = static_cast<Index>(omitted.size());
+  const auto square = r.topLeftCorner(own, own).triangularView<Eigen::Upper>();
+  ColumnErrors errors;
+  errors.noise = columns_of(square.solve(MatrixXd::Identity(own, own)));
+  errors.taken = columns_of(square.solve(r.topRightCorner(own, others)));
+  for (Index j = 0; j < others; ++j) errors.left.push_back(r.col(own + j).tail(others).squaredNorm());
+  return errors;
+}
+
 }  // namespace tacto::analysis

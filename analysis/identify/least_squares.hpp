@@ -52,4 +52,15 @@ RobustErrors robust_errors(const Residuals& residuals, std::size_t residual_coun
 std::vector<double> non_negative_least_squares(const std::vector<std::vector<double>>& columns,
                                                std::span<const double> b, std::size_t free_columns);
 
+/// How least squares over `columns` (A = Q R) err. `noise`: where b errs by independent errors of variance 1,
+/// the changes of x along independent directions, one standard error each: the columns of the inverse of R.
+/// `taken` and `left`: where b holds one of the `omitted` columns besides, what x takes up of it, and the
+/// square sum of the rest.
+struct ColumnErrors {
+  std::vector<std::vector<double>> noise, taken;
+  std::vector<double> left;
+};
+ColumnErrors column_errors(const std::vector<std::vector<double>>& columns,
+                           const std::vector<std::vector<double>>& omitted);
+
 }  // namespace tacto::analysis

@@ -41,6 +41,7 @@ BodeData without_value(BodeData data, std::size_t index) {
   data.frequency_hz.erase(data.frequency_hz.begin() + at);
   data.response.erase(data.response.begin() + at);
   if (data.has_noise()) data.noise.erase(data.noise.begin() + at);
+  for (auto& error : data.shared_errors) error.erase(error.begin() + at);
   return data;
 }
 

@@ -186,7 +186,8 @@ Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base) 
   const bool actuator = fit.data.direction == Direction::actuator;
   return check_times(actuator ? fit.transducer.actuator_scale / base.actuator_scale
                               : fit.transducer.sensor_scale / base.sensor_scale,
-                     base, fit.data.source, "give --amplitude-unit, or --force where the gain is right");
+                     base, fit.data.source,
+                     "give --amplitude-unit, or --implausible where the gain is right");
 }
 
 Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer& base) {
@@ -202,12 +203,14 @@ Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer&
                   resonance->value, times, base.name, in_khz ? "kHz" : "rad/s",
                   resonance->value * (in_khz ? 1e3 : 1 / kTurn)),
       fit.data.source,
-      "write frequency_khz or frequency_rad_per_s into the header, or give --force where they are right");
+      "write frequency_khz or frequency_rad_per_s into the header, or give --implausible where they are "
+      "right");
 }
 
 Result<void> check_size(const LoopFit& fit, const schema::Transducer& base, const std::string& source) {
-  return check_times(std::abs(fit.gain_m_per_v) / std::abs(schema::actuator_response(base, 0)), base, source,
-                     "put the unit into the table's first line, or give --force where the gain is right");
+  return check_times(
+      std::abs(fit.gain_m_per_v) / std::abs(schema::actuator_response(base, 0)), base, source,
+      "put the unit into the table's first line, or give --implausible where the gain is right");
 }
 
 Result<void> check_upright(const LoopFit& fit, const std::string& source, bool inverted) {

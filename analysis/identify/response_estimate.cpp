@@ -16,21 +16,6 @@ constexpr int kHarmonics = 5;
 constexpr std::ptrdiff_t kNeighbours = 4;  // on either side
 static_assert(kFewestNeighbours == kNeighbours + 1, "at the ends of the band");
 
-// (2 / n) sum x exp(-i w t), the amplitude of a sine of `turns` in the window; the turning factor by
-// recurrence, set right every 256 samples: exact to 1e-13.
-Complex amplitude_of(std::span<const double> x, double turns_per_sample) {
-  const Complex step = std::polar(1.0, -kTurn * turns_per_sample);
-  Complex sum = 0, turn = 1;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (i % 256 == 0)
-      turn = std::polar(1.0, -kTurn * std::fmod(turns_per_sample * static_cast<double>(i), 1.0));
-    sum += x[i] * turn;
-    turn = {turn.real() * step.real() - turn.imag() * step.imag(),
-            turn.real() * step.imag() + turn.imag() * step.real()};
-  }
-  return 2.0 * sum / static_cast<double>(x.size());
-}
-
 double power_of(std::span<const double> x) {
   return std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size());
 }
@@ -60,6 +45,35 @@ StepAnswer answer_of(std::span<const double> x, double turns_per_sample) {
 
 }  // namespace
 
+// The turning factor by recurrence, set right every 256 samples: exact to 1e-13.
+std::complex<double> amplitude_of(std::span<const double> x, double turns_per_sample) {
+  const Complex step = std::polar(1.0, -kTurn * turns_per_sample);
+  Complex sum = 0, turn = 1;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (i % 256 == 0)
+      turn = std::polar(1.0, -kTurn * std::fmod(turns_per_sample * static_cast<double>(i), 1.0));
+    sum += x[i] * turn;
+    turn = {turn.real() * step.real() - turn.imag() * step.imag(),
+            turn.real() * step.imag() + turn.imag() * step.real()};
+  }
+  return 2.0 * sum / static_cast<double>(x.size());
+}
+
+std::vector<MeasuredLine> lines_of(const SteppedSine& plan, double rate_hz) {
+  std::vector<MeasuredLine> lines;
+  for (const SineStep& step : plan.steps)
+    lines.push_back({step.first, step.settled, step.end - step.settled, step.frequency_hz / rate_hz});
+  return lines;
+}
+
+std::vector<MeasuredLine> lines_of(const PeriodicDrive& plan) {
+  std::vector<MeasuredLine> lines;
+  for (const std::size_t line : plan.lines)
+    lines.push_back(
+        {0, plan.period, plan.period, static_cast<double>(line) / static_cast<double>(plan.period)});
+  return lines;
+}
+
 double noise_no_less(double noise, Complex response) {
   return std::max(noise, 1e-9 * std::abs(response));
 }
@@ -78,6 +92,7 @@ std::vector<double> mean_of_neighbours(const std::vector<double>& squares) {
 BodeData response_of_steps(const DrivenTray& tray, const SteppedSine& plan) {
   BodeData data;
   data.held_rate_hz = tray.rate_hz;
+  data.limited = tray.limited;
   for (const SineStep& step : plan.steps) {
     const std::size_t count = step.end - step.settled;
     const double turns = step.frequency_hz / tray.rate_hz;
@@ -98,6 +113,7 @@ BodeData response_of_steps(const DrivenTray& tray, const SteppedSine& plan) {
 BodeData response_of_periods(const DrivenTray& tray, const PeriodicDrive& plan) {
   BodeData data;
   data.held_rate_hz = tray.rate_hz;
+  data.limited = tray.limited;
   const auto periods = static_cast<double>(plan.periods - 1);
   std::vector<double> squares, drives;
   for (const std::size_t line : plan.lines) {

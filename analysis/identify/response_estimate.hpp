@@ -3,6 +3,7 @@
 #pragma once
 
 #include <complex>
+#include <span>
 #include <vector>
 
 #include "analysis/identify/bode_data.hpp"
@@ -10,6 +11,19 @@
 #include "analysis/identify/excitation.hpp"
 
 namespace tacto::analysis {
+
+/// (2 / n) sum x exp(-i w t), w in turns a sample: the amplitude of a sine that x holds whole periods of.
+std::complex<double> amplitude_of(std::span<const double> x, double turns_per_sample);
+
+/// The samples of a drive that one frequency is measured on: whole periods, from `first` on; before it, from
+/// `begin` on, the drive is the same and settles.
+struct MeasuredLine {
+  std::size_t begin = 0, first = 0, count = 0;
+  double turns_per_sample = 0;
+  std::size_t end() const { return first + count; }
+};
+std::vector<MeasuredLine> lines_of(const SteppedSine& plan, double rate_hz);
+std::vector<MeasuredLine> lines_of(const PeriodicDrive& plan);
 
 /// Sums over whole periods of each step: exact for sines that lie on the step's own lines. The noise is the
 /// scatter of what is neither the mean nor one of the first five harmonics. Precondition: the tray was driven

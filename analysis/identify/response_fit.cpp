@@ -14,6 +14,7 @@
 #include "analysis/identify/outlier.hpp"
 #include "analysis/identify/pure_delay.hpp"
 #include "analysis/identify/response_fitter.hpp"
+#include "analysis/identify/shared_errors.hpp"
 #include "analysis/identify/starting_values.hpp"
 #include "analysis/identify/three_poles.hpp"
 
@@ -39,15 +40,6 @@ double r_squared_of(const BodeData& data, std::span<const Complex> modelled) {
     whole += std::norm(data.response[i] - mean);
   }
   return 1 - left / whole;
-}
-
-std::vector<Complex> turned_residuals(const BodeData& data, std::span<const Complex> modelled) {
-  std::vector<Complex> list;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    list.push_back((data.response[i] - modelled[i]) / sigma_at(data, i) *
-                   std::polar(1.0, -std::arg(modelled[i])));
-  }
-  return list;
 }
 
 void put_curve(const ResponseFitter& fitter, const ResponseModel& model, ResponseFit& fit) {
@@ -103,6 +95,9 @@ ResponseFit fitted_from(const BodeData& data, const ResponseModel& model, std::v
   fit.r_squared = r_squared_of(data, fit.modelled);
   const auto residuals = turned_residuals(data, fit.modelled);
   fit.misfit = misfit_of(residuals, fitter.free_count(), data.noise_is_measured());
+  // Under a bound there may be anything.
+  if (data.noise_is_a_bound && fit.misfit.reduced_chi_squared <= fit.misfit.chi_squared_limit)
+    fit.misfit.found = false, fit.misfit.words.clear();
   if (data.noise_from_residuals) fit.evenness = evenness_of(residuals, data.frequency_hz);
   if (fit.evenness.uneven) fitter.take_uneven_noise();
   fit.transducer = model.transducer(fitter.values());
@@ -245,14 +240,16 @@ void suggest(const BodeData& data, const ModelChoice& choice, const schema::Tran
         mode->fit.find("second_mode_hz")->value, percent(by_mode));
   else if (by_lag < kExplains)
     fit.suggestion = fmt::format(
-        "a lag of {:.2g} degrees leaves {} of the residuals: a hysteresis (--lag, or --method loop)",
+        "a lag of {:.2g} degrees leaves {} of the residuals: a hysteresis (on a device --method joint fits "
+        "it; "
+        "else --lag)",
         kDegrees * lag->fit.find("lag_rad")->value, percent(by_lag));
   else
     fit.suggestion = words_of_delay(data, choice, base, fit);
   if (data.third_harmonic.value_or(0) > kNonlinear)
-    fit.suggestion += fmt::format("; the answer has a third harmonic of {}: the device is not linear{}",
-                                  percent(*data.third_harmonic),
-                                  by_lag < kExplains ? "" : " (--method loop finds a hysteresis)");
+    fit.suggestion += fmt::format(
+        "; the answer has a third harmonic of {}: the device is not linear{}", percent(*data.third_harmonic),
+        by_lag < kExplains ? "" : " (on a device --method joint fits a hysteresis)");
 }
 
 }  // namespace
@@ -314,11 +311,15 @@ void distrust(ResponseFit& fit) {
 
 }  // namespace
 
+ResponseFit fit_values(const BodeData& measured, const ModelChoice& choice, const schema::Transducer& base) {
+  return fit_once(with_noise_known(measured, choice, base), choice, base);
+}
+
 ResponseFit fit_response(const BodeData& measured, const ModelChoice& choice,
                          const schema::Transducer& base) {
   const BodeData data = with_noise_known(measured, choice, base);
   ResponseFit fit = fit_once(data, choice, base);
-  if (const double times = fit.misfit.noise_overstated; times > 0) {
+  if (const double times = fit.misfit.noise_overstated; times > 0 && !data.noise_is_a_bound) {
     fit = fit_response(without_noise(measured), choice, base);
     fit.noise_overstated = times;
     return fit;

@@ -58,6 +58,9 @@ struct ResponseFit {
 /// says that the model is wrong. Precondition: check_bode(data).
 ResponseFit fit_response(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base);
 
+/// The same values without what is said of them: no outlier is looked for, no reason of a misfit.
+ResponseFit fit_values(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base);
+
 /// What no frequency response can tell apart, and what was done about it: one line each.
 std::vector<std::string> held_words(const ModelChoice& choice, const schema::Transducer& base);
 

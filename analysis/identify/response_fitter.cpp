@@ -16,12 +16,8 @@ constexpr double kNowhere = 0.5;  // of a pole's range
 
 }  // namespace
 
-double sigma_at(const BodeData& data, std::size_t i) {
-  return data.has_noise() ? data.noise[i] : std::abs(data.response[i]);
-}
-
 ResponseFitter::ResponseFitter(const BodeData& data, const ResponseModel& model, std::vector<double> start)
-    : data_(data), model_(model), values_(std::move(start)), held_(values_.size(), false) {}
+    : data_(data), model_(model), shared_(data), values_(std::move(start)), held_(values_.size(), false) {}
 
 void ResponseFitter::run() {
   solve();
@@ -100,6 +96,7 @@ void ResponseFitter::residuals(std::span<const double> coordinates, std::span<do
     out[2 * i] = r.real();
     out[2 * i + 1] = r.imag();
   }
+  shared_.take_from(out);
 }
 
 void ResponseFitter::solve() {

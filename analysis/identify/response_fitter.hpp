@@ -9,12 +9,9 @@
 #include "analysis/identify/bode_data.hpp"
 #include "analysis/identify/least_squares.hpp"
 #include "analysis/identify/response_model.hpp"
+#include "analysis/identify/shared_errors.hpp"
 
 namespace tacto::analysis {
-
-/// Standard deviation of the real and of the imaginary part at a frequency: the noise, or where nobody knows
-/// any the amplitude itself.
-double sigma_at(const BodeData& data, std::size_t i);
 
 /// Data and model outlive it. Precondition: check_bode(data), as many values as parameters.
 class ResponseFitter {
@@ -50,6 +47,7 @@ class ResponseFitter {
 
   const BodeData& data_;
   const ResponseModel& model_;
+  SharedErrors shared_;
   std::vector<double> values_;
   std::vector<bool> held_;
   Solution solution_;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "analysis/identify/least_squares.hpp"
-#include "analysis/identify/response_fitter.hpp"
 
 namespace tacto::analysis {
 namespace {

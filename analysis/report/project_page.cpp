@@ -35,21 +35,36 @@ std::string main_figures(const ProjectFile& file) {
   return words.substr(0, end) + "…";
 }
 
+// Of many files the first are shown, the others open by a click.
+constexpr std::size_t kRowsShown = 20, kSectionsShown = 12;
+
+std::string files_table(const Project& project, std::size_t from, std::size_t to) {
+  using File = const ProjectFile*;
+  std::vector<File> files;
+  for (std::size_t i = from; i < to; ++i) files.push_back(&project.files[i]);
+  return html_table(files, {{"file", [&](File file) { return within(project, file->path); }},
+                            {"kind", [](File file) { return std::string(schema::kind_name(file->kind)); }},
+                            {"date", [](File file) { return file->date; }},
+                            {"device or source", [](File file) { return source_words(*file); }},
+                            {"SHA-256", [](File file) { return file->checksum; }},
+                            {"main figures", [](File file) { return main_figures(*file); }}});
+}
+
 std::string overview(const Project& project) {
-  std::vector<std::vector<std::string>> rows = {
-      {"file", "kind", "date", "device or source", "SHA-256", "main figures"}};
-  for (const ProjectFile& file : project.files)
-    rows.push_back({within(project, file.path), std::string(schema::kind_name(file.kind)), file.date,
-                    source_words(file), file.checksum, main_figures(file)});
-  return rows.size() == 1 ? "" : "<h2>What was measured where</h2>\n" + html_table(rows);
+  const std::size_t files = project.files.size(), shown = std::min(kRowsShown, files);
+  if (files == 0) return "";
+  std::string html = "<h2>What was measured where</h2>\n" + files_table(project, 0, shown);
+  if (shown < files)
+    html += folded(fmt::format("{} more files", files - shown), files_table(project, shown, files));
+  return html;
 }
 
 std::string broken_list(const Project& project) {
   if (project.broken.empty()) return "";
-  std::vector<std::vector<std::string>> rows = {{"file that can't be used", "why"}};
-  for (const BrokenFile& file : project.broken)
-    rows.push_back({within(project, file.path), schema::message(file.error)});
-  return "<h2>Left out</h2>\n" + html_table(rows);
+  return "<h2>Left out</h2>\n" +
+         html_table(project.broken, {{"file that can't be used",
+                                      [&](const auto& file) { return within(project, file.path); }},
+                                     {"why", [](const auto& file) { return schema::message(file.error); }}});
 }
 
 std::string foreign_list(const Project& project) {
@@ -61,15 +76,19 @@ std::string foreign_list(const Project& project) {
   return html + "</p>\n";
 }
 
+std::string section_body(const Project& project, const ProjectFile& file) {
+  std::string html = file.figures.empty() ? "" : figures_html(file.figures);
+  for (const std::string& svg : file.drawings) html += inline_svg(svg, within(project, file.path));
+  html += file.pictures_html;
+  if (file.simulated.empty()) return html;
+  return fmt::format("<p class=\"simulated\"><strong>Simulated</strong> {}.</p>\n", escaped(file.simulated)) +
+         html;
+}
+
 std::string section(const Project& project, const ProjectFile& file) {
-  const std::string name = within(project, file.path);
-  std::string html = fmt::format("<h2>{}: {}</h2>\n", escaped(schema::kind_name(file.kind)), escaped(name));
-  if (!file.simulated.empty())
-    html +=
-        fmt::format("<p class=\"simulated\"><strong>Simulated</strong> {}.</p>\n", escaped(file.simulated));
-  if (!file.figures.empty()) html += figures_html(file.figures);
-  for (const std::string& svg : file.drawings) html += inline_svg(svg, name);
-  return html + file.pictures_html;
+  const std::string title = fmt::format("{}: {}", schema::kind_name(file.kind), within(project, file.path));
+  if (project.files.size() > kSectionsShown) return folded(title, section_body(project, file));
+  return fmt::format("<h2>{}</h2>\n{}", escaped(title), section_body(project, file));
 }
 
 std::string counted(const Project& project) {
@@ -83,9 +102,10 @@ std::string counted(const Project& project) {
 
 std::string project_page(const Project& project) {
   const std::string title = std::filesystem::weakly_canonical(project.folder).filename().string();
-  std::string body = fmt::format("<h1>{}</h1>\n<p>{}. Made {} by {}.</p>\n", escaped(title), counted(project),
-                                 schema::creation_time(), escaped(kCreator));
-  body += overview(project) + broken_list(project) + foreign_list(project);
+  std::string body = fmt::format("<h1>{}</h1>\n{}<p>Made {} by {}.</p>\n", escaped(title),
+                                 answer(counted(project) + "."), schema::creation_time(), escaped(kCreator));
+  body += broken_list(project) + overview(project) + foreign_list(project);
+  if (project.files.size() > kSectionsShown) body += "<h2>Each file</h2>\n";
   for (const ProjectFile& file : project.files) body += section(project, file);
   return html_document(title, body);
 }

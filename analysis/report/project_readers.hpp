@@ -3,6 +3,7 @@
 #pragma once
 
 #include "analysis/report/project_file.hpp"
+#include "spatial/picture/shown_range.hpp"
 
 namespace tacto::analysis {
 
@@ -25,19 +26,27 @@ schema::Result<void> add_session_table(const std::string& path, ProjectFile& fil
 schema::Result<void> add_results(const std::string& path, ProjectFile& file);
 schema::Result<void> add_trade_table(const std::string& path, ProjectFile& file);
 
-/// A signal as smallest and largest values of at most 1,000 pieces: what a page can show of any length.
+/// A signal as smallest and largest values of at most 1,000 pieces: what a page can show of any length. A
+/// rare spike that would squash the rest (spatial::shown_range) is drawn up to the axis's end, and named in
+/// words.
 class Envelope {
  public:
   explicit Envelope(std::size_t samples);
   void add(double x, double y);
-  schema::ResultCurve curve(const std::string& name) const;
+  schema::ResultPicture picture(const std::string& title, const std::string& x_label,
+                                const std::string& y_label, const std::string& unit) const;
 
  private:
+  schema::ResultCurve curve(const spatial::ShownRange& range) const;
   struct Piece {
     double x = 0, low = 0, high = 0;
   };
+  double least() const;
+  double most() const;
   std::size_t per_piece_, in_piece_ = 0;
+  std::size_t per_kept_, seen_ = 0;
   std::vector<Piece> pieces_;
+  std::vector<double> kept_;  // every so-manieth value, 100,000 at most: their percentiles
 };
 
 }  // namespace tacto::analysis

@@ -26,6 +26,7 @@ using schema::Result;
 using schema::ResultCurve;
 
 constexpr std::size_t kMostPieces = 1000;
+constexpr std::size_t kMostKept = 100'000;
 constexpr std::size_t kChunk = 1 << 16;
 
 struct ShownUnit {
@@ -49,7 +50,7 @@ std::string missing_words(const schema::RecordingHeader& header) {
   return header.gaps.empty() ? "none" : fmt::format("{} frames in {} gaps", missing, header.gaps.size());
 }
 
-Result<ResultCurve> channel_curve(const schema::Recording& recording, std::size_t channel, double scale,
+Result<Envelope> channel_envelope(const schema::Recording& recording, std::size_t channel, double scale,
                                   const Progress& progress) {
   auto frames = schema::RecordingFrames::open(recording);
   if (!frames) return schema::forward_error(frames);
@@ -62,7 +63,7 @@ Result<ResultCurve> channel_curve(const schema::Recording& recording, std::size_
       envelope.add(schema::frame_time_s(recording.header, at + i), scale * values[i]);
     if (progress) progress(static_cast<double>(at) / static_cast<double>(recording.header.frames));
   }
-  return envelope.curve(recording.header.channels[channel].name);
+  return envelope;
 }
 
 // What was felt, or else the first channel.
@@ -100,15 +101,12 @@ Result<void> draw_texture(const schema::Texture& texture, const std::string& nam
     Envelope envelope(texture.signal.values.size());
     for (std::size_t i = 0; i < texture.signal.values.size(); ++i)
       envelope.add(1e3 * texture.signal.position_m(i), unit.scale * texture.signal.values[i]);
-    file.pictures.push_back({name,
-                             "position (mm)",
-                             fmt::format("{} ({})", texture.quantity, unit.symbol),
-                             false,
-                             {envelope.curve("")}});
+    file.pictures.push_back(envelope.picture(
+        name, "position (mm)", fmt::format("{} ({})", texture.quantity, unit.symbol), unit.symbol));
     return {};
   }
   spectrogram->name = name;
-  auto svg = spatial::to_svg(spatial::SpectrogramFigure({{&texture, &*spectrogram}}));
+  auto svg = spatial::to_page_svg(spatial::SpectrogramFigure({{&texture, &*spectrogram}}));
   if (!svg) return schema::forward_error(svg);
   file.drawings.push_back(std::move(*svg));
   return {};
@@ -116,7 +114,8 @@ Result<void> draw_texture(const schema::Texture& texture, const std::string& nam
 
 }  // namespace
 
-Envelope::Envelope(std::size_t samples) : per_piece_(samples / kMostPieces + 1) {}
+Envelope::Envelope(std::size_t samples)
+    : per_piece_(samples / kMostPieces + 1), per_kept_(samples / kMostKept + 1) {}
 
 void Envelope::add(double x, double y) {
   if (in_piece_ == 0)
@@ -124,18 +123,38 @@ void Envelope::add(double x, double y) {
   else
     pieces_.back() = {pieces_.back().x, std::min(pieces_.back().low, y), std::max(pieces_.back().high, y)};
   in_piece_ = (in_piece_ + 1) % per_piece_;
+  if (seen_++ % per_kept_ == 0) kept_.push_back(y);
 }
 
-ResultCurve Envelope::curve(const std::string& name) const {
-  ResultCurve curve{name, {}, {}, false};
+ResultCurve Envelope::curve(const spatial::ShownRange& range) const {
+  ResultCurve curve{"", {}, {}, false};
+  const auto shown = [&](double value) { return std::clamp(value, range.low, range.high); };
   for (const Piece& piece : pieces_) {
     curve.x.push_back(piece.x);
-    curve.y.push_back(piece.low);
+    curve.y.push_back(shown(piece.low));
     if (piece.high == piece.low) continue;
     curve.x.push_back(piece.x);
-    curve.y.push_back(piece.high);
+    curve.y.push_back(shown(piece.high));
   }
   return curve;
+}
+
+double Envelope::least() const {
+  return pieces_.empty() ? 0 : std::ranges::min_element(pieces_, {}, &Piece::low)->low;
+}
+
+double Envelope::most() const {
+  return pieces_.empty() ? 0 : std::ranges::max_element(pieces_, {}, &Piece::high)->high;
+}
+
+schema::ResultPicture Envelope::picture(const std::string& title, const std::string& x_label,
+                                        const std::string& y_label, const std::string& unit) const {
+  const double low = least(), high = most();
+  spatial::ShownRange range = spatial::shown_range(kept_);
+  if (range.beyond == 0) range.low = low, range.high = high;
+  if (range.beyond > 0) range.furthest = std::abs(low) > std::abs(high) ? low : high;
+  const std::string words = range.beyond == 0 ? "" : ": " + spatial::beyond_words(range, unit);
+  return {title + words, x_label, y_label, false, {curve(range)}};
 }
 
 Result<void> add_recording(const std::string& path, ProjectFile& file, const Progress& progress) {
@@ -154,14 +173,10 @@ Result<void> add_recording(const std::string& path, ProjectFile& file, const Pro
   const std::size_t channel = main_channel(header);
   const schema::Channel& shown = header.channels[channel];
   const ShownUnit unit = shown_unit(shown.unit);
-  auto curve = channel_curve(*recording, channel, unit.scale, progress);
-  if (!curve) return schema::forward_error(curve);
-  curve->name.clear();
-  file.pictures.push_back({name_of_file(path),
-                           "time (s)",
-                           fmt::format("{} ({})", shown.name, unit.symbol),
-                           false,
-                           {std::move(*curve)}});
+  const auto envelope = channel_envelope(*recording, channel, unit.scale, progress);
+  if (!envelope) return schema::forward_error(envelope);
+  file.pictures.push_back(envelope->picture(name_of_file(path), "time (s)",
+                                            fmt::format("{} ({})", shown.name, unit.symbol), unit.symbol));
   return {};
 }
 
@@ -224,8 +239,8 @@ struct TicksShown {
     last_s = row.time_s;
   }
   void draw(ProjectFile& file) const {
-    file.pictures.push_back({"Drive", "time (s)", "drive (V)", false, {drive.curve("")}});
-    file.pictures.push_back({"Finger", "time (s)", "position (mm)", false, {position.curve("")}});
+    file.pictures.push_back(drive.picture("Drive", "time (s)", "drive (V)", "V"));
+    file.pictures.push_back(position.picture("Finger", "time (s)", "position (mm)", "mm"));
   }
 };
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "analysis/trade/played_speeds.hpp"
 
@@ -129,9 +128,12 @@ std::vector<PlainAnswer> plain_answers(std::span<const TradeRow> rows) {
     PlainAnswer answer{knob, choices > 1 ? "none stands out" : choices == 1 ? kOneChoice : kNotJudged, ""};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (rows[i].knob != knob) continue;
-      if (!worth[i].on_front && worth[i].judged)
+      ++answer.choices;
+      if (!worth[i].on_front && worth[i].judged) {
         answer.never += (answer.never.empty() ? "" : "; ") + rows[i].choice;
-      if (worth[i].knee) answer.knee = knee_words(rows[i]);
+        ++answer.never_worth_it;
+      }
+      if (worth[i].knee) answer.knee = knee_words(rows[i]), answer.knee_row = i;
     }
     if (answer.never.empty()) answer.never = choices > 0 ? "none" : kNotJudged;
     answers.push_back(std::move(answer));

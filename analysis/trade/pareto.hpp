@@ -2,6 +2,7 @@
 // Which of the measured choices are worth their cost.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ std::string worth_words(const Worth& worth);
 /// What people ask of a knob: which choice is the knee, and which are never worth it.
 struct PlainAnswer {
   std::string knob, knee, never;
+  std::optional<std::size_t> knee_row = {};  ///< of the rows that were asked about
+  std::size_t choices = 0, never_worth_it = 0;
 };
 std::vector<PlainAnswer> plain_answers(std::span<const TradeRow> rows);
 

@@ -27,25 +27,55 @@ bool drawn(const TradeRow& row) {
   return row.cost_ns > 0 && row.error > 0 && row.error < 1;
 }
 
-// A picture holds so many knobs; those of which there is most to choose.
-std::vector<std::vector<std::size_t>> most_telling(std::vector<std::vector<std::size_t>> knobs) {
+// A picture holds so many knobs: those with most choices.
+std::vector<std::vector<std::size_t>> those_with_most_choices(std::vector<std::vector<std::size_t>> knobs) {
   constexpr std::size_t kMostKnobs = 6;
   std::ranges::stable_sort(knobs, std::greater<>(), [](const auto& rows) { return rows.size(); });
   if (knobs.size() > kMostKnobs) knobs.resize(kMostKnobs);
   return knobs;
 }
 
-// Rows by knob.
+// Rows by knob, of one unit each.
 std::vector<std::vector<std::size_t>> by_knob(const TradeHalf& half) {
   std::vector<std::vector<std::size_t>> knobs;
-  std::map<std::string, std::size_t> place;
+  std::map<std::pair<std::string, std::string>, std::size_t> place;
   for (std::size_t i = 0; i < half.rows.size(); ++i) {
     if (!drawn(half.rows[i])) continue;
-    const auto [at, fresh] = place.try_emplace(half.rows[i].knob, knobs.size());
+    const auto [at, fresh] = place.try_emplace({half.rows[i].knob, half.rows[i].per}, knobs.size());
     if (fresh) knobs.emplace_back();
     knobs[at->second].push_back(i);
   }
-  return most_telling(std::move(knobs));
+  return knobs;
+}
+
+// Knobs whose costs are of one unit, so that they can share an axis.
+struct UnitKnobs {
+  std::string per;
+  std::vector<std::vector<std::size_t>> knobs;
+  std::size_t rows = 0;
+};
+
+// The unit with most choices first.
+std::vector<UnitKnobs> by_unit(const TradeHalf& half) {
+  std::vector<UnitKnobs> units;
+  for (auto& rows : by_knob(half)) {
+    const std::string& per = half.rows[rows.front()].per;
+    auto unit = std::ranges::find(units, per, &UnitKnobs::per);
+    if (unit == units.end()) unit = units.insert(units.end(), UnitKnobs{per, {}, 0});
+    unit->rows += rows.size();
+    unit->knobs.push_back(std::move(rows));
+  }
+  for (UnitKnobs& unit : units) unit.knobs = those_with_most_choices(std::move(unit.knobs));
+  std::ranges::stable_sort(units, std::greater<>(), &UnitKnobs::rows);
+  return units;
+}
+
+std::string cost_axis(const std::string& per) {
+  return fmt::format("CPU time (ns a {})", per);
+}
+
+std::string title_of(const TradeHalf& half, const std::string& per) {
+  return fmt::format("Error against cost a {}, {}", per, half.name);
 }
 
 // Those that no cheaper one undercuts in error: what is on the front for its memory alone would make it turn.
@@ -90,6 +120,10 @@ std::string error_words(const TradeRow& row) {
   return fmt::format("{:.3g} % ({:.1f} dB)", 100 * row.error, error_db(row));
 }
 
+std::string cost_words(const TradeRow& row) {
+  return row.cost_ns > 0 ? fmt::format("{:.3g} ns a {}", row.cost_ns, row.per) : "";
+}
+
 std::string words_by_speed(const TradeRow& row) {
   std::string words;
   for (const ErrorAtSpeed& each : row.by_speed)
@@ -118,13 +152,77 @@ std::vector<std::vector<std::string>> table_of(const TradeHalf& half) {
       {"choice of", "choice", "error", "by speed", "cost", "memory", "latency", "worth it", "note"}};
   for (std::size_t i = 0; i < half.rows.size(); ++i) {
     const TradeRow& row = half.rows[i];
-    rows.push_back({row.knob, row.choice, error_words(row), words_by_speed(row),
-                    row.cost_ns > 0 ? fmt::format("{:.3g} ns a {}", row.cost_ns, row.per) : "",
+    rows.push_back({row.knob, row.choice, error_words(row), words_by_speed(row), cost_words(row),
                     row.memory_bytes > 0 ? fmt::format("{:.4g} KiB", row.memory_bytes / 1024) : "",
                     row.latency_s > 0 ? fmt::format("{:.3g} ms", 1e3 * row.latency_s) : "",
                     worth_words(worth[i]), row.note});
   }
   return rows;
+}
+
+spatial::LineFigure figure_about(const TradeHalf& half, const Trade& trade, std::string title,
+                                 const std::string& per) {
+  spatial::LineFigure figure;
+  figure.title = std::move(title);
+  figure.subtitle = trade.texture;
+  figure.x_label = cost_axis(per);
+  figure.y_label = error_axis(half);
+  figure.x_scale = spatial::AxisScale::logarithmic;
+  return figure;
+}
+
+// Marks, and the front through them.
+void add_knob(spatial::LineFigure& figure, const TradeHalf& half, const std::vector<Worth>& worth,
+              const std::vector<std::size_t>& rows, spatial::Colour colour, const std::string& name) {
+  spatial::Series line{"", {}, {}, colour, 1, true, false, {}};
+  for (const std::size_t i : front_by_cost(half, rows)) {
+    line.x.push_back(half.rows[i].cost_ns);
+    line.y.push_back(error_db(half.rows[i]));
+  }
+  figure.series.push_back(std::move(line));
+  figure.series.push_back(marks_of(half, worth, rows, colour));
+  figure.series.back().name = name;
+}
+
+// In a small picture: by which device, without what it recorded.
+std::string device_of(const std::string& simulated) {
+  return simulated.substr(0, simulated.find(": "));
+}
+
+std::string under_fold(const std::string& summary, const std::string& html) {
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(summary), html);
+}
+
+std::string never_words(const PlainAnswer& answer) {
+  return answer.choices < 2 ? answer.never : fmt::format("{} of {}", answer.never_worth_it, answer.choices);
+}
+
+std::string answers_table(const TradeHalf& half) {
+  std::vector<std::vector<std::string>> rows = {
+      {"choice of", "best for its cost", "its error", "its cost", "never worth it"}};
+  for (const PlainAnswer& answer : plain_answers(half.rows)) {
+    const TradeRow* const best = answer.knee_row ? &half.rows[*answer.knee_row] : nullptr;
+    if (best)
+      rows.push_back({answer.knob, best->choice, fmt::format("{:.3g} %", 100 * best->error),
+                      cost_words(*best), never_words(answer)});
+    else  // "not judged", "none stands out": why is in the table of all rows
+      rows.push_back(
+          {answer.knob, answer.knee.substr(0, answer.knee.find(':')), "", "", never_words(answer)});
+  }
+  return html_table(rows);
+}
+
+// Side by side where the screen is wide enough for two.
+schema::Result<std::string> knob_pictures(const TradeHalf& half, const Trade& trade) {
+  std::string html =
+      "<div style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,24rem),1fr));"
+      "gap:.5rem 1.5rem\">\n";
+  for (const spatial::LineFigure& figure : knob_figures(half, trade)) {
+    const auto svg = spatial::to_svg(figure);
+    if (!svg) return schema::forward_error(svg);
+    html += inline_svg(*svg, fmt::format("{}, {}: error against cost", half.name, figure.title));
+  }
+  return html + "</div>\n";
 }
 
 std::string speeds_paragraph() {
@@ -136,47 +234,50 @@ std::string speeds_paragraph() {
 }  // namespace
 
 spatial::LineFigure pareto_figure(const TradeHalf& half, const Trade& trade) {
-  spatial::LineFigure figure;
-  figure.title = "Error against cost, " + half.name;
-  figure.subtitle = trade.texture;
+  const auto units = by_unit(half);
+  if (units.empty()) return figure_about(half, trade, "Error against cost, " + half.name, "tick");
+  spatial::LineFigure figure =
+      figure_about(half, trade, title_of(half, units.front().per), units.front().per);
   figure.simulated = trade.simulated;
-  figure.x_label = "CPU time (ns a frame, sample, tick or ms of playing)";
-  figure.y_label = error_axis(half);
-  figure.x_scale = spatial::AxisScale::logarithmic;
   figure.size = {1000, 480};
   const auto worth = worth_of(half.rows);
   std::size_t colour = 0;
-  for (const auto& rows : by_knob(half)) {
-    const spatial::Colour shade = spatial::series_colour(colour++);
-    spatial::Series line{"", {}, {}, shade, 1, true, false, {}};
-    for (const std::size_t i : front_by_cost(half, rows)) {
-      line.x.push_back(half.rows[i].cost_ns);
-      line.y.push_back(error_db(half.rows[i]));
-    }
-    figure.series.push_back(std::move(line));
-    figure.series.push_back(marks_of(half, worth, rows, shade));
-  }
+  for (const auto& rows : units.front().knobs)
+    add_knob(figure, half, worth, rows, spatial::series_colour(colour++), half.rows[rows.front()].knob);
   return figure;
+}
+
+std::vector<spatial::LineFigure> knob_figures(const TradeHalf& half, const Trade& trade) {
+  const auto worth = worth_of(half.rows);
+  std::vector<spatial::LineFigure> figures;
+  for (const auto& rows : by_knob(half)) {
+    if (rows.size() < 2) continue;
+    const TradeRow& first = half.rows[rows.front()];
+    spatial::LineFigure figure = figure_about(half, trade, first.knob, first.per);
+    figure.simulated = device_of(trade.simulated);
+    figure.size = {360, 280};
+    add_knob(figure, half, worth, rows, spatial::series_colour(0), "");
+    figures.push_back(std::move(figure));
+  }
+  return figures;
 }
 
 std::vector<schema::ResultPicture> trade_pictures(const Trade& trade) {
   std::vector<schema::ResultPicture> pictures;
-  for (const TradeHalf& half : trade.halves) {
-    schema::ResultPicture picture{"Error against cost, " + half.name,
-                                  "CPU time (ns a frame, sample, tick or ms of playing)",
-                                  error_axis(half),
-                                  true,
-                                  {}};
-    for (const auto& rows : by_knob(half)) {
-      schema::ResultCurve curve{half.rows[rows.front()].knob, {}, {}, false};
-      for (const std::size_t i : front_by_cost(half, rows)) {
-        curve.x.push_back(half.rows[i].cost_ns);
-        curve.y.push_back(error_db(half.rows[i]));
+  for (const TradeHalf& half : trade.halves)
+    for (const UnitKnobs& unit : by_unit(half)) {
+      schema::ResultPicture picture{
+          title_of(half, unit.per), cost_axis(unit.per), error_axis(half), true, {}};
+      for (const auto& rows : unit.knobs) {
+        schema::ResultCurve curve{half.rows[rows.front()].knob, {}, {}, false};
+        for (const std::size_t i : front_by_cost(half, rows)) {
+          curve.x.push_back(half.rows[i].cost_ns);
+          curve.y.push_back(error_db(half.rows[i]));
+        }
+        picture.curves.push_back(std::move(curve));
       }
-      picture.curves.push_back(std::move(curve));
+      pictures.push_back(std::move(picture));
     }
-    pictures.push_back(std::move(picture));
-  }
   return pictures;
 }
 
@@ -212,22 +313,25 @@ std::string trade_csv(const Trade& trade) {
 }
 
 schema::Result<std::string> trade_page(const Trade& trade) {
-  std::string body = fmt::format("<h1>Speed for accuracy</h1>\n<p>Measured on {}, with {}.</p>\n",
-                                 escaped(trade.machine), escaped(trade.texture));
+  std::string body = fmt::format(
+      "<h1>Speed for accuracy</h1>\n<p>Measured on {}, with {}. First the answer: for each choice, what is "
+      "best for its cost. Then what it costs and errs, as pictures; all rows are below them.</p>\n",
+      escaped(trade.machine), escaped(trade.texture));
   if (!trade.simulated.empty())
     body +=
         fmt::format("<p class=\"simulated\"><strong>Simulated</strong> {}.</p>\n", escaped(trade.simulated));
   for (const TradeHalf& half : trade.halves) {
-    const spatial::LineFigure figure = pareto_figure(half, trade);
-    const auto svg = spatial::to_svg(figure);
-    if (!svg) return schema::forward_error(svg);
-    body += fmt::format("<h2>{}</h2>\n", escaped(half.name)) + inline_svg(*svg, figure.title);
+    body += fmt::format("<h2>The best of each choice, {}</h2>\n", escaped(half.name));
     if (is_worst_of_several(half)) body += speeds_paragraph();
-    std::vector<std::vector<std::string>> answers = {{"choice of", "the knee", "never worth it"}};
-    for (const PlainAnswer& answer : plain_answers(half.rows))
-      answers.push_back({answer.knob, answer.knee, answer.never});
-    body += html_table(answers);
-    body += html_table(table_of(half));
+    body += answers_table(half);
+  }
+  for (const TradeHalf& half : trade.halves) {
+    const auto pictures = knob_pictures(half, trade);
+    if (!pictures) return schema::forward_error(pictures);
+    body += fmt::format("<h2>Error against cost, {}</h2>\n", escaped(half.name));
+    body += *pictures;
+    body += under_fold(fmt::format("All {} choices measured, {}", half.rows.size(), half.name),
+                       html_table(table_of(half)));
   }
   return html_document("Speed for accuracy: " + trade.texture, body);
 }

@@ -24,10 +24,14 @@ struct Trade {
 };
 
 /// Error against cost of one half: a mark for each choice of the six knobs that have most of them, and the
-/// front that none beats. Rows that cost nothing by themselves, err by nothing or by all are left out.
+/// front that none beats. Of the unit of cost that most choices have: one axis has one unit. Rows whose cost
+/// was not measured, and those that err by nothing or by all, are left out.
 spatial::LineFigure pareto_figure(const TradeHalf& half, const Trade& trade);
 
-/// The same as curves, for NAME.results.json.
+/// The same of each knob that has two such rows or more, small enough for a telephone's screen.
+std::vector<spatial::LineFigure> knob_figures(const TradeHalf& half, const Trade& trade);
+
+/// The fronts as curves, one picture for each unit of cost, for NAME.results.json.
 std::vector<schema::ResultPicture> trade_pictures(const Trade& trade);
 std::vector<schema::ResultFigure> trade_figures(const Trade& trade);
 
@@ -36,7 +40,7 @@ std::vector<schema::ResultFigure> trade_figures(const Trade& trade);
 std::string trade_csv(const Trade& trade);
 inline constexpr const char* kTradeCsvHead = "half,knob,choice,error,";
 
-/// Errors: of drawing.
+/// The answers, then a picture of each knob, then all rows folded. Errors: of drawing.
 schema::Result<std::string> trade_page(const Trade& trade);
 
 }  // namespace tacto::analysis

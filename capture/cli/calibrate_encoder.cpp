@@ -12,6 +12,7 @@
 #include "capture/watch_counts.hpp"
 #include "data-schema/cli/report.hpp"
 #include "data-schema/cli/talk.hpp"
+#include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {
 namespace {

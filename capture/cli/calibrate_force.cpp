@@ -11,6 +11,7 @@
 #include "capture/released_weight.hpp"
 #include "capture/weights.hpp"
 #include "data-schema/cli/report.hpp"
+#include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {
 namespace {

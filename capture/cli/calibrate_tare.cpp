@@ -7,6 +7,7 @@
 #include "capture/cli/calibrate_parts.hpp"
 #include "capture/tare.hpp"
 #include "data-schema/cli/report.hpp"
+#include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {
 namespace {

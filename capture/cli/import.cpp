@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
 #include "capture/height_profile.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/report.hpp"
+#include "data-schema/cli/warnings.hpp"
 
 namespace tacto::capture {
 namespace {
@@ -35,10 +37,13 @@ void declare_data(CLI::App& app, ImportRequest& request) {
   app.add_option("-o,--output", request.name, "The recording's name: NAME.wav and NAME.json")->required();
   app.add_option(
          "--channel", request.channels,
-         "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit; again for each. COLUMN by header name or "
-         "number "
-         "from 1; LABEL:QUANTITY for a second channel of one quantity. Not needed for mono audio: a signal")
+         "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (without one, that of the table's column); "
+         "again "
+         "for each. COLUMN by header name or number from 1; LABEL:QUANTITY for a second channel of one "
+         "quantity. Not needed for mono audio: a signal")
       ->allow_extra_args(false);
+  app.add_option("--skip", request.skip_lines,
+                 "Lines of a table before its header or first row, where they are not found");
   cli::add_quantity(app, "--rate", request.rate_hz, Dimension::frequency,
                     "Samples per second of a table (or of audio whose header is wrong)");
   app.add_option("--time-column", request.time_column,
@@ -49,6 +54,9 @@ void declare_data(CLI::App& app, ImportRequest& request) {
   cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,
                     "Where there is no position: make a nominal one at this speed");
   app.add_flag("!--no-position", request.integrate_speed, "Do not integrate a speed channel to a position");
+  app.add_flag(
+      "--mask-outliers", request.mask_outliers,
+      "Leave out rows with samples out of any plausible range: they become gaps, nothing is filled in");
   app.add_flag("--force", request.replace, "Replace a recording of that name");
 }
 
@@ -81,13 +89,52 @@ std::vector<cli::Report> rows_of(const Imported& imported) {
   return rows;
 }
 
+// The channels that `spatial` makes textures of; it takes tangential_force where it has the choice.
+std::vector<std::string> texture_channels(const schema::RecordingHeader& header) {
+  constexpr std::string_view kQuantities[] = {"tangential_force",
+                                              "tangential_force_x",
+                                              "net_force",
+                                              "acceleration",
+                                              "displacement",
+                                              "height",
+                                              "signal"};
+  std::vector<std::string> names;
+  for (const schema::Channel& channel : header.channels)
+    if (std::ranges::find(kQuantities, channel.quantity) != std::end(kQuantities))
+      names.push_back(channel.name);
+  const auto usual = std::ranges::find(names, "tangential_force");
+  return usual == names.end() ? names : std::vector{*usual};
+}
+
+std::string in_shell(const std::string& name) {
+  const bool plain = name.find_first_of(" '\"$&;()<>|*?`\\#~!") == std::string::npos;
+  if (plain) return name;
+  std::string quoted = "'";
+  for (const char c : name) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+// A command that works as it is; the other channels that could be chosen follow in a comment of the shell.
 std::string next_command(const schema::Recording& recording) {
   const auto& channels = recording.header.channels;
   const bool placed = std::ranges::find(channels, "position", &schema::Channel::quantity) != channels.end();
-  const bool quoted = recording.stem.find(' ') != std::string::npos;
-  const std::string name = quoted ? "'" + recording.stem + "'" : recording.stem;
-  return placed ? fmt::format("tactograph spatial {0} -o {0}", name)
-                : fmt::format("tactograph info {}", name);
+  const auto textures = texture_channels(recording.header);
+  const std::string name = in_shell(recording.stem);
+  if (!placed || textures.empty()) return fmt::format("tactograph info {}", name);
+  if (textures.front() == "tangential_force") return fmt::format("tactograph spatial {0} -o {0}", name);
+  std::string others;
+  for (std::size_t i = 1; i < textures.size(); ++i)
+    others += (i == 1 ? "  # or --channel " : ", ") + in_shell(textures[i]);
+  return fmt::format("tactograph spatial {0} --channel {1} -o {0}{2}", name, in_shell(textures.front()),
+                     others);
+}
+
+std::string outliers_of(const Imported& imported, const ImportRequest& request) {
+  const auto plural = [](std::uint64_t count) { return count == 1 ? "" : "s"; };
+  const std::string samples = fmt::format("{} sample{}", imported.outliers, plural(imported.outliers));
+  if (!request.mask_outliers) return samples + "; --mask-outliers makes gaps of their rows";
+  return fmt::format("{} in {} row{}, which are gaps now", samples, imported.masked_rows,
+                     plural(imported.masked_rows));
 }
 
 cli::Report report_on(const Imported& imported, const ImportRequest& request) {
@@ -96,6 +143,7 @@ cli::Report report_on(const Imported& imported, const ImportRequest& request) {
   report.add("source", request.file).add("format", imported.format);
   report.add("frames", header.frames).add("sample_rate_hz", header.sample_rate_hz);
   report.add("duration_s", duration_s(header)).add("clock", header.clock).add("gaps", header.gaps.size());
+  if (imported.outliers > 0) report.add("outliers", outliers_of(imported, request));
   report.add("channels", rows_of(imported));
   if (!header.warnings.empty()) report.add("warnings", header.warnings);
   report.add("files", std::vector{imported.recording.stem + ".wav", imported.recording.stem + ".json"});
@@ -127,7 +175,7 @@ schema::Result<cli::Report> run_import(const ImportRequest& request) {
     return import_file(request, [&](double fraction) { progress.update(fraction); });
   }();
   if (!imported) return schema::forward_error(imported);
-  for (const std::string& warning : imported->recording.header.warnings) cli::warn(warning);
+  cli::warn_grouped(imported->recording.header.warnings);
   return report_on(*imported, request);
 }
 
@@ -146,6 +194,8 @@ const cli::Verb kImportVerb{
     " --channel position=encoder_count*0.5um\n"
     "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "
     "40mm/s\n"
+    "  tactograph import run7.lvm -o run7 --time-column X_Value*1s --channel acceleration=Voltage*0.5g "
+    "--mask-outliers\n"
     "  tactograph import tap.flac -o tap\n"
     "  tactograph import edm.xml -o edm\n"
     "  tactograph import profile.csv -o profile --channel position=x*1mm --channel height=z*1um",

@@ -18,6 +18,8 @@
 #include "data-schema/cli/report.hpp"
 #include "data-schema/cli/stop_signals.hpp"
 #include "data-schema/cli/talk.hpp"
+#include "data-schema/cli/warnings.hpp"
+#include "firmware-host/device_to_record.hpp"
 #include "firmware-host/sim/sim_parameters.hpp"
 
 namespace tacto::capture {
@@ -38,14 +40,14 @@ void declare_options(CLI::App& app, RecordOptions& options) {
   RecordRequest& request = options.request;
   app.add_option("-d,--device", options.device,
                  "The device: usb:, the only one on USB, unless told; usb:serial=XYZ, or "
-                 "sim:surface=C,speed=50mm/s,seed=1 (keys below), or replay:NAME");
+                 "sim:surface=C,speed=50mm/s,seed=1 (all keys: tactograph help sim), or replay:NAME");
   CLI::Option* const name = app.add_option("-o,--output", request.name,
                                            "The recording's name: NAME.wav and NAME.json; never overwrites");
   app.add_option("--template", options.pattern,
                  "Instead of a name: {subject}_{surface}_{take}, where takes count up; {finger} too")
       ->excludes(name);
   cli::add_quantity(app, "--time", request.time_s, Dimension::time,
-                    "How long to record; without it until the strokes are made, or Ctrl-C");
+                    "How long to record; without it until --strokes are made, or Ctrl-C");
   app.add_option("--strokes", request.strokes, "End after so many strokes of 5 mm or more")
       ->check(cli::from_one());
   app.add_flag("--allow-gaps", options.allow_gaps, "Lost frames are no failure");
@@ -61,12 +63,7 @@ void declare_options(CLI::App& app, RecordOptions& options) {
 }
 
 std::string footer_text() {
-  return "\nThe emulated device's keys, with their defaults; a seed gives the same recording on every "
-         "machine:\n" +
-         firmware_host::sim_parameters_help() +
-         "Its finger rests 0.1 s, goes to the end of the surface and back (strokes=2), and then stays; at "
-         "its rests and\n"
-         "turns it eases the load. 40 mm there and back at 50 mm/s take 1.8 s.\n"
+  return "\nThe emulated device (sim:) and its keys: tactograph help sim\n"
          "While it records: Ctrl-C or q stops and keeps, m or SIGUSR1 marks. A crash or a power cut loses "
          "the last 100 ms\n"
          "(a power cut a second, where the disk was busy):\n"
@@ -88,13 +85,37 @@ std::vector<cli::Report> rows_of(const Recorded& recorded) {
   return rows;
 }
 
-cli::Report report_on(const Recorded& recorded) {
+constexpr const char* kRealTime = "paced=1 makes it run in real time";
+
+// A device that does not keep time fills the disk before anybody can press Ctrl-C.
+Result<void> check_end(const firmware_host::DeviceToRecord& opened, const RecordOptions& options) {
+  const RecordRequest& request = options.request;
+  if (opened.device->keeps_time() || opened.ends_by_itself || request.time_s) return {};
+  if (request.strokes == 0)
+    return schema::fail(schema::Fault::usage,
+                        "this device runs faster than real time and would fill the disk: it needs an end",
+                        options.device, fmt::format("add --time 2s or --strokes 2; {}", kRealTime));
+  if (request.strokes <= opened.strokes.value_or(request.strokes)) return {};
+  return schema::fail(schema::Fault::usage,
+                      fmt::format("it makes {} strokes, and the recording would wait for {}", *opened.strokes,
+                                  request.strokes),
+                      options.device, "ask for fewer --strokes, give the device more, or add --time 2s");
+}
+
+// What a stopwatch beside the experiment would not agree with.
+void add_pace(cli::Report& report, const firmware_host::Device& device) {
+  if (device.keeps_time()) return;
+  report.add("pace", fmt::format("faster than real time: as fast as this computer can; {}", kRealTime));
+}
+
+cli::Report report_on(const Recorded& recorded, const firmware_host::Device& device) {
   const schema::RecordingHeader& header = recorded.recording.header;
   const std::string& stem = recorded.recording.stem;
   cli::Report report;
   report.add("device", header.device).add("simulated", header.simulated).add("surface", header.surface);
   report.add("frames", header.frames).add("sample_rate_hz", header.sample_rate_hz);
   report.add("duration_s", schema::duration_s(header));
+  add_pace(report, device);
   report.add("clipped_samples", recorded.counts.clipped).add("lost_frames", recorded.counts.lost_frames);
   report.add("gaps", header.gaps.size()).add("marks", header.marks.size());
   report.add("channels", rows_of(recorded));
@@ -162,20 +183,22 @@ Result<cli::Report> run_record(const RecordOptions& options) {
   if (!name) return schema::forward_error(name);
   request.name = std::move(*name);
   request.stale_after_s = options.stale_after_s.value_or(kStaleAfter_s);
-  const auto device = firmware_host::open_device(options.device);
-  if (!device) return schema::forward_error(device);
+  const auto opened = firmware_host::open_device_to_record(options.device);
+  if (!opened) return schema::forward_error(opened);
+  if (const auto ends = check_end(*opened, options); !ends) return schema::forward_error(ends);
+  const auto& device = opened->device;
   if (!options.no_calibration) {
-    auto calibration = calibration_of((*device)->capabilities().serial, options.calibration);
+    auto calibration = calibration_of(device->capabilities().serial, options.calibration);
     if (!calibration) return schema::forward_error(calibration);
     request.calibration = std::move(*calibration);
   }
   const Result<Recorded> recorded = [&] {
     Console console;
-    return record(**device, request, console.hooks());
+    return record(*device, request, console.hooks());
   }();
   if (!recorded) return schema::forward_error(recorded);
-  for (const std::string& warning : recorded->recording.header.warnings) cli::warn(warning);
-  cli::Report report = report_on(*recorded);
+  cli::warn_grouped(recorded->recording.header.warnings);
+  cli::Report report = report_on(*recorded, *device);
   const bool gaps = !recorded->recording.header.gaps.empty() || recorded->counts.lost_frames > 0;
   if (gaps && !options.allow_gaps) report.ends_with(schema::Fault::device);
   if (recorded->ended_by && recorded->recording.header.ended.empty())

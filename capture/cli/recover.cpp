@@ -1,39 +1,66 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
 #include "data-schema/cli/report.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/leftover_files.hpp"
 #include "data-schema/live_recording.hpp"
 
 namespace tacto::capture {
 namespace {
 
-schema::Result<cli::Report> run_recover(const std::string& name) {
-  const auto recovered = schema::recover_recording(name);
-  if (!recovered) return schema::forward_error(recovered);
-  const schema::RecordingHeader& header = recovered->recording.header;
-  const std::string& stem = recovered->recording.stem;
+std::vector<std::string> lines_on(const std::vector<schema::Leftover>& removed) {
+  std::vector<std::string> lines;
+  for (const schema::Leftover& one : removed)
+    lines.push_back(fmt::format("{}, {} bytes", one.path, one.bytes));
+  return lines;
+}
+
+cli::Report report_on(const schema::Recovered& recovered) {
+  const schema::RecordingHeader& header = recovered.recording.header;
+  const std::string& stem = recovered.recording.stem;
   cli::Report report;
   report.add("recording", stem).add("frames", header.frames);
   report.add("duration_s", static_cast<double>(header.frames) / header.sample_rate_hz);
   report.add("gaps", header.gaps.size())
       .add("marks", header.marks.size())
       .add("faults", header.faults.size());
-  if (!recovered->notes.empty()) report.add("notes", recovered->notes);
+  if (!recovered.notes.empty()) report.add("notes", recovered.notes);
   report.add("files", std::vector{stem + ".wav", stem + ".json"});
-  return report.add("next", "tactograph validate " + stem);
+  return report;
+}
+
+// A run that was killed may have left nothing but temporary files: to remove them is all there is to do.
+cli::Report report_on_nothing() {
+  return cli::Report().add("recording", "there is none to recover");
+}
+
+schema::Result<cli::Report> run_recover(const std::string& name) {
+  const std::string stem = schema::stem_of(name, "");
+  const auto removed = schema::remove_ended(schema::leftovers_of(stem));
+  const auto recovered = schema::recover_recording(name);
+  const bool nothing_else = !removed.empty() && !schema::is_file(stem + ".events.jsonl");
+  if (!recovered && !nothing_else) return schema::forward_error(recovered);
+  cli::Report report = recovered ? report_on(*recovered) : report_on_nothing();
+  if (!removed.empty()) report.add("removed_temporary_files", lines_on(removed));
+  return recovered ? report.add("next", "tactograph validate " + recovered->recording.stem) : report;
 }
 
 cli::Action declare_recover(CLI::App& app) {
   auto name = std::make_shared<std::string>();
   app.add_option("FILE", *name, "The recording that was broken off, by its stem or one of its files")
       ->required();
+  app.footer(app.get_footer() +
+             "\nIt also removes hidden temporary files (.NAME...tmp) that killed runs left of this name.");
   return [name] { return run_recover(*name); };
 }
 
 }  // namespace
 
-const cli::Verb kRecoverVerb{"recover", "Make a recording whole that was broken off: crash, kill, power cut",
+const cli::Verb kRecoverVerb{"recover", "Complete a recording that was broken off: crash, kill, power cut",
                              "tactograph recover oak", declare_recover};
 
 }  // namespace tacto::capture

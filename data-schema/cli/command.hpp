@@ -5,15 +5,19 @@
 #include <span>
 #include <string>
 
+#include "data-schema/cli/help.hpp"
 #include "data-schema/cli/verb.hpp"
 
 namespace tacto::cli {
 
-/// Runs one command line. Results go to stdout, talk and errors to stderr. Gives the exit code: 0, or
-/// exit_code() of the fault (2 for the command line itself).
-int run_command(std::span<const Verb* const> verbs, int argc, const char* const* argv);
+/// Runs one command line; `topics` are what `help` explains beside verbs. Results go to stdout, talk and
+/// errors to stderr. Gives the exit code: 0, or exit_code() of the fault (2 for the command line itself).
+int run_command(std::span<const Verb* const> verbs, int argc, const char* const* argv,
+                std::span<const HelpTopic* const> topics = {});
 
-/// The script that makes bash complete verbs, options and file names, made from the same table.
-std::string bash_completion(std::span<const Verb* const> verbs);
+/// The script that makes bash complete verbs, options, their values and units, presets, keys of `sim:` (the
+/// first words of that topic's lines) and file names, made from the same table.
+std::string bash_completion(std::span<const Verb* const> verbs,
+                            std::span<const HelpTopic* const> topics = {});
 
 }  // namespace tacto::cli

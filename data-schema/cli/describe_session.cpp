@@ -36,6 +36,14 @@ void add_device(cli::Report& report, const SessionHeader& header) {
   report.add("delay_s", header.delay_s);
 }
 
+void add_measured(cli::Report& report, const SessionHeader& header, const SessionTotals& totals) {
+  if (!header.sensor) return;
+  report.add("measured", header.sensor->source.empty() ? header.sensor->channel : header.sensor->source)
+      .add("measured_rate_hz", header.sensor->rate_hz)
+      .add("measured_samples", totals.samples)
+      .add("lost_measured_samples", totals.lost_samples);
+}
+
 // After which tick, for the device may be ahead of what the host knows.
 void add_changes(cli::Report& report, const std::vector<SessionChange>& changes) {
   if (changes.empty()) return;
@@ -58,6 +66,8 @@ void add_totals(cli::Report& report, const SessionTotals& totals) {
   std::vector<cli::Report> rows;
   for (const SessionEvent& event : totals.events)
     rows.push_back(cli::Report().add("tick", event.tick).add("event", event.text));
+  if (totals.event_count > totals.events.size())
+    report.add("events_left_out", totals.event_count - totals.events.size());
   report.add("events", std::move(rows));
 }
 
@@ -71,6 +81,7 @@ Result<cli::Report> describe_session(const std::string& path) {
   report.add("created", reader->header().created).add("creator", reader->header().creator);
   add_device(report, reader->header());
   const SessionTotals totals = session_totals(*reader);
+  add_measured(report, reader->header(), totals);
   add_changes(report, totals.changes);
   add_totals(report, totals);
   return report;

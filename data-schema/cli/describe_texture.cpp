@@ -17,6 +17,7 @@ void add_values(Report& report, const Texture& texture) {
       .add(key_in("max", texture.unit), statistics.max());
   report.add(key_in("mean", texture.unit), statistics.mean())
       .add(key_in("rms", texture.unit), statistics.rms());
+  report.add("rms_band", whole_rms_band(texture));
 }
 
 void add_grid(Report& report, const Texture& texture) {
@@ -30,7 +31,10 @@ void add_band(Report& report, const std::vector<BandPoint>& band) {
   if (band.empty()) return;
   const auto low = std::ranges::minmax_element(band, {}, &BandPoint::low_per_m);
   const auto high = std::ranges::minmax_element(band, {}, &BandPoint::high_per_m);
-  report.add("band_low_per_m", low.max->low_per_m).add("band_high_per_m", high.min->high_per_m);
+  if (low.max->low_per_m < high.min->high_per_m)
+    report.add("band_low_per_m", low.max->low_per_m).add("band_high_per_m", high.min->high_per_m);
+  else
+    report.add("band_throughout", "no frequency");
   report.add("widest_band_low_per_m", low.min->low_per_m).add("widest_band_high_per_m", high.max->high_per_m);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/transducer.hpp"
+#include "data-schema/cli/verb.hpp"
+#include "data-schema/transducer_plausible.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -56,8 +57,10 @@ void add_identification(Report& report, const Transducer& t) {
 }  // namespace
 
 Result<Report> describe_transducer(const std::string& path) {
-  const auto transducer = read_transducer(path);
+  const auto transducer = read_transducer(path, Numbers::computable);
   if (!transducer) return forward_error(transducer);
+  if (const auto plausible = check_plausible(*transducer, path); !plausible)
+    cli::warn(message(plausible.error()));
   warn_of_version(path, transducer->newer_version);
   Report report = report_of(FileKind::transducer, path, "");
   report.add("name", transducer->name);

@@ -22,7 +22,9 @@ Result<void> check(const StoredFile& file, Outcome& outcome) {
   const auto checked = check_file(file, [&](double fraction) { progress.update(fraction); });
   if (!checked) return forward_error(checked);
   warn_of_version(file.path, checked->newer_version);
-  outcome.files.push_back(report_of(file.kind, file.path, "").add("valid", checked->findings.empty()));
+  cli::Report& row = outcome.files.emplace_back(report_of(file.kind, file.path, ""));
+  row.add("valid", checked->findings.empty());
+  if (!checked->note.empty()) row.add("note", checked->note);
   for (const auto& [where, what] : checked->findings)
     outcome.faults.push_back(cli::Report().add("where", where).add("what", what));
   return {};

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "data-schema/cli/harmless.hpp"
-#include "data-schema/cli/talk.hpp"
+#include "data-schema/cli/warnings.hpp"
+#include "data-schema/nearest_word.hpp"
 
 namespace tacto::cli {
 namespace {
@@ -51,8 +51,9 @@ std::size_t choose(const std::string& option, const std::string& word,
                    const std::vector<std::string>& words) {
   const auto found = std::ranges::find(words, word);
   if (found == words.end())
-    throw CLI::ValidationError(option,
-                               fmt::format("there is no '{}': take one of {}", word, fmt::join(words, ", ")));
+    throw CLI::ValidationError(
+        option, fmt::format("there is no '{}'{}: take one of {}", word, schema::did_you_mean(word, words),
+                            fmt::join(words, ", ")));
   return static_cast<std::size_t>(found - words.begin());
 }
 
@@ -69,7 +70,7 @@ const CLI::Validator& from_one() {
 }
 
 void warn(const std::string& text) {
-  talk(fmt::format("tactograph: warning: {}\n", on_one_line(text)));
+  print_warning(text);
 }
 
 }  // namespace tacto::cli

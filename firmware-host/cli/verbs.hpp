@@ -2,10 +2,12 @@
 // The verbs of this folder, for the table in tactograph.cpp.
 #pragma once
 
+#include "data-schema/cli/help.hpp"
 #include "data-schema/cli/verb.hpp"
 
 namespace tacto::firmware_host {
 
 extern const cli::Verb kScanVerb;
+extern const cli::HelpTopic kSimTopic;
 
 }  // namespace tacto::firmware_host

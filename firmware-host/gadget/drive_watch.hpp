@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What becomes of the drive after a fault, seen on the device.
+// What becomes of the drive after a fault, seen on the device, in its own ticks.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "firmware-host/core/wire/message_types.hpp"
 
@@ -15,6 +16,8 @@ struct DriveFall {
   double from_v = 0;  ///< level in the tick before the fault
   double fell_s = 0;  ///< from there to the last tick that had a drive
   double left_v = 0;  ///< level when the watch ended: 0 where the drive stayed away
+  /// Before the fault: since the tick before which bytes came from the host last.
+  double silent_s = 0;
 };
 
 /// Looks at each tick, and for kWatchS beyond a fault. A drive that crosses zero has not ended: what counts
@@ -23,32 +26,42 @@ class DriveWatch {
  public:
   static constexpr double kWatchS = 0.1;
 
+  /// Bytes have come from the host since the last tick.
+  void heard() { heard_ = true; }
   /// After each tick. Gives the fall once it has been watched to its end.
   std::optional<DriveFall> observe(wire::DriveState state, double drive_v, double period_s) {
     const bool fault = state == wire::DriveState::fault;
-    if (fault && !fault_) begin();
+    silent_ticks_ = std::exchange(heard_, false) ? 0 : silent_ticks_ + 1;
+    if (fault && !fault_) begin(period_s);
     fault_ = fault;
     before_v_ = std::abs(drive_v);
+    rose_ = rested_ && drive_v != 0;
+    if (rose_) rested_ = false;
     if (!watching_) return std::nullopt;
     ++ticks_;
     if (drive_v != 0) fall_.fell_s = static_cast<double>(ticks_) * period_s;
     if (fault && static_cast<double>(ticks_) * period_s < kWatchS) return std::nullopt;
     watching_ = false;
     fall_.left_v = before_v_;
+    rested_ = drive_v == 0;
     return fall_;
   }
+  /// Whether the last tick was the first one with a drive since a fall was given.
+  bool rose() const { return rose_; }
 
  private:
-  void begin() {
-    fall_ = {before_v_, 0, 0};
+  void begin(double period_s) {
+    fall_ = {before_v_, 0, 0, static_cast<double>(silent_ticks_) * period_s};
     ticks_ = 0;
     watching_ = true;
+    rested_ = false;
   }
 
   DriveFall fall_;
   double before_v_ = 0;
-  std::uint64_t ticks_ = 0;
-  bool fault_ = false, watching_ = false;
+  std::uint64_t ticks_ = 0, silent_ticks_ = 0;
+  bool fault_ = false, watching_ = false, heard_ = false;
+  bool rested_ = false, rose_ = false;
 };
 
 }  // namespace tacto::firmware_host

@@ -36,7 +36,9 @@ void GadgetLoop::run(const std::function<bool()>& stopped) {
 
 void GadgetLoop::exchange() {
   if (link_.waiting() > kMostWaiting) return;
+  const std::size_t before = board_.from_host().size();
   link_.take_received(board_.from_host());
+  if (board_.from_host().size() > before) drive_.heard();
   board_.poll();
   faults_.pass(board_.to_host());
   board_.to_host().clear();
@@ -56,9 +58,12 @@ void GadgetLoop::step() {
   board_.step();
   const core::DriveSupervisor& supervisor = board_.supervisor();
   if (const auto fall = drive_.observe(supervisor.state(), board_.drive_v(), period_s))
-    say_(fmt::format("fault: {}; the drive went from {:.3f} V to {:.3f} V within {:.2f} ms",
-                     words_of(supervisor.fault(), supervisor.fault_detail()).what, fall->from_v, fall->left_v,
-                     1e3 * fall->fell_s));
+    say_(fmt::format(
+        "fault: {}; the last bytes from the host came {:.2f} ms before it; the drive went from {:.3f} V to "
+        "{:.3f} V within {:.2f} ms",
+        words_of(supervisor.fault(), supervisor.fault_detail()).what, 1e3 * fall->silent_s, fall->from_v,
+        fall->left_v, 1e3 * fall->fell_s));
+  if (drive_.rose()) say_("the drive rises for the first time since the fault");
 }
 
 std::uint64_t GadgetLoop::due() {

@@ -13,7 +13,8 @@
 namespace tacto::firmware_host {
 
 /// One thread. Where the host does not take what the board says, the board is not polled: as on a small
-/// device, its ring fills and it counts what it loses. After a fault it says what became of the drive.
+/// device, its ring fills and it counts what it loses. After a fault it says when the host was heard last,
+/// what became of the drive, and when there is one again.
 class GadgetLoop {
  public:
   GadgetLoop(GadgetBoard& board, UsbLink& link, const FaultPlan& faults,

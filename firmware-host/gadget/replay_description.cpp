@@ -64,9 +64,10 @@ std::vector<wire::Channel> replay_channels(const schema::RecordingHeader& header
 
 std::vector<wire::Note> replay_notes(const schema::Recording& recording) {
   const schema::RecordingHeader& header = recording.header;
-  std::string by = fmt::format("by {}'s {}", kCreator, name_of(recording));
-  if (!header.simulated.empty()) by += ", itself simulated " + header.simulated;
-  std::vector<wire::Note> notes{note_of(wire::NoteKind::simulated_by, by)};
+  std::vector<wire::Note> notes{
+      note_of(wire::NoteKind::simulated_by, fmt::format("by {}'s {}", kCreator, name_of(recording)))};
+  if (!header.simulated.empty())
+    notes.push_back(note_of(wire::NoteKind::simulated_by, "itself simulated " + header.simulated));
   if (header.transducer && is_preset(*header.transducer))
     notes.push_back(note_of(wire::NoteKind::transducer, header.transducer->name));
   if (!header.surface.empty()) notes.push_back(note_of(wire::NoteKind::surface, header.surface));

@@ -92,7 +92,7 @@ std::function<std::int32_t(double)> SimBoard::scripted_force() const {
 std::unique_ptr<FrameSource> SimBoard::source_at(const SimParameters& parameters) const {
   if (script_)
     return std::make_unique<ScriptedRun>(script_, scripted_force(), 1 / parameters.sample_rate_hz,
-                                         parameters.encoder_quantum_m);
+                                         parameters.encoder_quantum_m, &script_held_);
   if (parameters.counter) return std::make_unique<CounterRun>();
   return std::make_unique<SimRun>(parameters, transducer_, profile_);
 }

@@ -46,6 +46,8 @@ class SimBoard {
     script_ = std::move(position_m);
     normal_n_ = std::move(normal_n);
   }
+  /// The script stays at its beginning, or goes on from there. From any thread.
+  void hold_script(bool held) { script_held_.store(held); }
   /// Bytes to the host that the link holds; what does not fit stays in the firmware's ring, as long as that
   /// has room.
   void set_link_bytes(std::size_t bytes) { link_bytes_ = bytes; }
@@ -75,6 +77,7 @@ class SimBoard {
   schema::Transducer transducer_;
   HeightProfile profile_;
   std::function<double(double)> script_, normal_n_;
+  std::atomic<bool> script_held_{false};
   std::vector<wire::Channel> channels_;
   std::vector<wire::Note> notes_;
   HostedProfile texture_;

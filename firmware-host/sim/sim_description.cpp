@@ -80,14 +80,15 @@ std::string extras_words(const SimParameters& p) {
   return words;
 }
 
-std::string touched_words(const SimParameters& p, std::string_view surface) {
-  return p.known_force ? force_words(p.force) : fmt::format("{}, on {}", finger_words(p), surface);
+std::string simulated_by(const SimParameters& p) {
+  return fmt::format("by {}'s emulated device{}, seed {}", kCreator, p.counter ? "" : extras_words(p),
+                     p.seed);
 }
 
-std::string simulated_by(const SimParameters& p, std::string_view surface) {
-  const std::string what =
-      p.counter ? "frames that count themselves, no physics" : touched_words(p, surface) + extras_words(p);
-  return fmt::format("by {}'s emulated device: {}, seed {}", kCreator, what, p.seed);
+// What its recorded frames show. A play does not use the surface: the finger is on the texture.
+std::string recorded_words(const SimParameters& p, std::string_view surface) {
+  if (p.counter) return "frames that count themselves, no physics";
+  return p.known_force ? force_words(p.force) : fmt::format("{}, on {}", finger_words(p), surface);
 }
 
 wire::Channel position_channel(const SimRun& run, const SimParameters& p) {
@@ -129,7 +130,8 @@ std::vector<wire::Channel> counter_channels(int count) {
 std::vector<wire::Note> sim_notes(const SimParameters& parameters, std::string_view surface) {
   const bool touched = !parameters.counter && !parameters.known_force;
   return numbered<wire::Note>(
-      {note_of(wire::NoteKind::simulated_by, simulated_by(parameters, surface)),
+      {note_of(wire::NoteKind::simulated_by, simulated_by(parameters)),
+       note_of(wire::NoteKind::simulated_by, recorded_words(parameters, surface)),
        note_of(wire::NoteKind::transducer, parameters.counter ? std::string() : parameters.transducer),
        note_of(wire::NoteKind::surface, touched ? surface : std::string_view())});
 }

@@ -15,7 +15,7 @@ namespace tacto::firmware_host {
 std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& parameters);
 /// Plain numbers of the quantity `signal`.
 std::vector<wire::Channel> counter_channels(int count);
-/// By what it is simulated, its transducer, its surface.
+/// By what it is simulated, what its frames are then of, its transducer, its surface.
 std::vector<wire::Note> sim_notes(const SimParameters& parameters, std::string_view surface);
 /// Name, serial, firmware, features and limits; clock and rates are the board's.
 wire::Welcome sim_welcome(const SimParameters& parameters, const schema::Transducer& transducer);

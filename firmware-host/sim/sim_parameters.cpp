@@ -5,7 +5,10 @@
 
 #include <cmath>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "data-schema/nearest_word.hpp"
 #include "data-schema/quantity.hpp"
 #include "firmware-host/sim/sim_keys.hpp"
 #include "firmware-host/sim/tray_mechanics.hpp"
@@ -17,11 +20,17 @@ using schema::Dimension;
 using schema::Fault;
 using schema::Result;
 
+std::vector<std::string> key_names() {
+  std::vector<std::string> names;
+  for (const WordKey& word : sim_word_keys()) names.emplace_back(word.key);
+  for (const NumberKey& number : sim_number_keys()) names.emplace_back(number.key);
+  return names;
+}
+
 std::string keys() {
   std::string list;
-  for (const WordKey& word : sim_word_keys()) list += std::string(word.key) + ", ";
-  for (const NumberKey& number : sim_number_keys()) list += std::string(number.key) + ", ";
-  return list.substr(0, list.size() - 2);
+  for (const std::string& name : key_names()) list += (list.empty() ? "" : ", ") + name;
+  return list;
 }
 
 std::string where(std::string_view key) {
@@ -74,7 +83,8 @@ Result<void> set_pair(SimParameters& parameters, std::string_view pair, std::set
     if (number.key == key) return set(parameters, number, value);
   for (const WordKey& word : sim_word_keys())
     if (word.key == key) return set(parameters, word, value);
-  return schema::fail(Fault::usage, fmt::format("there is no key '{}'", key),
+  return schema::fail(Fault::usage,
+                      fmt::format("there is no key '{}'{}", key, schema::did_you_mean(key, key_names())),
                       "sim:", "the keys are: " + keys());
 }
 

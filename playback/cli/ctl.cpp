@@ -9,12 +9,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "data-schema/cli/stop_signals.hpp"
+#include "data-schema/cli/talk.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
 #include "playback/cli/top_screen.hpp"
 #include "playback/cli/verbs.hpp"
+#include "playback/cli/watched_play.hpp"
 #include "playback/daemon/control_connection.hpp"
 
 namespace tacto::playback {
@@ -38,7 +41,7 @@ struct CtlOptions {
   std::optional<schema::TextureEnds> ends;
   std::optional<double> at_m, gain_m_per_n, fade_s;
   std::optional<double> time_s;
-  bool save = false;
+  bool save = false, watch = false;
   schema::PlaybackChoices choices;
 };
 
@@ -86,8 +89,10 @@ Result<void> check_taken(const CtlOptions& o) {
   if (!load && o.choices != schema::PlaybackChoices{})
     return refuse("--interpolation or its like", "only load does");
   if (o.save && !gain) return refuse("--save", "only gain does");
+  if (o.watch && o.action != "play") return refuse("--watch", "only play does");
   if (!o.time_s) return {};
-  if (o.action != "watch" && o.action != "top") return refuse("--time", "only watch and top do");
+  const bool stays = o.watch || o.action == "watch" || o.action == "top";
+  if (!stays) return refuse("--time", "only watch, top and play --watch do");
   if (!(*o.time_s >= 0)) return refuse("--time below 0", "a time, as in 10s");
   return {};
 }
@@ -121,6 +126,14 @@ void show_top(const ControlFields& fields) {
   else
     fmt::print("\033[H\033[2J{}", top_screen(fields));
   std::fflush(stdout);
+}
+
+// On a terminal the screen of `top`; elsewhere a line on stderr for each change of state.
+void show_played(const ControlFields& status, std::string& before) {
+  if (isatty(STDOUT_FILENO) != 0) return show_top(status);
+  const std::string state = schema::control_text(status, "state"), why = schema::control_text(status, "why");
+  if (state != std::exchange(before, state))
+    cli::talk(fmt::format("{}{}{}\n", state, why.empty() ? "" : ": ", why));
 }
 
 void show_event(const schema::ControlReply& event, bool top) {
@@ -158,9 +171,19 @@ Result<Report> watch(ControlConnection& connection, const CtlOptions& o) {
 Result<Report> run_ctl(const CtlOptions& o) {
   const auto request = request_of(o);
   if (!request) return schema::forward_error(request);
+  Report report;
+  if (request->verb == ControlVerb::stop || request->verb == ControlVerb::disarm) {
+    const auto answer = ControlConnection::ask_at_once(o.socket, *request);
+    if (!answer) return schema::forward_error(answer);
+    add_fields(report, *answer);
+    return report;
+  }
   auto connection = ControlConnection::open(o.socket);
   if (!connection) return schema::forward_error(connection);
-  Report report;
+  if (o.watch)
+    return watched_play(*connection, o.time_s, [state = std::string()](const ControlFields& status) mutable {
+      show_played(status, state);
+    });
   if (o.action == "hello") {
     add_fields(report, connection->hello());
     return report;
@@ -184,6 +207,7 @@ cli::Action declare_ctl(CLI::App& app) {
            o.action = kCtlActions[cli::choose("action", word, words)];
          },
          "load, arm, play, stop, disarm, gain, status; watch: events as lines of JSON; top: live figures")
+      ->type_name(cli::words_of({kCtlActions.begin(), kCtlActions.end()}))
       ->required();
   app.add_option("what", o.what, "load: a texture or scene; gain: a factor");
   app.add_option("--socket", o.socket, "The daemon's")->capture_default_str();
@@ -192,10 +216,14 @@ cli::Action declare_ctl(CLI::App& app) {
                     "load of a texture: displacement for force");
   declare_ends(app, o.ends, "load: ");
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
-                    "load while one plays: how long the change takes, 50ms unless told");
+                    "load while one plays: how long the change takes, 50ms by default");
   declare_choices(app, o.choices, "load: ");
   app.add_flag("--save", o.save, "gain: also into the file of the scene or texture, with who and when");
-  cli::add_quantity(app, "--time", o.time_s, Dimension::time, "watch, top: how long");
+  app.add_flag(
+      "--watch", o.watch,
+      "play: arm, play, and stay connected: the drive falls where this command ends, however it ends. "
+      "Ctrl-C stops");
+  cli::add_quantity(app, "--time", o.time_s, Dimension::time, "watch, top, play --watch: how long");
   return [options] { return run_ctl(*options); };
 }
 
@@ -203,6 +231,7 @@ cli::Action declare_ctl(CLI::App& app) {
 
 const cli::Verb kCtlVerb{"ctl", "Steer the daemon: load, arm, play, stop, gain, status, watch, top",
                          "tactograph ctl load oak --at 10mm\n"
+                         "  tactograph ctl play --watch\n"
                          "  tactograph ctl arm && tactograph ctl play\n"
                          "  tactograph ctl gain 0.5\n"
                          "  tactograph ctl load cork --fade 200ms",

@@ -5,6 +5,7 @@
 
 #include "data-schema/cli/choices_report.hpp"
 #include "data-schema/cli/harmless.hpp"
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/talk.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
@@ -33,12 +34,12 @@ struct ExplainOptions {
 
 std::vector<Report> rows_of_textures(const Program& program) {
   std::vector<Report> rows;
-  for (const schema::SessionTexture& texture : program.session.textures)
-    rows.push_back(Report()
-                       .add("texture", texture.file)
-                       .add("at_m", texture.at_m)
-                       .add("gain_m_per_n", texture.gain_m_per_n)
-                       .add("ends", std::string(schema::word_of(texture.ends))));
+  for (const schema::SessionTexture& texture : program.session.textures) {
+    Report row;
+    row.add("texture", texture.file).add("at_m", texture.at_m);
+    add_gain(row, texture.gain_m_per_n);
+    rows.push_back(std::move(row.add("ends", std::string(schema::word_of(texture.ends)))));
+  }
   return rows;
 }
 
@@ -140,8 +141,10 @@ cli::Action declare_explain(CLI::App& app) {
   ExplainOptions& o = *options;
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
   app.add_option("--transducer", o.transducer, "A preset or NAME.transducer.json")->capture_default_str();
-  app.add_flag("--force", o.program.force,
-               "Take a transducer file that says of itself that its model does not fit");
+  cli::declare_unfit_transducer(app, o.program.unfit_transducer);
+  cli::refuse_force(app);
+  app.add_flag("--implausible", o.program.implausible,
+               "Take a transducer file whose numbers no transducer has (a mass of 1e-12 kg, say)");
   cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
   cli::add_quantity(app, "--encoder-step", o.prepare.metres_per_count, Dimension::length,
                     "One count of the encoder");

@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "data-schema/cli/choices_report.hpp"
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/stop_signals.hpp"
+#include "data-schema/cli/warnings.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
@@ -37,8 +39,10 @@ void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:surface=C ...")->required();
   app.add_option("--transducer", o.transducer,
                  "A preset or NAME.transducer.json; the device's own unless told");
-  app.add_flag("--force", o.program.force,
-               "Take a transducer file that says of itself that its model does not fit");
+  cli::declare_unfit_transducer(app, o.program.unfit_transducer);
+  cli::refuse_force(app);
+  app.add_flag("--implausible", o.program.implausible,
+               "Take a transducer file whose numbers no transducer has (a mass of 1e-12 kg, say)");
   app.add_option("--finger-path", o.finger_path,
                  "Where an emulated device's finger goes: CSV with the columns time_s,position_m, and how it "
                  "presses where there is a column normal_force_n");
@@ -89,13 +93,13 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explai
   Report report;
   report.add("session", o.session).add("device", outcome.device);
   if (!outcome.simulated.empty()) report.add("simulated", outcome.simulated);
-  report.add("gain_m_per_n", outcome.gain_m_per_n);
+  add_gain(report, outcome.gain_m_per_n);
   add_kept_gain(report, outcome.kept_gain);
   report.add("played_s", outcome.status.ticks.playing_s());
   add_loop(report, outcome.loop_period_m, outcome.loop_seam_m);
   add_played(report, outcome);
   if (outcome.decision) add_decision(report, *outcome.decision, explain);
-  for (const std::string& note : outcome.notes) cli::warn(note);
+  cli::warn_grouped(outcome.notes);
   if (!outcome.recorder.failure.empty()) {
     cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
                           outcome.recorder.failure));

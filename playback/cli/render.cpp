@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/newer_version.hpp"
 #include "data-schema/statistics.hpp"
@@ -15,6 +16,7 @@
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/laid_textures.hpp"
 #include "playback/drive_files.hpp"
+#include "playback/kept_error.hpp"
 #include "playback/render.hpp"
 
 namespace tacto::playback {
@@ -34,11 +36,13 @@ struct NamedChoices {
 struct RenderVerbOptions {
   ProgramRequest what;
   std::string path, transducer, drive, displacement, wanted;
+  schema::Existing existing = schema::Existing::keep;
   RenderOptions render;
   AskedBudget budget;
   CLI::Option* engine = nullptr;
   NamedChoices named;
   std::optional<schema::PlaybackGain> kept_gain;
+  double signed_gain = 0;  ///< as reported; the signs of what is rendered are the textures' weights
 };
 
 void add_files(CLI::App& app, RenderVerbOptions& o) {
@@ -48,10 +52,12 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
                  "Finger path: CSV with the columns time_s,position_m; between its points by monotone cubics")
       ->required();
   app.add_option("--transducer", o.transducer, "Transducer: a preset or NAME.transducer.json")->required();
-  app.add_flag("--force", o.what.force,
-               "Take a transducer file that says of itself that its model does not fit");
+  cli::declare_unfit_transducer(app, o.what.unfit_transducer);
+  app.add_flag("--implausible", o.what.implausible,
+               "Take a transducer file whose numbers no transducer has (a mass of 1e-12 kg, say)");
   app.add_option("-o,--output", o.drive, "The drive: float WAV in volts at the amplifier's input")
       ->required();
+  cli::declare_force(app, o.existing);
   app.add_option("--displacement", o.displacement,
                  "Also write what the modelled tray does with that drive: float WAV in metres");
   app.add_option("--wanted", o.wanted, "Also write the displacement that was wanted: float WAV in metres");
@@ -151,6 +157,14 @@ void add_limits(Report& report, const Rendering& r) {
       .add("clipped_removed_db", r.clipping->removed_db);
 }
 
+// First away from the path's ends, where a step or the onset is most of the error.
+void add_errors(Report& report, const Rendering& r) {
+  if (r.interior_error_db)
+    report.add("interior_displacement_error_db", *r.interior_error_db)
+        .add("left_out_at_each_end_s", left_out_at_ends_s(r));
+  report.add("displacement_error_db", r.error_db);
+}
+
 void add_way(Report& report, const Rendering& r) {
   add_loop(report, r.loop_period_m, r.loop_seam_m);
   report.add("samples_outside_texture", r.samples_outside)
@@ -165,11 +179,13 @@ void add_way(Report& report, const Rendering& r) {
 Report report_of(const RenderVerbOptions& o, const schema::Transducer& transducer, const Rendering& r) {
   Report report;
   report.add("drive", o.drive).add("transducer", transducer.name).add("duration_s", r.drive_v.duration_s());
-  report.add("rate_hz", r.drive_v.sample_rate_hz).add("gain_m_per_n", o.render.gain_m_per_n);
+  report.add("rate_hz", r.drive_v.sample_rate_hz);
+  add_gain(report, o.signed_gain);
   add_kept_gain(report, o.kept_gain);
   report.add("drive_rms_v", schema::statistics_of(r.drive_v.values).rms())
       .add("wanted_rms_m", schema::statistics_of(r.wanted_m.values).rms());
-  report.add("displacement_error_db", r.error_db).add("delay_s", r.delay_s);
+  add_errors(report, r);
+  report.add("delay_s", r.delay_s);
   if (o.render.budget.asked()) report.add("engine", r.engine == Engine::kernel ? "kernel" : "reference");
   if (r.decision) add_decision(report, *r.decision, o.budget.options.explain);
   if (o.budget.options.explain && !r.reasons.empty()) report.add("why_this_engine", r.reasons);
@@ -206,7 +222,7 @@ Result<void> check_kernels(const RenderVerbOptions& o) {
 
 // The signals' addresses serve as names only: nothing is rendered yet.
 Result<void> check_outputs(const RenderVerbOptions& o) {
-  return check_signal_files(files_of(o, Rendering{}));
+  return check_signal_files(files_of(o, Rendering{}), o.existing);
 }
 
 // What a scene says of how it is to be played, where nobody named something else.
@@ -237,6 +253,7 @@ Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& trans
   for (const std::string& note : laid->notes()) cli::warn(note);
   o.kept_gain = laid->kept_gain();
   o.render.gain_m_per_n = laid->gain();
+  o.signed_gain = laid->signed_gain();
   o.render.ends = laid->ends();
   const auto path = read_finger_path(o.path);
   if (!path) return schema::forward_error(path);
@@ -252,14 +269,15 @@ Result<Report> run_render(RenderVerbOptions o) {
   o.render.keep_engine = o.engine->count() > 0;
   if (const auto knows = check_kernels(o); !knows) return schema::forward_error(knows);
   if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
-  const auto transducer = schema::read_transducer(o.transducer);
+  const auto transducer = schema::read_transducer(
+      o.transducer, o.what.implausible ? schema::Numbers::computable : schema::Numbers::plausible);
   if (!transducer) return schema::forward_error(transducer);
-  if (const auto usable = schema::check_usable(*transducer, o.what.force); !usable)
+  if (const auto usable = schema::check_usable(*transducer, o.what.unfit_transducer); !usable)
     return schema::forward_error(usable);
   warn_of_version(o.transducer, *transducer);
   const auto rendering = rendered(o, *transducer);
   if (!rendering) return schema::forward_error(rendering);
-  if (const auto written = write_signal_files(files_of(o, *rendering)); !written)
+  if (const auto written = write_signal_files(files_of(o, *rendering), o.existing); !written)
     return schema::forward_error(written);
   warn_of(*rendering);
   return report_of(o, *transducer, *rendering);

@@ -5,9 +5,11 @@
 #include <fstream>
 #include <memory>
 
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
+#include "data-schema/cli/warnings.hpp"
 #include "data-schema/files.hpp"
-#include "data-schema/session.hpp"
+#include "data-schema/session_reader.hpp"
 #include "playback/cli/limits_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/daemon/session_export.hpp"
@@ -24,32 +26,41 @@ struct SessionVerbOptions {
   std::string session;
   std::vector<std::string> outputs;
   std::string strokes;
+  schema::Existing existing = schema::Existing::keep;
 };
 
 constexpr std::string_view kStrokeColumns =
+    "stroke,from_s,to_s,from_m,to_m,predicted_rms_m,wanted_rms_m,predicted_error_db,predicted_over_wanted_db,"
+    "removed_by_limits_db,limited_ticks,energy_limited_ticks,gated_ticks,measured_rms_m,measured_error_db,"
+    "measured_over_wanted_db,measured_shift_s";
+
+// Of older versions, which called predicted what they said was received.
+constexpr std::string_view kReceivedColumns =
     "stroke,from_s,to_s,from_m,to_m,received_rms_m,wanted_rms_m,error_db,received_over_wanted_db,"
     "removed_by_limits_db,limited_ticks,energy_limited_ticks,gated_ticks";
 
 // What is not known is left empty.
 std::string stroke_line(std::uint64_t number, const PlayedStroke& s) {
   const auto cell = [](bool known, double value) { return known ? fmt::format("{:.9g}", value) : ""; };
-  const bool judged = s.wanted_rms_m > 0;
-  return fmt::format("{},{:.9f},{:.9f},{:.12g},{:.12g},{:.9g},{},{},{},{},{},{},{}\n", number, s.from_s,
-                     s.to_s, s.from_m, s.to_m, s.received_rms_m, cell(judged, s.wanted_rms_m),
-                     cell(judged, s.error_db), cell(judged, s.level_db),
+  const bool judged = s.wanted_rms_m > 0, sensed = s.measured.has_value();
+  const MeasuredDisplacement measured = s.measured.value_or(MeasuredDisplacement{});
+  return fmt::format("{},{:.9f},{:.9f},{:.12g},{:.12g},{:.9g},{},{},{},{},{},{},{},{},{},{},{}\n", number,
+                     s.from_s, s.to_s, s.from_m, s.to_m, s.predicted.rms_m, cell(judged, s.wanted_rms_m),
+                     cell(judged, s.predicted.error_db), cell(judged, s.predicted.level_db),
                      cell(s.limits && s.limits->removed_any(), s.limits ? s.limits->removed_db() : 0),
-                     s.limited_ticks, s.energy_limited_ticks, s.gated_ticks);
+                     s.limited_ticks, s.energy_limited_ticks, s.gated_ticks, cell(sensed, measured.rms_m),
+                     cell(sensed && judged, measured.error_db), cell(sensed && judged, measured.level_db),
+                     cell(sensed && judged, measured.shift_s));
 }
 
 bool is_stroke_table(std::string_view line) {
-  return line == kStrokeColumns;
+  return line == kStrokeColumns || line == kReceivedColumns;
 }
 
 /// The strokes as a table, written as they are found.
 class StrokeTable {
  public:
   Result<void> open(const std::string& file) {
-    if (const auto free = schema::check_table_free(file, is_stroke_table); !free) return free;
     const auto temporary = pending_.add(file);
     if (!temporary) return schema::forward_error(temporary);
     file_ = file;
@@ -60,12 +71,12 @@ class StrokeTable {
   void add(const PlayedStroke& stroke) {
     if (out_.is_open()) out_ << stroke_line(++strokes_, stroke);
   }
-  Result<void> close() {
+  Result<void> close(schema::Existing existing) {
     if (!out_.is_open()) return {};
     out_.flush();
     if (!out_)
       return schema::fail(schema::Fault::cannot_write, "can't be written", file_, "is the disk full?");
-    return pending_.commit(schema::Existing::replace);
+    return pending_.commit(existing);
   }
 
  private:
@@ -77,13 +88,21 @@ class StrokeTable {
 
 Report stroke_row(const PlayedStroke& stroke) {
   Report row;
+  const bool judged = stroke.wanted_rms_m > 0;
   row.add("from_s", stroke.from_s).add("to_s", stroke.to_s);
   row.add("from_m", stroke.from_m).add("to_m", stroke.to_m);
-  row.add("received_rms_m", stroke.received_rms_m);
-  if (stroke.wanted_rms_m > 0)
+  row.add("predicted_rms_m", stroke.predicted.rms_m);
+  if (judged)
     row.add("wanted_rms_m", stroke.wanted_rms_m)
-        .add("error_db", stroke.error_db)
-        .add("received_over_wanted_db", stroke.level_db);
+        .add("predicted_error_db", stroke.predicted.error_db)
+        .add("predicted_over_wanted_db", stroke.predicted.level_db);
+  if (const auto& measured = stroke.measured) {
+    row.add("measured_rms_m", measured->rms_m);
+    if (judged)
+      row.add("measured_error_db", measured->error_db)
+          .add("measured_over_wanted_db", measured->level_db)
+          .add("measured_shift_s", measured->shift_s);
+  }
   if (stroke.limits && stroke.limits->removed_any())
     row.add("removed_by_limits_db", stroke.limits->removed_db());
   return row.add("limited_ticks", stroke.limited_ticks)
@@ -98,13 +117,17 @@ Result<void> check_outputs(const SessionVerbOptions& o) {
     if (std::any_of(all.begin(), file, [&](const auto& other) { return schema::same_file(*file, other); }))
       return schema::fail(schema::Fault::usage, fmt::format("'{}' is named twice", *file), "output",
                           "give each table a file of its own");
-  return {};
+  for (const std::string& output : o.outputs)
+    if (auto free = check_session_output(output, o.existing); !free) return free;
+  return o.strokes.empty() ? Result<void>{}
+                           : schema::check_table_free(o.strokes, o.existing, is_stroke_table);
 }
 
 Result<void> export_all(const SessionVerbOptions& o) {
   for (const std::string& output : o.outputs) {
     cli::Progress progress("exporting " + output);
-    const auto said = export_session(o.session, output, [&](double part) { progress.update(part); });
+    const auto said =
+        export_session(o.session, output, o.existing, [&](double part) { progress.update(part); });
     if (!said) return schema::forward_error(said);
     if (!said->empty()) cli::warn(fmt::format("{}: {}", output, *said));
   }
@@ -119,15 +142,29 @@ Result<StrokeReport> judge_all(const SessionVerbOptions& o) {
   auto report = report_strokes(o.session, {[&](const PlayedStroke& stroke) { table.add(stroke); },
                                            [&](double part) { progress.update(part); }});
   if (!report) return report;
-  const auto closed = table.close();
+  const auto closed = table.close(o.existing);
   return closed ? report : schema::forward_error(closed);
 }
 
 void warn_of(const StrokeReport& strokes) {
-  for (const std::string& note : strokes.notes) cli::warn(note);
+  cli::warn_grouped(strokes.notes);
   if (strokes.stroke_count > strokes.strokes.size())
     cli::warn(fmt::format("the first {} of {} strokes are told here: --strokes FILE.csv takes all",
                           strokes.strokes.size(), strokes.stroke_count));
+}
+
+// States, faults, gains, changes of texture.
+Result<void> add_events(Report& report, const std::string& session) {
+  auto reader = schema::SessionReader::open(session);
+  if (!reader) return schema::forward_error(reader);
+  const schema::SessionTotals totals = session_totals(*reader);
+  std::vector<Report> rows;
+  for (const schema::SessionEvent& event : totals.events)
+    rows.push_back(Report().add("tick", event.tick).add("event", event.text));
+  if (totals.event_count > totals.events.size())
+    report.add("events_left_out", totals.event_count - totals.events.size());
+  report.add("events", std::move(rows));
+  return {};
 }
 
 Result<Report> run_session(const SessionVerbOptions& o) {
@@ -148,6 +185,7 @@ Result<Report> run_session(const SessionVerbOptions& o) {
   std::vector<Report> rows;
   for (const PlayedStroke& stroke : strokes->strokes) rows.push_back(stroke_row(stroke));
   report.add("strokes", std::move(rows));
+  if (const auto added = add_events(report, o.session); !added) return schema::forward_error(added);
   if (strokes->damaged) report.ends_with(schema::Fault::malformed);
   return report;
 }
@@ -158,13 +196,15 @@ cli::Action declare_session(CLI::App& app) {
   app.add_option("-o,--output", options->outputs,
                  "Table of the ticks: .csv, .wav or .nc; may be given again");
   app.add_option("--strokes", options->strokes, "Table of the strokes: .csv, a line each, however many");
+  cli::declare_force(app, options->existing);
   return [options] { return run_session(*options); };
 }
 
 }  // namespace
 
 const cli::Verb kSessionVerb{
-    "session", "Export a session, and say of each stroke what the finger received against what was wanted",
+    "session",
+    "Export a session; say of each stroke what the model predicts and what the tray's sensor measured",
     "tactograph session first -o first.csv -o first.nc", declare_session};
 
 }  // namespace tacto::playback

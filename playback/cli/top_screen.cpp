@@ -70,8 +70,10 @@ std::string top_screen(const ControlFields& fields) {
   const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
   std::string text;
   const auto out = std::back_inserter(text);
+  // `why` holds the fault, too, and from protocol 1.2 on what else changed the state.
+  const std::string why = schema::control_text(fields, "why");
   fmt::format_to(out, "{:<8} {}\n", schema::control_text(fields, "state"),
-                 schema::control_text(fields, "fault"));
+                 why.empty() ? schema::control_text(fields, "fault") : why);
   fmt::format_to(out, "period   {:8.1f} us   round trip {:.2f} ms   band up to {:.4g} Hz\n",
                  1e6 * number("period_s"), 1e3 * number("round_trip_s"), number("passes_to_hz"));
   fmt::format_to(out, "finger   {:8.2f} mm   {:8.1f} mm/s\n", 1e3 * number("position_m"),

@@ -22,8 +22,9 @@ BlockJudge::BlockJudge(const SessionOverview& overview, const JudgedBlocks& bloc
       block_rows_(rows_in(blocks.block_s, overview.header.rate_hz)),
       around_rows_(rows_in(blocks.around_s, overview.header.rate_hz)),
       maker_(overview, 2 * around_rows_),
-      follower_(overview.header),
+      follower_(overview),
       wanted_(overview),
+      measured_(MeasuredReader::open(overview)),
       strokes_(std::move(found)) {}
 
 void BlockJudge::take(const schema::SessionTick& tick, std::optional<float> wished_v) {
@@ -41,10 +42,11 @@ void BlockJudge::finish(LastWay last) {
 
 void BlockJudge::judge(std::size_t rows) {
   const SessionWanted wanted = wanted_.wanted_in(rows_);
-  const auto received_m = received_displacement_m(overview_.header, rows_);
+  const auto predicted_m = predicted_displacement_m(overview_.header, rows_);
+  const auto measured = measured_ ? std::optional(measured_->in(rows_)) : std::nullopt;
   for (std::size_t i = judged_; i < judged_ + rows; ++i)
-    strokes_.add({first_row_ + i, rows_[i].row, wanted.displacement_m[i], received_m[i], !wanted.unknown[i],
-                  wished_v_[i]});
+    strokes_.add({first_row_ + i, rows_[i].row, wanted.displacement_m[i], predicted_m[i], !wanted.unknown[i],
+                  measured ? measured->at(i) : std::nullopt, wished_v_[i]});
   judged_ += rows;
   const std::size_t done = judged_ - std::min(judged_, around_rows_);
   rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(done));

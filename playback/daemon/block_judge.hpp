@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Judges a session block by block: what was wanted and received in each row, into the strokes.
+// Judges a session block by block: what was wanted, predicted and measured in each row, into the strokes.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "playback/daemon/judged_rows.hpp"
+#include "playback/daemon/measured_rows.hpp"
 #include "playback/daemon/session_wanted.hpp"
 #include "playback/daemon/stroke_finder.hpp"
 #include "playback/daemon/stroke_report.hpp"
@@ -38,6 +39,7 @@ class BlockJudge {
   RowMaker maker_;
   RowFollower follower_;
   WantedReader wanted_;
+  std::optional<MeasuredReader> measured_;  // of a session that holds samples
   StrokeFinder strokes_;
   std::vector<JudgedRow> rows_;
   std::vector<std::optional<float>> wished_v_;

@@ -4,8 +4,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <utility>
 
 #include "data-schema/control.hpp"
 
@@ -17,42 +17,15 @@ constexpr std::size_t kEventsWait = std::size_t{64} * 1024;  // beyond it, event
 
 }  // namespace
 
-ControlClient::ControlClient(ControlClient&& other) noexcept
-    : greeted(other.greeted),
-      watching(other.watching),
-      unwelcome(other.unwelcome),
-      greets_by(other.greets_by),
-      user(other.user),
-      dropped_events(other.dropped_events),
-      waits_for(std::move(other.waits_for)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      in_(std::move(other.in_)),
-      out_(std::move(other.out_)),
-      silent_(other.silent_) {}
-
-ControlClient& ControlClient::operator=(ControlClient&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  std::swap(in_, other.in_);
-  std::swap(out_, other.out_);
-  silent_ = other.silent_;
-  greeted = other.greeted;
-  watching = other.watching;
-  unwelcome = other.unwelcome;
-  greets_by = other.greets_by;
-  user = other.user;
-  dropped_events = other.dropped_events;
-  std::swap(waits_for, other.waits_for);
-  return *this;
-}
-
-ControlClient::~ControlClient() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+ControlClient::Descriptor::~Descriptor() {
+  if (value_ >= 0) ::close(value_);
 }
 
 void ControlClient::receive() {
   char bytes[4096];
-  const ssize_t got = recv(descriptor_, bytes, sizeof bytes, MSG_DONTWAIT);
+  const ssize_t got = recv(descriptor(), bytes, sizeof bytes, MSG_DONTWAIT);
   if (got > 0) in_.append(bytes, static_cast<std::size_t>(got));
+  if (got > 0) lines += static_cast<std::uint64_t>(std::count(bytes, bytes + got, '\n'));
   silent_ = got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR);
 }
 
@@ -65,14 +38,14 @@ bool ControlClient::has_room() const {
   return in_.size() < schema::kMostControlLine;
 }
 
-std::vector<std::string> ControlClient::lines() const {
-  std::vector<std::string> lines;
+std::vector<std::string> ControlClient::waiting_lines() const {
+  std::vector<std::string> whole;
   std::size_t from = 0;
   for (auto end = in_.find('\n'); end != std::string::npos; end = in_.find('\n', from)) {
-    lines.push_back(in_.substr(from, end - from));
+    whole.push_back(in_.substr(from, end - from));
     from = end + 1;
   }
-  return lines;
+  return whole;
 }
 
 std::optional<std::string> ControlClient::take_line() {
@@ -90,7 +63,7 @@ bool ControlClient::is_endless() const {
 
 bool ControlClient::flush() {
   while (!out_.empty()) {
-    const ssize_t sent = ::send(descriptor_, out_.data(), out_.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    const ssize_t sent = ::send(descriptor(), out_.data(), out_.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent < 0) return errno == EAGAIN || errno == EINTR;
     out_.erase(0, static_cast<std::size_t>(sent));
   }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tacto::playback {
@@ -21,11 +22,8 @@ struct LateRequest {
 class ControlClient {
  public:
   explicit ControlClient(int descriptor) : descriptor_(descriptor) {}
-  ControlClient(ControlClient&& other) noexcept;
-  ControlClient& operator=(ControlClient&& other) noexcept;
-  ~ControlClient();
 
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_.value(); }
   /// Takes in what has come.
   void receive();
   /// Nothing more comes: the client has closed its side, or is gone.
@@ -34,7 +32,7 @@ class ControlClient {
   std::optional<std::string> take_line();
   bool has_line() const;
   /// All whole lines that are here; none is taken.
-  std::vector<std::string> lines() const;
+  std::vector<std::string> waiting_lines() const;
   /// Less than a longest line is here.
   bool has_room() const;
   /// More than a line may have, and still no end.
@@ -47,14 +45,40 @@ class ControlClient {
   bool flush();
   bool wants_to_send() const { return !out_.empty(); }
 
-  bool greeted = false, watching = false, unwelcome = false;
-  std::optional<std::chrono::steady_clock::time_point> greets_by;  ///< with the token: who came by TCP
-  std::optional<std::uint32_t> user;                               ///< who came by the Unix socket
+  using Time = std::chrono::steady_clock::time_point;
+
+  std::uint64_t id = 0;
+  Time since{};                       ///< when it connected
+  bool by_tcp = false;                ///< it has to name the token
+  std::optional<std::uint32_t> user;  ///< who came by the Unix socket
+  bool greeted = false, watching = false;
+  bool unwelcome = false;         ///< it is disconnected once it is answered
+  bool gone = false;              ///< it is disconnected, and waits to be removed from the list
+  bool for_stop = false;          ///< it has a place that is kept for `stop` and `disarm`
+  std::optional<Time> leaves_at;  ///< then it is sent `last_line` and disconnected; it is not read until then
+  std::string last_line;
+  std::uint64_t lines = 0;  ///< that came
   std::uint64_t dropped_events = 0;
   std::optional<LateRequest> waits_for;
 
  private:
-  int descriptor_;
+  // Closes what it holds.
+  class Descriptor {
+   public:
+    explicit Descriptor(int value) : value_(value) {}
+    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+      std::swap(value_, other.value_);
+      return *this;
+    }
+    ~Descriptor();
+    int value() const { return value_; }
+
+   private:
+    int value_;
+  };
+
+  Descriptor descriptor_;
   std::string in_, out_;
   bool silent_ = false;
 };

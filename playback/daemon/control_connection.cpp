@@ -23,6 +23,13 @@ namespace {
 constexpr int kAnswerMs = 10'000;
 constexpr int kLoadMs = 60'000;  // a texture of 100 mm takes a second to load, on a slow or busy machine many
 
+ControlRequest hello_request() {
+  ControlRequest hello;
+  hello.verb = schema::ControlVerb::hello;
+  hello.version = schema::kControlVersion;
+  return hello;
+}
+
 }  // namespace
 
 ControlConnection::ControlConnection(ControlConnection&& other) noexcept
@@ -47,13 +54,20 @@ Result<ControlConnection> ControlConnection::open(const std::string& socket) {
   const auto connected = connect_control_socket(socket);
   if (!connected) return schema::forward_error(connected);
   ControlConnection connection(socket, *connected);
-  ControlRequest hello;
-  hello.verb = schema::ControlVerb::hello;
-  hello.version = schema::kControlVersion;
-  auto answer = connection.ask(hello);
+  auto answer = connection.ask(hello_request());
   if (!answer) return schema::forward_error(answer);
   connection.hello_ = std::move(*answer);
   return connection;
+}
+
+Result<ControlFields> ControlConnection::ask_at_once(const std::string& socket,
+                                                     const ControlRequest& request) {
+  const auto connected = connect_control_socket(socket);
+  if (!connected) return schema::forward_error(connected);
+  ControlConnection connection(socket, *connected);
+  connection.say(schema::control_request_line(hello_request()) + schema::control_request_line(request));
+  const auto greeted = connection.answer(kAnswerMs);
+  return greeted ? connection.answer(kAnswerMs) : greeted;
 }
 
 Result<std::optional<std::string>> ControlConnection::line(int timeout_ms) {
@@ -72,17 +86,24 @@ Result<std::optional<std::string>> ControlConnection::line(int timeout_ms) {
   }
 }
 
-Result<ControlFields> ControlConnection::ask(const ControlRequest& request) {
-  const std::string text = schema::control_request_line(request);
-  // Who hangs up at once has said why: it is read also where nothing can be sent any more.
+// Who hangs up at once has said why: it is read also where nothing can be sent any more.
+void ControlConnection::say(const std::string& text) const {
   (void)::send(descriptor_, text.data(), text.size(), MSG_NOSIGNAL);
-  const auto answer = line(request.verb == schema::ControlVerb::load ? kLoadMs : kAnswerMs);
-  if (!answer) return schema::forward_error(answer);
-  if (!*answer) return fail(Fault::device, "the daemon says nothing", socket_, "see its journal");
-  auto reply = schema::parse_control_reply(**answer);
+}
+
+Result<ControlFields> ControlConnection::answer(int timeout_ms) {
+  const auto text = line(timeout_ms);
+  if (!text) return schema::forward_error(text);
+  if (!*text) return fail(Fault::device, "the daemon says nothing", socket_, "see its journal");
+  auto reply = schema::parse_control_reply(**text);
   if (!reply) return schema::forward_error(reply);
   if (!reply->ok) return tl::unexpected(reply->error);
   return std::move(reply->fields);
+}
+
+Result<ControlFields> ControlConnection::ask(const ControlRequest& request) {
+  say(schema::control_request_line(request));
+  return answer(request.verb == schema::ControlVerb::load ? kLoadMs : kAnswerMs);
 }
 
 Result<std::optional<ControlReply>> ControlConnection::next_event(int timeout_ms) {

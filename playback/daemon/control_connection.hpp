@@ -13,6 +13,10 @@ class ControlConnection {
  public:
   /// Connects and says hello. Errors: as connect_control_socket; unsupported_version; device: no answer.
   static schema::Result<ControlConnection> open(const std::string& socket);
+  /// Says hello and asks in one piece, and hangs up: for `stop` and `disarm`, which a daemon whose places are
+  /// all taken answers at once. Errors: as open() and ask().
+  static schema::Result<schema::ControlFields> ask_at_once(const std::string& socket,
+                                                           const schema::ControlRequest& request);
   ControlConnection(ControlConnection&& other) noexcept;
   ControlConnection& operator=(ControlConnection&& other) noexcept;
   ~ControlConnection();
@@ -23,10 +27,13 @@ class ControlConnection {
   /// device: it hung up; malformed: a line that is no event.
   schema::Result<std::optional<schema::ControlReply>> next_event(int timeout_ms);
   const schema::ControlFields& hello() const { return hello_; }
+  const std::string& socket() const { return socket_; }
 
  private:
   ControlConnection(std::string socket, int descriptor)
       : socket_(std::move(socket)), descriptor_(descriptor) {}
+  void say(const std::string& text) const;
+  schema::Result<schema::ControlFields> answer(int timeout_ms);
   schema::Result<std::optional<std::string>> line(int timeout_ms);
   std::string socket_;
   int descriptor_;

@@ -56,7 +56,7 @@ CountTrack::Sight CountTrack::begin() noexcept {
   seen_ = newest_.load(std::memory_order_acquire);
   at_ = seen_ - reserve_;
   part_ = drift_ = 0, least_ = kNone, in_window_ = 0;
-  return {kept(at_), 0, newest_ns_.load(std::memory_order_relaxed) - reserve_ * period_ns_, true};
+  return {kept(at_), 0, newest_ns_.load(std::memory_order_relaxed) - reserve_ * period_ns_, true, at_, 0};
 }
 
 // A count stands for its middle.
@@ -98,7 +98,7 @@ CountTrack::Sight CountTrack::see() noexcept {
   const auto left = static_cast<std::int32_t>(newest - at_);
   keep_near(static_cast<float>(left) - part_);
   const std::int64_t made_ns = newest_ns_.load(std::memory_order_relaxed) - left * period_ns_;
-  return {count_here(newest), at_ - before, made_ns, fresh};
+  return {count_here(newest), at_ - before, made_ns, fresh, at_, part_};
 }
 
 }  // namespace tacto::playback

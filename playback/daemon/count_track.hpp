@@ -29,6 +29,9 @@ class CountTrack {
     std::uint32_t passed = 0;  ///< periods since the sight before; 1 is usual
     std::int64_t made_ns = 0;
     bool fresh = false;  ///< something came since
+    /// The count is that of this period and a part of the next one.
+    std::uint32_t period = 0;
+    float part = 0;
   };
   /// Goes on by one period.
   Sight see() noexcept;

@@ -21,9 +21,10 @@ constexpr auto kWriteEvery = std::chrono::milliseconds(20);
 constexpr auto kSyncEvery = std::chrono::milliseconds(100);
 constexpr auto kRoomAgain = std::chrono::microseconds(200);
 constexpr std::size_t kBatch = 4096;
-constexpr std::int64_t kMostBlockNs = 4'000'000'000;  // a block counts 32 bits of ns
-constexpr std::int64_t kFirstBlock = 8192;            // bytes
-constexpr std::size_t kMostOwed = 1000;               // disjoint losses; later ones are only counted
+constexpr std::int64_t kMostBlockNs = 4'000'000'000;               // a block counts 32 bits of ns
+constexpr std::int64_t kFirstBlock = 8192;                         // bytes
+constexpr std::size_t kMostSamplesWaiting = std::size_t{1} << 18;  // 1 MB; 13 s at 20 kHz
+constexpr std::size_t kMostOwed = 1000;  // disjoint losses; later ones are only counted
 
 // Whether a tick may stand in the block that begins with another: without a hole, and not for too long.
 bool follows(const SessionTick& next, const std::vector<SessionTick>& batch) {
@@ -114,6 +115,13 @@ void FlightRecorder::event(schema::SessionEvent event) {
   notes_.events.push_back(std::move(event));
 }
 
+void FlightRecorder::measured(schema::SessionSamples samples) {
+  const std::lock_guard lock(notes_mutex_);
+  if (notes_.sample_count + samples.codes.size() > kMostSamplesWaiting) return;
+  notes_.sample_count += samples.codes.size();
+  notes_.samples.push_back(std::move(samples));
+}
+
 RecorderCounts FlightRecorder::counts() const {
   const std::lock_guard lock(notes_mutex_);
   return {written_.load(), queue_lost_.load(), disk_lost_.load(), late_.load(),
@@ -139,6 +147,7 @@ void FlightRecorder::write_run(std::span<const SessionTick> ticks) {
   const auto done = writer_.add(ticks);
   if (!done) {
     failed(done.error());
+    if (limits_ != nullptr) limits_->lose("ticks");
     disk_lost_.fetch_add(ticks.size());
     owe({ticks.front().tick, ticks.size(), SessionLoss::Why::disk});
     disk_full_ = true;
@@ -181,12 +190,16 @@ void FlightRecorder::write_notes() {
   }
   for (const SessionLoss& loss : notes.losses) owe(loss);
   const auto put = [&](const auto& note) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(note)>, schema::SessionCommand>)
-      if (limits_ != nullptr) limits_->hear(note);
-    if (const auto done = writer_.add(note); !done) failed(done.error());
+    constexpr bool kSteers = std::is_same_v<std::decay_t<decltype(note)>, schema::SessionCommand>;
+    const auto done = writer_.add(note);
+    if (!done) failed(done.error());
+    if (!kSteers || limits_ == nullptr) return;
+    if (!done) return limits_->lose("commands");
+    if constexpr (kSteers) limits_->hear(note);
   };
   for (const auto& command : notes.commands) std::visit(put, command);
   for (const auto& event : notes.events) put(event);
+  for (const auto& samples : notes.samples) put(samples);
   if (!disk_full_) write_owed();  // what is held back for losses is for all of them
 }
 

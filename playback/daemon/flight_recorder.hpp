@@ -58,6 +58,9 @@ class FlightRecorder {
   /// Ticks that never came.
   void loss(const schema::SessionLoss& loss);
   void event(schema::SessionEvent event);
+  /// What the tray's sensor measured. Where over 2^18 samples wait for the disk, these are left out: the
+  /// numbers of the frames show it.
+  void measured(schema::SessionSamples samples);
 
   RecorderCounts counts() const;
   const std::string& path() const { return path_; }
@@ -72,6 +75,8 @@ class FlightRecorder {
     std::vector<std::variant<schema::SessionCommand, schema::SessionChange>> commands;  // as they came
     std::vector<schema::SessionLoss> losses;
     std::vector<schema::SessionEvent> events;
+    std::vector<schema::SessionSamples> samples;
+    std::size_t sample_count = 0;
   };
   FlightRecorder(schema::SessionWriter writer, FullQueue full, LiveLimits* limits);
   schema::Result<void> write_beginning();

@@ -9,7 +9,10 @@
 namespace tacto::playback {
 
 HostBoard::HostBoard(const firmware_host::Description& device, double rate_hz)
-    : about_(device), counts_(rate_hz), period_ns_(static_cast<std::int64_t>(1e9 / rate_hz)) {
+    : about_(device),
+      counts_(rate_hz),
+      sensor_(rate_hz),
+      period_ns_(static_cast<std::int64_t>(1e9 / rate_hz)) {
   wire::Welcome& welcome = about_.welcome;
   welcome.clock_hz = kClockHz;
   welcome.default_rate_millihertz = welcome.least_rate_millihertz = welcome.most_rate_millihertz =
@@ -67,6 +70,7 @@ void HostBoard::look_at_count(std::int64_t late_ns) noexcept {
   const CountTrack::Sight sight = counts_.see();
   encoder_ = sight.count;
   reading_ns_ = sight.made_ns;
+  read_period_ = sight.period, read_part_ = sight.part;
   age_ += slept + (sight.fresh ? 0U : 1U);
   unseen_ = std::max(age_, sight.passed > 0 ? sight.passed - 1 : 0);
   if (sight.fresh) age_ = 0;
@@ -81,6 +85,7 @@ void HostBoard::tick(std::int64_t now_ns, std::int64_t late_ns) noexcept {
   // Periods that were slept through are passed over: the tick belongs to the last of them.
   dues_[slot].store(now_ns - began_ns_ - late_ns % period_ns_, std::memory_order_relaxed);
   look_at_count(late_ns);
+  sensor_.read_at(ticks_ - 1, read_period_, read_part_);
   firmware_->tick();
   if (TimedDrive* place = drives_.place(); place != nullptr) {
     *place = {now_ns, drive_v_, reading_ns_};

@@ -15,6 +15,7 @@
 #include "firmware-host/hosted_board.hpp"
 #include "playback/daemon/byte_ring.hpp"
 #include "playback/daemon/count_track.hpp"
+#include "playback/daemon/sensor_track.hpp"
 
 namespace tacto::playback {
 
@@ -48,6 +49,10 @@ class HostBoard {
   }
   /// Before anything ticks: as CountTrack::set_reserve().
   void set_reserve(std::uint32_t periods) noexcept { counts_.set_reserve(periods); }
+  /// Before put_count(): what the tray's sensor said in that period.
+  void put_sample(std::uint32_t period, std::int32_t code) noexcept { sensor_.put(period, code); }
+  /// What it said up to the count that a tick played: SensorTrack::take(). The player's thread.
+  void take_samples(std::uint64_t tick, SampleRun& into) { sensor_.take(tick, due_ns(tick), into); }
   void set_enabled(bool enabled) noexcept { enabled_.store(enabled, std::memory_order_release); }
   /// Before put_count(): the codes of the device's channels in the same period.
   void set_codes(std::span<const std::int32_t> codes) noexcept {
@@ -80,6 +85,7 @@ class HostBoard {
   firmware_host::Description about_;
   firmware_host::HostedProfile profile_;
   CountTrack counts_;
+  SensorTrack sensor_;
   std::atomic<bool> enabled_{false}, wants_drive_{false}, coded_{false};
   ByteRing<65536> from_player_;
   ByteRing<262144> to_player_;
@@ -92,6 +98,8 @@ class HostBoard {
   std::uint32_t age_ = 0, unseen_ = 0;  // in periods
   std::int32_t encoder_ = 0;
   std::int64_t reading_ns_ = 0;
+  std::uint32_t read_period_ = 0;
+  float read_part_ = 0;
   std::uint64_t ticks_ = 0;  // since arming
   std::int64_t now_ns_ = 0, began_ns_ = 0;
   float drive_v_ = 0;

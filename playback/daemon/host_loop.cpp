@@ -10,6 +10,7 @@
 #include "firmware-host/realtime_priority.hpp"
 #include "firmware-host/wire_fields.hpp"
 #include "firmware-host/wire_words.hpp"
+#include "playback/daemon/tray_samples.hpp"
 #include "playback/upload.hpp"
 
 namespace tacto::playback {
@@ -70,6 +71,7 @@ HostLoop::HostLoop(firmware_host::Client& device, const HostLoopOptions& options
     : device_(device),
       options_(options),
       position_channel_(channel),
+      sensor_channel_(tray_sensor_channel(device.description())),
       board_(std::make_unique<HostBoard>(device.description(), options.rate_hz)),
       codes_(1024 * device.description().channels.size()) {}
 
@@ -189,7 +191,9 @@ void HostLoop::take_counts() {
     board_->set_codes(std::span(codes_).subspan((frames - 1) * channels, channels));
     for (std::size_t i = 0; i < frames; ++i) {
       const auto age_ns = static_cast<std::int64_t>(static_cast<double>(frames - 1 - i) * period_ns);
-      board_->put_count(++periods_, codes_[i * channels + position_channel_], last_count_ns_ - age_ns);
+      ++periods_;
+      if (sensor_channel_) board_->put_sample(periods_, codes_[i * channels + *sensor_channel_]);
+      board_->put_count(periods_, codes_[i * channels + position_channel_], last_count_ns_ - age_ns);
     }
     board_->set_enabled(sound_ && enabled_);
   }
@@ -211,8 +215,8 @@ void HostLoop::follow_arming() {
   to_trim_ = to_pad_ = 0;
   last_drive_v_ = 0;
   while (board_->drives().front() != nullptr) board_->drives().pop();
+  sound_ = true;  // disarming ends a fault, here as on a device
   if (!wanted) return (void)device_.command(wire::Disarm{});
-  sound_ = true;
   {
     const std::lock_guard lock(fault_mutex_);
     fault_.clear();
@@ -275,6 +279,7 @@ void HostLoop::beat() {
   const auto pulse = device_.heartbeat();
   round_trip_ns_ = TickClock::now_ns() - asked_ns;
   if (!pulse) return give_up(schema::message(pulse.error()));
+  if (!armed_) enabled_ = pulse->enabled;  // no ticks tell it now
   if (!armed_) return;
   const std::uint32_t target = queue_target(), queued = pulse->drive_queued;
   queue_ns_ = static_cast<std::int64_t>(1e9 * queued / options_.rate_hz);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -58,6 +59,7 @@ class HostLoop {
 
   /// For a Client of its own: the player's.
   std::unique_ptr<firmware_host::Transport> transport();
+  HostBoard& board() { return *board_; }
   const HostBoard& board() const { return *board_; }
   HostLoopStatus status() const;
   /// From the encoder's edge to the drive, as seen while the loop began: what a texture looks ahead by.
@@ -81,6 +83,7 @@ class HostLoop {
   firmware_host::Client& device_;
   HostLoopOptions options_;
   std::size_t position_channel_;
+  std::optional<std::size_t> sensor_channel_;
   std::unique_ptr<HostBoard> board_;
   TimeHistogram wake_, busy_, latency_;
   std::atomic<std::uint64_t> missed_{0}, stale_{0}, trimmed_{0};

@@ -12,6 +12,7 @@
 #include "data-schema/files.hpp"
 #include "data-schema/newer_version.hpp"
 #include "data-schema/texture_wav.hpp"
+#include "playback/daemon/served_folder.hpp"
 #include "playback/played_ends.hpp"
 
 namespace tacto::playback {
@@ -25,11 +26,6 @@ namespace {
 
 constexpr double kUsualGain = 1e-3;  // of a texture that nobody gave one: a fingertip has about 1e3 N/m
 constexpr double kMostPathSamples = 1 << 24;  // 168 m at 10 um; as many as all levels together may have
-
-bool names_a_scene(const std::string& file) {
-  if (file.ends_with(".scene.json") || file.ends_with(".scene")) return true;
-  return !schema::is_file(file) && schema::is_file(file + ".scene.json");
-}
 
 // What was asked for, else what the texture keeps, else the usual.
 Result<schema::Scene> scene_of_texture(const ProgramRequest& request,
@@ -65,6 +61,11 @@ Result<void> check_choices(const schema::Scene& scene) {
 }
 
 }  // namespace
+
+bool names_a_scene(const std::string& file) {
+  if (file.ends_with(".scene.json") || file.ends_with(".scene")) return true;
+  return !schema::is_file(file) && schema::is_file(file + ".scene.json");
+}
 
 std::string full_path(const std::string& path) {
   std::error_code ignored;
@@ -172,7 +173,13 @@ class TextureReader {
   LaidTextures& laid_;
 };
 
-Result<LaidTextures> lay_textures(const ProgramRequest& request) {
+Result<LaidTextures> lay_textures(const ProgramRequest& asked) {
+  ProgramRequest request = asked;
+  if (asked.only_in) {
+    auto served = served_file(*asked.only_in, asked.file);
+    if (!served) return schema::forward_error(served);
+    request.file = std::move(*served);
+  }
   std::optional<schema::PlaybackGain> kept_gain;
   const auto scene = scene_of(request, kept_gain);
   if (!scene) return schema::forward_error(scene);

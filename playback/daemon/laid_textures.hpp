@@ -54,8 +54,11 @@ class LaidTextures {
 /// From the root on: a session is read in other folders too.
 std::string full_path(const std::string& path);
 
-/// Errors: as read_texture, read_scene; usage: a place, gain or ends for a scene; unsuitable: a scene of
-/// several textures whose ends are not `stop`, that reach over 2^24 samples, or without any gain.
+/// Whether a name means a scene; else it means a texture.
+bool names_a_scene(const std::string& file);
+
+/// Errors: as read_texture, read_scene, served_file; usage: a place, gain or ends for a scene; unsuitable: a
+/// scene of several textures whose ends are not `stop`, that reach over 2^24 samples, or without any gain.
 schema::Result<LaidTextures> lay_textures(const ProgramRequest& request);
 
 }  // namespace tacto::playback

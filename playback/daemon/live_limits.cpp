@@ -59,6 +59,10 @@ void LiveLimits::take(std::span<const SessionTick> ticks) {
   tell();
 }
 
+void LiveLimits::lose(const std::string& what) {
+  if (board_) give_up(what + " are missing");
+}
+
 void LiveLimits::follow(std::uint64_t held_back) {
   while (board_ && waiting_.size() > held_back) {
     const SessionTick tick = waiting_.front();

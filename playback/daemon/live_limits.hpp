@@ -28,10 +28,10 @@ struct LimitsTook {
 /// limits are lifted, is given the same commands and counts as they are recorded (session_limits.hpp has the
 /// definition, and does the same of a session; the figures agree). It follows the ticks by the device's
 /// watchdog: only then it is known that the host was not too silent.
-/// Not known: from ticks on that are missing; of a contact gate whose ticks do not tell the touch (before
-/// protocol 1.2); where the second device does otherwise than the first one before a limit was reached, or
-/// refuses a command.
-/// One thread calls hear(), take() and end(), which allocate: never the tick's. told() is for any.
+/// Not known: from ticks or commands on that are missing, in the file too; of a contact gate whose ticks do
+/// not tell the touch (before protocol 1.2); where the second device does otherwise than the first one before
+/// a limit was reached, or refuses a command. One thread calls hear(), take() and end(), which allocate:
+/// never the tick's. told() is for any.
 class LiveLimits {
  public:
   /// `profile_samples`: as many as the device holds.
@@ -40,6 +40,8 @@ class LiveLimits {
   /// In the order of the session, before the ticks that took it. Precondition: its frame is_frame().
   void hear(const schema::SessionCommand& command);
   void take(std::span<const schema::SessionTick> ticks);
+  /// Something of the session did not get into its file: from now on nothing is known, as of the file.
+  void lose(const std::string& what);
   /// No tick comes any more: tells of all that came. The second device is gone then.
   void end();
   LimitsTook told() const;

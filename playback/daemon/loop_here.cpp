@@ -26,6 +26,9 @@ schema::Result<LoopHere> close_loop_here(firmware_host::Client& device, const st
   options.loop = "host";
   options.lateness_ns = [&board = here.loop->board()](std::uint64_t tick) { return board.lateness_ns(tick); };
   options.due_ns = [&board = here.loop->board()](std::uint64_t tick) { return board.due_ns(tick); };
+  options.measured = [&board = here.loop->board()](std::uint64_t tick, SampleRun& into) {
+    board.take_samples(tick, into);
+  };
   options.latency = [&loop = *here.loop] { return words_of(loop.latency()); };
   return here;
 }

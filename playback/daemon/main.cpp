@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "data-schema/cli/talk.hpp"
 #include "data-schema/standard_descriptors.hpp"
@@ -80,11 +81,13 @@ void tell(ControlServer& server, const ServiceManager& manager, std::string_view
 
 void serve_until_asked(ControlServer& server, Service& service, ServiceManager& manager) {
   const auto handle = [&](const schema::ControlRequest& request) { return service.handle(request); };
-  while (stop_asked == 0) {
+  for (double served_s = steady_s(); stop_asked == 0;) {
     const bool busy = service.step(kStepS);
     if (const auto answer = service.finished_load()) server.answer_late(*answer);
     server.serve(busy ? 0 : service.loading() ? kLoadingMs : kIdleMs, handle);
     if (server.stop_waits()) service.give_up_load();
+    const double passed_s = steady_s() - std::exchange(served_s, steady_s());
+    service.stay(server.heard_of(service.stay_rules().client), passed_s);
     manager.feed_watchdog(steady_s());
   }
 }

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "data-schema/files.hpp"
+#include "firmware-host/wire_device.hpp"
 #include "playback/daemon/locked_memory.hpp"
 #include "playback/daemon/loop_here.hpp"
 #include "playback/daemon/player_device.hpp"
@@ -52,14 +54,28 @@ Result<Program> program_for(const PlayOptions& options, const PlayerDevice& devi
   return make_program(options.program, *transducer, prepare);
 }
 
-Result<void> run_until(Player& player, double time_s, const std::function<bool()>& stop_asked,
+// Seconds of ticks since arming.
+struct PlayTime {
+  double from_s = 0, to_s = 0;
+};
+
+Result<void> run_until(Player& player, const PlayTime& time, const std::function<bool()>& stop_asked,
                        const std::function<void(double)>& progress) {
-  while (player.armed_s() < time_s && !stop_asked()) {
+  while (player.armed_s() < time.to_s && !stop_asked()) {
     if (const auto done = player.step(kPlayStepS); !done) return done;
     if (player.state() == PlayerState::fault) break;
-    if (progress) progress(player.armed_s() / time_s);
+    if (progress) progress(std::max(0.0, (player.armed_s() - time.from_s) / (time.to_s - time.from_s)));
   }
   return {};
+}
+
+// Where this computer closes the loop, the path begins now and reaches the tray later, by the delay of the
+// loop.
+PlayTime begin_path(const Player& player, const PlayerDevice& device, const LoopHere& here, double time_s) {
+  if (!device.begin_path) return {0, time_s};
+  device.begin_path();
+  const double from_s = player.armed_s() + (here ? here.loop->delay_s() : 0);
+  return {from_s, from_s + time_s};
 }
 
 // The ramp is part of the session.
@@ -87,13 +103,22 @@ PlayOutcome outcome_of(const Program& program) {
   return outcome;
 }
 
-Result<void> play_through(Player& player, const PlayOptions& options, double time_s,
+// What is played on, from the device to the player.
+struct Playing {
+  PlayerDevice& device;
+  const LoopHere& here;
+  Player& player;
+};
+
+Result<void> play_through(const Playing& playing, const PlayOptions& options,
                           const std::function<bool()>& stop_asked,
                           const std::function<void(double)>& progress, PlayOutcome& outcome) {
+  Player& player = playing.player;
   if (const auto done = player.gain(options.gain); !done) return done;
   if (const auto done = player.arm(options.session); !done) return done;
   if (const auto done = player.play(); !done) return done;
-  if (const auto done = run_until(player, time_s, stop_asked, progress); !done) return done;
+  const PlayTime time = begin_path(player, playing.device, playing.here, outcome.asked_s);
+  if (const auto done = run_until(player, time, stop_asked, progress); !done) return done;
   outcome.status = player.status();
   if (player.state() != PlayerState::fault)
     if (const auto done = ramp_down(player); !done) return done;
@@ -125,8 +150,11 @@ LoopedHere looped_by(const HostLoop& loop) {
 Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                               const std::function<void(double)>& progress) {
   if (const auto sound = check_play_options(options); !sound) return schema::forward_error(sound);
-  const auto script = read_finger_script(options.finger_path, false);
+  auto script = read_finger_script(options.finger_path, false);
   if (!script) return schema::forward_error(script);
+  // The emulated finger moves from the stream's beginning on; here that is before the loop's delay is
+  // measured.
+  if (*script) (*script)->waits = options.loop_here;
   auto device = open_player_device(options.device_uri, *script);
   if (!device) return schema::forward_error(device);
   PlayerOptions player_options;
@@ -141,11 +169,11 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   PlayOutcome outcome = outcome_of(*program);
   const Feelable what = feelable(*program);
   outcome.device = device->uri;
-  outcome.simulated = device->device->capabilities().simulated;
+  outcome.simulated = firmware_host::simulated_device(device->client->description());
   outcome.asked_s = time_of(options, *script);
   if (const auto loaded = (*player)->load(std::move(*program)); !loaded) return schema::forward_error(loaded);
   if (*here) lock_memory();
-  const auto played = play_through(**player, options, outcome.asked_s, stop_asked, progress, outcome);
+  const auto played = play_through({*device, *here, **player}, options, stop_asked, progress, outcome);
   if (!played) return schema::forward_error(played);
   outcome.recorder = (*player)->last_session();
   if (*here) outcome.looped = looped_by(*here->loop);

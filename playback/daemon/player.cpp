@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "firmware-host/wire_device.hpp"
 #include "firmware-host/wire_fields.hpp"
 #include "firmware-host/wire_words.hpp"
 #include "playback/displacement_limit.hpp"
@@ -71,7 +72,7 @@ std::string_view word_of(PlayerState state) {
 }
 
 Player::Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres)
-    : client_(client), uri_(std::move(uri)), options_(options), metres_per_count_(metres) {
+    : client_(client), uri_(std::move(uri)), options_(options), metres_per_count_(metres), tray_(client) {
   client_.listen([this](std::span<const std::uint8_t> frame) { keep(frame); });
 }
 
@@ -93,8 +94,9 @@ Result<void> Player::require(bool allowed, const char* what, const char* remedy)
   return fail(Fault::usage, fmt::format("can't {} in the state {}", what, word_of(state_)), uri_, remedy);
 }
 
-// Every command that the device obeys is part of the session.
+// Every command that the device obeys is part of the session, but for those of the samples' stream.
 void Player::keep(std::span<const std::uint8_t> frame) {
+  if (TraySamples::streams(frame)) return;
   if (recorder_) recorder_->command({view_.expected(), steady_ns(), {frame.begin(), frame.end()}});
 }
 
@@ -162,8 +164,8 @@ schema::SessionHeader Player::session_header() const {
   header.device_firmware = about.welcome.firmware;
   header.device_protocol = fmt::format("{}.{}", about.welcome.major, about.welcome.minor);
   header.initial_gain = gain_;
-  for (const wire::Note& note : about.notes)
-    if (note.kind == wire::NoteKind::simulated_by) header.simulated = note.text;
+  header.sensor = tray_.sensor(header.rate_hz);
+  header.simulated = firmware_host::simulated_device(about);
   return header;
 }
 
@@ -176,6 +178,7 @@ Result<void> Player::begin_session(const std::string& path) {
   if (!recorder) return schema::forward_error(recorder);
   recorder_ = std::move(*recorder);
   limits_ = std::move(limits);
+  tray_.begin(header.rate_hz, [this](schema::SessionSamples run) { recorder_->measured(std::move(run)); });
   return {};
 }
 
@@ -187,6 +190,7 @@ Result<void> Player::arm(const std::string& session_path) {
   if (const auto rests = wait_for_idle(); !rests) return rests;
   if (const auto begun = begin_session(session_path); !begun) return begun;
   fault_.clear();
+  stopped_because_.clear();
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
   device_gain_m_per_n_ = program_->prepared.gain_m_per_n;
   faded_at_ = 0;
@@ -203,6 +207,8 @@ Result<void> Player::arm(const std::string& session_path) {
     return done;
   }
   session_path_ = session_path;
+  if (const auto streams = options_.measured ? Result<void>() : tray_.begin_stream(); !streams)
+    recorder_->event({0, steady_ns(), "no samples of the tray: " + schema::message(streams.error())});
   const auto beaten = beat();
   enter(PlayerState::armed, "");
   return beaten;
@@ -211,12 +217,14 @@ Result<void> Player::arm(const std::string& session_path) {
 Result<void> Player::play() {
   const char* const remedy = state_ == PlayerState::fault ? "disarm first, then arm" : "arm first";
   if (const auto allowed = require(runs(state_), "play", remedy); !allowed) return allowed;
+  stopped_because_.clear();
   return steer(wire::Play{});
 }
 
-Result<void> Player::stop() {
+Result<void> Player::stop(const std::string& why) {
   const bool may = state_ != PlayerState::idle && state_ != PlayerState::lost;
   if (const auto allowed = require(may, "stop", "nothing plays"); !allowed) return allowed;
+  stopped_because_ = why;
   return steer(wire::Stop{});
 }
 
@@ -232,7 +240,9 @@ Result<void> Player::gain(double gain) {
   if (const auto may = may_gain(gain); !may) return may;
   gain_ = gain;
   if (!recorder_) return {};
-  return steer(device_gain());
+  const auto done = steer(device_gain());
+  if (done) recorder_->event({view_.expected(), steady_ns(), fmt::format("gain {:g}", gain)});
+  return done;
 }
 
 wire::Gain Player::device_gain() const {
@@ -250,13 +260,14 @@ Result<void> Player::wait_for_idle() {
   return fail(Fault::device, "the device did not come to rest", uri_, "switch off the amplifier");
 }
 
-Result<void> Player::disarm() {
+Result<void> Player::disarm(const std::string& why) {
   if (state_ == PlayerState::idle) return {};
   if (const auto may = require(state_ != PlayerState::lost, "disarm", "the device is gone"); !may) return may;
   auto done = steer(wire::Disarm{});
   if (done) done = wait_for_idle();
+  if (done) done = tray_.end_stream();
   if (!done) return lose(done.error());
-  enter(PlayerState::idle, "");
+  enter(PlayerState::idle, why);
   return end_session();
 }
 
@@ -269,6 +280,7 @@ std::string Player::latency_words() const {
 
 Result<void> Player::end_session() {
   if (!recorder_) return {};
+  tray_.end();
   if (view_.ticks() > 0) recorder_->event({view_.expected(), steady_ns(), latency_words()});
   const auto closed = recorder_->close();
   last_session_ = recorder_->counts();
@@ -326,16 +338,19 @@ void Player::take(const wire::Ticks& message) {
         options_.lateness_ns ? options_.lateness_ns(number) : schema::SessionTick::kLatenessUnknown};
     view_.take(row);
     recorder_->tick(row);
+    if (tray_.run() != nullptr && options_.measured) options_.measured(number, *tray_.run());
   }
 }
 
 // Of a run that is over, ticks may still be on their way: they belong to nobody.
 void Player::take_ticks() {
+  tray_.take();
   for (const wire::Ticks& message : client_.take_ticks()) {
     if (!recorder_ || message.count == 0 || message.first_tick < view_.expected()) continue;
     take(message);
     const PlayerState seen = state_of(view_.last().flags);
-    if (seen != state_ && state_ != PlayerState::fault && state_ != PlayerState::idle) enter(seen, fault_);
+    if (seen != state_ && state_ != PlayerState::fault && state_ != PlayerState::idle)
+      enter(seen, seen == PlayerState::armed ? stopped_because_ : fault_);
   }
 }
 
@@ -343,7 +358,8 @@ void Player::take_faults() {
   for (const wire::Fault& fault : client_.take_faults()) {
     const firmware_host::FaultWords words = firmware_host::words_of(fault.code, fault.detail);
     if (!recorder_) continue;
-    if (fault.code == wire::FaultCode::ring_full) {
+    // A converter that fails ends the stream of samples; the drive goes on.
+    if (fault.code == wire::FaultCode::ring_full || fault.code == wire::FaultCode::converter) {
       recorder_->event({view_.expected(), steady_ns(), words.what});
       continue;
     }

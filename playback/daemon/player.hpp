@@ -12,6 +12,7 @@
 #include "playback/daemon/flight_recorder.hpp"
 #include "playback/daemon/program.hpp"
 #include "playback/daemon/tick_view.hpp"
+#include "playback/daemon/tray_samples.hpp"
 
 namespace tacto::playback {
 
@@ -33,6 +34,8 @@ struct PlayerOptions {
   std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
   /// When a tick was due, by the device's clock, where somebody knows it better than its message.
   std::function<std::int64_t(std::uint64_t tick)> due_ns;
+  /// Hands over what the tray's sensor said up to a tick, where somebody else takes the device's samples.
+  std::function<void(std::uint64_t tick, SampleRun& into)> measured;
   /// From the encoder's edge to the drive, in words, as it was measured until now: for the session.
   std::function<std::string()> latency;
 };
@@ -78,14 +81,16 @@ class Player {
   /// In idle, loaded. Errors: usage; device; cannot_write. After one there is no session.
   schema::Result<void> arm(const std::string& session_path);
   schema::Result<void> play();
-  schema::Result<void> stop();
+  /// `why`, where given, is published with the state that follows.
+  schema::Result<void> stop(const std::string& why = {});
   /// At any time; kept for the next session. Errors: as may_gain; device.
   schema::Result<void> gain(double gain);
   /// Errors: usage, for a gain that is no number; unsuitable, for one that would move the tray beyond its
   /// limit, with the largest that fits.
   schema::Result<void> may_gain(double gain) const;
-  /// Ramps to zero, waits for idle (a second at most), and closes the session. Errors: device; cannot_write.
-  schema::Result<void> disarm();
+  /// Ramps to zero, waits for idle (a second at most), and closes the session; `why` as in stop(). Errors:
+  /// device; cannot_write.
+  schema::Result<void> disarm(const std::string& why = {});
 
   /// Takes in what the device says, waiting at most `timeout_s` for it, and keeps it alive. An error (the
   /// device is gone) is told once; from then on the state is lost.
@@ -136,12 +141,13 @@ class Player {
   std::string session_path_;
   RecorderCounts last_session_;
   PlayerState state_ = PlayerState::idle;
-  std::string fault_;
+  std::string fault_, stopped_because_;
   double gain_ = 1;
   double leaving_peak_m_ = 0;       // of the tray, by the texture that the last change left
   double device_gain_m_per_n_ = 0;  // that gain_ is a factor of; since arming
   std::uint64_t faded_at_ = 0;      // the tick by which the last change is through
   TickView view_;
+  TraySamples tray_;
   double pulse_s_ = 0;  // the device's clock at the last heartbeat
   double next_beat_s_ = 0, round_trip_s_ = 0;
 };

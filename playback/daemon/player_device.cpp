@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "firmware-host/sim/sim_device.hpp"
+#include "firmware-host/open_device.hpp"
 #include "spatial/dsp/hermite.hpp"
 
 namespace tacto::playback {
@@ -81,8 +82,12 @@ class Script {
   std::shared_ptr<const Knots> knots_;
 };
 
-Result<std::unique_ptr<firmware_host::Device>> open_scripted(const std::string& uri,
-                                                             const FingerScript& script) {
+struct ScriptedDevice {
+  std::unique_ptr<firmware_host::Device> device;
+  std::function<void()> begin_path;
+};
+
+Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript& script) {
   if (!uri.starts_with(kSimScheme)) {
     if (const auto other = firmware_host::open_device(uri); !other) return schema::forward_error(other);
     return fail(Fault::unsuitable, "only an emulated finger goes where it is told", uri,
@@ -93,8 +98,19 @@ Result<std::unique_ptr<firmware_host::Device>> open_scripted(const std::string& 
   const Script way(script);
   std::function<double(double)> force_n;
   if (!script.path.normal_force_n.empty()) force_n = [way](double time_s) { return way.force_n(time_s); };
-  (*device)->board().set_script(way, std::move(force_n));
-  return std::unique_ptr<firmware_host::Device>(std::move(*device));
+  firmware_host::SimBoard& board = (*device)->board();
+  board.set_script(way, std::move(force_n));
+  board.hold_script(script.waits);
+  ScriptedDevice scripted{std::move(*device), {}};
+  if (script.waits) scripted.begin_path = [&board] { board.hold_script(false); };
+  return scripted;
+}
+
+Result<ScriptedDevice> open_with(const std::string& uri, const std::optional<FingerScript>& script) {
+  if (script) return open_scripted(uri, *script);
+  auto device = firmware_host::open_device(uri);
+  if (!device) return schema::forward_error(device);
+  return ScriptedDevice{std::move(*device), {}};
 }
 
 }  // namespace
@@ -132,13 +148,14 @@ Result<std::optional<FingerScript>> read_finger_script(const std::string& file, 
 }
 
 Result<PlayerDevice> open_player_device(const std::string& uri, const std::optional<FingerScript>& script) {
-  auto device = script ? open_scripted(uri, *script) : firmware_host::open_device(uri);
-  if (!device) return schema::forward_error(device);
-  firmware_host::Client* const client = (*device)->conversation();
+  auto opened = open_with(uri, script);
+  if (!opened) return schema::forward_error(opened);
+  auto& device = opened->device;
+  firmware_host::Client* const client = device->conversation();
   if (client == nullptr)
     return fail(Fault::unsuitable, "nothing can be played on a replay", uri, "play on sim: or usb:");
-  const firmware_host::Capabilities& about = (*device)->capabilities();
-  PlayerDevice player{std::move(*device), client, about.uri, {}};
+  const firmware_host::Capabilities& about = device->capabilities();
+  PlayerDevice player{std::move(device), client, about.uri, {}, std::move(opened->begin_path)};
   if (uri.starts_with(kSimScheme)) return player;  // an emulation of this process alone
   auto lock = DeviceLock::take(about.simulated.empty() ? about.serial : about.uri);
   if (!lock) return schema::forward_error(lock);

@@ -2,6 +2,7 @@
 // The device that is played on, opened and held for this process alone.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,7 @@ struct FingerScript {
   /// Over and over: from its beginning where its end meets that (within 1 um), else there and back. Not
   /// repeated it rests at the end.
   bool repeated = false;
+  bool waits = false;  ///< at its beginning, until PlayerDevice::begin_path()
 };
 
 /// The script of a finger path's CSV; none where no file is named. Errors: as read_finger_path.
@@ -43,6 +45,7 @@ struct PlayerDevice {
   firmware_host::Client* client = nullptr;
   std::string uri;
   DeviceLock lock;
+  std::function<void()> begin_path;  ///< of a script that waits; from any thread
 };
 
 /// Opens by URI (see open_device), and locks what other programs could open too. A script is for `sim:`

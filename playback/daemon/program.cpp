@@ -150,9 +150,10 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
   const schema::PlaybackChoices choices = request.choices.over(laid->choices().over(request.defaults));
   const auto chosen = options_of(request, choices, options);
   if (!chosen) return schema::forward_error(chosen);
-  const auto transducer = schema::read_transducer(transducer_name);
+  const auto transducer = schema::read_transducer(
+      transducer_name, request.implausible ? schema::Numbers::computable : schema::Numbers::plausible);
   if (!transducer) return schema::forward_error(transducer);
-  if (const auto usable = schema::check_usable(*transducer, request.force); !usable)
+  if (const auto usable = schema::check_usable(*transducer, request.unfit_transducer); !usable)
     return schema::forward_error(usable);
   program.session.transducer = *transducer;
   program.session.transducer_sha256 = transducer_sum(transducer_name);

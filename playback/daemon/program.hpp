@@ -17,13 +17,16 @@ struct ProgramRequest {
   std::string file;  ///< stem or file of a texture or scene
   std::optional<double> at_m, gain_m_per_n;
   std::optional<schema::TextureEnds> ends;
-  bool force = false;      ///< take a transducer that says of itself that its model does not fit
-  TickBudget budget = {};  ///< chooses reading and inverse, where something is asked
+  bool implausible = false;       ///< insist on a transducer whose numbers no transducer has
+  bool unfit_transducer = false;  ///< take a transducer whose file says that its model does not fit
+  TickBudget budget = {};         ///< chooses reading and inverse, where something is asked
   /// Also what could move the tray beyond its limit: on an emulated one, to see what the other limits take
   /// away.
   bool any_displacement = false;
   schema::PlaybackChoices choices = {};   ///< go before the scene's
   schema::PlaybackChoices defaults = {};  ///< for what neither they nor the scene say
+  /// `file` and all that belongs to it has to lie in this folder (served_file); none: anywhere.
+  std::optional<std::string> only_in = {};
 };
 
 /// Ready to upload. `session` lacks only what the player knows: device, clock, initial state.

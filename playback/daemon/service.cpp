@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "playback/daemon/program.hpp"
 #include "playback/daemon/session_name.hpp"
 #include "playback/daemon/status_fields.hpp"
+#include "playback/gain_sign.hpp"
 
 namespace tacto::playback {
 
@@ -24,10 +26,9 @@ using schema::ControlVerb;
 using schema::fail;
 using schema::Fault;
 using schema::Result;
+namespace fs = std::filesystem;
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kStatusEveryS = 0.1;
 constexpr double kReleaseS = 0.01;
@@ -62,6 +63,10 @@ void add_loop(ControlFields& fields, double period_m, double seam_m) {
   fields.emplace_back("loop_seam_m", seam_m);
 }
 
+void add_inversion(ControlFields& fields, double gain) {
+  tell_inversion(gain, [&](const char* key, bool value) { fields.emplace_back(key, value); });
+}
+
 ControlFields fields_of(const std::string& file, const Program& program) {
   const Prepared& made = program.prepared;
   ControlFields fields{{"file", file},
@@ -72,6 +77,7 @@ ControlFields fields_of(const std::string& file, const Program& program) {
                        {"delay_s", made.delay_s},
                        {"delay_left_s", made.delay_left_s},
                        {"inverse_error_db", made.inverse_error_db}};
+  add_inversion(fields, program.gain_m_per_n);
   add_loop(fields, made.loop_period_m, made.loop_seam_m);
   if (program.kept_gain) {
     fields.emplace_back("gain_set_by", program.kept_gain->who);
@@ -124,6 +130,7 @@ Result<void> Service::connect() {
   if (!player) return schema::forward_error(player);
   player_ = std::move(*player);
   player_->listen([this](PlayerState state, const std::string& why, double device_s) {
+    why_ = why;
     publish_("state", {{"state", std::string(word_of(state))}, {"why", why}, {"device_s", device_s}});
   });
   return {};
@@ -168,6 +175,8 @@ Result<void> Service::begin_load(const ControlRequest& request) {
   if (const auto may = player_->may_load(); !may) return may;
   load_request_ = request;
   ProgramRequest wanted{resolved(request.file), request.at_m, request.gain_m_per_n, request.ends};
+  wanted.only_in = request.by_tcp ? std::optional(config_.files) : std::nullopt;
+  if (request.by_tcp) wanted.file = request.file;
   wanted.budget = budget();
   wanted.choices = request.playback;
   wanted.defaults = config_.playback;
@@ -189,7 +198,7 @@ Result<ControlFields> Service::load(Program program) {
   const std::string& file = load_request_.file;
   ControlFields fields = fields_of(file, program);
   const std::string scene_path = program.scene_path;
-  const double passes_to_hz = program.prepared.passes_to_hz;
+  const double passes_to_hz = program.prepared.passes_to_hz, gain_m_per_n = program.gain_m_per_n;
   const double period_m = program.prepared.loop_period_m, seam_m = program.prepared.loop_seam_m;
   const schema::SessionTexture alone = program.session.textures.front();
   const auto filter = program.decision ? std::optional(program.decision->chosen.inverse) : std::nullopt;
@@ -197,7 +206,7 @@ Result<ControlFields> Service::load(Program program) {
   const double fade_s = load_request_.fade_s.value_or(kUsualFadeS);
   if (const auto kept = player_->load(std::move(program), fade_s); !kept) return schema::forward_error(kept);
   loaded_ = file;
-  passes_to_hz_ = passes_to_hz;
+  passes_to_hz_ = passes_to_hz, loaded_gain_m_per_n_ = gain_m_per_n;
   loop_period_m_ = period_m, loop_seam_m_ = seam_m;
   scene_path_ = scene_path;
   alone_ = alone;
@@ -214,14 +223,26 @@ std::string Service::next_session() const {
   return dated_session((fs::path(config_.sessions) / "").string());
 }
 
-Result<ControlFields> Service::arm() {
+Result<ControlFields> Service::arm(const ControlRequest& request) {
   if (const auto may = may_begin("arm"); !may) return schema::forward_error(may);
   const std::string path = next_session();
   if (const auto armed = player_->arm(path); !armed) return schema::forward_error(armed);
   told_lost_.reset();
   if (here_) missed_before_ = here_.loop->status().missed_ticks;
   lock_memory();  // also what came since the daemon began
-  return ControlFields{{"state", std::string(word_of(player_->state()))}, {"session", path}};
+  stay_.begin(playback::stay_rules(request, config_.dead_man_s));
+  ControlFields fields{{"state", std::string(word_of(player_->state()))}, {"session", path}};
+  add_stay(fields, stay_.rules());
+  return fields;
+}
+
+void Service::stay(const LinesHeard& heard, double passed_s) {
+  const PlayerState state = player_->state();
+  if (state != PlayerState::armed && state != PlayerState::playing) return;
+  const auto why = stay_.why_to_fall(heard, passed_s);
+  if (!why) return;
+  if (state == PlayerState::playing) (void)done(player_->stop(*why), PlayerState::armed);
+  (void)disarm(*why);
 }
 
 // When it begins, and how much it was in the end.
@@ -235,9 +256,10 @@ void Service::tell_losses(const RecorderCounts& counts, bool last) {
                         {"device_s", device_s}});
 }
 
-Result<ControlFields> Service::disarm() {
+Result<ControlFields> Service::disarm(const std::string& why) {
   const bool recorded = player_->recorded().has_value();
-  const auto disarmed = player_->disarm();
+  const auto disarmed = player_->disarm(why);
+  if (disarmed) stay_.end();
   if (recorded && !player_->recorded()) tell_losses(player_->last_session(), true);
   return done(disarmed, PlayerState::idle);
 }
@@ -280,7 +302,9 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
   if (const auto set = player_->gain(*request.gain); !set) return schema::forward_error(set);
   const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
   publish_("gain", {{"gain", *request.gain}, {"device_s", device_s}});
-  return ControlFields{{"gain", *request.gain}, {"saved", request.save}};
+  ControlFields fields{{"gain", *request.gain}, {"saved", request.save}};
+  add_inversion(fields, *request.gain * loaded_gain_m_per_n_);
+  return fields;
 }
 
 // The answer tells the state that the command led to, once the device's ticks show it.
@@ -311,7 +335,10 @@ ControlFields Service::hello() const {
 ControlFields Service::status() const {
   const PlayerStatus status = player_->status();
   ControlFields fields{{"state", std::string(word_of(status.state))}, {"gain", status.gain}};
+  add_inversion(fields, status.gain * loaded_gain_m_per_n_);
   if (!status.fault.empty()) fields.emplace_back("fault", status.fault);
+  if (!why_.empty()) fields.emplace_back("why", why_);
+  if (status.state != PlayerState::idle) add_stay(fields, stay_.rules());
   if (!loaded_.empty()) fields.emplace_back("loaded", loaded_);
   if (!loaded_.empty()) fields.emplace_back("passes_to_hz", passes_to_hz_);
   add_loop(fields, loop_period_m_, loop_seam_m_);
@@ -337,7 +364,7 @@ std::optional<Result<ControlFields>> Service::handle(const ControlRequest& reque
       if (const auto begun = begin_load(request); !begun) return schema::forward_error(begun);
       return std::nullopt;
     case ControlVerb::arm:
-      return arm();
+      return arm(request);
     case ControlVerb::play:
       return done(player_->play(), PlayerState::playing);
     case ControlVerb::stop:

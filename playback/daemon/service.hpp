@@ -12,6 +12,7 @@
 #include "playback/daemon/player.hpp"
 #include "playback/daemon/player_device.hpp"
 #include "playback/daemon/program_loader.hpp"
+#include "playback/daemon/stay_watch.hpp"
 
 namespace tacto::playback {
 
@@ -34,6 +35,11 @@ class Service {
   bool loading() const { return loader_.busy(); }
   /// Supervises for about `timeout_s`. False where nothing is under way, and nothing was waited for.
   bool step(double timeout_s);
+  /// Whose lines are counted for stay(): of one client, or of all.
+  const StayRules& stay_rules() const { return stay_.rules(); }
+  /// Call after each serve(): where those who have to stay are gone, the drive falls and the session is
+  /// closed.
+  void stay(const LinesHeard& heard, double passed_s);
   /// Ramps to zero and closes the session.
   void end();
   PlayerState state() const { return player_->state(); }
@@ -46,12 +52,12 @@ class Service {
   schema::Result<void> begin_load(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> load(Program program);
   schema::Result<void> may_begin(const char* what) const;
-  schema::Result<schema::ControlFields> arm();
+  schema::Result<schema::ControlFields> arm(const schema::ControlRequest& request);
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
   schema::Result<void> save_gain(double factor, const std::string& who);
   schema::Result<void> save_scene_gain(double factor, const std::string& who);
   void tell_losses(const RecorderCounts& counts, bool last);
-  schema::Result<schema::ControlFields> disarm();
+  schema::Result<schema::ControlFields> disarm(const std::string& why = {});
   schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState wanted);
   schema::ControlFields hello() const;
   schema::ControlFields status() const;
@@ -68,9 +74,12 @@ class Service {
   std::unique_ptr<Player> player_;
   ProgramLoader loader_;
   schema::ControlRequest load_request_;  // that is being prepared
+  StayWatch stay_;
+  std::string why_;  // of the last change of state
   std::string loaded_, scene_path_;
   std::optional<InverseChoice> filter_;  // that a budget chose for what is loaded: a change keeps it
   double passes_to_hz_ = 0;              // of what is loaded
+  double loaded_gain_m_per_n_ = 1;       // with its sign; 1 before a load: then the factor's sign is all
   double loop_period_m_ = 0, loop_seam_m_ = 0;
   schema::SessionTexture alone_;  // what is loaded, where it is no scene
   double saved_gain_ = 1;         // that the scene's file holds, of the gains that were loaded

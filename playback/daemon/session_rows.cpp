@@ -39,6 +39,8 @@ class SteeringSteps {
     if (armed_ && wire::steers(type)) steps_.push_back({factor_of(command), turn_of(command)});
     if (const auto tracking = message_in_frame<wire::Tracking>(command.frame); tracking && !armed_)
       look_ahead_ticks_ = tracking->look_ahead_ticks;
+    if (const auto limits = message_in_frame<wire::Limits>(command.frame); limits && !armed_)
+      limits_ = *limits;
     if (!armed_) reach_ = next_reach_;
     armed_ = armed_ || type == wire::MessageType::arm;
   }
@@ -46,6 +48,7 @@ class SteeringSteps {
   std::vector<SteeringStep> take() { return std::move(steps_); }
   double look_ahead_ticks() const { return look_ahead_ticks_; }
   const ProfileReach& reach() const { return reach_; }
+  const wire::Limits& limits() const { return limits_; }
 
  private:
   static ProfileReach reach_of(const wire::ProfileBegin& begin) {
@@ -67,6 +70,7 @@ class SteeringSteps {
   }
 
   double textures_gain_, rate_hz_, look_ahead_ticks_ = 0;
+  wire::Limits limits_{};
   bool armed_ = false;
   ProfileReach reach_, next_reach_;
   std::vector<SteeringStep> steps_;
@@ -112,6 +116,7 @@ class Surveyor {
   }
   void operator()(const schema::SessionChange& change) { steps_.see(change); }
   void operator()(const schema::SessionEvent&) {}
+  void operator()(const schema::SessionSamples&) {}
   void operator()(const std::vector<SessionTick>& ticks) {
     if (seen_.ticks == 0) first_ns_ = last_ns_ = ticks.front().time_ns;
     count_lost_before(ticks.front().tick);
@@ -123,6 +128,7 @@ class Surveyor {
     if (told_lost_ > seen_.lost && !seen_.lost_at) seen_.lost_at = next_tick_;
     seen_.lost = std::max(seen_.lost, told_lost_);
     seen_.look_ahead_ticks = steps_.look_ahead_ticks();
+    seen_.onset_s = steps_.limits().onset_s, seen_.release_s = steps_.limits().release_s;
     seen_.reach = steps_.reach();
     seen_.steps = steps_.take();
     seen_.not_uploaded = upload_.missing();

@@ -41,8 +41,9 @@ struct SessionOverview {
   schema::SessionHeader header;
   std::string path;
   std::vector<SteeringStep> steps;
-  ProfileReach reach;           ///< of the textures that it begins with
-  double look_ahead_ticks = 0;  ///< the drive is of where the finger will be then
+  ProfileReach reach;                ///< of the textures that it begins with
+  double look_ahead_ticks = 0;       ///< the drive is of where the finger will be then
+  float onset_s = 0, release_s = 0;  ///< in which it rises and falls
   std::uint64_t ticks = 0;
   std::optional<std::uint64_t> lost_at;  ///< the first tick that is missing
   std::uint64_t lost = 0;                ///< also after the last one

@@ -45,7 +45,7 @@ Result<Found> find_stroke(const std::string& name, const SessionOverview& overvi
   const auto read = read_rows(
       maker, name,
       [&](const SessionRow& row) {
-        finder.add({index++, row, 0, 0, true, {}});
+        finder.add({index++, row, 0, 0, true, {}, {}});
       },
       progress);
   if (!read) return schema::forward_error(read);
@@ -72,7 +72,7 @@ Result<std::vector<JudgedRow>> rows_of(const std::string& name, const StrokeSums
   const std::uint64_t first = sums.first.index - std::min(sums.first.index, around);
   std::vector<JudgedRow> rows;
   RowMaker maker(of.overview, 2 * around);
-  RowFollower follower(of.overview.header);
+  RowFollower follower(of.overview);
   std::uint64_t index = 0;
   const auto read = read_rows(
       maker, name,
@@ -89,10 +89,10 @@ Result<std::vector<JudgedRow>> rows_of(const std::string& name, const StrokeSums
 
 void keep_stroke(const std::vector<JudgedRow>& rows, std::uint64_t before, std::uint64_t count,
                  SessionStroke& of) {
-  const auto received_m = received_displacement_m(of.overview.header, rows);
+  const auto predicted_m = predicted_displacement_m(of.overview.header, rows);
   for (std::uint64_t i = before; i < before + count; ++i) {
     of.rows.push_back(rows[i].row);
-    of.received_m.push_back(received_m[i]);
+    of.predicted_m.push_back(predicted_m[i]);
   }
 }
 

@@ -64,8 +64,14 @@ std::vector<bool> felt(const std::vector<bool>& driven, double look_ahead_ticks)
 // A part that begins or ends between two rows goes evenly.
 class WantedReader::PartOfReadings {
  public:
-  PartOfReadings(const MixedSet& set, std::span<const JudgedRow> rows, double delay_rows, double per_row)
-      : set_(set), rows_(rows), delay_rows_(delay_rows), per_row_(per_row) {}
+  /// Delays in rows: of what is read for a tick, and of what weights its drive.
+  PartOfReadings(const MixedSet& set, std::span<const JudgedRow> rows, double delay_rows,
+                 double drive_delay_rows, double per_row)
+      : set_(set),
+        rows_(rows),
+        delay_rows_(delay_rows),
+        drive_delay_rows_(drive_delay_rows),
+        per_row_(per_row) {}
 
   /// Readings outside [first, last) have no part of it.
   std::size_t first() const { return set_.first == 0 ? 0 : reading_of(static_cast<double>(set_.first) - 1); }
@@ -74,12 +80,21 @@ class WantedReader::PartOfReadings {
     return end == rows_.size() ? readings : std::min(readings, reading_of(static_cast<double>(end) + 1));
   }
   double operator()(std::size_t reading) const {
-    const double row = std::max(0.0, static_cast<double>(reading) / per_row_ - delay_rows_);
-    const auto whole = static_cast<std::size_t>(row);
-    return std::lerp(in_row(whole), in_row(whole + 1), row - std::floor(row));
+    const double felt = static_cast<double>(reading) / per_row_, row = std::max(0.0, felt - delay_rows_);
+    return envelope(std::max(0.0, felt - drive_delay_rows_)) *
+           between(row, [this](std::size_t i) { return in_row(i); });
   }
 
  private:
+  template <class Value>
+  static double between(double row, Value value) {
+    const auto whole = static_cast<std::size_t>(row);
+    return std::lerp(value(whole), value(whole + 1), row - std::floor(row));
+  }
+  // The kernel weights the drive itself, behind the filter that looks ahead.
+  double envelope(double row) const {
+    return between(row, [this](std::size_t i) { return rows_[std::min(i, rows_.size() - 1)].envelope; });
+  }
   std::size_t reading_of(double row) const {
     return static_cast<std::size_t>(std::max(0.0, (row + delay_rows_) * per_row_));
   }
@@ -91,7 +106,7 @@ class WantedReader::PartOfReadings {
 
   const MixedSet& set_;
   std::span<const JudgedRow> rows_;
-  double delay_rows_, per_row_;
+  double delay_rows_, drive_delay_rows_, per_row_;
 };
 
 WantedReader::WantedReader(const SessionOverview& overview) : overview_(overview) {
@@ -197,7 +212,8 @@ std::vector<double> WantedReader::mixed(std::span<const JudgedRow> rows, const T
   std::vector<double> readings(places.size(), 0.0);
   for (std::size_t set = 0; set < mix.sets.size(); ++set) {
     if (mix.sets[set].part.empty()) continue;
-    const PartOfReadings part(mix.sets[set], rows, overview_.look_ahead_ticks,
+    const double drive_delay_rows = drive_delay_s(overview_.header) * overview_.header.rate_hz;
+    const PartOfReadings part(mix.sets[set], rows, overview_.look_ahead_ticks, drive_delay_rows,
                               static_cast<double>(grid.oversampling));
     for (const SessionTexture& played : *sets_[set]) sound = add(played, part, places, readings) && sound;
   }
@@ -240,8 +256,11 @@ SessionWanted WantedReader::wanted_in(std::span<const JudgedRow> rows) {
   const spatial::Band band{header.low_hz, header.high_hz};
   const ReadingGrid grid = reading_grid(path.duration_s(), header.rate_hz, band, finest_hz);
   auto readings = mixed(rows, mix, grid, path, sound);
+  Rests rests;
+  if (begins_at_rest(rows)) rests.start = 0;
+  if (ends_at_rest(rows)) rests.end = 0;
   forget_unused();
-  SessionWanted wanted{signal_of(wanted_of_readings(std::move(readings), grid, band, 0)),
+  SessionWanted wanted{signal_of(wanted_of_readings(std::move(readings), grid, band, 0, rests)),
                        felt(driven_by_unknown(rows, mix), overview_.look_ahead_ticks)};
   wanted.displacement_m.resize(rows.size());
   if (!sound) wanted.unknown.assign(rows.size(), true);

@@ -31,7 +31,8 @@ struct ReadAgain {
 
 /// Gain x textures along the path between the recorded counts (monotone cubics through the places where the
 /// count changed), read exactly (reference/wanted.hpp). Gain and changes of texture are those that the kernel
-/// follows and fades (texture_mix.hpp), felt when the drive that looked ahead is: look_ahead_ticks later.
+/// follows and fades (texture_mix.hpp), felt when the drive that looked ahead is: look_ahead_ticks later. It
+/// rises and falls as the drive does (core/envelope.hpp).
 class WantedReader {
  public:
   /// Reads each texture that the session names once, to know which are there. The overview stays where it is.

@@ -34,6 +34,11 @@ void add_limits(ControlFields& fields, const PlayerStatus& status) {
   if (!status.session.empty()) fields.emplace_back("limits_in_db", "tactograph session " + status.session);
 }
 
+void add_stay(ControlFields& fields, const StayRules& rules) {
+  if (rules.client) fields.emplace_back("while_connected", true);
+  if (rules.dead_man_s) fields.emplace_back("dead_man_s", *rules.dead_man_s);
+}
+
 void add_recorder(ControlFields& fields, const RecorderCounts& counts) {
   fields.emplace_back("recorded_ticks", static_cast<std::int64_t>(counts.ticks));
   fields.emplace_back("recorder_lost_ticks", static_cast<std::int64_t>(counts.lost()));

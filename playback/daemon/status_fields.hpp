@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a status says of ticks, recorder and loop; names as in CONTROL.md.
+// What a status says of ticks, recorder and loop, and who has to stay; names as in CONTROL.md.
 #pragma once
 
 #include "data-schema/control.hpp"
 #include "playback/daemon/flight_recorder.hpp"
 #include "playback/daemon/host_loop.hpp"
 #include "playback/daemon/player.hpp"
+#include "playback/daemon/stay_watch.hpp"
 
 namespace tacto::playback {
 
@@ -14,6 +15,8 @@ void add_ticks(schema::ControlFields& fields, const TickView& view, std::uint64_
 /// Where the device's flags tell that limits took something away: how much, in dB, live, or why it is not
 /// known; and the command that tells it by stroke.
 void add_limits(schema::ControlFields& fields, const PlayerStatus& status);
+/// Who has to stay, where that was asked for.
+void add_stay(schema::ControlFields& fields, const StayRules& rules);
 void add_recorder(schema::ControlFields& fields, const RecorderCounts& counts);
 void add_loop(schema::ControlFields& fields, const HostLoopStatus& loop);
 

@@ -26,26 +26,39 @@ void StrokeSums::add(const StrokeRow& r) {
   if (rows++ == 0) first = r;
   last = r;
   wanted_m2 += square(r.wanted_m);
-  received_m2 += square(r.received_m);
-  difference_m2 += square(r.received_m - r.wanted_m);
+  predicted_m2 += square(r.predicted_m);
+  difference_m2 += square(r.predicted_m - r.wanted_m);
   const std::uint32_t flags = r.row.flags;
   limited_ticks += (flags & (wire::kTickAmplitudeLimited | wire::kTickSlewLimited)) != 0;
   energy_limited_ticks += (flags & wire::kTickEnergyLimited) != 0;
   gated_ticks += (flags & wire::kTickGated) != 0;
   known = known && r.known;
   wishes_known = wishes_known && r.wished_v;
+  add_measured(r);
   if (r.wished_v && !r.row.put_in)
     limits.add(limited_tick(static_cast<float>(r.row.drive_v), *r.wished_v, flags));
+}
+
+void StrokeSums::add_measured(const StrokeRow& r) {
+  measured_known = measured_known && r.measured;
+  if (!r.measured) return;
+  measured_m2 += square(double{(*r.measured)[kUnshifted]});
+  for (std::size_t i = 0; i < kMeasuredShifts; ++i)
+    measured_difference_m2[i] += square(double{(*r.measured)[i]} - r.wanted_m);
 }
 
 void StrokeSums::add(const StrokeSums& later) {
   if (later.rows == 0) return;
   rows += later.rows;
   last = later.last;
-  wanted_m2 += later.wanted_m2, received_m2 += later.received_m2, difference_m2 += later.difference_m2;
+  wanted_m2 += later.wanted_m2, predicted_m2 += later.predicted_m2, difference_m2 += later.difference_m2;
   limited_ticks += later.limited_ticks, energy_limited_ticks += later.energy_limited_ticks;
   gated_ticks += later.gated_ticks;
   known = known && later.known, wishes_known = wishes_known && later.wishes_known;
+  measured_known = measured_known && later.measured_known;
+  measured_m2 += later.measured_m2;
+  for (std::size_t i = 0; i < kMeasuredShifts; ++i)
+    measured_difference_m2[i] += later.measured_difference_m2[i];
   limits.add(later.limits);
 }
 

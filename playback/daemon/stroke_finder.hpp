@@ -2,11 +2,13 @@
 // Strokes of a session found row by row, and what is summed over each: none is too long.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <utility>
 
+#include "playback/daemon/measured_row.hpp"
 #include "playback/daemon/session_rows.hpp"
 #include "playback/limit_tally.hpp"
 
@@ -16,8 +18,9 @@ namespace tacto::playback {
 struct StrokeRow {
   std::uint64_t index = 0;  ///< in the session
   SessionRow row;
-  double wanted_m = 0, received_m = 0;
-  bool known = true;              ///< what was wanted
+  double wanted_m = 0, predicted_m = 0;
+  bool known = true;  ///< what was wanted
+  std::optional<MeasuredRow> measured;
   std::optional<float> wished_v;  ///< before the limits; none: not known
 };
 
@@ -25,13 +28,18 @@ struct StrokeRow {
 struct StrokeSums {
   StrokeRow first, last;
   std::uint64_t rows = 0;
-  double wanted_m2 = 0, received_m2 = 0, difference_m2 = 0;
+  double wanted_m2 = 0, predicted_m2 = 0, difference_m2 = 0;
   std::uint64_t limited_ticks = 0, energy_limited_ticks = 0, gated_ticks = 0;
-  bool known = true, wishes_known = true;  ///< of every row
-  LimitTally limits;                       ///< of the ticks among them
+  bool known = true, wishes_known = true, measured_known = true;  ///< of every row
+  double measured_m2 = 0;
+  std::array<double, kMeasuredShifts> measured_difference_m2{};  ///< at each shift
+  LimitTally limits;                                             ///< of the ticks among them
 
   void add(const StrokeRow& row);
   void add(const StrokeSums& later);
+
+ private:
+  void add_measured(const StrokeRow& row);
 };
 
 inline constexpr double kShortestStrokeM = 5e-3;

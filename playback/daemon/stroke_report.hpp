@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the finger received in each stroke of a session, against what was wanted.
+// What each stroke of a session made of the tray, by the model and by its sensor, against what was wanted.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,27 @@
 
 namespace tacto::playback {
 
+/// Of a displacement in a stroke's rows.
+struct StrokeDisplacement {
+  double rms_m = 0;
+  double error_db = 0;  ///< RMS of it - wanted, re RMS of wanted
+  double level_db = 0;  ///< over wanted
+};
+
+/// What the tray's sensor measured: its error is the least within 1 ms of shift in time either way, one shift
+/// a stroke, for an instrument may be late.
+struct MeasuredDisplacement : StrokeDisplacement {
+  double shift_s = 0;  ///< of the measured displacement behind the wanted one; taken out of the error
+};
+
 /// One way of the finger without turning, while playing.
 struct PlayedStroke {
   double from_s = 0, to_s = 0;  ///< since the first tick
   double from_m = 0, to_m = 0;
-  double wanted_rms_m = 0, received_rms_m = 0;  ///< wanted: 0 where it is not known, or under 1 pm
-  double error_db = 0;                          ///< RMS of received - wanted, re RMS of wanted
-  double level_db = 0;                          ///< received over wanted
-  std::uint64_t limited_ticks = 0;              ///< in amplitude or slew
+  double wanted_rms_m = 0;                       ///< 0 where it is not known, or under 1 pm
+  StrokeDisplacement predicted;                  ///< error and level: where wanted is known
+  std::optional<MeasuredDisplacement> measured;  ///< none: no sensor, or its samples are not all there
+  std::uint64_t limited_ticks = 0;               ///< in amplitude or slew
   std::uint64_t energy_limited_ticks = 0, gated_ticks = 0;  ///< turned down; not touching
   std::optional<LimitTally> limits;                         ///< none: what they took is not known
 };
@@ -50,10 +63,11 @@ struct StrokeListener {
 };
 
 /// Wanted: as WantedReader, the gain of the commands and changes of texture in it. Periods without a tick
-/// are put in, of one stop at most so many that nothing before it reaches beyond. Received: the recorded
-/// drive, held between ticks, through the transducer's
-/// model: what the actuator would do without a finger on it, hysteresis or a second mode. The delay that the
-/// session was prepared with and did not look ahead by is part of the error. A stroke is at least 5 mm long.
+/// are put in, of one stop at most so many that nothing before it reaches beyond. Predicted: the recorded
+/// drive through the model in the transducer's file (with the hysteresis that the file has): what the
+/// actuator would do if that file was right, without a finger on it. The delay that the session was prepared
+/// with and did not look ahead by is part of its error. Measured, where the device reports its tray: the
+/// session's samples (measured_rows.hpp). All in the same band. A stroke is at least 5 mm long.
 /// What the limits took: hear_every_wish(), a note where it is not known.
 /// Memory does not grow with the session, nor with a stroke: that of a block (JudgedBlocks; 200,000 rows at
 /// 10 kHz) and its textures, of the strokes kept, and of the commands. The reading of a block stays under

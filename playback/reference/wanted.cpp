@@ -42,11 +42,12 @@ void fill_padding(std::span<double> padding, double from, double to) {
 }
 
 // Readings of the path, `count` of them, then of the padding.
-void settle_ends(std::span<double> readings, std::size_t count, std::size_t onset,
-                 std::size_t longest_period) {
+void settle_ends(std::span<double> readings, std::size_t count, std::size_t onset, std::size_t longest_period,
+                 const Rests& rests) {
   const std::size_t averaged = std::min(count, longest_period);
   const auto path = readings.first(count);
-  const double start = mean_of(path.first(averaged)), end = mean_of(path.last(averaged));
+  const double start = rests.start ? *rests.start : mean_of(path.first(averaged));
+  const double end = rests.end ? *rests.end : mean_of(path.last(averaged));
   soften(path.begin(), onset, start);
   soften(path.rbegin(), onset, end);
   fill_padding(readings.subspan(count), end, start);
@@ -82,12 +83,12 @@ std::vector<double> reading_places(const FingerPath& path, const ReadingGrid& gr
 }
 
 PaddedSpectrum wanted_of_readings(std::vector<double> readings, const ReadingGrid& grid,
-                                  const spatial::Band& band, double onset_s) {
+                                  const spatial::Band& band, double onset_s, const Rests& rests) {
   const double rate_hz = grid.reading_rate_hz();
   const std::size_t count = readings.size();
   readings.resize(grid.period * grid.oversampling);
   settle_ends(readings, count, static_cast<std::size_t>(onset_s * rate_hz),
-              static_cast<std::size_t>(rate_hz / band.low_hz));
+              static_cast<std::size_t>(rate_hz / band.low_hz), rests);
   auto wanted = decimated(spectrum_of(readings, rate_hz, readings.size()), grid);
   keep_band(wanted, band);
   return wanted;

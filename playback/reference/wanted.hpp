@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "data-schema/signal.hpp"
@@ -35,10 +36,14 @@ ReadingGrid reading_grid(double duration_s, double rate_hz, const spatial::Band&
 /// path.
 std::vector<double> reading_places(const FingerPath& path, const ReadingGrid& grid);
 
-/// What was read there, m, kept to the band, at the result's samples; before and after the path it rests, as
-/// in exact_wanted.
+/// Where readings rest before and after them; none: at their mean, as in exact_wanted.
+struct Rests {
+  std::optional<double> start, end;
+};
+
+/// What was read there, m, kept to the band, at the result's samples; before and after the path it rests.
 PaddedSpectrum wanted_of_readings(std::vector<double> readings, const ReadingGrid& grid,
-                                  const spatial::Band& band, double onset_s);
+                                  const spatial::Band& band, double onset_s, const Rests& rests = {});
 
 /// Reads the texture along the path, keeps the band (keep_band) and gives the result's samples:
 /// gain_m_per_n * force, m. Before and after the path the force rests at its mean over the first and the last

@@ -26,6 +26,7 @@ using schema::Result;
 struct CertifyOptions {
   std::vector<std::string> names;
   CertificateOptions certificate;
+  schema::Existing existing = schema::Existing::keep;
   bool dry = false;
 };
 
@@ -48,6 +49,19 @@ Result<void> check_stored(const std::vector<NamedTexture>& files) {
   return schema::fail(schema::Fault::unsuitable,
                       "is a stroke of a recording: there is no texture to store in", made->path,
                       "make textures with 'tactograph spatial' first, or only look with --dry-run");
+}
+
+Result<void> check_uncertified(const std::vector<NamedTexture>& files, schema::Existing existing) {
+  const auto certified = [](const NamedTexture& file) { return file.texture.certificate.has_value(); };
+  const auto found = std::ranges::find_if(files, certified);
+  if (found == files.end() || existing == schema::Existing::replace) return {};
+  return schema::fail(schema::Fault::usage, "holds a certificate already, and it is not overwritten",
+                      found->path, "replace it with --force, or only look with --dry-run");
+}
+
+Result<void> check_storable(const std::vector<NamedTexture>& files, schema::Existing existing) {
+  const auto stored = check_stored(files);
+  return stored ? check_uncertified(files, existing) : stored;
 }
 
 Result<void> store(std::vector<NamedTexture>& files, const std::vector<Certificate>& certificates) {
@@ -94,7 +108,7 @@ Result<Report> run_certify(const CertifyOptions& options) {
   auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
   if (!options.dry)
-    if (const auto can = check_stored(*files); !can) return schema::forward_error(can);
+    if (const auto can = check_storable(*files, options.existing); !can) return schema::forward_error(can);
   const auto certificates = certificates_of(*files, options.certificate);
   if (!certificates) return schema::forward_error(certificates);
   if (!options.dry)
@@ -110,6 +124,9 @@ cli::Action declare_certify(CLI::App& app) {
   app.add_option("--confidence", options->certificate.confidence,
                  "Probability from which on a peak is called, above 0.5 and below 1")
       ->capture_default_str();
+  app.add_flag_callback(
+      "--force", [options] { options->existing = schema::Existing::replace; },
+      "Replace a certificate that a texture holds already");
   app.add_flag("--dry-run", options->dry, "Only say; store nothing in the textures");
   return [options] { return run_certify(*options); };
 }

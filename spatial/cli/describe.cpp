@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/creation_time.hpp"
 #include "data-schema/description.hpp"
 #include "data-schema/version.hpp"
@@ -25,6 +26,7 @@ using schema::Result;
 struct DescribeOptions {
   std::vector<std::string> names;
   std::string output;
+  schema::Existing existing = schema::Existing::keep;
   DescriptionOptions description;
 };
 
@@ -77,20 +79,26 @@ Report report_of(const schema::DescriptionFile& file, const std::string& path) {
   std::vector<Report> rows;
   for (const Description& each : file.textures) rows.push_back(row_of(each));
   Report report;
-  report.add("textures", std::move(rows)).add("third_octaves", band_rows(file));
+  report.add("textures", std::move(rows));
+  report.add("rms_band",
+             "rms: from low to high of its row; total rms: all samples from `from` to `to`, in any band");
+  report.add("third_octaves", band_rows(file));
   if (!path.empty()) report.add("file", path);
   return report;
 }
 
 Result<Report> run_describe(const DescribeOptions& options) {
+  const TablePath where = table_path(options.output, "descriptions");
+  if (!options.output.empty())
+    if (const auto free = check_table(where, options.existing); !free) return schema::forward_error(free);
   const auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
   const auto all = described(*files, options.description);
   if (!all) return schema::forward_error(all);
   if (options.output.empty()) return report_of(*all, {});
-  const TablePath where = table_path(options.output, "descriptions");
   const auto written = write_table(
-      where, [&] { return schema::descriptions_json(*all); }, [&] { return schema::descriptions_csv(*all); });
+      where, options.existing, [&] { return schema::descriptions_json(*all); },
+      [&] { return schema::descriptions_csv(*all); });
   if (!written) return schema::forward_error(written);
   return report_of(*all, where.path);
 }
@@ -100,6 +108,7 @@ cli::Action declare_describe(CLI::App& app) {
   app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output,
                  "What to write, one row a texture: .csv, .json, or NAME (NAME.descriptions.json)");
+  cli::declare_force(app, options->existing);
   cli::add_quantity(app, "--window", options->description.window_m, schema::Dimension::length,
                     "Window of the spectrum [a quarter of the texture, or 8 of its longest wavelengths]");
   return [options] { return run_describe(*options); };

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/creation_time.hpp"
 #include "data-schema/formants.hpp"
@@ -27,6 +28,7 @@ using schema::Result;
 struct FormantsOptions {
   std::vector<std::string> names;
   std::string output;
+  schema::Existing existing = schema::Existing::keep;
   SpectrogramOptions spectrogram;
   FormantOptions formants;
 };
@@ -78,14 +80,16 @@ Report report_of(const schema::FormantFile& file, const std::string& path) {
 }
 
 Result<Report> run_formants(const FormantsOptions& options) {
+  const TablePath where = table_path(options.output, "formants");
+  if (!options.output.empty())
+    if (const auto free = check_table(where, options.existing); !free) return schema::forward_error(free);
   const auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
   const auto formants = found(*files, options);
   if (!formants) return schema::forward_error(formants);
   if (options.output.empty()) return report_of(*formants, {});
-  const TablePath where = table_path(options.output, "formants");
   const auto written = write_table(
-      where, [&] { return schema::formants_json(*formants); },
+      where, options.existing, [&] { return schema::formants_json(*formants); },
       [&] { return schema::formants_csv(*formants); });
   if (!written) return schema::forward_error(written);
   return report_of(*formants, where.path);
@@ -95,6 +99,7 @@ cli::Action declare_formants(CLI::App& app) {
   auto options = std::make_shared<FormantsOptions>();
   app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output, "What to write: NAME (NAME.formants.json), .json or .csv");
+  cli::declare_force(app, options->existing);
   declare_spectrogram(app, options->spectrogram);
   cli::add_quantity(app, "--prominence", options->formants.start_db, Dimension::level,
                     "How far a formant stands out of its background, somewhere");

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "data-schema/cli/output_options.hpp"
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/files.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
@@ -30,6 +31,7 @@ using schema::Spectrogram;
 struct SheetOptions {
   std::vector<std::string> names;
   std::string output, title = "Textures";
+  schema::Existing existing = schema::Existing::keep;
   SpectrogramOptions spectrogram;
   SpectrogramPictureOptions picture;
   std::size_t columns = 0;
@@ -65,6 +67,10 @@ Result<std::vector<Drawn>> all_drawn(const std::vector<NamedTexture>& files, con
   return all;
 }
 
+std::size_t pages_of(std::size_t textures) {
+  return (textures + kCellsOfAPage - 1) / kCellsOfAPage;
+}
+
 // "sheet.png", or "sheet-01.png" and so on.
 std::string page_path(const std::string& output, std::size_t page, std::size_t pages) {
   if (pages == 1) return output;
@@ -76,7 +82,7 @@ std::string page_path(const std::string& output, std::size_t page, std::size_t p
 
 Result<std::vector<std::string>> write_pages(const std::vector<SpectrogramPanel>& panels,
                                              const SheetScales& scales, const SheetOptions& options) {
-  const std::size_t pages = (panels.size() + kCellsOfAPage - 1) / kCellsOfAPage;
+  const std::size_t pages = pages_of(panels.size());
   std::vector<std::string> paths;
   schema::PendingFiles files;
   for (std::size_t page = 0; page < pages; ++page) {
@@ -89,7 +95,7 @@ Result<std::vector<std::string>> write_pages(const std::vector<SpectrogramPanel>
     const SheetFigure figure({from, to}, scales, title, options.columns);
     if (auto added = add_figure(files, paths.back(), figure); !added) return schema::forward_error(added);
   }
-  if (auto committed = files.commit(); !committed) return schema::forward_error(committed);
+  if (auto committed = files.commit(options.existing); !committed) return schema::forward_error(committed);
   return paths;
 }
 
@@ -105,6 +111,15 @@ Report report_of(const std::vector<SpectrogramPanel>& panels, const SheetScales&
   return report;
 }
 
+Result<void> check_pages(const SheetOptions& options, std::size_t textures) {
+  const std::size_t pages = pages_of(textures);
+  for (std::size_t page = 0; page < pages; ++page)
+    if (auto free = schema::check_output_free(page_path(options.output, page, pages), options.existing);
+        !free)
+      return free;
+  return {};
+}
+
 Result<void> check_options(const SheetOptions& options) {
   if (options.output.ends_with(".png") || options.output.ends_with(".svg")) return {};
   return schema::fail(Fault::usage, "pictures are not written in this format", options.output,
@@ -115,6 +130,7 @@ Result<Report> run_sheet(const SheetOptions& options) {
   if (auto checked = check_options(options); !checked) return schema::forward_error(checked);
   const auto files = open_textures(options.names);
   if (!files) return schema::forward_error(files);
+  if (auto free = check_pages(options, files->size()); !free) return schema::forward_error(free);
   const auto all = all_drawn(*files, options);
   if (!all) return schema::forward_error(all);
   std::vector<SpectrogramPanel> panels;
@@ -133,6 +149,7 @@ cli::Action declare_sheet(CLI::App& app) {
   app.add_option("-o,--output", options->output,
                  "The sheet, .png or .svg; over 24 textures make SHEET-01 and on")
       ->required();
+  cli::declare_force(app, options->existing);
   app.add_option("--title", options->title, "What stands over it")->capture_default_str();
   app.add_option("--columns", options->columns, "Textures side by side [chosen, at most 4]")
       ->check(CLI::Range(1, 12));

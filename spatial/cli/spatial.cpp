@@ -24,7 +24,7 @@ Result<Report> act_on_one(const SpatialOptions& options) {
   cli::Progress progress("textures");
   const auto outcome = spatial_recording(options, options.recordings.front(), stems->front(),
                                          [&](double fraction) { progress.update(fraction); });
-  for (const std::string& warning : outcome.warnings) cli::warn(warning);
+  cli::warn_grouped(outcome.warnings);
   return outcome.report;
 }
 
@@ -43,6 +43,7 @@ const cli::Verb kSpatialVerb{
     "  tactograph spatial oak --from 4.55s --to 6.85s --band 15Hz..500Hz --grid 1um -o oak-down\n"
     "  tactograph spatial oak --list\n"
     "  tactograph spatial oak --average --align correlation -o oak-mean\n"
+    "  tactograph spatial oak-1 oak-2 oak-3 --average -o oak-mean\n"
     "  tactograph spatial *.json --jobs 2 -o textures/",
     declare_spatial};
 

@@ -8,10 +8,11 @@
 #include "spatial/average_textures.hpp"
 
 namespace tacto::spatial {
-namespace {
 
 using schema::Fault;
 using schema::Result;
+
+namespace {
 
 // Shifts a texture so that it agrees best with the strokes before it.
 class Aligner {
@@ -44,11 +45,16 @@ class Aligner {
   std::vector<std::string>& warnings_;
 };
 
-Result<void> add_stroke(TextureMaker& maker, const StrokeJob& job, const Aligner& aligner,
-                        TextureAverager& averager) {
+// Of one recording the file's `source` names it.
+Result<void> add_named_stroke(TextureMaker& maker, const StrokeJob& job, const Aligner& aligner, bool named,
+                              TextureAverager& averager) {
   auto made = maker.make(job.stroke, job.number);
   if (!made) return schema::forward_error(made);
   schema::AveragedStroke stroke{job.number, made->source.from_s, made->source.to_s, job.stroke.direction, 0};
+  if (named) {
+    stroke.recording = made->source.recording;
+    stroke.recording_sha256 = made->source.recording_sha256;
+  }
   const auto texture = aligner.aligned(std::move(*made), job, averager, stroke);
   if (!texture) return schema::forward_error(texture);
   return averager.add(*texture, stroke);
@@ -68,20 +74,31 @@ std::vector<AverageGroup> average_groups(const std::vector<StrokeJob>& jobs, boo
   return groups;
 }
 
+Result<void> add_strokes(TextureMaker& maker, const std::vector<StrokeJob>& jobs, const AverageRun& run,
+                         TextureAverager& averager) {
+  const Aligner aligner(maker, run.options, run.warnings);
+  for (const StrokeJob& job : jobs) {
+    const auto added = add_named_stroke(maker, job, aligner, run.several_recordings, averager);
+    if (!added && added.error().fault != Fault::unsuitable) return schema::forward_error(added);
+    if (!added)
+      run.warnings.push_back(
+          fmt::format("stroke {} is not averaged: {}", job.number, schema::message(added.error())));
+    run.progress(static_cast<double>(&job - jobs.data() + 1) / static_cast<double>(jobs.size()));
+  }
+  return {};
+}
+
+std::string name_of(Align align) {
+  return align == Align::position ? "position" : "correlation";
+}
+
 Result<schema::Texture> averaged(TextureMaker& maker, const AverageGroup& group,
                                  const SpatialOptions& options, std::vector<std::string>& warnings,
                                  const std::function<void(double)>& progress) {
   TextureAverager averager;
-  const Aligner aligner(maker, options, warnings);
-  for (const StrokeJob& job : group.jobs) {
-    const auto added = add_stroke(maker, job, aligner, averager);
-    if (!added && added.error().fault != Fault::unsuitable) return schema::forward_error(added);
-    if (!added)
-      warnings.push_back(
-          fmt::format("stroke {} is not averaged: {}", job.number, schema::message(added.error())));
-    progress(static_cast<double>(&job - group.jobs.data() + 1) / static_cast<double>(group.jobs.size()));
-  }
-  auto texture = averager.finish(options.align == Align::position ? "position" : "correlation");
+  if (auto added = add_strokes(maker, group.jobs, {options, warnings, progress, false}, averager); !added)
+    return schema::forward_error(added);
+  auto texture = averager.finish(name_of(options.align));
   if (!texture) texture.error().where = maker.record().where();
   return texture;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "spatial/average_textures.hpp"
 #include "spatial/cli/spatial_options.hpp"
 #include "spatial/cli/stroke_job.hpp"
 
@@ -20,6 +21,23 @@ struct AverageGroup {
 /// By direction, or all in one: NAME where there is one group, else NAME-forward and NAME-backward.
 std::vector<AverageGroup> average_groups(const std::vector<StrokeJob>& jobs, bool both_ways,
                                          const std::string& stem);
+
+/// "position" or "correlation", as files say it.
+std::string name_of(Align align);
+
+/// What averaging takes beside strokes; `warnings` are added to. `several_recordings`: each stroke is stored
+/// with its recording.
+struct AverageRun {
+  const SpatialOptions& options;
+  std::vector<std::string>& warnings;
+  const std::function<void(double)>& progress;
+  bool several_recordings = false;
+};
+
+/// Adds the strokes of one recording to a mean. A stroke that makes no texture, or lies elsewhere, is left
+/// out with a warning. Errors: of reading.
+schema::Result<void> add_strokes(TextureMaker& maker, const std::vector<StrokeJob>& jobs,
+                                 const AverageRun& run, TextureAverager& averager);
 
 /// The mean of a group. A stroke that makes no texture, or lies elsewhere, is left out with a warning.
 /// Errors: of TextureAverager::finish(); of reading.

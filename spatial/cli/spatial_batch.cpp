@@ -14,6 +14,7 @@
 #include "data-schema/cli/progress.hpp"
 #include "data-schema/file_kind.hpp"
 #include "spatial/cli/spatial_recording.hpp"
+#include "spatial/cli/spatial_takes.hpp"
 #include "spatial/cli/texture_names.hpp"
 
 namespace tacto::spatial {
@@ -63,8 +64,6 @@ class Batch {
       outcomes_[i] =
           spatial_recording(options_, names_[i], stems_[i], [this, i](double part) { update(i, part); });
       update(i, 1);
-      const std::lock_guard lock(printing_);
-      for (const std::string& warning : outcomes_[i].warnings) cli::warn(warning);
     }
   }
 
@@ -111,10 +110,16 @@ Result<Report> spatial_batch(const SpatialOptions& options) {
     cli::warn(fmt::format("skipped, no recordings: {}", fmt::join(files.skipped, ", ")));
   if (files.recordings.empty())
     return schema::fail(Fault::unsuitable, "there is no recording among the files");
+  if (asks_for_takes(options)) return spatial_takes(options, files.recordings);
   const auto stems = texture_stems(files.recordings, options.output);
   if (!stems) return schema::forward_error(stems);
   Batch batch(options, files.recordings, *stems);
   const auto& outcomes = batch.run();
+  // Of all recordings together: a folder of them may have one warning of a kind each.
+  std::vector<cli::Warning> warnings;
+  for (const SpatialOutcome& outcome : outcomes)
+    warnings.insert(warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+  cli::warn_grouped(warnings);
   for (const SpatialOutcome& outcome : outcomes)
     if (!outcome.report) cli::warn("failed: " + schema::message(outcome.report.error()));
   return report_of(outcomes, files.skipped);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "spatial/cli/spatial_options.hpp"
 
+#include "data-schema/cli/output_options.hpp"
+
 namespace tacto::spatial {
 namespace {
 
@@ -55,8 +57,10 @@ void declare_stretch(CLI::App& app, SpatialOptions& options) {
   app.add_flag("--finger-up", options.finger_up,
                "Textures of strokes with the finger up, too (by the normal force)");
   app.add_flag("--list", options.list, "Only list the strokes found; write nothing");
-  auto* average = app.add_flag("--average", options.average,
-                               "The mean of all strokes of a direction, and their standard deviation");
+  auto* average =
+      app.add_flag("--average", options.average,
+                   "The mean of all strokes of a direction, and their standard deviation; of several "
+                   "recordings one mean where -o names it, else one of each");
   average->excludes(stroke)->excludes(from)->excludes(to);
 }
 
@@ -106,11 +110,12 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
       "-o,--output", options.output,
       "Name of the texture; of several strokes, NAME-01 and on (default: the recording's). A folder, "
       "or a name with {} for the recording's, where there are several recordings");
-  app.add_flag("--force", options.force, "Replace textures of that name");
+  cli::declare_force(app, options.existing);
   app.add_option("--jobs", options.jobs, "Recordings worked on at a time")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  app.add_option("--channel", options.texture.channel, "The channel that becomes the texture");
+  app.add_option("--channel", options.texture.channel,
+                 "The channel that becomes the texture [tangential_force, else the only one that can]");
   declare_stretch(app, options);
   declare_average(app, options);
   declare_filter(app, options);

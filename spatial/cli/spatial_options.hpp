@@ -8,6 +8,7 @@
 
 #include "data-schema/cli/budget_options.hpp"
 #include "data-schema/cli/verb.hpp"
+#include "data-schema/files.hpp"
 #include "spatial/make_texture.hpp"
 
 namespace tacto::spatial {
@@ -26,7 +27,8 @@ struct SpatialOptions {
   BandIn band_in = BandIn::time;
   std::optional<double> low_hz, high_hz, from_s, to_s;
   std::optional<int> stroke;
-  bool list = false, finger_up = false, average = false, both_ways = false, force = false;
+  bool list = false, finger_up = false, average = false, both_ways = false;
+  schema::Existing existing = schema::Existing::keep;
   Align align = Align::position;
   double align_range_m = 0.5e-3;
   int jobs = 1;

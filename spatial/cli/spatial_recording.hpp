@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "data-schema/cli/report.hpp"
+#include "data-schema/cli/warnings.hpp"
 #include "spatial/cli/spatial_options.hpp"
+#include "spatial/cli/stroke_job.hpp"
+#include "spatial/make_texture.hpp"
 
 namespace tacto::spatial {
 
@@ -15,8 +18,18 @@ namespace tacto::spatial {
 /// recordings can be worked on side by side.
 struct SpatialOutcome {
   schema::Result<cli::Report> report = cli::Report{};
-  std::vector<std::string> warnings;
+  std::vector<cli::Warning> warnings;
 };
+
+/// One recording of several: ready to make textures of the strokes that are asked for.
+struct Take {
+  TextureMaker maker;
+  std::vector<StrokeJob> jobs;
+};
+
+/// Errors: of opening; unsuitable, without strokes.
+schema::Result<Take> open_take(const SpatialOptions& options, const std::string& recording,
+                               std::vector<std::string>& warnings);
 
 /// `stem` names the textures; `progress` hears fractions from 0 to 1. All textures of a recording appear
 /// together, or none. Errors: of opening, making and writing; usage, where a texture is there already.

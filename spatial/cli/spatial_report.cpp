@@ -39,12 +39,16 @@ void add_filter(Report& report, const schema::TextureSource& source) {
 void add_texture_values(Report& row, const schema::Texture& texture) {
   row.add(rms_key(texture), rms_of(texture));
   const schema::BandPoint band = band_throughout(texture.valid_band);
-  row.add("valid_low_per_m", band.low_per_m).add("valid_high_per_m", band.high_per_m);
+  if (band.low_per_m < band.high_per_m)
+    row.add("valid_low_per_m", band.low_per_m).add("valid_high_per_m", band.high_per_m);
+  else
+    row.add("valid_throughout", "no frequency");
   row.add("position_moved_m", texture.source.position_moved_m);
 }
 
 Report shift_row(const schema::AveragedStroke& stroke) {
   Report row;
+  if (!stroke.recording.empty()) row.add("recording", stroke.recording);
   row.add("stroke", stroke.stroke).add("direction", stroke.direction).add("shift_m", stroke.shift_m);
   if (stroke.correlation) row.add("correlation", *stroke.correlation);
   return row;
@@ -73,6 +77,16 @@ Report stroke_row(const TouchRecord& record, const StrokeJob& job) {
   return row;
 }
 
+std::vector<Report> jump_rows(const TouchRecord& record) {
+  std::vector<Report> rows;
+  for (const PositionJump& jump : record.jumps())
+    rows.push_back(Report()
+                       .add("sample", jump.frame)
+                       .add("at_s", schema::frame_time_s(record.header(), jump.frame))
+                       .add("step_m", jump.step_m));
+  return rows;
+}
+
 Report head_of(const TouchRecord& record, const schema::Texture& texture) {
   Report report;
   report.add("recording", record.where()).add("channel", record.channel().name);
@@ -80,6 +94,7 @@ Report head_of(const TouchRecord& record, const schema::Texture& texture) {
   report.add("grid_m", texture.signal.pitch_m);
   add_position(report, record);
   add_filter(report, texture.source);
+  report.add("rms_band", schema::whole_rms_band(texture));
   return report;
 }
 

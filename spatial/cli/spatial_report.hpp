@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "data-schema/cli/report.hpp"
 #include "data-schema/texture.hpp"
@@ -16,6 +17,9 @@ void add_position(cli::Report& report, const TouchRecord& record);
 
 /// A stroke: where, how fast, how hard, finger up or down.
 cli::Report stroke_row(const TouchRecord& record, const StrokeJob& job);
+
+/// Where its position steps as no finger does.
+std::vector<cli::Report> jump_rows(const TouchRecord& record);
 
 /// What all textures of a recording have in common; `texture` is one of them.
 cli::Report head_of(const TouchRecord& record, const schema::Texture& texture);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data-schema/cli/budget_options.hpp"
+#include "data-schema/cli/output_options.hpp"
 #include "spatial/budget.hpp"
 #include "spatial/cli/spectrogram_files.hpp"
 #include "spatial/cli/spectrogram_run.hpp"
@@ -29,6 +30,7 @@ using schema::SpectrogramHeader;
 
 struct SpectrogramVerbOptions {
   std::vector<std::string> names, outputs;
+  schema::Existing existing = schema::Existing::keep;
   SpectrogramOptions spectrogram;
   SpectrogramPictureOptions picture;
   std::optional<Resolution> resolution;  // where it is named
@@ -108,6 +110,8 @@ Report report_of(const SpectrogramRun& run, double lowest_per_m, const Spectrogr
       .add("window_coherent_gain", first.coherent_gain)
       .add("band_from_per_m", lowest_per_m)
       .add("band_to_per_m", first.frequency_per_m(first.bins - 1))
+      .add("rms_band", fmt::format("{:.4g}-{:.4g} /mm, mean over the windows", 1e-3 * lowest_per_m,
+                                   1e-3 * first.frequency_per_m(first.bins - 1)))
       .add("level_reference", level_reference(first).unit)
       .add("files", options.outputs);
   return report;
@@ -124,7 +128,7 @@ Result<void> check_options(const SpectrogramVerbOptions& options) {
   if (options.formants && options.spectrogram.scaling != schema::Scaling::density)
     return schema::fail(Fault::usage, "formants are found in densities", "--formants",
                         "leave --scaling amplitude away, or --formants");
-  return check_outputs(options.outputs);
+  return check_outputs(options.outputs, options.existing);
 }
 
 // What --explain says of the choice.
@@ -182,7 +186,7 @@ Result<Report> run_spectrogram(SpectrogramVerbOptions options) {
   if (!formants) return schema::forward_error(formants);
   std::optional<SpectrogramFigure> figure;
   if (files.has_pictures()) figure = figure_of(run, *formants, options.picture);
-  if (auto written = files.finish(figure ? &*figure : nullptr); !written)
+  if (auto written = files.finish(figure ? &*figure : nullptr, options.existing); !written)
     return schema::forward_error(written);
   Report report = report_of(run, run.lowest_per_m(), options);
   if (options.formants) report.add("formants_drawn", count_of(*formants));
@@ -217,6 +221,7 @@ void declare_options(CLI::App& app, SpectrogramVerbOptions& options) {
                  "What to write: .png, .svg, .nc (netCDF-4) or .csv; may be repeated")
       ->required()
       ->allow_extra_args(false);
+  cli::declare_force(app, options.existing);
   declare_windows(app, options);
   cli::add_quantity(app, "--max-frequency", options.spectrogram.max_frequency_per_m,
                     Dimension::spatial_frequency, "Highest spatial frequency that is kept");

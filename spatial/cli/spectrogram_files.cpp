@@ -36,13 +36,13 @@ Result<void> SpectrogramFiles::rows(std::size_t first, std::span<const float> ce
   return {};
 }
 
-Result<void> SpectrogramFiles::finish(const Figure* figure) {
+Result<void> SpectrogramFiles::finish(const Figure* figure, schema::Existing existing) {
   for (const auto& writer : writers_)
     if (auto closed = writer->close(); !closed) return closed;
   writers_.clear();
   for (const std::string& path : pictures_)
     if (auto added = add_figure(pending_, path, *figure); !added) return added;
-  return pending_.commit();
+  return pending_.commit(existing);
 }
 
 }  // namespace tacto::spatial

@@ -27,8 +27,8 @@ class SpectrogramFiles {
   schema::Result<void> rows(std::size_t first, std::span<const float> cells);
 
   /// Ends all files, draws the pictures (`figure` may be null where there are none) and lets all appear.
-  /// Errors: of the writers and the figure; cannot_write.
-  schema::Result<void> finish(const Figure* figure);
+  /// Errors: of the writers and the figure; cannot_write; usage, where a file that is to be kept has a name.
+  schema::Result<void> finish(const Figure* figure, schema::Existing existing);
 
  private:
   schema::PendingFiles pending_;

@@ -4,30 +4,30 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "data-schema/file_kind.hpp"
-#include "data-schema/files.hpp"
 
 namespace tacto::spatial {
 
 namespace {
 
+bool is_table(std::string_view line) {
+  return line.starts_with("texture,from_mm,to_mm,") || line.starts_with("texture,quantity,length_mm,");
+}
+
 // A table of the same kind may be replaced; what was recorded or made may not.
-schema::Result<void> check_replaceable(const std::string& path, bool csv) {
+schema::Result<void> check_kind(const std::string& path) {
   using schema::FileKind;
-  if (csv)
-    return schema::check_table_free(path, [](std::string_view line) {
-      return line.starts_with("texture,from_mm,to_mm,") || line.starts_with("texture,quantity,length_mm,");
-    });
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return {};
+  if (!std::filesystem::exists(path, ignored) || std::filesystem::is_empty(path, ignored)) return {};
   const auto there = schema::stored_files(path);
-  if (!there) return {};
-  const FileKind kind = there->front().kind;
+  const auto kind = there ? std::optional(there->front().kind) : std::nullopt;
   if (kind == FileKind::formants || kind == FileKind::descriptions) return {};
   return schema::fail(schema::Fault::usage,
-                      fmt::format("is a {}, and would be lost", schema::kind_name(kind)), path,
-                      "choose another name");
+                      kind ? fmt::format("is a {}, and would be lost", schema::kind_name(*kind))
+                           : "holds something else, and would be lost",
+                      path, "choose another name");
 }
 
 }  // namespace
@@ -38,15 +38,21 @@ TablePath table_path(const std::string& output, const std::string& kind) {
   return {output + "." + kind + ".json", false};
 }
 
-schema::Result<void> write_table(const TablePath& where,
+schema::Result<void> check_table(const TablePath& where, schema::Existing existing) {
+  if (where.csv) return schema::check_table_free(where.path, existing, is_table);
+  const auto ours = check_kind(where.path);
+  return ours ? schema::check_output_free(where.path, existing) : ours;
+}
+
+schema::Result<void> write_table(const TablePath& where, schema::Existing existing,
                                  const std::function<schema::Result<std::string>()>& json,
                                  const std::function<std::string()>& csv) {
-  if (const auto free = check_replaceable(where.path, where.csv); !free) return free;
+  if (const auto free = check_table(where, existing); !free) return free;
   const auto text = where.csv ? csv() : json();
   if (!text) return schema::forward_error(text);
   schema::PendingFiles files;
   if (auto written = files.write(where.path, *text); !written) return written;
-  return files.commit();
+  return files.commit(existing);
 }
 
 }  // namespace tacto::spatial

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "data-schema/error.hpp"
+#include "data-schema/files.hpp"
 
 namespace tacto::spatial {
 
@@ -17,9 +18,12 @@ struct TablePath {
 
 TablePath table_path(const std::string& output, const std::string& kind);
 
-/// Writes it whole or not at all. Errors: usage, where it would replace a recording, a texture or another
-/// file that is no table; cannot_write; those of `json`.
-schema::Result<void> write_table(const TablePath& where,
+/// Before any work is done: whether the table may be written there. Errors: usage, where a file has the name
+/// and is to be kept, or is a recording, a texture or another file that is no such table.
+schema::Result<void> check_table(const TablePath& where, schema::Existing existing);
+
+/// Writes it whole or not at all. Errors: of check_table(); cannot_write; those of `json`.
+schema::Result<void> write_table(const TablePath& where, schema::Existing existing,
                                  const std::function<schema::Result<std::string>()>& json,
                                  const std::function<std::string()>& csv);
 

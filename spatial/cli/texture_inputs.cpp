@@ -11,6 +11,7 @@
 #include "data-schema/cli/verb.hpp"
 #include "data-schema/files.hpp"
 #include "data-schema/recording.hpp"
+#include "spatial/texture_warnings.hpp"
 
 namespace tacto::spatial {
 namespace {
@@ -113,8 +114,7 @@ Result<void> TextureInputs::add(const std::string& name, bool alone) {
 }
 
 void TextureInputs::add(const StoredFile& file) {
-  const auto same = [&](const StoredFile& other) { return other.path == file.path; };
-  if (std::ranges::none_of(inputs_, same)) inputs_.push_back(file);
+  if (named_.insert(schema::canonical_path(file.path)).second) inputs_.push_back(file);
 }
 
 // Moves a recording whose turn it is from the inputs to its strokes.
@@ -130,6 +130,7 @@ Result<void> TextureInputs::open_if_recording() {
   maker_.reset();
   maker_.emplace(std::move(*maker));
   made_ = false;
+  if (const std::string note = channel_note(options_, maker_->record()); !note.empty()) cli::warn(note);
   const auto& strokes = maker_->record().strokes();
   if (strokes.empty())
     return schema::fail(Fault::unsuitable, "no stroke was found", path,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,7 @@ class TextureInputs {
 
   TextureOptions options_;
   std::deque<schema::StoredFile> inputs_;  // still to come
+  std::set<std::string> named_;            // so far, by canonical paths: a file by two spellings comes once
   std::optional<TextureMaker> maker_;      // of the recording whose turn it is
   std::deque<NumberedStroke> strokes_;     // of that recording, still to come
   bool made_ = false;                      // a texture, of that recording

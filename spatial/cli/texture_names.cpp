@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
+#include <map>
 
 #include "data-schema/files.hpp"
 
@@ -41,13 +41,22 @@ bool is_ending(std::string_view ending) {
 
 }  // namespace
 
+bool names_one_texture(const std::string& output) {
+  return !output.empty() && !is_folder(output) && output.find(kPlace) == std::string::npos;
+}
+
 schema::Result<std::vector<std::string>> texture_stems(const std::vector<std::string>& recordings,
                                                        const std::string& output) {
   std::vector<std::string> stems;
-  std::set<std::string> taken;
+  std::map<std::string, std::string> named, taken;
   for (const std::string& recording : recordings) {
+    const auto [same, fresh] =
+        named.emplace(schema::canonical_path(schema::stem_of(recording, "")), recording);
+    if (!fresh)
+      return schema::fail(schema::Fault::usage, fmt::format("is the same recording as {}", same->second),
+                          recording, "name it once");
     stems.push_back(texture_stem(recording, output));
-    if (!taken.insert(stems.back()).second)
+    if (!taken.emplace(schema::canonical_path(stems.back()), recording).second)
       return schema::fail(schema::Fault::usage,
                           fmt::format("the textures of several recordings would be named {}", stems.back()),
                           {}, "give -o a folder, or a name with {} in it, which stands for the recording's");

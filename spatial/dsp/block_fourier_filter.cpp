@@ -5,6 +5,8 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <deque>
+#include <mutex>
 #include <utility>
 
 #include "spatial/dsp/band_kernel.hpp"
@@ -68,11 +70,37 @@ KernelSpectrum with_gain(KernelSpectrum kernel, double rate_hz, const SpectralGa
   return kernel;
 }
 
+// What a band's kernel is made of; the same numbers make the same kernel to the bit.
+struct KernelDesign {
+  double low_hz, high_hz, rate_hz;
+  std::size_t reach, length;
+  bool operator==(const KernelDesign&) const = default;
+};
+
+// A folder of recordings asks for one band at one rate again and again: the last kernels are kept.
+KernelSpectrum band_spectrum(const KernelDesign& wanted) {
+  constexpr std::size_t kMost = 4, kLongest = std::size_t{1} << 17;  // 1 MB each
+  static std::mutex mutex;
+  static std::deque<std::pair<KernelDesign, KernelSpectrum>> recent;
+  {
+    const std::lock_guard lock(mutex);
+    for (const auto& [design, kernel] : recent)
+      if (design == wanted) return kernel;
+  }
+  KernelSpectrum made = kernel_spectrum(
+      band_kernel({wanted.low_hz, wanted.high_hz}, wanted.rate_hz, wanted.reach), wanted.length);
+  if (wanted.length > kLongest) return made;
+  const std::lock_guard lock(mutex);
+  recent.emplace_front(wanted, made);
+  if (recent.size() > kMost) recent.pop_back();
+  return made;
+}
+
 KernelSpectrum design(Band band, double rate_hz, const SpectralGain& gain, std::size_t longest) {
   const std::size_t reach = reach_of(band.low_hz, rate_hz);
   const auto room = static_cast<std::size_t>(kRoomForGain * static_cast<double>(reach)) + 1;
   const std::size_t length = block_length(gain ? room : reach, longest);
-  KernelSpectrum kernel = kernel_spectrum(band_kernel(band, rate_hz, reach), length);
+  KernelSpectrum kernel = band_spectrum({band.low_hz, band.high_hz, rate_hz, reach, length});
   return gain ? with_gain(std::move(kernel), rate_hz, gain) : kernel;
 }
 

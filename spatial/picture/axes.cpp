@@ -53,12 +53,14 @@ class LabelRow {
 
 void draw_axis(Canvas& canvas, const Box& box, Side side, const Axis& axis, const std::vector<Tick>& ticks) {
   LabelRow labels(canvas, box, side);
+  std::vector<Segment> marks;
   for (const Tick& tick : ticks) {
     const double place = axis.place(tick.value);
     const double reach = tick.label.empty() ? kMinorTick : kMajorTick;
-    canvas.line(outwards(box, side, place, 0), outwards(box, side, place, reach), kTickPen);
+    marks.push_back({outwards(box, side, place, 0), outwards(box, side, place, reach)});
     if (!tick.label.empty()) labels.add(place, tick.label);
   }
+  canvas.lines(marks, kTickPen);
 }
 
 void draw_caption(Canvas& canvas, const Box& box, Side side, const std::string& caption, double gap) {
@@ -69,14 +71,16 @@ void draw_caption(Canvas& canvas, const Box& box, Side side, const std::string& 
 
 void draw_grid(Canvas& canvas, const Box& box, bool across, const Axis& axis,
                const std::vector<Tick>& ticks) {
+  std::vector<Segment> lines;
   for (const Tick& tick : ticks) {
     if (tick.label.empty()) continue;
     const double place = axis.place(tick.value);
     if (across)
-      canvas.line({box.x, place}, {box.right(), place}, {kGridLine, 0.5});
+      lines.push_back({{box.x, place}, {box.right(), place}});
     else
-      canvas.line({place, box.y}, {place, box.bottom()}, {kGridLine, 0.5});
+      lines.push_back({{place, box.y}, {place, box.bottom()}});
   }
+  canvas.lines(lines, {kGridLine, 0.5});
 }
 
 }  // namespace tacto::spatial

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <numbers>
 
+#include "spatial/picture/palette_png.hpp"
+#include "spatial/picture/svg_numbers.hpp"
 #include "spatial/picture/svg_text.hpp"
 
 namespace tacto::spatial {
@@ -49,6 +51,20 @@ FontOptions unhinted() {
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
   cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
   return options;
+}
+
+void release_bytes(void* bytes) {
+  delete static_cast<std::string*>(bytes);
+}
+
+// What an SVG shall hold in place of the PNG with three channels that Cairo makes.
+void attach_png(cairo_surface_t* surface, std::string png) {
+  if (png.empty()) return;
+  auto bytes = std::make_unique<std::string>(std::move(png));
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes->data());
+  const auto attached = cairo_surface_set_mime_data(surface, CAIRO_MIME_TYPE_PNG, data, bytes->size(),
+                                                    release_bytes, bytes.get());
+  if (attached == CAIRO_STATUS_SUCCESS) static_cast<void>(bytes.release());
 }
 
 }  // namespace
@@ -111,6 +127,10 @@ Canvas::Canvas(Canvas&&) noexcept = default;
 Canvas& Canvas::operator=(Canvas&&) noexcept = default;
 Canvas::~Canvas() = default;
 
+double Canvas::pixels_per_point() const {
+  return state_->format == PictureFormat::page_svg ? kWebPixelsPerPoint : kPixelsPerPoint;
+}
+
 void Canvas::fill(const Box& box, const Colour& colour) {
   state_->ink(colour);
   cairo_rectangle(state_->cairo.get(), box.x, box.y, box.width, box.height);
@@ -125,6 +145,15 @@ void Canvas::frame(const Box& box, const Pen& pen) {
 void Canvas::line(Point from, Point to, const Pen& pen) {
   const Point ends[] = {from, to};
   polyline(ends, pen);
+}
+
+void Canvas::lines(std::span<const Segment> lines, const Pen& pen) {
+  cairo_new_path(state_->cairo.get());
+  for (const Segment& line : lines) {
+    cairo_move_to(state_->cairo.get(), line.from.x, line.from.y);
+    cairo_line_to(state_->cairo.get(), line.to.x, line.to.y);
+  }
+  state_->stroke(pen);
 }
 
 void Canvas::polyline(std::span<const Point> points, const Pen& pen) {
@@ -148,6 +177,7 @@ void Canvas::image(const Box& box, const Pixels& pixels) {
   for (std::size_t y = 0; y < static_cast<std::size_t>(pixels.height); ++y)
     std::memcpy(rows + y * stride, pixels.rgb.data() + y * width, width * sizeof(std::uint32_t));
   cairo_surface_mark_dirty(surface.get());
+  if (state_->format != PictureFormat::png) attach_png(surface.get(), palette_png(pixels));
   cairo_save(cairo);
   cairo_translate(cairo, box.x, box.y);
   cairo_scale(cairo, box.width / pixels.width, box.height / pixels.height);
@@ -166,6 +196,10 @@ void Canvas::text(Point at, const std::string& text, const TextStyle& style) {
   cairo_t* cairo = state_->cairo.get();
   const Size size = state_->set_text(text, style);
   const Point corner{-style.align_x * size.width, -style.align_y * size.height};
+  const double baseline = pango_units_to_double(pango_layout_get_baseline(state_->layout.get()));
+  if (state_->format != PictureFormat::png)
+    state_->text_layer += svg_text({text, at, {corner.x, corner.y + baseline}, size.width, style});
+  if (state_->format == PictureFormat::page_svg) return;
   cairo_save(cairo);
   cairo_translate(cairo, at.x, at.y);
   if (style.upward) cairo_rotate(cairo, -std::numbers::pi / 2);
@@ -173,9 +207,6 @@ void Canvas::text(Point at, const std::string& text, const TextStyle& style) {
   state_->ink(style.colour);
   pango_cairo_show_layout(cairo, state_->layout.get());
   cairo_restore(cairo);
-  const double baseline = pango_units_to_double(pango_layout_get_baseline(state_->layout.get()));
-  if (state_->format == PictureFormat::svg)
-    state_->text_layer += svg_text({text, at, {corner.x, corner.y + baseline}, size.width, style});
 }
 
 void Canvas::clip(const Box& box) {
@@ -204,7 +235,8 @@ schema::Result<std::string> Canvas::encode() {
     if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_SURFACE_FINISHED)
       return schema::fail(schema::Fault::internal, cairo_status_to_string(status), "picture");
   if (state.format == PictureFormat::png) return state.bytes;
-  return with_text_layer(state.bytes, state.text_layer);
+  return with_text_layer(with_rounded_paths(state.bytes), state.text_layer,
+                         state.format == PictureFormat::page_svg);
 }
 
 }  // namespace tacto::spatial

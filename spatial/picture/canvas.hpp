@@ -11,10 +11,16 @@
 
 namespace tacto::spatial {
 
-enum class PictureFormat { png, svg };
+/// `page_svg`: an SVG for a web page: rasters and curves are as fine as a screen shows them, letters are text
+/// in the reader's font (DejaVu Sans, or one of equal widths) instead of outlines.
+enum class PictureFormat { png, svg, page_svg };
 
 /// Pixels of a PNG for each point of the page: a page 800 points wide has 1600 pixels.
 inline constexpr double kPixelsPerPoint = 2;
+
+/// The same within an SVG for a web page, which shows a point on about 1.2 pixels: sixty pictures of noise,
+/// the largest, then make 9 MB.
+inline constexpr double kWebPixelsPerPoint = 1.1;
 
 struct Pen {
   Colour colour = kInk;
@@ -41,9 +47,14 @@ class Canvas {
   Canvas& operator=(Canvas&&) noexcept;
   ~Canvas();
 
+  /// How finely rasters and curves are drawn.
+  double pixels_per_point() const;
+
   void fill(const Box& box, const Colour& colour);
   void frame(const Box& box, const Pen& pen);
   void line(Point from, Point to, const Pen& pen);
+  /// Many lines in one stroke: an SVG repeats the clip for each stroke.
+  void lines(std::span<const Segment> lines, const Pen& pen);
   void polyline(std::span<const Point> points, const Pen& pen);
   void polygon(std::span<const Point> points, const Colour& colour);
   /// Fills the box; without smoothing where the pixels match the PNG's.

@@ -42,6 +42,9 @@ Result<std::string> to_png(const Figure& figure) {
 Result<std::string> to_svg(const Figure& figure) {
   return encoded(figure, PictureFormat::svg);
 }
+Result<std::string> to_page_svg(const Figure& figure) {
+  return encoded(figure, PictureFormat::page_svg);
+}
 
 Result<std::string> encode_as(const std::string& path, const Figure& figure) {
   if (ends_in(path, ".png")) return to_png(figure);

@@ -27,6 +27,9 @@ class Figure {
 schema::Result<std::string> to_png(const Figure& figure);
 schema::Result<std::string> to_svg(const Figure& figure);
 
+/// The SVG for a web page: rasters and curves as fine as a screen shows them, in a quarter of the bytes.
+schema::Result<std::string> to_page_svg(const Figure& figure);
+
 /// By the path's extension, .png or .svg. Errors: usage, for another one, naming those there are.
 schema::Result<std::string> encode_as(const std::string& path, const Figure& figure);
 

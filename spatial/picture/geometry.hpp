@@ -11,6 +11,10 @@ struct Point {
   double x = 0, y = 0;
 };
 
+struct Segment {
+  Point from, to;
+};
+
 struct Size {
   double width = 0, height = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace tacto::spatial {
 namespace {
@@ -26,8 +27,10 @@ void draw_hatch(Canvas& canvas, std::span<const Point> polygon) {
   // Lines x + y = n * spacing: the same on the whole page, wherever the polygon lies.
   const Box box = bounds_of(polygon);
   const double first = std::ceil((box.x + box.y) / kSpacing) * kSpacing;
+  std::vector<Segment> lines;
   for (double sum = first; sum <= box.right() + box.bottom(); sum += kSpacing)
-    canvas.line({sum - box.bottom(), box.bottom()}, {sum - box.y, box.y}, kHatchPen);
+    lines.push_back({{sum - box.bottom(), box.bottom()}, {sum - box.y, box.y}});
+  canvas.lines(lines, kHatchPen);
   canvas.release();
 }
 

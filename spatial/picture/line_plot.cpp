@@ -8,6 +8,7 @@
 
 #include "spatial/picture/axes.hpp"
 #include "spatial/picture/canvas.hpp"
+#include "spatial/picture/fitted_text.hpp"
 #include "spatial/picture/heading.hpp"
 #include "spatial/picture/trace.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 constexpr double kPlotMargin = 14;
 constexpr double kPlotLeft = 66;
 constexpr double kBelow = 40;
-constexpr double kLegend = 18;
+constexpr double kLegend = 18, kLegendRow = 15;
 
 struct Extent {
   double low = INFINITY, high = -INFINITY;
@@ -53,10 +54,49 @@ Result<Extents> extents_of(const LineFigure& figure) {
   return extents;
 }
 
-Box plot_box(const LineFigure& figure) {
-  const double top = kPlotMargin + kHeadingHeight + kLegend;
+// Above the plot: heading, then the legend in as many rows as it needs. No curve is ever under it.
+struct PlotHead {
+  struct Entry {
+    std::size_t series;
+    Point at;
+  };
+  Heading heading;
+  std::vector<Entry> legend;
+  double legend_height = kLegend;
+  double extra() const { return heading.extra() + legend_height - kLegend; }
+};
+
+const TextStyle kLegendStyle{.size = 10};
+constexpr double kLegendSample = 25, kLegendGap = 18;
+
+void place_legend(Canvas& ruler, const LineFigure& figure, PlotHead& head) {
+  const double right = figure.size.width - kPlotMargin;
+  Point at{kPlotLeft, kPlotMargin + head.heading.height() + kLegend - 11};
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    if (figure.series[i].name.empty()) continue;
+    const double width = kLegendSample + ruler.text_size(figure.series[i].name, kLegendStyle).width;
+    if (at.x > kPlotLeft && at.x + width > right) {
+      at = {kPlotLeft, at.y + kLegendRow};
+      head.legend_height += kLegendRow;
+    }
+    head.legend.push_back({i, at});
+    at.x += width + kLegendGap;
+  }
+}
+
+PlotHead head_of(const LineFigure& figure) {
+  Canvas ruler(PictureFormat::png, {1, 1});
+  PlotHead head;
+  head.heading =
+      heading_of(figure.title, figure.subtitle, figure.simulated, figure.size.width - 2 * kPlotMargin);
+  place_legend(ruler, figure, head);
+  return head;
+}
+
+Box plot_box(const LineFigure& figure, const PlotHead& head) {
+  const double top = kPlotMargin + head.heading.height() + head.legend_height;
   return {kPlotLeft, top, figure.size.width - kPlotLeft - kPlotMargin - 6,
-          figure.size.height - top - kBelow - 4};
+          figure.size.height + head.extra() - top - kBelow - 4};
 }
 
 Axis x_axis_of(const LineFigure& figure, const Extent& extent, const Box& box) {
@@ -74,22 +114,19 @@ Axis y_axis_of(const Extent& extent, const Box& box) {
   return axis;
 }
 
-// Above the plot, from the left: no curve is ever under it.
-void draw_legend(Canvas& canvas, const LineFigure& figure, const Box& box) {
-  const TextStyle style{.size = 10};
-  Point at{box.x, box.y - 11};
-  for (const Series& series : figure.series) {
-    if (series.name.empty()) continue;
+void draw_legend(Canvas& canvas, const LineFigure& figure, const PlotHead& head) {
+  for (const auto& [index, at] : head.legend) {
+    const Series& series = figure.series[index];
     canvas.line(at, {at.x + 20, at.y}, {series.colour, series.width + 0.75, series.dashed});
-    canvas.text({at.x + 25, at.y}, series.name, style);
-    at.x += 25 + canvas.text_size(series.name, style).width + 18;
+    draw_fitted(canvas, {at.x + kLegendSample, at.y}, series.name, kLegendStyle,
+                figure.size.width - kPlotMargin - at.x - kLegendSample);
   }
 }
 
 void draw_series(Canvas& canvas, const LineFigure& figure, const Axis& x_axis, const Axis& y_axis) {
   for (const Series& series : figure.series) {
     if (series.marks) continue;
-    for (const auto& piece : trace(series.x, series.y, x_axis, y_axis))
+    for (const auto& piece : trace(series.x, series.y, x_axis, y_axis, canvas.pixels_per_point()))
       canvas.polyline(piece, {series.colour, series.width, series.dashed});
   }
 }
@@ -98,8 +135,8 @@ bool boxes_overlap(const Box& a, const Box& b) {
   return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
 }
 
-// Marks, and as many of their labels as find room beside those before them: above and to the right, in the
-// plot's right part to the left.
+// Marks, and as many of their labels as find room in the plot beside all marks and the labels before them.
+// Curves pass below a label.
 class Marks {
  public:
   Marks(Canvas& canvas, const Axis& x_axis, const Axis& y_axis, const Box& box)
@@ -110,28 +147,49 @@ class Marks {
       const bool shown = x_axis_.scale == AxisScale::linear || series.x[i] > 0;
       if (!shown || !std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
       const Point at{x_axis_.place(series.x[i]), y_axis_.place(series.y[i])};
-      canvas_.fill({at.x - kHalf, at.y - kHalf, 2 * kHalf, 2 * kHalf}, series.colour);
-      if (i < series.labels.size() && !series.labels[i].empty()) label(at, series.labels[i]);
+      taken_.push_back({at.x - kHalf, at.y - kHalf, 2 * kHalf, 2 * kHalf});
+      canvas_.fill(taken_.back(), series.colour);
+      if (i < series.labels.size() && !series.labels[i].empty()) asked_.push_back({at, series.labels[i]});
     }
+  }
+  /// Once all marks are drawn.
+  void label() {
+    for (const auto& [at, text] : asked_) label(at, text);
   }
 
  private:
+  // Above and below, to the right and to the left, then straight above and below.
   void label(Point at, const std::string& text) {
-    const bool left = at.x > box_.x + 0.7 * box_.width;
-    const TextStyle style{.size = 7.5, .align_x = left ? 1.0 : 0.0};
-    const Size size = canvas_.text_size(text, style);
-    const double x = at.x + (left ? -kBeside : kBeside), y = at.y - kBeside;
-    const Box place{left ? x - size.width : x, y - size.height / 2, size.width, size.height};
-    if (std::ranges::any_of(taken_, [&](const Box& other) { return boxes_overlap(place, other); })) return;
-    taken_.push_back(place);
-    canvas_.text({x, y}, text, style);
+    const Size size = canvas_.text_size(text, kStyle);
+    const double right = at.x + kBeside, left = at.x - kBeside - size.width, middle = at.x - size.width / 2;
+    const double above = at.y - kBeside - size.height / 2, below = at.y + kBeside - size.height / 2;
+    const double over = at.y - kBeside - size.height, under = at.y + kBeside;
+    for (const Point corner : {Point{right, above}, Point{left, above}, Point{right, below},
+                               Point{left, below}, Point{middle, over}, Point{middle, under}})
+      if (const Box place{corner.x, corner.y, size.width, size.height}; is_free(place)) {
+        taken_.push_back(place);
+        canvas_.fill(place, {1, 1, 1});
+        return canvas_.text({corner.x, corner.y + size.height / 2}, text, kStyle);
+      }
+  }
+  bool is_free(const Box& place) const {
+    const bool inside = place.x >= box_.x && place.right() <= box_.right() && place.y >= box_.y &&
+                        place.bottom() <= box_.bottom();
+    return inside &&
+           std::ranges::none_of(taken_, [&](const Box& other) { return boxes_overlap(place, other); });
   }
 
+  struct Asked {
+    Point at;
+    std::string text;
+  };
   static constexpr double kHalf = 2.2, kBeside = 5;
+  static constexpr TextStyle kStyle{.size = 8.5};
   Canvas& canvas_;
   const Axis &x_axis_, &y_axis_;
   const Box& box_;
   std::vector<Box> taken_;
+  std::vector<Asked> asked_;
 };
 
 }  // namespace
@@ -146,18 +204,22 @@ Colour series_colour(std::size_t index) {
   return kSeriesColours[index % kSeriesColours.size()];
 }
 
+Size LineFigure::page() const {
+  return {size.width, size.height + head_of(*this).extra()};
+}
+
 Result<void> LineFigure::draw(Canvas& canvas) const {
   const auto extents = extents_of(*this);
   if (!extents) return schema::forward_error(extents);
-  const Box box = plot_box(*this);
+  const PlotHead head = head_of(*this);
+  const Box box = plot_box(*this, head);
   const int rows = std::max(2, static_cast<int>(box.height / 36));
   const Axis x_axis = x_axis_of(*this, extents->x, box);
   const Axis y_axis = y_axis_of(extents->y, box);
   const auto x_ticks = ticks_of(x_axis, 10);
   const auto y_ticks = ticks_of(y_axis, rows);
-  draw_heading(canvas, {kPlotMargin, kPlotMargin, size.width - 2 * kPlotMargin, kHeadingHeight}, title,
-               subtitle, simulated);
-  draw_legend(canvas, *this, box);
+  draw_heading(canvas, {kPlotMargin, kPlotMargin}, head.heading);
+  draw_legend(canvas, *this, head);
   draw_grid(canvas, box, false, x_axis, x_ticks);
   draw_grid(canvas, box, true, y_axis, y_ticks);
   canvas.clip(box);
@@ -166,6 +228,7 @@ Result<void> LineFigure::draw(Canvas& canvas) const {
   Marks marks(canvas, x_axis, y_axis, box);
   for (const Series& each : series)
     if (each.marks) marks.draw(each);
+  marks.label();
   canvas.frame(box, {});
   draw_axis(canvas, box, Side::bottom, x_axis, x_ticks);
   draw_axis(canvas, box, Side::left, y_axis, y_ticks);

@@ -32,9 +32,9 @@ struct LineFigure : Figure {
   std::string simulated;         ///< by what, where it is simulated: said in the picture
   std::vector<Series> series;
   AxisScale x_scale = AxisScale::linear;
-  Size size{700, 320};
+  Size size{700, 320};  ///< with a title and a badge on one line; longer ones make the page higher
 
-  Size page() const override { return size; }
+  Size page() const override;
   /// Errors: unsuitable, where no series has a finite point, or x and y differ in length.
   schema::Result<void> draw(Canvas& canvas) const override;
 };

@@ -51,6 +51,15 @@ std::string facts_of(const schema::Texture& texture) {
   return facts;
 }
 
+std::string sheet_facts(const std::vector<SpectrogramPanel>& panels) {
+  const auto& first = *panels.front().spectrogram;
+  return fmt::format(
+      "{} textures at one scale; Blackman window {:.4g} mm, hop {:.4g} mm; hatched: not measured, grey: no "
+      "whole "
+      "window",
+      panels.size(), 1e3 * first.window_m, 1e3 * first.hop_m);
+}
+
 }  // namespace
 
 Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
@@ -76,12 +85,14 @@ Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
   return scales;
 }
 
-SheetFigure::SheetFigure(std::vector<SpectrogramPanel> panels, const SheetScales& scales, std::string title,
-                         std::size_t columns)
+SheetFigure::SheetFigure(std::vector<SpectrogramPanel> panels, const SheetScales& scales,
+                         const std::string& title, std::size_t columns)
     : panels_(std::move(panels)),
       scales_(scales),
-      title_(std::move(title)),
-      layout_(panels_.size(), columns) {}
+      layout_(panels_.size(), columns),
+      heading_(heading_of(title, sheet_facts(panels_), "", layout_.heading().width)) {
+  layout_.heading_height = heading_.height();
+}
 
 Axis SheetFigure::positions(std::size_t cell) const {
   return position_axis(0, scales_.length_mm, layout_.cell(cell).heat);
@@ -92,14 +103,7 @@ Axis SheetFigure::frequencies(std::size_t cell) const {
 }
 
 Result<void> SheetFigure::draw(Canvas& canvas) const {
-  const auto& first = *panels_.front().spectrogram;
-  draw_heading(
-      canvas, layout_.heading(), title_,
-      fmt::format(
-          "{} textures at one scale; Blackman window {:.4g} mm, hop {:.4g} mm; hatched: not measured, "
-          "grey: no whole window",
-          panels_.size(), 1e3 * first.window_m, 1e3 * first.hop_m),
-      "");
+  draw_heading(canvas, {layout_.heading().x, layout_.heading().y}, heading_);
   for (std::size_t i = 0; i < panels_.size(); ++i)
     if (auto drawn = draw_cell(canvas, i); !drawn) return drawn;
   draw_bar(canvas);
@@ -120,8 +124,8 @@ void SheetFigure::draw_title(Canvas& canvas, std::size_t index) const {
     canvas.text({box.right(), box.y + 2}, "SIMULATED", kSimulated);
     width -= canvas.text_size("SIMULATED", kSimulated).width + 8;
   }
-  canvas.text({box.x, box.y}, fitted(canvas, panels_[index].spectrogram->name, kName, width), kName);
-  canvas.text({box.x, box.y + 15}, fitted(canvas, facts_of(texture), kFacts, box.width), kFacts);
+  draw_fitted(canvas, {box.x, box.y}, panels_[index].spectrogram->name, kName, width);
+  draw_fitted(canvas, {box.x, box.y + 15}, facts_of(texture), kFacts, box.width);
 }
 
 void SheetFigure::draw_trace(Canvas& canvas, std::size_t index) const {
@@ -136,7 +140,8 @@ void SheetFigure::draw_trace(Canvas& canvas, std::size_t index) const {
   }
   const Axis axis = upwards(unit.factor * scales_.low_value, unit.factor * scales_.high_value, cell.trace);
   canvas.clip(cell.trace);
-  for (const auto& piece : trace(x, y, positions(index), axis)) canvas.polyline(piece, {kSheetTrace, 0.5});
+  for (const auto& piece : trace(x, y, positions(index), axis, canvas.pixels_per_point()))
+    canvas.polyline(piece, {kSheetTrace, 0.5});
   canvas.release();
   canvas.frame(cell.trace, {});
   draw_axis(canvas, cell.trace, Side::left, axis, ticks_for(axis, 3, cell.leftmost));
@@ -151,8 +156,8 @@ Result<void> SheetFigure::draw_heat(Canvas& canvas, std::size_t index) const {
   const Axis position = positions(index), frequency = frequencies(index);
   const Box area = covered(cell.heat, position, *spectrogram);
   const auto pixels = heatmap(*spectrogram, 1e3 * frequency.low, 1e3 * frequency.high, scales_.levels,
-                              static_cast<int>(std::lround(area.width * kPixelsPerPoint)),
-                              static_cast<int>(std::lround(area.height * kPixelsPerPoint)));
+                              static_cast<int>(std::lround(area.width * canvas.pixels_per_point())),
+                              static_cast<int>(std::lround(area.height * canvas.pixels_per_point())));
   if (!pixels) return schema::forward_error(pixels);
   const double end = position.place(1e3 * texture->signal.length_m());
   canvas.fill({cell.heat.x, cell.heat.y, end - cell.heat.x, cell.heat.height}, kSheetNoWindow);

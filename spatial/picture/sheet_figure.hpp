@@ -7,6 +7,7 @@
 
 #include "spatial/picture/axis.hpp"
 #include "spatial/picture/figure.hpp"
+#include "spatial/picture/heading.hpp"
 #include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/sheet_layout.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
@@ -30,7 +31,7 @@ schema::Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panel
 class SheetFigure : public Figure {
  public:
   /// `columns` 0: chosen. Precondition: 1 to kCellsOfAPage panels.
-  SheetFigure(std::vector<SpectrogramPanel> panels, const SheetScales& scales, std::string title,
+  SheetFigure(std::vector<SpectrogramPanel> panels, const SheetScales& scales, const std::string& title,
               std::size_t columns = 0);
 
   Size page() const override { return layout_.page(); }
@@ -49,8 +50,8 @@ class SheetFigure : public Figure {
 
   std::vector<SpectrogramPanel> panels_;
   SheetScales scales_;
-  std::string title_;
   SheetLayout layout_;
+  Heading heading_;
 };
 
 }  // namespace tacto::spatial

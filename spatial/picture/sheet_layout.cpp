@@ -29,18 +29,19 @@ std::size_t usual_columns(std::size_t cells) {
 
 SheetLayout::SheetLayout(std::size_t cell_count, std::size_t wanted_columns)
     : cells(cell_count),
-      columns(std::min(wanted_columns == 0 ? usual_columns(cell_count) : wanted_columns, cell_count)) {
+      columns(std::min(wanted_columns == 0 ? usual_columns(cell_count) : wanted_columns, cell_count)),
+      heading_height(kHeadingHeight) {
   rows = (cells + columns - 1) / columns;
 }
 
 Size SheetLayout::page() const {
   const auto across = static_cast<double>(columns), down = static_cast<double>(rows);
   return {kLeft + across * cell_width(columns) + (across - 1) * kBetweenColumns + kRight,
-          kSheetMargin + kHeadingHeight + down * kRow + (down - 1) * kBetweenRows + kBottom};
+          kSheetMargin + heading_height + down * kRow + (down - 1) * kBetweenRows + kBottom};
 }
 
 Box SheetLayout::heading() const {
-  return {kSheetMargin, kSheetMargin, page().width - 2 * kSheetMargin, kHeadingHeight};
+  return {kSheetMargin, kSheetMargin, page().width - 2 * kSheetMargin, heading_height};
 }
 
 SheetCell SheetLayout::cell(std::size_t index) const {
@@ -48,7 +49,7 @@ SheetCell SheetLayout::cell(std::size_t index) const {
   const auto column = static_cast<double>(index % columns), row = static_cast<double>(rows_above);
   const double width = cell_width(columns);
   const double x = kLeft + column * (width + kBetweenColumns);
-  const double y = kSheetMargin + kHeadingHeight + row * (kRow + kBetweenRows);
+  const double y = kSheetMargin + heading_height + row * (kRow + kBetweenRows);
   SheetCell cell;
   cell.title = {x, y, width, kSheetTitle};
   cell.trace = {x, y + kSheetTitle, width, kTraceHeight};

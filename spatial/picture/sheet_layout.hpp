@@ -27,6 +27,7 @@ struct SheetLayout {
   Box heading() const;
   Box bar() const;  ///< of colours
   std::size_t cells = 0, columns = 1, rows = 1;
+  double heading_height;  ///< kHeadingHeight; more for a title of several lines
 };
 
 }  // namespace tacto::spatial

@@ -14,10 +14,15 @@ using schema::Fault;
 using schema::Result;
 
 SpectrogramFigure::SpectrogramFigure(std::vector<SpectrogramPanel> panels, SpectrogramPictureOptions options)
-    : panels_(std::move(panels)), options_(options) {}
+    : panels_(std::move(panels)), options_(options) {
+  for (const SpectrogramPanel& panel : panels_) {
+    headings_.push_back(panel_heading(*panel.texture, *panel.spectrogram));
+    heading_heights_.push_back(headings_.back().height());
+  }
+}
 
 Size SpectrogramFigure::page() const {
-  return page_of(panels_.size());
+  return page_of(heading_heights_);
 }
 
 double SpectrogramFigure::highest_per_m() const {
@@ -80,9 +85,15 @@ Result<void> SpectrogramFigure::draw(Canvas& canvas) const {
   if (auto checked = check(); !checked) return checked;
   const LevelRange shared = levels();
   for (std::size_t i = 0; i < panels_.size(); ++i) {
-    PanelPainter painter{canvas,    *panels_[i].texture, *panels_[i].spectrogram,
-                         layout(i), positions(i),        frequencies(i),
-                         shared,    panels_[i].formants};
+    PanelPainter painter{canvas,
+                         *panels_[i].texture,
+                         *panels_[i].spectrogram,
+                         headings_[i],
+                         layout(i),
+                         positions(i),
+                         frequencies(i),
+                         shared,
+                         panels_[i].formants};
     if (auto drawn = painter.paint(); !drawn) return drawn;
   }
   return {};

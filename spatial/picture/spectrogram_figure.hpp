@@ -13,6 +13,7 @@
 #include "data-schema/texture.hpp"
 #include "spatial/picture/axis.hpp"
 #include "spatial/picture/figure.hpp"
+#include "spatial/picture/heading.hpp"
 #include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/spectrogram_layout.hpp"
 
@@ -52,11 +53,13 @@ class SpectrogramFigure : public Figure {
   double highest_per_m() const;
   /// Whether it can be drawn; errors as of draw().
   schema::Result<void> check() const;
-  PanelLayout layout(std::size_t panel) const { return panel_layout(panel, panels_.size()); }
+  PanelLayout layout(std::size_t panel) const { return panel_layout(panel, heading_heights_); }
 
  private:
   std::vector<SpectrogramPanel> panels_;
   SpectrogramPictureOptions options_;
+  std::vector<Heading> headings_;
+  std::vector<double> heading_heights_;
 };
 
 }  // namespace tacto::spatial

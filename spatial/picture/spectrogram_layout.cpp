@@ -25,19 +25,29 @@ double on_pixel(double place) {
 
 }  // namespace
 
-Size page_of(std::size_t panels) {
-  return {kPageWidth, static_cast<double>(panels) * panel_height(panels)};
+double heading_width() {
+  return kPageWidth - 2 * kMargin;
 }
 
-PanelLayout panel_layout(std::size_t panel, std::size_t panels) {
-  const double height = panel_height(panels);
-  const double top = static_cast<double>(panel) * height + kMargin;
-  const double plots = top + kHeadingHeight;
+Size page_of(std::span<const double> heading_heights) {
+  double height = 0;
+  for (const double heading : heading_heights)
+    height += panel_height(heading_heights.size()) + heading - kHeadingHeight;
+  return {kPageWidth, height};
+}
+
+PanelLayout panel_layout(std::size_t panel, std::span<const double> heading_heights) {
+  const std::size_t panels = heading_heights.size();
+  double panel_top = static_cast<double>(panel) * panel_height(panels);
+  for (const double above : heading_heights.first(panel)) panel_top += above - kHeadingHeight;
+  const double heading = heading_heights[panel];
+  const double top = panel_top + kMargin, plots = top + heading;
+  const double bottom = panel_top + panel_height(panels) + heading - kHeadingHeight;
   const double trace_height = panels == 1 ? 100 : 84;
   const double heat_top = plots + trace_height + 12;
-  const double heat_height = top - kMargin + height - 46 - heat_top;
+  const double heat_height = bottom - 46 - heat_top;
   PanelLayout layout;
-  layout.heading = {kMargin, top, kPageWidth - 2 * kMargin, kHeadingHeight};
+  layout.heading = {kMargin, top, heading_width(), heading};
   layout.trace = {66, plots, 488, trace_height};
   layout.heat = {66, heat_top, 488, heat_height};
   layout.mean = {620, heat_top, 92, heat_height};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "data-schema/spectrogram.hpp"
 #include "spatial/picture/axis.hpp"
@@ -15,9 +16,11 @@ struct PanelLayout {
   Box heading, trace, heat, mean, bar, notes;
 };
 
-/// The page for so many panels, and the place of one of them. A panel alone is higher than one of several.
-Size page_of(std::size_t panels);
-PanelLayout panel_layout(std::size_t panel, std::size_t panels);
+/// The page for the panels whose headings are so high, and the place of one of them. A panel alone is higher
+/// than one of several; a heading above kHeadingHeight makes its panel higher.
+Size page_of(std::span<const double> heading_heights);
+PanelLayout panel_layout(std::size_t panel, std::span<const double> heading_heights);
+double heading_width();
 
 /// In the units of the page's axes: millimetres and 1/mm.
 Axis position_axis(double low_mm, double high_mm, const Box& box);

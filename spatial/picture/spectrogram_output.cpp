@@ -7,7 +7,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "data-schema/files.hpp"
 #include "data-schema/spectrogram.hpp"
 
 namespace tacto::spatial {
@@ -34,7 +33,7 @@ bool is_spectrogram_table(std::string_view line) {
 }
 
 // An empty one is nobody's.
-Result<void> check_netcdf_free(const std::string& path) {
+Result<void> check_netcdf_kind(const std::string& path) {
   std::error_code ignored;
   const auto size = std::filesystem::file_size(path, ignored);
   if (ignored || size == 0 || schema::is_spectrogram_nc(path)) return {};
@@ -42,7 +41,8 @@ Result<void> check_netcdf_free(const std::string& path) {
                       "choose another name, or remove it first");
 }
 
-Result<void> check_output(const std::string& path, std::span<const std::string> earlier) {
+Result<void> check_output(const std::string& path, std::span<const std::string> earlier,
+                          schema::Existing existing) {
   const std::string extension = extension_of(path);
   if (std::ranges::find(kExtensions, extension) == kExtensions.end())
     return schema::fail(Fault::usage,
@@ -51,8 +51,10 @@ Result<void> check_output(const std::string& path, std::span<const std::string> 
                         path, "take .png, .svg, .nc or .csv");
   if (std::ranges::any_of(earlier, [&](const std::string& other) { return schema::same_file(path, other); }))
     return schema::fail(Fault::usage, "is named twice", path, "give each output a name of its own");
-  if (extension == ".csv") return schema::check_table_free(path, is_spectrogram_table);
-  return extension == ".nc" ? check_netcdf_free(path) : Result<void>();
+  if (extension == ".csv") return schema::check_table_free(path, existing, is_spectrogram_table);
+  if (extension == ".nc")
+    if (auto ours = check_netcdf_kind(path); !ours) return ours;
+  return schema::check_output_free(path, existing);
 }
 
 }  // namespace
@@ -63,10 +65,10 @@ OutputForm form_of(const std::string& path) {
   return extension == ".csv" ? OutputForm::table : OutputForm::picture;
 }
 
-Result<void> check_outputs(std::span<const std::string> paths) {
+Result<void> check_outputs(std::span<const std::string> paths, schema::Existing existing) {
   PendingFiles trial;  // never committed: its empty files prove that the folders take them, and vanish
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (auto checked = check_output(paths[i], paths.first(i)); !checked) return checked;
+    if (auto checked = check_output(paths[i], paths.first(i), existing); !checked) return checked;
     if (const auto added = trial.add(paths[i]); !added) return schema::forward_error(added);
   }
   return {};

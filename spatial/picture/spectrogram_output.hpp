@@ -6,6 +6,7 @@
 #include <string>
 
 #include "data-schema/error.hpp"
+#include "data-schema/files.hpp"
 
 namespace tacto::spatial {
 
@@ -14,8 +15,8 @@ enum class OutputForm { picture, netcdf, table };
 /// Precondition: check_outputs() accepted the path.
 OutputForm form_of(const std::string& path);
 
-/// Before any work is done: whether each path has a known extension, is named once, and can be written.
-/// Errors: usage; cannot_write.
-schema::Result<void> check_outputs(std::span<const std::string> paths);
+/// Before any work is done: whether each path has a known extension, is named once, is free or holds a
+/// spectrogram that may be replaced, and can be written. Errors: usage; cannot_write.
+schema::Result<void> check_outputs(std::span<const std::string> paths, schema::Existing existing);
 
 }  // namespace tacto::spatial

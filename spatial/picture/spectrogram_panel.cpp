@@ -10,8 +10,8 @@
 #include "spatial/picture/display_unit.hpp"
 #include "spatial/picture/formant_ridges.hpp"
 #include "spatial/picture/hatch.hpp"
-#include "spatial/picture/heading.hpp"
 #include "spatial/picture/level_bar.hpp"
+#include "spatial/picture/shown_range.hpp"
 #include "spatial/picture/trace.hpp"
 #include "spatial/picture/valid_band.hpp"
 #include "spatial/spectrogram_summary.hpp"
@@ -30,9 +30,8 @@ double largest_of(const std::vector<double>& values) {
   return largest;
 }
 
-Axis value_axis(std::span<const double> values, const Box& box) {
-  const auto [low, high] = std::ranges::minmax(values);
-  Axis axis = roomy_axis(low, high);
+Axis value_axis(const ShownRange& shown, const Box& box) {
+  Axis axis = roomy_axis(shown.low, shown.high);
   axis.at_low = box.bottom();
   axis.at_high = box.y;
   return axis;
@@ -51,9 +50,7 @@ Axis wavelength_axis(const Axis& frequency) {
 }  // namespace
 
 schema::Result<void> PanelPainter::paint() {
-  const std::string title =
-      spectrogram.name + (texture.surface.empty() ? "" : ", surface " + texture.surface);
-  draw_heading(canvas, layout.heading, title, method_facts(texture, spectrogram), texture.simulated);
+  draw_heading(canvas, {layout.heading.x, layout.heading.y}, heading);
   paint_trace();
   if (auto painted = paint_heat(); !painted) return painted;
   paint_wavelengths();
@@ -72,12 +69,17 @@ void PanelPainter::paint_trace() {
     x[i] = 1e3 * signal.position_m(i);
     y[i] = unit.factor * signal.values[i];
   }
-  const Axis axis = value_axis(y, layout.trace);
+  const ShownRange shown = shown_range(y);
+  const Axis axis = value_axis(shown, layout.trace);
   const auto ticks = ticks_of(axis, 5);
   draw_grid(canvas, layout.trace, true, axis, ticks);
   canvas.clip(layout.trace);
-  for (const auto& piece : trace(x, y, position, axis)) canvas.polyline(piece, {kTrace, 0.6});
+  for (const auto& piece : trace(x, y, position, axis, canvas.pixels_per_point()))
+    canvas.polyline(piece, {kTrace, 0.6});
   canvas.release();
+  if (shown.beyond > 0)
+    canvas.text({layout.trace.right() - 4, layout.trace.y + 3}, beyond_words(shown, unit.text),
+                {.size = 8.5, .colour = kGreyInk, .align_x = 1, .align_y = 0});
   canvas.frame(layout.trace, {});
   draw_axis(canvas, layout.trace, Side::left, axis, ticks);
   draw_axis(canvas, layout.trace, Side::bottom, position, without_labels(ticks_of(position, 10)));
@@ -88,8 +90,8 @@ void PanelPainter::paint_trace() {
 schema::Result<void> PanelPainter::paint_heat() {
   const Box area = covered(layout.heat, position, spectrogram);
   const auto pixels = heatmap(spectrogram, 1e3 * frequency.low, 1e3 * frequency.high, levels,
-                              static_cast<int>(std::lround(area.width * kPixelsPerPoint)),
-                              static_cast<int>(std::lround(area.height * kPixelsPerPoint)));
+                              static_cast<int>(std::lround(area.width * canvas.pixels_per_point())),
+                              static_cast<int>(std::lround(area.height * canvas.pixels_per_point())));
   if (!pixels) return schema::forward_error(pixels);
   const double start = position.place(1e3 * texture.signal.origin_m);
   const double end = position.place(1e3 * (texture.signal.origin_m + texture.signal.length_m()));
@@ -125,7 +127,7 @@ void PanelPainter::paint_mean() {
   draw_grid(canvas, layout.mean, false, level, level_ticks);
   draw_grid(canvas, layout.mean, true, frequency, ticks_of(frequency, 6));
   canvas.clip(layout.mean);
-  for (auto piece : trace(frequencies_per_mm, levels_db, frequency, level)) {
+  for (auto piece : trace(frequencies_per_mm, levels_db, frequency, level, canvas.pixels_per_point())) {
     for (Point& point : piece) std::swap(point.x, point.y);
     canvas.polyline(piece, {kTrace, 1});
   }
@@ -176,6 +178,12 @@ void PanelPainter::paint_notes() {
   const Point ridge[] = {{box.x + 2, y}, {box.x + 16, y}};
   draw_ridge(canvas, ridge);
   note("formants");
+}
+
+Heading panel_heading(const schema::Texture& texture, const schema::Spectrogram& spectrogram) {
+  const std::string title =
+      spectrogram.name + (texture.surface.empty() ? "" : ", surface " + texture.surface);
+  return heading_of(title, method_facts(texture, spectrogram), texture.simulated, heading_width());
 }
 
 std::string method_facts(const schema::Texture& texture, const schema::Spectrogram& spectrogram) {

@@ -9,6 +9,7 @@
 #include "data-schema/texture.hpp"
 #include "spatial/picture/axis.hpp"
 #include "spatial/picture/canvas.hpp"
+#include "spatial/picture/heading.hpp"
 #include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/spectrogram_layout.hpp"
 
@@ -19,6 +20,7 @@ struct PanelPainter {
   Canvas& canvas;
   const schema::Texture& texture;
   const schema::Spectrogram& spectrogram;
+  const Heading& heading;
   PanelLayout layout;
   Axis position;
   Axis frequency;
@@ -36,6 +38,9 @@ struct PanelPainter {
   void paint_bar();
   void paint_notes();
 };
+
+/// Name, surface, method and, of simulated data, by what they were made.
+Heading panel_heading(const schema::Texture& texture, const schema::Spectrogram& spectrogram);
 
 /// Window, hop, bins, speed, direction and band in a line.
 std::string method_facts(const schema::Texture& texture, const schema::Spectrogram& spectrogram);

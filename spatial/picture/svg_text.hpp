@@ -20,7 +20,8 @@ struct PlacedText {
 /// The <text> element, in XML.
 std::string svg_text(const PlacedText& placed);
 
-/// The SVG with the elements in a transparent group before its end.
-std::string with_text_layer(std::string svg, std::string_view elements);
+/// The SVG with the elements in a group before its end: transparent, over letters that are drawn as outlines,
+/// or `visible`, in place of them.
+std::string with_text_layer(std::string svg, std::string_view elements, bool visible);
 
 }  // namespace tacto::spatial

@@ -10,10 +10,10 @@ namespace {
 // Samples of one column, as they come.
 class Column {
  public:
-  explicit Column(std::vector<Point>& out) : out_(out) {}
+  Column(std::vector<Point>& out, double columns_per_point) : out_(out), per_point_(columns_per_point) {}
 
   void add(std::size_t index, Point point) {
-    const auto column = static_cast<long>(std::floor(point.x * kColumnsPerPoint));
+    const auto column = static_cast<long>(std::floor(point.x * per_point_));
     if (count_ > 0 && column != column_) flush();
     const Kept kept{index, point};
     if (count_ == 0) first_ = top_ = bottom_ = kept;
@@ -39,6 +39,7 @@ class Column {
     Point point;
   };
   std::vector<Point>& out_;
+  double per_point_;
   Kept first_, top_, bottom_, last_;
   long column_ = 0;
   std::size_t count_ = 0;
@@ -51,11 +52,11 @@ bool drawable(Point point) {
 }  // namespace
 
 std::vector<std::vector<Point>> trace(std::span<const double> x, std::span<const double> y,
-                                      const Axis& x_axis, const Axis& y_axis) {
+                                      const Axis& x_axis, const Axis& y_axis, double columns_per_point) {
   std::vector<std::vector<Point>> pieces;
   for (std::size_t i = 0; i < x.size();) {
     std::vector<Point> piece;
-    Column column(piece);
+    Column column(piece, columns_per_point);
     for (; i < x.size(); ++i) {
       const Point point{x_axis.place(x[i]), y_axis.place(y[i])};
       if (!drawable(point)) break;

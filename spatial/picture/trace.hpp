@@ -18,6 +18,7 @@ inline constexpr double kColumnsPerPoint = 2;
 /// that fall in one pixel column the first, smallest, largest and last are kept, so that it looks as if all
 /// were drawn. Precondition: x and y of equal size.
 std::vector<std::vector<Point>> trace(std::span<const double> x, std::span<const double> y,
-                                      const Axis& x_axis, const Axis& y_axis);
+                                      const Axis& x_axis, const Axis& y_axis,
+                                      double columns_per_point = kColumnsPerPoint);
 
 }  // namespace tacto::spatial

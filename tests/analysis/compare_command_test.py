@@ -83,14 +83,55 @@ def files_come_together():
     report = tacto.run_json("compare", "a", "b", "--page", "ab.html", "-o", "ab.results.json")
     assert report["verdict"] == "louder" and abs(report["level_db"] - 20 * np.log10(2)) < 1e-5
     page = pathlib.Path("ab.html").read_text()
-    assert page.count("data:image/svg+xml") == 4 and "http" not in page and "simulated" in page.lower()
+    assert page.count("data:image/svg+xml") == 4 and '="http' not in page and "simulated" in page.lower()
     tacto.run("validate", "ab.results.json")
     stored = json.loads(pathlib.Path("ab.results.json").read_text())
     assert stored["details"]["level_db"] == report["level_db"] and stored["kind"] == "results"
-    tacto.run("compare", "a", "b", "-o", "ab.html", "-o", "ab.results.json")  # both may be replaced
+    tacto.run("compare", "a", "b", "-o", "ab.html", "-o", "ab.results.json", "--force")  # both are replaced
     _, said = tacto.run("compare", "a", "b", "-o", "a.texture.json", code=2)
     assert "would be lost" in said
     tacto.run("compare", "a", "b", "-o", "ab.txt", code=2)
+
+
+def a_narrow_difference_is_named():
+    """6 dB over 2-2.6 /mm, in independent noise of 60 mm; the window's cells are 0.13 /mm wide."""
+    make_template()
+    random = np.random.default_rng(3)
+    def noise():
+        return random.normal(size=6000)
+    bump = signal.sosfilt(signal.butter(8, [2000, 2600], "bandpass", fs=1 / PITCH, output="sos"), noise())
+    plain = noise()
+    write_texture("a", noise())
+    write_texture("b", plain + np.sqrt(3) * bump)
+    found = tacto.run_json("compare", "a", "b")
+    assert found["verdict"] == "different" and found["band_differs"], found["because"]
+    assert found["band_low_per_m"] < 2300 < found["band_high_per_m"] and 3 < found["band_level_db"] < 9
+    assert "/mm B is" in found["because"]
+    write_texture("c", plain)
+    found = tacto.run_json("compare", "a", "c")
+    assert found["verdict"] == "same" and not found["band_differs"] and not found["line_differs"]
+    widths = [row["width_per_m"] for row in found["detectable_bands"]]
+    levels = [row["level_db"] for row in found["detectable_bands"]]
+    assert widths == sorted(widths) and min(levels) > 2 and found["detectable_line_db"] > 2
+    assert "found in at least 8 of 10" in found["detectable"]
+
+
+def with_output_few_lines_are_printed():
+    make_template()
+    a, b = pair()
+    write_texture("a", a)
+    write_texture("b", b)
+    shown, _ = tacto.run("compare", "a", "b", "-o", "ab.html")
+    lines = shown.splitlines()
+    print(shown)
+    assert len(lines) <= 15 and max(map(len, lines)) <= 120
+    words = [line.split()[0] for line in lines if not line.startswith(" ")]
+    assert words[0] == "verdict" and {"because", "detectable", "rms", "written"} <= set(words)
+    assert " both from " in next(line for line in lines if line.startswith("rms")), "the band of the RMS is named"
+    found = tacto.run_json("compare", "a", "b", "-o", "ab.results.json")
+    assert found["written"] == ["ab.results.json"] and found["bands"]
+    in_band = signal.welch(a, 1 / PITCH, "hann", round(found["window_m"] / PITCH), detrend="constant")[1]
+    assert 0 < found["a_rms_n"] < 1.1 * np.sqrt(np.sum(in_band) / (found["window_m"])), "of the compared band alone"
 
 
 def a_session_is_held_against_its_texture():
@@ -153,7 +194,7 @@ def real_fingers_verdicts():
 
 
 if __name__ == "__main__":
-    for test in (figures_agree_with_scipy, files_come_together, a_session_is_held_against_its_texture, bad_input_is_refused,
+    for test in (figures_agree_with_scipy, files_come_together, a_narrow_difference_is_named, with_output_few_lines_are_printed, a_session_is_held_against_its_texture, bad_input_is_refused,
                  real_fingers_verdicts):
         tacto.in_folder(test)
     sys.exit(0)

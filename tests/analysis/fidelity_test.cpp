@@ -5,6 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "analysis/fidelity/band_kept.hpp"
 #include "analysis/fidelity/fidelity_page.hpp"
 #include "tests/analysis/compare_textures.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
@@ -39,8 +43,8 @@ class FidelityOfATexture : public testing::Test {
   FidelityOptions options_;
 };
 
-// playback's own table (tests/playback/fidelity_table.py, row b: 1 um encoder, 26-197 mm/s): -58 to -70 dB;
-// other textures and the ends of a short one are worth 4 dB.
+// playback's own table (tests/playback/fidelity_table.py, row b at its median speed): -61 dB; other textures
+// and the ends of a short one are worth 7 dB.
 TEST_F(FidelityOfATexture, RowsAreInTheOrderOfWhatTheTrayHasBesideTheModel) {
   const Fidelity found = measured();
   ASSERT_EQ(found.speeds.size(), 1U);
@@ -111,13 +115,41 @@ TEST_F(FidelityOfATexture, TheBandIsToldOfAllThatIsPlayed) {
   EXPECT_NEAR(found.speeds.front().band_kept_percent, 100 * (2500.0 - 300) / (6000 - 300), 4);
 }
 
+// At 50 mm/s 15-500 Hz are 300-10000 /m. On 40 mm a transform tells lines 25 /m apart, and a window of a
+// quarter of it 100 /m: lines half a bin beside an edge are in or out all the same.
+TEST(BandKept, CountsALineBesideAnEdgeAsAWhole) {
+  const auto kept = [](double line_per_m, double beside_per_m) {
+    const auto texture = made_texture(5e-6, 8000, [&](double x) {
+      return std::sin(2 * std::numbers::pi * line_per_m * x + 1) +
+             std::sin(2 * std::numbers::pi * beside_per_m * x);
+    });
+    return band_kept_percent(texture, 50e-3, {15, 500});
+  };
+  constexpr double kWithin_per_m = 3000, kBeyond_per_m = 20e3;
+  // Hann's sidelobes of the other line, 100 bins away, and of a line's own image below 0: far less than 1 %.
+  for (const double out_per_m : {180.0, 250.0, 290.0, 297.0, 10'003.0, 10'010.0}) {
+    EXPECT_NEAR(kept(out_per_m, kBeyond_per_m), 0, 0.5) << out_per_m;
+    EXPECT_NEAR(kept(out_per_m, kWithin_per_m), 50, 0.5) << out_per_m;
+  }
+  for (const double in_per_m : {303.0, 310.0, 350.0, 9'990.0, 9'997.0})
+    EXPECT_NEAR(kept(in_per_m, kWithin_per_m), 100, 0.5) << in_per_m;
+}
+
+// The share is one of power, along a texture that grows: 1 in the band for 4 beyond it at each place.
+TEST(BandKept, IsAShareOfThePowerWhereLinesGrow) {
+  const auto texture = made_texture(5e-6, 8000, [](double x) {
+    const auto line = [x](double per_m) { return std::sin(2 * std::numbers::pi * per_m * x); };
+    return (1 + 20 * x) * (line(1000) + 2 * line(15e3));
+  });
+  EXPECT_NEAR(band_kept_percent(texture, 50e-3, {15, 500}), 20, 0.2);
+}
+
 TEST_F(FidelityOfATexture, PageSaysSimulatedAtEveryFigure) {
   const Fidelity found = measured();
   const auto page = fidelity_page(found);
   ASSERT_TRUE(page) << schema::message(page.error());
   std::size_t said = 0;
-  for (auto at = page->find("<td>simulated</td>"); at != page->npos;
-       at = page->find("<td>simulated</td>", at + 1))
+  for (auto at = page->find(">simulated</td>"); at != page->npos; at = page->find(">simulated</td>", at + 1))
     ++said;
   EXPECT_EQ(said, found.speeds.front().rows.size());
   for (const auto& figure : fidelity_figures(found))

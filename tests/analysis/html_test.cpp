@@ -10,7 +10,9 @@ namespace {
 
 TEST(Html, TextCannotBecomeMarkup) {
   EXPECT_EQ(escaped("<b>\"A & B\"</b>"), "&lt;b&gt;&quot;A &amp; B&quot;&lt;/b&gt;");
-  EXPECT_EQ(html_table({{"a"}, {"<"}}), "<table>\n<tr><th>a</th></tr>\n<tr><td>&lt;</td></tr>\n</table>\n");
+  EXPECT_EQ(html_table({{"a"}, {"<"}}),
+            "<table>\n<thead><tr><th>a</th></tr></thead>\n<tbody>\n"
+            "<tr><td data-label=\"a\">&lt;</td></tr>\n</tbody></table>\n");
 }
 
 TEST(Html, BytesThatAreNoTextAreReplaced) {
@@ -20,7 +22,66 @@ TEST(Html, BytesThatAreNoTextAreReplaced) {
 
 TEST(Html, PicturesAreInside) {
   EXPECT_EQ(inline_svg("<svg/>", "a \"line\""),
-            "<img alt=\"a &quot;line&quot;\" src=\"data:image/svg+xml;base64,PHN2Zy8+\">\n");
+            "<img alt=\"a &quot;line&quot;\" src=\"data:image/svg+xml,%3Csvg/%3E\">\n");
+  EXPECT_NE(inline_svg("<a b=\"#1\">50 %\u00b5</a>", "").find("%3Ca b=%22%231%22%3E50 %25%C2%B5%3C/a%3E"),
+            std::string::npos);
+}
+
+std::size_t count_of(std::string_view words, std::string_view text) {
+  std::size_t count = 0;
+  for (auto at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++count;
+  return count;
+}
+
+// A header comes with its cell: neither can be declared alone.
+static_assert(std::is_constructible_v<Column<int>, std::string, std::string (*)(const int&)>);
+static_assert(!std::is_constructible_v<Column<int>, std::string>);
+static_assert(!std::is_constructible_v<Column<int>, std::string (*)(const int&)>);
+static_assert(!std::is_constructible_v<Column<int>, std::string, std::string>);
+static_assert(!std::is_default_constructible_v<Column<int>>);
+
+TEST(Html, ATableHasAHeaderForEachCell) {
+  const std::vector<int> rows = {7, 8};
+  const std::string table = html_table(rows, {{"number", [](int n) { return std::to_string(n); }},
+                                              {"square", [](int n) { return std::to_string(n * n); }}});
+  EXPECT_EQ(count_of("<th>", table), 2U);
+  EXPECT_NE(table.find("<td data-label=\"number\">8</td><td data-label=\"square\">64</td>"),
+            std::string::npos);
+}
+
+TEST(Html, RowsOfAnotherSizeThanTheHeadMakeNoTable) {
+  EXPECT_THROW(html_table({{"a"}, {"1", "2"}}), std::logic_error);
+  EXPECT_THROW(html_table({{"a", "b"}, {"1"}}), std::logic_error);
+}
+
+TEST(Html, APageHoldsNoAddress) {
+  EXPECT_EQ(inline_svg("<svg xmlns=\"http://www.w3.org/2000/svg\"/>", "").find("http"), std::string::npos);
+}
+
+TEST(Html, LongTablesFoldAndLongWordsWrap) {
+  EXPECT_EQ(folded("all <rows>", "<table></table>\n"),
+            "<details><summary>all &lt;rows&gt;</summary>\n<table></table>\n</details>\n");
+  const std::string table =
+      html_table(std::vector<std::string>{std::string(60, 'x')}, {{"a", [](const auto& x) { return x; }}});
+  EXPECT_NE(table.find("<td class=\"long text\""), std::string::npos);
+  // Nothing is cut or kept on one line: a value outside the screen would be hidden.
+  const std::string page = html_document("t", "");
+  EXPECT_EQ(page.find("nowrap"), std::string::npos);
+  EXPECT_EQ(page.find("overflow-x"), std::string::npos);
+}
+
+// Each value stands under its own header: the gain was shown under "wanted", which hid every header after it.
+TEST(DemoPage, EachValueHasItsHeader) {
+  DemoSurface surface;
+  surface.surface = "A";
+  surface.gain_m_per_n = 0.7e-3;
+  surface.wanted_rms_m = 9e-6;
+  surface.drive_peak_v = 3;
+  const std::string page = demo_page({surface}, "by a test");
+  EXPECT_EQ(count_of("<th>", page), count_of("<td", page));
+  for (const char* cell :
+       {"data-label=\"gain\">700 um/N", "data-label=\"target, RMS\">9 um", "data-label=\"drive, peak\">3 V"})
+    EXPECT_NE(page.find(cell), std::string::npos) << cell;
 }
 
 TEST(DemoPage, SaysSimulatedOnEverySurface) {
@@ -28,11 +89,7 @@ TEST(DemoPage, SaysSimulatedOnEverySurface) {
   surface.surface = "X<";
   surface.simulated = "by a test";
   const std::string page = demo_page({surface, surface}, "by a test");
-  std::size_t said = 0;
-  for (auto at = page.find("simulated: by a test"); at != page.npos;
-       at = page.find("simulated: by a test", at + 1))
-    ++said;
-  EXPECT_EQ(said, 2U);
+  EXPECT_EQ(count_of("simulated: by a test", page), 2U);
   EXPECT_EQ(page.find("X<"), page.npos);
 }
 

@@ -59,7 +59,7 @@ def a_project_on_one_page():
     text = pathlib.Path("study/study.html").read_text()
     page = Page(text)
     assert not page.links and "http" not in text and "script" not in page.tags
-    assert len(page.pictures) >= 10 and all(src.startswith("data:image/svg+xml;base64,") for src in page.pictures)
+    assert len(page.pictures) >= 10 and all(src.startswith("data:image/svg+xml,") for src in page.pictures)
     assert tacto.run_json("validate", root / "more/first.nc")["valid"] and tacto.run_json("validate", root / "more/first")
     assert tacto.run_json("info", root / "more/first.nc")["kind"] == "session_table"
     for row in report["files"]:
@@ -70,8 +70,9 @@ def a_project_on_one_page():
     simulated = sum(row["simulated"] for row in report["files"])
     assert simulated >= 6 and text.count('class="simulated"') == simulated
     assert "path.csv" in said and "C.png" in said, "other programs' files are named"
-    tacto.run("report", root, "-o", "study/study.html")  # the page itself may be replaced, and is not a file of the project
-    assert "study.html" not in tacto.run("report", root, "-o", "study/study.html")[1]
+    again = ["report", root, "-o", "study/study.html"]
+    assert "--force" in tacto.run(*again, code=2)[1]  # the page itself is replaced with --force, and is not a file of the project
+    assert "study.html" not in tacto.run(*again, "--force")[1]
 
 
 def broken_files_do_not_stop_the_rest():
@@ -146,6 +147,19 @@ def what_is_no_file_is_named():
     assert "study/link.json" in {row["file"] for row in report["files"]}
 
 
+def sixty_files_make_a_small_page():
+    """Each texture has a picture with a raster; long tables and the files' sections fold."""
+    root = pathlib.Path("many")
+    root.mkdir()
+    tacto.run("record", "-d", "sim:surface=D,speed=50mm/s,seed=1,strokes=60,length=20mm", "--time", "35s", "-o", root / "D")
+    tacto.run("spatial", root / "D", "-o", root / "D")
+    files = tacto.run_json("report", root, "-o", "many.html")["files"]
+    text = pathlib.Path("many.html").read_text()
+    print(f"{len(files)} files: {len(text) / 1e6:.1f} MB")
+    assert len(files) >= 60 and len(text) < 10e6, (len(files), len(text))
+    assert text.count("<details>") == len(files) + 1 and text.index('class="answer"') < text.index("<table")
+
+
 def a_speed_that_is_missing_is_named():
     for speeds in ("50mm/s,,", "50mm/s,,25mm/s", ",50mm/s"):
         said = tacto.run("fidelity", "absent", "--speed", speeds, code=2)[1]
@@ -162,5 +176,5 @@ def folders_that_are_none_are_refused():
 
 if __name__ == "__main__":
     for test in (a_project_on_one_page, broken_files_do_not_stop_the_rest, a_torn_curve_leaves_out_its_file_only, samples_are_those_that_the_sidecar_names, what_is_no_file_is_named,
-                 a_speed_that_is_missing_is_named, folders_that_are_none_are_refused):
+                 sixty_files_make_a_small_page, a_speed_that_is_missing_is_named, folders_that_are_none_are_refused):
         tacto.in_folder(test)

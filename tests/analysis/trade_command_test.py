@@ -42,13 +42,37 @@ def check_trade(folder):
     assert all(answer["knee"] and answer["never_worth_it"] for answer in done["answers"])
     check_speeds(rows, done, answers)
     page = (folder / "t.html").read_text()
-    assert "Simulated" in page and page.count("<img") == 2
+    assert "Simulated" in page
+    check_page(page, rows, answers)
     assert (folder / "t.svg").read_text().startswith("<?xml")
     tacto.run("validate", "t.results.json", cwd=folder)
     assert "real time" in tacto.run("info", "t.results.json", cwd=folder)[0]
     # What is no such file is not replaced.
     (folder / "mine.csv").write_text("a,b\n1,2\n")
     assert "mine.csv" in tacto.run("trade", "C", "-o", "mine.csv", cwd=folder, code=2)[1]
+
+
+def check_page(page, rows, answers):
+    """The answer comes first, then a picture a choice, each with one unit of cost; the long tables are folded."""
+    knobs = {}
+    for row in rows:
+        if row["cost_ns"] and float(row["cost_ns"]) > 0 and 0 < float(row["error"] or 0) < 1:
+            knobs.setdefault((row["half"], row["knob"]), []).append(row["per"])
+    assert page.count("<img") == sum(len(units) > 1 for units in knobs.values()) > 10, page.count("<img")
+    assert all(len(set(units)) == 1 for units in knobs.values()), knobs
+    assert page.index("best for its cost") < page.index("<img") < page.index("<details>") < page.index("worth it</th><th>note")
+    first = page[: page.index("<img")]
+    assert first.count("<tr") == len(answers) + 2 and all(answer in first for answer in answers), first
+    assert page.count("<details>") == 2 and "ns a frame, sample, tick" not in page
+
+
+def check_words(said, files):
+    """No line over 120 columns. With -o the best of each choice, of both halves in at most 15 lines: 4 of them are a half's;
+    without, the table of the answers too. No row of the choices either way."""
+    lines = said.splitlines()
+    assert all(len(line) <= 120 for line in lines) and len(lines) <= (11 if files else 30), said
+    assert any(line.startswith("best, ") for line in lines) and any(line.startswith("answers") for line in lines) != files, said
+    assert ("written" in said) == files and "kib" not in said, said
 
 
 def check_speeds(rows, done, answers):
@@ -173,8 +197,11 @@ def check_refusals(folder):
              "r_squared": 0.99, "low_hz": 100, "high_hz": 300}
     (folder / "hys.transducer.json").write_text(json.dumps(preset | {"name": "hys", "identification": about}))
     realtime = ["trade", "C", "--transducer", "hys", "--half", "realtime"]
-    assert "--force" in tacto.run(*realtime, cwd=folder, code=5)[1]
-    assert "100 to 300 Hz" in tacto.run(*realtime, "--force", cwd=folder)[1]
+    assert "--unfit-transducer" in tacto.run(*realtime, cwd=folder, code=5)[1]
+    said, warned = tacto.run(*realtime, "--unfit-transducer", "-o", "again.csv", cwd=folder)
+    assert "100 to 300 Hz" in warned
+    check_words(said, files=True)
+    check_words(tacto.run("trade", "C", "--half", "offline", cwd=folder)[0], files=False)
     assert "nothing to feel" in tacto.run("trade", "even", "-o", "no.html", cwd=folder, code=5)[1]
     assert "named twice" in tacto.run("trade", "C", "-o", "a.csv", "-o", "./a.csv", cwd=folder, code=2)[1]
     assert "at most 10%" in tacto.run("spatial", "C", "-o", "no", "--max-error", "1000%", cwd=folder, code=2)[1]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The whole way: a minute's recording on disk, opened, filtered, its 60 strokes made textures in memory,
-// their spectrograms up to 15 /mm written as netCDF. Beside it, the last step alone.
+// their spectrograms up to 15 /mm written as netCDF. Beside it, the last step alone, and a short recording as
+// a folder has many.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -30,12 +31,12 @@ schema::Channel channel(const char* name, const char* unit) {
   return made;
 }
 
-Result<schema::Recording> written(const std::string& stem) {
+Result<schema::Recording> written(const std::string& stem, std::size_t seconds) {
   schema::RecordingHeader header;
   header.sample_rate_hz = bench::kRate_hz;
   header.clock = "nominal rate of the workload";
   header.channels = {channel("tangential_force", "N"), channel("position", "m")};
-  const auto [position_m, force_n] = bench::workload(kSeconds);
+  const auto [position_m, force_n] = bench::workload(seconds);
   std::vector<double> frames;
   for (std::size_t i = 0; i < position_m.size(); ++i) {
     frames.push_back(force_n[i]);
@@ -77,10 +78,30 @@ Result<void> to_spectrogram(const std::string& stem, const std::string& path) {
 void recording_to_spectrogram(benchmark::State& state) {
   const tests::TemporaryFolder folder;
   const std::string stem = folder / "minute", path = folder / "minute.nc";
-  if (!written(stem)) return state.SkipWithError("no recording");
+  if (!written(stem, kSeconds)) return state.SkipWithError("no recording");
   for (auto _ : state)
     if (const auto done = to_spectrogram(stem, path); !done)
       return state.SkipWithError(schema::message(done.error()).c_str());
+}
+
+// One of a folder's many recordings, 2 s each: opened and checked, its two strokes made textures and written.
+void short_recording_to_textures(benchmark::State& state) {
+  const tests::TemporaryFolder folder;
+  if (!written(folder / "two", 2)) return state.SkipWithError("no recording");
+  for (auto _ : state) {
+    const auto recording = schema::open_recording(folder / "two");
+    if (!recording || !schema::check_samples_sum(*recording)) return state.SkipWithError("not opened");
+    auto textures = TextureMaker::open(*recording, {});
+    if (!textures) return state.SkipWithError(schema::message(textures.error()).c_str());
+    schema::PendingFiles files;
+    int number = 0;
+    for (const Stroke& stroke : textures->record().strokes()) {
+      const auto texture = textures->make(stroke, ++number);
+      if (!texture || !schema::add_texture(files, folder / std::to_string(number), *texture))
+        return state.SkipWithError("no texture");
+    }
+    if (!files.commit()) return state.SkipWithError("not written");
+  }
 }
 
 // 60 strokes of 301 rows and 246 bins.
@@ -102,6 +123,7 @@ void spectrogram_written(benchmark::State& state) {
 }
 
 BENCHMARK(recording_to_spectrogram)->Unit(benchmark::kMillisecond);
+BENCHMARK(short_recording_to_textures)->Unit(benchmark::kMillisecond);
 BENCHMARK(spectrogram_written)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "capture/record.hpp"
+#include "firmware-host/open_device.hpp"
 #include "tests/capture/sim_take.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 

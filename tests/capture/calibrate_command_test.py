@@ -204,10 +204,11 @@ def wrong_words():
 def doctor():
     report = tacto.run_json("doctor", "-d", bench("finger=up"))
     states = {row["check"]: row for row in report["checks"]}
-    assert list(states) == ["device", "permission", "firmware", "round trip", "real time", "disk", "calibration"]
+    assert list(states) == ["device", "permission", "firmware", "round trip", "real time", "disk",
+                            "temporary files", "calibration"]
     assert report["can_record"] and states["calibration"]["state"] == "works", report
     assert "sim-7" in states["device"]["found"] and "emulated" in states["device"]["found"]
-    assert "tactograph record -d" in report["next"]
+    assert "tactograph record -d" in report["next"] and report["next"].endswith("-o oak --time 2s"), report
     missing = json.loads(tacto.run("doctor", "-d", "sim:finger=up", "-o", "no/such/folder", "--json", code=7)[0])
     assert not missing["can_record"]
     absent = json.loads(tacto.run("doctor", "-d", "usb:serial=no-such-device", "--json", code=8)[0])

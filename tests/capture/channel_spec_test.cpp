@@ -56,6 +56,8 @@ INSTANTIATE_TEST_SUITE_P(
         SpecCase{"signal=F*2", "signal", "signal", 3, 1, 0},
         SpecCase{"left:tangential_force=5*1N", "left", "tangential_force", 4, 1, 0},
         SpecCase{"acceleration=1*9.81m/s^2", "acceleration", "acceleration", 0, 9.81, 0},
+        SpecCase{"acceleration=1*1g", "acceleration", "acceleration", 0, 9.80665, 0},
+        SpecCase{"acceleration=1*2m/s\xC2\xB2", "acceleration", "acceleration", 0, 2, 0},
         SpecCase{"drive=1*1e1mV", "drive", "drive", 0, 10 * 1e-3, 0}));
 
 struct RefusedSpec {
@@ -83,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
                     RefusedSpec{"position=10*1mm", "no column '10'", "8, 9 '3'"},
                     RefusedSpec{"position=1x*1mm", "no column '1x'", "the columns are"},
                     RefusedSpec{"position=*1mm", "no column ''", "the columns are"},
-                    RefusedSpec{"net_force=F*1N", "'F' stands over several columns",
+                    RefusedSpec{"net_force=F*1N", "several columns have the name 'F'",
                                 "by its number: 1 'lateral_V'"},
                     RefusedSpec{"position=1", "has no unit", "nm, um, mm, cm, m"},
                     RefusedSpec{"position=1*0.5", "has no unit", "nm, um, mm, cm, m"},
@@ -114,6 +116,28 @@ TEST(ChannelSpec, ATimeColumnIsReadTheSameWay) {
   EXPECT_EQ(time->column, 1U);
   EXPECT_EQ(time->scale, 1e-3);
   EXPECT_FALSE(parse_scaled_column("normal_V*1mm", schema::Dimension::time, kColumns));
+}
+
+const ColumnNames kWithUnits({"Force (mN)", "Weg", "acc", "n", "x / mm"}, {"mN", "mm", "g", "counts", "mm"});
+
+TEST(ColumnUnits, AreTakenWhereNoneIsGiven) {
+  const auto force = parse_channel("tangential_force=Force", kWithUnits);
+  ASSERT_TRUE(force) << schema::message(force.error());
+  EXPECT_EQ(force->source.scale, 1e-3);
+  EXPECT_EQ(parse_channel("tangential_force=Force (mN)", kWithUnits)->source.scale, 1e-3);
+  EXPECT_EQ(parse_channel("position=x*2", kWithUnits)->source.scale, 2 * 1e-3);
+  EXPECT_EQ(parse_channel("position=Weg*1um", kWithUnits)->source.scale, 1e-6);
+  EXPECT_EQ(parse_channel("acceleration=acc", kWithUnits)->source.scale, 9.80665);
+  EXPECT_EQ(parse_channel("signal=n", kWithUnits)->source.scale, 1);
+}
+
+TEST(ColumnUnits, ThatAreNotKnownOrOfAnotherQuantityAreSaid) {
+  const auto counts = parse_channel("position=n", kWithUnits);
+  ASSERT_FALSE(counts);
+  EXPECT_NE(counts.error().what.find("'counts', is not known"), std::string::npos) << counts.error().what;
+  const auto force = parse_channel("position=Force", kWithUnits);
+  ASSERT_FALSE(force);
+  EXPECT_NE(force.error().what.find("'mN', is of another quantity"), std::string::npos) << force.error().what;
 }
 
 }  // namespace

@@ -40,10 +40,10 @@ TEST(Doctor, AnEmulatedDeviceCanRecord) {
   const TemporaryFolder folder;
   const Diagnosis diagnosis = examine(request(folder, "sim:surface=C"));
   EXPECT_EQ(diagnosis.obstacle(), nullptr);
-  ASSERT_EQ(diagnosis.checks.size(), 7U);
-  const char* kOrder[] = {"device",    "permission", "firmware",   "round trip",
-                          "real time", "disk",       "calibration"};
-  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(diagnosis.checks[i].name, kOrder[i]);
+  ASSERT_EQ(diagnosis.checks.size(), 8U);
+  const char* kOrder[] = {"device",    "permission", "firmware",        "round trip",
+                          "real time", "disk",       "temporary files", "calibration"};
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(diagnosis.checks[i].name, kOrder[i]);
   EXPECT_NE(of(diagnosis, "device").found.find("emulated"), std::string::npos);
   EXPECT_NE(of(diagnosis, "round trip").found.find("99 of 100"), std::string::npos);
   EXPECT_EQ(of(diagnosis, "calibration").health, Health::warns);

@@ -45,6 +45,8 @@ TEST_F(ImportRefusals, Files) {
   refused([&](auto& r) { r.file = folder_ / "."; }, Fault::not_found, "folder");
   refused([&](auto& r) { r.file = "/dev/zero"; }, Fault::not_found, "no regular file");
   refused([&](auto& r) { r.file = write("binary.csv", std::string("PK\3\4\0\0\0\0 zip", 12)); },
+          Fault::unsuitable, "is a ZIP archive, which import does not read; unpack it");
+  refused([&](auto& r) { r.file = write("binary.dat", std::string("\1\2\3\0\0\0\0\0 any", 12)); },
           Fault::malformed, "not a sound file");
   refused([&](auto& r) { r.file = write("oak.json", "{}"); }, Fault::unsuitable, "is JSON");
   refused([&](auto& r) { r.file = write("oak.csv", " {\"kind\": \"recording\"}"); }, Fault::unsuitable,
@@ -59,12 +61,36 @@ TEST_F(ImportRefusals, Files) {
       Fault::malformed, "bad.csv: line 4, column 2 ('x'): has no value");
 }
 
+// The first bytes of such files.
+TEST_F(ImportRefusals, FilesOfOtherKindsByName) {
+  const auto named = [&](const std::string& name, const std::string& bytes, const std::string& what) {
+    refused([&](auto& r) { r.file = write(name, bytes); }, Fault::unsuitable,
+            "is " + what + ", which import");
+  };
+  const std::string zeros(200, '\0');
+  named("a.mat", "MATLAB 5.0 MAT-file, Platform: GLNXA64, Created on: Tue" + zeros,
+        "a MATLAB file (version 5)");
+  named("b.mat", "MATLAB 7.3 MAT-file, Platform: GLNXA64" + zeros, "a MATLAB file (version 7.3, HDF5)");
+  named("c.mat", zeros, "a MATLAB file (version 4)");
+  named("a.tdms", "TDSm\x0E" + zeros, "a TDMS file of LabVIEW");
+  named("a.h5", "\x89HDF\r\n\x1a\n" + zeros, "an HDF5 or netCDF-4 file");
+  named("a.x3p", "PK\3\4 main.xml" + zeros, "an X3P height profile (ISO 25178-72)");
+  named("b.zip", "PK\3\4 xl/workbook.xml" + zeros, "an Excel workbook");
+  named("a.xls", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1" + zeros,
+        "an old Excel workbook (.xls) or another Office document");
+  named("a.csv", "PK\3\4 [Content_Types].xml xl/" + zeros, "an Excel workbook");
+  named("a.npy", "\x93NUMPY" + zeros, "an array of NumPy");
+  named("a.sdf", "aBCR-1.0\nManufacID = x\n", "an SDF height profile");
+  named("b.csv", "<!DOCTYPE html>\n<html>\n", "HTML");
+}
+
 TEST_F(ImportRefusals, Options) {
   refused([](auto& r) { r.rate_hz = 0; }, Fault::usage, "a rate of 0 Hz");
   refused([](auto& r) { r.rate_hz = -5; }, Fault::usage, "a rate of -5 Hz");
   refused([](auto& r) { r.rate_hz = 3e9; }, Fault::usage, "a rate of 3e+09 Hz");
   refused([](auto& r) { r.rate_hz.reset(); }, Fault::usage,
           "add --rate, as in --rate 10kHz, or --time-column");
+  refused([](auto& r) { r.skip_lines = 9; }, Fault::usage, "no table can follow 9 lines: there are 4");
   refused([](auto& r) { r.time_column = "t*1s"; }, Fault::usage, "both --rate and --time-column");
   refused([](auto& r) { r.channels.clear(); }, Fault::usage, "1 'f', 2 'x', 3 'v', 4 't'");
   refused([](auto& r) { r.channels.clear(); }, Fault::usage,

@@ -122,6 +122,31 @@ TEST_F(ImportTest, SaysThatItReadDecimalCommas) {
   EXPECT_EQ(import(points)->format, "table, semicolon, with header");
 }
 
+// As Excel saves it in Germany: a title, names, units under them, decimal commas.
+TEST_F(ImportTest, UnitsUnderTheNamesAreTheScale) {
+  const auto file = write(
+      "t.csv", "Messung 7; links\r\n\r\nZeit;Kraft;Weg\r\nms;mN;mm\r\n0,0;1,5;2,5\r\n0,5;2,5;3\r\n1;3;4\r\n");
+  auto asked = request(file, {"tangential_force=Kraft", "position=Weg*1um"});
+  asked.rate_hz.reset();
+  asked.time_column = "Zeit";
+  const auto done = import(asked);
+  ASSERT_TRUE(done) << schema::message(done.error());
+  EXPECT_EQ(done->format,
+            "table, semicolon, with header in line 3 (lines before it passed over), units in line 4, decimal "
+            "commas");
+  const auto& header = done->recording.header;
+  EXPECT_EQ(header.sample_rate_hz, 2000);
+  EXPECT_EQ(header.channels[0].scale, 1e-3);
+  EXPECT_EQ(header.channels[1].scale, 1e-6);  // the option counts more than the table
+  EXPECT_EQ(stored(done->recording, 0), (std::vector<double>{1.5, 2.5, 3}));
+}
+
+TEST_F(ImportTest, LinesMayBeSkipped) {
+  auto asked = request(write("t.csv", "7,8\n9,10\nf,x\n1,2\n3,4\n"), {"signal=f"});
+  asked.skip_lines = 2;
+  EXPECT_EQ(stored(imported(asked), 0), (std::vector<double>{1, 3}));
+}
+
 TEST_F(ImportTest, ProgressGrowsToTheEnd) {
   double last = 0;
   const auto done = import_file(request(write("t.csv", "f\n1\n2\n"), {"signal=f"}), [&](double fraction) {

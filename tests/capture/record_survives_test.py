@@ -89,7 +89,7 @@ def expect_full(name, process, most_bytes):
 
 def fast(name, **more):
     """As fast as the physics go: 8 MB are 50 s of recording."""
-    return subprocess.Popen([tacto.COMMAND, "record", "-d", "sim:surface=flat,rate=100kHz", "-o", name],
+    return subprocess.Popen([tacto.COMMAND, "record", "-d", "sim:surface=flat,rate=100kHz", "--strokes", "1000", "-o", name],
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
 
 

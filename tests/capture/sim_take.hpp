@@ -10,6 +10,7 @@
 
 #include "capture/take.hpp"
 #include "capture/uncertain.hpp"
+#include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {
 

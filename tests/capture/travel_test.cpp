@@ -7,6 +7,7 @@
 #include <random>
 
 #include "capture/watch_counts.hpp"
+#include "firmware-host/open_device.hpp"
 #include "tests/capture/sim_take.hpp"
 
 namespace tacto::capture {

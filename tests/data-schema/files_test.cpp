@@ -93,13 +93,43 @@ TEST(PendingFiles, AreRemovedWhereASignalEndsTheProcess) {
 TEST(Files, ATableReplacesOnlyItsLike) {
   const TemporaryFolder folder;
   const auto ours = [](std::string_view line) { return line == "texture,mm"; };
-  EXPECT_TRUE(check_table_free(folder / "a.csv", ours));
+  EXPECT_TRUE(check_table_free(folder / "a.csv", Existing::keep, ours));
   std::ofstream(folder / "a.csv") << "texture,mm\n1,2\n";
-  EXPECT_TRUE(check_table_free(folder / "a.csv", ours));
+  EXPECT_TRUE(check_table_free(folder / "a.csv", Existing::replace, ours));
+  const auto kept = check_table_free(folder / "a.csv", Existing::keep, ours);
+  ASSERT_FALSE(kept);
+  EXPECT_NE(message(kept.error()).find("--force"), std::string::npos) << message(kept.error());
   std::ofstream(folder / "a.csv") << "time,force\n1,2\n";
-  const auto refused = check_table_free(folder / "a.csv", ours);
+  const auto refused = check_table_free(folder / "a.csv", Existing::replace, ours);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().fault, Fault::usage);
+}
+
+// With or without --force.
+TEST(Files, ASoundFileNeverReplacesARecordingsData) {
+  const TemporaryFolder folder;
+  for (const char* beside : {"a.json", "b.events.jsonl"}) {
+    std::ofstream(folder / beside) << "{}";
+    const std::string wav = (folder / beside).substr(0, (folder / "a").size()) + ".wav";
+    for (const Existing existing : {Existing::keep, Existing::replace})
+      EXPECT_EQ(check_wav_free(wav, existing).error().fault, Fault::usage) << wav;
+  }
+  EXPECT_TRUE(check_wav_free(folder / "c.wav", Existing::keep));
+}
+
+TEST(Files, OneFileHasManySpellings) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "x");
+  std::filesystem::create_directory_symlink(folder / "x", folder / "link");
+  EXPECT_TRUE(same_file(folder / "x/a.nc", folder / "x/./a.nc"));
+  EXPECT_TRUE(same_file(folder / "x/a.nc", folder / "x/../x/a.nc"));
+  EXPECT_TRUE(same_file(folder / "x/a.nc", folder / "link/a.nc"));
+  EXPECT_TRUE(same_file(folder / "a.nc", folder / "link/../a.nc"))
+      << "the link's target is a folder beside it";
+  EXPECT_FALSE(same_file(folder / "x/a.nc", folder / "a.nc"));
+  std::ofstream(folder / "x/a.nc") << "1";
+  std::filesystem::create_symlink(folder / "x/a.nc", folder / "b.nc");
+  EXPECT_TRUE(same_file(folder / "b.nc", folder / "link/a.nc"));
 }
 
 TEST(PendingFiles, RefuseFoldersThatAreAbsentOrInTheWay) {

@@ -55,6 +55,25 @@ TEST(Document, SaysLineAndColumnOfWhatIsNotJson) {
   EXPECT_EQ(error_in_text("{\"a\": " + deep + "}").what, "the JSON is nested too deeply");
 }
 
+TEST(Document, AMemberThatAppearsTwiceIsRefusedWithItsPlace) {
+  const Error top = error_in_text(R"({"kind":"recording","version":"1.0","kind":"recording"})");
+  EXPECT_EQ(top.fault, Fault::malformed);
+  EXPECT_EQ(top.what, "the member 'kind' appears twice");
+  EXPECT_EQ(top.where, "a.json");
+  const Error deep =
+      error_in_text(R"({"kind":"recording","channels":[{"unit":"N"},[7],{"a/b":{"unit":1,"unit":1}}]})");
+  EXPECT_EQ(deep.what, "the member 'unit' appears twice");
+  EXPECT_EQ(deep.where, "a.json#/channels/2/a~1b");
+  EXPECT_FALSE(deep.remedy.empty());
+  const std::string name(10000, 'n');
+  EXPECT_LT(error_in_text("{\"" + name + "\":1,\"" + name + "\":2}").what.size(), 100U);
+}
+
+TEST(Document, AMemberOfEachOfTwoObjectsIsNoSecondOne) {
+  EXPECT_EQ(error_in_text(R"({"a":{"x":1},"b":{"x":1},"c":[{"x":1},{"x":1}],"x":1})").what,
+            "JSON without a `kind`: not a file of tactograph's");
+}
+
 TEST(Document, SaysWhichKindItIsInstead) {
   Json document = sound_recording();
   document["kind"] = "texture";

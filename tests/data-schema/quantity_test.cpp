@@ -78,6 +78,19 @@ TEST(Quantity, FindsUnitsInAnyDimension) {
   EXPECT_NE(parse_unit("furlong").error().remedy.find("mm/s"), std::string::npos);
 }
 
+// The standard acceleration of gravity: 9.80665 m/s^2 exactly (3rd CGPM, 1901).
+TEST(Quantity, OneSymbolMayBeAMassAndAnAcceleration) {
+  EXPECT_EQ(*parse_quantity("2g", Dimension::acceleration), 2 * 9.80665);
+  EXPECT_DOUBLE_EQ(*parse_quantity("500mg", Dimension::acceleration), 4.903325);
+  EXPECT_DOUBLE_EQ(*parse_quantity("2g", Dimension::mass), 2e-3);
+  EXPECT_DOUBLE_EQ(*parse_quantity("500mg", Dimension::mass), 5e-4);
+  expect_refused("2g", Dimension::length, "another quantity");
+  EXPECT_EQ(parse_unit("g")->dimension, Dimension::mass);
+  EXPECT_EQ(for_people(0.002, Dimension::mass), "2 g");
+  EXPECT_EQ(for_people(9.80665, Dimension::acceleration), "9.807 m/s^2");
+  EXPECT_EQ(units_of(Dimension::acceleration), "mm/s^2, m/s^2, mg, g");
+}
+
 TEST(Quantity, WritesForPeopleWhatItReadsBack) {
   EXPECT_EQ(for_people(0.0123, Dimension::length), "12.3 mm");
   EXPECT_EQ(for_people(15e3, Dimension::spatial_frequency), "15/mm");

@@ -85,13 +85,13 @@ TEST(Results, RefusesACurveOfUnequalLengths) {
 
 TEST(Results, ReplacesOnlyItsLike) {
   const tests::TemporaryFolder folder;
-  EXPECT_TRUE(check_results_free(folder / "absent.json"));
+  EXPECT_TRUE(check_results_free(folder / "absent.json", Existing::replace));
   put(folder / "a.json", *results_json(results()));
-  EXPECT_TRUE(check_results_free(folder / "a.json"));
+  EXPECT_TRUE(check_results_free(folder / "a.json", Existing::replace));
   put(folder / "b.json", R"({"kind": "recording"})");
-  EXPECT_EQ(check_results_free(folder / "b.json").error().fault, Fault::usage);
+  EXPECT_EQ(check_results_free(folder / "b.json", Existing::replace).error().fault, Fault::usage);
   put(folder / "c.json", "{");
-  EXPECT_EQ(check_results_free(folder / "c.json").error().fault, Fault::usage);
+  EXPECT_EQ(check_results_free(folder / "c.json", Existing::replace).error().fault, Fault::usage);
 }
 
 }  // namespace

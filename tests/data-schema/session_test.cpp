@@ -107,6 +107,70 @@ TEST_F(Session, ReadsBackToTheBit) {
   EXPECT_TRUE(check_file({FileKind::session, path_})->findings.empty());
 }
 
+// Protocol 1.0 of the format knew no sensor.
+TEST(SessionHeaderText, NamesTheTraysSensorWhereThereIsOne) {
+  SessionHeader header = made_header();
+  EXPECT_FALSE(parse_session_header(*session_header_text(header), "session")->sensor);
+  header.sensor = SessionSensor{"displacement", "vibrometer", "2026-01-02", 10e3, 6e-9, 1e-6};
+  const auto text = session_header_text(header);
+  ASSERT_TRUE(text) << message(text.error());
+  EXPECT_NE(text->find("\"version\": \"1.1\""), std::string::npos) << *text;
+  const auto read = parse_session_header(*text, "session");
+  ASSERT_TRUE(read && read->sensor);
+  EXPECT_EQ(read->newer_version, "");
+  EXPECT_EQ(read->sensor->source, "vibrometer");
+  EXPECT_EQ(read->sensor->rate_hz, 10e3);
+  EXPECT_EQ(read->sensor->scale, 6e-9);
+  EXPECT_EQ(read->sensor->offset, 1e-6);
+  std::string older = *session_header_text(made_header());
+  older.replace(older.find("1.1"), 3, "1.0");
+  const auto old = parse_session_header(older, "session");
+  ASSERT_TRUE(old) << message(old.error());
+  EXPECT_FALSE(old->sensor);
+}
+
+TEST_F(Session, KeepsMeasuredSamplesToTheBit) {
+  SessionHeader header = made_header();
+  header.sensor = SessionSensor{"displacement", "", "", 10e3, 6e-9, 0};
+  const std::vector<SessionSamples> written = {{5, 1'000'000, {1, -2, INT32_MAX}},
+                                               {9, 1'400'000, {INT32_MIN}}};
+  {
+    auto writer = std::move(*SessionWriter::create(path_, header));
+    for (const SessionSamples& samples : written) ASSERT_TRUE(writer.add(samples));
+    ASSERT_TRUE(writer.add(made_ticks(0, 10)));
+    ASSERT_TRUE(writer.close({10, 0, 0}));
+  }
+  auto reader = SessionReader::open(path_);
+  std::vector<SessionSamples> read;
+  while (auto block = reader->next())
+    if (const auto* samples = std::get_if<SessionSamples>(&*block)) read.push_back(*samples);
+  EXPECT_EQ(read, written);
+  auto again = SessionReader::open(path_);
+  const SessionTotals totals = session_totals(*again);
+  EXPECT_EQ(totals.samples, 4U);
+  EXPECT_EQ(totals.lost_samples, 1U);
+  EXPECT_TRUE(check_file({FileKind::session, path_})->findings.empty());
+}
+
+TEST_F(Session, FindsSamplesThatNoHeaderDescribesOrThatGoBack) {
+  auto writer = created();
+  ASSERT_TRUE(writer.add(SessionSamples{5, 0, {1, 2}}));
+  ASSERT_TRUE(writer.add(SessionSamples{6, 0, {3}}));
+  EXPECT_EQ(check_file({FileKind::session, path_})->findings.size(), 2U);
+}
+
+TEST_F(Session, OfManyEventsTheFirstAndTheLastAreKept) {
+  auto writer = created();
+  for (std::uint64_t i = 0; i < 1600; ++i) ASSERT_TRUE(writer.add(SessionEvent{i, 0, std::to_string(i)}));
+  auto reader = SessionReader::open(path_);
+  const SessionTotals totals = session_totals(*reader);
+  EXPECT_EQ(totals.event_count, 1600U);
+  ASSERT_EQ(totals.events.size(), 1000U);
+  EXPECT_EQ(totals.events[499].text, "499");
+  EXPECT_EQ(totals.events[500].text, "1100");
+  EXPECT_EQ(totals.events.back().text, "1599");
+}
+
 TEST_F(Session, IsNeverWrittenOverAnother) {
   write_whole();
   const auto second = SessionWriter::create(path_, made_header());
@@ -257,7 +321,7 @@ void append_block(const std::string& path, std::uint8_t type, const std::string&
 // As this reader is to one of before.
 TEST_F(Session, ATypeThatIsNotKnownIsPassedOver) {
   { ASSERT_TRUE(created().add(made_ticks(0, 10))); }
-  append_block(path_, 7, "of a version to come");
+  append_block(path_, 99, "of a version to come");
   append_block(path_, 1, ticks_payload(made_ticks(10, 5)));
   auto reader = SessionReader::open(path_);
   EXPECT_EQ(ticks_in(*reader), made_ticks(0, 15));

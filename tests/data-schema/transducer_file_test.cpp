@@ -49,6 +49,56 @@ TEST_F(TransducerFile, PresetKeepsThePapersTable) {
   EXPECT_EQ(printed.actuator_scale, 0.5);
 }
 
+TEST_F(TransducerFile, NumbersThatNoTransducerHasAreRefusedByName) {
+  struct Odd {
+    double Transducer::*member;
+    const char* name;
+    double value;
+  };
+  for (const auto& [member, name, value] :
+       {Odd{&Transducer::actuator_scale, "actuator_scale", 1e12}, Odd{&Transducer::mass_kg, "mass_kg", 1e-12},
+        Odd{&Transducer::flexure_stiffness_n_per_m, "flexure_stiffness_n_per_m", 2147483648.0},
+        Odd{&Transducer::displacement_limit_m, "displacement_limit_m", 5}}) {
+    Transducer odd = preset_;
+    odd.*member = value;
+    written(odd, "odd");
+    const auto refused = read_transducer(folder_ / "odd");
+    ASSERT_FALSE(refused) << name;
+    EXPECT_EQ(refused.error().fault, Fault::unsuitable);
+    EXPECT_TRUE(refused.error().where.ends_with(std::string("odd.transducer.json#/") + name))
+        << refused.error().where;
+    EXPECT_NE(refused.error().what.find("no transducer has less than"), std::string::npos);
+    EXPECT_TRUE(read_transducer(folder_ / "odd", Numbers::computable)) << name << ": insisted on";
+  }
+}
+
+TEST_F(TransducerFile, WhatNobodyCanComputeWithIsRefusedToThoseWhoInsist) {
+  for (const double value : {1e-300, 1e300}) {
+    Transducer odd = preset_;
+    odd.actuator_scale = value;
+    written(odd, "odd");
+    const auto refused = read_transducer(folder_ / "odd", Numbers::computable);
+    ASSERT_FALSE(refused) << value;
+    EXPECT_TRUE(refused.error().where.ends_with("#/actuator_scale")) << refused.error().where;
+  }
+  Transducer odd = preset_;
+  odd.actuator_scale = odd.deflection_m = 1e-12;
+  written(odd, "odd");
+  EXPECT_NE(read_transducer(folder_ / "odd", Numbers::computable).error().what.find("together give"),
+            std::string::npos);
+}
+
+TEST_F(TransducerFile, ASecondModeAndAHysteresisHaveRangesToo) {
+  Transducer odd = preset_;
+  odd.second_mode = ModeAbove{1e12, 0.02, 1900, 0.02};
+  written(odd, "odd");
+  EXPECT_TRUE(read_transducer(folder_ / "odd").error().where.ends_with("#/second_mode/frequency_hz"));
+  odd = preset_;
+  odd.hysteresis = Hysteresis{{0, 1e9}, {1, 1}};
+  written(odd, "odd");
+  EXPECT_TRUE(read_transducer(folder_ / "odd").error().where.ends_with("#/hysteresis/thresholds_v/1"));
+}
+
 TEST_F(TransducerFile, ReadsBackToTheBit) {
   written(preset_, "bench");
   for (const char* name : {"bench", "bench.transducer.json", "bench.transducer"}) {

@@ -135,6 +135,9 @@ def the_rest_refuses():
 def record_says_which_option_and_what_to_do():
     refused("record", "-d", "sim:", "-o", "x", "--strokes", "0", code=USAGE, says=["--strokes: '0' is no whole number from 1 on"])
     refused("record", "-d", "sim:", "-o", "nodir/x", "--time", "1s", code=CANNOT_WRITE, says=["nodir", "make it first"])
+    refused("record", "-d", "sim:", "-o", "x", code=USAGE, says=["faster than real time", "--time 2s", "--strokes 2", "paced=1"])
+    refused("record", "-d", "sim:strokes=2", "-o", "x", "--strokes", "3", code=USAGE, says=["makes 2 strokes", "--time"])
+    refused("record", "-d", "sim:source=counter", "-o", "x", "--strokes", "1", code=USAGE, says=["makes 0 strokes"])
     for option, more in (("--subject", ["-o", "x"]), ("-o", [])):
         done = subprocess.run([tacto.COMMAND, "record", "-d", "sim:", "--time", "1s", option, b"caf\xe9", *more], capture_output=True)
         assert done.returncode == USAGE and f"{option}: is not UTF-8".encode() in done.stderr, done

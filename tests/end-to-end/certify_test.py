@@ -81,6 +81,9 @@ def strokes_and_recordings_are_taken_alike():
     tacto.run("sheet", "both", "-o", "direct.png")
     tacto.run("spatial", "both", "-o", "both")
     stored = tacto.run_json("certify", "both")
+    _, said = tacto.run("certify", "both", code=2)
+    assert "certificate" in said and "--force" in said, said
+    tacto.run("certify", "both", "--force")
     assert stored["stored"] and not direct["stored"]
     assert [t["texture"] for t in stored["textures"]] == ["both-01", "both-02"] == [t["texture"] for t in direct["textures"]]
     for report in (direct, stored):
@@ -100,7 +103,7 @@ def formants_are_listed_stored_and_drawn():
     tacto.run("validate", "oak.formants.json")
     assert "formants" in tacto.run("info", "oak.formants.json")[0]
     tacto.run("formants", "oak", "-o", "oak-formants.csv")
-    tacto.run("formants", "oak", "-o", "oak-formants.csv")  # a table replaces its like
+    tacto.run("formants", "oak", "-o", "oak-formants.csv", "--force")  # a table replaces its like
     raw = pathlib.Path("raw.csv")
     raw.write_text("time,force\n0,1\n")
     for verb in ("formants", "describe", "spectrogram"):
@@ -113,7 +116,7 @@ def formants_are_listed_stored_and_drawn():
         assert "would be lost" in said and foreign.read_bytes() == content, said
     foreign.write_bytes(b"")  # of nobody
     for _ in range(2):        # and one of ours replaces its like
-        tacto.run("spectrogram", "oak", "-o", "weather.nc")
+        tacto.run("spectrogram", "oak", "-o", "weather.nc", "--force")
     for verb in ("formants", "describe"):  # nothing that was recorded or made is replaced by a table
         _, said = tacto.run(verb, "oak", "-o", "oak.json", code=2)
         assert "is a recording" in said, said

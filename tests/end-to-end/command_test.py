@@ -3,7 +3,11 @@
 """The command as a whole: help, JSON, exit codes, completion, and a session in files."""
 import json
 import pathlib
+import re
 import subprocess
+
+import numpy as np
+import soundfile
 
 import tacto
 
@@ -33,6 +37,19 @@ def json_goes_to_stdout_alone():
     for name in ("b", "b.texture.json" if len(spatial["textures"]) == 1 else "b-01.texture.json"):
         assert tacto.run_json("info", name)
     assert tacto.run_json("info", "wiertlewski2011")["kind"] == "transducer"
+
+
+def an_emulated_finger_strokes_for_the_time_asked():
+    report = tacto.run_json("record", "-d", "sim:seed=1", "--time", "8s", "-o", "long")
+    assert len(report["strokes"]) == 8 and "faster than real time" in report["pace"], report
+    assert report["device"] == "sim:seed=1", report
+    tacto.run("record", "-d", "sim:seed=1,strokes=2", "--time", "8s", "-o", "two")
+    two, long = (soundfile.read(f"{name}.wav", dtype="int32")[0] for name in ("two", "long"))
+    assert np.array_equal(two[:18000], long[:18000])  # the same finger; both have made two strokes then
+    assert len(tacto.run_json("info", "two")["strokes"]) == 2
+    assert len(tacto.run_json("record", "-d", "sim:seed=1", "--strokes", "3", "-o", "three")["strokes"]) == 3
+    assert "pace" not in tacto.run_json("record", "-d", "sim:seed=1,paced=1", "--time", "0.2s", "-o", "paced")
+    assert "real time" in tacto.run("record", "-d", "replay:three", "-o", "again")[0]  # ends with the recording
 
 
 def a_full_output_is_an_error():
@@ -67,7 +84,69 @@ complete_words tactograph render --tra
     assert said[1].split() == ["--transducer"], said
 
 
+def complete(*words):
+    """What bash offers for the last of the words, which bash itself breaks at : and =."""
+    script, _ = tacto.run("completion")
+    line = " ".join(words)
+    broken = [piece for word in words for piece in re.findall(r"[:=]|[^:=]+", word) or [""]]
+    quoted = " ".join(f"'{piece}'" for piece in broken)
+    probe = script + f"""
+compopt() {{ :; }}
+COMP_WORDS=({quoted}); COMP_CWORD={len(broken) - 1}; COMP_LINE='{line}'; COMP_POINT={len(line)}
+_tactograph; printf '%s\\n' "${{COMPREPLY[@]}}"
+"""
+    return subprocess.run(["bash", "-c", probe], capture_output=True, text=True, check=True).stdout.split()
+
+
+def completion_offers_values():
+    assert complete("tactograph", "ctl", "st") == ["stop", "status"]
+    assert "wiertlewski2011" in complete("tactograph", "render", "oak", "--transducer", "wiert")
+    assert complete("tactograph", "play", "oak", "--quality", "b") == ["balanced"]
+    assert complete("tactograph", "play", "oak", "--gain", "3mm") == ["3mm/N"]
+    assert complete("tactograph", "record", "-d", "sim:surf") == ["surface="]
+    assert complete("tactograph", "record", "-d", "sim:surface=C,hyst") == ["C,hysteresis="]
+    assert complete("tactograph", "calibrate", "t") == ["tare"]
+    assert complete("tactograph", "help", "si") == ["sim"]
+
+
+def the_nearest_word_is_named():
+    for arguments, word in ((["recrod"], "record"), (["spectogram"], "spectrogram"), (["record", "--tiem", "1s"], "--time"),
+                            (["play", "x", "-d", "sim:", "--quality", "balnced"], "balanced"), (["ctl", "stpo"], "stop"),
+                            (["record", "-d", "sim:sureface=A", "-o", "a"], "surface"), (["help", "sin"], "sim")):
+        _, err = tacto.run(*arguments, code=2)
+        assert f"did you mean '{word}'?" in err and err.count("\n") == 1, (arguments, err)
+    assert "did you mean" not in tacto.run("carve", code=2)[1]
+
+
+def errors_are_json_where_the_result_is():
+    pathlib.Path("torn.json").write_text("{")
+    for arguments, code in ((["info", "nowhere"], 3), (["info", "torn.json"], 4), (["carve"], 2), (["info", "--frob"], 2),
+                            (["record", "-d", "sim:speed=3", "-o", "a"], 2)):
+        out, err = tacto.run(*arguments, "--json", code=code)
+        error = json.loads(err)
+        assert not out and set(error) == {"what", "where", "remedy", "exit_code"}, err
+        assert error["exit_code"] == code and error["what"], error
+
+
+def help_begins_with_the_usual_options():
+    for verb in VERBS + ["play", "explain", "identify", "ctl", "sheet", "compare", "certify", "trade"]:
+        text, _ = tacto.run(verb, "--help")
+        options = text.split("\n\nExample:")[0]
+        blocks = [block for block in options.split("\n\n") if re.search("^  -", block, re.M)]
+        first = re.findall(r"^  -", blocks[0], re.M)
+        assert 1 <= len(first) <= 10, (verb, text)
+        everything = re.findall(r"^  -", options, re.M)
+        if len(everything) > 10:
+            assert blocks[0].startswith("Usual options:") and len(blocks) > 1, (verb, text)
+    assert "hysteresis" in tacto.run("help", "sim")[0] and "um" in tacto.run("help", "units")[0]
+    assert tacto.run("help", "record")[0] == tacto.run("record", "--help")[0]
+    assert "sim" in tacto.run("help")[0]
+
+
 if __name__ == "__main__":
     for test in (every_verb_helps_with_an_example, words_that_are_no_verbs_are_refused, json_goes_to_stdout_alone,
-                 a_full_output_is_an_error, closed_outputs_get_nothing, bash_completes):
+                 an_emulated_finger_strokes_for_the_time_asked,
+                 a_full_output_is_an_error, closed_outputs_get_nothing, bash_completes,
+                 completion_offers_values, the_nearest_word_is_named, errors_are_json_where_the_result_is,
+                 help_begins_with_the_usual_options):
         tacto.in_folder(test)

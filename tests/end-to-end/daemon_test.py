@@ -117,7 +117,7 @@ def begin(client):
 
 
 def ticks_of(session):
-    tacto.run("session", session, "-o", "table.csv")
+    tacto.run("session", session, "-o", "table.csv", "--force")
     return np.genfromtxt("table.csv", delimiter=",", names=True)
 
 
@@ -327,11 +327,14 @@ def a_thousand_clients():
             one = socket.socket(socket.AF_UNIX)
             one.settimeout(10)
             one.connect("control")
+            with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                one.sendall(b'{"request":"hello","version":"1.0"}\n')
             one.setblocking(False)
             crowd.append(one)
             if len(crowd) % 50 == 0:
                 client.must(request="status")
-        time.sleep(0.3)
+        for _ in range(20):
+            client.must(request="status")
         refused = 0
         for one in crowd:
             with contextlib.suppress(BlockingIOError, OSError):
@@ -339,6 +342,8 @@ def a_thousand_clients():
         assert refused > 950, refused
         _, said = tacto.run("ctl", "status", "--socket", "control", code=5)  # the daemon's own words
         assert "clients are connected already" in said, said
+        assert "armed" in tacto.run("ctl", "stop", "--socket", "control")[0]
+        client.must(request="play")
         for one in crowd:
             one.close()
         status = client.must(request="status")
@@ -512,6 +517,8 @@ def gain_saved_in_the_scene():
     with daemon():
         client = Client()
         client.must(request="load", file="s")
+        assert client.must(request="gain", gain=-1)["inverts_texture"] and client.must(request="status")["inverts_texture"]
+        assert "inverts_texture" not in client.must(request="gain", gain=1) | client.must(request="status")
         client.must(request="gain", gain=2, save=True)
         client.must(request="gain", gain=0.5, save=True)  # of what was loaded, not of what was saved
         answer = client.ask(request="gain", gain=0, save=True)
@@ -542,7 +549,7 @@ def gain_kept_with_the_texture():
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     config = json.loads(pathlib.Path("tactographd.json").read_text())
-    pathlib.Path("tactographd.json").write_text(json.dumps({**config, "tcp_port": port, "tcp_token_file": "token"}))
+    pathlib.Path("tactographd.json").write_text(json.dumps({**config, "tcp_port": port, "tcp_token_file": "token", "files": "."}))
     with daemon():
         first = Client()
         assert first.ask(request="gain", gain=0.5, save=True)["error"]["remedy"] == "load first"
@@ -618,9 +625,9 @@ def a_texture_changed_in_mid_play():
     assert states[:2] == ["armed", "playing"] and states[2:] in (["idle"], ["armed", "idle"]), states  # while the drive falls it is armed
     assert tacto.run_json("replay", session)["same_to_the_bit"]
     described = tacto.run_json("session", session)
-    judged = ["error_db" in stroke for stroke in described["strokes"]]
+    judged = ["predicted_error_db" in stroke for stroke in described["strokes"]]
     assert len(judged) > 2 and all(judged), described["strokes"]
-    assert all(abs(stroke["received_over_wanted_db"]) < 0.5 for stroke in described["strokes"][1:]), described["strokes"]
+    assert all(abs(stroke["predicted_over_wanted_db"]) < 0.5 for stroke in described["strokes"][1:]), described["strokes"]
     info = tacto.run_json("info", session)
     assert [(pathlib.Path(c["texture"]).name, c["gain_m_per_n"]) for c in info["changes"]] == \
         [("cork.texture.json", 0.00025), ("oak.texture.json", 0.0005)], info
@@ -811,10 +818,12 @@ def write_token(text, mode=0o600):
 def by_tcp_with_a_token():
     """127.0.0.1 only; nothing without the token, not even a second request; and strangers don't take all places."""
     token = "0123456789abcdef"
-    prepare_files(tcp_port=0, tcp_token_file="token", most_clients=8)
+    prepare_files(tcp_port=0, tcp_token_file="token", most_clients=8, files=".")
     write_token(token + "\n")
     with daemon() as process:
         port = int(process.ready.rsplit(":", 1)[1])
+        newer = Client(greet=False, port=port).ask(request="hello", version="2.0")
+        assert not newer["ok"] and "speaks version 2.0" in newer["error"]["what"] and "token" not in json.dumps(newer), newer
         for first in ({"request": "status"}, {"request": "hello", "version": "1.0"},
                       {"request": "hello", "version": "1.0", "token": token[:-1]},
                       {"request": "hello", "version": "1.0", "token": token + "0"}):
@@ -829,10 +838,11 @@ def by_tcp_with_a_token():
             assert browser.lines.readline() == "", "hung up on at the first line"
         client = Client(port=port, token=token)
         begin(client)
-        silent = [Client(greet=False, port=port) for _ in range(5)]  # with `client` half of 8: two are refused
-        assert [bool(one.lines.readline()) for one in silent[3:]] == [True, True]
+        silent = [Client(greet=False, port=port) for _ in range(5)]  # with `client` half of 8: two have a place for `stop`
         assert Client().must(request="status")["state"] == "playing"
-        assert silent[0].lines.readline() == "" and client.wait_for("playing"), "who says nothing goes after 5 s"
+        said = [json.loads(one.lines.readline())["error"]["what"] for one in silent]
+        assert all("no hello came" in what or "connected already" in what for what in said), said
+        assert "no hello came" in said[0] and client.wait_for("playing"), "who says nothing goes after 5 s"
         client.must(request="disarm")
         addresses = subprocess.run(["ss", "-Hltn", f"sport = :{port}"], capture_output=True, text=True) if shutil.which("ss") else None
         assert addresses is None or f"127.0.0.1:{port}" in addresses.stdout and "0.0.0.0:%d" % port not in addresses.stdout, addresses
@@ -849,12 +859,165 @@ def by_tcp_with_a_token():
     assert second.returncode == 4 and "tcp_token_file" in second.stderr, second
 
 
+def silent_clients_do_not_keep_stop_out():
+    """All sixteen places are taken by clients who say nothing, or nothing but hello: `stop` is taken all the same."""
+    prepare_files()
+    for greets in (False, True):
+        with daemon():
+            client = Client()
+            begin(client)
+            crowd = [Client(greet=greets) for _ in range(15 + 10)]
+            assert "armed" in tacto.run("ctl", "stop", "--socket", "control")[0]
+            client.wait_for("armed")
+            assert "idle" in tacto.run("ctl", "disarm", "--socket", "control")[0]
+            assert client.must(request="status")["state"] == "idle"
+            del crowd
+
+
+def expect_a_soft_fall(session, why):
+    """The session is closed and says why; its drive ends at zero, by no step larger than the transducer's slew limit allows."""
+    assert tacto.run_json("info", session)["ending"] == "closed"
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+    said = json.dumps(tacto.run_json("info", session))
+    assert f"armed: {why}" in said and f"idle: {why}" in said, said
+    drive = ticks_of(session)["drive_v"]
+    assert np.max(np.abs(drive)) > 0.05 and drive[-1] == 0, drive[-50:]
+    assert np.max(np.abs(np.diff(drive))) <= 15708 / 2000 * (1 + 1e-6), "V/s over ticks a second"
+
+
+CLOSED, SILENT = "the client that armed has closed its connection", "no line came from the client that armed"
+
+
+def arm_while_connected(client, **members):
+    client.must(request="load", file="oak", gain_m_per_n=0.0005)
+    session = client.must(request="arm", while_connected=True, **members)["session"]
+    client.must(request="play")
+    client.wait_for("playing")
+    return session
+
+
+def whoever_armed_goes_away():
+    """By closing the socket, by Unix and TCP: the drive falls, states and status say why, the session is closed, and the next may arm. Another
+    client's leaving changes nothing."""
+    prepare_files(tcp_port=0, tcp_token_file="token", files=".")
+    write_token("0123456789abcdef")
+    with daemon() as process:
+        port = int(process.ready.rsplit(":", 1)[1])
+        other, watcher = Client(), Client()
+        watcher.must(request="watch")
+        for how in ({}, {"port": port, "token": "0123456789abcdef"}):
+            client, passing = Client(**how), Client()
+            session = arm_while_connected(client)
+            assert other.must(request="status")["while_connected"]
+            passing.must(request="gain", gain=0.9)
+            passing.socket.close()
+            passing.lines.close()
+            time.sleep(0.5)
+            assert other.must(request="status")["state"] == "playing"
+            client.socket.close()
+            client.lines.close()
+            assert other.wait_for("idle")["why"] == CLOSED
+            expect_a_soft_fall(session, CLOSED)
+        states = [(e["state"], e["why"]) for e in watcher.rest_of_events() if e["event"] == "state"]
+        assert states == 2 * [("armed", ""), ("playing", ""), ("armed", CLOSED), ("idle", CLOSED)], states
+        client = Client()
+        begin(client)
+        client.socket.close()
+        client.lines.close()
+        time.sleep(0.5)
+        assert other.must(request="status")["state"] == "playing", "without while_connected it goes on, as in version 1.1"
+        other.must(request="disarm")
+
+
+def whoever_armed_is_silent():
+    """dead_man_s: the shorter one of the request and the configuration holds. Any line is a sign of life, of the client that armed; without
+    while_connected that of any client."""
+    prepare_files(dead_man_s=1)
+    with daemon():
+        client, other = Client(), Client()
+        session = arm_while_connected(client, dead_man_s=30)
+        assert other.must(request="status")["dead_man_s"] == 1
+        for _ in range(20):
+            client.ask(request="nonsense")
+            time.sleep(0.1)
+        assert other.must(request="status")["state"] == "playing"
+        assert SILENT in other.wait_for("idle")["why"], "others' lines do not count"
+        expect_a_soft_fall(session, SILENT)
+        session = begin(client)
+        for _ in range(20):
+            other.must(request="status")
+            time.sleep(0.1)
+        assert other.must(request="status")["state"] == "playing"
+        time.sleep(1.5 * SLOW)
+        assert "no line came from any client for 1 s" in other.wait_for("idle")["why"]
+        expect_a_soft_fall(session, "no line came from any client")
+
+
+def play_that_is_watched():
+    """`ctl play --watch` plays for as long as it runs: Ctrl-C, SIGKILL and SIGSTOP each end it, and so does its time."""
+    prepare_files()
+    command = [tacto.COMMAND, "ctl", "play", "--watch", "--socket", "control"]
+    with daemon():
+        client = Client()
+        client.must(request="load", file="oak", gain_m_per_n=0.0005)
+        for how, why in ((signal.SIGKILL, CLOSED), (signal.SIGSTOP, SILENT), (signal.SIGINT, ""), (None, "")):
+            more = ["--json"] if how else ["--json", "--time", "1s"]
+            play = subprocess.Popen([*command, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            status = client.wait_for("playing")
+            assert status["while_connected"] and status["dead_man_s"] == 2, status
+            time.sleep(0.5)
+            if how:
+                play.send_signal(how)
+            status = client.wait_for("idle", seconds=10)
+            assert status.get("why", "").startswith(why) and ("why" in status) == bool(why), status
+            if how == signal.SIGSTOP:
+                play.send_signal(signal.SIGCONT)
+            out, said = play.communicate(timeout=20)
+            assert play.returncode == (-signal.SIGKILL if how == signal.SIGKILL else 0), (play.returncode, out, said)
+            if how != signal.SIGKILL:
+                assert json.loads(out)["state"] == "idle" and json.loads(out)["played_s"] > 0.3, out
+            if why:
+                expect_a_soft_fall(status["session"], why)
+        session = begin(client)
+        play = subprocess.run(command, capture_output=True, text=True, timeout=20)
+        assert play.returncode == 2 and "can't arm in the state playing" in play.stderr, play
+        assert client.must(request="status")["session"] == session
+        client.must(request="disarm")
+
+
+def what_clients_over_tcp_load():
+    """From the configured folder only; the one error tells nothing of what lies elsewhere. Clients of the Unix socket name any file."""
+    pathlib.Path("served").mkdir()
+    prepare_files(tcp_port=0, tcp_token_file="token", files="served")
+    write_token("0123456789abcdef")
+    for file in pathlib.Path(".").glob("oak.texture.*"):
+        shutil.copy(file, "served")
+        os.symlink(file.absolute(), f"served/{file.name.replace('oak', 'link')}")
+    with daemon() as process:
+        remote = Client(port=int(process.ready.rsplit(":", 1)[1]), token="0123456789abcdef")
+        remote.must(request="load", file="oak", gain_m_per_n=0.0005)
+        answers = set()
+        for file in (os.path.abspath("oak"), os.path.abspath("elm"), "../oak", "../elm", "elm", "link", "/etc/passwd"):
+            error = remote.ask(request="load", file=file)["error"]
+            assert error["where"] == file, error
+            answers.add((error["what"], error["remedy"]))
+        assert len(answers) == 1, answers
+        Client().must(request="load", file="../oak", gain_m_per_n=0.0005)
+        refused = Client().ask(request="gain", gain=1)
+        assert refused["ok"], refused
+        local = Client()
+        local.socket.sendall(b'{"request":"gain","gain":0.5,"gain":2}\n')
+        refused = json.loads(local.lines.readline())
+        assert not refused["ok"] and "'gain' appears twice" in refused["error"]["what"] and local.must(request="status")["gain"] == 1, refused
+
+
 TESTS = [from_load_to_a_session_that_replays, what_the_limits_took_is_found, kill_9_in_mid_play, sigstop_of_200_ms, encoder_jump_of_10_mm, a_texture_with_nan,
          garbage_and_endless_lines, many_requests_at_once, a_thousand_clients, second_daemon, permissions, full_disk_for_the_log,
          the_loop_closed_on_the_host, the_service_manager_is_told, a_band_that_the_rate_cuts_is_told,
          late_ticks_beyond_a_limit_are_a_fault, gain_saved_in_the_scene, gain_kept_with_the_texture, a_texture_changed_in_mid_play,
          a_path_that_ends_where_it_began_is_a_loop, what_was_chosen_is_told, a_promise_in_the_configuration, a_load_holds_up_nobody, the_terminal_goes_away,
-         files_that_nobody_can_play, by_tcp_with_a_token]
+         files_that_nobody_can_play, by_tcp_with_a_token, silent_clients_do_not_keep_stop_out,
+         whoever_armed_goes_away, whoever_armed_is_silent, play_that_is_watched, what_clients_over_tcp_load]
 
 if __name__ == "__main__":
     for test in TESTS:

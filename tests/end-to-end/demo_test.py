@@ -4,6 +4,7 @@
 import html.parser
 import pathlib
 import re
+import urllib.parse
 
 import tacto
 
@@ -26,6 +27,9 @@ def demo_makes_its_page():
         print(f"{name}: displacement error {row['error_db']:.1f} dB, force {row['force_rms_n'] * 1e3:.1f} mN RMS")
         assert row["error_db"] < -30 and row["force_rms_n"] > 1e-4 and row["replay_speed_mps"] != row["record_speed_mps"]
     page_text = pathlib.Path("shown/index.html").read_text()
+    megabytes = pathlib.Path("shown/index.html").stat().st_size / 1e6
+    print(f"the page: {megabytes:.2f} MB")
+    assert megabytes < 3 and "\u2026" not in urllib.parse.unquote(page_text), "all titles are whole"
     page = Page()
     page.feed(page_text)
     assert page.pictures >= 10 and not page.links, page.links

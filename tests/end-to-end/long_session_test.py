@@ -87,8 +87,8 @@ def judged_in_little_memory():
     # (5e-4 of what is wanted: JudgedBlocks) and which counts stand at the seams, one count of 10 um beside a period of 1 mm.
     for i, stroke in enumerate(strokes[8:-1]):  # the last one has no turn at its end
         same = of_short[4 + i % 4]
-        assert abs(float(stroke["error_db"]) - float(same["error_db"])) < 0.2, (stroke, same)
-        for key in ("wanted_rms_m", "received_rms_m"):
+        assert abs(float(stroke["predicted_error_db"]) - float(same["predicted_error_db"])) < 0.2, (stroke, same)
+        for key in ("wanted_rms_m", "predicted_rms_m"):
             assert abs(float(stroke[key]) / float(same[key]) - 1) < 2e-3, (key, stroke, same)
         assert abs(float(stroke["to_s"]) - float(stroke["from_s"]) - float(same["to_s"]) + float(same["from_s"])) < 0.01
     _, said = tacto.run("session", "long", "--json")
@@ -145,7 +145,7 @@ def a_stop_of_days():
     report = json.loads(tacto.run("session", "slept", "--json")[0])
     strokes = report["strokes"]
     assert report["stroke_count"] == len(strokes) and any(s["from_s"] > 2e6 for s in strokes), report
-    assert all(s["to_s"] - s["from_s"] < 2 and s["error_db"] < -15 for s in strokes), strokes
+    assert all(s["to_s"] - s["from_s"] < 2 and s["predicted_error_db"] < -15 for s in strokes), strokes
     _, said = tacto.run("session", "slept", "-o", "slept.wav", code=5)
     assert "made up" in said and not pathlib.Path("slept.wav").exists(), said
     pathlib.Path("mine.csv").write_text("my,own\n1,2\n")

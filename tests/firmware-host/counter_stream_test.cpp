@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <thread>
+#include "firmware-host/open_device.hpp"
 
 #include "tests/firmware-host/sim_stream.hpp"
 

@@ -72,6 +72,40 @@ TEST(DriveWatch, MeasuresTheFallToTheLastTickWithADrive) {
   EXPECT_FALSE(watch.observe(wire::DriveState::fault, 0, kTickS)) << "a fault is told once";
 }
 
+// At 2 kHz, heard 100 ticks before the fault, and bytes that come after it change nothing.
+TEST(DriveWatch, SaysHowLongBeforeTheFaultTheHostWasHeard) {
+  constexpr double kTickS = 0.5e-3;
+  DriveWatch watch;
+  for (int i = 0; i < 50; ++i) {
+    watch.heard();
+    watch.observe(wire::DriveState::playing, 2, kTickS);
+  }
+  for (int i = 0; i < 99; ++i) watch.observe(wire::DriveState::playing, 2, kTickS);
+  std::optional<DriveFall> fall;
+  for (int i = 0; !fall; ++i) {
+    fall = watch.observe(wire::DriveState::fault, i < 20 ? 1 : 0, kTickS);
+    watch.heard();
+  }
+  EXPECT_NEAR(fall->silent_s, 100 * kTickS, 1e-12);
+  EXPECT_NEAR(fall->fell_s, 20 * kTickS, 1e-12);
+}
+
+TEST(DriveWatch, SeesTheDriveRiseOnceAfterAFall) {
+  DriveWatch watch;
+  for (int i = 0; i < 5; ++i) {
+    watch.observe(wire::DriveState::playing, 2, 1e-3);
+    EXPECT_FALSE(watch.rose());
+  }
+  for (std::optional<DriveFall> fall; !fall;) fall = watch.observe(wire::DriveState::fault, 0, 1e-3);
+  EXPECT_FALSE(watch.rose());
+  watch.observe(wire::DriveState::armed, 0, 1e-3);
+  EXPECT_FALSE(watch.rose());
+  watch.observe(wire::DriveState::playing, 0.1, 1e-3);
+  EXPECT_TRUE(watch.rose());
+  watch.observe(wire::DriveState::playing, 0.2, 1e-3);
+  EXPECT_FALSE(watch.rose());
+}
+
 TEST(DriveWatch, SaysWhatIsLeftWhereTheDriveStays) {
   DriveWatch watch;
   std::optional<DriveFall> fall;

@@ -82,7 +82,7 @@ TEST_F(ReplayedBoard, SaysWhatItIs) {
   EXPECT_EQ(said.name, "replay of oak");
   EXPECT_EQ(said.serial, "R7");
   EXPECT_EQ(board_->serial(), "R7");
-  EXPECT_NE(said.simulated.find("replay of oak, itself simulated"), std::string::npos) << said.simulated;
+  EXPECT_NE(said.simulated.find("replay of oak: itself simulated"), std::string::npos) << said.simulated;
   EXPECT_EQ(said.transducer->name, "wiertlewski2011");
   for (std::size_t i = 0; i < said.channels.size(); ++i) {
     EXPECT_EQ(said.channels[i].name, stream_.capabilities.channels[i].name);

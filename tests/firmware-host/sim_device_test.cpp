@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include "firmware-host/open_device.hpp"
 
 #include "tests/firmware-host/sim_stream.hpp"
 
@@ -35,6 +36,7 @@ TEST(SimDevice, SaysWhatItIs) {
   EXPECT_EQ(capabilities.transducer->name, "wiertlewski2011");
   EXPECT_NE(capabilities.simulated.find("emulated device"), std::string::npos);
   EXPECT_NE(capabilities.simulated.find("seed 1"), std::string::npos);
+  EXPECT_NE(capabilities.simulated.find("on C: milled"), std::string::npos) << "its samples are of that";
 }
 
 TEST(SimDevice, OtherTransportsAreRefusedByName) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware-host/device.hpp"
+#include "firmware-host/open_device.hpp"
 
 namespace tacto::tests {
 

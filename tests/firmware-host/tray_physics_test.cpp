@@ -9,6 +9,7 @@
 #include "firmware-host/sim/actuated_tray.hpp"
 #include "firmware-host/sim/force_bench.hpp"
 #include "firmware-host/sim/sim_device.hpp"
+#include "firmware-host/open_device.hpp"
 #include "tests/firmware-host/sim_stream.hpp"
 #include "tests/firmware-host/sine_fit.hpp"
 

@@ -81,7 +81,7 @@ class StrokesOverChanges : public PlayerOnSim {
     EXPECT_TRUE(player_->disarm());
     const auto strokes = strokes_of(alone);
     EXPECT_EQ(strokes.size(), 3U);
-    return std::max(strokes.at(1).error_db, strokes.at(2).error_db);
+    return std::max(strokes.at(1).predicted.error_db, strokes.at(2).predicted.error_db);
   }
   std::vector<PlayedStroke> strokes_of(const std::string& session) {
     const auto report = report_strokes(session);
@@ -118,9 +118,10 @@ TEST_F(StrokesOverChanges, AreJudgedAsWellAsOneTextureAlone) {
   const double grating_db = worst_error_alone(program("grating", -5e-4), 0.9);
   EXPECT_LT(fine_db, -34);
   EXPECT_LT(grating_db, -39);
-  for (const std::size_t stroke : {1U, 2U, 3U}) EXPECT_LT(strokes[stroke].error_db, fine_db + 0.5) << stroke;
-  EXPECT_LT(strokes[4].error_db, grating_db + 0.5);
-  for (std::size_t i = 1; i < strokes.size(); ++i) EXPECT_NEAR(strokes[i].level_db, 0, 0.02) << i;
+  for (const std::size_t stroke : {1U, 2U, 3U})
+    EXPECT_LT(strokes[stroke].predicted.error_db, fine_db + 0.5) << stroke;
+  EXPECT_LT(strokes[4].predicted.error_db, grating_db + 0.5);
+  for (std::size_t i = 1; i < strokes.size(); ++i) EXPECT_NEAR(strokes[i].predicted.level_db, 0, 0.02) << i;
 }
 
 // A fade of most of a stroke, by its weight: an even one (u instead of u^2 (3 - 2 u)) is off by up to 0.1 of
@@ -129,7 +130,8 @@ TEST_F(StrokesOverChanges, ALongFadeIsJudgedByItsWeight) {
   play_with_changes(0.5);
   const auto strokes = strokes_of(session_);
   ASSERT_EQ(strokes.size(), 5U);
-  for (const std::size_t stroke : {1U, 2U, 3U, 4U}) EXPECT_LT(strokes[stroke].error_db, -33) << stroke;
+  for (const std::size_t stroke : {1U, 2U, 3U, 4U})
+    EXPECT_LT(strokes[stroke].predicted.error_db, -33) << stroke;
 }
 
 TEST_F(StrokesOverChanges, WithTheTexturesSwappedTheNumbersAreBad) {
@@ -146,21 +148,22 @@ TEST_F(StrokesOverChanges, WithTheTexturesSwappedTheNumbersAreBad) {
     return true;
   }));
   ASSERT_EQ(swapped.size(), 5U);
-  EXPECT_LT(swapped[0].error_db, -20);
-  for (const std::size_t stroke : {1U, 2U, 3U, 4U}) EXPECT_GT(swapped[stroke].error_db, -3) << stroke;
+  EXPECT_LT(swapped[0].predicted.error_db, -20);
+  for (const std::size_t stroke : {1U, 2U, 3U, 4U})
+    EXPECT_GT(swapped[stroke].predicted.error_db, -3) << stroke;
   EXPECT_TRUE(notes_.empty());
 }
 
 // Older sessions do not say what a change brings; they are read as they were.
 TEST_F(StrokesOverChanges, AnOlderSessionIsJudgedUpToItsFirstChange) {
   play_with_changes();
-  const double first_db = strokes_of(session_).at(0).error_db;
+  const double first_db = strokes_of(session_).at(0).predicted.error_db;
   session_ = rewritten([](SessionChange&) { return false; });
   EXPECT_EQ(judged_of(session_), (Judged{true, false, false, false, false}));
   ASSERT_EQ(notes_.size(), 1U);
   EXPECT_TRUE(notes_[0].starts_with("the texture changes at 1.1")) << notes_[0];
   EXPECT_TRUE(notes_[0].ends_with(" s: strokes that reach beyond are not judged")) << notes_[0];
-  EXPECT_NEAR(strokes_of(session_).at(0).error_db, first_db, 0.01);
+  EXPECT_NEAR(strokes_of(session_).at(0).predicted.error_db, first_db, 0.01);
   expect_same_to_the_bit();
 }
 
@@ -180,7 +183,7 @@ TEST_F(StrokesOverChanges, ATextureThatIsGoneCostsItsOwnStrokesOnly) {
   EXPECT_EQ(judged_of(session_), (Judged{true, false, false, false, true}));
   ASSERT_EQ(notes_.size(), 1U);
   EXPECT_NE(notes_[0].find("fine.texture.json"), std::string::npos) << notes_[0];
-  EXPECT_NEAR(strokes_of(session_).at(4).error_db, whole.at(4).error_db, 0.5);
+  EXPECT_NEAR(strokes_of(session_).at(4).predicted.error_db, whole.at(4).predicted.error_db, 0.5);
 }
 
 // The header is of what was armed, each block of what came then.
@@ -223,7 +226,7 @@ class ManyStrokes : public StrokesOverChanges {
   }
   std::string exported(const std::string& session, const std::string& ending) {
     const std::string file = folder_ / fmt::format("export-{}{}", ++alone_, ending);
-    const auto said = export_session(session, file);
+    const auto said = export_session(session, file, schema::Existing::keep);
     EXPECT_TRUE(said) << schema::message(said.error());
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -246,8 +249,8 @@ TEST_F(ManyStrokes, AreTheSameInSmallBlocks) {
     EXPECT_EQ(a.from_s, b.from_s);
     EXPECT_EQ(a.to_m, b.to_m);
     EXPECT_NEAR(a.wanted_rms_m, b.wanted_rms_m, kFarAway * b.wanted_rms_m) << i;
-    EXPECT_NEAR(a.received_rms_m, b.received_rms_m, kFarAway * b.received_rms_m) << i;
-    EXPECT_NEAR(a.error_db, b.error_db, kFarAwayDb) << i;
+    EXPECT_NEAR(a.predicted.rms_m, b.predicted.rms_m, kFarAway * b.predicted.rms_m) << i;
+    EXPECT_NEAR(a.predicted.error_db, b.predicted.error_db, kFarAwayDb) << i;
     EXPECT_EQ(a.limits->ticks(), b.limits->ticks());
   }
   EXPECT_EQ(small->notes, whole->notes);
@@ -260,7 +263,7 @@ TEST_F(ManyStrokes, HowTheFileIsCutIsNotSeen) {
   ASSERT_TRUE(one && other);
   ASSERT_EQ(one->strokes.size(), other->strokes.size());
   for (std::size_t i = 0; i < one->strokes.size(); ++i)
-    EXPECT_EQ(one->strokes[i].error_db, other->strokes[i].error_db) << i;
+    EXPECT_EQ(one->strokes[i].predicted.error_db, other->strokes[i].predicted.error_db) << i;
   for (const std::string ending : {".csv", ".wav", ".nc"}) {
     const std::string bytes = exported(session_, ending);
     EXPECT_GT(bytes.size(), 500000U);

@@ -3,13 +3,10 @@
 #include "playback/daemon/control_server.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <chrono>
 
-#include "playback/daemon/control_socket.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
+#include "tests/playback/socket_client.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -17,49 +14,13 @@ namespace {
 using schema::ControlFields;
 using schema::ControlRequest;
 using schema::ControlVerb;
-
-constexpr const char* kHello = "{\"request\":\"hello\",\"version\":\"1.0\"}\n";
-constexpr const char* kStatus = "{\"request\":\"status\"}\n";
-constexpr const char* kLoad = "{\"request\":\"load\",\"file\":\"oak\"}\n";
-constexpr const char* kStop = "{\"request\":\"stop\"}\n";
-constexpr const char* kWatch = "{\"request\":\"watch\"}\n";
+using namespace tests;
 
 std::string again(const char* line, int times) {
   std::string lines;
   for (int i = 0; i < times; ++i) lines += line;
   return lines;
 }
-
-class TestClient {
- public:
-  explicit TestClient(const std::string& path) : descriptor_(connect_control_socket(path).value()) {}
-  TestClient(const TestClient&) = delete;
-  TestClient& operator=(const TestClient&) = delete;
-  ~TestClient() { hang_up(); }
-
-  void say(const std::string& text) const {
-    ASSERT_EQ(::send(descriptor_, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
-  }
-  void say_no_more() const { shutdown(descriptor_, SHUT_WR); }
-  void hang_up() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    descriptor_ = -1;
-  }
-  /// Lines that have come and are not read yet.
-  std::vector<std::string> heard() {
-    char bytes[65536];
-    for (ssize_t got = 1; (got = recv(descriptor_, bytes, sizeof bytes, MSG_DONTWAIT)) > 0;)
-      text_.append(bytes, static_cast<std::size_t>(got));
-    std::vector<std::string> lines;
-    for (std::size_t end = 0; (end = text_.find('\n')) != std::string::npos; text_.erase(0, end + 1))
-      lines.push_back(text_.substr(0, end));
-    return lines;
-  }
-
- private:
-  int descriptor_;
-  std::string text_;
-};
 
 class ControlServing : public testing::Test {
  protected:
@@ -71,8 +32,8 @@ class ControlServing : public testing::Test {
       return ControlFields{};
     });
   }
-  std::unique_ptr<TestClient> greeted() {
-    auto client = std::make_unique<TestClient>(path_);
+  std::unique_ptr<SocketClient> greeted() {
+    auto client = std::make_unique<SocketClient>(path_);
     client->say(kHello);
     for (int i = 0; i < 3; ++i) serve();
     EXPECT_EQ(client->heard().size(), 1U);
@@ -82,7 +43,8 @@ class ControlServing : public testing::Test {
 
   tests::TemporaryFolder folder_;
   std::string path_ = folder_ / "control";
-  std::unique_ptr<ControlServer> server_ = ControlServer::listen({path_, "", 8, std::nullopt}).value();
+  std::unique_ptr<ControlServer> server_ =
+      ControlServer::listen({.path = path_, .group = "", .most_clients = 8, .loopback = {}}).value();
   std::vector<ControlVerb> handled_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "data-schema/wav.hpp"
 
@@ -30,28 +31,42 @@ class DriveFiles : public testing::Test {
 
 TEST_F(DriveFiles, HoldTheSignal) {
   const std::vector<SignalFile> files{{in("a.wav"), &signal_}, {in("b.wav"), &signal_}};
-  ASSERT_TRUE(check_signal_files(files));
-  ASSERT_TRUE(write_signal_files(files));
+  ASSERT_TRUE(check_signal_files(files, schema::Existing::keep));
+  ASSERT_TRUE(write_signal_files(files, schema::Existing::keep));
   EXPECT_EQ(*schema::read_wav_channel(in("b.wav"), 0), signal_.values);
   EXPECT_EQ(schema::WavReader::open(in("a.wav"))->info().sample_rate_hz, 10e3);
 }
 
 TEST_F(DriveFiles, AppearTogetherOrNotAtAll) {
   const std::vector<SignalFile> files{{in("a.wav"), &signal_}, {in("absent/b.wav"), &signal_}};
-  const auto written = write_signal_files(files);
+  const auto written = write_signal_files(files, schema::Existing::keep);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().fault, schema::Fault::cannot_write);
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
+TEST_F(DriveFiles, HoldNoNumberThatIsNotFinite) {
+  for (const double odd :
+       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity(), 1e39}) {
+    schema::TimeSignal broken = signal_;
+    broken.values[1] = odd;
+    const auto written = write_signal_files(
+        std::vector<SignalFile>{{in("a.wav"), &signal_}, {in("b.wav"), &broken}}, schema::Existing::keep);
+    ASSERT_FALSE(written) << odd;
+    EXPECT_EQ(written.error().fault, schema::Fault::unsuitable);
+    EXPECT_NE(written.error().what.find("sample 1 "), std::string::npos) << written.error().what;
+    EXPECT_TRUE(fs::is_empty(folder_));
+  }
+}
+
 TEST_F(DriveFiles, NeverTakeTheNameOfARecording) {
   std::ofstream(in("oak.json")) << "{}";
   const std::vector<SignalFile> taken{{in("oak.wav"), &signal_}};
-  EXPECT_EQ(check_signal_files(taken).error().fault, schema::Fault::usage);
+  EXPECT_EQ(check_signal_files(taken, schema::Existing::keep).error().fault, schema::Fault::usage);
   const std::vector<SignalFile> twice{{in("a.wav"), &signal_}, {in("./a.wav"), &signal_}};
-  EXPECT_EQ(check_signal_files(twice).error().fault, schema::Fault::usage);
+  EXPECT_EQ(check_signal_files(twice, schema::Existing::keep).error().fault, schema::Fault::usage);
   const std::vector<SignalFile> other{{in("a.flac"), &signal_}};
-  EXPECT_EQ(check_signal_files(other).error().fault, schema::Fault::usage);
+  EXPECT_EQ(check_signal_files(other, schema::Existing::keep).error().fault, schema::Fault::usage);
 }
 
 }  // namespace

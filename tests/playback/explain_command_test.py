@@ -136,7 +136,7 @@ def check_render(folder):
     refused(UNSUITABLE, "the rendering's error", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011",
             "-o", folder / "no.wav", "--gain", "0.2mm/N", "--engine", "kernel", "--hold", "zero-order", "--max-error", "0.5%")
     # The best that there is keeps its own promise, not the path's: the difference is told.
-    exact = made.run("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--gain", "0.2mm/N",
+    exact = made.run("render", "--force", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--gain", "0.2mm/N",
                      "--engine", "kernel", "--hold", "zero-order", "--quality", "exact")
     assert exact.returncode == 0 and "are promised, the rest is what the encoder's step" in exact.stderr, exact
     report = render(folder, "--engine", "kernel", "--hold", "zero-order", "--max-error", "10%", "--explain")

@@ -64,7 +64,7 @@ class FilteredPlay : public testing::Test {
   double judged(const std::string& session) {
     const auto overview = session_overview(session);
     RowMaker maker(*overview);
-    RowFollower follower(overview->header);
+    RowFollower follower(*overview);
     std::vector<JudgedRow> judged;
     const auto read = read_rows(
         maker, session, [&](const SessionRow& row) { judged.push_back(follower.next(row, maker.turns())); });
@@ -117,9 +117,7 @@ TEST_F(FilteredPlay, WhatIsUndoneIsNotFeltAndWhatIsNotIs) {
 
 TEST_F(FilteredPlay, TheDeviceSaysWhatItIs) {
   open("reconstruction=butterworth3,cutoff=500Hz");
-  std::string said;
-  for (const wire::Note& note : device_->client().description().notes)
-    if (note.kind == wire::NoteKind::simulated_by) said = note.text;
+  const std::string said = firmware_host::simulated_device(device_->client().description());
   EXPECT_NE(said.find("Butterworth low-pass of order 3 at 500 Hz"), std::string::npos) << said;
 }
 

@@ -68,7 +68,7 @@ schema::Texture host_grating() {
 class HostLoopOnSim : public testing::Test {
  protected:
   void SetUp() override {
-    auto device = firmware_host::make_sim_device("sim:paced=1", "paced=1,rate=2kHz");
+    auto device = firmware_host::make_sim_device("sim:paced=1", "paced=1,rate=2kHz,tray_sensor=on");
     ASSERT_TRUE(device) << schema::message(device.error());
     device_ = std::move(*device);
     device_->board().set_script(
@@ -84,6 +84,10 @@ class HostLoopOnSim : public testing::Test {
     options.most_late = 1;
     options.loop = "host";
     options.lateness_ns = [this](std::uint64_t tick) { return loop_->board().lateness_ns(tick); };
+    options.due_ns = [this](std::uint64_t tick) { return loop_->board().due_ns(tick); };
+    options.measured = [this](std::uint64_t tick, SampleRun& into) {
+      loop_->board().take_samples(tick, into);
+    };
     player_ = std::move(*Player::make(*client_, "sim:", options));
   }
   Program program() {
@@ -133,11 +137,20 @@ TEST_F(HostLoopOnSim, PlaysOnTheDeviceAndItsSessionReplaysToTheBit) {
   // A computer that stalls spoils a stroke, but not each.
   const auto felt = report_strokes(session);
   ASSERT_TRUE(felt) << schema::message(felt.error());
-  double best_db = 0;
-  for (const PlayedStroke& stroke : felt->strokes) best_db = std::min(best_db, stroke.error_db);
-  std::printf("%zu strokes, the best errs by %.1f dB; ", felt->strokes.size(), best_db);
+  double best_db = 0, best_measured_db = 0;
+  for (const PlayedStroke& stroke : felt->strokes) {
+    best_db = std::min(best_db, stroke.predicted.error_db);
+    if (stroke.measured) best_measured_db = std::min(best_measured_db, stroke.measured->error_db);
+  }
+  std::printf("%zu strokes, the best errs by %.1f dB as predicted, by %.1f dB as measured; ",
+              felt->strokes.size(), best_db, best_measured_db);
   EXPECT_LT(best_db, -10);
   const HostLoopStatus status = loop_->status();
+  // The tray moves when the drive arrives. Where a busy machine delays drives beyond the queue and the look
+  // ahead (6 ms of a quiet one), it moves late, and that is no fault of the loop.
+  if (status.latency.p50_s < 0.01) {
+    EXPECT_LT(best_measured_db, -10);
+  }
   EXPECT_GT(status.latency.p50_s, 2e-3);  // the queue is 4 ms deep
   EXPECT_GE(status.latency.p99_s, status.latency.p50_s);
   EXPECT_GE(status.late_parts.front(), status.late_parts.back());
@@ -162,6 +175,15 @@ TEST_F(HostLoopOnSim, ADeviceThatFaultsOpensTheEnableInput) {
   EXPECT_EQ(player_->state(), PlayerState::fault);
   EXPECT_NE(loop_->status().device_fault.find("enable input"), std::string::npos)
       << loop_->status().device_fault;
+  // Closed again and disarmed, it is armed anew, once the loop has heard of it.
+  device_->board().set_enabled(true);
+  ASSERT_TRUE(player_->disarm());
+  bool armed = false;
+  for (int i = 0; i < 500 && !armed; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    armed = player_->arm(folder_ / "again.session").has_value();
+  }
+  EXPECT_TRUE(armed);
 }
 
 // Plays 0.5 m everywhere, by ticks that the test gives.

@@ -3,6 +3,7 @@
 #include "playback/daemon/live_limits.hpp"
 
 #include "playback/daemon/session_limits.hpp"
+#include "tests/playback/full_disk.hpp"
 #include "tests/playback/limited_play.hpp"
 
 namespace tacto::playback {
@@ -151,6 +152,26 @@ TEST_F(LiveLimitsTest, ASilentHostIsFollowedIntoItsFault) {
   ASSERT_TRUE(player_->disarm());
   expect_as_the_session_tells();
   EXPECT_EQ(follow_session().db, tally().removed_db()) << "the fault is not seen together with the silence";
+}
+
+// The recorder's thread writes every 20 ms of the wall's clock: it is waited for.
+TEST_F(LiveLimitsTest, IsNotKnownFromTicksOnThatTheDiskDidNotTake) {
+  bender_.drive_limit_v = 0.2;
+  begin_play(bender_, {}, "full");
+  const std::uint64_t played_from = ticks_here();
+  while (player_->recorded()->ticks <= played_from) ASSERT_TRUE(player_->step(0.01));
+  ASSERT_EQ(player_->status().limits.unknown, "");
+  {
+    const FullDisk full(1);
+    while (player_->recorded()->disk_lost == 0) ASSERT_TRUE(player_->step(0.01));
+  }
+  EXPECT_EQ(player_->status().limits.unknown, "ticks are missing");
+  run(0.3);
+  ASSERT_TRUE(player_->disarm());
+  EXPECT_FALSE(player_->status().limits.db);
+  const auto told = tally_session(session_);
+  ASSERT_FALSE(told);
+  EXPECT_NE(told.error().what.find("ticks are missing"), std::string::npos);
 }
 
 TEST_F(LiveLimitsTest, SaysWhyItIsNotKnown) {

@@ -44,7 +44,8 @@ def run(*arguments) -> subprocess.CompletedProcess:
 
 
 def report_of(*arguments) -> dict:
-    done = run(*arguments, "--json")
+    again = ["--force"] if arguments[0] == "render" else []
+    done = run(*arguments, *again, "--json")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 

@@ -28,7 +28,7 @@ inline schema::Texture grating(double per_m = 1000, double force_n = 0.02) {
 class PlayerOnSim : public testing::Test {
  protected:
   void SetUp() override {
-    auto device = firmware_host::make_sim_device("sim:", "");
+    auto device = firmware_host::make_sim_device("sim:", parameters_);
     ASSERT_TRUE(device) << schema::message(device.error());
     device_ = std::move(*device);
     device_->board().set_script([this](double t) { return place_m(t); });
@@ -106,6 +106,7 @@ class PlayerOnSim : public testing::Test {
   }
 
   tests::TemporaryFolder folder_;
+  std::string parameters_;  // of the device
   std::string session_ = folder_ / "one.session";
   double jump_s_ = 1e9;
   bool tell_limits_ = false;

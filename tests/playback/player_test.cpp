@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The player on the emulated device, in emulated time: states, refusals, faults, sessions that replay.
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "playback/daemon/player_device.hpp"
 #include "playback/daemon/session_stroke.hpp"
 #include "playback/daemon/stroke_report.hpp"
+#include "tests/playback/full_disk.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {
@@ -279,20 +279,6 @@ TEST_F(PlayerOnSim, ASessionThatNeverBeganLeavesNoFile) {
   EXPECT_EQ(player_->status().session, session_);
 }
 
-// A limit of the file's size stands in for the disk.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit now{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &now);
-  }
-  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
-
 TEST_F(PlayerOnSim, WithoutRoomForTheSessionsBeginningNothingIsArmed) {
   begin();
   ASSERT_TRUE(player_->disarm());
@@ -347,6 +333,25 @@ TEST_F(PlayerOnSim, ANegativeGainTurnsTheTextureOver) {
   EXPECT_EQ(down.session.textures.front().gain_m_per_n, -5e-4);
   for (std::size_t i = 0; i < up.prepared.samples.size(); ++i)
     ASSERT_EQ(up.prepared.samples[i], -down.prepared.samples[i]);
+}
+
+TEST_F(PlayerOnSim, AGainIsAmongTheSessionsEvents) {
+  begin();
+  ASSERT_TRUE(player_->gain(0.75));
+  ASSERT_TRUE(player_->play());
+  run(0.1);
+  const std::uint64_t ticks = ticks_here();
+  ASSERT_TRUE(player_->gain(-0.5));
+  run(0.1);
+  ASSERT_TRUE(player_->disarm());
+  std::vector<schema::SessionEvent> gains;
+  auto reader = schema::SessionReader::open(session_);
+  for (const auto& event : session_totals(*reader).events)
+    if (event.text.starts_with("gain")) gains.push_back(event);
+  ASSERT_EQ(gains.size(), 2U);
+  EXPECT_EQ(gains[0].text, "gain 0.75");
+  EXPECT_EQ(gains[1].text, "gain -0.5");
+  EXPECT_GE(gains[1].tick, ticks);
 }
 
 TEST_F(PlayerOnSim, ADeviceThatDoesNotAnswerIsLostOnceAndForAll) {

@@ -87,6 +87,32 @@ def check_kernel(folder):
     expect_refusal(folder, UNSUITABLE, "largest gain that fits", gain="100mm/N", engine="kernel")
 
 
+def check_interior(folder):
+    """A finger that moves at both ends: the onset and the ends are most of the error; away from them it is the kernel's.
+
+    Held against its own files: 15-500 Hz of what lies between the ends, under a Hann window.
+    """
+    made.write_path(folder / "moves.csv", [0, 3], [0.002, 0.048])
+    base = ["render", folder / "t", "--path", folder / "moves.csv", "--transducer", "wiertlewski2011", "-o", folder / "m.wav"]
+    report = made.report_of(*base, "--engine", "kernel", "--hold", "zero-order", "--displacement", folder / "moved.wav", "--wanted", folder / "wanted.wav")
+    keys = list(report)
+    assert keys.index("interior_displacement_error_db") < keys.index("left_out_at_each_end_s") < keys.index("displacement_error_db"), keys
+    assert abs(report["left_out_at_each_end_s"] - 0.75) < 1e-3, report  # 1 s, but a quarter of the path at most
+    moved, wanted = made.samples(folder / "moved.wav"), made.samples(folder / "wanted.wav")
+
+    def in_band(values):
+        inside = values[len(values) // 4 : -(len(values) // 4)]
+        hz = np.fft.rfftfreq(len(inside), 1e-4)
+        return np.sum(np.abs(np.fft.rfft(inside * np.hanning(len(inside))))[(hz >= 15) & (hz <= 500)] ** 2)
+
+    interior_db = 10 * np.log10(in_band(moved - wanted) / in_band(wanted))
+    # The window weighs the middle more, and the error need not be even: 2 dB.
+    assert abs(interior_db - report["interior_displacement_error_db"]) < 2, (interior_db, report)
+    assert report["interior_displacement_error_db"] < report["displacement_error_db"] - 20, report
+    text = made.run(*base, "--engine", "kernel", "--hold", "zero-order", "--force").stdout
+    assert text.index("interior displacement error") < text.index("left out at each end") < text.index(" displacement error", text.index("left out")), text
+
+
 def check_budget(folder):
     """What is asked for holds between the path's ends; a time alone is no promise; what can't be told is refused."""
     made.write_path(folder / "through.csv", [0, 1.5], [0.002, 0.048])  # goes at both ends
@@ -126,6 +152,7 @@ def main():
         check_refusals(folder)
         check_clipping(folder)
         check_kernel(folder)
+        check_interior(folder)
         check_budget(folder)
         check_report(folder)
 

@@ -76,8 +76,8 @@ TEST_F(SessionStrokes, BeforeTheFirstLossAreJudged) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(cut.strokes[i].from_m, whole.strokes[i].from_m);
     EXPECT_EQ(cut.strokes[i].to_s, whole.strokes[i].to_s);
-    EXPECT_NEAR(cut.strokes[i].error_db, whole.strokes[i].error_db, kBeyondTheLossDb);
-    EXPECT_NEAR(cut.strokes[i].level_db, whole.strokes[i].level_db, kBeyondTheLossDb);
+    EXPECT_NEAR(cut.strokes[i].predicted.error_db, whole.strokes[i].predicted.error_db, kBeyondTheLossDb);
+    EXPECT_NEAR(cut.strokes[i].predicted.level_db, whole.strokes[i].predicted.level_db, kBeyondTheLossDb);
   }
   EXPECT_TRUE(noted(cut, fmt::format("20 ticks are missing, from tick {} on", lost_from)));
 }
@@ -118,7 +118,7 @@ TEST_F(SessionStrokes, ATableHoldsEachCountsPlace) {
   const auto far = static_cast<std::int32_t>(std::lround(100 / metres_per_count));
   for (SessionTick& tick : all) tick.encoder += far;
   const std::string csv = folder_ / "far.csv";
-  ASSERT_TRUE(export_session(with_ticks(all, 0), csv, {}));
+  ASSERT_TRUE(export_session(with_ticks(all, 0), csv, schema::Existing::keep));
   std::ifstream lines(csv);
   std::string line;
   std::getline(lines, line);

@@ -218,6 +218,36 @@ TEST(LineFigure, NamesItsCurvesAndAxes) {
     EXPECT_NE(svg->find(words), std::string::npos) << words;
 }
 
+// The element of a label in the SVG's layer of text, which says where it is and how wide; empty: not drawn.
+std::string placed_label(const LineFigure& figure, const std::string& text) {
+  const auto svg = to_svg(figure);
+  const auto end = svg ? svg->find(">" + text + "<") : std::string::npos;
+  return end == std::string::npos ? ""
+                                  : svg->substr(svg->rfind("<text", end), end - svg->rfind("<text", end));
+}
+
+// A label gives way to every mark, also to those of later series, and is left out where there is no room.
+TEST(LineFigure, LabelsCoverNoMark) {
+  LineFigure figure;
+  figure.series = {{"frame", {0, 1}, {0, 1}, series_colour(0)},
+                   {"", {0.4}, {0.5}, series_colour(1), 1, false, true, {"a choice"}}};
+  const std::string alone = placed_label(figure, "a choice");
+  ASSERT_FALSE(alone.empty());
+  // 0.43 is some 18 points to the right, 0.52 some 5 above: below the label that was alone.
+  figure.series.push_back({"", {0.43}, {0.52}, series_colour(2), 1, false, true});
+  const std::string beside = placed_label(figure, "a choice");
+  EXPECT_FALSE(beside.empty());
+  EXPECT_NE(beside, alone);
+  Series crowd{"", {}, {}, series_colour(2), 1, false, true};
+  for (int i = 0; i <= 20; ++i)
+    for (int k = 0; k <= 20; ++k) {
+      crowd.x.push_back(0.3 + 0.01 * i);
+      crowd.y.push_back(0.4 + 0.01 * k);
+    }
+  figure.series.push_back(std::move(crowd));
+  EXPECT_TRUE(placed_label(figure, "a choice").empty());
+}
+
 TEST(LineFigure, RefusesUnevenOrEmptySeries) {
   LineFigure figure = two_curves();
   figure.series[1].y.pop_back();

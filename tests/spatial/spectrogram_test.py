@@ -95,7 +95,7 @@ class Spectrogram(unittest.TestCase):
         self.folder.cleanup()
 
     def made(self, *arguments):
-        done = run(*arguments)
+        done = run(*arguments, "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         return done
 
@@ -354,7 +354,7 @@ class Spectrogram(unittest.TestCase):
         for name, before in (("oak.nc", small), ("oak.csv", table), ("oak.png", table)):
             (self.here / name).write_bytes(before)
             done = subprocess.run(
-                [TACTOGRAPH, "spectrogram", self.stem, "-o", self.here / name],
+                [TACTOGRAPH, "spectrogram", self.stem, "--force", "-o", self.here / name],
                 capture_output=True, text=True,
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)),
             )  # fmt: skip

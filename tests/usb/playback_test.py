@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tactographd over the kernel's USB: the device's loop and the host's, each with a session that replays to the bit; a
-daemon that is killed and a device that is unplugged in mid-play. Finger and transducer are simulated.
+daemon that is killed or stopped, and a device that is unplugged, in mid-play. Finger and transducer are simulated.
 """
 import hashlib
 import json
@@ -19,6 +19,7 @@ import virtual_machine
 TIME_S = int(os.environ["TACTO_USB_SECONDS"])
 HOST_S = 10
 RATES_HZ = {"device": 2000, "host": 1000}
+WATCHDOG_MS = 1000
 LEAST_TICKS = 2000  # the emulated board passes over time in which its processor was elsewhere: of 120,000 in 60 s, 24,000 were seen
 
 
@@ -35,7 +36,7 @@ def write_texture(folder):
 # judged, and the watchdog is patient.
 def write_configs(folder):
     config = {"kind": "daemon", "version": "1.0", "device": "usb:", "transducer": "wiertlewski2011", "socket": "/guest/control",
-              "sessions": "/guest/sessions", "files": "/guest", "rate_hz": RATES_HZ["device"], "watchdog_ms": 1000}
+              "sessions": "/guest/sessions", "files": "/guest", "rate_hz": RATES_HZ["device"], "watchdog_ms": WATCHDOG_MS}
     for name in ("device", "killed", "after"):
         (folder / f"{name}.config.json").write_text(json.dumps(config))
     (folder / "second.config.json").write_text(json.dumps({**config, "socket": "/guest/second"}))
@@ -49,7 +50,7 @@ def status(name):
 
 
 def ticks_of(name):
-    tacto.run("session", f"{name}.session", "-o", f"{name}.csv")
+    tacto.run("session", f"{name}.session", "--force", "-o", f"{name}.csv")
     return np.genfromtxt(f"{name}.csv", delimiter=",", names=True)
 
 
@@ -68,13 +69,25 @@ def expect_played(name):
 
 
 def expect_fall(name):
-    """What the device itself did to its drive: DESIGN.md allows 20 ms. Gives the level it fell from."""
+    """What the device itself did to its drive, in its own ticks: DESIGN.md allows 20 ms of fall, which begins no later than the
+    watchdog's time after the host was heard last. Gives the level it fell from, and how long
+    the host had been silent when the fault came."""
     said = pathlib.Path(f"{name}.fall").read_text()
     print(f"{name}: {said.strip()}")
     assert "the device heard nothing from this computer" in said, said
+    silent_ms = float(re.search(r"came (\S+) ms before it", said).group(1))
     from_v, left_v, within_ms = map(float, re.search(r"from (\S+) V to (\S+) V within (\S+) ms", said).groups())
     assert left_v == 0 and within_ms <= 20, said
-    return from_v
+    assert silent_ms + within_ms <= WATCHDOG_MS + 20, said
+    return from_v, silent_ms
+
+
+def expect_quiet_once_woken(name):
+    """After SIGCONT the device saw no drive until the daemon was asked to play again; the script has seen that rise."""
+    woken = pathlib.Path(f"{name}.woken").read_text().strip()
+    print(f"{name}: {woken} rises of the drive after SIGCONT, state {status(name)['state']}")
+    assert woken == "0", woken
+    assert status(name)["state"] in ("fault", "lost"), status(name)
 
 
 def played_over_usb():
@@ -82,7 +95,7 @@ def played_over_usb():
     results.mkdir()
     write_texture(results)
     write_configs(results)
-    said = virtual_machine.run("playback.sh", results.resolve(), timeout_s=4 * TIME_S + 300, TACTOGRAPH=tacto.COMMAND,
+    said = virtual_machine.run("playback.sh", results.resolve(), timeout_s=8 * TIME_S + 300, TACTOGRAPH=tacto.COMMAND,
                                TACTOGRAPHD=os.environ["TACTOGRAPHD"], GADGET=os.environ["GADGET"], SECONDS_WANTED=TIME_S,
                                HOST_SECONDS=HOST_S)
     print(said)
@@ -95,8 +108,10 @@ def played_over_usb():
         assert status(name)["state"] == "playing", status(name)
     replayed = tacto.run_json("replay", "killed.session")
     assert replayed["same_to_the_bit"] and replayed["ticks_compared"] > LEAST_TICKS / 10, replayed
-    assert expect_fall("killed") > 0.1
+    assert expect_fall("killed")[0] > 0.1
     expect_fall("unplugged")
+    assert expect_fall("stopped")[1] >= WATCHDOG_MS  # the finger may rest: what it fell from is not judged
+    expect_quiet_once_woken("stopped")
     for name in ("second", "beside"):
         said = pathlib.Path(f"{name}.said").read_text()
         assert "another program" in said and "device" in said, said

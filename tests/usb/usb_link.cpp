@@ -9,6 +9,7 @@
 
 #include "capture/record.hpp"
 #include "firmware-host/wire_device.hpp"
+#include "firmware-host/open_device.hpp"
 #include "tests/usb/drive_check.hpp"
 
 namespace tacto::tests {

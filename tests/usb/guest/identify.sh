@@ -6,7 +6,7 @@ mkdir -p /run/lock
 start_gadget --board sim:tray_sensor=on,rate=4kHz,seed=3 --serial I1
 
 identify() {
-  timeout 200 "$TACTOGRAPH" identify -d usb: --method multisine --high 900Hz -o found --replace --json >"$R/identify.out" 2>"$R/identify.err"
+  timeout 200 "$TACTOGRAPH" identify -d usb: --method multisine --high 900Hz -o found --force --json >"$R/identify.out" 2>"$R/identify.err"
 }
 
 # A processor that QEMU translates stalls: the drive comes too late then, and the command says so and writes nothing.

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The daemon plays oak on a device behind the cable, whose emulated finger goes there, back and rests: SECONDS_WANTED in
-# device loop, then in host loop, then killed in mid-play, then unplugged. Config NAME.json and texture come by results.
+# device loop, then stopped (SIGSTOP) in mid-play, then in host loop, then killed in mid-play, then unplugged. Config
+# NAME.json and texture come by results.
 . "$GUEST/prelude.sh"
 R=/guest/results
 mkdir -p /run/lock
@@ -16,6 +17,8 @@ daemon() {
 }
 falls() { grep -c "the drive went from" "$R/gadget.log" || true; }
 fell() { [ "$(falls)" -gt "$FALLS" ]; }
+rises() { grep -c "the drive rises" "$R/gadget.log" || true; }
+rose() { [ "$(rises)" -gt "$RISES" ]; }
 daemon_ready() { kill -0 $DAEMON_PID || { cat "$R/$1.log"; fail "tactographd ended"; }; grep -q ready "$R/$1.log"; }
 begin() {
   ctl load oak --gain 0.5mm/N
@@ -30,7 +33,24 @@ end_daemon() {
 }
 keep() { cp "$(sed -n 's/^ *"session": "\(.*\)".*/\1/p' "$R/$1.json")" "$R/$1.session"; }
 
-# played NAME SECONDS : from ready to a session that is kept.
+# stopped NAME : the daemon that plays stands still (SIGSTOP) until the drive has fallen, and goes on (SIGCONT). How often the
+# drive rises within 3 s is in NAME.woken; then it is asked to play again, so that a rise is known to be seen.
+stopped() {
+  FALLS=$(falls)
+  kill -STOP $DAEMON_PID
+  within 20 fell
+  grep "the drive went from" "$R/gadget.log" | tail -1 >"$R/$1.fall"
+  RISES=$(rises)
+  kill -CONT $DAEMON_PID
+  sleep 3
+  echo $(($(rises) - RISES)) >"$R/$1.woken"
+  status "$1"
+  ctl disarm
+  begin
+  within 20 rose
+}
+
+# played NAME SECONDS : from ready to a session that is kept; then, in device loop, stopped in mid-play.
 played() {
   daemon "$1"
   begin
@@ -40,6 +60,10 @@ played() {
   sleep 0.3
   ctl disarm
   keep "$1"
+  if [ "$1" = device ]; then
+    begin
+    stopped stopped
+  fi
   end_daemon
 }
 

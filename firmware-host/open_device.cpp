@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/device.hpp"
+#include "firmware-host/open_device.hpp"
 
 #include <fmt/format.h>
 

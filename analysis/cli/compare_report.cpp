@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/cli/compare_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "data-schema/quantity.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using cli::Report;
+using schema::Dimension;
+using schema::for_people;
+
+Report band_row(const BandComparison& band) {
+  Report row;
+  row.add("centre_per_m", band.centre_per_m).add("partial", band.partial);
+  row.add("level_db", band.level_db).add("scatter_db", band.scatter_db);
+  if (band.error_db) row.add("error_db", *band.error_db);
+  if (band.residual_db) row.add("residual_db", *band.residual_db);
+  if (band.coherence) row.add("coherence", *band.coherence);
+  return row;
+}
+
+Report formant_row(const char* what, const schema::Formant* a, const schema::Formant* b) {
+  Report row;
+  row.add("formant", what);
+  if (a != nullptr) row.add("a_frequency_per_m", a->frequency_per_m);
+  if (b != nullptr) row.add("b_frequency_per_m", b->frequency_per_m);
+  if (a != nullptr && b != nullptr) row.add("level_db", b->level_db - a->level_db);
+  return row;
+}
+
+std::vector<Report> formant_rows(const Comparison& c) {
+  std::vector<Report> rows;
+  for (const auto& [i, j] : c.formants.matched)
+    rows.push_back(formant_row("matched", &c.a_formants[i], &c.b_formants[j]));
+  for (const std::size_t i : c.formants.missed)
+    rows.push_back(formant_row("missed", &c.a_formants[i], nullptr));
+  for (const std::size_t j : c.formants.extra)
+    rows.push_back(formant_row("extra", nullptr, &c.b_formants[j]));
+  return rows;
+}
+
+void add_pair(Report& report, const Comparison& c) {
+  report.add("aligned_by", c.pair.aligned).add("length_m", c.pair.length_m());
+  report.add("a_from_m", c.pair.a_from_m).add("b_from_m", c.pair.b_from_m);
+  if (c.pair.correlation) report.add("shift_m", c.pair.shift_m).add("correlation", *c.pair.correlation);
+  report.add("pitch_m", c.pair.pitch_m).add("window_m", c.window_m);
+  report.add("low_per_m", c.low_per_m).add("high_per_m", c.high_per_m);
+}
+
+void add_evidence(Report& report, const Comparison& c) {
+  const Evidence& e = c.evidence;
+  report.add("segments", e.segments).add("level_db", e.level_db);
+  report.add("level_low_db", e.level_low_db).add("level_high_db", e.level_high_db);
+  report.add("shape_db", e.shape_db).add("shape_chance_db", e.shape_chance_db);
+  report.add("shape_excess_db", e.shape_excess_db).add("finest_shape_db", e.finest_shape_db);
+  report.add("power_level_db", c.power_level_db).add("spectral_distance_db", c.spectral_distance_db);
+  if (!c.pair.paired) return;
+  report.add("gain", *c.gain).add("error_db", *c.error_db).add("residual_db", *c.residual_db);
+  report.add("coherence", *c.coherence).add("chance_coherence", c.chance_coherence);
+  report.add("point_by_point", c.point_by_point);
+}
+
+void add_narrow(Report& report, const Comparison& c) {
+  if (const auto& band = c.evidence.narrow) {
+    report.add("band_low_per_m", band->low_per_m).add("band_high_per_m", band->high_per_m);
+    report.add("band_level_db", band->level_db).add("band_score", band->score);
+    report.add("band_chance_score", band->chance_score);
+    report.add("band_differs", band_differs(c.evidence, c.tolerance_db));
+  }
+  if (const auto& line = c.evidence.line) {
+    report.add("line_per_m", line->frequency_per_m).add("line_in", line->in_b ? "B" : "A");
+    report.add("line_level_db", line->level_db).add("line_score", line->score);
+    report.add("line_chance_score", line->chance_score);
+    report.add("line_differs", line_differs(c.evidence, c.tolerance_db));
+  }
+}
+
+void add_detectable(Report& report, const Comparison& c) {
+  const std::string words = detectable_words(c.evidence, c.tolerance_db);
+  if (words.empty()) return;
+  report.add("detectable", words);
+  std::vector<Report> rows;
+  if (c.evidence.narrow)
+    for (const DetectableBand& band : c.evidence.narrow->detectable)
+      rows.push_back(Report().add("width_per_m", band.width_per_m).add("level_db", band.level_db));
+  report.add("detectable_bands", std::move(rows));
+  if (c.evidence.line)
+    report.add("detectable_line_db", std::max(c.evidence.line->detectable_db, c.tolerance_db));
+}
+
+std::string rms_key(const char* whose, const std::string& unit) {
+  return std::string(whose) + (unit == "N" ? "_rms_n" : unit == "m" ? "_rms_m" : "_rms");
+}
+
+std::string rms_words(const Comparison& c, double rms) {
+  if (c.pair.unit == "N") return for_people(rms, Dimension::force);
+  if (c.pair.unit == "m") return for_people(rms, Dimension::length);
+  return fmt::format("{:.4g} {}", rms, c.pair.unit);
+}
+
+std::string compared_band(const Comparison& c) {
+  return fmt::format("{} to {}", for_people(c.low_per_m, Dimension::spatial_frequency),
+                     for_people(c.high_per_m, Dimension::spatial_frequency));
+}
+
+void add_rms(Report& report, const Comparison& c) {
+  report.add("rms_band", compared_band(c) + ": of both RMS values, the band that is compared");
+  report.add(rms_key("a", c.pair.unit), c.a_rms).add(rms_key("b", c.pair.unit), c.b_rms);
+}
+
+// Lines of at most 120 columns: the widest label and the gap take 12.
+void add_wrapped(Report& report, std::string key, const std::string& text) {
+  constexpr std::size_t kColumns = 108;
+  std::string line;
+  const auto flush = [&] {
+    report.add(key, line);
+    key.clear();
+    line.clear();
+  };
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t to = std::min(text.find(' ', from), text.size());
+    if (!line.empty() && line.size() + 1 + to - from > kColumns) flush();
+    line += (line.empty() ? "" : " ") + text.substr(from, to - from);
+    from = to + 1;
+  }
+  flush();
+}
+
+// By what, without the conditions: the files and the page have them.
+std::string short_origin(const std::string& simulated) {
+  return simulated.substr(0, simulated.find(':'));
+}
+
+void add_origin(Report& report, const Comparison& c) {
+  const std::string a = short_origin(c.a_simulated), b = short_origin(c.b_simulated);
+  if (a.empty() && b.empty()) return;
+  add_wrapped(report, "simulated",
+              a == b      ? "A and B " + a
+              : a.empty() ? "B " + b
+              : b.empty() ? "A " + a
+                          : "A " + a + ", B " + b);
+}
+
+std::string place_by_place(const Comparison& c) {
+  return fmt::format("coherence {:.2f} (chance {:.2f}), error of B {:.1f} dB, gain {:.3g}: {}", *c.coherence,
+                     c.chance_coherence, *c.error_db, *c.gain,
+                     c.point_by_point ? "one place, point by point" : "not point by point");
+}
+
+}  // namespace
+
+Report compare_report(const ComparedNames& names, const Comparison& c) {
+  Report report;
+  report.add("a", names.a).add("b", names.b);
+  if (!c.a_simulated.empty()) report.add("a_simulated", c.a_simulated);
+  if (!c.b_simulated.empty()) report.add("b_simulated", c.b_simulated);
+  report.add("verdict", word_of(c.verdict.likeness)).add("because", c.verdict.because);
+  report.add("tolerance_db", c.tolerance_db);
+  add_detectable(report, c);
+  add_pair(report, c);
+  add_rms(report, c);
+  add_evidence(report, c);
+  add_narrow(report, c);
+  std::vector<Report> bands;
+  for (const BandComparison& band : c.bands) bands.push_back(band_row(band));
+  report.add("bands", std::move(bands));
+  report.add("matched", c.formants.matched.size()).add("missed", c.formants.missed.size());
+  return report.add("extra", c.formants.extra.size()).add("formants", formant_rows(c));
+}
+
+Report brief_compare_report(const ComparedNames& names, const Comparison& c,
+                            const std::vector<std::string>& written) {
+  Report report;
+  report.add("verdict", word_of(c.verdict.likeness));
+  add_wrapped(report, "because", c.verdict.because);
+  add_wrapped(report, "detectable", detectable_words(c.evidence, c.tolerance_db));
+  add_wrapped(report, "written", fmt::format("{}", fmt::join(written, " ")));
+  report.add("A", names.a).add("B", names.b);
+  add_origin(report, c);
+  add_wrapped(report, "compared",
+              fmt::format("{}, {}, aligned by {}, in {} windows of {}",
+                          for_people(c.pair.length_m(), Dimension::length), compared_band(c), c.pair.aligned,
+                          c.evidence.segments, for_people(c.window_m, Dimension::length)));
+  add_wrapped(report, "rms",
+              fmt::format("A {}, B {}, both from {}", rms_words(c, c.a_rms), rms_words(c, c.b_rms),
+                          compared_band(c)));
+  if (c.pair.paired) add_wrapped(report, "places", place_by_place(c));
+  add_wrapped(report, "formants",
+              fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),
+                          c.formants.missed.size(), c.formants.extra.size()));
+  return report;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/cli/identify_loops.hpp"
+
+#include <fmt/format.h>
+
+#include "analysis/cli/identify_report.hpp"
+#include "analysis/identify/bode_figure.hpp"
+#include "analysis/identify/identify_results.hpp"
+#include "analysis/identify/loop_figure.hpp"
+#include "analysis/identify/plausibility.hpp"
+#include "data-schema/cli/progress.hpp"
+#include "data-schema/cli/stop_signals.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using cli::Report;
+using schema::Dimension;
+using schema::Result;
+
+constexpr double kSweepPart = 0.75;  // of the time that both take
+
+std::string loops_words(double amplitude_v) {
+  return "loops of " + schema::for_people(amplitude_v, Dimension::voltage) + " at 1 Hz";
+}
+
+Result<DrivenTray> driven_loops(const IdentifyOptions& o, IdentifySource& source,
+                                schema::Identification& about) {
+  firmware_host::Device& device = *source.device.device;
+  const double amplitude_v = o.amplitude_v.value_or(loop_amplitude_v(source.base));
+  about.source = device.capabilities().uri;
+  about.simulated = device.capabilities().simulated;
+  about.conditions = loops_words(amplitude_v);
+  const cli::StopSignals signals;
+  cli::Progress progress("identifying");
+  auto tray = drive_tray(
+      device, slow_loops(drive_rate_hz(device), amplitude_v), [&] { return signals.stop_asked(); },
+      [&](double part) { progress.update(part); });
+  source.stopped = signals.stop_asked();
+  return tray;
+}
+
+Result<DrivenTray> loops_of(const IdentifyOptions& o, IdentifySource& source, schema::Identification& about) {
+  if (source.has_device()) return driven_loops(o, source, about);
+  about.source = o.file;
+  auto tray = read_driven_table(o.file);
+  if (tray && !(tray->rate_hz > 0)) tray->rate_hz = o.rate_hz.value_or(0);
+  if (tray && o.invert)
+    for (double& value : tray->displacement_m) value = -value;
+  return tray;
+}
+
+void warn_of_limits(const char* what, std::size_t limited) {
+  if (limited == 0) return;
+  cli::warn(
+      fmt::format("the device held {} ticks of the {} to a limit: they were fitted as they were driven; a "
+                  "smaller --amplitude avoids it",
+                  limited, what));
+}
+
+struct SweepAndLoops {
+  DrivenResponse sweep;
+  DrivenTray loops;
+};
+
+// The sweep with the amplitude asked for, the loops as far as the limits go.
+Result<SweepAndLoops> measured_both(const IdentifyOptions& o, IdentifySource& source) {
+  firmware_host::Device& device = *source.device.device;
+  const cli::StopSignals signals;
+  cli::Progress progress("identifying");
+  const auto stop_asked = [&] { return signals.stop_asked(); };
+  const ExcitationPlan plan = plan_on(o, device, joint_amplitude_v(o.plan, source.base));
+  const double amplitude_v = loop_amplitude_v(source.base);
+  auto sweep = driven_response(device, IdentifyMethod::sweep, plan, source.base, stop_asked,
+                               [&](double part) { progress.update(kSweepPart * part); });
+  source.stopped = signals.stop_asked();
+  if (!sweep) return schema::forward_error(sweep);
+  auto loops = drive_tray(device, slow_loops(plan.rate_hz, amplitude_v, plan.amplitude_v), stop_asked,
+                          [&](double part) { progress.update(kSweepPart + (1 - kSweepPart) * part); });
+  source.stopped = signals.stop_asked();
+  if (!loops) return schema::forward_error(loops);
+  sweep->data.conditions += ", and " + loops_words(amplitude_v);
+  return SweepAndLoops{std::move(*sweep), std::move(*loops)};
+}
+
+Result<JointFit> joint_fit_of(const IdentifyOptions& o, SweepAndLoops& both, const schema::Transducer& base) {
+  BodeData& data = both.sweep.data;
+  add_model_conditions(o, data);
+  if (const auto sound = check_measured(data, o.model, base, {}); !sound) return schema::forward_error(sound);
+  auto fit = fit_jointly(data, both.sweep.drive, both.loops, o.model, base);
+  if (!fit) return fit;
+  if (const auto upright = check_upright(fit->loops, data.source); !upright)
+    return schema::forward_error(upright);
+  if (const auto sound = check_fitted(o, fit->response, o.model, base); !sound)
+    return schema::forward_error(sound);
+  return fit;
+}
+
+}  // namespace
+
+Result<Report> identify_loops(const IdentifyOptions& o, IdentifySource& source) {
+  schema::Identification about;
+  about.conditions = "loops measured elsewhere";
+  const auto tray = loops_of(o, source, about);
+  if (!tray) return schema::forward_error(tray);
+  if (!(tray->rate_hz > 0))
+    cli::warn("no rate is known: the linear model's own lag is counted as hysteresis");
+  warn_of_limits("loops", tray->limited);
+  const double held_s = source.has_device() ? 0.5 / tray->rate_hz : 0;
+  const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz,
+                             delay_at_rest_s(source.base) + held_s, source.base.drive_limit_v);
+  if (!fit) return schema::forward_error(fit);
+  if (const auto upright = check_upright(*fit, about.source, o.invert); !upright)
+    return schema::forward_error(upright);
+  if (const auto sized = o.implausible ? Result<void>() : check_size(*fit, source.base, about.source); !sized)
+    return schema::forward_error(sized);
+  const schema::Transducer found = identified(*fit, source.base, transducer_name_of(o), about);
+  if (const auto written = schema::write_transducer(o.stem, found); !written)
+    return schema::forward_error(written);
+  Report report = loop_report(*fit, found, transducer_file_of(o));
+  if (const auto drawn = draw_identified(o, loop_figure(*fit, found), report); !drawn)
+    return schema::forward_error(drawn);
+  return with_identify_results(
+      o, [&] { return identify_results(*fit, found); }, std::move(report));
+}
+
+Result<Report> identify_jointly(const IdentifyOptions& o, IdentifySource& source) {
+  auto both = measured_both(o, source);
+  if (!both) return schema::forward_error(both);
+  warn_of_limits("sweep", both->sweep.data.limited);
+  warn_of_limits("loops", both->loops.limited);
+  const auto fit = joint_fit_of(o, *both, source.base);
+  if (!fit) return schema::forward_error(fit);
+  const schema::Transducer found = identified(*fit, source.base, transducer_name_of(o));
+  if (const auto written = schema::write_transducer(o.stem, found); !written)
+    return schema::forward_error(written);
+  Report report = joint_report(*fit, o.model, source.base, found, transducer_file_of(o));
+  if (const auto drawn = draw_identified(o, BodeFigure(fit->response), report); !drawn)
+    return schema::forward_error(drawn);
+  return with_identify_results(
+      o, [&] { return identify_results(*fit, o.model, source.base, found); }, std::move(report));
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/cli/identify_options.hpp"
+
+#include <filesystem>
+
+#include "analysis/cli/results_output.hpp"
+#include "analysis/identify/plausibility.hpp"
+#include "data-schema/files.hpp"
+
+namespace tacto::analysis {
+
+using cli::Report;
+using schema::Result;
+
+ExcitationPlan plan_on(const IdentifyOptions& o, const firmware_host::Device& device, double usual_v) {
+  ExcitationPlan plan = o.plan;
+  plan.rate_hz = drive_rate_hz(device);
+  plan.amplitude_v = o.amplitude_v.value_or(usual_v);
+  return plan;
+}
+
+std::string transducer_name_of(const IdentifyOptions& o) {
+  return std::filesystem::path(schema::stem_of(o.stem, ".transducer")).filename().string();
+}
+
+std::string transducer_file_of(const IdentifyOptions& o) {
+  return schema::stem_of(o.stem, ".transducer") + ".transducer.json";
+}
+
+void add_model_conditions(const IdentifyOptions& o, BodeData& data) {
+  if (o.model.lag) data.conditions += ", with a constant lag";
+  if (o.model.finger) data.conditions += ", a finger on the tray";
+  if (o.model.second_mode) data.conditions += ", with a second mode";
+}
+
+Result<void> draw_identified(const IdentifyOptions& o, const spatial::Figure& figure, Report& report) {
+  if (o.picture.empty()) return {};
+  if (auto drawn = spatial::write_figure(o.picture, figure); !drawn) return drawn;
+  report.add("picture", o.picture);
+  return {};
+}
+
+Result<Report> with_identify_results(const IdentifyOptions& o, const std::function<schema::Results()>& make,
+                                     Report report) {
+  if (o.results.empty()) return report;
+  schema::Results results = make();
+  results.verb = "identify";
+  results.device = o.device_uri;
+  for (const std::string& input : {o.file, o.base})
+    if (!input.empty()) results.inputs.push_back(input);
+  const auto no_page = [] { return Result<std::string>(); };
+  if (auto written = write_outputs({o.results}, o.existing, std::move(results), report, no_page); !written)
+    return schema::forward_error(written);
+  return report.add("results", o.results);
+}
+
+Result<void> check_fitted(const IdentifyOptions& o, const ResponseFit& fit, const ModelChoice& choice,
+                          const schema::Transducer& base) {
+  if (const auto level = check_levels(fit, choice, base); !level || o.implausible) return level;
+  if (const auto sized = check_size(fit, base); !sized) return sized;
+  return check_frequencies(fit, base);
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `identify` was asked for, and what its ways of measuring share.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "analysis/identify/identification.hpp"
+#include "analysis/identify/measured_tables.hpp"
+#include "data-schema/cli/report.hpp"
+#include "data-schema/files.hpp"
+#include "data-schema/results.hpp"
+#include "playback/daemon/player_device.hpp"
+#include "spatial/picture/figure.hpp"
+
+namespace tacto::analysis {
+
+struct IdentifyOptions {
+  std::string file, device_uri, stem, base, picture, results;
+  IdentifyMethod method = IdentifyMethod::joint;
+  ModelChoice model;
+  TableUnits units;
+  ExcitationPlan plan;
+  std::optional<double> amplitude_v, rate_hz;
+  std::string input = "drive", output = "displacement";
+  int phase_sign = 1;
+  std::size_t taps_fitted = 0;
+  bool invert = false, implausible = false;
+  schema::Existing existing = schema::Existing::keep;
+};
+
+/// A device, or a file.
+struct IdentifySource {
+  playback::PlayerDevice device;
+  schema::Transducer base;
+  bool stopped = false;  ///< by a signal, while it was measured
+  bool has_device() const { return device.device != nullptr; }
+};
+
+/// The plan at the device's rate; its peak the one asked for, else `usual_v`.
+ExcitationPlan plan_on(const IdentifyOptions& options, const firmware_host::Device& device, double usual_v);
+std::string transducer_name_of(const IdentifyOptions& options);
+std::string transducer_file_of(const IdentifyOptions& options);
+void add_model_conditions(const IdentifyOptions& options, BodeData& data);
+/// Where a picture was asked for. Errors: as write_figure.
+schema::Result<void> draw_identified(const IdentifyOptions& options, const spatial::Figure& figure,
+                                     cli::Report& report);
+/// Where results were asked for; their details are the report as it is.
+schema::Result<cli::Report> with_identify_results(const IdentifyOptions& options,
+                                                  const std::function<schema::Results()>& make,
+                                                  cli::Report report);
+/// What a response is checked against before and after it is fitted: plausibility.hpp.
+schema::Result<void> check_fitted(const IdentifyOptions& options, const ResponseFit& fit,
+                                  const ModelChoice& choice, const schema::Transducer& base);
+
+}  // namespace tacto::analysis

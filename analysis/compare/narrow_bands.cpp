@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/compare/narrow_bands.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "analysis/compare/local_mean.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using Values = std::vector<double>;
+
+constexpr std::array<std::size_t, 10> kWidths = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
+constexpr std::size_t kFewestCells = 6;
+constexpr std::size_t kWhitened = 8;  // cells to each side that make the smooth density
+constexpr double kDecibels = 10 / std::numbers::ln10;
+constexpr double kOverlap = 19.0 / 18;  // variance of a mean over half-overlapping Hann windows (Welch 1967)
+constexpr double kCellFloor = 1e-6;     // of the strongest cell: as the verdict's bands
+constexpr double kEightInTen = 0.841621;  // standard deviations above the threshold
+
+// Scores that 4.5 % of the pairs of white Gaussian noise exceed, 15 segments each (4,000 pairs and more up to
+// 192 cells, 600 to 2,000 above): made by tests/analysis/compare_thresholds.py. 8 or 30 segments change them
+// by 1 %.
+struct ChanceScore {
+  double cells, score;
+};
+constexpr std::array<ChanceScore, 9> kChance = {{{6, 2.49},
+                                                 {12, 2.92},
+                                                 {24, 3.26},
+                                                 {48, 3.55},
+                                                 {96, 3.77},
+                                                 {192, 3.97},
+                                                 {384, 4.15},
+                                                 {768, 4.33},
+                                                 {1536, 4.50}}};
+
+// Between the table's values along ln(cells); beyond its end along its last line.
+double chance_score(std::size_t cells) {
+  const auto count = static_cast<double>(cells);
+  std::size_t i = 1;
+  while (i + 1 < kChance.size() && kChance[i].cells < count) ++i;
+  const ChanceScore &low = kChance[i - 1], &high = kChance[i];
+  const double part = std::log(count / low.cells) / std::log(high.cells / low.cells);
+  return low.score + part * (high.score - low.score);
+}
+
+double trigamma(double x) {  // Abramowitz and Stegun 6.4.12; within 1e-4 from 3 on
+  return 1 / x + 1 / (2 * x * x) + 1 / (6 * x * x * x);
+}
+
+// Shape of the gamma distribution that a band's power follows: `width` cells of n half-overlapping Hann
+// windows of white noise. The powers of two cells correlate by the squares of the transform of w(x) w(x + s).
+double gamma_shape(std::size_t width, std::size_t segments) {
+  constexpr std::array<double, 4> kSameSegment = {1, 4.0 / 9, 1.0 / 36, 0};
+  constexpr std::array<double, 4> kNextSegment = {1.0 / 36, 0.0200141, 1.0 / 144, 0.000800562};
+  const auto n = static_cast<double>(segments), w = static_cast<double>(width);
+  double variance = 0;
+  for (std::size_t d = 0; d < std::min<std::size_t>(width, 4); ++d)
+    variance += (d == 0 ? 1 : 2) * (w - static_cast<double>(d)) *
+                (kSameSegment[d] + 2 * (n - 1) / n * kNextSegment[d]);
+  return w * w * n / variance;
+}
+
+Values mean_row(const Values& rows, std::size_t cells) {
+  Values mean(cells, 0.0);
+  for (std::size_t i = 0; i < rows.size(); ++i) mean[i % cells] += rows[i];
+  const double count = static_cast<double>(rows.size()) / static_cast<double>(cells);
+  for (double& value : mean) value /= count;
+  return mean;
+}
+
+// One texture's cells, in the mean over all segments and over all but one.
+class CellPowers {
+ public:
+  CellPowers(const Values& rows, const Values& smooth) : segments_(rows.size() / smooth.size()) {
+    Values mean = mean_row(rows, smooth.size());
+    const auto n = static_cast<double>(segments_);
+    for (std::size_t row = 0; row < segments_; ++row) {
+      Values rest(smooth.size());
+      for (std::size_t k = 0; k < rest.size(); ++k)
+        rest[k] = (n * mean[k] - rows[row * rest.size() + k]) / ((n - 1) * smooth[k]);
+      without_.push_back(whitened(rest));
+    }
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] /= smooth[k];
+    all_ = whitened(mean);
+  }
+
+  struct Powers {
+    Values sums;          // running sums over the cells
+    double mean_log = 0;  // over the cells
+    double log_of(std::size_t first, std::size_t width) const {
+      return std::log(sums[first + width] - sums[first]) - mean_log;
+    }
+  };
+  std::size_t segments() const { return segments_; }
+  std::size_t cells() const { return all_.sums.size() - 1; }
+  const Powers& all() const { return all_; }
+  const Powers& without(std::size_t segment) const { return without_[segment]; }
+
+ private:
+  static Powers whitened(const Values& cells) {
+    double sum = 0;
+    for (const double power : cells) sum += std::log(power);
+    return {running_sums(cells), sum / static_cast<double>(cells.size())};
+  }
+
+  std::size_t segments_;
+  Powers all_;
+  std::vector<Powers> without_;
+};
+
+// The cells within the band, each with the floor.
+Values cells_of(const Values& density, const SegmentSpectra& spectra, std::size_t first, std::size_t cells) {
+  Values rows, mean(cells, 0.0);
+  for (std::size_t row = 0; row < density.size() / spectra.bins; ++row)
+    for (std::size_t k = 0; k < cells; ++k) {
+      rows.push_back(density[row * spectra.bins + first + k]);
+      mean[k] += rows.back();
+    }
+  const double least = kCellFloor * *std::ranges::max_element(mean) * static_cast<double>(cells) /
+                       static_cast<double>(rows.size());
+  for (double& power : rows) power += least;
+  return rows;
+}
+
+Values smooth_density(const Values& a, const Values& b, std::size_t cells) {
+  const Values of_a = mean_row(a, cells), of_b = mean_row(b, cells);
+  Values logs(cells);
+  for (std::size_t k = 0; k < cells; ++k) logs[k] = 0.5 * std::log(of_a[k] * of_b[k]);
+  logs = local_mean(logs, kWhitened);
+  for (double& value : logs) value = std::exp(value);
+  return logs;
+}
+
+// The jackknife's variance (Efron 1979), of values that were each computed without one segment.
+double jackknife_variance(const Values& values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return (n - 1) / n * squares;
+}
+
+// Variance of ln(B / A) in the band, as the segments show it: in pairs where they are paired.
+double seen_variance(const CellPowers& a, const CellPowers& b, bool paired, std::size_t first,
+                     std::size_t width) {
+  Values of_a, of_b;
+  for (std::size_t i = 0; i < a.segments(); ++i) of_a.push_back(a.without(i).log_of(first, width));
+  for (std::size_t i = 0; i < b.segments(); ++i) of_b.push_back(b.without(i).log_of(first, width));
+  if (!paired) return kOverlap * (jackknife_variance(of_a) + jackknife_variance(of_b));
+  for (std::size_t i = 0; i < of_b.size(); ++i) of_b[i] -= of_a[i];
+  return kOverlap * jackknife_variance(of_b);
+}
+
+double steady_variance(const CellPowers& a, const CellPowers& b, std::size_t width) {
+  const auto cells = static_cast<double>(a.cells());
+  return (trigamma(gamma_shape(width, a.segments())) + trigamma(gamma_shape(width, b.segments()))) *
+         (1 - static_cast<double>(width) / cells);  // less the mean level, which the band is a part of
+}
+
+// Standard error of the level of a band of this width, dB: of steady textures, or the larger one that the
+// segments show in the mean over all places. A band's own scatter is too uncertain to divide by.
+double standard_error(const CellPowers& a, const CellPowers& b, bool paired, std::size_t width) {
+  const std::size_t places = a.cells() - width + 1;
+  double seen = 0;
+  for (std::size_t first = 0; first < places; ++first) seen += seen_variance(a, b, paired, first, width);
+  return kDecibels * std::sqrt(std::max(seen / static_cast<double>(places), steady_variance(a, b, width)));
+}
+
+// Level by which a band of so many cells must rise to be found, and to exceed the tolerance, in 8 of 10
+// pairs. The rise also lifts the mean level that it is held against, and Hann's window with edges that fall
+// between cells takes the power of a third of a cell out of the band (measured: compare_narrow_test).
+double detectable_db(double standard_error_db, const NarrowBand& best, double tolerance_db, std::size_t width,
+                     std::size_t cells) {
+  constexpr double kLostCells = 0.35;
+  const auto w = static_cast<double>(width), c = static_cast<double>(cells);
+  const double threshold_db = std::max(best.chance_score * standard_error_db, tolerance_db);
+  const double seen_db = (threshold_db + kEightInTen * standard_error_db) / (1 - w / c);
+  return kDecibels * std::log1p(std::expm1(seen_db / kDecibels) / (1 - kLostCells / w));
+}
+
+struct Axis {
+  double step, low;  // between cells; the lower edge of the first
+};
+
+void scan_width(NarrowBand& best, const CellPowers& a, const CellPowers& b, bool paired, std::size_t width,
+                const Axis& axis, double tolerance_db) {
+  const double error_db = standard_error(a, b, paired, width);
+  // A wide band with a high score but a level within the tolerance must not hide one beyond it.
+  const auto rank = [&](double level_db, double score) {
+    return std::pair(std::abs(level_db) > tolerance_db, score);
+  };
+  for (std::size_t first = 0; first + width <= a.cells(); ++first) {
+    const double level_db = kDecibels * (b.all().log_of(first, width) - a.all().log_of(first, width));
+    const double score = std::abs(level_db) / error_db;
+    if (rank(level_db, score) > rank(best.level_db, best.score)) {
+      best.score = score;
+      best.level_db = level_db;
+      best.low_per_m = axis.low + axis.step * static_cast<double>(first);
+      best.high_per_m = best.low_per_m + axis.step * static_cast<double>(width);
+    }
+  }
+  best.detectable.push_back({axis.step * static_cast<double>(width),
+                             detectable_db(error_db, best, tolerance_db, width, a.cells())});
+}
+
+}  // namespace
+
+std::optional<NarrowBand> strongest_band(const SegmentSpectra& spectra, double low, double high,
+                                         double tolerance_db) {
+  std::size_t first = 0, cells = 0;
+  for (std::size_t k = 0; k < spectra.bins; ++k)
+    if (spectra.frequency(k) < low)
+      first = k + 1;
+    else if (spectra.frequency(k) <= high)
+      ++cells;
+  if (cells < kFewestCells || std::min(spectra.segments_a, spectra.segments_b) < 2) return std::nullopt;
+  const Values rows_a = cells_of(spectra.aa, spectra, first, cells);
+  const Values rows_b = cells_of(spectra.bb, spectra, first, cells);
+  const Values smooth = smooth_density(rows_a, rows_b, cells);
+  const CellPowers a(rows_a, smooth), b(rows_b, smooth);
+  NarrowBand best;
+  best.chance_score = chance_score(cells);
+  const Axis axis{spectra.step, spectra.frequency(first) - 0.5 * spectra.step};
+  for (const std::size_t width : kWidths)
+    if (width <= cells / 2) scan_width(best, a, b, !spectra.ab.empty(), width, axis, tolerance_db);
+  // The cells at the ends reach half a cell beyond the band.
+  best.low_per_m = std::max(best.low_per_m, low);
+  best.high_per_m = std::min(best.high_per_m, high);
+  return best;
+}
+
+}  // namespace tacto::analysis

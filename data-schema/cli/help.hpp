@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `tactograph help TOPIC` says beside the help of verbs.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tacto::cli {
+
+/// A topic that a folder explains: the keys of `sim:`, say.
+struct HelpTopic {
+  std::string_view name, summary;
+  std::string (*text)();
+};
+
+/// The topics of every command (units, exit-codes) and those given, as lines "name  summary".
+std::string topics_text(std::span<const HelpTopic* const> topics);
+
+/// Names of all topics.
+std::vector<std::string> topic_names(std::span<const HelpTopic* const> topics);
+
+/// What the topic explains; empty where there is no such topic.
+std::string topic_text(std::string_view name, std::span<const HelpTopic* const> topics);
+
+}  // namespace tacto::cli

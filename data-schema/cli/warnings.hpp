@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many warnings of one kind as one line.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tacto::cli {
+
+/// What the user should know of one of several things. Warnings of one `kind` differ in size only; without a
+/// kind a warning stands alone.
+struct Warning {
+  std::string about;  ///< the file or stroke; may be empty
+  std::string text;
+  std::string kind = {};
+  double size = 0;  ///< the largest of a kind is the worst
+};
+
+/// "about: text"
+std::string sentence(const Warning& warning);
+
+/// One line a kind, in the order in which kinds first come: the worst, and of how many.
+std::vector<std::string> grouped(std::span<const Warning> warnings);
+
+/// Prints them grouped on stderr, one line a kind. All of them are in the report with --json.
+void warn_grouped(std::span<const Warning> warnings);
+
+/// The same for sentences: those that differ only in their numbers are of one kind, of which the first is
+/// printed.
+void warn_grouped(std::span<const std::string> sentences);
+
+/// All warnings of this run, each of them, in order: what --json lists.
+std::vector<std::string> all_warnings();
+
+/// How many lines of warnings were printed.
+std::size_t printed_warnings();
+
+/// Prints one line, and adds it to all_warnings().
+void print_warning(const std::string& text);
+
+}  // namespace tacto::cli

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Decibels of many cells at once, for files and pictures. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace tacto::schema {
+
+/// out[i] = factor * log10(cells[i]), within 2e-5 dB for factors up to 20 (single precision, a polynomial of
+/// the mantissa); NaN where a cell is not above 0. As many as `out` has.
+void to_decibels(std::span<const float> cells, float factor, std::span<float> out);
+
+/// The transposed rows: from `rows` rows of `columns` to `columns` rows of `rows`.
+void transpose(std::span<const float> cells, std::size_t rows, std::size_t columns, std::span<float> out);
+
+}  // namespace tacto::schema

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What somebody probably meant by a misspelt word.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace tacto::schema {
+
+/// The word that takes the fewest typing errors (a letter left out, added, replaced, or two swapped: optimal
+/// string alignment), where these are at most a third of its letters, or one; upper and lower case alike.
+/// Empty where none is that near.
+std::string nearest_word(std::string_view typed, std::span<const std::string> words);
+
+/// ", did you mean 'word'?", or nothing.
+std::string did_you_mean(std::string_view typed, std::span<const std::string> words);
+
+}  // namespace tacto::schema

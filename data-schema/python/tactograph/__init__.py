@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Read the files of tactograph into xarray datasets: labelled axes, SI units, masks and gaps.
+
+    import tactograph
+    recording = tactograph.read_recording("oak")       # force and position against time
+    texture = tactograph.read_texture("oak")           # force against position
+    session = tactograph.read_session("first")         # each tick of a playback
+    spectrogram = tactograph.read_spectrogram("oak")   # density against position and spatial frequency
+
+A file is named by its stem or in full. The package reads; it writes nothing. Its needs are NumPy, xarray, soundfile and netCDF4.
+"""
+from tactograph.errors import FileProblem
+from tactograph.recording import read_recording
+from tactograph.session import read_session
+from tactograph.spectrogram import read_spectrogram
+from tactograph.texture import read_texture
+
+__all__ = ["FileProblem", "read_recording", "read_session", "read_spectrogram", "read_texture"]

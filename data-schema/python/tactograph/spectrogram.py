@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Spatial spectrograms: density against position and spatial frequency (NAME.nc)."""
+import numpy as np
+import xarray
+
+from tactograph.documents import check_kind, find
+from tactograph.errors import FileProblem
+
+
+def read_spectrogram(name):
+    """A spatial spectrogram as an xarray.Dataset, loaded into memory.
+
+    name: the stem or NAME.nc. `density` has dimensions `spatial_frequency` and `position` (and `stroke`), whatever their order in
+    the file; `density_db` is 10 log10 of it. `known` is True where the cell is within the texture's valid band.
+    Raises FileProblem.
+    """
+    path = find(name, [".nc"])
+    try:
+        with xarray.open_dataset(path, engine="netcdf4") as opened:
+            spectrogram = opened.load()
+    except OSError as error:
+        raise FileProblem(f"cannot be read as netCDF ({error})", path) from error
+    check_kind(spectrogram.attrs, "spectrogram", path)
+    if "known" in spectrogram:
+        spectrogram["known"] = spectrogram["known"].astype(bool)
+    if "density_db" not in spectrogram:
+        spectrogram["density_db"] = _decibels(spectrogram["density"])
+    return spectrogram.transpose(..., "spatial_frequency", "position")
+
+
+def _decibels(density):
+    with np.errstate(divide="ignore"):
+        level = 10 * np.log10(density.astype("float64"))
+    level.attrs = {"units": "dB", "long_name": f"density re 1 {density.attrs.get('units', '')}".strip()}
+    return level

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/device_to_record.hpp"
+#include "firmware-host/open_device.hpp"
+
+#include <string_view>
+#include <utility>
+
+#include "firmware-host/sim/sim_device.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::Result;
+
+constexpr std::string_view kSimScheme = "sim:", kReplayScheme = "replay:";
+
+// The most that the key takes: over a day at its shortest and fastest.
+constexpr std::string_view kStrokesWithoutEnd = "strokes=1000000";
+
+bool has_strokes_key(std::string_view parameters) {
+  return parameters.starts_with("strokes=") || parameters.find(",strokes=") != std::string_view::npos;
+}
+
+Result<DeviceToRecord> open_sim_to_record(const std::string& uri) {
+  std::string parameters = uri.substr(kSimScheme.size());
+  const auto asked = parse_sim_parameters(parameters);
+  if (!asked) return schema::forward_error(asked);
+  DeviceToRecord opened;
+  const bool strokes_asked = has_strokes_key(parameters) || asked->counter || asked->known_force;
+  if (strokes_asked)
+    opened.strokes = asked->counter ? 0 : static_cast<std::uint64_t>(asked->strokes.strokes);
+  else
+    parameters.append(parameters.empty() ? "" : ",").append(kStrokesWithoutEnd);
+  auto device = make_sim_device(uri, parameters);
+  if (!device) return schema::forward_error(device);
+  opened.device = std::move(*device);
+  return opened;
+}
+
+}  // namespace
+
+Result<DeviceToRecord> open_device_to_record(const std::string& uri) {
+  if (uri.starts_with(kSimScheme)) return open_sim_to_record(uri);
+  auto device = open_device(uri);
+  if (!device) return schema::forward_error(device);
+  return DeviceToRecord{std::move(*device), uri.starts_with(kReplayScheme), std::nullopt};
+}
+
+}  // namespace tacto::firmware_host

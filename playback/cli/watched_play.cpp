@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/cli/watched_play.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include "data-schema/cli/stop_signals.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using cli::Report;
+using schema::ControlFields;
+using schema::ControlRequest;
+using schema::ControlVerb;
+using schema::Result;
+
+constexpr int kBeatMs = 250;
+constexpr double kDeadManS = 2;  // eight beats: a busy computer delays some
+
+Result<ControlFields> asked(ControlConnection& connection, ControlVerb verb) {
+  ControlRequest request;
+  request.verb = verb;
+  return connection.ask(request);
+}
+
+bool says_while_connected(const ControlFields& armed) {
+  return std::ranges::any_of(armed, [](const auto& field) {
+    const auto* flag = std::get_if<bool>(&field.second);
+    return field.first == "while_connected" && flag != nullptr && *flag;
+  });
+}
+
+// An older daemon passes over what it does not know, and would play on alone.
+Result<void> arm_while_connected(ControlConnection& connection) {
+  ControlRequest request;
+  request.verb = ControlVerb::arm;
+  request.while_connected = true;
+  request.dead_man_s = kDeadManS;
+  const auto armed = connection.ask(request);
+  if (!armed) return schema::forward_error(armed);
+  if (says_while_connected(*armed)) return {};
+  (void)asked(connection, ControlVerb::disarm);
+  return schema::fail(
+      schema::Fault::unsupported_version,
+      "the daemon is older than version 1.2 of its protocol: it would play on without this command",
+      connection.socket(), "update it, or use 'ctl arm' and 'ctl play'");
+}
+
+bool goes_on(const ControlFields& status) {
+  const std::string state = schema::control_text(status, "state");
+  return state == "armed" || state == "playing";
+}
+
+Result<Report> report_of_end(ControlConnection& connection) {
+  const auto status = asked(connection, ControlVerb::status);
+  if (!status) return schema::forward_error(status);
+  constexpr std::array<std::string_view, 9> kTold = {
+      "state", "why", "fault", "session", "played_s", "armed_s", "lost_ticks", "late_ticks", "drive_peak_v"};
+  Report report;
+  for (const auto& [name, value] : *status) {
+    if (std::ranges::find(kTold, name) == kTold.end()) continue;
+    if (const auto* text = std::get_if<std::string>(&value)) report.add(name, *text);
+    if (const auto* number = std::get_if<double>(&value)) report.add(name, *number);
+    if (const auto* count = std::get_if<std::int64_t>(&value)) report.add(name, *count);
+  }
+  const std::string state = schema::control_text(*status, "state");
+  if (state == "fault" || state == "lost") report.ends_with(schema::Fault::device);
+  return report;
+}
+
+// Each status that is asked for is a sign of life, too.
+Result<void> watch_until_the_end(ControlConnection& connection, std::optional<double> time_s,
+                                 const cli::StopSignals& signals,
+                                 const std::function<void(const ControlFields&)>& show) {
+  const auto begun = std::chrono::steady_clock::now();
+  const auto over = [&] {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begun;
+    return time_s && elapsed.count() >= *time_s;
+  };
+  while (!signals.stop_asked() && !over()) {
+    const auto status = asked(connection, ControlVerb::status);
+    if (!status) return schema::forward_error(status);
+    show(*status);
+    if (!goes_on(*status)) return {};
+    // Nothing comes unasked: this waits, and a signal ends it.
+    if (const auto waited = connection.next_event(kBeatMs); !waited) return schema::forward_error(waited);
+  }
+  if (const auto stopped = asked(connection, ControlVerb::stop); !stopped)
+    return schema::forward_error(stopped);
+  const auto disarmed = asked(connection, ControlVerb::disarm);
+  return disarmed ? Result<void>() : schema::forward_error(disarmed);
+}
+
+}  // namespace
+
+Result<Report> watched_play(ControlConnection& connection, std::optional<double> time_s,
+                            const std::function<void(const ControlFields&)>& show) {
+  const cli::StopSignals signals;
+  if (const auto armed = arm_while_connected(connection); !armed) return schema::forward_error(armed);
+  if (const auto plays = asked(connection, ControlVerb::play); !plays) return schema::forward_error(plays);
+  if (const auto watched = watch_until_the_end(connection, time_s, signals, show); !watched)
+    return schema::forward_error(watched);
+  return report_of_end(connection);
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What `import` says to type next can be typed, whatever channels there are; masked outliers read correctly after it."""
+import pathlib
+import subprocess
+
+import numpy as np
+
+import tacto
+
+RATE = ["--rate", "10kHz"]
+N = 12000
+
+
+def table(name="in.csv", spoilt=()):
+    """A finger goes 40 mm at 40 mm/s over ridges of 1 mm; the force of some rows lost its exponent."""
+    t = np.arange(N) / 1e4
+    x = np.clip(t - 0.1, 0, 1) * 40
+    f = 0.1 * np.sin(2 * np.pi * x) + 0.01 * np.sin(2 * np.pi * 7.3 * x + 1)
+    f[list(spoilt)] = 4581.0
+    np.savetxt(name, np.column_stack([f, f * 3, x]), fmt="%.9g", delimiter=",", header="f,a,x", comments="")
+    return name
+
+
+def next_of(name, *channels):
+    report = tacto.run_json("import", table(), "-o", name, *RATE, *(word for one in channels for word in ("--channel", one)))
+    # As a person pastes it into a shell.
+    line = report["next"].replace("tactograph", tacto.COMMAND, 1)
+    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True)
+    assert done.returncode == 0, (report["next"], done.stderr)
+    return report["next"]
+
+
+def the_next_command_works():
+    x, f = "position=x*1mm", "tangential_force=f*1N"
+    assert next_of("both", f, x) == "tactograph spatial both -o both"
+    assert next_of("acc", "acceleration=a*1g", x) == "tactograph spatial acc --channel acceleration -o acc"
+    assert next_of("labelled", "left one:tangential_force=f*1N", x) == \
+        "tactograph spatial labelled --channel 'left one' -o labelled"
+    assert next_of("two", "net_force=f*1N", "acceleration=a*1g", x).endswith(
+        "--channel net_force -o two  # or --channel acceleration")
+    assert next_of("a'b c", f, x) == "tactograph spatial 'a'\\''b c' -o 'a'\\''b c'"
+    assert next_of("placeless", f) == "tactograph info placeless"
+    assert next_of("normal", "normal_force=f*1N", x) == "tactograph info normal"
+
+
+def masked_outliers_leave_the_texture():
+    """Two rows of 12,000 are spoilt: with the mask the longest texture is what the sound table gives there."""
+    channels = ["--channel", "tangential_force=f*1N", "--channel", "position=x*1mm"]
+    tacto.run("import", table("sound.csv"), "-o", "sound", *RATE, *channels)
+    spoilt = table("spoilt.csv", spoilt=(2100, 9100))
+    report = tacto.run_json("import", spoilt, "-o", "spoilt", *RATE, *channels)
+    assert report["gaps"] == 0 and "--mask-outliers" in report["outliers"], report
+    report = tacto.run_json("import", spoilt, "-o", "masked", "--mask-outliers", *RATE, *channels)
+    assert report["gaps"] == 2 and report["frames"] == N - 2 and "2 rows" in report["outliers"], report
+    assert any("line 2102" in one and "line 9102" in one for one in report["warnings"]), report["warnings"]
+    tacto.run("validate", "masked")
+    assert tacto.run_json("info", "masked")["missing_frames"] == 2
+    tacto.run("spatial", "sound", "-o", "sound")
+    strokes = tacto.run_json("spatial", "masked", "-o", "masked")["textures"]
+    longest = max(strokes, key=lambda row: row["length_m"])
+    place, values, side = tacto.texture(str(pathlib.Path(longest["file"])).removesuffix(".texture.json"))
+    whole_place, whole, whole_side = tacto.texture("sound")
+    shift = round((side["source_origin_m"] - whole_side["source_origin_m"]) / side["pitch_m"])
+    edge = 5000  # 5 mm: the band-pass of 15 Hz, 2.7 mm here, meets other ends there
+    error = values[edge:-edge] - whole[shift + edge:shift + len(values) - edge]
+    print(f"longest texture {longest['length_m'] * 1e3:.1f} mm; error {20 * np.log10(tacto.rms(error) / tacto.rms(whole)):.0f} dB")
+    # A spoilt sample that stayed would be 4581 N among 0.1 N. What is left is the filter's other ends: -30 dB allowed.
+    assert tacto.rms(error) < 10 ** (-30 / 20) * tacto.rms(whole), tacto.rms(error) / tacto.rms(whole)
+
+
+def real_outliers_are_masked():
+    dirty = tacto.DATA / "dirty" / "T1.csv"
+    if not dirty.exists():
+        print("skipped: no real data")
+        return
+    report = tacto.run_json("import", dirty, "-o", "t1", "--mask-outliers", "--rate", "1kHz", "--channel", "acceleration=acc*1m/s^2",
+                          "--channel", "normal_force=normal_force_N*1N", "--channel", "speed=speed_mm_s*1mm/s")
+    assert report["frames"] == 9997 and report["gaps"] == 3, report
+    speed = next(row for row in report["channels"] if row["name"] == "speed")
+    assert 0.014 < speed["smallest"] and speed["largest"] < 0.3, speed
+    tacto.run("validate", "t1")
+    tacto.run("spatial", "t1", "--channel", "acceleration", "-o", "t1")
+
+
+if __name__ == "__main__":
+    for test in (the_next_command_works, masked_outliers_leave_the_texture, real_outliers_are_masked):
+        tacto.in_folder(test)

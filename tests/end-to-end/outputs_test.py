@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Outputs that are there already: every verb refuses them, --force replaces them, a recording's data never."""
+import os
+import pathlib
+
+import tacto
+
+USAGE = 2
+SIM = "sim:surface=C,speed=50mm/s,seed=1"
+
+
+def make_inputs():
+    """A recording, its texture, and a path to play it along."""
+    tacto.run("record", "-d", SIM, "--time", "2s", "-o", "rec")
+    tacto.run("spatial", "rec", "--stroke", "1", "-o", "oak")
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.010\n0.2,0.012\n0.6,0.03\n")
+
+
+def refused_then_forced(outputs, *command):
+    """Twice the same command: the second is refused before it changes anything, and with --force replaces."""
+    tacto.run(*command)
+    before = {name: pathlib.Path(name).read_bytes() for name in outputs}
+    _, said = tacto.run(*command, code=USAGE)
+    assert "is there already" in said and "--force" in said, said
+    assert before == {name: pathlib.Path(name).read_bytes() for name in outputs}, command
+    for name in outputs:
+        os.utime(name, (0, 0))
+    tacto.run(*command, "--force")
+    for name in outputs:
+        assert os.stat(name).st_mtime > 0, (name, "was not written anew")
+
+
+def every_verb_keeps_what_is_there():
+    make_inputs()
+    render = ["render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011", "-o"]
+    refused_then_forced(["oak.nc", "oak.png", "oak.csv"], "spectrogram", "oak", "-o", "oak.nc", "-o", "oak.png", "-o", "oak.csv")
+    refused_then_forced(["d.csv"], "describe", "oak", "-o", "d.csv")
+    refused_then_forced(["d.descriptions.json"], "describe", "oak", "-o", "d")
+    refused_then_forced(["f.formants.json"], "formants", "oak", "-o", "f")
+    refused_then_forced(["sheet.png"], "sheet", "oak", "-o", "sheet.png")
+    refused_then_forced(["drive.wav"], *render, "drive.wav")
+    refused_then_forced(["c.html", "c.results.json"], "compare", "oak", "oak", "-o", "c.html", "-o", "c.results.json")
+    os.mkdir("study")
+    tacto.run("spatial", "rec", "--stroke", "1", "-o", "study/oak")
+    refused_then_forced(["study.html"], "report", "study", "-o", "study.html")
+    tacto.run("play", "oak", "-d", "sim:", "--finger-path", "path.csv", "-o", "live")
+    refused_then_forced(["s.csv", "s.wav", "s.nc", "k.csv"], "session", "live", "-o", "s.csv", "-o", "s.wav", "-o", "s.nc",
+                        "--strokes", "k.csv")
+    _, said = tacto.run("play", "oak", "-d", "sim:", "--force", code=USAGE)
+    assert "--unfit-transducer" in said, said
+
+
+def recordings_are_never_replaced():
+    make_inputs()
+    whole = pathlib.Path("rec.wav").read_bytes()
+    os.rename("rec.wav", "broken-off.wav")
+    pathlib.Path("broken-off.events.jsonl").write_text("{}\n")
+    pathlib.Path("rec.wav").write_bytes(whole)
+    tacto.run("play", "oak", "-d", "sim:", "--finger-path", "path.csv", "-o", "live")
+    render = ["render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011", "--force", "-o"]
+    for name in ("rec.wav", "broken-off.wav", "oak.texture.wav"):
+        before = pathlib.Path(name).read_bytes()
+        for command in (render + [name], ["session", "live", "--force", "-o", name]):
+            _, said = tacto.run(*command, code=USAGE)
+            assert "belongs to a recording or texture" in said, said
+        assert pathlib.Path(name).read_bytes() == before
+    for verb in ("describe", "formants"):
+        _, said = tacto.run(verb, "oak", "--force", "-o", "rec.json", code=USAGE)
+        assert "is a recording" in said, said
+    pathlib.Path("notes.json").write_text("{torn")
+    _, said = tacto.run("describe", "oak", "--force", "-o", "notes.json", code=USAGE)
+    assert "would be lost" in said and pathlib.Path("notes.json").read_text() == "{torn", said
+
+
+def a_demo_replaces_only_demos():
+    os.mkdir("demo")
+    for ending in ("wav", "json"):
+        pathlib.Path(f"demo/C.{ending}").write_text("mine")
+    _, said = tacto.run("demo", "-o", "demo", code=USAGE)
+    assert "no earlier demo made it" in said and pathlib.Path("demo/C.wav").read_text() == "mine", said
+
+
+def one_file_by_two_spellings_is_named_twice():
+    make_inputs()
+    os.mkdir("x")
+    os.symlink("x", "link")
+    for other in ("x/../x/a.nc", "link/a.nc", "./x/a.nc", f"{os.getcwd()}/x/a.nc"):
+        _, said = tacto.run("spectrogram", "oak", "-o", "x/a.nc", "-o", other, code=USAGE)
+        assert "is named twice" in said and not os.path.exists("x/a.nc"), said
+    _, said = tacto.run("render", "oak", "--path", "path.csv", "--transducer", "wiertlewski2011", "-o", "x/a.wav",
+                        "--displacement", "link/a.wav", code=USAGE)
+    assert "two outputs" in said, said
+    _, said = tacto.run("compare", "oak", "oak", "-o", "x/c.html", "-o", "link/c.html", code=USAGE)
+    assert "is named twice" in said, said
+    _, said = tacto.run("spatial", "rec", "x/../rec", "-o", "x/", code=USAGE)
+    assert "is the same recording as rec" in said, said
+    table = tacto.run_json("describe", "oak", "link/../oak", "oak.texture.json")["textures"]
+    assert len(table) == 1, table
+
+
+if __name__ == "__main__":
+    for test in (every_verb_keeps_what_is_there, recordings_are_never_replaced, a_demo_replaces_only_demos,
+                 one_file_by_two_spellings_is_named_twice):
+        tacto.in_folder(test)

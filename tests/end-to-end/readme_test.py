@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The README's first session, typed as it is printed there: each command exits 0 and prints the lines that follow it.
+
+In the README a line "    $ COMMAND" is typed; the lines below it are what it prints, shortened: each of them has to be in
+the command's output, with blanks folded, up to an ellipsis.
+"""
+import os
+import pathlib
+import re
+import subprocess
+
+import tacto
+
+README = pathlib.Path(__file__).resolve().parents[2] / "README.md"
+
+
+def steps(text):
+    """(command, expected lines) of the README's session."""
+    found = []
+    for line in text.split("\n"):
+        if line.startswith("    $ "):
+            found.append((line[6:], []))
+        elif line.startswith("    ") and found and found[-1] is not None:
+            found[-1][1].append(line.strip())
+        elif found and found[-1] is not None:
+            found.append(None)
+    return [step for step in found if step]
+
+
+def folded(text):
+    return re.sub(r"\s+", " ", text)
+
+
+def the_session_prints_what_it_says():
+    found = steps(README.read_text(encoding="utf-8"))
+    assert len(found) >= 5, f"the README has {len(found)} commands with output"
+    assert any(expected for _, expected in found)
+    environment = {**os.environ, "PATH": f"{pathlib.Path(tacto.COMMAND).parent}:{os.environ['PATH']}"}
+    for command, expected in found:
+        done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, env=environment)
+        assert done.returncode == 0, (command, done.stdout, done.stderr)
+        printed = folded(done.stdout + done.stderr)
+        for line in expected:
+            for part in filter(None, map(str.strip, line.split("..."))):
+                assert folded(part) in printed, f"{command}\ndoes not print: {part}\nbut:\n{done.stdout}{done.stderr}"
+
+
+def its_length_and_width_keep_to_the_limits():
+    lines = README.read_text(encoding="utf-8").split("\n")
+    assert len(lines) <= 111, f"README.md has {len(lines) - 1} lines; at most 110"
+    assert max(map(len, lines)) <= 120, max(lines, key=len)
+
+
+if __name__ == "__main__":
+    its_length_and_width_keep_to_the_limits()
+    tacto.in_folder(the_session_prints_what_it_says)

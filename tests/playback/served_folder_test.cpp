@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which files clients over TCP may load, and what they learn of the others: nothing.
+#include "playback/daemon/served_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "data-schema/scene.hpp"
+#include "data-schema/texture.hpp"
+#include "tests/data-schema/temporary_folder.hpp"
+
+namespace tacto::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ServedFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_ / "served/deeper");
+    fs::create_directories(folder_ / "other");
+    schema::Texture texture;
+    texture.signal.pitch_m = 1e-5;
+    texture.signal.values = {0, 1, 2, 3};
+    for (const char* stem : {"served/oak", "served/deeper/elm", "other/secret"})
+      ASSERT_TRUE(schema::write_texture(folder_ / stem, texture));
+  }
+  void write_scene(const std::string& stem, const std::string& texture) {
+    schema::Scene scene;
+    schema::TextureLayer layer;
+    layer.texture = texture;
+    scene.layers = {layer};
+    ASSERT_TRUE(schema::write_scene(folder_ / stem, scene));
+  }
+  bool served(const std::string& file) const { return served_file(home_, file).has_value(); }
+  // Everything but the name that was asked for.
+  std::string refusal(const std::string& file) const {
+    const auto refused = served_file(home_, file);
+    return refused ? "served" : refused.error().what + "; " + refused.error().remedy;
+  }
+
+  tests::TemporaryFolder folder_;
+  std::string home_ = folder_ / "served";
+};
+
+TEST_F(ServedFolder, WhatIsInItIsServed) {
+  write_scene("served/bench", "deeper/elm");
+  for (const char* file :
+       {"oak", "oak.texture.json", "oak.texture.wav", "deeper/elm", "./oak", "bench", "bench.scene.json"})
+    EXPECT_TRUE(served(file)) << refusal(file);
+}
+
+TEST_F(ServedFolder, WhatIsElsewhereAndWhatIsMissingHaveOneError) {
+  const std::string missing = refusal("elm");
+  const std::string outside = folder_ / "other/secret", absent = folder_ / "other/absent";
+  for (const std::string& file :
+       {outside, absent, std::string("../other/secret"), std::string("../other/absent"),
+        std::string("deeper/../../other/secret"), std::string("deeper/../oak"), home_ + "/oak",
+        std::string(".."), std::string("/etc/passwd"), std::string()})
+    EXPECT_EQ(refusal(file), missing) << file;
+}
+
+TEST_F(ServedFolder, ALinkLeadsNowhereElse) {
+  fs::create_symlink(folder_ / "other", home_ + "/way");
+  for (const char* ending : {".texture.json", ".texture.wav"})
+    fs::create_symlink(folder_ / "other/secret" + ending, home_ + "/borrowed" + ending);
+  for (const char* file : {"way/secret", "borrowed"}) EXPECT_EQ(refusal(file), refusal("elm")) << file;
+  for (const char* ending : {".texture.json", ".texture.wav"})
+    fs::create_symlink(home_ + "/oak" + ending, home_ + "/ash" + ending);
+  EXPECT_TRUE(served("ash")) << "a link within the folder";
+  fs::remove(home_ + "/ash.texture.wav");
+  fs::create_symlink(home_ + "/oak.texture.json", home_ + "/pine.texture.json");
+  fs::remove(home_ + "/oak.texture.wav");
+  fs::create_symlink(folder_ / "other/secret.texture.wav", home_ + "/oak.texture.wav");
+  EXPECT_EQ(refusal("oak"), refusal("elm")) << "the samples lie elsewhere";
+}
+
+TEST_F(ServedFolder, ASceneThatReachesOutIsNotServed) {
+  write_scene("served/far", "../other/secret");
+  write_scene("served/farther", folder_ / "other/secret");
+  for (const char* file : {"far", "farther"}) EXPECT_EQ(refusal(file), refusal("elm")) << file;
+}
+
+TEST_F(ServedFolder, WithoutAFolderNothingIsServed) {
+  EXPECT_NE(served_file("", "oak").error().remedy.find("files"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tacto::playback
