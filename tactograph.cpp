@@ -4,9 +4,9 @@
 
 #include "analysis/cli/verbs.hpp"
 #include "capture/cli/verbs.hpp"
-#include "data-schema/cli/command.hpp"
+#include "data-schema/base/standard_descriptors.hpp"
 #include "data-schema/cli/verbs.hpp"
-#include "data-schema/standard_descriptors.hpp"
+#include "data-schema/command/command.hpp"
 #include "firmware-host/cli/verbs.hpp"
 #include "playback/cli/verbs.hpp"
 #include "spatial/cli/verbs.hpp"

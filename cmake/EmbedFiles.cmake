@@ -8,7 +8,7 @@ foreach(path IN LISTS FILES)
   string(APPEND entries "    {\"${name}\", R\"embedded(${text})embedded\"},\n")
 endforeach()
 file(WRITE ${OUTPUT} "// Made by cmake/EmbedFiles.cmake.
-#include \"data-schema/embedded_files.hpp\"
+#include \"data-schema/files/embedded_files.hpp\"
 
 namespace tacto::schema {
 namespace {

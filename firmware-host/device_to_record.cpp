@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "firmware-host/sim/sim_device.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
 
 namespace tacto::firmware_host {
 namespace {

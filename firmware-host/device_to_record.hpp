@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "data-schema/error.hpp"
-#include "firmware-host/device.hpp"
+#include "data-schema/base/error.hpp"
+#include "firmware-host/link/device.hpp"
 #include "firmware-host/open_device.hpp"
 
 namespace tacto::firmware_host {

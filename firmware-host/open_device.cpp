@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "firmware-host/replay/replay_device.hpp"
-#include "firmware-host/sim/sim_device.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
 #include "firmware-host/usb/usb_device.hpp"
 
 namespace tacto::firmware_host {

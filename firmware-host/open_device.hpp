@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "data-schema/error.hpp"
-#include "firmware-host/device.hpp"
+#include "data-schema/base/error.hpp"
+#include "firmware-host/link/device.hpp"
 
 namespace tacto::firmware_host {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "firmware-host/scan.hpp"
 
-#include "firmware-host/sim/surface.hpp"
-#include "firmware-host/usb/usb_device.hpp"
 #include "firmware-host/open_device.hpp"
+#include "firmware-host/sim/physics/surface.hpp"
+#include "firmware-host/usb/usb_device.hpp"
 
 namespace tacto::firmware_host {
 namespace {

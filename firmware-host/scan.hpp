@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware-host/device.hpp"
+#include "firmware-host/link/device.hpp"
 
 namespace tacto::firmware_host {
 

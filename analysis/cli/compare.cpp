@@ -7,9 +7,9 @@
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/compare/compare_page.hpp"
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "playback/daemon/session_rows.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/report/progress.hpp"
+#include "playback/session/session_rows.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
 
 namespace tacto::analysis {

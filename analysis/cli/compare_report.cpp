@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "data-schema/quantity.hpp"
+#include "data-schema/base/quantity.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "analysis/compare/compare.hpp"
 #include "analysis/compare/compare_page.hpp"
-#include "data-schema/cli/report.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::analysis {
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "data-schema/file_kind.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/kinds/file_kind.hpp"
 #include "spatial/cli/texture_inputs.hpp"
 
 namespace tacto::analysis {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "analysis/compare/played_texture.hpp"
-#include "data-schema/error.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/texture/texture.hpp"
 
 namespace tacto::analysis {
 

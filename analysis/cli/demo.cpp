@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "analysis/cli/verbs.hpp"
-#include "analysis/demo.hpp"
-#include "data-schema/cli/progress.hpp"
+#include "analysis/demo/demo.hpp"
+#include "data-schema/report/progress.hpp"
 
 namespace tacto::analysis {
 namespace {

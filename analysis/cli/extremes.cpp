@@ -4,7 +4,7 @@
 
 #include "analysis/cli/verbs.hpp"
 #include "analysis/extremes/extreme.hpp"
-#include "data-schema/cli/progress.hpp"
+#include "data-schema/report/progress.hpp"
 
 namespace tacto::analysis {
 namespace {

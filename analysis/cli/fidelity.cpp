@@ -5,10 +5,10 @@
 #include "analysis/cli/stopped.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/fidelity/fidelity_page.hpp"
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/cli/stop_signals.hpp"
-#include "data-schema/cli/warnings.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/command/stop_signals.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/report/warnings.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include "analysis/cli/identify_report.hpp"
-#include "analysis/identify/bode_figure.hpp"
-#include "analysis/identify/identify_results.hpp"
-#include "analysis/identify/loop_figure.hpp"
-#include "analysis/identify/plausibility.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/cli/stop_signals.hpp"
+#include "analysis/identify/fit/plausibility.hpp"
+#include "analysis/identify/report/bode_figure.hpp"
+#include "analysis/identify/report/identify_results.hpp"
+#include "analysis/identify/report/loop_figure.hpp"
+#include "data-schema/command/stop_signals.hpp"
+#include "data-schema/report/progress.hpp"
 
 namespace tacto::analysis {
 namespace {

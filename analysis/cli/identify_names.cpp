@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "data-schema/files.hpp"
+#include "data-schema/files/files.hpp"
 
 namespace tacto::analysis {
 

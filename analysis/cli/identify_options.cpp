@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "analysis/cli/results_output.hpp"
-#include "analysis/identify/plausibility.hpp"
-#include "data-schema/files.hpp"
+#include "analysis/identify/fit/plausibility.hpp"
+#include "data-schema/files/files.hpp"
 
 namespace tacto::analysis {
 

@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
-#include "analysis/identify/identification.hpp"
-#include "analysis/identify/measured_tables.hpp"
-#include "data-schema/cli/report.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/results.hpp"
-#include "playback/daemon/player_device.hpp"
+#include "analysis/identify/measure/measured_tables.hpp"
+#include "analysis/identify/report/identification.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/report/report.hpp"
+#include "data-schema/results/results.hpp"
+#include "playback/player/player_device.hpp"
 #include "spatial/picture/figure.hpp"
 
 namespace tacto::analysis {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/identify/angles.hpp"
-#include "analysis/identify/interval_words.hpp"
-#include "analysis/identify/paper_words.hpp"
+#include "analysis/identify/measure/angles.hpp"
+#include "analysis/identify/report/interval_words.hpp"
+#include "analysis/identify/report/paper_words.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -2,8 +2,8 @@
 // What `identify` says of what it found.
 #pragma once
 
-#include "analysis/identify/identification.hpp"
-#include "data-schema/cli/report.hpp"
+#include "analysis/identify/report/identification.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::analysis {
 

@@ -8,9 +8,9 @@
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/report/project.hpp"
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/report/progress.hpp"
 
 namespace tacto::analysis {
 namespace {

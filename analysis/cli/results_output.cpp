@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "data-schema/creation_time.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/files/files.hpp"
 #include "data-schema/version.hpp"
 
 namespace tacto::analysis {

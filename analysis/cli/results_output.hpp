@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "data-schema/cli/report.hpp"
-#include "data-schema/error.hpp"
-#include "data-schema/results.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/report/report.hpp"
+#include "data-schema/results/results.hpp"
 
 namespace tacto::analysis {
 

@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-#include "data-schema/cli/talk.hpp"
+#include "data-schema/report/talk.hpp"
 
 namespace tacto::analysis {
 

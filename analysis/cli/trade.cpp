@@ -13,15 +13,15 @@
 #include "analysis/cli/results_output.hpp"
 #include "analysis/cli/verbs.hpp"
 #include "analysis/trade/measured_trade.hpp"
-#include "analysis/trade/pareto.hpp"
+#include "analysis/trade/rows/pareto.hpp"
 #include "analysis/trade/worst_trade.hpp"
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/file_kind.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/newer_version.hpp"
-#include "data-schema/scene.hpp"
-#include "playback/identified_band.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/scene/newer_version.hpp"
+#include "data-schema/scene/scene.hpp"
+#include "playback/model/identified_band.hpp"
 
 namespace tacto::analysis {
 namespace {

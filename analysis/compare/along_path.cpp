@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "spatial/monotone_path.hpp"
-#include "spatial/resample.hpp"
-#include "spatial/smoothed_speed.hpp"
-#include "spatial/valid_band.hpp"
+#include "spatial/strokes/monotone_path.hpp"
+#include "spatial/strokes/smoothed_speed.hpp"
+#include "spatial/texture/resample.hpp"
+#include "spatial/texture/valid_band.hpp"
 
 namespace tacto::analysis {
 namespace {

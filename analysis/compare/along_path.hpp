@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "data-schema/error.hpp"
-#include "data-schema/texture.hpp"
-#include "spatial/dsp/band.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/dsp/filter/band.hpp"
 
 namespace tacto::analysis {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "analysis/compare/band_sums.hpp"
-#include "data-schema/quantity.hpp"
-#include "playback/daemon/session_rows.hpp"
-#include "spatial/spectrogram.hpp"
-#include "spatial/third_octaves.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "playback/session/session_rows.hpp"
+#include "spatial/features/third_octaves.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -11,11 +11,11 @@
 #include "analysis/compare/formant_match.hpp"
 #include "analysis/compare/texture_pair.hpp"
 #include "analysis/compare/verdict.hpp"
-#include "data-schema/error.hpp"
-#include "data-schema/formants.hpp"
-#include "data-schema/texture.hpp"
-#include "spatial/formants.hpp"
-#include "spatial/spectrogram_options.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/texture/formants.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/features/formants.hpp"
+#include "spatial/spectrogram/spectrogram_options.hpp"
 
 namespace tacto::analysis {
 

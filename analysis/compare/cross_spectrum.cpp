@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "spatial/dsp/fft.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::analysis {
 namespace {

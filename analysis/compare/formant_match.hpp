@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "data-schema/formants.hpp"
+#include "data-schema/texture/formants.hpp"
 
 namespace tacto::analysis {
 

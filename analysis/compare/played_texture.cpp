@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "analysis/compare/along_path.hpp"
-#include "data-schema/texture_wav.hpp"
-#include "playback/daemon/session_stroke.hpp"
+#include "data-schema/texture/texture_wav.hpp"
+#include "playback/strokes/session_stroke.hpp"
 
 namespace tacto::analysis {
 namespace {

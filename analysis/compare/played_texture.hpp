@@ -6,9 +6,9 @@
 #include <functional>
 #include <string>
 
-#include "data-schema/error.hpp"
-#include "data-schema/session.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/session/session.hpp"
+#include "data-schema/texture/texture.hpp"
 
 namespace tacto::analysis {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/compare/local_mean.hpp"
-#include "spatial/dsp/fft.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -8,13 +8,13 @@
 #include <numeric>
 #include <span>
 
-#include "data-schema/quantity.hpp"
-#include "spatial/align_textures.hpp"
-#include "spatial/dsp/low_pass.hpp"
-#include "spatial/dsp/thinned.hpp"
-#include "spatial/dsp/windowed_sinc.hpp"
-#include "spatial/steady_part.hpp"
-#include "spatial/valid_band.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "spatial/dsp/resample/low_pass.hpp"
+#include "spatial/dsp/resample/thinned.hpp"
+#include "spatial/dsp/resample/windowed_sinc.hpp"
+#include "spatial/features/steady_part.hpp"
+#include "spatial/texture/align_textures.hpp"
+#include "spatial/texture/valid_band.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/error.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/texture/texture.hpp"
 
 namespace tacto::analysis {
 

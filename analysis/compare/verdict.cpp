@@ -10,7 +10,7 @@
 #include <random>
 #include <span>
 
-#include "data-schema/quantity.hpp"
+#include "data-schema/base/quantity.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -10,14 +10,14 @@
 #include <numbers>
 
 #include "analysis/extremes/extreme.hpp"
-#include "capture/csv_number.hpp"
-#include "capture/derived_position.hpp"
-#include "capture/hann_line.hpp"
-#include "capture/live_view.hpp"
-#include "capture/record_header.hpp"
-#include "capture/travel.hpp"
-#include "capture/uniform_clock.hpp"
-#include "data-schema/clock_fit.hpp"
+#include "capture/calibrate/hann_line.hpp"
+#include "capture/calibrate/travel.hpp"
+#include "capture/import/derived_position.hpp"
+#include "capture/import/uniform_clock.hpp"
+#include "capture/record/live_view.hpp"
+#include "capture/record/record_header.hpp"
+#include "capture/table/csv_number.hpp"
+#include "data-schema/recording/clock_fit.hpp"
 
 namespace tacto::analysis {
 namespace {

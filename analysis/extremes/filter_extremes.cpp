@@ -4,9 +4,9 @@
 
 #include "analysis/extremes/extreme.hpp"
 #include "analysis/extremes/rough_signals.hpp"
-#include "spatial/dsp/block_fourier_filter.hpp"
-#include "spatial/dsp/butterworth.hpp"
-#include "spatial/dsp/fourier_filter.hpp"
+#include "spatial/dsp/filter/block_fourier_filter.hpp"
+#include "spatial/dsp/filter/butterworth.hpp"
+#include "spatial/dsp/filter/fourier_filter.hpp"
 #include "spatial/reference/exact_treated_band_pass.hpp"
 #include "spatial/reference/exact_zero_phase.hpp"
 

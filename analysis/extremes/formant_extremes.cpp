@@ -9,8 +9,8 @@
 #include <random>
 
 #include "analysis/extremes/extreme.hpp"
-#include "spatial/formants.hpp"
-#include "spatial/spectrogram.hpp"
+#include "spatial/features/formants.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "analysis/extremes/extreme.hpp"
-#include "playback/inverse_filter.hpp"
-#include "playback/prepare.hpp"
+#include "playback/prepare/inverse_filter.hpp"
+#include "playback/prepare/prepare.hpp"
 
 namespace tacto::analysis {
 namespace {

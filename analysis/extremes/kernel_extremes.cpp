@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "analysis/extremes/extreme.hpp"
-#include "playback/prepare.hpp"
-#include "playback/reference/exact_kernel.hpp"
-#include "spatial/dsp/butterworth.hpp"
+#include "playback/prepare/prepare.hpp"
+#include "playback/render/reference/exact_kernel.hpp"
+#include "spatial/dsp/filter/butterworth.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -8,7 +8,7 @@
 #include "analysis/compare/compare.hpp"
 #include "analysis/extremes/extreme.hpp"
 #include "analysis/extremes/rough_signals.hpp"
-#include "analysis/identify/response_fit.hpp"
+#include "analysis/identify/fit/response_fit.hpp"
 
 namespace tacto::analysis {
 namespace {

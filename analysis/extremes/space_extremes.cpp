@@ -6,7 +6,7 @@
 
 #include "analysis/extremes/extreme.hpp"
 #include "analysis/extremes/rough_signals.hpp"
-#include "spatial/dsp/hermite_resampler.hpp"
+#include "spatial/dsp/resample/hermite_resampler.hpp"
 #include "spatial/reference/exact_hermite.hpp"
 
 namespace tacto::analysis {

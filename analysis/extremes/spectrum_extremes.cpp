@@ -5,7 +5,7 @@
 
 #include "analysis/extremes/extreme.hpp"
 #include "spatial/reference/exact_short_time.hpp"
-#include "spatial/spectrogram.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <vector>
 
-#include "spatial/dsp/fft.hpp"
-#include "spatial/steady_part.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
+#include "spatial/features/steady_part.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -2,8 +2,8 @@
 // How much of a texture lies in the band of a playback.
 #pragma once
 
-#include "data-schema/texture.hpp"
-#include "spatial/dsp/band.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/dsp/filter/band.hpp"
 
 namespace tacto::analysis {
 

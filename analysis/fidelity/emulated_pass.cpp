@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "analysis/fidelity/scratch_folder.hpp"
-#include "data-schema/files.hpp"
-#include "playback/finger_path.hpp"
+#include "data-schema/files/files.hpp"
+#include "playback/model/finger_path.hpp"
 
 namespace tacto::analysis {
 namespace {

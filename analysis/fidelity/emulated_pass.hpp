@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/error.hpp"
-#include "data-schema/texture.hpp"
-#include "playback/daemon/play.hpp"
-#include "playback/daemon/session_columns.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "playback/player/play.hpp"
+#include "playback/session/session_columns.hpp"
 
 namespace tacto::analysis {
 

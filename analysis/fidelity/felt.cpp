@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware-host/sim/actuated_tray.hpp"
-#include "firmware-host/sim/lvdt.hpp"
-#include "playback/reference/spatial_content.hpp"
-#include "playback/reference/wanted.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "firmware-host/sim/bench/lvdt.hpp"
+#include "playback/model/spatial_content.hpp"
+#include "playback/render/reference/wanted.hpp"
 
 namespace tacto::analysis {
 namespace {

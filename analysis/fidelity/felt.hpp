@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "analysis/fidelity/emulated_pass.hpp"
-#include "data-schema/error.hpp"
-#include "data-schema/transducer.hpp"
-#include "firmware-host/sim/tray_physics.hpp"
-#include "spatial/dsp/band.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/transducer/transducer.hpp"
+#include "firmware-host/sim/physics/tray_physics.hpp"
+#include "spatial/dsp/filter/band.hpp"
 
 namespace tacto::analysis {
 

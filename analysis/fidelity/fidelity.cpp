@@ -14,9 +14,9 @@
 #include "analysis/fidelity/felt.hpp"
 #include "analysis/fidelity/scratch_folder.hpp"
 #include "analysis/fidelity/trays.hpp"
-#include "data-schema/quantity.hpp"
-#include "playback/finger_path.hpp"
-#include "spatial/valid_band.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "playback/model/finger_path.hpp"
+#include "spatial/texture/valid_band.hpp"
 
 namespace tacto::analysis {
 namespace {

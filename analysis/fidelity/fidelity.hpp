@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "analysis/compare/compare.hpp"
-#include "data-schema/error.hpp"
-#include "playback/daemon/play.hpp"
+#include "data-schema/base/error.hpp"
+#include "playback/player/play.hpp"
 
 namespace tacto::analysis {
 

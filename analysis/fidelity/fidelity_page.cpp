@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/html.hpp"
-#include "analysis/picture_svg.hpp"
-#include "data-schema/quantity.hpp"
+#include "analysis/page/html.hpp"
+#include "analysis/page/picture_svg.hpp"
+#include "data-schema/base/quantity.hpp"
 
 namespace tacto::analysis {
 namespace {

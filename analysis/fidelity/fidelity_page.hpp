@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/fidelity/fidelity.hpp"
-#include "data-schema/results.hpp"
+#include "data-schema/results/results.hpp"
 
 namespace tacto::analysis {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "data-schema/error.hpp"
+#include "data-schema/base/error.hpp"
 
 namespace tacto::analysis {
 

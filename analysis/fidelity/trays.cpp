@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "data-schema/version.hpp"
-#include "firmware-host/sim/sim_parameters.hpp"
-#include "firmware-host/sim/tray_mechanics.hpp"
+#include "firmware-host/sim/device/sim_parameters.hpp"
+#include "firmware-host/sim/physics/tray_mechanics.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/error.hpp"
-#include "data-schema/transducer.hpp"
-#include "firmware-host/sim/tray_physics.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/transducer/transducer.hpp"
+#include "firmware-host/sim/physics/tray_physics.hpp"
 
 namespace tacto::analysis {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <system_error>
 
-#include "analysis/picture_svg.hpp"
-#include "data-schema/files.hpp"
-#include "playback/daemon/session_rows.hpp"
+#include "analysis/page/picture_svg.hpp"
+#include "data-schema/files/files.hpp"
+#include "playback/session/session_rows.hpp"
 
 namespace tacto::analysis {
 namespace {

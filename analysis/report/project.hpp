@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/report/project_file.hpp"
-#include "data-schema/error.hpp"
+#include "data-schema/base/error.hpp"
 
 namespace tacto::analysis {
 

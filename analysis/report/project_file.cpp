@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include "analysis/report/project_readers.hpp"
-#include "data-schema/check.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/recording.hpp"
-#include "data-schema/texture_wav.hpp"
-#include "playback/daemon/session_rows.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/texture/texture_wav.hpp"
+#include "playback/session/session_rows.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/error.hpp"
-#include "data-schema/file_kind.hpp"
-#include "data-schema/results.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/results/results.hpp"
 
 namespace tacto::analysis {
 

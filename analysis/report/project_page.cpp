@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <span>
 
-#include "analysis/html.hpp"
-#include "analysis/picture_svg.hpp"
+#include "analysis/page/html.hpp"
+#include "analysis/page/picture_svg.hpp"
 #include "analysis/report/project.hpp"
-#include "data-schema/creation_time.hpp"
+#include "data-schema/base/creation_time.hpp"
 #include "data-schema/version.hpp"
 
 namespace tacto::analysis {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "analysis/report/project_file.hpp"
-#include "spatial/picture/shown_range.hpp"
+#include "spatial/picture/draw/shown_range.hpp"
 
 namespace tacto::analysis {
 

@@ -7,15 +7,15 @@
 #include <filesystem>
 
 #include "analysis/report/project_readers.hpp"
-#include "data-schema/quantity.hpp"
-#include "data-schema/recording_frames.hpp"
-#include "data-schema/spectrogram.hpp"
-#include "data-schema/texture.hpp"
-#include "playback/daemon/session_rows.hpp"
-#include "spatial/make_texture.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/recording/recording_frames.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "playback/session/session_rows.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
-#include "spatial/spectrogram.hpp"
-#include "spatial/valid_band.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
+#include "spatial/texture/make_texture.hpp"
+#include "spatial/texture/valid_band.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <complex>
 
-#include "analysis/identify/angles.hpp"
+#include "analysis/identify/measure/angles.hpp"
 #include "analysis/report/project_readers.hpp"
-#include "data-schema/calibration.hpp"
-#include "data-schema/description.hpp"
-#include "data-schema/formants.hpp"
-#include "data-schema/quantity.hpp"
-#include "data-schema/scene.hpp"
-#include "data-schema/session_netcdf.hpp"
-#include "data-schema/trade_table.hpp"
-#include "data-schema/transducer.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/calibration/calibration.hpp"
+#include "data-schema/results/trade_table.hpp"
+#include "data-schema/scene/scene.hpp"
+#include "data-schema/session/session_netcdf.hpp"
+#include "data-schema/texture/description.hpp"
+#include "data-schema/texture/formants.hpp"
+#include "data-schema/transducer/transducer.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "firmware-host/sim/sim_device.hpp"
-#include "playback/daemon/host_loop.hpp"
-#include "playback/upload.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
+#include "playback/host-loop/host_loop.hpp"
+#include "playback/prepare/upload.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -2,8 +2,8 @@
 // From the encoder's edge to the drive that it makes, in either loop.
 #pragma once
 
-#include "analysis/trade/trade_row.hpp"
-#include "playback/prepare.hpp"
+#include "analysis/trade/rows/trade_row.hpp"
+#include "playback/prepare/prepare.hpp"
 
 namespace tacto::analysis {
 

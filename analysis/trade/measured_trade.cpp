@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <iterator>
 
-#include "analysis/trade/offline_choices.hpp"
-#include "analysis/trade/offline_half.hpp"
+#include "analysis/trade/offline/offline_choices.hpp"
+#include "analysis/trade/offline/offline_half.hpp"
 #include "analysis/trade/realtime_choices.hpp"
 #include "analysis/trade/realtime_half.hpp"
-#include "data-schema/creation_time.hpp"
-#include "data-schema/machine_words.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/base/machine_words.hpp"
 #include "data-schema/version.hpp"
 
 namespace tacto::analysis {

@@ -5,10 +5,10 @@
 #include <functional>
 
 #include "analysis/trade/trade_page.hpp"
-#include "data-schema/error.hpp"
-#include "data-schema/texture.hpp"
-#include "data-schema/trade_table.hpp"
-#include "data-schema/transducer.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/results/trade_table.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "data-schema/transducer/transducer.hpp"
 
 namespace tacto::analysis {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/trade/cpu_cost.hpp"
-#include "playback/budget_words.hpp"
-#include "playback/prepare.hpp"
+#include "analysis/trade/rows/cpu_cost.hpp"
+#include "playback/choose/budget_words.hpp"
+#include "playback/prepare/prepare.hpp"
 
 namespace tacto::analysis {
 namespace {

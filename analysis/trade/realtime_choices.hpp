@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "data-schema/trade_table.hpp"
+#include "data-schema/results/trade_table.hpp"
 
 namespace tacto::analysis {
 

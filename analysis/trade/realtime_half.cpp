@@ -7,11 +7,11 @@
 #include <cmath>
 #include <optional>
 
-#include "analysis/trade/cpu_cost.hpp"
 #include "analysis/trade/loop_latency.hpp"
-#include "analysis/trade/played_speeds.hpp"
-#include "playback/budget_words.hpp"
-#include "playback/reference/spatial_content.hpp"
+#include "analysis/trade/rows/cpu_cost.hpp"
+#include "analysis/trade/rows/played_speeds.hpp"
+#include "playback/choose/budget_words.hpp"
+#include "playback/model/spatial_content.hpp"
 
 namespace tacto::analysis {
 namespace {

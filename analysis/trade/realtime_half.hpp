@@ -5,10 +5,10 @@
 #include <functional>
 #include <vector>
 
-#include "analysis/trade/trade_row.hpp"
-#include "data-schema/error.hpp"
-#include "data-schema/texture.hpp"
-#include "data-schema/transducer.hpp"
+#include "analysis/trade/rows/trade_row.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "data-schema/transducer/transducer.hpp"
 
 namespace tacto::analysis {
 

@@ -10,10 +10,10 @@
 #include <map>
 #include <ranges>
 
-#include "analysis/html.hpp"
-#include "analysis/picture_svg.hpp"
-#include "analysis/trade/pareto.hpp"
-#include "analysis/trade/played_speeds.hpp"
+#include "analysis/page/html.hpp"
+#include "analysis/page/picture_svg.hpp"
+#include "analysis/trade/rows/pareto.hpp"
+#include "analysis/trade/rows/played_speeds.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trade/trade_row.hpp"
-#include "data-schema/error.hpp"
-#include "data-schema/results.hpp"
+#include "analysis/trade/rows/trade_row.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/results/results.hpp"
 #include "spatial/picture/line_plot.hpp"
 
 namespace tacto::analysis {

@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <memory>
 
+#include "capture/calibrate/travel.hpp"
 #include "capture/cli/calibrate_parts.hpp"
 #include "capture/cli/enter_key.hpp"
-#include "capture/travel.hpp"
-#include "capture/watch_counts.hpp"
-#include "data-schema/cli/report.hpp"
-#include "data-schema/cli/talk.hpp"
+#include "capture/record/watch_counts.hpp"
+#include "data-schema/report/report.hpp"
+#include "data-schema/report/talk.hpp"
 #include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <memory>
 
+#include "capture/calibrate/reference_scale.hpp"
+#include "capture/calibrate/released_weight.hpp"
+#include "capture/calibrate/weights.hpp"
 #include "capture/cli/calibrate_parts.hpp"
 #include "capture/cli/enter_key.hpp"
-#include "capture/reference_scale.hpp"
-#include "capture/released_weight.hpp"
-#include "capture/weights.hpp"
-#include "data-schema/cli/report.hpp"
+#include "data-schema/report/report.hpp"
 #include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "capture/apply_calibration.hpp"
-#include "capture/take.hpp"
-#include "capture/uncertain.hpp"
-#include "data-schema/cli/verb.hpp"
+#include "capture/calibrate/uncertain.hpp"
+#include "capture/record/apply_calibration.hpp"
+#include "capture/record/take.hpp"
+#include "data-schema/command/verb.hpp"
 
 namespace tacto::capture {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
-#include "capture/believable_scale.hpp"
 #include "capture/cli/calibrate_parts.hpp"
-#include "data-schema/cli/report.hpp"
-#include "data-schema/creation_time.hpp"
+#include "capture/import/believable_scale.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::capture {
 namespace {

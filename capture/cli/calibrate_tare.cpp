@@ -4,9 +4,9 @@
 #include <cmath>
 #include <memory>
 
+#include "capture/calibrate/tare.hpp"
 #include "capture/cli/calibrate_parts.hpp"
-#include "capture/tare.hpp"
-#include "data-schema/cli/report.hpp"
+#include "data-schema/report/report.hpp"
 #include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {

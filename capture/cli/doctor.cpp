@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/doctor.hpp"
+#include "capture/doctor/doctor.hpp"
 
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
-#include "data-schema/cli/report.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::capture {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <cstdio>
 
-#include "data-schema/cli/talk.hpp"
+#include "data-schema/report/talk.hpp"
 
 namespace tacto::capture {
 namespace {

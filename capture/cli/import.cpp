@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/import.hpp"
+#include "capture/import/import.hpp"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,10 @@
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
-#include "capture/height_profile.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/cli/report.hpp"
-#include "data-schema/cli/warnings.hpp"
+#include "capture/import/height_profile.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/report/report.hpp"
+#include "data-schema/report/warnings.hpp"
 
 namespace tacto::capture {
 namespace {

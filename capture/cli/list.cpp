@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
-#include "capture/recording_list.hpp"
-#include "data-schema/cli/report.hpp"
+#include "capture/record/recording_list.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::capture {
 namespace {

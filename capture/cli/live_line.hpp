@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "capture/live_view.hpp"
-#include "data-schema/recording.hpp"
+#include "capture/record/live_view.hpp"
+#include "data-schema/recording/recording.hpp"
 
 namespace tacto::capture {
 

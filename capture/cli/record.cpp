@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/record.hpp"
+#include "capture/record/record.hpp"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -12,15 +12,15 @@
 #include "capture/cli/live_line.hpp"
 #include "capture/cli/terminal_keys.hpp"
 #include "capture/cli/verbs.hpp"
-#include "capture/take_name.hpp"
+#include "capture/record/take_name.hpp"
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/cli/report.hpp"
-#include "data-schema/cli/stop_signals.hpp"
-#include "data-schema/cli/talk.hpp"
-#include "data-schema/cli/warnings.hpp"
+#include "data-schema/command/stop_signals.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/report/report.hpp"
+#include "data-schema/report/talk.hpp"
+#include "data-schema/report/warnings.hpp"
 #include "firmware-host/device_to_record.hpp"
-#include "firmware-host/sim/sim_parameters.hpp"
+#include "firmware-host/sim/device/sim_parameters.hpp"
 
 namespace tacto::capture {
 namespace {

@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "capture/cli/verbs.hpp"
-#include "data-schema/cli/report.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/leftover_files.hpp"
-#include "data-schema/live_recording.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/files/leftover_files.hpp"
+#include "data-schema/recording/live_recording.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::capture {
 namespace {

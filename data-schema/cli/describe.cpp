@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "data-schema/cli/verb.hpp"
+#include "data-schema/command/verb.hpp"
 
 namespace tacto::schema {
 

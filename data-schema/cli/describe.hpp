@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "data-schema/cli/report.hpp"
-#include "data-schema/file_kind.hpp"
-#include "data-schema/recording.hpp"
+#include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::schema {
 

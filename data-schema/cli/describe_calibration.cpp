@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
-#include "data-schema/calibration.hpp"
+#include "data-schema/calibration/calibration.hpp"
 #include "data-schema/cli/describe.hpp"
 
 namespace tacto::schema {

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/recording.hpp"
-#include "data-schema/statistics.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/recording/statistics.hpp"
+#include "data-schema/report/progress.hpp"
 
 namespace tacto::schema {
 namespace {

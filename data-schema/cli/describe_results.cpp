@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/results.hpp"
+#include "data-schema/results/results.hpp"
 
 namespace tacto::schema {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "data-schema/cli/choices_report.hpp"
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/scene.hpp"
+#include "data-schema/report/choices_report.hpp"
+#include "data-schema/scene/scene.hpp"
 
 namespace tacto::schema {
 namespace {

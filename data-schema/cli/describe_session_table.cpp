@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/session_netcdf.hpp"
+#include "data-schema/session/session_netcdf.hpp"
 
 namespace tacto::schema {
 

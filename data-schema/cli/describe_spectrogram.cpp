@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/spectrogram.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
 
 namespace tacto::schema {
 namespace {

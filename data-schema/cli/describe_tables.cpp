@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/description.hpp"
-#include "data-schema/formants.hpp"
+#include "data-schema/texture/description.hpp"
+#include "data-schema/texture/formants.hpp"
 
 namespace tacto::schema {
 

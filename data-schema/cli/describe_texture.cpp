@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/statistics.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/recording/statistics.hpp"
+#include "data-schema/texture/texture.hpp"
 
 namespace tacto::schema {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/trade_table.hpp"
+#include "data-schema/results/trade_table.hpp"
 
 namespace tacto::schema {
 

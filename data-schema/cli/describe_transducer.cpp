@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/cli/verb.hpp"
-#include "data-schema/transducer_plausible.hpp"
+#include "data-schema/command/verb.hpp"
+#include "data-schema/transducer/transducer_plausible.hpp"
 
 namespace tacto::schema {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "data-schema/check.hpp"
+#include "data-schema/check/check.hpp"
 #include "data-schema/cli/describe.hpp"
-#include "data-schema/cli/progress.hpp"
 #include "data-schema/cli/verbs.hpp"
+#include "data-schema/report/progress.hpp"
 
 namespace tacto::schema {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "firmware-host/scan.hpp"
 
-#include "data-schema/cli/report.hpp"
+#include "data-schema/report/report.hpp"
 #include "firmware-host/cli/verbs.hpp"
 
 namespace tacto::firmware_host {

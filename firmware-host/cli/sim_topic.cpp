@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tactograph help sim
 #include "firmware-host/cli/verbs.hpp"
-#include "firmware-host/sim/sim_parameters.hpp"
+#include "firmware-host/sim/device/sim_parameters.hpp"
 
 namespace tacto::firmware_host {
 namespace {

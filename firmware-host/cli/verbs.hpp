@@ -2,8 +2,8 @@
 // The verbs of this folder, for the table in tactograph.cpp.
 #pragma once
 
-#include "data-schema/cli/help.hpp"
-#include "data-schema/cli/verb.hpp"
+#include "data-schema/command/help.hpp"
+#include "data-schema/command/verb.hpp"
 
 namespace tacto::firmware_host {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/error.hpp"
+#include "data-schema/base/error.hpp"
 
 namespace tacto::firmware_host {
 

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <span>
 
-#include "firmware-host/core/usb_identity.hpp"
+#include "firmware-host/core/firmware/usb_identity.hpp"
 #include "firmware-host/gadget/functionfs_descriptors.hpp"
 
 namespace tacto::firmware_host {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "data-schema/error.hpp"
+#include "data-schema/base/error.hpp"
 #include "firmware-host/gadget/file_descriptor.hpp"
 
 namespace tacto::firmware_host {

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "firmware-host/gadget/replay_board.hpp"
-#include "firmware-host/sim/sim_board.hpp"
-#include "firmware-host/sim/sim_description.hpp"
+#include "firmware-host/sim/device/sim_board.hpp"
+#include "firmware-host/sim/device/sim_description.hpp"
 
 namespace tacto::firmware_host {
 namespace {

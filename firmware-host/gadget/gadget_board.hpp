@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/error.hpp"
-#include "firmware-host/core/drive_supervisor.hpp"
+#include "data-schema/base/error.hpp"
+#include "firmware-host/core/firmware/drive_supervisor.hpp"
 
 namespace tacto::firmware_host {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "firmware-host/wire_words.hpp"
+#include "firmware-host/link/wire_words.hpp"
 
 namespace tacto::firmware_host {
 namespace {

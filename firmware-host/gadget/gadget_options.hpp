@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "firmware-host/core/usb_identity.hpp"
+#include "firmware-host/core/firmware/usb_identity.hpp"
 #include "firmware-host/gadget/fault_plan.hpp"
 
 namespace tacto::firmware_host {

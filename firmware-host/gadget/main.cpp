@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "data-schema/cli/talk.hpp"
-#include "data-schema/standard_descriptors.hpp"
+#include "data-schema/base/standard_descriptors.hpp"
+#include "data-schema/report/talk.hpp"
 #include "firmware-host/gadget/configfs_gadget.hpp"
 #include "firmware-host/gadget/gadget_loop.hpp"
 #include "firmware-host/gadget/gadget_options.hpp"

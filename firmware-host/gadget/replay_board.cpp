@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "firmware-host/gadget/replay_description.hpp"
-#include "firmware-host/hosted_board.hpp"
-#include "firmware-host/wire_fields.hpp"
+#include "firmware-host/link/hosted_board.hpp"
+#include "firmware-host/link/wire_fields.hpp"
 
 namespace tacto::firmware_host {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <optional>
 
-#include "data-schema/recording.hpp"
-#include "firmware-host/core/firmware.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "firmware-host/core/firmware/firmware.hpp"
 #include "firmware-host/gadget/gadget_board.hpp"
-#include "firmware-host/hosted_board.hpp"
+#include "firmware-host/link/hosted_board.hpp"
 
 namespace tacto::firmware_host {
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "data-schema/version.hpp"
-#include "firmware-host/wire_fields.hpp"
+#include "firmware-host/link/wire_fields.hpp"
 
 namespace tacto::firmware_host {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/recording.hpp"
+#include "data-schema/recording/recording.hpp"
 #include "firmware-host/core/wire/device_messages.hpp"
 
 namespace tacto::firmware_host {

@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "firmware-host/core/usb_identity.hpp"
+#include "firmware-host/core/firmware/usb_identity.hpp"
 #include "firmware-host/gadget/configfs_gadget.hpp"
 
 namespace tacto::firmware_host {

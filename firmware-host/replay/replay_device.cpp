@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "firmware-host/code_range.hpp"
+#include "firmware-host/link/code_range.hpp"
 
 namespace tacto::firmware_host {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "data-schema/wav.hpp"
-#include "firmware-host/device.hpp"
-#include "firmware-host/sim/pacer.hpp"
+#include "data-schema/wav/wav.hpp"
+#include "firmware-host/link/device.hpp"
+#include "firmware-host/link/pacer.hpp"
 
 namespace tacto::firmware_host {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data-schema/error.hpp"
+#include "data-schema/base/error.hpp"
 
 namespace tacto::firmware_host {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "firmware-host/usb/usb_device.hpp"
 
+#include "firmware-host/link/wire_device.hpp"
 #include "firmware-host/usb/usb_transport.hpp"
-#include "firmware-host/wire_device.hpp"
 
 namespace tacto::firmware_host {
 

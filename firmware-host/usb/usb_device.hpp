@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware-host/device.hpp"
+#include "firmware-host/link/device.hpp"
 
 namespace tacto::firmware_host {
 

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "firmware-host/core/usb_identity.hpp"
+#include "firmware-host/core/firmware/usb_identity.hpp"
 
 namespace tacto::firmware_host {
 namespace {

@@ -2,7 +2,7 @@
 // The cable to a device on USB.
 #pragma once
 
-#include "firmware-host/transport.hpp"
+#include "firmware-host/link/transport.hpp"
 #include "firmware-host/usb/usb_inflow.hpp"
 #include "firmware-host/usb/usb_outflow.hpp"
 

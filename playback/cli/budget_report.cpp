@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "playback/cli/budget_report.hpp"
 
-#include "playback/budget_words.hpp"
+#include "playback/choose/budget_words.hpp"
 
 namespace tacto::playback {
 

@@ -2,8 +2,8 @@
 // A budget's decision for people: what play and render say of it.
 #pragma once
 
-#include "data-schema/cli/budget_options.hpp"
-#include "playback/budget.hpp"
+#include "data-schema/command/budget_options.hpp"
+#include "playback/choose/budget.hpp"
 
 namespace tacto::playback {
 

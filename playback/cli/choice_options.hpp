@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "data-schema/cli/verb.hpp"
-#include "data-schema/playback_choices.hpp"
+#include "data-schema/command/verb.hpp"
+#include "data-schema/scene/playback_choices.hpp"
 
 namespace tacto::playback {
 

@@ -11,14 +11,14 @@
 #include <memory>
 #include <utility>
 
-#include "data-schema/cli/stop_signals.hpp"
-#include "data-schema/cli/talk.hpp"
+#include "data-schema/command/stop_signals.hpp"
+#include "data-schema/report/talk.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
 #include "playback/cli/top_screen.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/cli/watched_play.hpp"
-#include "playback/daemon/control_connection.hpp"
+#include "playback/control/control_connection.hpp"
 
 namespace tacto::playback {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "data-schema/cli/verb.hpp"
-#include "data-schema/scene.hpp"
+#include "data-schema/command/verb.hpp"
+#include "data-schema/scene/scene.hpp"
 
 namespace tacto::playback {
 

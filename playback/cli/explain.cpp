@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "data-schema/cli/choices_report.hpp"
-#include "data-schema/cli/harmless.hpp"
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/talk.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/report/choices_report.hpp"
+#include "data-schema/report/harmless.hpp"
+#include "data-schema/report/talk.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
@@ -14,7 +14,7 @@
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/room_report.hpp"
 #include "playback/cli/verbs.hpp"
-#include "playback/daemon/program.hpp"
+#include "playback/player/program.hpp"
 
 namespace tacto::playback {
 

@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "data-schema/cli/report.hpp"
-#include "data-schema/texture.hpp"
-#include "playback/gain_sign.hpp"
+#include "data-schema/report/report.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "playback/model/gain_sign.hpp"
 
 namespace tacto::playback {
 

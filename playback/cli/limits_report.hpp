@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "data-schema/cli/report.hpp"
-#include "playback/limit_tally.hpp"
+#include "data-schema/report/report.hpp"
+#include "playback/model/limit_tally.hpp"
 
 namespace tacto::playback {
 

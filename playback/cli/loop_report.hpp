@@ -2,7 +2,7 @@
 // What a looped texture's period is.
 #pragma once
 
-#include "data-schema/cli/report.hpp"
+#include "data-schema/report/report.hpp"
 
 namespace tacto::playback {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/daemon/play.hpp"
+#include "playback/player/play.hpp"
 
 #include <fmt/format.h>
 
 #include <memory>
 #include <optional>
 
-#include "data-schema/cli/choices_report.hpp"
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/cli/stop_signals.hpp"
-#include "data-schema/cli/warnings.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/command/stop_signals.hpp"
+#include "data-schema/report/choices_report.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/report/warnings.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
@@ -18,7 +18,7 @@
 #include "playback/cli/limits_report.hpp"
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/verbs.hpp"
-#include "playback/daemon/session_name.hpp"
+#include "playback/player/session_name.hpp"
 
 namespace tacto::playback {
 

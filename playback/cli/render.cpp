@@ -4,20 +4,20 @@
 #include <algorithm>
 #include <memory>
 
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/newer_version.hpp"
-#include "data-schema/statistics.hpp"
-#include "playback/choices.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/recording/statistics.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/scene/newer_version.hpp"
+#include "playback/choose/choices.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/ends_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/verbs.hpp"
-#include "playback/daemon/laid_textures.hpp"
-#include "playback/drive_files.hpp"
-#include "playback/kept_error.hpp"
-#include "playback/render.hpp"
+#include "playback/model/drive_files.hpp"
+#include "playback/player/laid_textures.hpp"
+#include "playback/render/kept_error.hpp"
+#include "playback/render/render.hpp"
 
 namespace tacto::playback {
 

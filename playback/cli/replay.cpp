@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "data-schema/cli/progress.hpp"
+#include "data-schema/report/progress.hpp"
 #include "playback/cli/verbs.hpp"
-#include "playback/daemon/session_replay.hpp"
+#include "playback/session/session_replay.hpp"
 
 namespace tacto::playback {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "data-schema/quantity.hpp"
-#include "data-schema/texture.hpp"
-#include "firmware-host/hosted_board.hpp"
-#include "playback/budget_words.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "firmware-host/link/hosted_board.hpp"
+#include "playback/choose/budget_words.hpp"
 
 namespace tacto::playback {
 namespace {

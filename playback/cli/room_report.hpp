@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "data-schema/cli/report.hpp"
-#include "playback/daemon/program.hpp"
+#include "data-schema/report/report.hpp"
+#include "playback/player/program.hpp"
 
 namespace tacto::playback {
 

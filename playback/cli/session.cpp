@@ -5,15 +5,15 @@
 #include <fstream>
 #include <memory>
 
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/cli/warnings.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/session_reader.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/report/warnings.hpp"
+#include "data-schema/session/session_reader.hpp"
 #include "playback/cli/limits_report.hpp"
 #include "playback/cli/verbs.hpp"
-#include "playback/daemon/session_export.hpp"
-#include "playback/daemon/stroke_report.hpp"
+#include "playback/session/session_export.hpp"
+#include "playback/strokes/stroke_report.hpp"
 
 namespace tacto::playback {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "playback/daemon/time_histogram.hpp"
+#include "playback/host-loop/time_histogram.hpp"
 
 namespace tacto::playback {
 namespace {

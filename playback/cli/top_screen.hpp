@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "data-schema/control.hpp"
+#include "data-schema/control/control.hpp"
 
 namespace tacto::playback {
 

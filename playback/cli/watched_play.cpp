@@ -5,7 +5,7 @@
 #include <array>
 #include <chrono>
 
-#include "data-schema/cli/stop_signals.hpp"
+#include "data-schema/command/stop_signals.hpp"
 
 namespace tacto::playback {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <optional>
 
-#include "data-schema/cli/report.hpp"
-#include "playback/daemon/control_connection.hpp"
+#include "data-schema/report/report.hpp"
+#include "playback/control/control_connection.hpp"
 
 namespace tacto::playback {
 

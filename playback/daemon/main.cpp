@@ -12,14 +12,14 @@
 #include <string_view>
 #include <utility>
 
-#include "data-schema/cli/talk.hpp"
-#include "data-schema/standard_descriptors.hpp"
+#include "data-schema/base/standard_descriptors.hpp"
+#include "data-schema/report/talk.hpp"
 #include "data-schema/version.hpp"
-#include "playback/daemon/control_server.hpp"
-#include "playback/daemon/control_token.hpp"
-#include "playback/daemon/locked_memory.hpp"
+#include "playback/control/control_server.hpp"
+#include "playback/control/control_token.hpp"
 #include "playback/daemon/service.hpp"
 #include "playback/daemon/service_manager.hpp"
+#include "playback/host-loop/locked_memory.hpp"
 
 namespace {
 

@@ -8,15 +8,15 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "data-schema/creation_time.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/scene.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/scene/scene.hpp"
 #include "data-schema/version.hpp"
-#include "playback/daemon/locked_memory.hpp"
-#include "playback/daemon/program.hpp"
-#include "playback/daemon/session_name.hpp"
 #include "playback/daemon/status_fields.hpp"
-#include "playback/gain_sign.hpp"
+#include "playback/host-loop/locked_memory.hpp"
+#include "playback/model/gain_sign.hpp"
+#include "playback/player/program.hpp"
+#include "playback/player/session_name.hpp"
 
 namespace tacto::playback {
 

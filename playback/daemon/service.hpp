@@ -6,13 +6,13 @@
 #include <optional>
 #include <string>
 
-#include "data-schema/control.hpp"
-#include "data-schema/daemon_config.hpp"
-#include "playback/daemon/loop_here.hpp"
-#include "playback/daemon/player.hpp"
-#include "playback/daemon/player_device.hpp"
-#include "playback/daemon/program_loader.hpp"
-#include "playback/daemon/stay_watch.hpp"
+#include "data-schema/control/control.hpp"
+#include "data-schema/control/daemon_config.hpp"
+#include "playback/player/loop_here.hpp"
+#include "playback/player/player.hpp"
+#include "playback/player/player_device.hpp"
+#include "playback/player/program_loader.hpp"
+#include "playback/session/stay_watch.hpp"
 
 namespace tacto::playback {
 

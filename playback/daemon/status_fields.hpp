@@ -2,11 +2,11 @@
 // What a status says of ticks, recorder and loop, and who has to stay; names as in CONTROL.md.
 #pragma once
 
-#include "data-schema/control.hpp"
-#include "playback/daemon/flight_recorder.hpp"
-#include "playback/daemon/host_loop.hpp"
-#include "playback/daemon/player.hpp"
-#include "playback/daemon/stay_watch.hpp"
+#include "data-schema/control/control.hpp"
+#include "playback/host-loop/host_loop.hpp"
+#include "playback/player/flight_recorder.hpp"
+#include "playback/player/player.hpp"
+#include "playback/session/stay_watch.hpp"
 
 namespace tacto::playback {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/creation_time.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/files/files.hpp"
 #include "data-schema/version.hpp"
-#include "spatial/certificate.hpp"
+#include "spatial/certificate/certificate.hpp"
 #include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
 

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/creation_time.hpp"
-#include "data-schema/description.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/texture/description.hpp"
 #include "data-schema/version.hpp"
 #include "spatial/cli/table_output.hpp"
 #include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
-#include "spatial/description.hpp"
+#include "spatial/features/description.hpp"
 
 namespace tacto::spatial {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tactograph formants: the ridges of textures' spatial spectrograms, as a table.
-#include "spatial/formants.hpp"
+#include "spatial/features/formants.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/creation_time.hpp"
-#include "data-schema/formants.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/texture/formants.hpp"
 #include "data-schema/version.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
 #include "spatial/cli/table_output.hpp"

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/cli/output_options.hpp"
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/command/output_options.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/report/progress.hpp"
 #include "spatial/cli/spectrogram_options.hpp"
 #include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
-#include "spatial/formants.hpp"
-#include "spatial/spectrogram_summary.hpp"
+#include "spatial/features/formants.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
 
 namespace tacto::spatial {
 namespace {

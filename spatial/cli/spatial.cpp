@@ -5,12 +5,12 @@
 
 #include <memory>
 
-#include "data-schema/cli/progress.hpp"
-#include "spatial/cli/spatial_batch.hpp"
-#include "spatial/cli/spatial_options.hpp"
-#include "spatial/cli/spatial_recording.hpp"
-#include "spatial/cli/texture_names.hpp"
+#include "data-schema/report/progress.hpp"
 #include "spatial/cli/verbs.hpp"
+#include "spatial/job/spatial_batch.hpp"
+#include "spatial/job/spatial_options.hpp"
+#include "spatial/job/spatial_recording.hpp"
+#include "spatial/job/texture_names.hpp"
 
 namespace tacto::spatial {
 namespace {

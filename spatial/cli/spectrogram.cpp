@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/cli/budget_options.hpp"
-#include "data-schema/cli/output_options.hpp"
-#include "spatial/budget.hpp"
+#include "data-schema/command/budget_options.hpp"
+#include "data-schema/command/output_options.hpp"
 #include "spatial/cli/spectrogram_files.hpp"
 #include "spatial/cli/spectrogram_run.hpp"
 #include "spatial/cli/texture_inputs.hpp"
 #include "spatial/cli/verbs.hpp"
-#include "spatial/formants.hpp"
+#include "spatial/features/formants.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
 #include "spatial/picture/spectrogram_output.hpp"
-#include "spatial/spectrogram_summary.hpp"
+#include "spatial/spectrogram/budget.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
 
 namespace tacto::spatial {
 namespace {

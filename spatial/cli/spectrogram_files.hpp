@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/error.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/spectrogram_writer.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/spectrogram/spectrogram_writer.hpp"
 #include "spatial/picture/figure.hpp"
 
 namespace tacto::spatial {

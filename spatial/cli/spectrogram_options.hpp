@@ -2,8 +2,8 @@
 // The options of a spectrogram that several verbs share.
 #pragma once
 
-#include "data-schema/cli/verb.hpp"
-#include "spatial/spectrogram.hpp"
+#include "data-schema/command/verb.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 
 namespace tacto::spatial {
 

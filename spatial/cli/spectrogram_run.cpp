@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "spatial/cli/spectrogram_run.hpp"
-#include "data-schema/quantity.hpp"
+#include "data-schema/base/quantity.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "data-schema/cli/verb.hpp"
+#include "data-schema/command/verb.hpp"
 
 namespace tacto::spatial {
 namespace {

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/cli/progress.hpp"
-#include "data-schema/error.hpp"
-#include "data-schema/spectrogram.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/report/progress.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
 #include "spatial/cli/spectrogram_files.hpp"
 #include "spatial/cli/texture_inputs.hpp"
-#include "spatial/spectrogram_maker.hpp"
-#include "spatial/spectrogram_tally.hpp"
+#include "spatial/spectrogram/spectrogram_maker.hpp"
+#include "spatial/spectrogram/spectrogram_tally.hpp"
 
 namespace tacto::spatial {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "data-schema/file_kind.hpp"
+#include "data-schema/kinds/file_kind.hpp"
 
 namespace tacto::spatial {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "data-schema/error.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/files/files.hpp"
 
 namespace tacto::spatial {
 

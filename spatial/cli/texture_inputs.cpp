@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <map>
 
-#include "data-schema/cli/verb.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/recording.hpp"
-#include "spatial/texture_warnings.hpp"
+#include "data-schema/command/verb.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "spatial/texture/texture_warnings.hpp"
 
 namespace tacto::spatial {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/error.hpp"
-#include "data-schema/file_kind.hpp"
-#include "data-schema/texture.hpp"
-#include "spatial/make_texture.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/texture/make_texture.hpp"
 
 namespace tacto::spatial {
 

@@ -2,7 +2,7 @@
 // The verbs of this folder, for the table in tactograph.cpp.
 #pragma once
 
-#include "data-schema/cli/verb.hpp"
+#include "data-schema/command/verb.hpp"
 
 namespace tacto::spatial {
 

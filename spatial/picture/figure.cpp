@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "spatial/picture/canvas.hpp"
+#include "spatial/picture/draw/canvas.hpp"
 
 namespace tacto::spatial {
 

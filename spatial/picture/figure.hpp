@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "data-schema/error.hpp"
-#include "data-schema/files.hpp"
-#include "spatial/picture/geometry.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/files/files.hpp"
+#include "spatial/picture/draw/geometry.hpp"
 
 namespace tacto::spatial {
 

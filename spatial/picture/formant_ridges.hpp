@@ -4,9 +4,9 @@
 
 #include <span>
 
-#include "data-schema/formants.hpp"
-#include "spatial/picture/axis.hpp"
-#include "spatial/picture/canvas.hpp"
+#include "data-schema/texture/formants.hpp"
+#include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/canvas.hpp"
 
 namespace tacto::spatial {
 

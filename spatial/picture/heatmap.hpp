@@ -2,10 +2,10 @@
 // A spectrogram as coloured pixels on a logarithmic frequency axis: the door to OpenCV.
 #pragma once
 
-#include "data-schema/error.hpp"
-#include "data-schema/spectrogram.hpp"
-#include "spatial/picture/geometry.hpp"
-#include "spatial/spectrogram_summary.hpp"
+#include "data-schema/base/error.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "spatial/picture/draw/geometry.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
 
 namespace tacto::spatial {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "spatial/picture/axes.hpp"
-#include "spatial/picture/axis.hpp"
+#include "spatial/picture/draw/axes.hpp"
+#include "spatial/picture/draw/axis.hpp"
 
 namespace tacto::spatial {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "spatial/picture/canvas.hpp"
+#include "spatial/picture/draw/canvas.hpp"
 #include "spatial/picture/heatmap.hpp"
 
 namespace tacto::spatial {

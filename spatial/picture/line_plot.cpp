@@ -6,10 +6,10 @@
 #include <cmath>
 #include <optional>
 
-#include "spatial/picture/axes.hpp"
-#include "spatial/picture/canvas.hpp"
-#include "spatial/picture/fitted_text.hpp"
-#include "spatial/picture/heading.hpp"
+#include "spatial/picture/draw/axes.hpp"
+#include "spatial/picture/draw/canvas.hpp"
+#include "spatial/picture/draw/fitted_text.hpp"
+#include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/trace.hpp"
 
 namespace tacto::spatial {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "spatial/picture/axis.hpp"
+#include "spatial/picture/draw/axis.hpp"
 #include "spatial/picture/figure.hpp"
 
 namespace tacto::spatial {

@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spatial/picture/axes.hpp"
-#include "spatial/picture/display_unit.hpp"
-#include "spatial/picture/fitted_text.hpp"
+#include "spatial/picture/draw/axes.hpp"
+#include "spatial/picture/draw/display_unit.hpp"
+#include "spatial/picture/draw/fitted_text.hpp"
+#include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/formant_ridges.hpp"
-#include "spatial/picture/heading.hpp"
 #include "spatial/picture/level_bar.hpp"
 #include "spatial/picture/spectrogram_layout.hpp"
 #include "spatial/picture/trace.hpp"
 #include "spatial/picture/valid_band.hpp"
-#include "spatial/spectrogram_summary.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
 
 namespace tacto::spatial {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "spatial/picture/axis.hpp"
+#include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/figure.hpp"
-#include "spatial/picture/heading.hpp"
 #include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/sheet_layout.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spatial/picture/heading.hpp"
+#include "spatial/picture/draw/heading.hpp"
 
 namespace tacto::spatial {
 namespace {

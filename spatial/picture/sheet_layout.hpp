@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "spatial/picture/geometry.hpp"
+#include "spatial/picture/draw/geometry.hpp"
 
 namespace tacto::spatial {
 

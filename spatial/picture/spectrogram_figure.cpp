@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spatial/picture/canvas.hpp"
+#include "spatial/picture/draw/canvas.hpp"
 #include "spatial/picture/spectrogram_panel.hpp"
-#include "spatial/spectrogram_summary.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
 
 namespace tacto::spatial {
 

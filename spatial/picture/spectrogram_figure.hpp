@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/formants.hpp"
-#include "data-schema/spectrogram.hpp"
-#include "data-schema/texture.hpp"
-#include "spatial/picture/axis.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/texture/formants.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/figure.hpp"
-#include "spatial/picture/heading.hpp"
 #include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/spectrogram_layout.hpp"
 

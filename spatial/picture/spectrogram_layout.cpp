@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spatial/picture/canvas.hpp"
-#include "spatial/picture/heading.hpp"
+#include "spatial/picture/draw/canvas.hpp"
+#include "spatial/picture/draw/heading.hpp"
 
 namespace tacto::spatial {
 namespace {

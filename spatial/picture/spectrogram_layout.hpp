@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <span>
 
-#include "data-schema/spectrogram.hpp"
-#include "spatial/picture/axis.hpp"
-#include "spatial/picture/geometry.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/geometry.hpp"
 
 namespace tacto::spatial {
 

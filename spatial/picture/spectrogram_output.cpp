@@ -7,7 +7,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "data-schema/spectrogram.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
 
 namespace tacto::spatial {
 

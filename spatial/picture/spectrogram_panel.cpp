@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spatial/picture/axes.hpp"
-#include "spatial/picture/display_unit.hpp"
+#include "spatial/picture/draw/axes.hpp"
+#include "spatial/picture/draw/display_unit.hpp"
+#include "spatial/picture/draw/hatch.hpp"
+#include "spatial/picture/draw/shown_range.hpp"
 #include "spatial/picture/formant_ridges.hpp"
-#include "spatial/picture/hatch.hpp"
 #include "spatial/picture/level_bar.hpp"
-#include "spatial/picture/shown_range.hpp"
 #include "spatial/picture/trace.hpp"
 #include "spatial/picture/valid_band.hpp"
-#include "spatial/spectrogram_summary.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
 
 namespace tacto::spatial {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <span>
 
-#include "data-schema/formants.hpp"
-#include "data-schema/spectrogram.hpp"
-#include "data-schema/texture.hpp"
-#include "spatial/picture/axis.hpp"
-#include "spatial/picture/canvas.hpp"
-#include "spatial/picture/heading.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/texture/formants.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/canvas.hpp"
+#include "spatial/picture/draw/heading.hpp"
 #include "spatial/picture/heatmap.hpp"
 #include "spatial/picture/spectrogram_layout.hpp"
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "spatial/picture/axis.hpp"
-#include "spatial/picture/geometry.hpp"
+#include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/geometry.hpp"
 
 namespace tacto::spatial {
 

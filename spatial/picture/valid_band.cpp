@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "spatial/band_at.hpp"
-#include "spatial/picture/hatch.hpp"
+#include "spatial/numbers/band_at.hpp"
+#include "spatial/picture/draw/hatch.hpp"
 
 namespace tacto::spatial {
 

@@ -5,9 +5,9 @@
 
 #include <span>
 
-#include "data-schema/texture.hpp"
-#include "spatial/picture/axis.hpp"
-#include "spatial/picture/canvas.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/canvas.hpp"
 
 namespace tacto::spatial {
 

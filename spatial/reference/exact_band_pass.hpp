@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "spatial/dsp/band.hpp"
+#include "spatial/dsp/filter/band.hpp"
 
 namespace tacto::spatial::reference {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "spatial/dsp/decimation.hpp"
+#include "spatial/dsp/resample/decimation.hpp"
 
 namespace tacto::spatial::reference {
 

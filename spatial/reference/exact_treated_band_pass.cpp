@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "spatial/dsp/band_kernel.hpp"
+#include "spatial/dsp/filter/band_kernel.hpp"
 
 namespace tacto::spatial::reference {
 namespace {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "spatial/dsp/band.hpp"
-#include "spatial/dsp/sections.hpp"
+#include "spatial/dsp/filter/band.hpp"
+#include "spatial/dsp/filter/sections.hpp"
 
 namespace tacto::spatial::reference {
 

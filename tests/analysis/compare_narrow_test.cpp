@@ -10,7 +10,7 @@
 #include <string>
 
 #include "analysis/compare/compare.hpp"
-#include "spatial/dsp/fft.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 #include "tests/analysis/compare_textures.hpp"
 #include "tests/sanitized.hpp"
 

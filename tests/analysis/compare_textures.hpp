@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "data-schema/texture.hpp"
+#include "data-schema/texture/texture.hpp"
 
 namespace tacto::analysis {
 

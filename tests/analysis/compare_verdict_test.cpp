@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/compare/compare.hpp"
-#include "spatial/make_texture.hpp"
+#include "spatial/texture/make_texture.hpp"
 #include "tests/analysis/compare_textures.hpp"
 
 namespace tacto::analysis {

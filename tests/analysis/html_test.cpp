@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/html.hpp"
+#include "analysis/page/html.hpp"
 
 #include <gtest/gtest.h>
 
-#include "analysis/demo_page.hpp"
+#include "analysis/demo/demo_page.hpp"
 
 namespace tacto::analysis {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
-#include "analysis/identify/plausibility.hpp"
-#include "analysis/identify/response_fit.hpp"
+#include "analysis/identify/fit/plausibility.hpp"
+#include "analysis/identify/fit/response_fit.hpp"
 #include "tests/analysis/identify_plants.hpp"
 #include "tests/sanitized.hpp"
 

@@ -7,9 +7,9 @@
 #include <map>
 #include <random>
 
-#include "analysis/identify/identification.hpp"
-#include "analysis/identify/response_fit.hpp"
-#include "playback/daemon/player_device.hpp"
+#include "analysis/identify/fit/response_fit.hpp"
+#include "analysis/identify/report/identification.hpp"
+#include "playback/player/player_device.hpp"
 #include "tests/analysis/identify_plants.hpp"
 #include "tests/sanitized.hpp"
 

@@ -4,13 +4,13 @@
 
 #include <numbers>
 
-#include "analysis/identify/hold.hpp"
-#include "analysis/identify/identification.hpp"
-#include "analysis/identify/least_squares.hpp"
-#include "analysis/identify/plausibility.hpp"
-#include "analysis/identify/response_fit.hpp"
-#include "analysis/identify/student.hpp"
-#include "firmware-host/sim/actuated_tray.hpp"
+#include "analysis/identify/fit/least_squares.hpp"
+#include "analysis/identify/fit/plausibility.hpp"
+#include "analysis/identify/fit/response_fit.hpp"
+#include "analysis/identify/fit/student.hpp"
+#include "analysis/identify/measure/hold.hpp"
+#include "analysis/identify/report/identification.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
 #include "tests/analysis/identify_plants.hpp"
 
 namespace tacto::analysis {

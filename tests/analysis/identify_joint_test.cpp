@@ -7,9 +7,9 @@
 #include <map>
 #include <numbers>
 
-#include "analysis/identify/identification.hpp"
-#include "playback/daemon/player_device.hpp"
-#include "playback/hysteresis_inverse.hpp"
+#include "analysis/identify/report/identification.hpp"
+#include "playback/model/hysteresis_inverse.hpp"
+#include "playback/player/player_device.hpp"
 #include "tests/analysis/identify_plants.hpp"
 #include "tests/sanitized.hpp"
 

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <random>
 
-#include "analysis/identify/excitation.hpp"
-#include "analysis/identify/hysteresis_loop.hpp"
-#include "firmware-host/sim/actuated_tray.hpp"
-#include "playback/hysteresis_inverse.hpp"
+#include "analysis/identify/fit/hysteresis_loop.hpp"
+#include "analysis/identify/measure/excitation.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "playback/model/hysteresis_inverse.hpp"
 
 namespace tacto::analysis {
 namespace {

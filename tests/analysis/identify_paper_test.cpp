@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/identify/paper_words.hpp"
+#include "analysis/identify/report/paper_words.hpp"
 #include "tests/analysis/identify_plants.hpp"
 
 namespace tacto::analysis {

@@ -3,10 +3,10 @@
 // multisine and chirp, with each draw's own noise in every sample and the noise told by the periods.
 #include <gtest/gtest.h>
 
-#include "analysis/identify/excitation.hpp"
-#include "analysis/identify/response_estimate.hpp"
-#include "analysis/identify/response_fit.hpp"
-#include "firmware-host/sim/actuated_tray.hpp"
+#include "analysis/identify/fit/response_fit.hpp"
+#include "analysis/identify/measure/excitation.hpp"
+#include "analysis/identify/measure/response_estimate.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
 #include "tests/analysis/identify_plants.hpp"
 #include "tests/sanitized.hpp"
 

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "analysis/identify/bode_data.hpp"
-#include "data-schema/transducer.hpp"
-#include "firmware-host/sim/tray_mechanics.hpp"
+#include "analysis/identify/measure/bode_data.hpp"
+#include "data-schema/transducer/transducer.hpp"
+#include "firmware-host/sim/physics/tray_mechanics.hpp"
 
 namespace tacto::analysis {
 

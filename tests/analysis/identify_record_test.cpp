@@ -5,9 +5,9 @@
 
 #include <functional>
 
-#include "analysis/identify/record_response.hpp"
-#include "analysis/identify/response_fit.hpp"
-#include "spatial/dsp/fft.hpp"
+#include "analysis/identify/fit/response_fit.hpp"
+#include "analysis/identify/measure/record_response.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 #include "tests/analysis/identify_plants.hpp"
 
 namespace tacto::analysis {

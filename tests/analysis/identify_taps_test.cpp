@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <random>
 
-#include "analysis/identify/taps.hpp"
+#include "analysis/identify/measure/taps.hpp"
 
 namespace tacto::analysis {
 namespace {

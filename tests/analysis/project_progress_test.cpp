@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "analysis/report/project.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::analysis {

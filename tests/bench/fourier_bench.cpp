@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "spatial/dsp/block_fourier_filter.hpp"
-#include "spatial/dsp/fourier_filter.hpp"
+#include "spatial/dsp/filter/block_fourier_filter.hpp"
+#include "spatial/dsp/filter/fourier_filter.hpp"
 #include "tests/bench/workload.hpp"
 
 namespace tacto::spatial {

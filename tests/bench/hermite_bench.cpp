@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "spatial/monotone_path.hpp"
-#include "spatial/resample.hpp"
+#include "spatial/strokes/monotone_path.hpp"
+#include "spatial/texture/resample.hpp"
 #include "tests/bench/workload.hpp"
 
 namespace tacto::spatial {

@@ -2,9 +2,9 @@
 // A table of 60 s made a recording: the whole of it, and its parts.
 #include <benchmark/benchmark.h>
 
-#include "capture/import.hpp"
-#include "capture/source.hpp"
-#include "data-schema/files.hpp"
+#include "capture/import/import.hpp"
+#include "capture/table/source.hpp"
+#include "data-schema/files/files.hpp"
 #include "tests/bench/workload_csv.hpp"
 
 namespace tacto::capture {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/files.hpp"
-#include "data-schema/recording.hpp"
-#include "data-schema/spectrogram_writer.hpp"
-#include "spatial/make_texture.hpp"
-#include "spatial/spectrogram_maker.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/spectrogram/spectrogram_writer.hpp"
+#include "spatial/spectrogram/spectrogram_maker.hpp"
+#include "spatial/texture/make_texture.hpp"
 #include "tests/bench/workload.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "spatial/dsp/butterworth.hpp"
-#include "spatial/dsp/sections.hpp"
+#include "spatial/dsp/filter/butterworth.hpp"
+#include "spatial/dsp/filter/sections.hpp"
 #include "tests/bench/workload.hpp"
 
 namespace tacto::spatial {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "spatial/dsp/packed_fft.hpp"
-#include "spatial/spectrogram_maker.hpp"
+#include "spatial/dsp/fourier/packed_fft.hpp"
+#include "spatial/spectrogram/spectrogram_maker.hpp"
 #include "tests/bench/workload.hpp"
 
 namespace tacto::spatial {

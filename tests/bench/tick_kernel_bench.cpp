@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "playback/prepare.hpp"
+#include "playback/prepare/prepare.hpp"
 
 namespace tacto::playback {
 namespace {

@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "firmware-host/awake_cores.hpp"
-#include "firmware-host/realtime_priority.hpp"
-#include "playback/daemon/tick_clock.hpp"
-#include "playback/daemon/time_histogram.hpp"
+#include "firmware-host/link/awake_cores.hpp"
+#include "firmware-host/link/realtime_priority.hpp"
+#include "playback/host-loop/tick_clock.hpp"
+#include "playback/host-loop/time_histogram.hpp"
 #include "tests/firmware-host/kernel_workload.hpp"
 
 namespace tacto::playback {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/apply_calibration.hpp"
+#include "capture/record/apply_calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "capture/record.hpp"
+#include "capture/record/record.hpp"
 #include "firmware-host/open_device.hpp"
 #include "tests/capture/sim_take.hpp"
 #include "tests/data-schema/temporary_folder.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/believable_scale.hpp"
+#include "capture/import/believable_scale.hpp"
 
 #include <gtest/gtest.h>
 

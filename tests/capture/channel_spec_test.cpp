@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/channel_spec.hpp"
+#include "capture/table/channel_spec.hpp"
 
 #include <gtest/gtest.h>
 

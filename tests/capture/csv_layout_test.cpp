@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/csv_layout.hpp"
+#include "capture/table/csv_layout.hpp"
 
 #include <gtest/gtest.h>
 
-#include "capture/csv_fields.hpp"
-#include "capture/text_encoding.hpp"
+#include "capture/table/csv_fields.hpp"
+#include "capture/table/text_encoding.hpp"
 
 namespace tacto::capture {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/csv_number.hpp"
+#include "capture/table/csv_number.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "capture/plain_decimal.hpp"
+#include "capture/table/plain_decimal.hpp"
 
 namespace tacto::capture {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/csv_reader.hpp"
+#include "capture/table/csv_reader.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

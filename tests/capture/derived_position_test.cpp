@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/derived_position.hpp"
+#include "capture/import/derived_position.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/doctor.hpp"
+#include "capture/doctor/doctor.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "capture/disk_speed.hpp"
-#include "capture/realtime_limits.hpp"
-#include "capture/tare.hpp"
-#include "capture/udev_rule.hpp"
+#include "capture/calibrate/tare.hpp"
+#include "capture/doctor/realtime_limits.hpp"
+#include "capture/doctor/udev_rule.hpp"
+#include "capture/record/disk_speed.hpp"
 #include "tests/capture/sim_take.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 

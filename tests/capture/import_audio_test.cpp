@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "data-schema/wav.hpp"
+#include "data-schema/wav/wav.hpp"
 #include "tests/capture/import_fixture.hpp"
 
 namespace tacto::capture {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "capture/import.hpp"
-#include "data-schema/recording.hpp"
+#include "capture/import/import.hpp"
+#include "data-schema/recording/recording.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::capture {

@@ -2,7 +2,7 @@
 // Tables made recordings, read back from disk.
 #include <fmt/format.h>
 
-#include "data-schema/files.hpp"
+#include "data-schema/files/files.hpp"
 #include "tests/capture/import_fixture.hpp"
 
 namespace tacto::capture {

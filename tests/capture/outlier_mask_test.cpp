@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rows with outliers are left out and become gaps; every other number and time stays.
-#include "capture/outlier_mask.hpp"
+#include "capture/import/outlier_mask.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cmath>
 
-#include "data-schema/check.hpp"
-#include "data-schema/file_kind.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/kinds/file_kind.hpp"
 #include "tests/capture/import_fixture.hpp"
 
 namespace tacto::capture {

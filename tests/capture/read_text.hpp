@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "capture/csv_layout.hpp"
-#include "capture/csv_reader.hpp"
+#include "capture/table/csv_layout.hpp"
+#include "capture/table/csv_reader.hpp"
 
 namespace tacto::capture {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/record.hpp"
+#include "capture/record/record.hpp"
 #include "firmware-host/open_device.hpp"
 
 #include <gtest/gtest.h>

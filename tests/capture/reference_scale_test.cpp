@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/reference_scale.hpp"
+#include "capture/calibrate/reference_scale.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A pull that is let go, integrated here from the transducer's equations of motion (Wiertlewski 2011, (1) to
 // (3)).
-#include "capture/released_weight.hpp"
+#include "capture/calibrate/released_weight.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "capture/record_header.hpp"
-#include "data-schema/transducer.hpp"
+#include "capture/record/record_header.hpp"
+#include "data-schema/transducer/transducer.hpp"
 #include "tests/capture/sim_take.hpp"
 
 namespace tacto::capture {

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <string>
 
-#include "capture/take.hpp"
-#include "capture/uncertain.hpp"
+#include "capture/calibrate/uncertain.hpp"
+#include "capture/record/take.hpp"
 #include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {

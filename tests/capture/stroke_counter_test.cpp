@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/stroke_counter.hpp"
+#include "capture/record/stroke_counter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "capture/live_view.hpp"
+#include "capture/record/live_view.hpp"
 
 namespace tacto::capture {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/take_name.hpp"
+#include "capture/record/take_name.hpp"
 
 #include <gtest/gtest.h>
 

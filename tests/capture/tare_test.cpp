@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/tare.hpp"
+#include "capture/calibrate/tare.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/travel.hpp"
+#include "capture/calibrate/travel.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "capture/watch_counts.hpp"
+#include "capture/record/watch_counts.hpp"
 #include "firmware-host/open_device.hpp"
 #include "tests/capture/sim_take.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/uncertain.hpp"
+#include "capture/calibrate/uncertain.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "capture/hann_line.hpp"
+#include "capture/calibrate/hann_line.hpp"
 #include "tests/capture/sim_take.hpp"
 
 namespace tacto::capture {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/uniform_clock.hpp"
+#include "capture/import/uniform_clock.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

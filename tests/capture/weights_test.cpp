@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/weights.hpp"
+#include "capture/calibrate/weights.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

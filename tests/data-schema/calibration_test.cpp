@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "data-schema/calibration.hpp"
+#include "data-schema/calibration/calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "data-schema/check.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

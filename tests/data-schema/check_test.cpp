@@ -7,11 +7,11 @@
 #include <fstream>
 #include <limits>
 
-#include "data-schema/check.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/recording.hpp"
-#include "data-schema/spectrogram.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "data-schema/clock_fit.hpp"
+#include "data-schema/recording/clock_fit.hpp"
 
 #include <gtest/gtest.h>
 

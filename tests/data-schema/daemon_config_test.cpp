@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "data-schema/daemon_config.hpp"
+#include "data-schema/control/daemon_config.hpp"
 
 #include <gtest/gtest.h>
 

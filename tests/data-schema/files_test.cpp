@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that appear whole or not at all.
-#include "data-schema/files.hpp"
+#include "data-schema/files/files.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "data-schema/cli/command.hpp"
 #include "data-schema/cli/verbs.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/recording.hpp"
-#include "data-schema/spectrogram.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/command/command.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Documents: what is said of broken ones, what becomes of those from the future.
-#include "data-schema/json_document.hpp"
+#include "data-schema/json/json_document.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <limits>
 
-#include "data-schema/json_schema.hpp"
-#include "data-schema/recording.hpp"
+#include "data-schema/json/json_schema.hpp"
+#include "data-schema/recording/recording.hpp"
 
 namespace tacto::schema {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a killed process left is known from what a running one, or another machine's, writes.
-#include "data-schema/leftover_files.hpp"
+#include "data-schema/files/leftover_files.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,8 +15,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "data-schema/files.hpp"
-#include "data-schema/process_mark.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/files/process_mark.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

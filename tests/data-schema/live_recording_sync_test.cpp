@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "data-schema/live_recording.hpp"
+#include "data-schema/recording/live_recording.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace {

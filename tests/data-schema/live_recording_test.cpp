@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recordings that were broken off in every way, and what recovering gives back.
-#include "data-schema/live_recording.hpp"
+#include "data-schema/recording/live_recording.hpp"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "data-schema/check.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The object `playback` is one and the same in scene, configuration and request.
-#include "data-schema/playback_choices.hpp"
+#include "data-schema/scene/playback_choices.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "data-schema/control.hpp"
-#include "data-schema/daemon_config.hpp"
-#include "data-schema/scene.hpp"
+#include "data-schema/control/control.hpp"
+#include "data-schema/control/daemon_config.hpp"
+#include "data-schema/scene/scene.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

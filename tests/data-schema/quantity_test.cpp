@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Quantities as people write them.
-#include "data-schema/quantity.hpp"
+#include "data-schema/base/quantity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A recording's journal: what is written is what is read, and a broken line takes no other along.
-#include "data-schema/recording_events.hpp"
+#include "data-schema/recording/recording_events.hpp"
 
 #include <gtest/gtest.h>
 

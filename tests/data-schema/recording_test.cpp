@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recordings: what is written is what is read, and what is broken is named.
-#include "data-schema/recording.hpp"
-#include "data-schema/recording_frames.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/recording/recording_frames.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "data-schema/files.hpp"
+#include "data-schema/files/files.hpp"
 #include "data-schema/version.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 

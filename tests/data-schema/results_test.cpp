@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Results as a file: what is written reads back; what is unsound, or would be lost, is refused.
-#include "data-schema/results.hpp"
+#include "data-schema/results/results.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "data-schema/check.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

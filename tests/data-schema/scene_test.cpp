@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "data-schema/scene.hpp"
+#include "data-schema/scene/scene.hpp"
 
 #include <gtest/gtest.h>
 
-#include "data-schema/check.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

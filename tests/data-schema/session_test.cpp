@@ -8,11 +8,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "data-schema/check.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/session_blocks.hpp"
-#include "data-schema/session_reader.hpp"
-#include "data-schema/session_writer.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/session/session_blocks.hpp"
+#include "data-schema/session/session_reader.hpp"
+#include "data-schema/session/session_writer.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

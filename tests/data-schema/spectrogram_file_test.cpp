@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
-#include "data-schema/files.hpp"
-#include "data-schema/spectrogram.hpp"
-#include "data-schema/spectrogram_writer.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/spectrogram/spectrogram_writer.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "data-schema/description.hpp"
-#include "data-schema/file_kind.hpp"
-#include "data-schema/files.hpp"
-#include "data-schema/formants.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/texture/description.hpp"
+#include "data-schema/texture/formants.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

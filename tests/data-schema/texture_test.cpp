@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "data-schema/files.hpp"
-#include "data-schema/recording.hpp"
-#include "data-schema/texture.hpp"
-#include "data-schema/wav.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "data-schema/wav/wav.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of measured choices as a file, and where a machine's own is found.
-#include "data-schema/trade_table.hpp"
+#include "data-schema/results/trade_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 
-#include "data-schema/check.hpp"
-#include "data-schema/files.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "data-schema/files.hpp"
-#include "data-schema/transducer.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/transducer/transducer.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "data-schema/transducer.hpp"
+#include "data-schema/transducer/transducer.hpp"
 
 namespace tacto::schema {
 namespace {

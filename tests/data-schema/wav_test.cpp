@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sample files, against headers written here byte by byte.
-#include "data-schema/wav.hpp"
+#include "data-schema/wav/wav.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <limits>
 
-#include "data-schema/files.hpp"
+#include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::schema {

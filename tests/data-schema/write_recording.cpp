@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "data-schema/recording.hpp"
+#include "data-schema/recording/recording.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include "data-schema/spectrogram.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The integrated actuator against the closed form of its transfer function.
-#include "firmware-host/sim/actuated_tray.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
 
 #include <gtest/gtest.h>
 

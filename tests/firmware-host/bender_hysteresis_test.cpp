@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The hysteresis operator against what is known of Prandtl-Ishlinskii loops.
-#include "firmware-host/sim/bender_hysteresis.hpp"
+#include "firmware-host/sim/physics/bender_hysteresis.hpp"
 
 #include <gtest/gtest.h>
 

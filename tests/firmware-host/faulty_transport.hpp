@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "firmware-host/core/wire/frame_decoder.hpp"
-#include "firmware-host/transport.hpp"
+#include "firmware-host/link/transport.hpp"
 
 namespace tacto::tests {
 

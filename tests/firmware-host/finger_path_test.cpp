@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/sim/finger_path.hpp"
+#include "firmware-host/sim/physics/finger_path.hpp"
 
 #include <gtest/gtest.h>
 

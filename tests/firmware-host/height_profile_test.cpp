@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/sim/height_profile.hpp"
+#include "firmware-host/sim/physics/height_profile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "data-schema/texture.hpp"
-#include "firmware-host/sim/surface.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "firmware-host/sim/physics/surface.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::firmware_host {

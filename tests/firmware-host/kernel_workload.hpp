@@ -3,7 +3,7 @@
 // QEMU. Freestanding, and no arithmetic whose result a compiler or processor may choose.
 #pragma once
 
-#include "firmware-host/core/tick_kernel.hpp"
+#include "firmware-host/core/kernel/tick_kernel.hpp"
 
 namespace tacto::tests {
 

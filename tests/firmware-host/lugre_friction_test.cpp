@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/sim/lugre_friction.hpp"
+#include "firmware-host/sim/physics/lugre_friction.hpp"
 
 #include <gtest/gtest.h>
 
-#include "firmware-host/sim/runge_kutta.hpp"
+#include "firmware-host/sim/physics/runge_kutta.hpp"
 
 namespace tacto::firmware_host {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/sim/lvdt.hpp"
+#include "firmware-host/sim/bench/lvdt.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/sim/random.hpp"
+#include "firmware-host/sim/physics/random.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "firmware-host/sim/spline_noise.hpp"
+#include "firmware-host/sim/physics/spline_noise.hpp"
 
 namespace tacto::firmware_host {
 namespace {

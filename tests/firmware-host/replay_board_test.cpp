@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware-host/wire_device.hpp"
+#include "firmware-host/link/wire_device.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/firmware-host/sim_stream.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <chrono>
 
-#include "firmware-host/scan.hpp"
 #include "firmware-host/open_device.hpp"
+#include "firmware-host/scan.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/firmware-host/sim_stream.hpp"
 

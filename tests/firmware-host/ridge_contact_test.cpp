@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/sim/ridge_contact.hpp"
+#include "firmware-host/sim/physics/ridge_contact.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "firmware-host/sim/random.hpp"
+#include "firmware-host/sim/physics/random.hpp"
 
 namespace tacto::firmware_host {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "firmware-host/sim/runge_kutta.hpp"
-#include "firmware-host/sim/sensor_motion.hpp"
+#include "firmware-host/sim/physics/runge_kutta.hpp"
+#include "firmware-host/sim/physics/sensor_motion.hpp"
 #include "tests/firmware-host/sine_fit.hpp"
 
 namespace tacto::firmware_host {

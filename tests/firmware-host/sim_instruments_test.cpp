@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "firmware-host/sim/converter.hpp"
+#include "firmware-host/sim/physics/converter.hpp"
 #include "tests/firmware-host/sim_stream.hpp"
 
 namespace tacto::firmware_host {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware-host/sim/sim_parameters.hpp"
+#include "firmware-host/sim/device/sim_parameters.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware-host/device.hpp"
+#include "firmware-host/link/device.hpp"
 #include "firmware-host/open_device.hpp"
 
 namespace tacto::tests {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "firmware-host/core/firmware.hpp"
+#include "firmware-host/core/firmware/firmware.hpp"
 #include "tests/firmware-host/wire_messages.hpp"
 
 namespace tacto::tests {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tick kernel against its double-precision reference and against closed forms.
-#include "firmware-host/core/tick_kernel.hpp"
+#include "firmware-host/core/kernel/tick_kernel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "firmware-host/core/sweep_generator.hpp"
+#include "firmware-host/core/firmware/sweep_generator.hpp"
 #include "firmware-host/reference/exact_tick.hpp"
 #include "tests/firmware-host/kernel_workload.hpp"
 

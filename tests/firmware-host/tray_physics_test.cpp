@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Second mode, finger's load and hysteresis on the tray, against closed forms.
-#include "firmware-host/sim/tray_physics.hpp"
+#include "firmware-host/sim/physics/tray_physics.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "firmware-host/sim/actuated_tray.hpp"
-#include "firmware-host/sim/force_bench.hpp"
-#include "firmware-host/sim/sim_device.hpp"
 #include "firmware-host/open_device.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "firmware-host/sim/bench/force_bench.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
 #include "tests/firmware-host/sim_stream.hpp"
 #include "tests/firmware-host/sine_fit.hpp"
 

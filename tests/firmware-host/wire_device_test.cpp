@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Host client, wire, firmware core and physics together, over a sound cable and over bad ones. Whatever the
 // cable does, it ends in the stated gap or error: never a hang, a crash or a silent hole.
-#include "firmware-host/wire_device.hpp"
+#include "firmware-host/link/wire_device.hpp"
 
 #include <gtest/gtest.h>
 
-#include "firmware-host/sim/sim_device.hpp"
-#include "firmware-host/sim/sim_transport.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
+#include "firmware-host/sim/device/sim_transport.hpp"
 #include "tests/firmware-host/faulty_transport.hpp"
 #include "tests/firmware-host/sim_stream.hpp"
 

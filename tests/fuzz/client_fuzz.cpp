@@ -2,7 +2,7 @@
 // Any device, from the host's side: it greets well or badly, then says what it likes, in frames whose checks
 // are right and in raw bytes. Every call of the client must end, in emulated time within its timeouts, and no
 // frame may come out of the queue that the gaps do not account for.
-#include "firmware-host/client.hpp"
+#include "firmware-host/link/client.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "data-schema/control.hpp"
-#include "data-schema/scene.hpp"
+#include "data-schema/control/control.hpp"
+#include "data-schema/scene/scene.hpp"
 
 namespace {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as each of the JSON files, and as a log of events. What a reader takes has to be what the check
 // finds nothing wrong with, samples and checksum apart.
-#include "data-schema/calibration.hpp"
-#include "data-schema/check.hpp"
-#include "data-schema/description.hpp"
-#include "data-schema/file_kind.hpp"
-#include "data-schema/formants.hpp"
-#include "data-schema/recording.hpp"
-#include "data-schema/recording_events.hpp"
-#include "data-schema/texture.hpp"
-#include "data-schema/transducer.hpp"
+#include "data-schema/calibration/calibration.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/recording/recording_events.hpp"
+#include "data-schema/texture/description.hpp"
+#include "data-schema/texture/formants.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "data-schema/transducer/transducer.hpp"
 #include "tests/fuzz/fuzzed_file.hpp"
 
 using namespace tacto;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a table or as a profile's XML into import. What is imported is sound; what is not leaves
 // nothing behind.
-#include "capture/height_profile.hpp"
-#include "capture/import.hpp"
-#include "data-schema/check.hpp"
-#include "data-schema/file_kind.hpp"
+#include "capture/import/height_profile.hpp"
+#include "capture/import/import.hpp"
+#include "data-schema/check/check.hpp"
+#include "data-schema/kinds/file_kind.hpp"
 #include "tests/fuzz/fuzzed_file.hpp"
 
 using namespace tacto;

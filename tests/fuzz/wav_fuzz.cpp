@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Any bytes as a WAV: read whole, repaired, and read as the recording that recovery makes of it.
-#include "data-schema/riff_layout.hpp"
-#include "data-schema/riff_repair.hpp"
-#include "data-schema/wav.hpp"
+#include "data-schema/wav/riff_layout.hpp"
+#include "data-schema/wav/riff_repair.hpp"
+#include "data-schema/wav/wav.hpp"
 #include "tests/fuzz/fuzzed_file.hpp"
 
 using namespace tacto;

@@ -1,44 +1,43 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The include table of the house: which folder may include which, which library lies behind which wall.
+"""The include table of the house (include_table.py): which folder may include which, which library is included where.
 
-Also: every source file names its licence, no file of the libraries outgrows 400 lines, and the root keeps to its
-folders. The test first proves on an invented tree that it can fail.
+Also: the table has no cycle, no folder has more than 30 sources, every source file names its licence, no file of the
+libraries is longer than 400 lines, and the root has no other folders. The test first shows on an invented tree that it
+can fail. With --dot it draws the table instead:
+
+    tests/house/include_graph_test.py --dot | dot -Tsvg -o house.svg        # package graphviz
+    tests/house/include_graph_test.py --dot playback | dot -Tsvg -o playback.svg
 """
+import graphlib
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 
+from include_table import MAY_INCLUDE as TABLE
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Longest prefix first: firmware-host/core is stricter than firmware-host.
-MAY_INCLUDE = {
-    "firmware-host/core": [],
-    "firmware-host": ["firmware-host/core", "data-schema"],
-    "data-schema": [],
-    "capture": ["data-schema", "firmware-host"],
-    "spatial": ["data-schema"],
-    "playback": ["data-schema", "firmware-host", "firmware-host/core", "spatial"],
-    "analysis": ["data-schema", "firmware-host", "capture", "spatial", "playback"],
-}
+MOST_SOURCES = 30  # of a folder
 
 # Header (as a pattern on what stands between the brackets) -> the only places it may be included.
 WALLS = {
     r"libusb": ["firmware-host/usb"],
     r"fftw3": ["spatial/dsp"],
-    r"sndfile": ["data-schema"],
+    r"sndfile": ["data-schema/wav"],
     r"nlohmann/|valijson/|netcdf|H5": ["data-schema"],
-    r"nettle/": ["data-schema", "analysis"],
+    r"nettle/": ["data-schema/base"],
     r"opencv2/|cairo|pango": ["spatial/picture"],
-    r"pugixml": ["capture"],
+    r"pugixml": ["capture/import"],
     r"Eigen/|unsupported/Eigen": ["analysis/identify"],
-    r"CLI/": ["data-schema/cli"],
+    r"CLI/": ["data-schema/command"],
 }
 
 # JSON and netCDF readers must not leak into the verbs: only the report printer shares the JSON wall.
-CLI_JSON_EXCEPTION = "data-schema/cli/report.cpp"
+VERBS = r"(.*/)?cli/|data-schema/(command|report)/|spatial/job/"
+CLI_JSON_EXCEPTION = "data-schema/report/report.cpp"
 
 # What runs on a device has no hosted library behind it.
 C_HEADERS = {"firmware-host/core": ["stdint.h", "stddef.h"]}
@@ -51,20 +50,32 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]', re.M)
 SPDX = {"firmware-host/core": "Apache-2.0"}
 
 
-def room_of(path):
-    """The row of the table a file or include belongs to, or None."""
-    rooms = sorted(MAY_INCLUDE, key=len, reverse=True)
-    return next((room for room in rooms if path.startswith(room + "/")), None)
+def spelled_out(row):
+    """"room/{a b} other/c" as ["room/a", "room/b", "other/c"]; "room/." is the room itself."""
+    for prefix, names, single in re.findall(r"(\S+)/\{([^}]*)\}|(\S+)", row):
+        yield from [f"{prefix}/{name}".removesuffix("/.") for name in names.split()] if prefix else [single]
+
+
+MAY_INCLUDE = {folder: set(spelled_out(row)) for folder, row in TABLE.items()}
+
+
+def folder_of(path):
+    return path.rpartition("/")[0]
 
 
 def arrow_faults(name, text):
-    room = room_of(name)
+    folder = folder_of(name)
+    if folder not in MAY_INCLUDE:
+        yield f"{name}: the folder {folder} is not in include_table.py"
+        return
     for quote, target in INCLUDE.findall(text):
-        other = room_of(target)
-        if quote == '"' and other is None and target != "data-schema/version.hpp":
+        other = folder_of(target)
+        if quote == "<" or target == "data-schema/version.hpp":
+            continue
+        if other not in MAY_INCLUDE:
             yield f'{name}: "{target}" is not written from the root'
-        if room and other and other != room and other not in MAY_INCLUDE[room]:
-            yield f"{name}: {room} may not include {other} ({target})"
+        elif other != folder and other not in MAY_INCLUDE[folder]:
+            yield f"{name}: {folder} may not include {other} ({target})"
 
 
 def wall_faults(name, text):
@@ -73,12 +84,12 @@ def wall_faults(name, text):
             if quote == "<" and re.match(pattern, target):
                 if not any(name.startswith(place + "/") for place in places):
                     yield f"{name}: <{target}> belongs only in {', '.join(places)}"
-        if re.match(r"nlohmann/|netcdf|valijson/", target) and "/cli/" in name and name != CLI_JSON_EXCEPTION:
+        if re.match(r"nlohmann/|netcdf|valijson/", target) and re.match(VERBS, name) and name != CLI_JSON_EXCEPTION:
             yield f"{name}: <{target}> does not belong in a verb"
 
 
 def freestanding_faults(name, text):
-    allowed = C_HEADERS.get(room_of(name))
+    allowed = next((headers for room, headers in C_HEADERS.items() if name.startswith(room + "/")), None)
     for quote, target in INCLUDE.findall(text):
         if allowed and quote == "<" and target not in allowed:
             yield f"{name}: <{target}> is not among {', '.join(allowed)}: the core is freestanding"
@@ -101,6 +112,48 @@ def faults_of(name, text):
     return faults
 
 
+def table_faults(table):
+    for folder, others in table.items():
+        for other in sorted(others - table.keys()):
+            yield f"include_table.py: {folder} may include {other}, which is no folder of the table"
+    try:
+        graphlib.TopologicalSorter(table).prepare()
+    except graphlib.CycleError as cycle:
+        yield "include_table.py: a cycle: " + " -> ".join(cycle.args[1])
+
+
+def unused_rows(names, texts):
+    """An arrow that no source takes any more is taken out of the table, so that it can't come back unseen."""
+    used = {folder: set() for folder in MAY_INCLUDE}
+    for name in names:
+        for quote, target in INCLUDE.findall(texts[name]):
+            used.get(folder_of(name), set()).add(folder_of(target))
+    for folder, others in MAY_INCLUDE.items():
+        for other in sorted(others - used[folder]):
+            yield f"include_table.py: {folder} includes nothing of {other}"
+
+
+def size_faults(names):
+    folders = [folder_of(name) for name in names]
+    for folder in sorted(set(folders)):
+        if folders.count(folder) > MOST_SOURCES:
+            yield f"{folder}: {folders.count(folder)} sources; at most {MOST_SOURCES} can be looked through"
+
+
+def dot_of(table, room):
+    """The table for Graphviz: all of it, or the arrows from and to one room's folders."""
+    shown = {f: others for f, others in table.items() if not room or f.startswith(room) or any(o.startswith(room) for o in others)}
+    rooms = sorted({folder.split("/")[0] for folder in table})
+    lines = ["digraph house {", "  rankdir=BT; node [shape=box, fontname=sans, fontsize=11]; edge [color=gray50];"]
+    for name in rooms:
+        inside = " ".join(f'"{folder}";' for folder in table if folder.split("/")[0] == name)
+        lines.append(f'  subgraph "cluster_{name}" {{ label="{name}"; fontname=sans; {inside} }}')
+    for folder, others in shown.items():
+        lines += [f'  "{folder}" -> "{other}";' for other in sorted(others)
+                  if not room or folder.startswith(room) or other.startswith(room)]
+    return "\n".join(lines + ["}"])
+
+
 def sources(root):
     listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=root,
                             capture_output=True, text=True)
@@ -120,31 +173,43 @@ def root_faults(root):
 def prove_it_can_fail():
     spdx = "// SPDX-License-Identifier: GPL-3.0-or-later\n"
     bad = {
-        "spatial/a.cpp": spdx + '#include "playback/render.hpp"\n',
-        "firmware-host/core/a.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include \"data-schema/error.hpp\"\n",
-        "firmware-host/core/b.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include <vector>\n",
+        "spatial/texture/a.cpp": spdx + '#include "playback/render/render.hpp"\n',
+        "spatial/features/a.cpp": spdx + '#include "spatial/certificate/certificate.hpp"\n',
+        "spatial/surprise/a.cpp": spdx,
+        "firmware-host/core/kernel/a.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include \"data-schema/base/error.hpp\"\n",
+        "firmware-host/core/kernel/b.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include <vector>\n",
         "firmware-host/core/wire/c.hpp": "// SPDX-License-Identifier: Apache-2.0\n#include <cstdint>\n",
-        "capture/a.cpp": spdx + "#include <fftw3.h>\n",
-        "spatial/b.cpp": spdx + "#include <pugixml.hpp>\n",
-        "spatial/dsp/a.cpp": spdx + "#include <opencv2/core.hpp>\n",
+        "capture/record/a.cpp": spdx + "#include <fftw3.h>\n",
+        "spatial/texture/b.cpp": spdx + "#include <pugixml.hpp>\n",
+        "spatial/dsp/filter/a.cpp": spdx + "#include <opencv2/core.hpp>\n",
         "data-schema/cli/a.cpp": spdx + "#include <nlohmann/json.hpp>\n",
-        "analysis/a.cpp": "int x;\n",
-        "analysis/b.cpp": spdx + "\n" * 500,
-        "analysis/c.cpp": spdx + '#include "render.hpp"\n',
+        "data-schema/command/a.cpp": spdx + "#include <nlohmann/json.hpp>\n",
+        "analysis/demo/a.cpp": "int x;\n",
+        "analysis/demo/b.cpp": spdx + "\n" * 500,
+        "analysis/demo/c.cpp": spdx + '#include "demo.hpp"\n',
     }
     for name, text in bad.items():
         assert faults_of(name, text), f"the check does not see what is wrong with {name}"
-    assert not faults_of("playback/a.cpp", spdx + '#include "spatial/dsp/fft.hpp"\n#include <vector>\n')
+    assert not faults_of("playback/model/a.cpp", spdx + '#include "spatial/dsp/fourier/fft.hpp"\n#include <vector>\n')
+    assert list(table_faults({"a": {"b"}, "b": {"c"}, "c": {"a"}})) and list(table_faults({"a": {"b"}}))
+    assert list(size_faults([f"a/{n}.cpp" for n in range(MOST_SOURCES + 1)]))
+    assert list(unused_rows([], {}))
     with tempfile.TemporaryDirectory() as folder:
         (pathlib.Path(folder) / "surprise").touch()
         assert list(root_faults(pathlib.Path(folder)))
 
 
 def main():
+    if sys.argv[1:2] == ["--dot"]:
+        print(dot_of(MAY_INCLUDE, "".join(sys.argv[2:3])))
+        return 0
     prove_it_can_fail()
     names = sources(ROOT)
     assert len(names) > 20, f"only {len(names)} sources found under {ROOT}"
-    faults = [fault for name in names for fault in faults_of(name, (ROOT / name).read_text())] + list(root_faults(ROOT))
+    texts = {name: (ROOT / name).read_text() for name in names}
+    house = [name for name in names if not name.startswith("tests/") and name != "tactograph.cpp"]
+    faults = [fault for name in names for fault in faults_of(name, texts[name])]
+    faults += [*table_faults(MAY_INCLUDE), *unused_rows(house, texts), *size_faults(house), *root_faults(ROOT)]
     print("\n".join(faults) or f"{len(names)} files keep to the include table")
     return 1 if faults else 0
 

@@ -6,11 +6,11 @@
 #include <algorithm>
 
 #include "line_textures.hpp"
-#include "playback/budget.hpp"
-#include "playback/budget_words.hpp"
-#include "playback/reference/padded_spectrum.hpp"
-#include "playback/undone_chain.hpp"
-#include "playback/wandering_hand.hpp"
+#include "playback/choose/budget.hpp"
+#include "playback/choose/budget_words.hpp"
+#include "playback/choose/wandering_hand.hpp"
+#include "playback/prepare/undone_chain.hpp"
+#include "playback/render/reference/padded_spectrum.hpp"
 #include "tests/sanitized.hpp"
 
 namespace tacto::playback {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a budget chooses, and what it refuses.
-#include "playback/budget.hpp"
+#include "playback/choose/budget.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "made_textures.hpp"
-#include "playback/budget_words.hpp"
+#include "playback/choose/budget_words.hpp"
 #include "tests/playback/rayleigh_law.hpp"
 
 namespace tacto::playback {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/chain.hpp"
+#include "playback/model/chain.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <span>
 
-#include "data-schema/session_writer.hpp"
-#include "playback/daemon/session_export.hpp"
-#include "playback/daemon/stroke_report.hpp"
+#include "data-schema/session/session_writer.hpp"
+#include "playback/session/session_export.hpp"
+#include "playback/strokes/stroke_report.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What users choose of reading, inverse and limits: which word wins, and that each acts, in numbers, from the
 // program to the session that replays.
-#include "playback/choices.hpp"
+#include "playback/choose/choices.hpp"
 
 #include <unistd.h>
 
 #include <functional>
 
-#include "data-schema/session_writer.hpp"
-#include "playback/kernel_drive.hpp"
-#include "playback/undone_chain.hpp"
-#include "playback/upload.hpp"
+#include "data-schema/session/session_writer.hpp"
+#include "playback/prepare/kernel_drive.hpp"
+#include "playback/prepare/undone_chain.hpp"
+#include "playback/prepare/upload.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {

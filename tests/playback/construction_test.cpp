@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "data-schema/scene.hpp"
-#include "playback/daemon/program.hpp"
+#include "data-schema/scene/scene.hpp"
+#include "playback/player/program.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/playback/made_textures.hpp"
 #include "tests/playback/rayleigh_law.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "playback/daemon/control_server.hpp"
+#include "playback/control/control_server.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/playback/socket_client.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Who is answered when: the control socket under clients that send much, wait, leave, or must not ask.
-#include "playback/daemon/control_server.hpp"
+#include "playback/control/control_server.hpp"
 
 #include <gtest/gtest.h>
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Counts that come several at a time, late and by another clock, as a loop on the host sees them.
-#include "playback/daemon/count_track.hpp"
+#include "playback/host-loop/count_track.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "playback/daemon/tick_view.hpp"
+#include "playback/session/tick_view.hpp"
 
 namespace tacto::playback {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far a program can move the tray: against the response's own peak, found by brute force.
-#include "playback/displacement_limit.hpp"
+#include "playback/prepare/displacement_limit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "data-schema/transducer.hpp"
-#include "playback/prepare.hpp"
+#include "data-schema/transducer/transducer.hpp"
+#include "playback/prepare/prepare.hpp"
 #include "tests/playback/made_textures.hpp"
 
 namespace tacto::playback {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/drive_files.hpp"
+#include "playback/model/drive_files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <limits>
 
-#include "data-schema/wav.hpp"
+#include "data-schema/wav/wav.hpp"
 
 namespace tacto::playback {
 namespace {

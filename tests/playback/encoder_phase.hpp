@@ -13,7 +13,7 @@
 
 #include "analysis/compare/band_sums.hpp"
 #include "analysis/compare/cross_spectrum.hpp"
-#include "firmware-host/sim/random.hpp"
+#include "firmware-host/sim/physics/random.hpp"
 #include "tests/playback/fidelity.hpp"
 
 namespace tacto::tests {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The whole kernel in single precision against its reference in double: a finger that wanders, turns and
 // rests.
-#include "playback/reference/exact_kernel.hpp"
+#include "playback/render/reference/exact_kernel.hpp"
 
 #include <gtest/gtest.h>
 

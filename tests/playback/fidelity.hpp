@@ -7,15 +7,15 @@
 #include <complex>
 #include <optional>
 
-#include "data-schema/texture.hpp"
-#include "data-schema/transducer.hpp"
-#include "firmware-host/sim/actuated_tray.hpp"
-#include "playback/finger_path.hpp"
-#include "playback/prepare.hpp"
-#include "playback/reference/padded_spectrum.hpp"
-#include "playback/reference/spatial_content.hpp"
-#include "playback/reference/wanted.hpp"
-#include "playback/texture_layout.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "data-schema/transducer/transducer.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "playback/model/finger_path.hpp"
+#include "playback/model/spatial_content.hpp"
+#include "playback/prepare/prepare.hpp"
+#include "playback/prepare/texture_layout.hpp"
+#include "playback/render/reference/padded_spectrum.hpp"
+#include "playback/render/reference/wanted.hpp"
 
 namespace tacto::tests {
 

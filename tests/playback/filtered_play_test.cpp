@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "data-schema/transducer.hpp"
-#include "playback/daemon/session_wanted.hpp"
-#include "playback/reference/padded_spectrum.hpp"
+#include "data-schema/transducer/transducer.hpp"
+#include "playback/render/reference/padded_spectrum.hpp"
+#include "playback/strokes/session_wanted.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/finger_path.hpp"
+#include "playback/model/finger_path.hpp"
 
 #include <gtest/gtest.h>
 

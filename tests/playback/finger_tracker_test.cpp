@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Slow fingers on coarse encoders: what is felt of the counts.
-#include "firmware-host/core/finger_tracker.hpp"
+#include "firmware-host/core/kernel/finger_tracker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "made_textures.hpp"
-#include "playback/prepare.hpp"
+#include "playback/prepare/prepare.hpp"
 
 namespace tacto::playback {
 namespace {

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "playback/reference/padded_spectrum.hpp"
+#include "playback/render/reference/padded_spectrum.hpp"
 #include "tests/playback/fidelity.hpp"
 #include "tests/playback/made_textures.hpp"
 

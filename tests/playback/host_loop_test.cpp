@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The loop closed on this computer: the tick's promises, and a whole way on the emulated device. Machines
 // stall, so nothing here asserts how late a tick was; that late ticks are counted is asserted.
-#include "playback/daemon/host_loop.hpp"
+#include "playback/host-loop/host_loop.hpp"
 
 #include <gtest/gtest.h>
 #include <linux/seccomp.h>
@@ -15,10 +15,10 @@
 #include <functional>
 
 #include "firmware-host/core/wire/crc32c.hpp"
-#include "firmware-host/sim/sim_device.hpp"
-#include "playback/daemon/player.hpp"
-#include "playback/daemon/session_replay.hpp"
-#include "playback/daemon/stroke_report.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
+#include "playback/player/player.hpp"
+#include "playback/session/session_replay.hpp"
+#include "playback/strokes/stroke_report.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/firmware-host/allocation_hook.hpp"
 

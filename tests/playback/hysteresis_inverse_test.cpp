@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/hysteresis_inverse.hpp"
+#include "playback/model/hysteresis_inverse.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "firmware-host/core/play_operators.hpp"
-#include "firmware-host/sim/bender_hysteresis.hpp"
-#include "firmware-host/sim/random.hpp"
+#include "firmware-host/core/kernel/play_operators.hpp"
+#include "firmware-host/sim/physics/bender_hysteresis.hpp"
+#include "firmware-host/sim/physics/random.hpp"
 #include "tests/playback/made_textures.hpp"
 #include "tests/playback/rayleigh_law.hpp"
 

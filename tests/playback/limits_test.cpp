@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/limits.hpp"
+#include "playback/model/limits.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "playback/prepare.hpp"
+#include "playback/prepare/prepare.hpp"
 #include "tests/playback/made_textures.hpp"
 
 namespace tacto::playback {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the limits are told to take while it plays, against what the session says of it afterwards.
-#include "playback/daemon/live_limits.hpp"
+#include "playback/player/live_limits.hpp"
 
-#include "playback/daemon/session_limits.hpp"
+#include "playback/session/session_limits.hpp"
 #include "tests/playback/full_disk.hpp"
 #include "tests/playback/limited_play.hpp"
 

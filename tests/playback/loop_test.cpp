@@ -5,9 +5,9 @@
 #include <random>
 
 #include "made_textures.hpp"
-#include "playback/played_ends.hpp"
-#include "playback/render.hpp"
-#include "playback/texture_layout.hpp"
+#include "playback/prepare/texture_layout.hpp"
+#include "playback/render/played_ends.hpp"
+#include "playback/render/render.hpp"
 
 namespace tacto::playback {
 namespace {

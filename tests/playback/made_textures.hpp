@@ -6,8 +6,8 @@
 #include <functional>
 #include <numbers>
 
-#include "data-schema/texture.hpp"
-#include "playback/finger_path.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "playback/model/finger_path.hpp"
 
 namespace tacto::playback {
 

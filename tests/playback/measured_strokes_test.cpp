@@ -3,8 +3,8 @@
 // have.
 #include <functional>
 
-#include "data-schema/session_writer.hpp"
-#include "playback/daemon/stroke_report.hpp"
+#include "data-schema/session/session_writer.hpp"
+#include "playback/strokes/stroke_report.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {

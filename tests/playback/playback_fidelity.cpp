@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "firmware-host/sim/random.hpp"
-#include "firmware-host/sim/spline_noise.hpp"
+#include "firmware-host/sim/physics/random.hpp"
+#include "firmware-host/sim/physics/spline_noise.hpp"
 #include "tests/playback/encoder_phase.hpp"
 #include "tests/playback/fidelity.hpp"
 #include "tests/playback/rayleigh_law.hpp"

@@ -2,7 +2,7 @@
 // A texture changes while one plays: what is driven, what is recorded, what can't be.
 #include <fmt/format.h>
 
-#include "playback/texture_change.hpp"
+#include "playback/prepare/texture_change.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {

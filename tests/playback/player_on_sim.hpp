@@ -6,10 +6,10 @@
 
 #include <cmath>
 
-#include "data-schema/session_reader.hpp"
-#include "firmware-host/sim/sim_device.hpp"
-#include "playback/daemon/player.hpp"
-#include "playback/daemon/session_replay.hpp"
+#include "data-schema/session/session_reader.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
+#include "playback/player/player.hpp"
+#include "playback/session/session_replay.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/playback/made_textures.hpp"
 

@@ -6,12 +6,12 @@
 #include <fstream>
 #include <vector>
 
-#include "data-schema/files.hpp"
-#include "data-schema/session_writer.hpp"
-#include "firmware-host/sim/sim_transport.hpp"
-#include "playback/daemon/player_device.hpp"
-#include "playback/daemon/session_stroke.hpp"
-#include "playback/daemon/stroke_report.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/session/session_writer.hpp"
+#include "firmware-host/sim/device/sim_transport.hpp"
+#include "playback/player/player_device.hpp"
+#include "playback/strokes/session_stroke.hpp"
+#include "playback/strokes/stroke_report.hpp"
 #include "tests/playback/full_disk.hpp"
 #include "tests/playback/player_on_sim.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One program at a time, and nobody who waits for what was given up.
-#include "playback/daemon/program_loader.hpp"
+#include "playback/player/program_loader.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "data-schema/transducer.hpp"
+#include "data-schema/transducer/transducer.hpp"
 
 namespace tacto::playback {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "made_textures.hpp"
-#include "playback/render.hpp"
+#include "playback/render/render.hpp"
 #include "rayleigh_law.hpp"
 
 namespace tacto::playback {

@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "made_textures.hpp"
-#include "playback/render.hpp"
+#include "playback/render/render.hpp"
 #include "rayleigh_law.hpp"
 
 namespace tacto::playback {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "made_textures.hpp"
-#include "playback/render.hpp"
+#include "playback/render/render.hpp"
 
 namespace tacto::playback {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/render.hpp"
+#include "playback/render/render.hpp"
 
 #include <gtest/gtest.h>
 

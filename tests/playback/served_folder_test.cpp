@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which files clients over TCP may load, and what they learn of the others: nothing.
-#include "playback/daemon/served_folder.hpp"
+#include "playback/player/served_folder.hpp"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "data-schema/scene.hpp"
-#include "data-schema/texture.hpp"
+#include "data-schema/scene/scene.hpp"
+#include "data-schema/texture/texture.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::playback {

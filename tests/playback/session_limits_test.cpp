@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the limits of a session took, against what plays where there is no limit to reach.
-#include "playback/daemon/session_limits.hpp"
+#include "playback/session/session_limits.hpp"
 
-#include "playback/daemon/stroke_report.hpp"
+#include "playback/strokes/stroke_report.hpp"
 #include "tests/playback/limited_play.hpp"
 
 namespace tacto::playback {

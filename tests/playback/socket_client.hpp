@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "playback/daemon/control_socket.hpp"
+#include "playback/control/control_socket.hpp"
 
 namespace tacto::tests {
 

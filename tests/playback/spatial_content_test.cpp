@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/reference/spatial_content.hpp"
+#include "playback/model/spatial_content.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // When the drive has to fall because those who have to stay are gone.
-#include "playback/daemon/stay_watch.hpp"
+#include "playback/session/stay_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "made_textures.hpp"
-#include "playback/limit_tally.hpp"
-#include "playback/prepare.hpp"
+#include "playback/model/limit_tally.hpp"
+#include "playback/prepare/prepare.hpp"
 
 namespace tacto::playback {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/texture_lookup.hpp"
+#include "playback/model/texture_lookup.hpp"
 
 #include <gtest/gtest.h>
 

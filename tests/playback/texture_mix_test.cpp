@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of textures in a session's rows, against the kernel's own player of textures.
-#include "playback/daemon/texture_mix.hpp"
+#include "playback/strokes/texture_mix.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "firmware-host/core/texture_player.hpp"
+#include "firmware-host/core/kernel/texture_player.hpp"
 
 namespace tacto::playback {
 namespace {

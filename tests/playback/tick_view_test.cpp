@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is counted of a run: the time in play is not the time since arming.
-#include "playback/daemon/tick_view.hpp"
+#include "playback/session/tick_view.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The emulated device closes the loop with what was uploaded: every tick of it is the in-process kernel's, to
 // the bit.
-#include "playback/upload.hpp"
+#include "playback/prepare/upload.hpp"
 
 #include <gtest/gtest.h>
 
 #include "firmware-host/core/wire/crc32c.hpp"
-#include "firmware-host/sim/sim_device.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
 #include "made_textures.hpp"
 #include "tests/playback/rayleigh_law.hpp"
 

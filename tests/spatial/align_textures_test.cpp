@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/align_textures.hpp"
+#include "spatial/texture/align_textures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/average_textures.hpp"
+#include "spatial/texture/average_textures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/block_fourier_filter.hpp"
+#include "spatial/dsp/filter/block_fourier_filter.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <random>
 #include <string>
 
-#include "spatial/dsp/fourier_filter.hpp"
+#include "spatial/dsp/filter/fourier_filter.hpp"
 #include "spatial/reference/exact_treated_band_pass.hpp"
 
 namespace tacto::spatial {

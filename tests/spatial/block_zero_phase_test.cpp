@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/block_zero_phase.hpp"
+#include "spatial/dsp/filter/block_zero_phase.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "spatial/dsp/butterworth.hpp"
+#include "spatial/dsp/filter/butterworth.hpp"
 
 namespace tacto::spatial {
 namespace {

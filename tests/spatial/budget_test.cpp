@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The promise of --max-error: for random surfaces, fingers and rates the real error stays under the asked
 // one.
-#include "spatial/budget.hpp"
+#include "spatial/spectrogram/budget.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <numbers>
 #include <random>
 
-#include "playback/texture_lookup.hpp"
-#include "spatial/dsp/thinned.hpp"
-#include "spatial/make_texture.hpp"
+#include "playback/model/texture_lookup.hpp"
+#include "spatial/dsp/resample/thinned.hpp"
+#include "spatial/texture/make_texture.hpp"
 
 namespace tacto::spatial {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/butterworth.hpp"
+#include "spatial/dsp/filter/butterworth.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Speed certificates of simulated strokes, in which it is known what is the surface's.
-#include "spatial/certificate.hpp"
+#include "spatial/certificate/certificate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/counter_wraps.hpp"
+#include "spatial/strokes/counter_wraps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Standard descriptions against closed forms; description_test.py holds them against SciPy.
-#include "spatial/description.hpp"
+#include "spatial/features/description.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/fft.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // A touch whose numbers a test makes: tangential force and position, no normal force.
 #pragma once
 
-#include "spatial/touch_source.hpp"
+#include "spatial/strokes/touch_source.hpp"
 
 namespace tacto::spatial::samples {
 

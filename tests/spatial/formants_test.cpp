@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Formants of textures whose lines are known, and of noise, which has none.
-#include "spatial/formants.hpp"
+#include "spatial/features/formants.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numbers>
 #include <random>
 
-#include "spatial/spectrogram.hpp"
-#include "spatial/spectrogram_summary.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/spatial/texture_samples.hpp"
 

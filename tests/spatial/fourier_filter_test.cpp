@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/fourier_filter.hpp"
+#include "spatial/dsp/filter/fourier_filter.hpp"
 
 #include <gtest/gtest.h>
 

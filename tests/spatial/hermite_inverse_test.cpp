@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/hermite_inverse.hpp"
+#include "spatial/dsp/resample/hermite_inverse.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/hermite_resampler.hpp"
+#include "spatial/dsp/resample/hermite_resampler.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <random>
 
-#include "spatial/dsp/hermite.hpp"
-#include "spatial/dsp/hermite_inverse.hpp"
+#include "spatial/dsp/resample/hermite.hpp"
+#include "spatial/dsp/resample/hermite_inverse.hpp"
 #include "spatial/reference/exact_hermite.hpp"
 #include "tests/bench/workload.hpp"
 

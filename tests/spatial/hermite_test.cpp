@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/hermite.hpp"
+#include "spatial/dsp/resample/hermite.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/known_band.hpp"
+#include "spatial/spectrogram/known_band.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "spatial/dsp/window.hpp"
+#include "spatial/dsp/spectrum/window.hpp"
 
 namespace tacto::spatial {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/make_texture.hpp"
+#include "spatial/texture/make_texture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <functional>
 #include <numbers>
 
-#include "spatial/equaliser.hpp"
-#include "spatial/known_band.hpp"
-#include "spatial/valid_band.hpp"
+#include "spatial/spectrogram/known_band.hpp"
+#include "spatial/texture/equaliser.hpp"
+#include "spatial/texture/valid_band.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::spatial {

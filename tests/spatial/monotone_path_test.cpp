@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/monotone_path.hpp"
+#include "spatial/strokes/monotone_path.hpp"
 
 #include <gtest/gtest.h>
 

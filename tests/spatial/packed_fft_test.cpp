@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of a short-time transform, each against its definition.
-#include "spatial/dsp/packed_fft.hpp"
+#include "spatial/dsp/fourier/packed_fft.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,11 +12,11 @@
 #include <optional>
 #include <string>
 
-#include "spatial/dsp/decimator.hpp"
-#include "spatial/dsp/fft_wisdom.hpp"
-#include "spatial/dsp/low_pass.hpp"
-#include "spatial/dsp/packed_frames.hpp"
-#include "spatial/dsp/trend.hpp"
+#include "spatial/dsp/filter/trend.hpp"
+#include "spatial/dsp/fourier/fft_wisdom.hpp"
+#include "spatial/dsp/fourier/packed_frames.hpp"
+#include "spatial/dsp/resample/decimator.hpp"
+#include "spatial/dsp/resample/low_pass.hpp"
 #include "spatial/reference/exact_short_time.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/spatial/texture_samples.hpp"

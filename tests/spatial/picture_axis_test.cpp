@@ -6,8 +6,8 @@
 #include <set>
 #include <string>
 
-#include "spatial/picture/axis.hpp"
-#include "spatial/picture/display_unit.hpp"
+#include "spatial/picture/draw/axis.hpp"
+#include "spatial/picture/draw/display_unit.hpp"
 #include "spatial/picture/trace.hpp"
 
 namespace tacto::spatial {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "spatial/band_at.hpp"
-#include "spatial/picture/canvas.hpp"
+#include "spatial/numbers/band_at.hpp"
+#include "spatial/picture/draw/canvas.hpp"
 #include "spatial/picture/line_plot.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
-#include "spatial/spectrogram.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 #include "tests/spatial/decoded_png.hpp"
 #include "tests/spatial/texture_samples.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/resample.hpp"
+#include "spatial/texture/resample.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "spatial/formants.hpp"
-#include "spatial/picture/canvas.hpp"
+#include "spatial/features/formants.hpp"
+#include "spatial/picture/draw/canvas.hpp"
 #include "spatial/picture/sheet_figure.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
-#include "spatial/spectrogram.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 #include "tests/spatial/decoded_png.hpp"
 #include "tests/spatial/texture_samples.hpp"
 

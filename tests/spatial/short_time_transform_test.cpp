@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Complex spectra against the definition in extended precision. The bound is the one the project asks of
 // spectrograms: |X - X_exact| / max |X_exact| over all cells, all frequencies, at most -120 dB.
-#include "spatial/dsp/short_time_transform.hpp"
+#include "spatial/dsp/spectrum/short_time_transform.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <functional>
 #include <numbers>
 
-#include "spatial/dsp/window.hpp"
+#include "spatial/dsp/spectrum/window.hpp"
 #include "spatial/reference/exact_short_time.hpp"
 #include "tests/spatial/texture_samples.hpp"
 

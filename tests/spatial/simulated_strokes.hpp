@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "data-schema/texture.hpp"
+#include "data-schema/texture/texture.hpp"
 
 namespace tacto::spatial::samples {
 

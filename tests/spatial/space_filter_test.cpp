@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/space_filter.hpp"
+#include "spatial/texture/space_filter.hpp"
 
 #include <gtest/gtest.h>
 

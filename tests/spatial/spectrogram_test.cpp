@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/spectrogram.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include "spatial/spectrogram_maker.hpp"
-#include "spatial/spectrogram_summary.hpp"
-#include "spatial/spectrogram_tally.hpp"
+#include "spatial/spectrogram/spectrogram_maker.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
+#include "spatial/spectrogram/spectrogram_tally.hpp"
 #include "tests/spatial/texture_samples.hpp"
 
 namespace tacto::spatial {

@@ -8,8 +8,8 @@
 #include <iostream>
 #include <numbers>
 
-#include "spatial/filtered_track.hpp"
-#include "spatial/make_texture.hpp"
+#include "spatial/texture/filtered_track.hpp"
+#include "spatial/texture/make_texture.hpp"
 #include "tests/spatial/force_and_position.hpp"
 
 namespace tacto::spatial {

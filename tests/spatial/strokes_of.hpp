@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "spatial/position_facts.hpp"
-#include "spatial/strokes.hpp"
+#include "spatial/strokes/position_facts.hpp"
+#include "spatial/strokes/strokes.hpp"
 
 namespace tacto::spatial {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/strokes.hpp"
+#include "spatial/strokes/strokes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "data-schema/texture.hpp"
+#include "data-schema/texture/texture.hpp"
 
 namespace tacto::spatial::samples {
 

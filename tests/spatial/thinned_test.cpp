@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fewer samples: what can be kept is kept, what can't leaves nothing behind.
-#include "spatial/dsp/thinned.hpp"
+#include "spatial/dsp/resample/thinned.hpp"
 
 #include <gtest/gtest.h>
 

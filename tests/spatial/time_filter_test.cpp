@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/time_filter.hpp"
+#include "spatial/texture/time_filter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "spatial/block_time_filter.hpp"
-#include "spatial/dsp/butterworth.hpp"
+#include "spatial/dsp/filter/butterworth.hpp"
+#include "spatial/texture/block_time_filter.hpp"
 #include "tests/bench/workload.hpp"
 
 namespace tacto::spatial {

@@ -6,12 +6,12 @@
 #include <numbers>
 #include <random>
 
+#include "spatial/picture/draw/palette_png.hpp"
+#include "spatial/picture/draw/shown_range.hpp"
+#include "spatial/picture/draw/svg_numbers.hpp"
 #include "spatial/picture/line_plot.hpp"
-#include "spatial/picture/palette_png.hpp"
-#include "spatial/picture/shown_range.hpp"
 #include "spatial/picture/spectrogram_figure.hpp"
-#include "spatial/picture/svg_numbers.hpp"
-#include "spatial/spectrogram.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
 #include "tests/spatial/decoded_png.hpp"
 #include "tests/spatial/texture_samples.hpp"
 

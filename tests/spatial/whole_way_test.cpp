@@ -10,14 +10,14 @@
 #include <iostream>
 #include <map>
 
-#include "spatial/dsp/block_fourier_filter.hpp"
-#include "spatial/dsp/short_time_transform.hpp"
-#include "spatial/dsp/window.hpp"
-#include "spatial/make_texture.hpp"
+#include "spatial/dsp/filter/block_fourier_filter.hpp"
+#include "spatial/dsp/spectrum/short_time_transform.hpp"
+#include "spatial/dsp/spectrum/window.hpp"
 #include "spatial/reference/exact_hermite.hpp"
 #include "spatial/reference/exact_short_time.hpp"
 #include "spatial/reference/exact_treated_band_pass.hpp"
-#include "spatial/spectrogram_options.hpp"
+#include "spatial/spectrogram/spectrogram_options.hpp"
+#include "spatial/texture/make_texture.hpp"
 #include "tests/bench/workload.hpp"
 #include "tests/spatial/force_and_position.hpp"
 

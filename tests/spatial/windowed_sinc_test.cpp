@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "spatial/dsp/windowed_sinc.hpp"
+#include "spatial/dsp/resample/windowed_sinc.hpp"
 
 #include <gtest/gtest.h>
 

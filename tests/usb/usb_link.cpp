@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "capture/record.hpp"
-#include "firmware-host/wire_device.hpp"
+#include "capture/record/record.hpp"
+#include "firmware-host/link/wire_device.hpp"
 #include "firmware-host/open_device.hpp"
 #include "tests/usb/drive_check.hpp"
 

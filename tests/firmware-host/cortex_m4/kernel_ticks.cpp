@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The kernel's bits and its cost, and the whole firmware's: playing a profile through eight sections while it
 // streams samples and ticks.
-#include "firmware-host/core/firmware.hpp"
+#include "firmware-host/core/firmware/firmware.hpp"
 #include "firmware-host/core/wire/crc32c.hpp"
 #include "tests/firmware-host/cortex_m4/board.hpp"
 #include "tests/firmware-host/kernel_workload.hpp"

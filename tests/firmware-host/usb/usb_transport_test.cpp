@@ -7,8 +7,8 @@
 
 #include <numeric>
 
-#include "firmware-host/usb/usb_device.hpp"
 #include "firmware-host/open_device.hpp"
+#include "firmware-host/usb/usb_device.hpp"
 #include "tests/firmware-host/usb/fake_libusb.hpp"
 
 namespace tacto::firmware_host {

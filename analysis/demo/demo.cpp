@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/demo/demo.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "analysis/demo/replay_error.hpp"
+#include "capture/record/record.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/spectrogram/spectrogram.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "data-schema/version.hpp"
+#include "firmware-host/link/device.hpp"
+#include "firmware-host/open_device.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "playback/render/render.hpp"
+#include "spatial/picture/line_plot.hpp"
+#include "spatial/picture/spectrogram_figure.hpp"
+#include "spatial/spectrogram/spectrogram.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
+#include "spatial/texture/make_texture.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+namespace fs = std::filesystem;
+using schema::Result;
+
+// Wiertlewski 2011, Table II; the recording speed is the paper's, the replay is slower and turns round.
+struct Sample {
+  const char* surface;
+  const char* description;
+};
+constexpr std::array<Sample, 5> kSamples = {{
+    {"A", "Melted by a handheld polishing disk"},
+    {"B", "Milled by a 40 mm end mill: 1.5 mm ridges, 0.1 mm high"},
+    {"C", "Milled by a 2 mm end mill: a grating of 3 mm period, 0.1 mm deep"},
+    {"D", "Random scratches of P40 sandpaper"},
+    {"E", "Drilled by a conical end mill: a quincunx of pits, 0.5 mm apart and 0.1 mm deep"},
+}};
+constexpr const char* kNotes = "made by tactograph demo";
+constexpr double kRecordSpeedMps = 50e-3;
+constexpr double kRecordTimeS = 1.0;
+constexpr double kReplayTimeS = 1.6;
+constexpr double kSettleS = 0.1;  // of the comparison: onset, end, and the tray's ringing are left out
+
+struct Made {
+  schema::Texture texture;
+  schema::Spectrogram spectrogram;
+};
+
+// There and back over the middle of the texture, at a speed that swells and falls as a hand's does.
+playback::FingerPath replay_path(const schema::Texture& texture) {
+  schema::TimeSignal position{1000, 0, {}};
+  const double length_m = texture.signal.length_m(), rate = position.sample_rate_hz;
+  for (double i = 0; i <= kReplayTimeS * rate; ++i) {
+    const double phase = 2 * std::numbers::pi * i / rate / kReplayTimeS;
+    position.values.push_back(length_m * (0.5 - 0.4 * std::cos(phase) + 0.03 * std::sin(3 * phase)));
+  }
+  return playback::finger_path_of(position);
+}
+
+double mean_speed_mps(const playback::FingerPath& path) {
+  double travelled_m = 0;
+  for (std::size_t i = 1; i < path.position_m.size(); ++i)
+    travelled_m += std::abs(path.position_m[i] - path.position_m[i - 1]);
+  return travelled_m / path.duration_s();
+}
+
+void remove_earlier(const std::string& stem) {
+  std::error_code ignored;
+  for (const char* ending : {".wav", ".json"}) fs::remove(stem + ending, ignored);
+}
+
+bool is_of_a_demo(const std::string& stem) {
+  const auto recording = schema::open_recording(stem);
+  return recording && recording->header.notes == kNotes;
+}
+
+// What an earlier demo left is replaced, other files of these names are not.
+Result<void> check_replaceable(const std::string& stem) {
+  if (is_of_a_demo(stem)) return {};
+  std::error_code ignored;
+  for (const char* ending :
+       {".json", ".wav", ".events.jsonl", ".texture.json", ".texture.wav", ".nc", ".png"})
+    if (fs::exists(stem + ending, ignored))
+      return schema::fail(schema::Fault::usage, "is there already, and no earlier demo made it",
+                          stem + ending, "choose another folder with -o");
+  return {};
+}
+
+Result<schema::Recording> recorded(const Sample& sample, const std::string& stem) {
+  auto device = firmware_host::open_device(
+      fmt::format("sim:surface={},speed={}mm/s,seed=1", sample.surface, kRecordSpeedMps * 1e3));
+  if (!device) return schema::forward_error(device);
+  capture::RecordRequest request;
+  request.name = stem;
+  request.time_s = kRecordTimeS;
+  request.notes = kNotes;
+  auto done = capture::record(**device, request);
+  if (!done) return schema::forward_error(done);
+  return std::move(done->recording);
+}
+
+Result<schema::Texture> first_texture(const schema::Recording& recording) {
+  auto maker = spatial::TextureMaker::open(recording, {});
+  if (!maker) return schema::forward_error(maker);
+  const auto stroke = maker->record().stroke(1);
+  if (!stroke) return schema::forward_error(stroke);
+  return maker->make(*stroke, 1);
+}
+
+Result<void> write_made(const std::string& stem, const Made& made, const spatial::Figure& picture) {
+  if (auto written = schema::write_texture(stem, made.texture); !written) return written;
+  if (auto written = schema::write_spectrogram_nc(stem + ".nc", {&made.spectrogram, 1}); !written)
+    return written;
+  return spatial::write_figure(stem + ".png", picture);
+}
+
+void describe_spectrogram(const Made& made, DemoSurface& row) {
+  const auto peak = spatial::strongest_peak(made.spectrogram, 0.3e3);  // 15 Hz at 50 mm/s
+  row.peak_position_m = peak.position_m;
+  row.peak_frequency_per_m = peak.frequency_per_m;
+  row.simulated = made.texture.simulated;
+  row.force_rms_n = spatial::rms_of(made.texture);
+}
+
+Result<Made> surface_made(const Sample& sample, const std::string& stem, DemoSurface& row) {
+  remove_earlier(stem);
+  const auto recording = recorded(sample, stem);
+  if (!recording) return schema::forward_error(recording);
+  auto texture = first_texture(*recording);
+  if (!texture) return schema::forward_error(texture);
+  auto spectrogram = spatial::spatial_spectrogram(*texture, {});
+  if (!spectrogram) return schema::forward_error(spectrogram);
+  spectrogram->name = sample.surface;
+  Made made{std::move(*texture), std::move(*spectrogram)};
+  const spatial::SpectrogramFigure figure({{&made.texture, &made.spectrogram}});
+  if (auto written = write_made(stem, made, figure); !written) return schema::forward_error(written);
+  auto svg = spatial::to_page_svg(figure);
+  if (!svg) return schema::forward_error(svg);
+  row.spectrogram_svg = std::move(*svg);
+  describe_spectrogram(made, row);
+  return made;
+}
+
+spatial::Series series(const char* name, const schema::TimeSignal& signal, double from_s, double to_s,
+                       int colour) {
+  spatial::Series curve{name, {},         {}, spatial::series_colour(static_cast<std::size_t>(colour)),
+                        1.2,  colour == 1};
+  for (std::size_t i = 0; i < signal.values.size(); ++i) {
+    if (signal.time_s(i) < from_s || signal.time_s(i) > to_s) continue;
+    curve.x.push_back(signal.time_s(i) * 1e3);
+    curve.y.push_back(signal.values[i] * 1e6);
+  }
+  return curve;
+}
+
+// A quarter of a second around the middle of the way back: enough to see each ridge.
+spatial::LineFigure replay_figure(const playback::Rendering& rendering, const schema::TimeSignal& came,
+                                  const DemoSurface& row, const std::string& simulated) {
+  spatial::LineFigure figure;
+  figure.title = fmt::format("Surface {}: displacement of the tray, 15-500 Hz", row.surface);
+  figure.x_label = "time (ms)";
+  figure.y_label = "displacement (µm)";
+  figure.simulated = simulated;
+  figure.series = {series("target", rendering.wanted_m, 1.1, 1.3, 0),
+                   series("emulated tray", came, 1.1, 1.3, 1)};
+  return figure;
+}
+
+// 1 mm/N, or what the transducer's limits leave of it: rendering is linear, so that one rendering at a small
+// gain tells how much of the limits any gain would use.
+Result<double> fitting_gain_m_per_n(const Made& made, const playback::FingerPath& path,
+                                    const schema::Transducer& transducer, playback::RenderOptions options) {
+  const double wished = options.gain_m_per_n;
+  options.gain_m_per_n = wished * 1e-3;
+  const auto small = playback::render(made.texture, path, transducer, options);
+  if (!small) return schema::forward_error(small);
+  return std::min(wished, 0.9 * options.gain_m_per_n / small->peaks.tightest().used());
+}
+
+Result<void> replayed(const Made& made, const schema::Transducer& transducer, DemoSurface& row) {
+  const playback::FingerPath path = replay_path(made.texture);
+  playback::RenderOptions options;
+  options.hold = playback::Hold::zero_order;
+  const auto gain = fitting_gain_m_per_n(made, path, transducer, options);
+  if (!gain) return schema::forward_error(gain);
+  row.gain_m_per_n = options.gain_m_per_n = *gain;
+  const auto rendering = playback::render(made.texture, path, transducer, options);
+  if (!rendering) return schema::forward_error(rendering);
+  firmware_host::ActuatedTray tray(transducer, options.rate_hz);
+  schema::TimeSignal came = rendering->drive_v;
+  came.values = firmware_host::displacement_under(tray, rendering->drive_v.values);
+  const ReplayError error = replay_error(came, rendering->wanted_m, options.band, kSettleS);
+  row.replay_speed_mps = mean_speed_mps(path);
+  row.drive_peak_v = rendering->peaks.drive_v.value;
+  row.wanted_rms_m = error.wanted_rms;
+  row.error_rms_m = error.error_rms;
+  row.error_db = error.error_db;
+  row.delay_s = error.delay_s;
+  auto svg = spatial::to_page_svg(replay_figure(*rendering, came, row, made.texture.simulated));
+  if (!svg) return schema::forward_error(svg);
+  row.replay_svg = std::move(*svg);
+  return {};
+}
+
+Result<void> make_folder(const std::string& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (!failure) return {};
+  return schema::fail(schema::Fault::cannot_write, "the folder can't be made: " + failure.message(), folder,
+                      "choose another with -o");
+}
+
+Result<void> check_folder(const std::string& folder, const std::string& page) {
+  for (const Sample& sample : kSamples)
+    if (auto free = check_replaceable(folder + "/" + sample.surface); !free) return free;
+  std::error_code ignored;
+  const bool again = is_of_a_demo(folder + "/" + kSamples.front().surface);
+  if (again || !fs::exists(page, ignored)) return {};
+  return schema::fail(schema::Fault::usage, "is there already, and no earlier demo made it", page,
+                      "choose another folder with -o");
+}
+
+Result<void> write_page(const DemoSummary& summary) {
+  schema::PendingFiles files;
+  if (auto added = files.write(summary.page, demo_page(summary.surfaces, summary.simulated)); !added)
+    return added;
+  return files.commit();
+}
+
+}  // namespace
+
+Result<DemoSummary> run_demo(const std::string& folder, const std::function<void(double)>& progress) {
+  if (auto made = make_folder(folder); !made) return schema::forward_error(made);
+  const auto transducer = schema::read_transducer("wiertlewski2011");
+  if (!transducer) return schema::forward_error(transducer);
+  DemoSummary summary;
+  summary.page = folder + "/index.html";
+  if (const auto free = check_folder(folder, summary.page); !free) return schema::forward_error(free);
+  summary.simulated = fmt::format("by the emulated device of {}", kCreator);
+  for (const Sample& sample : kSamples) {
+    progress(static_cast<double>(summary.surfaces.size()) / kSamples.size());
+    DemoSurface row;
+    row.surface = sample.surface;
+    row.description = sample.description;
+    row.record_speed_mps = kRecordSpeedMps;
+    const auto made = surface_made(sample, folder + "/" + sample.surface, row);
+    if (!made) return schema::forward_error(made);
+    if (auto played = replayed(*made, *transducer, row); !played) return schema::forward_error(played);
+    summary.surfaces.push_back(std::move(row));
+  }
+  if (auto written = write_page(summary); !written) return schema::forward_error(written);
+  return summary;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/identify/fit/hysteresis_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+
+#include "analysis/identify/fit/least_squares.hpp"
+#include "analysis/identify/fit/misfit.hpp"
+#include "playback/model/hysteresis_inverse.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::size_t kFewestLoopSamples = 100;
+constexpr double kNearZero = 0.1;    // of the amplitude: where a branch is taken for straight
+constexpr double kFullSwing = 0.98;  // of the amplitude: a loop that counts as the largest
+constexpr double kSmallResidual = 0.01;
+constexpr std::size_t kFineThresholds = 8;
+
+std::vector<double> delayed(std::span<const double> v, double samples) {
+  std::vector<double> out(v.size());
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const double at = std::max(0.0, static_cast<double>(i) - samples);
+    const auto before = std::min(static_cast<std::size_t>(at), v.size() - 1);
+    const std::size_t after = std::min(before + 1, v.size() - 1);
+    out[i] = std::lerp(v[before], v[after], at - static_cast<double>(before));
+  }
+  return out;
+}
+
+double rms(std::span<const double> x) {
+  return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size()));
+}
+
+std::vector<double> centred(std::span<const double> x) {
+  const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+  std::vector<double> out(x.begin(), x.end());
+  for (double& value : out) value -= mean;
+  return out;
+}
+
+// The stretch from one passage upwards through zero to the next that swings farthest.
+struct LoopStretch {
+  std::size_t first = 0, end = 0;
+};
+
+LoopStretch largest_loop(std::span<const double> v, double amplitude_v) {
+  std::vector<std::size_t> upward;
+  for (std::size_t i = 1; i < v.size(); ++i)
+    if (v[i - 1] < 0 && v[i] >= 0) upward.push_back(i);
+  for (std::size_t n = upward.size(); n-- > 1;) {
+    const auto part = v.subspan(upward[n - 1], upward[n] - upward[n - 1]);
+    const auto [low, high] = std::ranges::minmax(part);
+    if (high > kFullSwing * amplitude_v && -low > kFullSwing * amplitude_v) return {upward[n - 1], upward[n]};
+  }
+  return {};
+}
+
+// Where the branch of this direction crosses no drive, by a straight line through what is near.
+double branch_at_zero(std::span<const double> v, std::span<const double> x, double amplitude_v,
+                      int direction) {
+  double n = 0, sv = 0, sx = 0, svv = 0, svx = 0;
+  for (std::size_t i = 1; i < v.size(); ++i) {
+    if (std::abs(v[i]) > kNearZero * amplitude_v || (v[i] - v[i - 1]) * direction <= 0) continue;
+    ++n, sv += v[i], sx += x[i], svv += v[i] * v[i], svx += v[i] * x[i];
+  }
+  const double slope = (n * svx - sv * sx) / (n * svv - sv * sv);
+  return n < 3 ? std::nan("") : (sx - slope * sv) / n;
+}
+
+std::complex<double> fundamental(std::span<const double> x) {
+  std::complex<double> sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum += x[i] *
+           std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(x.size()));
+  return sum;
+}
+
+void put_loop(std::span<const double> v, std::span<const double> x, LoopStretch loop, LoopFit& fit) {
+  const auto lv = v.subspan(loop.first, loop.end - loop.first),
+             lx = x.subspan(loop.first, loop.end - loop.first);
+  fit.loop_v.assign(lv.begin(), lv.end());
+  fit.loop_m.assign(lx.begin(), lx.end());
+  const auto [low, high] = std::ranges::minmax(lx);
+  const double up = branch_at_zero(lv, lx, fit.amplitude_v, 1),
+               down = branch_at_zero(lv, lx, fit.amplitude_v, -1);
+  fit.opening = std::abs(down - up) / (high - low);
+  fit.ellipse_lag_rad = std::asin(std::min(1.0, fit.opening));
+  fit.lag_rad = std::arg(fundamental(lv) / fundamental(lx));
+}
+
+// Weights and gain from what the non-negative fit gave; the first weight keeps a thousandth, for the inverse.
+void put_operator(const std::vector<double>& thresholds_v, std::vector<double> weights, double limit_v,
+                  LoopFit& fit) {
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  weights[0] = std::max(weights[0], 1e-3 * sum);
+  double at_limit = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    at_limit += weights[i] * std::max(0.0, limit_v - thresholds_v[i]);
+  fit.gain_m_per_v = at_limit / limit_v;
+  for (double& weight : weights) weight *= limit_v / at_limit;
+  fit.hysteresis = {thresholds_v, std::move(weights)};
+}
+
+Result<void> check_loops(std::span<const double> v, std::span<const double> x) {
+  if (v.size() < kFewestLoopSamples || v.size() != x.size())
+    return fail(Fault::unsuitable, fmt::format("{} samples are too few for a loop", v.size()), "loop");
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (!std::isfinite(v[i]) || !std::isfinite(x[i]))
+      return fail(Fault::unsuitable, "a value is not a number", fmt::format("loop, sample {}", i + 1));
+  return {};
+}
+
+}  // namespace
+
+namespace {
+
+std::vector<double> even_thresholds(std::size_t count, double amplitude_v) {
+  std::vector<double> list;
+  for (std::size_t i = 0; i < count; ++i)
+    list.push_back(amplitude_v * static_cast<double>(i) / static_cast<double>(count));
+  return list;
+}
+
+}  // namespace
+
+std::vector<double> thresholds_finer_below(double fine_v, double amplitude_v) {
+  if (fine_v > amplitude_v / 2) return even_thresholds(2 * kFineThresholds + 1, amplitude_v);
+  std::vector<double> list = even_thresholds(kFineThresholds, fine_v);
+  for (std::size_t i = 0; i <= kFineThresholds; ++i)
+    list.push_back(fine_v + (amplitude_v - fine_v) * static_cast<double>(i) / (kFineThresholds + 1));
+  return list;
+}
+
+double delay_at_rest_s(const schema::Transducer& t) {
+  return 2 * t.amplifier_resistance_ohm * t.capacitance_f +
+         t.damping_n_s_per_m / (t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m);
+}
+
+namespace {
+
+// What the non-negative fit works on: plays of the drive and a constant, from the first full swing on.
+struct LoopTable {
+  std::vector<double> thresholds_v;
+  std::vector<std::vector<double>> columns;
+  std::vector<double> answer;
+  double sign = 1;  // of the answer to a positive drive
+};
+
+// Only what comes after a full swing knows its past.
+std::ptrdiff_t first_known(std::span<const double> v, double amplitude_v) {
+  return std::ranges::find_if(v, [&](double value) { return -value > kFullSwing * amplitude_v; }) - v.begin();
+}
+
+LoopTable loop_table(std::span<const double> v, std::span<const double> x, double amplitude_v,
+                     std::vector<double> thresholds_v) {
+  LoopTable table;
+  const std::ptrdiff_t from = first_known(v, amplitude_v);
+  table.thresholds_v = std::move(thresholds_v);
+  for (const double threshold_v : table.thresholds_v) {
+    const auto play = playback::played_through({{threshold_v}, {1}}, v);
+    table.columns.emplace_back(play.begin() + from, play.end());
+  }
+  table.answer.assign(x.begin() + from, x.end());
+  table.columns.emplace_back(table.answer.size(), 1.0);
+  const auto& drive = table.columns.front();
+  const std::vector<double> about_mean = centred(table.answer);
+  if (std::inner_product(drive.begin(), drive.end(), about_mean.begin(), 0.0) < 0) table.sign = -1;
+  for (double& value : table.answer) value *= table.sign;
+  return table;
+}
+
+// What the table makes of the largest loop, in the answer's own sign; the last weight is the offset's.
+void put_loop_model(const LoopTable& table, std::span<const double> v, LoopStretch loop,
+                    std::span<const double> weights, LoopFit& fit) {
+  schema::Hysteresis made{table.thresholds_v, {weights.begin(), weights.end() - 1}};
+  const auto whole = playback::played_through(made, v);
+  for (std::size_t i = loop.first; i < loop.end; ++i)
+    fit.loop_model_m.push_back(table.sign * (whole[i] + weights.back()));
+}
+
+std::vector<double> left_of(const LoopTable& table, std::span<const std::size_t> which,
+                            std::span<const double> weights) {
+  std::vector<double> rest = table.answer;
+  for (std::size_t i = 0; i < which.size(); ++i)
+    for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= weights[i] * table.columns[which[i]][n];
+  return rest;
+}
+
+double squares_of(std::span<const double> x) {
+  return std::inner_product(x.begin(), x.end(), x.begin(), 0.0);
+}
+
+// A change of the operator that a fit found, once this is scaled as put_operator() does.
+schema::Hysteresis scaled_change(const schema::Hysteresis& found, schema::Hysteresis change, double limit_v) {
+  const auto at_limit = [&](const schema::Hysteresis& of) {
+    double sum = 0;
+    for (std::size_t i = 0; i < of.weights.size(); ++i)
+      sum += of.weights[i] * std::max(0.0, limit_v - of.thresholds_v[i]);
+    return sum;
+  };
+  const double whole = at_limit(found), changed = at_limit(change) / whole;
+  for (std::size_t i = 0; i < found.weights.size(); ++i) {
+    change.thresholds_v.push_back(found.thresholds_v[i]);
+    change.weights.push_back(-changed * found.weights[i]);
+  }
+  for (double& weight : change.weights) weight *= limit_v / whole;
+  return change;
+}
+
+void put_errors(const LoopTable& table, std::span<const double> v, std::span<const double> weights,
+                std::span<const double> left, double limit_v, LoopFit& fit) {
+  const schema::Hysteresis found{table.thresholds_v, {weights.begin(), weights.end() - 1}};
+  fit.errors = operator_errors({v, v.size() - left.size(), found, left});
+  for (auto* changes : {&fit.errors.by_noise, &fit.errors.by_misfit})
+    for (schema::Hysteresis& change : *changes) change = scaled_change(found, std::move(change), limit_v);
+  const double size = rms(centred(table.answer));
+  fit.errors.noise /= size;
+  fit.errors.misfit /= size;
+}
+
+void put_quality(const LoopTable& table, std::span<const double> v, std::span<const double> weights,
+                 double limit_v, LoopFit& fit) {
+  std::vector<std::size_t> all(table.columns.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::size_t line[] = {0, table.columns.size() - 1};
+  const auto straight =
+      non_negative_least_squares({table.columns.front(), table.columns.back()}, table.answer, 1);
+  const double size = rms(centred(table.answer));
+  const std::vector<double> left = left_of(table, all, weights),
+                            left_by_line = left_of(table, line, straight);
+  fit.residual_part = rms(left) / size;
+  fit.linear_residual_part = rms(left_by_line) / size;
+  fit.r_squared = 1 - fit.residual_part * fit.residual_part;
+  put_errors(table, v, weights, left, limit_v, fit);
+  const auto plays = static_cast<double>(table.thresholds_v.size() - 1);
+  fit.explains_more = squares_of(left_by_line) - squares_of(left) >
+                      std::pow(fit.errors.noise * size, 2) * plays * highest_chi_squared(plays);
+  fit.usable = fit.residual_part < std::max(kSmallResidual, fit.linear_residual_part / 3);
+}
+
+}  // namespace
+
+Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const double> displacement_m,
+                          double rate_hz, double delay_s, double drive_limit_v,
+                          std::vector<double> thresholds_v) {
+  if (const auto sound = check_loops(drive_v, displacement_m); !sound) return schema::forward_error(sound);
+  const std::vector<double> v = delayed(drive_v, delay_s * rate_hz);
+  LoopFit fit;
+  fit.amplitude_v = std::abs(*std::ranges::max_element(v, {}, [](double value) { return std::abs(value); }));
+  const LoopStretch loop = largest_loop(v, fit.amplitude_v);
+  if (loop.end <= loop.first)
+    return fail(Fault::unsuitable, "the drive makes no whole loop between its largest values, both ways",
+                "loop",
+                "drive it slowly with a sine or a triangle about 0, two periods at the largest swing first");
+  if (thresholds_v.empty()) thresholds_v = even_thresholds(kThresholds, fit.amplitude_v);
+  const LoopTable table = loop_table(v, displacement_m, fit.amplitude_v, std::move(thresholds_v));
+  std::vector<double> weights = non_negative_least_squares(table.columns, table.answer, 1);
+  put_quality(table, v, weights, drive_limit_v, fit);
+  put_loop_model(table, v, loop, weights, fit);
+  weights.pop_back();
+  put_operator(table.thresholds_v, std::move(weights), drive_limit_v, fit);
+  fit.gain_m_per_v *= table.sign;
+  put_loop(v, displacement_m, loop, fit);
+  if (!std::isfinite(fit.opening))
+    return fail(Fault::unsuitable,
+                "the drive passes zero too fast: fewer than three samples of a branch there", "loop",
+                "drive it slowly: 1 Hz");
+  fit.loop_hz = rate_hz / static_cast<double>(loop.end - loop.first);
+  return fit;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/identify/fit/outlier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tacto::analysis {
+namespace {
+
+constexpr double kTakes = 0.1;
+constexpr double kNeverNoise = 1e-9;   // of tables
+constexpr double kParameters = 4;      // more in longer models: then it asks for a little too much
+constexpr std::size_t kTried = 3;      // of each kind of suspect
+constexpr std::ptrdiff_t kBeside = 2;  // neighbours on either side
+
+// How far each amplitude is from the median of its neighbours and itself, as a logarithm.
+std::vector<double> off_neighbours(const BodeData& data) {
+  std::vector<double> off, sizes;
+  for (const auto& value : data.response) sizes.push_back(std::abs(value));
+  const auto count = static_cast<std::ptrdiff_t>(sizes.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const auto from = std::clamp<std::ptrdiff_t>(i - kBeside, 0, count - 2 * kBeside - 1);
+    std::vector<double> near(sizes.begin() + from, sizes.begin() + from + 2 * kBeside + 1);
+    std::ranges::nth_element(near, near.begin() + kBeside);
+    off.push_back(std::abs(std::log(sizes[static_cast<std::size_t>(i)] / near[kBeside])));
+  }
+  return off;
+}
+
+void add_largest(std::span<const double> values, std::vector<std::size_t>& list) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::partial_sort(order, order.begin() + kTried, std::greater{},
+                            [&](std::size_t i) { return values[i]; });
+  list.insert(list.end(), order.begin(), order.begin() + kTried);
+}
+
+BodeData without_value(BodeData data, std::size_t index) {
+  const auto at = static_cast<std::ptrdiff_t>(index);
+  data.frequency_hz.erase(data.frequency_hz.begin() + at);
+  data.response.erase(data.response.begin() + at);
+  if (data.has_noise()) data.noise.erase(data.noise.begin() + at);
+  for (auto& error : data.shared_errors) error.erase(error.begin() + at);
+  return data;
+}
+
+// With two values less, left^((2 n - p - 2) / 2) is the F test's own probability.
+bool is_never_noise(const BodeData& data, const RestOfFit& rest, double part_left) {
+  const double n = static_cast<double>(data.size()), freedom = 2 * n - kParameters - 2;
+  return data.noise_from_residuals && rest.is_noise && n * std::pow(part_left, freedom / 2) < kNeverNoise;
+}
+
+}  // namespace
+
+std::optional<Outlier> outlier_of(const BodeData& data, std::span<const double> shares, double left_by_all,
+                                  const LeftByFit& left_by_fit) {
+  if (data.size() < 2 * kLeastFrequencies) return std::nullopt;
+  std::vector<std::size_t> suspects;
+  add_largest(shares, suspects);
+  add_largest(off_neighbours(data), suspects);
+  std::ranges::sort(suspects);
+  const auto same = std::ranges::unique(suspects);
+  suspects.erase(same.begin(), same.end());
+  std::optional<Outlier> found;
+  for (const std::size_t index : suspects) {
+    const RestOfFit rest = left_by_fit(without_value(data, index));
+    const double left = rest.left / left_by_all;
+    const bool takes = left < kTakes || is_never_noise(data, rest, left);
+    if (takes && (!found || left < found->left)) found = Outlier{index, left};
+  }
+  return found;
+}
+
+}  // namespace tacto::analysis

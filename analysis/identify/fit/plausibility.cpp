@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/identify/fit/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "analysis/identify/fit/starting_values.hpp"
+#include "analysis/identify/measure/angles.hpp"
+#include "analysis/identify/measure/hold.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kClearly = 0.25;
+constexpr double kBadStart = 0.2;  // of the data's weight: the grid alone leaves less of a sound response
+constexpr double kHalfTurn =
+    2.2;                      // rad: a step between neighbours that is nearer to a half turn than to none
+constexpr double kLevel = 2;  // amplitudes of neighbours within this factor
+constexpr double kOtherUnit = 200;
+constexpr double kOtherFrequency = 3.5;  // below 2 pi, with room for a resonance of half the base's
+
+template <class Change>
+BodeData changed(BodeData data, Change change) {
+  for (std::size_t i = 0; i < data.size(); ++i) data.response[i] = change(data.response[i]);
+  return data;
+}
+
+double left_by_grid(const ResponseModel& model, const BodeData& data) {
+  BodeData plain = data;
+  plain.noise.clear();  // relative: what matters is the phase everywhere
+  return starting_values(model, plain).left;
+}
+
+// Half turns that come from one neighbour to the next are taken back.
+BodeData without_half_turns(BodeData data, std::size_t& first_step) {
+  double sign = 1;
+  auto before = data.response.front();
+  for (std::size_t i = 1; i < data.size(); ++i) {
+    const auto here = data.response[i];
+    const double step = std::abs(std::arg(here / before)), ratio = std::abs(here / before);
+    if (step > kHalfTurn && ratio < kLevel && ratio > 1 / kLevel) {
+      sign = -sign;
+      if (first_step == 0) first_step = i;
+    }
+    before = here;
+    data.response[i] *= sign;
+  }
+  return data;
+}
+
+std::string invert_remedy(bool inverted) {
+  return inverted ? "leave --invert out" : "turn the sensor's polarity round, or give --invert";
+}
+
+std::string unit_words(double times) {
+  const double powers = std::round(std::log10(times) / 3) * 3;
+  return fmt::format(
+      "{:.3g} times what '{{}}' gives; if the values are in a unit 10^{:g} times {} than was said, name it",
+      times, std::abs(powers), times > 1 ? "smaller" : "larger");
+}
+
+Result<void> check_times(double times, const schema::Transducer& base, const std::string& source,
+                         const char* remedy) {
+  if (times < kOtherUnit && times > 1 / kOtherUnit) return {};
+  return fail(Fault::unsuitable, "the gain is " + fmt::format(fmt::runtime(unit_words(times)), base.name),
+              source, remedy);
+}
+
+}  // namespace
+
+namespace {
+
+std::string turns_remedy(Turned needed, Turned given) {
+  if (!needed.conjugated) return invert_remedy(given.inverted);
+  if (!needed.inverted) return given.conjugated ? "leave --phase-sign out" : "give --phase-sign -1";
+  if (given.conjugated && given.inverted) return "leave --phase-sign and --invert out";
+  if (given.conjugated) return "leave --phase-sign out, and give --invert";
+  if (given.inverted) return "give --phase-sign -1, and leave --invert out";
+  return "give --phase-sign -1 and --invert";
+}
+
+std::string turns_words(Turned needed, Direction direction) {
+  const std::string grows = "the phase grows where a lag must fall", down = "the response is upside down",
+                    why = direction == Direction::actuator
+                              ? ": a positive drive gives a negative answer"
+                              : ": its volts have the other sign than the transducer's for the same force";
+  if (!needed.inverted) return grows + ": it has the other sign convention";
+  return needed.conjugated ? grows + ", and " + down : down + why;
+}
+
+// The turns that leave clearly less than the data do as they are, and of those the least; none: {}.
+Turned turns_needed(const ResponseModel& model, const BodeData& data, double left) {
+  double least = kClearly * left;
+  Turned needed;
+  for (const Turned turn : {Turned{true, false}, Turned{false, true}, Turned{true, true}}) {
+    const double by_turn =
+        left_by_grid(model, changed(data, [&](auto h) {
+                       return (turn.inverted ? -1.0 : 1.0) * (turn.conjugated ? std::conj(h) : h);
+                     }));
+    if (by_turn < least) least = by_turn, needed = turn;
+  }
+  return needed;
+}
+
+}  // namespace
+
+Result<void> check_phases(const BodeData& measured, const ModelChoice& choice, const schema::Transducer& base,
+                          Turned turned) {
+  if (choice.finger) return {};
+  const BodeData data =
+      without_hold(measured, [&](double hz) { return schema::actuator_response(base, hz); });
+  const ResponseModel model({choice.direction, false, false, false}, base, data);
+  const double left = left_by_grid(model, data);
+  if (left < kBadStart) return {};
+  std::size_t step = 0;
+  const double unturned = left_by_grid(model, without_half_turns(data, step));
+  if (step > 0 && unturned < kClearly * left)
+    return fail(
+        Fault::unsuitable,
+        fmt::format(
+            "the phase steps by half a turn from {:.4g} to {:.4g} Hz where the amplitude does not fall: it "
+            "was unwrapped wrongly",
+            data.frequency_hz[step - 1], data.frequency_hz[step]),
+        data.source, "take the phase of the complex ratio (atan2), not of a quotient");
+  const Turned needed = turns_needed(model, data, left);
+  if (needed.conjugated || needed.inverted)
+    return fail(Fault::unsuitable, turns_words(needed, data.direction), data.source,
+                turns_remedy(needed, turned));
+  return {};
+}
+
+namespace {
+
+// In the table's own degrees.
+double largest_angle(const BodeData& data) {
+  double most = 0;
+  for (const auto& value : data.response) most = std::max(most, kDegrees * std::abs(std::arg(value)));
+  return most;
+}
+
+constexpr double kLoudest = 400;        // dB: nothing measured is, and 10^20 times it is finite
+constexpr double kExplained = 0.99;     // R^2
+constexpr double kMostRadians = kTurn;  // three poles lag by three quarters of it
+
+}  // namespace
+
+Result<void> check_units(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base) {
+  if (choice.finger || !data.table_in_degrees || largest_angle(data) > kMostRadians) return {};
+  const ResponseModel model({choice.direction, false, false, false}, base, data);
+  const BodeData radians =
+      changed(data, [](auto h) { return std::polar(std::abs(h), kDegrees * std::arg(h)); });
+  if (left_by_grid(model, radians) >= kClearly * left_by_grid(model, data)) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("no phase is beyond {:.3g} degrees: these will be radians", largest_angle(data)),
+              data.source, "give --phase-unit rad, or write phase_rad into the header");
+}
+
+Result<void> check_measured(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
+                            Turned turned) {
+  if (const auto sound = check_bode(data); !sound) return sound;
+  if (const auto said = check_units(data, choice, base); !said) return said;
+  return check_phases(data, choice, base, turned);
+}
+
+Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base) {
+  const double unit_si = fit.data.table_unit_si;
+  if (!fit.misfit.found || !(unit_si > 0)) return {};
+  BodeData levels = changed(fit.data, [&](auto h) {
+    return std::polar(unit_si * std::pow(10, std::min(std::abs(h) / unit_si, kLoudest) / 20), std::arg(h));
+  });
+  levels.noise.clear();
+  levels.noise_from_residuals = false;
+  const ResponseFit other = fit_response(levels, choice, base);
+  if (!other.claims_intervals() || other.r_squared < kExplained) return {};
+  return fail(Fault::unsuitable, "the amplitudes fit as levels only: these will be decibels", fit.data.source,
+              "give --amplitude-unit with \"dB \" before the unit, as \"dB um/V\"");
+}
+
+Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base) {
+  const bool actuator = fit.data.direction == Direction::actuator;
+  return check_times(actuator ? fit.transducer.actuator_scale / base.actuator_scale
+                              : fit.transducer.sensor_scale / base.sensor_scale,
+                     base, fit.data.source,
+                     "give --amplitude-unit, or --implausible where the gain is right");
+}
+
+Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer& base) {
+  const FittedParameter* const resonance = fit.find("resonance_hz");
+  if (resonance == nullptr || !fit.claims_intervals()) return {};
+  const double times = resonance->value / schema::resonance_hz(base);
+  if (times < kOtherFrequency && times > 1 / kOtherFrequency) return {};
+  const bool in_khz = times < 1;
+  return fail(
+      Fault::unsuitable,
+      fmt::format("the resonance is {:.4g} Hz, {:.3g} times what '{}' has; if the frequencies are in {} "
+                  "it is {:.4g} Hz",
+                  resonance->value, times, base.name, in_khz ? "kHz" : "rad/s",
+                  resonance->value * (in_khz ? 1e3 : 1 / kTurn)),
+      fit.data.source,
+      "write frequency_khz or frequency_rad_per_s into the header, or give --implausible where they are "
+      "right");
+}
+
+Result<void> check_size(const LoopFit& fit, const schema::Transducer& base, const std::string& source) {
+  return check_times(
+      std::abs(fit.gain_m_per_v) / std::abs(schema::actuator_response(base, 0)), base, source,
+      "put the unit into the table's first line, or give --implausible where the gain is right");
+}
+
+Result<void> check_upright(const LoopFit& fit, const std::string& source, bool inverted) {
+  if (fit.gain_m_per_v > 0) return {};
+  return fail(Fault::unsuitable, "the loops are upside down: a positive drive gives a negative answer",
+              source, invert_remedy(inverted));
+}
+
+}  // namespace tacto::analysis

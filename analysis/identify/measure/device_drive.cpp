@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/identify/measure/device_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware-host/link/client.hpp"
+#include "firmware-host/link/wire_fields.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using firmware_host::Client;
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::uint8_t kFramesOfMessage = 32;
+constexpr std::uint16_t kWatchdogMs = 500;
+constexpr std::size_t kLeastRefill = 128;  // samples: smaller messages cost more than they carry
+constexpr double kWaitS = 5e-3, kIdleWaitS = 1;
+constexpr std::uint32_t kLimited =
+    wire::kTickAmplitudeLimited | wire::kTickSlewLimited | wire::kTickEnergyLimited | wire::kTickGated;
+
+Result<std::size_t> tray_channel(const firmware_host::Capabilities& about) {
+  const auto found = std::ranges::find(about.channels, "displacement", &schema::Channel::quantity);
+  if (found != about.channels.end()) return static_cast<std::size_t>(found - about.channels.begin());
+  return fail(Fault::unsuitable, "the device does not see its tray move: it has no channel of displacement",
+              about.uri, "of an emulated device add tray_sensor=on; else give a file of measured values");
+}
+
+// One run: what has come so far, as the device numbered it.
+class Run {
+ public:
+  Run(Client& client, const firmware_host::Capabilities& about, std::size_t channel)
+      : client_(client), about_(about), channel_(channel) {}
+
+  Result<void> begin() {
+    const auto limits = limits_of();
+    client_.take_ticks();
+    client_.take_faults();
+    auto done = client_.command(limits);
+    const std::uint32_t rate = firmware_host::millihertz(about_.sample_rate_hz);
+    if (done) done = client_.start_stream(rate, kFramesOfMessage);
+    if (done) done = client_.command(wire::Arm{wire::DriveSource::host, rate});
+    return done;
+  }
+  Result<void> feed(std::span<const float> drive_v) {
+    const auto pulse = client_.heartbeat();
+    if (!pulse) return schema::forward_error(pulse);
+    const std::size_t room = client_.description().welcome.drive_queue - pulse->drive_queued;
+    empty_ = pulse->drive_queued == 0 && sent_ >= drive_v.size();
+    const std::size_t left = drive_v.size() - sent_;
+    const std::size_t count = std::min({room, left, wire::kMaxChunk});
+    if (count > 0 && (count >= kLeastRefill || count == left)) return send(drive_v.subspan(sent_, count));
+    return client_.receive(kWaitS);
+  }
+  Result<void> take() {
+    if (client_.samples().has_gap() && client_.samples().at_gap())
+      return fail(Fault::device, "frames were lost on the way", about_.uri,
+                  "identify again, on a quieter machine");
+    take_frames();
+    for (const wire::Ticks& block : client_.take_ticks())
+      if (const auto kept = keep(block); !kept) return kept;
+    if (const auto faults = client_.take_faults(); !faults.empty())
+      return fail(Fault::device,
+                  fmt::format("the device stopped with fault {}", static_cast<int>(faults[0].code)),
+                  about_.uri, "see that its enable input is closed and the machine not too busy");
+    return {};
+  }
+  Result<void> end() {
+    auto done = client_.command(wire::Disarm{});
+    for (double waited_s = 0; done && waited_s < kIdleWaitS; waited_s += kWaitS) {
+      const auto pulse = client_.heartbeat();
+      if (!pulse) return schema::forward_error(pulse);
+      if (pulse->state == wire::DriveState::idle) break;
+      done = client_.receive(kWaitS);
+    }
+    const auto stopped = client_.stop_stream();
+    return done ? stopped : done;
+  }
+  bool all_played() const { return empty_; }
+  double sent() const { return static_cast<double>(sent_); }
+
+  // Frames and ticks on one axis, from the first sample of the plan on.
+  Result<DrivenTray> paired(std::span<const float> plan) const {
+    if (!first_frame_s_ || drive_.empty()) return fail(Fault::device, "the device gave nothing", about_.uri);
+    const auto shift =
+        static_cast<std::ptrdiff_t>(std::llround((first_tick_s_ - *first_frame_s_) * about_.sample_rate_hz));
+    const auto loud = [](float v) { return v != 0; };
+    const auto in_plan = std::ranges::find_if(plan, loud) - plan.begin();
+    const auto in_ticks = std::ranges::find_if(drive_, loud) - drive_.begin();
+    const std::ptrdiff_t first = in_ticks - in_plan;
+    const auto count = static_cast<std::ptrdiff_t>(plan.size());
+    if (first < 0 || first + count > static_cast<std::ptrdiff_t>(drive_.size()) || first + shift < 0 ||
+        first + shift + count > static_cast<std::ptrdiff_t>(displacement_m_.size()))
+      return fail(Fault::device, "the device gave fewer samples than it played", about_.uri);
+    DrivenTray tray{about_.sample_rate_hz, {}, {}, limited_};
+    tray.drive_v.assign(drive_.begin() + first, drive_.begin() + first + count);
+    tray.displacement_m.assign(displacement_m_.begin() + first + shift,
+                               displacement_m_.begin() + first + shift + count);
+    return late(plan, tray) ? late_words() : Result<DrivenTray>(std::move(tray));
+  }
+
+ private:
+  wire::Limits limits_of() const {
+    const wire::Welcome& welcome = client_.description().welcome;
+    wire::Limits limits{welcome.drive_limit_v, welcome.slew_limit_v_per_s, 0, 0, kWatchdogMs, 65535};
+    if (!about_.transducer) return limits;
+    limits.drive_v = std::min(limits.drive_v, firmware_host::not_above(about_.transducer->drive_limit_v));
+    limits.slew_v_per_s =
+        std::min(limits.slew_v_per_s, firmware_host::not_above(about_.transducer->slew_limit_v_per_s));
+    return limits;
+  }
+  Result<void> send(std::span<const float> part) {
+    wire::Drive drive;
+    drive.count = static_cast<std::uint16_t>(part.size());
+    std::ranges::copy(part, drive.drive_v);
+    const auto sent = client_.send_drive(drive);
+    const bool first = sent_ == 0;
+    sent_ += part.size();
+    return sent && first ? client_.command(wire::Play{}) : sent;
+  }
+  void take_frames() {
+    const std::size_t channels = about_.channels.size();
+    codes_.resize(client_.samples().frames() * channels);
+    const std::size_t frames = client_.samples().take(codes_);
+    const schema::Channel& tray = about_.channels[channel_];
+    for (std::size_t i = 0; i < frames; ++i)
+      displacement_m_.push_back(codes_[i * channels + channel_] * tray.scale + tray.offset);
+    if (!first_frame_s_ && client_.last_arrival())
+      first_frame_s_ = client_.last_arrival()->device_s -
+                       static_cast<double>(client_.last_arrival()->frame) / about_.sample_rate_hz;
+  }
+  Result<void> keep(const wire::Ticks& block) {
+    if (drive_.empty())
+      first_tick_s_ = static_cast<double>(block.device_ticks) / client_.description().welcome.clock_hz -
+                      static_cast<double>(block.first_tick) / about_.sample_rate_hz;
+    if (block.first_tick != drive_.size())
+      return fail(Fault::device, "ticks were lost on the way", about_.uri,
+                  "identify again, on a quieter machine");
+    for (std::size_t i = 0; i < block.count; ++i) {
+      drive_.push_back(block.ticks[i].drive_v);
+      limited_ += (block.ticks[i].flags & kLimited) != 0;
+    }
+    return {};
+  }
+  // Within what the limits may have changed, the drive is the plan.
+  bool late(std::span<const float> plan, const DrivenTray& tray) const {
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < plan.size(); ++i)
+      other += std::abs(tray.drive_v[i] - static_cast<double>(plan[i])) > 1e-5;
+    return other > 2 * limited_;
+  }
+  Result<DrivenTray> late_words() const {
+    return fail(Fault::device, "the device did not put out what it was sent: the drive came too late",
+                about_.uri, "identify again, on a quieter machine");
+  }
+
+  Client& client_;
+  const firmware_host::Capabilities& about_;
+  std::size_t channel_;
+  std::size_t sent_ = 0, limited_ = 0;
+  bool empty_ = false;
+  std::vector<std::int32_t> codes_;
+  std::vector<double> displacement_m_;
+  std::vector<float> drive_;
+  std::optional<double> first_frame_s_;
+  double first_tick_s_ = 0;
+};
+
+Result<void> played(Run& run, std::span<const float> drive_v, const std::function<bool()>& stop_asked,
+                    const std::function<void(double)>& progress) {
+  while (!run.all_played()) {
+    if (stop_asked()) return fail(Fault::usage, "stopped before the end", "identify");
+    auto done = run.feed(drive_v);
+    if (done) done = run.take();
+    if (!done) return done;
+    progress(run.sent() / static_cast<double>(drive_v.size()));
+  }
+  return {};
+}
+
+}  // namespace
+
+double drive_rate_hz(const firmware_host::Device& device) {
+  return device.capabilities().sample_rate_hz;
+}
+
+Result<DrivenTray> drive_tray(firmware_host::Device& device, std::span<const float> drive_v,
+                              const std::function<bool()>& stop_asked,
+                              const std::function<void(double)>& progress) {
+  Client* const client = device.conversation();
+  if (client == nullptr)
+    return fail(Fault::unsuitable, "nothing can be played on a replay", device.capabilities().uri);
+  const auto channel = tray_channel(device.capabilities());
+  if (!channel) return schema::forward_error(channel);
+  Run run(*client, device.capabilities(), *channel);
+  auto done = run.begin();
+  if (done) done = played(run, drive_v, stop_asked, progress);
+  const auto ended = run.end();
+  if (done) done = ended;
+  if (done) done = run.take();
+  if (!done) return schema::forward_error(done);
+  return run.paired(drive_v);
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/identify/measure/record_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/identify/measure/local_response.hpp"
+#include "analysis/identify/measure/response_estimate.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+using RecordSpectrum = std::vector<std::complex<double>>;
+
+constexpr std::size_t kMostPlaces = 80;
+constexpr std::size_t kFewestSamples = 1024;
+constexpr double kHalfWidthHz = 0.5;
+constexpr double kUndriven = 1e-6;  // of the strongest place's power
+constexpr double kMostNoise = 0.2;  // of the response: five standard deviations
+constexpr double kOwnNoise = 4;     // times the neighbours': a line of the mains
+constexpr double kShows = 2;        // standard deviations of chi squared
+
+struct RecordSpectra {
+  RecordSpectrum input, output;
+  double bin_hz = 0;
+  std::size_t half = 0;  // bins on either side of a place
+};
+
+RecordSpectrum record_spectrum_of(std::span<const double> x) {
+  const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+  std::vector<double> centred(x.begin(), x.end());
+  for (double& value : centred) value -= mean;
+  spatial::RealFft transform(x.size());
+  RecordSpectrum spectrum(transform.bins());
+  transform.forward(centred, spectrum);
+  return spectrum;
+}
+
+RecordSpectra spectra_of(std::span<const double> input, std::span<const double> output, double rate_hz) {
+  RecordSpectra spectra{record_spectrum_of(input), record_spectrum_of(output),
+                        rate_hz / static_cast<double>(input.size()), (kLeastLocalBins - 1) / 2};
+  spectra.half = std::max(spectra.half, static_cast<std::size_t>(std::round(kHalfWidthHz / spectra.bin_hz)));
+  return spectra;
+}
+
+// The strongest bin of each part of the band, so far apart that no bin belongs to two.
+std::vector<std::size_t> places_in(const RecordSpectra& spectra, double low_hz, double high_hz) {
+  std::vector<std::size_t> places;
+  std::size_t next = spectra.half + 1;
+  const auto bin_at = [&](double part) {
+    return static_cast<std::size_t>(std::round(low_hz * std::pow(high_hz / low_hz, part) / spectra.bin_hz));
+  };
+  for (std::size_t i = 0; i < kMostPlaces; ++i) {
+    const double slot = static_cast<double>(i), slots = kMostPlaces - 1;
+    const std::size_t first = std::max(next, bin_at(std::max(0.0, (slot - 0.5) / slots)));
+    const std::size_t end = bin_at(std::min(1.0, (slot + 0.5) / slots)) + 1;
+    if (first >= end || end + spectra.half >= spectra.input.size()) continue;
+    const auto from = spectra.input.begin() + static_cast<std::ptrdiff_t>(first),
+               to = spectra.input.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto strongest = std::ranges::max_element(from, to, {}, [](auto u) { return std::norm(u); });
+    places.push_back(static_cast<std::size_t>(strongest - spectra.input.begin()));
+    next = places.back() + 2 * spectra.half + 1;
+  }
+  double most = 0;
+  for (const std::size_t at : places) most = std::max(most, std::norm(spectra.input[at]));
+  std::erase_if(places, [&](std::size_t at) { return std::norm(spectra.input[at]) < kUndriven * most; });
+  return places;
+}
+
+std::vector<LocalResponse> responses_at(const RecordSpectra& spectra, std::span<const std::size_t> places,
+                                        bool transient) {
+  std::vector<LocalResponse> list;
+  const std::size_t count = 2 * spectra.half + 1;
+  for (const std::size_t at : places)
+    list.push_back(local_response(std::span(spectra.input).subspan(at - spectra.half, count),
+                                  std::span(spectra.output).subspan(at - spectra.half, count), transient));
+  return list;
+}
+
+std::vector<double> noise_powers(std::span<const LocalResponse> list) {
+  std::vector<double> own, powers;
+  for (const LocalResponse& local : list) own.push_back(local.noise_power);
+  powers = mean_of_neighbours(own);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (own[i] > kOwnNoise * powers[i]) powers[i] = own[i];
+  return powers;
+}
+
+// Real values that a place's noise is told by, at the fewest.
+double freedom_of(std::span<const LocalResponse> list) {
+  double fewest = INFINITY;
+  for (const LocalResponse& local : list) fewest = std::min(fewest, 2 * local.freedom);
+  return fewest * kFewestNeighbours;
+}
+
+// Whether leaving the ends out leaves more than noise would.
+bool ends_show(std::span<const LocalResponse> with, std::span<const LocalResponse> without) {
+  const std::vector<double> powers = noise_powers(with);
+  double taken = 0, terms = 0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    if (!(powers[i] > 0)) continue;
+    taken +=
+        (without[i].freedom * without[i].noise_power - with[i].freedom * with[i].noise_power) / powers[i];
+    terms += without[i].freedom - with[i].freedom;
+  }
+  return taken > terms + kShows * std::sqrt(terms);
+}
+
+}  // namespace
+
+Result<BodeData> response_of_record(std::span<const double> input, std::span<const double> output,
+                                    double rate_hz, double low_hz, double high_hz,
+                                    const std::string& source) {
+  if (input.size() < kFewestSamples)
+    return fail(Fault::unsuitable, "the recording is too short for a frequency response", source);
+  const RecordSpectra spectra = spectra_of(input, output, rate_hz);
+  const std::vector<std::size_t> places = places_in(spectra, low_hz, high_hz);
+  std::vector<LocalResponse> list = responses_at(spectra, places, true);
+  if (auto plain = responses_at(spectra, places, false); !ends_show(list, plain)) list = std::move(plain);
+  const std::vector<double> powers = noise_powers(list);
+  BodeData data;
+  data.source = source;
+  data.noise_freedom = freedom_of(list);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const double noise = noise_no_less(std::sqrt(powers[i] * list[i].variance_for_one), list[i].response);
+    if (!(noise < kMostNoise * std::abs(list[i].response))) continue;
+    data.frequency_hz.push_back((static_cast<double>(places[i]) + list[i].offset) * spectra.bin_hz);
+    data.response.push_back(list[i].response);
+    data.noise.push_back(noise);
+  }
+  if (!data.frequency_hz.empty()) return data;
+  return fail(Fault::unsuitable, "output and input have nothing to do with each other", source,
+              "name the channels with --input and --output-channel; slow loops take --method loop");
+}
+
+}  // namespace tacto::analysis

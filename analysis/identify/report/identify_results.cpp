@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/identify/report/identify_results.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "analysis/identify/measure/angles.hpp"
+#include "analysis/identify/report/bode_curves.hpp"
+#include "analysis/identify/report/interval_words.hpp"
+#include "analysis/identify/report/paper_words.hpp"
+
+namespace tacto::analysis {
+namespace {
+
+using schema::ResultCurve;
+using schema::ResultPicture;
+using schema::Results;
+
+constexpr const char* kBodeFrequency = "frequency (Hz)";
+
+Results begun_results(const schema::Transducer& found) {
+  const schema::Identification& about = *found.identification;
+  Results results;
+  results.simulated = about.simulated;
+  const char* const verdict = about.usable() ? "fits" : about.converged ? "MISFIT" : "DID NOT CONVERGE";
+  results.figures = {{"transducer", found.name},
+                     {"verdict", fmt::format("{}: {}", verdict, about.words)},
+                     {"conditions", fmt::format("{}, {}", about.source, about.conditions)},
+                     {"valid", fmt::format("{:.4g} to {:.4g} Hz", about.low_hz, about.high_hz)},
+                     {"R^2", fmt::format("{:.6g}", about.r_squared)}};
+  return results;
+}
+
+void add_told_apart(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                    Results& results) {
+  for (const FittedParameter& p : fit.parameters)
+    results.figures.push_back({p.name + ", 95 %", interval_words(p, fit.claims_intervals())});
+  for (const std::string& line : held_words(choice, base))
+    results.figures.push_back({"not told apart", line});
+  for (const std::string& line : fit.notes) results.figures.push_back({"not told apart", line});
+}
+
+void add_residual_figures(const ResponseFit& fit, Results& results) {
+  results.figures.push_back({"condition number", fmt::format("{:.4g}", fit.condition)});
+  if (fit.data.noise_is_measured())
+    results.figures.push_back({"residuals over the noise, squared",
+                               fmt::format("{:.3g}, at most {:.3g}", fit.misfit.reduced_chi_squared,
+                                           fit.misfit.chi_squared_limit)});
+  results.figures.push_back(
+      {"residuals of neighbours, correlation",
+       fmt::format("phase {:.2f}, amplitude {:.2f}, at most {:.2f}", fit.misfit.phase_correlation,
+                   fit.misfit.amplitude_correlation, fit.misfit.correlation_limit)});
+}
+
+void add_paper_figures(const ResponseFit& fit, const schema::Transducer& found, Results& results) {
+  const auto figures = paper_figures(found, fit);
+  if (!figures) return;
+  const auto number = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.4g}", value) : "nothing";
+  };
+  for (const PaperFigure& f : *figures)
+    results.figures.push_back(
+        {"the paper against itself: " + f.what,
+         fmt::format("reported {}, by Table I {}, identified {}; {}", number(f.reported), number(f.by_table),
+                     number(f.identified), f.remark)});
+}
+
+ResultPicture amplitude_picture(const ResponseFit& fit, const BodeCurves& c) {
+  ResultPicture picture{"Amplitude", kBodeFrequency, "dB re the gain at rest", true, {}};
+  picture.curves = {{"data", fit.data.frequency_hz, c.data_db}, {"model", fit.curve_hz, c.model_db}};
+  if (!c.low_db.empty()) {
+    picture.curves.push_back({"95 % band", fit.curve_hz, c.low_db, true});
+    picture.curves.push_back({"", fit.curve_hz, c.high_db, true});
+  }
+  picture.curves.push_back({"inverse", fit.curve_hz, c.inverse_db});
+  return picture;
+}
+
+std::vector<ResultPicture> bode_pictures(const ResponseFit& fit) {
+  const BodeCurves c = bode_curves(fit);
+  ResultPicture phase{"Phase", kBodeFrequency, "degrees", true, {}};
+  phase.curves = {{"data", fit.data.frequency_hz, c.data_deg},
+                  {"model", fit.curve_hz, c.model_deg},
+                  {"inverse", fit.curve_hz, c.inverse_deg}};
+  ResultPicture residuals{"Residuals", kBodeFrequency, "over the noise", true, {}};
+  residuals.curves = {{"amplitude", fit.data.frequency_hz, c.along},
+                      {"phase", fit.data.frequency_hz, c.across}};
+  return {amplitude_picture(fit, c), phase, residuals};
+}
+
+void add_loops(const LoopFit& fit, Results& results) {
+  results.figures.push_back(
+      {"loop", fmt::format("{:.3g} % open at {:.3g} V", 100 * fit.opening, fit.amplitude_v)});
+  results.figures.push_back({"lag", fmt::format("{:.3g} degrees", kDegrees * fit.lag_rad)});
+  results.figures.push_back({"left", fmt::format("{:.2g} % by the operator, {:.3g} % by a line",
+                                                 100 * fit.residual_part, 100 * fit.linear_residual_part)});
+  results.pictures.push_back({"Operator",
+                              "threshold (V)",
+                              "weight",
+                              false,
+                              {{"", fit.hysteresis.thresholds_v, fit.hysteresis.weights}}});
+}
+
+std::string spread_words(const Spread& s, const char* unit) {
+  return fmt::format("{:.4g}{}, spread {:.2g}, standard deviation {:.2g}, {:.4g} to {:.4g}", s.median, unit,
+                     s.spread, s.standard_deviation, s.least, s.most);
+}
+
+std::vector<ResultPicture> tap_pictures(const TapsFit& fit) {
+  ResultCurve frequencies{"", {}, {}}, dampings{"", {}, {}};
+  for (std::size_t i = 0; i < fit.taps.size(); ++i) {
+    frequencies.x.push_back(static_cast<double>(i + 1));
+    frequencies.y.push_back(fit.taps[i].modes.front().frequency_hz);
+    dampings.y.push_back(fit.taps[i].modes.front().damping_ratio);
+  }
+  dampings.x = frequencies.x;
+  return {{"Resonance by tap", "tap", "Hz", false, {frequencies}},
+          {"Damping by tap", "tap", "ratio", false, {dampings}}};
+}
+
+}  // namespace
+
+Results identify_results(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                         const schema::Transducer& found) {
+  Results results = begun_results(found);
+  add_told_apart(fit, choice, base, results);
+  add_residual_figures(fit, results);
+  if (is_the_papers(base)) add_paper_figures(fit, found, results);
+  results.pictures = bode_pictures(fit);
+  return results;
+}
+
+Results identify_results(const LoopFit& fit, const schema::Transducer& found) {
+  Results results = begun_results(found);
+  add_loops(fit, results);
+  return results;
+}
+
+Results identify_results(const JointFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                         const schema::Transducer& found) {
+  Results results = identify_results(fit.response, choice, base, found);
+  if (fit.has_hysteresis) add_loops(fit.loops, results);
+  return results;
+}
+
+Results identify_results(const TapsFit& fit, const TapsPrediction& foretold,
+                         const schema::Transducer& found) {
+  Results results = begun_results(found);
+  results.figures.push_back({"resonance", spread_words(fit.resonance_hz, " Hz")});
+  results.figures.push_back({"damping ratio", spread_words(fit.damping_ratio, "")});
+  results.figures.push_back(
+      {fmt::format("taps 1-{} foretell {} others", foretold.fitted, foretold.foretold),
+       fmt::format("resonance {:+.2g} %, damping {:+.2g} %, waveform within {:.3g} % (at worst {:.3g} %)",
+                   100 * foretold.resonance_error, 100 * foretold.damping_error,
+                   100 * foretold.waveform_error, 100 * foretold.worst_waveform_error)});
+  results.pictures = tap_pictures(fit);
+  return results;
+}
+
+}  // namespace tacto::analysis

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/page/html.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace tacto::analysis {
+namespace {
+
+constexpr std::string_view kStyle = R"(
+:root { color-scheme: light; }
+body { font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; color: #1d2126; background: #fff; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; overflow-wrap: break-word; }
+h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.25rem; margin-top: 2.6rem; border-top: 1px solid #d5d9de; padding-top: 1.2rem; }
+p.answer { font-size: 1.2rem; font-weight: 600; margin: .8rem 0; }
+.simulated { background: #fff3d6; border-left: .4rem solid #e0a100; padding: .6rem 1rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .8rem 0; }
+th, td { padding: .35rem .6rem; text-align: right; vertical-align: top; border-bottom: 1px solid #e3e6ea; }
+th { font-weight: 600; vertical-align: bottom; } td:first-child, th:first-child { text-align: left; }
+table.c9 { font-size: .9rem; } td.long { overflow-wrap: anywhere; } td.text { text-align: left; }
+img { width: 100%; height: auto; margin: .6rem 0; } p.note { color: #56606b; font-size: .9rem; }
+details { margin: .8rem 0; border: 1px solid #d5d9de; border-radius: .3rem; padding: 0 .8rem; }
+summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }
+)";
+
+// Below this width of the screen a table of so many columns becomes a list: one block a row, "header: value"
+// a line.
+struct ListedBelow {
+  std::size_t columns;
+  const char* width;
+};
+constexpr ListedBelow kListedBelow[] = {{9, "66rem"}, {6, "50rem"}, {4, "40rem"}};
+
+std::string list_style() {
+  std::string style;
+  for (const ListedBelow& rule : kListedBelow)
+    style += fmt::format(
+        "@media (max-width: {0}) {{ table.c{1}, .c{1} tbody, .c{1} tr {{ display: block; }} .c{1} thead {{ "
+        "display: none; }}\n"
+        ".c{1} tr {{ border-bottom: 2px solid #aab2bb; padding: .5rem 0; }} .c{1} td {{ display: flex; "
+        "justify-content: space-between; gap: 1rem; border: 0; padding: .1rem 0; text-align: right; }}\n"
+        ".c{1} td::before {{ content: attr(data-label); text-align: left; color: #56606b; }} .c{1} "
+        "td:first-child {{ font-weight: 600; }} }}\n",
+        rule.width, rule.columns);
+  return style;
+}
+
+// The rule for a table of so many columns; empty for one that is never listed.
+std::string table_class(std::size_t columns) {
+  for (const ListedBelow& rule : kListedBelow)
+    if (columns >= rule.columns) return fmt::format(" class=\"c{}\"", rule.columns);
+  return "";
+}
+
+// What a data: URI in a double-quoted attribute can't hold as it is. Base64 would make a third more of it,
+// and of the pictures within an SVG, which are base64 already, a second time.
+std::string percent_encoded(std::string_view text) {
+  std::string uri;
+  for (const char c : text)
+    if (std::string_view("%#\"<>&").find(c) != std::string_view::npos ||
+        static_cast<unsigned char>(c) <= ' ' || static_cast<unsigned char>(c) > '~')
+      uri += c == ' ' ? " " : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    else
+      uri += c;
+  // A page links to nothing: a search for "http" shall not find the names of XML's namespaces.
+  for (std::size_t at = 0; (at = uri.find("http", at)) != uri.npos;) uri.replace(at, 1, "%68");
+  return uri;
+}
+
+std::size_t longest_word(std::string_view text) {
+  std::size_t longest = 0, length = 0;
+  for (const char c : text) longest = std::max(longest, length = c == ' ' ? 0 : length + 1);
+  return longest;
+}
+
+// Sentences are read from the left; a word without a break, as a path, may be broken anywhere.
+std::string cell_class(std::string_view cell) {
+  constexpr std::size_t kLongWord = 24, kSentence = 40;
+  if (longest_word(cell) > kLongWord) return " class=\"long text\"";
+  return cell.size() > kSentence ? " class=\"text\"" : "";
+}
+
+std::string head_row(const std::vector<std::string>& headers) {
+  std::string row = "<thead><tr>";
+  for (const std::string& header : headers) row += fmt::format("<th>{}</th>", escaped(header));
+  return row + "</tr></thead>\n";
+}
+
+std::string entity(char c) {
+  if (c == '<') return "&lt;";
+  if (c == '>') return "&gt;";
+  if (c == '&') return "&amp;";
+  return c == '"' ? "&quot;" : std::string(1, c);
+}
+
+// How long the first sign of UTF-8 is; 0 where it is none (names of files may be any bytes).
+std::size_t sign_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return 1;
+  const std::size_t bytes = byte(0) >= 0xF0 && byte(0) < 0xF5   ? 4
+                            : byte(0) >= 0xE0 && byte(0) < 0xF0 ? 3
+                            : byte(0) >= 0xC2 && byte(0) < 0xE0 ? 2
+                                                                : 0;
+  if (bytes == 0 || text.size() < bytes) return 0;
+  for (std::size_t i = 1; i < bytes; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  return bytes;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t bytes = sign_bytes(text.substr(i));
+    safe += bytes == 0 ? "\uFFFD" : bytes == 1 ? entity(text[i]) : std::string(text.substr(i, bytes));
+    i += std::max<std::size_t>(1, bytes);
+  }
+  return safe;
+}
+
+std::string inline_svg(std::string_view svg, std::string_view alternative) {
+  return fmt::format("<img alt=\"{}\" src=\"data:image/svg+xml,{}\">\n", escaped(alternative),
+                     percent_encoded(svg));
+}
+
+std::string html_table(const std::vector<std::string>& headers, std::size_t rows, const CellText& cell) {
+  std::string table = fmt::format("<table{}>\n{}<tbody>\n", table_class(headers.size()), head_row(headers));
+  for (std::size_t row = 0; row < rows; ++row) {
+    table += "<tr>";
+    for (std::size_t column = 0; column < headers.size(); ++column) {
+      const std::string text = cell(row, column);
+      table += fmt::format("<td{} data-label=\"{}\">{}</td>", cell_class(text), escaped(headers[column]),
+                           escaped(text));
+    }
+    table += "</tr>\n";
+  }
+  return table + "</tbody></table>\n";
+}
+
+std::string html_table(const std::vector<std::vector<std::string>>& rows) {
+  for (const auto& row : rows)
+    if (row.size() != rows.front().size())
+      throw std::logic_error("a table's row has another number of cells than its head");
+  return html_table(rows.front(), rows.size() - 1,
+                    [&](std::size_t row, std::size_t column) { return rows[row + 1][column]; });
+}
+
+std::string folded(std::string_view summary, std::string_view html) {
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(summary), html);
+}
+
+std::string answer(std::string_view sentence) {
+  return fmt::format("<p class=\"answer\">{}</p>\n", escaped(sentence));
+}
+
+std::string simulated_box(std::string_view by_what) {
+  if (by_what.empty()) return "";
+  return fmt::format(
+      "<p class=\"simulated\"><strong>Simulated</strong> {}. No figure here was measured on hardware.</p>\n",
+      escaped(by_what));
+}
+
+std::string html_document(std::string_view title, std::string_view body) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{}</title>\n<style>{}{}</style></head>\n<body>\n{}</body></html>\n",
+      escaped(title), kStyle, list_style(), body);
+}
+
+}  // namespace tacto::analysis

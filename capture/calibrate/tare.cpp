@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/calibrate/tare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "capture/calibrate/hann_line.hpp"
+#include "capture/calibrate/mains.hpp"
+#include "data-schema/recording/statistics.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Channel;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kShortestTare_s = 1;
+constexpr double kMoved_m = 0.1e-3, kResting_n = 0.1;
+constexpr double kMostTareDrift = 0.5, kMostNoise = 20;
+constexpr double kLowestNoise_hz = 20, kHighestNoise_hz = 480;
+constexpr int kLines = 100;
+
+std::vector<double> physical(const Take& take, std::size_t channel) {
+  const Channel& told = take.header.channels[channel];
+  std::vector<double> values = take.codes[channel];
+  for (double& value : values) value = value * told.scale + told.offset;
+  return values;
+}
+
+// Of white noise a line's power is exponential: its median is ln 2 of its mean.
+double noise_density(std::span<const double> samples, double rate_hz, double native_rate_hz) {
+  const double highest_hz = std::min(kHighestNoise_hz, 0.45 * std::min(rate_hz, native_rate_hz));
+  std::vector<double> powers;
+  for (int i = 0; i < kLines; ++i) {
+    const double frequency_hz = kLowestNoise_hz + (highest_hz - kLowestNoise_hz) * i / (kLines - 1);
+    powers.push_back(density_of(hann_line(samples, frequency_hz / rate_hz), samples.size(), rate_hz));
+  }
+  std::ranges::nth_element(powers, powers.begin() + kLines / 2);
+  return std::sqrt(powers[kLines / 2] / std::numbers::ln2);
+}
+
+double rms_about_mean(std::span<const double> samples) {
+  const schema::Statistics statistics = schema::statistics_of(samples);
+  return std::sqrt(std::max(0.0, std::pow(statistics.rms(), 2) - std::pow(statistics.mean(), 2)));
+}
+
+ChannelTare tare_of_channel(const Take& take, std::size_t channel) {
+  const Channel& told = take.header.channels[channel];
+  const double rate_hz = take.header.sample_rate_hz, native_hz = told.native_rate_hz.value_or(rate_hz);
+  const std::vector<double> values = physical(take, channel);
+  ChannelTare tare{channel, mean_of(take.codes[channel]), 0, rms_about_mean(values), 0, {}};
+  tare.mean = tare.zero.value * told.scale + told.offset;
+  tare.noise_density = noise_density(values, rate_hz, native_hz);
+  tare.mains = mains_lines(values, rate_hz, native_hz);
+  return tare;
+}
+
+// The transducer's own channel, whose noise its parameters state.
+bool is_transducers(const Take& take, const Channel& channel) {
+  return channel.quantity == "tangential_force" && take.header.transducer.has_value();
+}
+
+void judge(const Take& take, const ChannelTare& tare, Tare& all) {
+  const Channel& told = take.header.channels[tare.channel];
+  if (drift_ratio(take.codes[tare.channel]) > kMostTareDrift)
+    all.unstill.push_back(fmt::format("{} wanders", told.name));
+  if (!is_transducers(take, told) && std::abs(tare.mean) > kResting_n)
+    all.warnings.push_back(
+        fmt::format("{} rests at {:.3g} {}: is that the sensor's own offset, or does something lie on it?",
+                    told.name, tare.mean, told.unit));
+  if (!is_transducers(take, told)) return;
+  double power = tare.noise_rms * tare.noise_rms;
+  for (const MainsLine& line : tare.mains) power -= line.amplitude * line.amplitude / 2;
+  const double floor =
+      take.header.transducer->noise_n_per_sqrt_hz * std::sqrt(take.header.sample_rate_hz / 2);
+  if (floor > 0 && power > std::pow(kMostNoise * floor, 2))
+    all.unstill.push_back(fmt::format("{} has {:.3g} N of noise, and {:.3g} N is its floor", told.name,
+                                      std::sqrt(power), floor));
+}
+
+void judge_motion(const Take& take, Tare& all) {
+  for (std::size_t i = 0; i < take.codes.size(); ++i) {
+    const Channel& told = take.header.channels[i];
+    if (told.quantity != "position") continue;
+    const auto [least, most] = std::ranges::minmax(take.codes[i]);
+    const double moved_m = std::abs((most - least) * told.scale);
+    if (moved_m > kMoved_m)
+      all.warnings.push_back(
+          fmt::format("{} moved by {:.3g} mm: nothing must touch meanwhile", told.name, moved_m * 1e3));
+  }
+}
+
+bool is_clipped(const Take& take, std::size_t channel) {
+  const Channel& told = take.header.channels[channel];
+  const std::vector<double> values = physical(take, channel);
+  const auto [least, most] = std::ranges::minmax(values);
+  return (told.range_max && most >= *told.range_max) || (told.range_min && least <= *told.range_min);
+}
+
+std::vector<std::string> notes_on(const ChannelTare& tare, const Channel& told) {
+  std::vector<std::string> notes = {
+      "uncertainty: scatter of the means of 20 blocks (type A), and the converter's step where noise does "
+      "not dither it"};
+  for (const MainsLine& line : tare.mains)
+    notes.push_back(fmt::format("mains at {:g} Hz: {:.3g} {} peak, {:.0f} dB above its neighbours",
+                                line.frequency_hz, line.amplitude, told.unit, line.above_floor_db));
+  return notes;
+}
+
+}  // namespace
+
+Result<Tare> tare_of(const Take& take) {
+  if (static_cast<double>(take.frames()) < kShortestTare_s * take.header.sample_rate_hz)
+    return schema::fail(Fault::unsuitable, fmt::format("a tare needs {:g} s at least", kShortestTare_s),
+                        "time");
+  Tare tare;
+  for (std::size_t i = 0; i < take.codes.size(); ++i) {
+    const Channel& told = take.header.channels[i];
+    if (told.unit != "N") continue;
+    if (is_clipped(take, i))
+      return schema::fail(Fault::unsuitable, "is at an end of its converter's range", told.name,
+                          "take the load off, or see its wiring");
+    tare.channels.push_back(tare_of_channel(take, i));
+    judge(take, tare.channels.back(), tare);
+  }
+  judge_motion(take, tare);
+  if (!tare.channels.empty()) return tare;
+  return schema::fail(Fault::unsuitable, "has no channel of force", take.header.device);
+}
+
+std::vector<schema::CalibrationEntry> entries_of(const Tare& tare, const Take& take) {
+  std::vector<schema::CalibrationEntry> entries;
+  for (const ChannelTare& one : tare.channels) {
+    const Channel& told = take.header.channels[one.channel];
+    schema::CalibrationEntry entry{told.name, told.unit, "tare", {}, told.scale, {}, {},
+                                   {},        {},        0,      {}, {},         {}};
+    entry.zero = one.zero.value;
+    entry.zero_uncertainty = one.zero.uncertainty;
+    entry.degrees_of_freedom = one.zero.degrees_of_freedom;
+    entry.noise_rms = one.noise_rms;
+    entry.noise_density = one.noise_density;
+    entry.notes = notes_on(one, told);
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/calibrate/weights.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data-schema/transducer/transducer.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+constexpr std::size_t kFewestSamples = 20;
+constexpr double kMostDrift = 0.5;
+
+struct Line {
+  double zero = 0, slope = 0, u_zero = 0, u_slope = 0;
+};
+
+// Codes are large and forces small: both are taken about their weighted means.
+Line fitted(std::span<const Weighing> weighings) {
+  double w = 0, f = 0, c = 0;
+  for (const Weighing& one : weighings) {
+    const double weight = 1 / std::pow(one.code.uncertainty, 2);
+    w += weight, f += weight * one.force_n, c += weight * one.code.value;
+  }
+  const double mean_n = f / w, mean_code = c / w;
+  double ff = 0, fc = 0;
+  for (const Weighing& one : weighings) {
+    const double weight = 1 / std::pow(one.code.uncertainty, 2), away_n = one.force_n - mean_n;
+    ff += weight * away_n * away_n, fc += weight * away_n * (one.code.value - mean_code);
+  }
+  const double slope = fc / ff;
+  return {mean_code - slope * mean_n, slope, std::sqrt(1 / w + mean_n * mean_n / ff), 1 / std::sqrt(ff)};
+}
+
+double chi_square(std::span<const Weighing> weighings, const Line& line) {
+  double sum = 0;
+  for (const Weighing& one : weighings)
+    sum += std::pow((one.code.value - line.zero - line.slope * one.force_n) / one.code.uncertainty, 2);
+  return sum;
+}
+
+double largest_residual_n(std::span<const Weighing> weighings, const Line& line) {
+  double largest = 0;
+  for (const Weighing& one : weighings)
+    largest = std::max(largest, std::abs((one.code.value - line.zero) / line.slope - one.force_n));
+  return largest;
+}
+
+Result<void> check(std::span<const Weighing> weighings) {
+  const auto different = [&](const Weighing& one) { return one.force_n != weighings.front().force_n; };
+  if (std::ranges::none_of(weighings, different))
+    return schema::fail(Fault::unsuitable, "two different forces are needed", "mass",
+                        "as --mass 0g --mass 100g");
+  return {};
+}
+
+tl::unexpected<schema::Error> forgets_static_forces(const Take& take, const std::string& channel) {
+  return schema::fail(
+      Fault::unsuitable,
+      fmt::format("a weight at rest cannot calibrate it: the piezo's high-pass at {:.2g} Hz forgets a "
+                  "constant force within {:.0f} ms",
+                  schema::sensor_pole_hz(*take.header.transducer),
+                  4e3 / (6.28 * schema::sensor_pole_hz(*take.header.transducer))),
+      channel,
+      "calibrate net_force by weights (--channel net_force), then this one against it: slide a finger with "
+      "--reference net_force; or without a load cell by a weight whose thread is cut: --release 10g");
+}
+
+}  // namespace
+
+Result<WeighedScale> scale_by_weights(std::span<const Weighing> weighings, double relative) {
+  if (const auto enough = check(weighings); !enough) return schema::forward_error(enough);
+  const Line line = fitted(weighings);
+  if (!std::isfinite(line.slope) || std::abs(line.slope) < 5 * line.u_slope)
+    return schema::fail(Fault::unsuitable, "the channel does not follow the forces", "mass",
+                        "is it the right channel, and did the weights hang on it?");
+  const auto freedom = static_cast<double>(weighings.size()) - 2;
+  const double birge = freedom > 0 ? std::max(1.0, std::sqrt(chi_square(weighings, line) / freedom)) : 1.0;
+  const double scale = 1 / line.slope;
+  WeighedScale found;
+  const double nu = birge > 1 ? freedom : weighings.front().code.degrees_of_freedom;
+  found.scale = {scale, std::abs(scale) * std::hypot(birge * line.u_slope / line.slope, relative), nu};
+  found.zero = {line.zero, birge * line.u_zero, nu};
+  found.largest_residual_n = largest_residual_n(weighings, line);
+  found.notes = {
+      fmt::format("{} forces, largest residual {:.3g} N", weighings.size(), found.largest_residual_n),
+      fmt::format("uncertainty: scatter of the means through a straight line (type A, x {:.3g}), and "
+                  "{:.2g} % of all forces alike (type B)",
+                  birge, 100 * relative)};
+  return found;
+}
+
+Result<Weighing> weighing_of(const Take& take, const std::string& name, double force_n) {
+  const auto index = schema::find_channel(take.header, name);
+  if (!index)
+    return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
+  const schema::Channel& told = take.header.channels[*index];
+  if (told.unit != "N") return schema::fail(Fault::unsuitable, "is no channel of force", name);
+  if (told.quantity == "tangential_force" && take.header.transducer) return forgets_static_forces(take, name);
+  const std::vector<double>& codes = take.codes[*index];
+  if (codes.size() < kFewestSamples) return schema::fail(Fault::unsuitable, "is too short", name);
+  if (drift_ratio(codes) > kMostDrift)
+    return schema::fail(Fault::unsuitable, fmt::format("does not rest under {:.4g} N", force_n), name,
+                        "wait until the weight hangs still");
+  const auto [least, most] = std::ranges::minmax(codes);
+  const double low = least * told.scale + told.offset, high = most * told.scale + told.offset;
+  if ((told.range_max && std::max(low, high) >= *told.range_max) ||
+      (told.range_min && std::min(low, high) <= *told.range_min))
+    return schema::fail(Fault::unsuitable, "is at an end of its converter's range", name, "hang less on it");
+  Weighing weighing{force_n, mean_of(codes)};
+  weighing.code.uncertainty = std::max(weighing.code.uncertainty, 0.29);  // a number's own step
+  return weighing;
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/doctor/doctor.hpp"
+#include "firmware-host/open_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tacto::capture {
+namespace {
+
+using firmware_host::Capabilities;
+using firmware_host::Device;
+
+// What a device is taken for that nobody has seen: the paper's rate, four channels of 32 bits.
+constexpr double kUsualBytesPerS = 10e3 * 4 * 4;
+
+double bytes_per_s(const Capabilities& capabilities) {
+  return capabilities.sample_rate_hz * static_cast<double>(capabilities.channels.size()) * 4;
+}
+
+Check device_seen(const Capabilities& said) {
+  return {"device",
+          Health::works,
+          fmt::format("{}, serial {}{}", said.name, said.serial, said.simulated.empty() ? "" : ", emulated"),
+          {}};
+}
+
+Check device_missing(const schema::Error& why) {
+  if (is_denied(why)) return {"device", Health::works, "it is there", {}};
+  return {"device", Health::fails, schema::message({why.fault, why.what, why.where, {}}),
+          why.remedy.empty() ? "plug it in; 'tactograph scan' lists what is there" : why.remedy, why.fault};
+}
+
+Check firmware(const Capabilities& said) {
+  return {"firmware",
+          Health::works,
+          fmt::format("{}, {:g} Hz, {} channels", said.firmware.empty() ? "of no version" : said.firmware,
+                      said.sample_rate_hz, said.channels.size()),
+          {}};
+}
+
+Check skipped(const char* name) {
+  return {name, Health::skipped, "needs a device", {}};
+}
+
+void look_at(Device& device, const DoctorRequest& request, std::vector<Check>& checks) {
+  const Capabilities& said = device.capabilities();
+  checks.push_back(device_seen(said));
+  checks.push_back({"permission", Health::works, "it may be used", {}});
+  checks.push_back(firmware(said));
+  checks.push_back(check_round_trip(device, request.questions));
+  checks.push_back(check_real_time(request.root));
+  checks.push_back(check_disk(request.folder, bytes_per_s(said)));
+  checks.push_back(check_temporary_files(request.folder));
+  checks.push_back(check_calibration(said, request));
+}
+
+void look_without(const schema::Error& why, const DoctorRequest& request, std::vector<Check>& checks) {
+  checks.push_back(device_missing(why));
+  checks.push_back(check_permission(why, request.root));
+  checks.push_back(skipped("firmware"));
+  checks.push_back(skipped("round trip"));
+  checks.push_back(check_real_time(request.root));
+  checks.push_back(check_disk(request.folder, kUsualBytesPerS));
+  checks.push_back(check_temporary_files(request.folder));
+  checks.push_back(skipped("calibration"));
+}
+
+std::string next_of(const Diagnosis& diagnosis, const DoctorRequest& request, bool in_real_time) {
+  if (const Check* const obstacle = diagnosis.obstacle())
+    return obstacle->name == "device" && request.device.starts_with("usb:")
+               ? "plug it in, or try the emulated one: tactograph doctor -d sim:surface=C"
+               : obstacle->remedy;
+  const auto calibration = std::ranges::find(diagnosis.checks, "calibration", &Check::name);
+  if (calibration->health == Health::warns) return calibration->remedy;
+  return fmt::format("tactograph record -d {} -o oak{}", request.device, in_real_time ? "" : " --time 2s");
+}
+
+}  // namespace
+
+const Check* Diagnosis::obstacle() const {
+  const auto found = std::ranges::find(checks, Health::fails, &Check::health);
+  return found == checks.end() ? nullptr : &*found;
+}
+
+Diagnosis examine(const DoctorRequest& request) {
+  Diagnosis diagnosis;
+  const auto device = firmware_host::open_device(request.device);
+  if (device)
+    look_at(**device, request, diagnosis.checks);
+  else
+    look_without(device.error(), request, diagnosis.checks);
+  diagnosis.next = next_of(diagnosis, request, !device || (*device)->keeps_time());
+  return diagnosis;
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The doctor's checks, one a function.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <vector>
+
+#include "capture/doctor/doctor.hpp"
+#include "capture/doctor/realtime_limits.hpp"
+#include "capture/doctor/udev_rule.hpp"
+#include "capture/record/disk_speed.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/files/leftover_files.hpp"
+#include "data-schema/recording/live_recording.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Dimension;
+using schema::for_people;
+
+constexpr double kSlowAnswer_s = 5e-3;  // ours: a heartbeat is due every 50 ms in playback
+constexpr double kSlowSync_s = 50e-3;   // with it a power cut may cost more than 100 ms
+constexpr double kLeastRoom_s = 10, kGoodRoom_s = 600, kGoodSpeed = 4;
+constexpr double kLeastLocked_bytes = 64 << 20;
+constexpr double kLargestBlock_bytes = 16 << 20;
+constexpr const char* kRule = "60-tactograph.rules";
+
+// An emulated device is at rest only if asked for it; a real one is when its user takes the finger off.
+std::string tare_command(const std::string& device) {
+  constexpr std::string_view kSim = "sim:";
+  std::string at_rest = device;
+  if (device.starts_with(kSim)) {
+    std::string kept;
+    for (std::size_t at = kSim.size(), end = 0; at < device.size(); at = end + 1) {
+      end = std::min(device.find(',', at), device.size());
+      const std::string key = device.substr(at, end - at);
+      if (!key.starts_with("finger=") && !key.starts_with("strokes=") && !key.starts_with("force"))
+        kept += key + ",";
+    }
+    at_rest = fmt::format("sim:{}finger=up,strokes=0", kept);
+  }
+  return "tactograph calibrate tare -d " + at_rest;
+}
+
+Check judged(std::string name, std::string found, const std::string& warning) {
+  return {std::move(name), warning.empty() ? Health::works : Health::warns, std::move(found), warning};
+}
+
+std::string installed_rule(const std::string& root) {
+  for (const char* folder : {"etc/udev/rules.d/", "usr/local/lib/udev/rules.d/", "usr/lib/udev/rules.d/",
+                             "lib/udev/rules.d/", "run/udev/rules.d/"})
+    if (schema::is_file(root + folder + kRule)) return root + folder + kRule;
+  return {};
+}
+
+std::string advice_on(const RealtimeLimits& limits) {
+  if (!limits.granted)
+    return "playback without it may be late: put '@audio - rtprio 80' and '@audio - memlock unlimited' into "
+           "/etc/security/limits.d/tactograph.conf, be of the group audio, and log in anew";
+  if (limits.locked_bytes && *limits.locked_bytes < kLeastLocked_bytes)
+    return "playback locks its memory: put '@audio - memlock unlimited' into "
+           "/etc/security/limits.d/tactograph.conf";
+  if (limits.runtime && *limits.runtime < 0.9)
+    return "the kernel throttles real-time threads: sysctl kernel.sched_rt_runtime_us=950000";
+  return {};
+}
+
+std::string words_of(const RealtimeLimits& limits) {
+  return fmt::format("{}, limit {}; {} of memory may be locked; threads may run {} of the time",
+                     limits.granted ? "granted" : "not granted", limits.priority,
+                     limits.locked_bytes ? fmt::format("{:.3g} MB", *limits.locked_bytes / 1e6) : "all",
+                     limits.runtime ? fmt::format("{:.0f} %", 100 * *limits.runtime) : "an unknown part");
+}
+
+std::string words_of(const DiskSpeed& disk, double bytes_per_s) {
+  return fmt::format(
+      "{:.0f} MB/s for {:.3g} MB/s, synced in {} (at worst {}), {:.3g} GB free for {}",
+      disk.write_bytes_per_s / 1e6, bytes_per_s / 1e6, for_people(disk.sync_median_s, Dimension::time),
+      for_people(disk.sync_worst_s, Dimension::time), disk.free_bytes / 1e9,
+      disk.free_bytes / bytes_per_s > 5400 ? fmt::format("{:.0f} h", disk.free_bytes / bytes_per_s / 3600)
+                                           : fmt::format("{:.0f} s", disk.free_bytes / bytes_per_s));
+}
+
+std::string advice_on(const DiskSpeed& disk, double bytes_per_s) {
+  if (disk.free_bytes < kGoodRoom_s * bytes_per_s) return "there is little room: less than 10 min";
+  if (disk.write_bytes_per_s < kGoodSpeed * bytes_per_s) return "it is hardly fast enough: use another disk";
+  if (disk.sync_median_s > kSlowSync_s) return "it syncs slowly: a power cut may cost more than 100 ms";
+  return {};
+}
+
+// "3 files, 1.2 MB".
+std::string size_in_words(const std::vector<schema::Leftover>& files) {
+  double bytes = 0;
+  for (const schema::Leftover& file : files) bytes += static_cast<double>(file.bytes);
+  return fmt::format("{} file{}, {:.3g} MB", files.size(), files.size() == 1 ? "" : "s", bytes / 1e6);
+}
+
+// The channel's newest scale and zero, once where they are one.
+std::vector<const schema::CalibrationEntry*> newest_of(const schema::CalibrationFile& file,
+                                                       const std::string& channel) {
+  const auto* const scale = schema::newest_scale(file, channel);
+  const auto* const zero = schema::newest_zero(file, channel);
+  std::vector<const schema::CalibrationEntry*> entries;
+  if (scale != nullptr) entries.push_back(scale);
+  if (zero != nullptr && zero != scale) entries.push_back(zero);
+  return entries;
+}
+
+}  // namespace
+
+bool is_denied(const schema::Error& why) {
+  return why.what.find("may not open") != std::string::npos || why.remedy.find(kRule) != std::string::npos;
+}
+
+Check check_permission(const schema::Error& why, const std::string& root) {
+  const std::string rule = installed_rule(root);
+  const std::string found = rule.empty() ? fmt::format("{} is not installed", kRule) : rule + " is there";
+  const std::string remedy =
+      rule.empty() ? fmt::format(
+                         "echo '{}' | sudo tee /etc/udev/rules.d/{} && sudo udevadm control "
+                         "--reload && sudo udevadm trigger, then plug the device in anew",
+                         kUdevRule, kRule)
+                   : "be of the group plugdev, or sit at the computer; then plug the device in anew";
+  if (is_denied(why)) return {"permission", Health::fails, found, remedy, schema::Fault::not_found};
+  return rule.empty() ? judged("permission", found, remedy) : judged("permission", found, {});
+}
+
+Check check_round_trip(firmware_host::Device& device, std::size_t questions) {
+  std::vector<double> times_s;
+  for (std::size_t i = 0; i < questions; ++i) {
+    const auto time_s = device.round_trip_s();
+    if (!time_s && time_s.error().fault == schema::Fault::unsuitable)
+      return {"round trip", Health::skipped, time_s.error().what, {}};
+    if (!time_s) return {"round trip", Health::fails, time_s.error().what, time_s.error().remedy};
+    times_s.push_back(*time_s);
+  }
+  if (times_s.empty()) return {"round trip", Health::skipped, "not asked", {}};
+  std::ranges::sort(times_s);
+  const double median_s = times_s[times_s.size() / 2], late_s = times_s[times_s.size() * 99 / 100];
+  return judged("round trip",
+                fmt::format("median {}, 99 of 100 within {}", for_people(median_s, Dimension::time),
+                            for_people(late_s, Dimension::time)),
+                late_s > kSlowAnswer_s ? "answers are slow: fewer hubs, or another port" : "");
+}
+
+Check check_real_time(const std::string& root) {
+  const RealtimeLimits limits = realtime_limits(root);
+  return judged("real time", words_of(limits), advice_on(limits));
+}
+
+Check check_disk(const std::string& folder, double bytes_per_s) {
+  const double block_bytes = std::min(bytes_per_s * schema::kSyncEvery_s, kLargestBlock_bytes);
+  const auto disk = measure_disk(folder, static_cast<std::size_t>(block_bytes));
+  if (!disk)
+    return {"disk", Health::fails, schema::message({disk.error().fault, disk.error().what, folder, {}}),
+            disk.error().remedy, disk.error().fault};
+  const std::string found = words_of(*disk, bytes_per_s);
+  if (disk->free_bytes < kLeastRoom_s * bytes_per_s || disk->write_bytes_per_s < bytes_per_s)
+    return {"disk", Health::fails, found, "record to another disk", schema::Fault::cannot_write};
+  return judged("disk", found, advice_on(*disk, bytes_per_s));
+}
+
+Check check_temporary_files(const std::string& folder) {
+  const auto removed = schema::remove_ended(schema::leftovers_in(folder));
+  const auto kept = schema::leftovers_in(folder);
+  std::string found = removed.empty() ? "" : fmt::format("removed {} of killed runs", size_in_words(removed));
+  if (kept.empty()) return judged("temporary files", found.empty() ? "none are left" : found, {});
+  found += fmt::format("{}{} of runs that may still go on, here or on another machine, the first {}",
+                       found.empty() ? "" : "; ", size_in_words(kept), kept.front().path);
+  return judged("temporary files", found, "if no such run goes on, remove them: rm " + kept.front().path);
+}
+
+Check check_calibration(const firmware_host::Capabilities& said, const DoctorRequest& request) {
+  const std::string tare = tare_command(request.device);
+  const auto file = calibration_of(said.serial, request.calibration);
+  if (!file)
+    return {"calibration", Health::fails, schema::message(file.error()),
+            "name another, or record with --no-calibration", file.error().fault};
+  if (!*file) return judged("calibration", "there is none", tare);
+  if ((**file).serial != said.serial)
+    return {"calibration", Health::fails, "is that of the device " + (**file).serial, "name this device's",
+            schema::Fault::unsuitable};
+  std::vector<std::string> parts, stale, ahead;
+  for (const schema::Channel& channel : said.channels)
+    for (const auto* entry : newest_of(**file, channel.name)) {
+      const auto age_s = schema::seconds_between(entry->date, schema::creation_time());
+      parts.push_back(fmt::format("{} {} {}", channel.name, entry->method, entry->date.substr(0, 10)));
+      if (!age_s || *age_s > request.stale_after_s) stale.push_back(channel.name);
+      if (age_s && *age_s < -kClockSlack_s) ahead.push_back(channel.name);
+    }
+  if (parts.empty()) return judged("calibration", "has nothing on these channels", tare);
+  const std::string found = fmt::format("{}", fmt::join(parts, ", "));
+  if (!ahead.empty())
+    return judged("calibration", fmt::format("of the future: {}; {}", fmt::join(ahead, ", "), found),
+                  "one clock is wrong: set this one, or put the file away and calibrate anew");
+  return stale.empty()
+             ? judged("calibration", found, {})
+             : judged("calibration", fmt::format("stale: {}; {}", fmt::join(stale, ", "), found), tare);
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A position where none was measured: from a speed that was, or one that was only meant.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "data-schema/recording/recording.hpp"
+
+namespace tacto::capture {
+
+/// Positions frame by frame, in metres, from 0 at the first. Times come from the clock's count, gaps counted:
+/// exact, where a sum of periods would drift.
+class DerivedPosition {
+ public:
+  /// speed * time; the channel's derivation says "nominal: 40 mm/s".
+  static DerivedPosition nominal(double speed_mps);
+  /// The trapezoid rule over a speed channel. Across a gap it takes the speed to have changed evenly.
+  static DerivedPosition integrated(const schema::Channel& speed);
+
+  const schema::Channel& channel() const { return channel_; }
+  /// The next frame's position. `stored` is the speed channel's number, of no account where the position is
+  /// nominal. The header has its rate and gaps.
+  double next(const schema::RecordingHeader& header, double stored);
+
+ private:
+  explicit DerivedPosition(std::string derivation);
+
+  schema::Channel channel_;
+  std::optional<double> nominal_mps_;
+  double scale_ = 1, offset_ = 0;  // of the speed channel
+  std::uint64_t frame_ = 0, missing_ = 0;
+  std::size_t gaps_passed_ = 0;
+  double last_tick_ = 0, last_mps_ = 0, position_m_ = 0;
+};
+
+}  // namespace tacto::capture

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/import/height_profile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <numeric>
+#include <system_error>
+
+#include "capture/import/profile_xml.hpp"
+#include "capture/table/channel_spec.hpp"
+#include "capture/table/source.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+bool is_xml(const std::string& file) {
+  return file.ends_with(".xml") || file.ends_with(".XML");
+}
+
+bool names(const std::vector<std::string>& channels, std::string_view quantity) {
+  return std::ranges::any_of(channels, [&](const std::string& text) {
+    return text.starts_with(quantity) && text.find_first_not_of(' ', quantity.size()) == text.find('=');
+  });
+}
+
+// A table's columns of a profile.
+struct Columns {
+  ScaledColumn height;
+  std::optional<ScaledColumn> position;
+};
+
+Result<Columns> columns_of(const ImportRequest& request, const Source& source) {
+  const auto specs = parse_channels(request.channels, {source.columns, source.units});
+  if (!specs) return schema::forward_error(specs);
+  std::optional<ScaledColumn> height, position;
+  for (const ChannelSpec& spec : *specs) {
+    if (spec.quantity == "height") height = spec.source;
+    if (spec.quantity == "position") position = spec.source;
+    if (spec.quantity != "height" && spec.quantity != "position")
+      return fail(Fault::usage, fmt::format("a profile has no {}", spec.quantity), "--channel",
+                  "it is a height, and a position or --pitch");
+  }
+  if (!height)
+    return fail(Fault::usage, "which column is the height? They are: " + columns_in_words(source.columns),
+                source.file, "name it, as in --channel 'height=2*1um'");
+  if (position.has_value() == request.pitch_m.has_value())
+    return fail(Fault::usage,
+                position ? "both --pitch and a position were given" : "a table doesn't say its pitch",
+                source.file, "give --pitch 0.25um, or --channel 'position=1*1mm'");
+  return Columns{*height, position};
+}
+
+// The table's two columns in metres, and how to name a row.
+struct Table {
+  std::vector<double> height_m, position_m;
+  std::deque<CsvReader::Landmark> lines;
+
+  std::string place_of(const std::string& file, std::size_t row) const {
+    return fmt::format("{}: line {}", file, line_of_row(lines, row));
+  }
+};
+
+std::vector<std::size_t> numbers_of(const Columns& columns) {
+  std::vector<std::size_t> numbers = {columns.height.column};
+  if (columns.position && columns.position->column != columns.height.column)
+    numbers.push_back(columns.position->column);
+  return numbers;
+}
+
+Result<Table> read_table(const Source& source, const Columns& columns,
+                         const std::function<void(double)>& progress) {
+  Table table;
+  const auto numbers = numbers_of(columns);
+  const auto take = [&](const RowBlock& block) -> Result<void> {
+    for (std::size_t row = 0; row < block.rows(); ++row) {
+      const double* const at = block.numbers.data() + row * block.columns;
+      table.height_m.push_back(at[0] * columns.height.scale + columns.height.offset);
+      if (columns.position)
+        table.position_m.push_back(at[block.columns - 1] * columns.position->scale +
+                                   columns.position->offset);
+    }
+    for (const CsvReader::Landmark& line : *block.landmarks)
+      if (table.lines.empty() || line.row > table.lines.back().row) table.lines.push_back(line);
+    return {};
+  };
+  const auto read = read_source(source, numbers, take, progress);
+  return read ? Result<Table>(std::move(table)) : schema::forward_error(read);
+}
+
+void turn_round(HeightProfile& profile, std::vector<double>& position_m) {
+  std::ranges::reverse(profile.height_m);
+  std::ranges::reverse(position_m);
+  profile.direction = -1;
+}
+
+// The even grid from the first position to the last, and how far the positions are off it.
+Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& file) {
+  std::vector<double>& x = table.position_m;
+  if (x.back() < x.front()) turn_round(profile, x);
+  const auto last = static_cast<double>(x.size() - 1);
+  profile.origin_m = x.front();
+  profile.pitch_m = (x.back() - x.front()) / last;
+  if (profile.pitch_m == 0)
+    return fail(Fault::unsuitable, "the position does not move", file,
+                "a profile is heights at growing positions; is this the right column?");
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double off_m = std::abs(x[i] - (x.front() + static_cast<double>(i) * profile.pitch_m));
+    profile.unevenness_m = std::max(profile.unevenness_m, off_m);
+    if (off_m <= kMostUnevenness * profile.pitch_m && profile.pitch_m > 0) continue;
+    const std::size_t row = profile.direction > 0 ? i : x.size() - 1 - i;
+    return fail(Fault::unsuitable,
+                fmt::format("the position of {:.6g} mm is {:.3g} um off an even grid of {:.6g} um",
+                            x[i] * 1e3, off_m * 1e6, profile.pitch_m * 1e6),
+                table.place_of(file, row), "resample the profile evenly where it was made");
+  }
+  return {};
+}
+
+Result<HeightProfile> profile_of(const ImportRequest& request, Table table) {
+  HeightProfile profile;
+  if (table.height_m.size() < 2)
+    return fail(Fault::unsuitable, "a profile has two heights or more", request.file);
+  profile.height_m = std::move(table.height_m);
+  profile.pitch_m = request.pitch_m.value_or(0);
+  if (request.pitch_m) {
+    if (*request.pitch_m > 0) return profile;
+    return fail(Fault::usage, "a pitch is above 0", "--pitch");
+  }
+  const auto found = find_grid(profile, table, request.file);
+  return found ? Result<HeightProfile>(std::move(profile)) : schema::forward_error(found);
+}
+
+Result<HeightProfile> read_profile_table(const ImportRequest& request,
+                                         const std::function<void(double)>& progress) {
+  const auto source = open_source(request.file, request.skip_lines);
+  if (!source) return schema::forward_error(source);
+  if (!source->csv)
+    return fail(Fault::unsuitable, "is no table", request.file, "a profile is a CSV table or XML");
+  const auto columns = columns_of(request, *source);
+  if (!columns) return schema::forward_error(columns);
+  auto table = read_table(*source, *columns, progress);
+  return table ? profile_of(request, std::move(*table)) : schema::forward_error(table);
+}
+
+Result<void> check_xml_options(const ImportRequest& request) {
+  if (request.channels.empty() && !request.pitch_m && !request.rate_hz && request.time_column.empty())
+    return {};
+  return fail(Fault::usage, "an XML profile names its heights and its spacing itself", request.file,
+              "leave --channel, --pitch, --rate and --time-column out");
+}
+
+Result<schema::Texture> texture_of(const HeightProfile& profile, const ImportRequest& request) {
+  const auto sum = schema::sha256_of_file(request.file);
+  if (!sum) return schema::forward_error(sum);
+  schema::Texture texture;
+  texture.signal.pitch_m = profile.pitch_m;
+  texture.signal.values = profile.height_m;
+  texture.quantity = "height";
+  texture.unit = "m";
+  texture.direction = profile.direction;
+  texture.source_origin_m = profile.origin_m;
+  const double last_m = static_cast<double>(profile.height_m.size() - 1) * profile.pitch_m;
+  texture.valid_band = {{0, 0, 0.5 / profile.pitch_m}, {last_m, 0, 0.5 / profile.pitch_m}};
+  texture.surface = request.surface.empty() ? profile.surface : request.surface;
+  texture.subject = request.subject;
+  texture.finger = request.finger;
+  const std::string file = std::filesystem::path(request.file).filename().string();
+  texture.notes = fmt::format("measured profile, imported from {} (SHA-256 {})", file, *sum);
+  for (const std::string& text : {profile.notes, request.notes})
+    if (!text.empty()) texture.notes += "; " + text;
+  texture.created = schema::creation_time();
+  texture.creator = kCreator;
+  return texture;
+}
+
+Result<void> check_free(const std::string& stem, bool replace) {
+  std::error_code ignored;
+  for (const char* ending : {".texture.json", ".texture.wav"})
+    if (!replace && std::filesystem::exists(stem + ending, ignored))
+      return fail(Fault::usage, "is there already", stem + ending,
+                  "choose another name, or --force to replace it");
+  return {};
+}
+
+}  // namespace
+
+bool asks_for_profile(const ImportRequest& request) {
+  if (is_xml(request.file) || request.pitch_m) return true;
+  return names(request.channels, "height") && names(request.channels, "position") && !request.rate_hz &&
+         request.time_column.empty();
+}
+
+Result<HeightProfile> read_height_profile(const ImportRequest& request,
+                                          const std::function<void(double)>& progress) {
+  if (!is_xml(request.file)) return read_profile_table(request, progress);
+  if (const auto fits = check_xml_options(request); !fits) return schema::forward_error(fits);
+  return read_profile_xml(request.file);
+}
+
+Result<ImportedProfile> import_profile(const ImportRequest& request,
+                                       const std::function<void(double)>& progress) {
+  const std::string stem = schema::stem_of(request.name, ".texture");
+  if (const auto free = check_free(stem, request.replace); !free) return schema::forward_error(free);
+  auto profile = read_height_profile(request, progress);
+  if (!profile) return schema::forward_error(profile);
+  const auto texture = texture_of(*profile, request);
+  if (!texture) return schema::forward_error(texture);
+  if (const auto written = schema::write_texture(stem, *texture); !written)
+    return schema::forward_error(written);
+  return ImportedProfile{std::move(*profile), stem};
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/import/import.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <iterator>
+#include <memory>
+#include <span>
+
+#include "capture/import/derived_position.hpp"
+#include "capture/import/import_header.hpp"
+#include "capture/import/import_plan.hpp"
+#include "capture/import/outlier_mask.hpp"
+#include "capture/import/plausibility.hpp"
+#include "capture/import/uniform_clock.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::forward_error;
+using schema::RecordingHeader;
+using schema::Result;
+using Progress = std::function<void(double)>;
+
+void gather(const RowBlock& block, std::size_t column, std::vector<double>& values) {
+  values.resize(block.rows());
+  const double* const numbers = block.numbers.data() + column;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = numbers[i * block.columns];
+}
+
+// One channel on its way from the source to the file.
+struct Measured {
+  std::size_t column = 0;  // in the blocks
+  std::unique_ptr<Plausibility> judged;
+  std::vector<double> stored;  // of the block at hand
+};
+
+struct Derived {
+  DerivedPosition position;
+  std::size_t speed = 0;  // which measured channel it is integrated from
+  std::vector<double> stored;
+  double smallest = 0, largest = 0;
+};
+
+// An import under way, block by block.
+class Import {
+ public:
+  Import(const ImportRequest& request, ImportPlan plan, Progress progress);
+  Result<Imported> run();
+
+ private:
+  void choose_derived();
+  Result<void> first_clock();
+  Result<void> find_outliers();
+  Result<void> survey(const RowBlock& block);
+  Result<void> mask_what_was_found();
+  Result<void> write_all();
+  Result<void> take(const RowBlock& block);
+  void take_times(const RowBlock& block);
+  void derive(std::size_t rows);
+  Result<void> write_block(std::size_t rows);
+  bool second_pass_needed() const;
+  Result<void> second_pass(double from, double to);
+  Result<void> name(const RowBlock& block, bool clock);
+  void add_warnings(RecordingHeader& header) const;
+  std::uint64_t outliers() const;
+  Result<Imported> close();
+  Progress share(double from, double to) const;
+  Result<void> read(const TakeRows& take_rows, const Progress& progress, schema::Sha256* sum = nullptr);
+
+  const ImportRequest& request_;
+  ImportPlan plan_;
+  Progress progress_;
+  std::vector<std::size_t> columns_;
+  RecordingHeader header_;  // until the writer has it: its channels are what `judged` looks at
+  std::vector<Measured> measured_;
+  std::optional<Derived> derived_;
+  std::vector<std::unique_ptr<Plausibility>> judged_unmasked_;  // with the mask: of all rows
+  OutlierMask mask_;
+  std::uint64_t rows_ = 0;
+  ClockFinder clock_;
+  bool clock_known_ = true, decimal_comma_ = false;
+  std::vector<double> times_s_, interleaved_;
+  std::optional<schema::RecordingWriter> writer_;
+  schema::Sha256 sum_;
+  std::deque<CsvReader::Landmark> last_landmarks_;
+};
+
+Import::Import(const ImportRequest& request, ImportPlan plan, Progress progress)
+    : request_(request),
+      plan_(std::move(plan)),
+      progress_(std::move(progress)),
+      columns_(columns_of(plan_)),
+      header_(import_header(request, plan_)),
+      clock_known_(!plan_.time) {
+  const auto place = [&](std::size_t column) {
+    return static_cast<std::size_t>(std::ranges::find(columns_, column) - columns_.begin());
+  };
+  for (std::size_t k = 0; k < plan_.channels.size(); ++k)
+    measured_.push_back(
+        {place(plan_.channels[k].source.column), std::make_unique<Plausibility>(header_.channels[k]), {}});
+  choose_derived();
+}
+
+void Import::choose_derived() {
+  const auto channel_of = [&](std::string_view quantity) {
+    return std::ranges::find(plan_.channels, quantity, &ChannelSpec::quantity);
+  };
+  if (channel_of("position") != plan_.channels.end()) return;
+  if (request_.speed_mps) derived_ = {DerivedPosition::nominal(*request_.speed_mps), 0, {}, 0, 0};
+  const auto speed = channel_of("speed");
+  if (derived_ || speed == plan_.channels.end() || !request_.integrate_speed) return;
+  const auto index = static_cast<std::size_t>(speed - plan_.channels.begin());
+  derived_ = {DerivedPosition::integrated(header_.channels[index]), index, {}, 0, 0};
+}
+
+Progress Import::share(double from, double to) const {
+  return [this, from, to](double fraction) { progress_(from + (to - from) * fraction); };
+}
+
+Result<void> Import::read(const TakeRows& take_rows, const Progress& progress, schema::Sha256* sum) {
+  return read_source(plan_.source, columns_, take_rows, progress, sum);
+}
+
+void Import::take_times(const RowBlock& block) {
+  const ScaledColumn& time = *plan_.time;
+  const auto place = std::ranges::find(columns_, time.column) - columns_.begin();
+  gather(block, static_cast<std::size_t>(place), times_s_);
+  for (double& value : times_s_) value = value * time.scale + time.offset;
+}
+
+// Positions need the clock before the first of them can be written.
+Result<void> Import::first_clock() {
+  const auto survey = [this](const RowBlock& block) -> Result<void> {
+    take_times(block);
+    clock_.survey(times_s_);
+    return {};
+  };
+  if (const auto surveyed = read(survey, share(0, 0.2)); !surveyed) return surveyed;
+  if (const auto ended = clock_.end_survey(request_.file); !ended) return ended;
+  const auto locate = [this](const RowBlock& block) { return name(block, true); };
+  if (clock_.second_pass_needed())
+    if (const auto located = read(locate, share(0.2, 0.3)); !located) return located;
+  clock_known_ = true;
+  header_.sample_rate_hz = clock_.clock().rate_hz;
+  header_.gaps = clock_.clock().gaps;
+  return {};
+}
+
+Result<void> Import::survey(const RowBlock& block) {
+  const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
+  if (plan_.time) {
+    take_times(block);
+    clock_.survey(times_s_);
+  }
+  for (Measured& channel : measured_) {
+    gather(block, channel.column, channel.stored);
+    channel.judged->survey(channel.stored, block.first_row, place_of);
+  }
+  rows_ += block.rows();
+  return {};
+}
+
+// What is to be left out is known before the first sample is written, and so are the times of what stays.
+Result<void> Import::find_outliers() {
+  const auto take_rows = [this](const RowBlock& block) { return survey(block); };
+  if (const auto surveyed = read(take_rows, share(0, 0.2)); !surveyed) return surveyed;
+  for (Measured& channel : measured_) channel.judged->end_survey();
+  if (plan_.time)
+    if (const auto ended = clock_.end_survey(request_.file); !ended) return ended;
+  if (second_pass_needed())
+    if (const auto named = second_pass(0.2, 0.3); !named) return named;
+  return mask_what_was_found();
+}
+
+Result<void> Import::mask_what_was_found() {
+  std::vector<std::uint64_t> rows;
+  for (std::size_t k = 0; k < measured_.size(); ++k) {
+    judged_unmasked_.push_back(
+        std::exchange(measured_[k].judged, std::make_unique<Plausibility>(header_.channels[k])));
+    std::ranges::copy(judged_unmasked_[k]->outlier_samples(), std::back_inserter(rows));
+  }
+  auto mask = OutlierMask::of(std::move(rows), rows_, request_.file);
+  if (!mask) return forward_error(mask);
+  mask_ = std::move(*mask);
+  if (plan_.time) header_.sample_rate_hz = clock_.clock().rate_hz;
+  header_.gaps = mask_.gaps_with(plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{});
+  clock_known_ = true;
+  return {};
+}
+
+void Import::derive(std::size_t rows) {
+  const auto& speeds = measured_[derived_->speed].stored;
+  derived_->stored.resize(rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double position_m = derived_->position.next(header_, speeds[i]);
+    derived_->stored[i] = position_m;
+    derived_->smallest = std::min(derived_->smallest, position_m);
+    derived_->largest = std::max(derived_->largest, position_m);
+  }
+}
+
+Result<void> Import::write_block(std::size_t rows) {
+  const std::size_t channels = measured_.size() + (derived_ ? 1 : 0);
+  interleaved_.resize(rows * channels);
+  for (std::size_t k = 0; k < channels; ++k) {
+    const double* const stored = (k < measured_.size() ? measured_[k].stored : derived_->stored).data();
+    for (std::size_t i = 0; i < rows; ++i) interleaved_[i * channels + k] = stored[i];
+  }
+  return writer_->write(std::span<const double>(interleaved_));
+}
+
+Result<void> Import::take(const RowBlock& block) {
+  const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
+  decimal_comma_ = block.decimal_mark == ',';
+  if (!clock_known_) {
+    take_times(block);
+    clock_.survey(times_s_);
+  }
+  for (Measured& channel : measured_) {
+    gather(block, channel.column, channel.stored);
+    mask_.erase_from(channel.stored, block.first_row);
+    if (!channel.stored.empty()) channel.judged->survey(channel.stored, block.first_row, place_of);
+  }
+  const std::size_t rows = measured_[0].stored.size();
+  if (rows == 0) return {};
+  if (derived_) derive(rows);
+  return write_block(rows);
+}
+
+Result<void> Import::write_all() {
+  RecordingHeader written = header_;
+  if (!clock_known_) written.sample_rate_hz = 1;  // until it is known
+  if (derived_) written.channels.push_back(derived_->position.channel());
+  auto writer = schema::RecordingWriter::create(request_.name, std::move(written), request_.replace);
+  if (!writer) return forward_error(writer);
+  writer_ = std::move(*writer);
+  const auto done = read([this](const RowBlock& block) { return take(block); }, share(0.3, 0.8), &sum_);
+  if (!done) return done;
+  for (Measured& channel : measured_) channel.judged->end_survey();
+  return clock_known_ ? Result<void>{} : clock_.end_survey(request_.file);
+}
+
+bool Import::second_pass_needed() const {
+  const auto needs = [](const Measured& channel) { return channel.judged->second_pass_needed(); };
+  return (!clock_known_ && clock_.second_pass_needed()) || std::ranges::any_of(measured_, needs);
+}
+
+// What has to be named by its line: gaps and faults of the clock, or samples that stand alone.
+Result<void> Import::name(const RowBlock& block, bool clock) {
+  const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
+  if (clock) {
+    take_times(block);
+    return clock_.locate(times_s_, place_of, request_.file);
+  }
+  for (Measured& channel : measured_) {
+    if (!channel.judged->second_pass_needed()) continue;
+    gather(block, channel.column, channel.stored);
+    channel.judged->find(channel.stored, place_of);
+  }
+  return {};
+}
+
+Result<void> Import::second_pass(double from, double to) {
+  const bool clock = !clock_known_ && clock_.second_pass_needed();
+  const auto name_both = [&](const RowBlock& block) -> Result<void> {
+    if (block.landmarks != nullptr) last_landmarks_ = *block.landmarks;
+    if (clock)
+      if (const auto located = name(block, true); !located) return located;
+    return name(block, false);
+  };
+  if (const auto done = read(name_both, share(from, to)); !done) return done;
+  RowBlock after{{}, columns_.size(), 0, plan_.source.csv ? &last_landmarks_ : nullptr};
+  for (Measured& channel : measured_)
+    if (channel.judged->second_pass_needed())
+      channel.judged->end_find([&](std::uint64_t row) { return after.place_of(row); });
+  return {};
+}
+
+void Import::add_warnings(RecordingHeader& header) const {
+  RecordingHeader source = header;  // before rows of it were left out
+  if (request_.mask_outliers) source.gaps = plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{};
+  const auto time_of = [&](std::uint64_t sample) {
+    return fmt::format("{:.6g} s", schema::frame_time_s(source, sample));
+  };
+  if (derived_)
+    header.warnings.push_back("no position was measured: it is " + derived_->position.channel().derivation);
+  std::ranges::move(gap_warnings(source.gaps), std::back_inserter(header.warnings));
+  for (std::size_t k = 0; k < measured_.size(); ++k) {
+    const Plausibility& judged = request_.mask_outliers ? *judged_unmasked_[k] : *measured_[k].judged;
+    std::ranges::move(judged.warnings(time_of), std::back_inserter(header.warnings));
+  }
+  if (mask_.count() > 0)
+    header.warnings.push_back(
+        fmt::format("outliers masked: {} row{} left out and recorded as gaps, not filled in", mask_.count(),
+                    mask_.count() == 1 ? "" : "s"));
+}
+
+ChannelRange range_of(const schema::Channel& channel, double low, double high) {
+  const auto [smallest, largest] =
+      std::minmax({low * channel.scale + channel.offset, high * channel.scale + channel.offset});
+  return {smallest, largest};
+}
+
+std::uint64_t Import::outliers() const {
+  std::uint64_t count = 0;
+  for (const Measured& channel : measured_) count += channel.judged->outliers();
+  for (const auto& judged : judged_unmasked_) count += judged->outliers();
+  return count;
+}
+
+Result<Imported> Import::close() {
+  RecordingHeader& header = writer_->header();
+  if (plan_.time && !request_.mask_outliers) {
+    header.sample_rate_hz = clock_.clock().rate_hz;
+    header.gaps = clock_.clock().gaps;
+  }
+  header.source_sha256 = sum_.hexadecimal();
+  add_warnings(header);
+  auto recording = writer_->close();
+  if (!recording) return forward_error(recording);
+  Imported imported{std::move(*recording), {}, plan_.source.format, outliers(), mask_.count()};
+  if (decimal_comma_) imported.format += ", decimal commas";
+  for (std::size_t k = 0; k < measured_.size(); ++k) {
+    const Plausibility& judged = *measured_[k].judged;
+    imported.ranges.push_back(
+        range_of(header_.channels[k], judged.smallest_stored(), judged.largest_stored()));
+  }
+  if (derived_) imported.ranges.push_back({derived_->smallest, derived_->largest});
+  progress_(1);
+  return imported;
+}
+
+Result<Imported> Import::run() {
+  if (request_.mask_outliers) {
+    if (const auto found = find_outliers(); !found) return forward_error(found);
+  } else if (plan_.time && derived_) {
+    if (const auto known = first_clock(); !known) return forward_error(known);
+  }
+  if (const auto written = write_all(); !written) return forward_error(written);
+  if (!request_.mask_outliers && second_pass_needed())
+    if (const auto named = second_pass(0.8, 0.9); !named) return forward_error(named);
+  return close();
+}
+
+}  // namespace
+
+Result<Imported> import_file(const ImportRequest& request, const std::function<void(double)>& progress) {
+  auto plan = plan_import(request);
+  if (!plan) return forward_error(plan);
+  return Import(request, std::move(*plan), progress).run();
+}
+
+}  // namespace tacto::capture

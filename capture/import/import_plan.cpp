@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/import/import_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include "capture/table/column_unit.hpp"
+#include "data-schema/files/files.hpp"
+
+namespace tacto::capture {
+namespace {
+
+namespace fs = std::filesystem;
+using schema::fail;
+using schema::Fault;
+using schema::forward_error;
+using schema::Result;
+
+Result<void> check_output(const ImportRequest& request) {
+  const std::string stem = schema::stem_of(request.name, "");
+  std::error_code ignored;
+  for (const std::string& path : {stem + ".wav", stem + ".json"}) {
+    if (fs::equivalent(path, request.file, ignored))
+      return fail(Fault::usage, "is the file that is imported", path,
+                  "choose another name for the recording");
+    if (fs::exists(path, ignored) && !request.replace)
+      return fail(Fault::usage, "is there already", path, "choose another name, or --force to replace it");
+    schema::PendingFiles probe;
+    if (const auto writable = probe.add(path); !writable) return forward_error(writable);
+  }
+  return {};
+}
+
+Result<void> check_rate(const std::optional<double>& rate_hz) {
+  constexpr double kLargest = std::numeric_limits<int>::max();  // what a WAV's header holds
+  if (!rate_hz || (std::round(*rate_hz) >= 1 && *rate_hz <= kLargest)) return {};
+  return fail(Fault::usage, fmt::format("a rate of {:g} Hz is none that a recording can have", *rate_hz),
+              "--rate", "it is samples per second, as in --rate 10kHz");
+}
+
+// A name that needs no number, else the number: what the user can type after '='.
+std::string typed(const Source& source, std::size_t column) {
+  const std::string& name = source.columns[column];
+  return name.empty() || std::ranges::count(source.columns, name) > 1 ? std::to_string(column + 1) : name;
+}
+
+Result<void> check_clock(const ImportRequest& request, const Source& source) {
+  if (request.rate_hz && !request.time_column.empty())
+    return fail(Fault::usage, "both --rate and --time-column were given", {}, "one of them is enough");
+  if (request.rate_hz || !request.time_column.empty() || source.rate_hz) return {};
+  return fail(
+      Fault::usage, "a table doesn't say its rate", source.file,
+      "add --rate, as in --rate 10kHz, or --time-column, as in --time-column " + typed(source, 0) + "*1s");
+}
+
+// The first column of forces by its unit, which then needs none; else the first.
+std::string force_example(const Source& source) {
+  for (std::size_t i = 0; i < source.units.size(); ++i) {
+    const auto unit = known_unit(source.units[i], schema::Dimension::force);
+    if (unit && unit->dimension == schema::Dimension::force) return "tangential_force=" + typed(source, i);
+  }
+  return fmt::format("tangential_force={}*1N", typed(source, 0));
+}
+
+tl::unexpected<schema::Error> no_channels(const Source& source) {
+  const std::string rate = source.rate_hz ? "" : "--rate 10kHz ";
+  return fail(Fault::usage, "which columns are which channels? They are: " + columns_in_words(source.columns),
+              source.file, fmt::format("name them, as in {}--channel '{}'", rate, force_example(source)));
+}
+
+// Integer codes are scaled to what an audio editor shows, -1 to 1.
+ChannelSpec whole_signal(const Source& source) {
+  const double scale = source.code_bits > 0 ? std::ldexp(1.0, 1 - source.code_bits) : 1;
+  return {"signal", "signal", schema::Dimension::none, {0, scale, 0}};
+}
+
+Result<std::vector<ChannelSpec>> choose_channels(const ImportRequest& request, const Source& source) {
+  if (!request.channels.empty()) return parse_channels(request.channels, {source.columns, source.units});
+  if (source.csv || source.columns.size() > 1) return no_channels(source);
+  return std::vector{whole_signal(source)};
+}
+
+bool has(const std::vector<ChannelSpec>& channels, std::string_view quantity) {
+  return std::ranges::find(channels, quantity, &ChannelSpec::quantity) != channels.end();
+}
+
+Result<void> check_speed(const ImportRequest& request, const std::vector<ChannelSpec>& channels) {
+  if (!request.speed_mps) return {};
+  if (has(channels, "position"))
+    return fail(Fault::usage, "there is a position channel, so no nominal one is made", "--speed",
+                "leave one out");
+  if (has(channels, "speed"))
+    return fail(Fault::usage, "there is a speed channel, which is integrated to a position", "--speed",
+                "leave one out");
+  if (*request.speed_mps == 0) return fail(Fault::usage, "a speed of zero gives no position", "--speed");
+  return {};
+}
+
+bool is_date(const std::string& text) {
+  constexpr std::string_view kShape = "dddd-dd-dd";
+  if (text.size() != kShape.size()) return false;
+  for (std::size_t i = 0; i < kShape.size(); ++i)
+    if (kShape[i] == 'd' ? text[i] < '0' || text[i] > '9' : text[i] != '-') return false;
+  const auto number = [&](std::size_t from, std::size_t size) { return std::stoi(text.substr(from, size)); };
+  const auto month = static_cast<unsigned>(number(5, 2)), day = static_cast<unsigned>(number(8, 2));
+  return std::chrono::year_month_day(std::chrono::year(number(0, 4)), std::chrono::month(month),
+                                     std::chrono::day(day))
+      .ok();
+}
+
+Result<void> check_date(const std::string& text, const std::string& option) {
+  if (text.empty() || is_date(text)) return {};
+  return fail(Fault::usage, fmt::format("'{}' is no date", text), option, "write it as 2026-03-14");
+}
+
+Result<void> check_metadata(const ImportRequest& request) {
+  const auto percent = request.humidity_percent.value_or(0);
+  if (!(percent >= 0 && percent <= 100))
+    return fail(Fault::usage, fmt::format("{:g} % is no relative humidity", percent), "--humidity",
+                "it is 0% to 100%");
+  if (const auto recorded = check_date(request.recorded, "--date"); !recorded) return recorded;
+  return check_date(request.calibrated, "--calibrated");
+}
+
+Result<void> check_without_source(const ImportRequest& request) {
+  if (const auto rate = check_rate(request.rate_hz); !rate) return rate;
+  return check_metadata(request);
+}
+
+Result<void> check_with_source(const ImportRequest& request, const ImportPlan& plan) {
+  if (const auto clock = check_clock(request, plan.source); !clock) return clock;
+  if (const auto speed = check_speed(request, plan.channels); !speed) return speed;
+  return check_output(request);
+}
+
+}  // namespace
+
+Result<ImportPlan> plan_import(const ImportRequest& request) {
+  if (const auto fits = check_without_source(request); !fits) return forward_error(fits);
+  auto source = open_source(request.file, request.skip_lines);
+  if (!source) return forward_error(source);
+  auto channels = choose_channels(request, *source);
+  if (!channels) return forward_error(channels);
+  ImportPlan plan{std::move(*source), std::move(*channels), std::nullopt};
+  if (const auto fits = check_with_source(request, plan); !fits) return forward_error(fits);
+  if (request.time_column.empty()) return plan;
+  const auto time = parse_scaled_column(request.time_column, schema::Dimension::time,
+                                        {plan.source.columns, plan.source.units});
+  if (!time) return forward_error(time);
+  plan.time = *time;
+  return plan;
+}
+
+std::vector<std::size_t> columns_of(const ImportPlan& plan) {
+  std::set<std::size_t> columns;
+  for (const ChannelSpec& channel : plan.channels) columns.insert(channel.source.column);
+  if (plan.time) columns.insert(plan.time->column);
+  return {columns.begin(), columns.end()};
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/import/uniform_clock.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace tacto::capture {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+// Leading bits of a step: the exponent and six bits of the mantissa, so a bin is 1/64 wide.
+constexpr int kDroppedTimes = 46;
+
+double whole_where_close(double rate_hz) {
+  const double whole = std::round(rate_hz);
+  return std::abs(rate_hz - whole) <= 1e-9 * rate_hz ? whole : rate_hz;
+}
+
+tl::unexpected<schema::Error> uneven(double step, double period, const std::string& where) {
+  return fail(Fault::malformed,
+              fmt::format("the time step of {:.6g} s is no whole number of periods of {:.6g} s (within {:g})",
+                          step, period, kMostJitter),
+              where, "resample it evenly where it was made, or give --rate instead of --time-column");
+}
+
+}  // namespace
+
+inline void ClockFinder::Bin::add(double step) {
+  smallest = count == 0 ? step : std::min(smallest, step);
+  largest = count == 0 ? step : std::max(largest, step);
+  sum += step;
+  ++count;
+}
+
+void ClockFinder::Bin::add(const Bin& other) {
+  if (other.count == 0) return;
+  smallest = count == 0 ? other.smallest : std::min(smallest, other.smallest);
+  largest = count == 0 ? other.largest : std::max(largest, other.largest);
+  sum += other.sum;
+  count += other.count;
+}
+
+// Steps of one bin follow each other in nearly every file: the map is asked where the bin changes.
+void ClockFinder::survey(std::span<const double> time_s) {
+  Bin run;
+  std::uint64_t run_key = 0;
+  for (const double time : time_s) {
+    const double step = time - std::exchange(last_s_, time);
+    if (count_++ == 0) {
+      first_s_ = time;
+      continue;
+    }
+    stands_or_falls_ = stands_or_falls_ || !(step > 0);
+    const std::uint64_t key = std::bit_cast<std::uint64_t>(step) >> kDroppedTimes;
+    if (key != run_key) {
+      if (run.count > 0) bins_[run_key].add(run);
+      run = {};
+      run_key = key;
+    }
+    run.add(step);
+  }
+  if (run.count > 0) bins_[run_key].add(run);
+}
+
+double ClockFinder::median_step() const {
+  std::uint64_t below = 0;
+  for (const auto& [key, bin] : bins_) {
+    below += bin.count;
+    if (below > (count_ - 1) / 2) return bin.sum / static_cast<double>(bin.count);
+  }
+  return 0;
+}
+
+// Not the median itself: printed times of 3 kHz step by 0.3, 0.3, 0.4 ms, and only their mean is the period.
+double ClockFinder::find_period() const {
+  const double median = median_step();
+  double sum = 0;
+  std::uint64_t count = 0;
+  for (const auto& [key, bin] : bins_) {
+    if (std::abs(bin.sum / static_cast<double>(bin.count) - median) > median / 2) continue;
+    sum += bin.sum;
+    count += bin.count;
+  }
+  return sum / static_cast<double>(count);
+}
+
+bool ClockFinder::is_one_tick(double step) const {
+  return std::abs(step / period_s_ - 1) <= kMostJitter;
+}
+
+Result<void> ClockFinder::end_survey(const std::string& file) {
+  if (count_ < 3) return fail(Fault::malformed, "has too few rows to find a rate from their times", file);
+  if (stands_or_falls_) return {};
+  period_s_ = find_period();
+  for (const auto& [key, bin] : bins_)
+    uneven_ = uneven_ || !is_one_tick(bin.smallest) || !is_one_tick(bin.largest);
+  return {};
+}
+
+Result<void> ClockFinder::locate_step(double step, std::uint64_t row, const PlaceOf& place_of,
+                                      const std::string& file) {
+  const double ticks = std::max(1.0, std::round(step / period_s_));
+  if (std::abs(step / period_s_ - ticks) > kMostJitter)
+    return uneven(step, period_s_, fmt::format("{}: {}", file, place_of(row)));
+  const auto missing = static_cast<std::uint64_t>(ticks) - 1;
+  if (missing > 0) gaps_.push_back({row, row + missing_ + missing, missing});
+  missing_ += missing;
+  return {};
+}
+
+Result<void> ClockFinder::locate(std::span<const double> time_s, const PlaceOf& place_of,
+                                 const std::string& file) {
+  for (const double time : time_s) {
+    const std::uint64_t row = located_++;
+    const double before = std::exchange(previous_s_, time);
+    if (row == 0) continue;
+    if (!(time > before))
+      return fail(Fault::malformed, fmt::format("time goes from {} s to {} s: it must grow", before, time),
+                  fmt::format("{}: {}", file, place_of(row)));
+    if (stands_or_falls_) continue;
+    if (const auto fits = locate_step(time - before, row, place_of, file); !fits) return fits;
+  }
+  return {};
+}
+
+UniformClock ClockFinder::clock() const {
+  const double ticks = static_cast<double>(count_ - 1 + missing_);
+  return {whole_where_close(ticks / (last_s_ - first_s_)), gaps_};
+}
+
+}  // namespace tacto::capture

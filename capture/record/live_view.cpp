@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/record/live_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "firmware-host/link/encoder_counts.hpp"
+
+namespace tacto::capture {
+namespace {
+
+std::optional<std::size_t> channel_of(const schema::RecordingHeader& header, std::string_view quantity) {
+  const auto found = std::ranges::find(header.channels, quantity, &schema::Channel::quantity);
+  if (found == header.channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - header.channels.begin());
+}
+
+bool at_an_end(const schema::Channel& channel, const schema::Statistics& recent) {
+  return (channel.range_max && recent.max() >= *channel.range_max) ||
+         (channel.range_min && recent.min() <= *channel.range_min);
+}
+
+}  // namespace
+
+LiveFigures::LiveFigures(const schema::RecordingHeader& header)
+    : header_(header),
+      position_(channel_of(header, "position")),
+      normal_(channel_of(header, "normal_force")),
+      statistics_(header.channels.size()),
+      recent_(header.channels.size()),
+      counter_(header.sample_rate_hz) {
+  std::ranges::transform(header.channels, std::back_inserter(ranges_), firmware_host::code_range);
+}
+
+double LiveFigures::physical(std::span<const std::int32_t> codes, std::size_t frame,
+                             std::size_t channel) const {
+  const schema::Channel& told = header_.channels[channel];
+  return codes[frame * header_.channels.size() + channel] * told.scale + told.offset;
+}
+
+void LiveFigures::add(std::span<const std::int32_t> codes) {
+  const std::size_t channels = header_.channels.size();
+  for (std::size_t frame = 0; frame < codes.size() / channels; ++frame)
+    for (std::size_t channel = 0; channel < channels; ++channel) {
+      const double value = physical(codes, frame, channel);
+      statistics_[channel].add(value);
+      recent_[channel].add(value);
+    }
+  add_motion(codes);
+}
+
+std::uint64_t LiveFigures::clipped_in(std::span<const std::int32_t> frame) const {
+  std::uint64_t clipped = 0;
+  for (std::size_t i = 0; i < frame.size(); ++i) clipped += ranges_[i].clips(frame[i]) ? 1 : 0;
+  return clipped;
+}
+
+double LiveFigures::next_position_m(std::int32_t code) {
+  unwrapped_ = begun_ ? unwrapped_ + firmware_host::counts_between(last_code_, code) : code;
+  last_code_ = code;
+  const schema::Channel& told = header_.channels[*position_];
+  return static_cast<double>(unwrapped_) * told.scale + told.offset;
+}
+
+void LiveFigures::add_motion(std::span<const std::int32_t> codes) {
+  const std::size_t frames = codes.size() / header_.channels.size();
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    const double normal_n = normal_ ? physical(codes, frame, *normal_) : 0;
+    load_sum_n_ += normal_n;
+    if (!position_) continue;
+    const double position_m = next_position_m(codes[frame * header_.channels.size() + *position_]);
+    if (begun_) moved_m_ += position_m - last_position_m_;
+    last_position_m_ = position_m;
+    begun_ = true;
+    counter_.add(position_m, normal_n, clipped_in(codes.subspan(frame * ranges_.size(), ranges_.size())));
+  }
+  recent_frames_ += frames;
+}
+
+schema::StrokeFigures LiveFigures::figures_of(const CountedStroke& stroke) const {
+  std::uint64_t lost = 0;
+  for (const schema::Gap& gap : header_.gaps)
+    if (gap.frame > stroke.first_frame && gap.frame < stroke.first_frame + stroke.frames) lost += gap.count;
+  schema::StrokeFigures figures{
+      stroke.first_frame,     stroke.frames, stroke.length_m, stroke.direction, 0, {},
+      stroke.clipped_samples, lost};
+  figures.mean_speed_mps =
+      stroke.length_m / static_cast<double>(stroke.frames + lost) * header_.sample_rate_hz;
+  if (normal_) figures.mean_normal_n = stroke.mean_normal_n;
+  return figures;
+}
+
+std::vector<schema::StrokeFigures> LiveFigures::stroke_figures() const {
+  std::vector<schema::StrokeFigures> all;
+  for (const CountedStroke& stroke : counter_.strokes()) all.push_back(figures_of(stroke));
+  return all;
+}
+
+LiveView LiveFigures::take_view() {
+  LiveView view;
+  for (std::size_t i = 0; i < recent_.size(); ++i)
+    view.levels.push_back({recent_[i].min(), recent_[i].max(), at_an_end(header_.channels[i], recent_[i])});
+  const auto frames = static_cast<double>(recent_frames_);
+  if (position_ && frames > 0) view.speed_mps = std::abs(moved_m_) / frames * header_.sample_rate_hz;
+  if (normal_ && frames > 0) view.normal_n = load_sum_n_ / frames;
+  view.strokes = strokes();
+  std::ranges::fill(recent_, schema::Statistics());
+  recent_frames_ = 0;
+  moved_m_ = load_sum_n_ = 0;
+  return view;
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an experimenter wants to see while a finger is recorded.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "capture/record/stroke_counter.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/recording/statistics.hpp"
+#include "data-schema/recording/stroke_figures.hpp"
+#include "firmware-host/link/code_range.hpp"
+
+namespace tacto::capture {
+
+/// One channel since the view before.
+struct ChannelLevel {
+  double smallest = 0, largest = 0;  ///< in its unit
+  bool clipped = false;              ///< it came to an end of its converter's range
+};
+
+struct LiveView {
+  double time_s = 0;                 ///< lost frames counted
+  std::vector<ChannelLevel> levels;  ///< of each channel
+  std::optional<double> speed_mps;   ///< of the finger, mean of the last 0.1 s; none without a position
+  std::optional<double> normal_n;    ///< likewise
+  std::size_t strokes = 0;
+  std::uint64_t lost_frames = 0;
+  std::uint64_t disk_left_bytes = 0;
+};
+
+/// Takes the blocks of a stream and knows what to show of them. One thread.
+class LiveFigures {
+ public:
+  /// `header` outlives this.
+  explicit LiveFigures(const schema::RecordingHeader& header);
+
+  /// Whole frames, as stored.
+  void add(std::span<const std::int32_t> codes);
+  const schema::RecordingHeader& header() const { return header_; }
+  const std::vector<schema::Statistics>& statistics() const { return statistics_; }
+  std::size_t strokes() const { return counter_.strokes().size(); }
+  /// No more frames come: a stroke that had come to a stop is counted.
+  void finish() { counter_.finish(); }
+  /// The strokes so far as the sidecar keeps them, with what is missing in them by the header's gaps.
+  std::vector<schema::StrokeFigures> stroke_figures() const;
+  /// Of all since the last call; time, losses and disk are the caller's to add.
+  LiveView take_view();
+
+ private:
+  void add_motion(std::span<const std::int32_t> codes);
+  std::uint64_t clipped_in(std::span<const std::int32_t> frame) const;
+  schema::StrokeFigures figures_of(const CountedStroke& stroke) const;
+  double physical(std::span<const std::int32_t> codes, std::size_t frame, std::size_t channel) const;
+  // Where a counter that passes 2^31 goes on.
+  double next_position_m(std::int32_t code);
+
+  const schema::RecordingHeader& header_;
+  std::optional<std::size_t> position_, normal_;
+  std::vector<schema::Statistics> statistics_, recent_;
+  std::vector<firmware_host::CodeRange> ranges_;
+  StrokeCounter counter_;
+  std::uint64_t recent_frames_ = 0;
+  std::int32_t last_code_ = 0;
+  std::int64_t unwrapped_ = 0;  // the position's code, turns of the counter counted
+  double last_position_m_ = 0, moved_m_ = 0, load_sum_n_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace tacto::capture

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/record/record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "capture/record/disk_writer.hpp"
+#include "capture/record/record_header.hpp"
+#include "capture/table/text_encoding.hpp"
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/files/files.hpp"
+#include "firmware-host/link/realtime_priority.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using firmware_host::Device;
+using schema::Fault;
+using schema::Result;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kBlock_s = 0.02;
+constexpr auto kViewEvery = std::chrono::milliseconds(100);
+constexpr double kSpare_bytes = 1 << 20;  // left on the disk for the sidecar
+
+std::string folder_of(const std::string& name) {
+  const auto folder = std::filesystem::path(schema::stem_of(name, "")).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+double disk_left_bytes(const std::string& name) {
+  std::error_code unknown;
+  const auto space = std::filesystem::space(folder_of(name), unknown);
+  return unknown ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
+}
+
+// The frames to take; as many as can be counted where no time was given.
+Result<std::uint64_t> frames_wanted(const RecordRequest& request, double rate_hz) {
+  if (!request.time_s) return std::numeric_limits<std::uint64_t>::max();
+  const double frames = std::floor(*request.time_s * rate_hz + 0.5);
+  if (!(frames >= 1 && frames < 0x1p53))
+    return schema::fail(Fault::usage, fmt::format("{:g} s is no time to record for", *request.time_s), "time",
+                        "give a time above zero, as 2s");
+  return static_cast<std::uint64_t>(frames);
+}
+
+Result<void> check_folder(const RecordRequest& request) {
+  std::error_code unknown;
+  const std::string folder = folder_of(request.name);
+  if (std::filesystem::is_directory(folder, unknown)) return {};
+  return schema::fail(Fault::cannot_write, "there is no such folder", folder, "make it first");
+}
+
+// A sidecar is UTF-8; from the bytes alone nobody can tell what a Latin-1 keyboard meant.
+Result<void> check_words(const RecordRequest& request) {
+  const std::pair<const char*, const std::string&> words[] = {{"--subject", request.subject},
+                                                              {"--finger", request.finger},
+                                                              {"--surface", request.surface},
+                                                              {"--notes", request.notes},
+                                                              {"-o", request.name}};
+  for (const auto& [option, text] : words)
+    if (!is_utf8(text))
+      return schema::fail(Fault::usage, "is not UTF-8", option,
+                          "use a terminal in a UTF-8 locale, or plain letters");
+  return {};
+}
+
+std::string megabytes(double bytes) {
+  return fmt::format("{:.3g} MB", bytes / 1e6);
+}
+
+Result<void> check_room(const RecordRequest& request, const schema::RecordingHeader& header) {
+  const double needed = request.time_s.value_or(0) * header.sample_rate_hz *
+                            static_cast<double>(header.channels.size()) * sizeof(std::int32_t) +
+                        kSpare_bytes;
+  const double left = disk_left_bytes(request.name);
+  if (needed <= left) return {};
+  const std::string what = request.time_s
+                               ? fmt::format("{:g} s need {}", *request.time_s, megabytes(needed))
+                               : fmt::format("a recording needs {} to begin with", megabytes(needed));
+  return schema::fail(Fault::cannot_write, fmt::format("{}, and the disk has {} left", what, megabytes(left)),
+                      folder_of(request.name),
+                      request.time_s ? "record for less, or to another disk" : "record to another disk");
+}
+
+// One recording: from the device to the writer, looked at on the way.
+class Capture {
+ public:
+  Capture(Device& device, const RecordRequest& request, const RecordHooks& hooks, schema::LiveRecording& live,
+          std::uint64_t frames);
+  void run();
+  Result<Recorded> finish(schema::LiveRecording& live);
+
+ private:
+  void take_all();
+  bool goes_on() const;
+  void take_block();
+  void take_events(FrameBlock& block);
+  void tell();
+
+  Device& device_;
+  const RecordRequest& request_;
+  const RecordHooks& hooks_;
+  const std::size_t channels_, block_frames_;
+  const std::uint64_t wanted_;
+  LiveFigures figures_;
+  DiskWriter writer_;
+  std::uint64_t frames_ = 0, lost_noted_ = 0;
+  bool stream_ended_ = false;
+  std::optional<schema::Error> failure_;
+  Clock::time_point next_view_ = Clock::now();
+};
+
+std::size_t frames_of_block(double rate_hz) {
+  return std::max<std::size_t>(1, static_cast<std::size_t>(rate_hz * kBlock_s));
+}
+
+Capture::Capture(Device& device, const RecordRequest& request, const RecordHooks& hooks,
+                 schema::LiveRecording& live, std::uint64_t frames)
+    : device_(device),
+      request_(request),
+      hooks_(hooks),
+      channels_(live.header().channels.size()),
+      block_frames_(frames_of_block(live.header().sample_rate_hz)),
+      wanted_(frames),
+      figures_(live.header()),
+      writer_(live, block_frames_ * channels_) {}
+
+bool Capture::goes_on() const {
+  if (stream_ended_ || failure_ || frames_ == wanted_ || writer_.failed()) return false;
+  if (request_.strokes > 0 && figures_.strokes() >= request_.strokes) return false;
+  return !hooks_.stop || !hooks_.stop();
+}
+
+// A device that only counts its losses lost them before the block.
+void Capture::take_events(FrameBlock& block) {
+  block.events = device_.take_events();
+  std::uint64_t told = 0;
+  for (const schema::Gap& gap : block.events.gaps) told += gap.count;
+  const std::uint64_t lost = device_.counts().lost_frames;
+  if (told == 0 && lost > lost_noted_)
+    block.events.gaps.push_back({frames_, frames_ + lost, lost - lost_noted_});
+  lost_noted_ = std::max(lost, lost_noted_ + told);
+}
+
+void Capture::take_block() {
+  FrameBlock& block = writer_.to_fill();
+  const std::size_t frames = std::min<std::uint64_t>(block_frames_, wanted_ - frames_);
+  const auto got = device_.read(std::span(block.codes).first(frames * channels_));
+  if (!got) failure_ = got.error();
+  stream_ended_ = got && *got == 0;
+  take_events(block);
+  block.used = got.value_or(0) * channels_;
+  figures_.add(std::span<const std::int32_t>(block.codes).first(block.used));
+  frames_ += got.value_or(0);
+  if (hooks_.new_marks)
+    for (std::size_t mark = hooks_.new_marks(); mark > 0; --mark) block.marks.push_back({frames_, "mark"});
+  writer_.filled();
+}
+
+void Capture::tell() {
+  if (hooks_.progress && request_.time_s)
+    hooks_.progress(static_cast<double>(frames_) / static_cast<double>(wanted_));
+  if (!hooks_.view || Clock::now() < next_view_) return;
+  next_view_ = Clock::now() + kViewEvery;
+  LiveView view = figures_.take_view();
+  view.lost_frames = lost_noted_;
+  view.time_s = static_cast<double>(frames_ + lost_noted_) / device_.capabilities().sample_rate_hz;
+  view.disk_left_bytes = static_cast<std::uint64_t>(std::min(disk_left_bytes(request_.name), 0x1p63));
+  hooks_.view(view, figures_.header());
+}
+
+void Capture::run() {
+  take_all();
+  writer_.end();
+}
+
+// Ahead of others' work, so that the link's buffer is emptied in time; a source that never makes us wait
+// would leave them nothing.
+void Capture::take_all() {
+  std::optional<firmware_host::RealtimePriority> priority;
+  if (device_.keeps_time()) priority.emplace();
+  while (goes_on()) {
+    take_block();
+    tell();
+  }
+}
+
+Result<Recorded> Capture::finish(schema::LiveRecording& live) {
+  if (writer_.failed()) failure_ = writer_.error();
+  const auto counts = device_.counts();
+  const bool nothing = live.frames() == 0;
+  if (nothing) {
+    if (const auto gone = live.discard(); !gone) return schema::forward_error(gone);
+    if (failure_) return tl::unexpected(*failure_);
+    return schema::fail(Fault::device, "the device gave no frames", device_.capabilities().uri);
+  }
+  schema::RecordingHeader& header = live.header();
+  figures_.finish();
+  header.strokes = figures_.stroke_figures();
+  if (failure_) header.ended = failure_->what;
+  const std::uint64_t due = stream_ended_ && request_.time_s ? wanted_ : 0;
+  for (std::string& warning : stream_warnings(counts, due)) header.warnings.push_back(std::move(warning));
+  if (failure_) header.warnings.push_back("it ended early: " + schema::message(*failure_));
+  auto recording = live.close();
+  if (!recording) return schema::forward_error(recording);
+  return Recorded{std::move(*recording), figures_.statistics(), counts, failure_};
+}
+
+// What is said of a calibration stands in the sidecar too.
+Result<schema::RecordingHeader> calibrated_header(const Device& device, const RecordRequest& request) {
+  auto header = header_for(device.capabilities(), request);
+  if (!header || !request.calibration) return header;
+  auto warnings =
+      apply_calibration(*header, *request.calibration, request.stale_after_s, schema::creation_time());
+  if (!warnings) return schema::forward_error(warnings);
+  header->warnings = std::move(*warnings);
+  return header;
+}
+
+}  // namespace
+
+Result<Recorded> record(Device& device, const RecordRequest& request, const RecordHooks& hooks) {
+  if (const auto words = check_words(request); !words) return schema::forward_error(words);
+  if (const auto folder = check_folder(request); !folder) return schema::forward_error(folder);
+  const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
+  if (!frames) return schema::forward_error(frames);
+  auto header = calibrated_header(device, request);
+  if (!header) return schema::forward_error(header);
+  if (const auto room = check_room(request, *header); !room) return schema::forward_error(room);
+  auto live = schema::LiveRecording::create(request.name, std::move(*header));
+  if (!live) return schema::forward_error(live);
+  if (const auto started = device.start(); !started) {
+    if (const auto gone = live->discard(); !gone) return schema::forward_error(gone);
+    return schema::forward_error(started);
+  }
+  Capture capture(device, request, hooks, *live, *frames);
+  capture.run();
+  const auto stopped = device.stop();
+  auto recorded = capture.finish(*live);
+  if (recorded && !stopped && !recorded->ended_by) recorded->ended_by = stopped.error();
+  return recorded;
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/record/take.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/record/record_header.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+constexpr double kShortest_s = 0.1, kLongest_s = 600;  // 10 min of four channels at 10 kHz are 190 MB
+constexpr double kSettling_s = 0.1;                    // of filters, when a stream begins
+constexpr std::size_t kBlockFrames = 256;
+
+void append(Take& take, std::span<const std::int32_t> codes) {
+  const std::size_t channels = take.codes.size();
+  for (std::size_t i = 0; i < codes.size(); ++i) take.codes[i % channels].push_back(codes[i]);
+}
+
+Result<void> fill(Take& take, firmware_host::Device& device, std::size_t frames) {
+  std::vector<std::int32_t> block(kBlockFrames * take.codes.size());
+  while (take.frames() < frames) {
+    const std::size_t wanted = std::min(kBlockFrames, frames - take.frames());
+    const auto got = device.read(std::span(block).first(wanted * take.codes.size()));
+    if (!got) return schema::forward_error(got);
+    if (*got == 0) return schema::fail(Fault::device, "the stream ended too early", take.header.device);
+    append(take, std::span<const std::int32_t>(block).first(*got * take.codes.size()));
+  }
+  if (device.counts().lost_frames == 0) return {};
+  return schema::fail(Fault::device, fmt::format("{} frames were lost", device.counts().lost_frames),
+                      take.header.device, "try again");
+}
+
+Result<double> time_in(const std::string& text, const std::string& whole) {
+  auto time_s = schema::parse_quantity(text, schema::Dimension::time);
+  if (!time_s) return schema::fail(Fault::usage, time_s.error().what, whole, "as oak@1s..3s");
+  return time_s;
+}
+
+Result<void> check_source(const schema::Recording& recording) {
+  if (recording.header.format != schema::SampleFormat::pcm32 || recording.header.serial.empty())
+    return schema::fail(Fault::unsuitable, "does not say which device it came from", recording.stem,
+                        "calibrate with recordings that 'tactograph record' made");
+  return {};
+}
+
+Result<void> check_part(const schema::RecordingHeader& header, const std::string& name, std::uint64_t first,
+                        std::uint64_t last) {
+  for (const schema::Gap& gap : header.gaps)
+    if (gap.frame > first && gap.frame < last)
+      return schema::fail(Fault::unsuitable, "frames are missing in this part", name,
+                          "choose a part without");
+  if (static_cast<double>(last - first) >= kShortest_s * header.sample_rate_hz) return {};
+  return schema::fail(Fault::unsuitable, fmt::format("has less than {:g} s there", kShortest_s), name,
+                      "choose a longer part");
+}
+
+// A part that reaches beyond the end was meant of another recording.
+Result<void> check_end(const schema::RecordingHeader& header, const RecordingPart& part) {
+  const double end_s = schema::frame_time_s(header, header.frames);
+  if (part.to_s == std::numeric_limits<double>::infinity() || part.to_s < end_s + 1 / header.sample_rate_hz)
+    return {};
+  return schema::fail(Fault::unsuitable,
+                      fmt::format("has {:.4g} s, and the part ends at {:g} s", end_s, part.to_s), part.name,
+                      "name a part that it has");
+}
+
+std::uint64_t frame_at(const schema::RecordingHeader& header, double time_s) {
+  std::uint64_t low = 0, high = header.frames;
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    if (schema::frame_time_s(header, middle) < time_s)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+Result<RecordingPart> parse_recording_part(const std::string& text) {
+  const auto at = text.rfind('@');
+  if (at == std::string::npos) return RecordingPart{text};
+  const std::string span = text.substr(at + 1);
+  const auto dots = span.find("..");
+  if (dots == std::string::npos)
+    return schema::fail(Fault::usage, fmt::format("'{}' is no span of time", span), text, "as oak@1s..3s");
+  const auto from_s = time_in(span.substr(0, dots), text), to_s = time_in(span.substr(dots + 2), text);
+  if (!from_s) return schema::forward_error(from_s);
+  if (!to_s) return schema::forward_error(to_s);
+  return RecordingPart{text.substr(0, at), *from_s, *to_s};
+}
+
+schema::Channel nominal(const schema::Channel& channel) {
+  if (!channel.calibration) return channel;
+  schema::Channel plain = channel;
+  plain.scale = channel.calibration->nominal_scale;
+  plain.offset = channel.calibration->nominal_offset;
+  const auto back = [&](double physical) {
+    return (physical - channel.offset) / channel.scale * plain.scale + plain.offset;
+  };
+  if (plain.range_min) plain.range_min = back(*plain.range_min);
+  if (plain.range_max) plain.range_max = back(*plain.range_max);
+  plain.calibration.reset();
+  return plain;
+}
+
+Result<Take> take_from(firmware_host::Device& device, double time_s) {
+  if (!(time_s >= kShortest_s && time_s <= kLongest_s))
+    return schema::fail(Fault::usage, fmt::format("{:g} s is no time to calibrate in", time_s), "time",
+                        fmt::format("from {:g} s to {:g} s", kShortest_s, kLongest_s));
+  auto header = header_for(device.capabilities(), {});
+  if (!header) return schema::forward_error(header);
+  for (schema::Channel& channel : header->channels)
+    channel = nominal(channel);  // a replay's may be calibrated
+  const auto frames = static_cast<std::size_t>(time_s * header->sample_rate_hz);
+  Take take{std::move(*header), device.capabilities().name, {}};
+  take.codes.resize(take.header.channels.size());
+  if (const auto started = device.start(); !started) return schema::forward_error(started);
+  const auto settling = static_cast<std::size_t>(kSettling_s * take.header.sample_rate_hz);
+  const auto filled = fill(take, device, frames + settling);
+  const auto stopped = device.stop();
+  if (!filled) return schema::forward_error(filled);
+  if (!stopped) return schema::forward_error(stopped);
+  for (std::vector<double>& codes : take.codes)
+    codes.erase(codes.begin(), codes.begin() + static_cast<std::ptrdiff_t>(settling));
+  return take;
+}
+
+Result<Take> take_from(const RecordingPart& part) {
+  auto recording = schema::open_recording(part.name);
+  if (!recording) return schema::forward_error(recording);
+  if (const auto sound = check_source(*recording); !sound) return schema::forward_error(sound);
+  const schema::RecordingHeader& header = recording->header;
+  if (const auto there = check_end(header, part); !there) return schema::forward_error(there);
+  const std::uint64_t first = frame_at(header, part.from_s);
+  const std::uint64_t last = std::max(first, frame_at(header, part.to_s));
+  if (const auto fits = check_part(header, part.name, first, last); !fits) return schema::forward_error(fits);
+  Take take{header, {}, {}};
+  for (std::size_t i = 0; i < header.channels.size(); ++i) {
+    const auto codes = schema::read_stored(*recording, i);
+    if (!codes) return schema::forward_error(codes);
+    take.codes.emplace_back(codes->begin() + static_cast<std::ptrdiff_t>(first),
+                            codes->begin() + static_cast<std::ptrdiff_t>(last));
+    take.header.channels[i] = nominal(header.channels[i]);
+  }
+  std::erase_if(take.header.marks,
+                [&](const schema::Mark& mark) { return mark.frame < first || mark.frame > last; });
+  for (schema::Mark& mark : take.header.marks) mark.frame -= first;
+  return take;
+}
+
+}  // namespace tacto::capture

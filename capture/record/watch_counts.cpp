@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/record/watch_counts.hpp"
+
+#include <algorithm>
+
+#include "capture/record/record_header.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+constexpr double kWatch_s = 0.02;
+
+struct Watch {
+  firmware_host::Device& device;
+  std::size_t channels, channel;
+  std::vector<std::int32_t> block;
+
+  // The channel's count at the end of the next block.
+  Result<double> next() {
+    const auto got = device.read(block);
+    if (!got) return schema::forward_error(got);
+    if (*got == 0)
+      return schema::fail(Fault::device, "the stream ended before the travels did",
+                          device.capabilities().uri);
+    return block[(*got - 1) * channels + channel];
+  }
+};
+
+Result<std::vector<double>> counts_at_marks(Watch& watch, std::size_t marks,
+                                            const std::function<Result<bool>()>& marked) {
+  std::vector<double> counts;
+  while (counts.size() < marks) {
+    const auto count = watch.next();
+    if (!count) return schema::forward_error(count);
+    const auto now = marked();
+    if (!now) return schema::forward_error(now);
+    if (*now) counts.push_back(*count);
+  }
+  return counts;
+}
+
+}  // namespace
+
+Result<WatchedCounts> watch_counts(firmware_host::Device& device, const std::string& channel,
+                                   std::size_t marks, const std::function<Result<bool>()>& marked) {
+  auto header = header_for(device.capabilities(), {});
+  if (!header) return schema::forward_error(header);
+  const auto index = schema::find_channel(*header, channel);
+  if (!index)
+    return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
+  const std::size_t channels = header->channels.size();
+  const auto frames = std::max<std::size_t>(1, static_cast<std::size_t>(header->sample_rate_hz * kWatch_s));
+  if (const auto started = device.start(); !started) return schema::forward_error(started);
+  Watch watch{device, channels, *index, std::vector<std::int32_t>(frames * channels)};
+  auto counts = counts_at_marks(watch, marks, marked);
+  const auto stopped = device.stop();
+  if (!counts) return schema::forward_error(counts);
+  if (!stopped) return schema::forward_error(stopped);
+  return WatchedCounts{{std::move(*header), device.capabilities().name, {}}, std::move(*counts)};
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/table/csv_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "capture/table/column_unit.hpp"
+#include "capture/table/csv_fields.hpp"
+#include "capture/table/csv_number.hpp"
+#include "capture/table/table_start.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::size_t kSampledLines = 20;
+
+// Where lines begin, and which one is the first.
+struct Beginning {
+  std::size_t offset = 0, line = 1;
+};
+
+// The first lines with fields in them. A line that the head cuts off is none.
+std::vector<TableLine> sample_lines(std::string_view head, bool whole, Beginning at, char line_end,
+                                    std::size_t most) {
+  std::vector<TableLine> lines;
+  for (std::size_t begin = at.offset, number = at.line; begin < head.size() && lines.size() < most;
+       ++number) {
+    const std::size_t end = head.find(line_end, begin);
+    if (end == std::string_view::npos && !whole) break;
+    const std::size_t next = end == std::string_view::npos ? head.size() : end + 1;
+    const auto text = without_returns(head.substr(begin, std::min(end, head.size()) - begin));
+    if (!is_blank_line(text) && !is_comment_line(text)) lines.push_back({text, number, begin, next});
+    begin = next;
+  }
+  return lines;
+}
+
+// The largest number of lines that this delimiter cuts into equally many fields; 0 where it cuts none.
+std::size_t agreeing_lines(std::span<const TableLine> lines, char delimiter) {
+  std::map<std::size_t, std::size_t> lines_by_fields;
+  for (const TableLine& line : lines) ++lines_by_fields[field_count(line.text, delimiter)];
+  std::size_t most = 0;
+  for (const auto& [fields, count] : lines_by_fields)
+    if (fields > 1) most = std::max(most, count);
+  return most;
+}
+
+// Where two agree alike, the rarer sign decides: in "0,5;1,5" the comma is decimal.
+char find_delimiter(std::span<const TableLine> lines) {
+  char best = ',';
+  std::size_t most = 0;
+  for (const char delimiter : {'\t', ';', ','}) {
+    const std::size_t agreeing = agreeing_lines(lines, delimiter);
+    if (agreeing > most) best = delimiter;
+    most = std::max(most, agreeing);
+  }
+  return best;
+}
+
+enum class FirstLine { header, data, mixed };
+
+// Mixed lines are data where the next line has its text in the same columns (a column of dates, say).
+FirstLine kind_of(const std::vector<std::string>& first, const std::vector<std::string>& next) {
+  const auto names = std::ranges::count_if(first, is_name);
+  const auto numbers = std::ranges::count_if(first, is_numeric);
+  if (names == 0) return FirstLine::data;
+  if (numbers == 0) return FirstLine::header;
+  for (std::size_t i = 0; i < std::min(first.size(), next.size()); ++i)
+    if (is_name(first[i]) && !is_name(next[i])) return names > numbers ? FirstLine::header : FirstLine::mixed;
+  return FirstLine::data;
+}
+
+Result<void> check_text(std::string_view head, const std::string& file) {
+  const bool utf16 = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
+  if (utf16) return fail(Fault::malformed, "is UTF-16 text", file, "save it as UTF-8");
+  if (const auto zero = head.find('\0'); zero != std::string_view::npos)
+    return fail(Fault::malformed, fmt::format("has a zero byte at {}: it is no text", zero), file);
+  return {};
+}
+
+tl::unexpected<schema::Error> no_lines(std::string_view head, bool whole, const std::string& file) {
+  if (head.empty()) return fail(Fault::malformed, "is empty", file);
+  if (!whole)
+    return fail(Fault::malformed, fmt::format("has no data in its first {} bytes", head.size()), file);
+  return fail(Fault::malformed, "holds no data, only blank lines and comments", file);
+}
+
+tl::unexpected<schema::Error> mixed_first_line(const TableLine& line, const std::vector<std::string>& fields,
+                                               const std::string& file) {
+  const auto at = std::ranges::find_if(fields, is_name) - fields.begin();
+  return fail(Fault::malformed,
+              fmt::format("'{}' stands among numbers", fields[static_cast<std::size_t>(at)]),
+              fmt::format("{}: line {}, column {}", file, line.number, at + 1),
+              "name every column in the first line, or none");
+}
+
+void take_header(CsvLayout& layout, const TableLine& line, std::vector<std::string> fields) {
+  layout.header = true;
+  layout.columns = std::move(fields);
+  layout.header_line = line.number;
+  layout.data_offset = line.next;
+  layout.data_line = line.number + 1;
+}
+
+// Where the units have a row of their own, it follows the header's line and counts more than the names' own.
+void take_units(CsvLayout& layout, const std::vector<std::string>& row) {
+  for (std::size_t i = 0; i < layout.columns.size(); ++i)
+    layout.units.push_back(i < row.size() && !row[i].empty() ? row[i] : split_unit(layout.columns[i]).unit);
+}
+
+// Whether the lines after the first are rows of its width, alike in where they have text; one that has no
+// text at all is enough. If not, the table may begin later.
+bool begins_at_once(std::span<const TableLine> lines, char delimiter) {
+  if (lines.size() < 2) return true;
+  const auto next = fields_in(lines[1], delimiter);
+  if (fields_in(lines[0], delimiter).size() != next.size() || std::ranges::none_of(next, is_numeric))
+    return false;
+  if (std::ranges::none_of(next, is_name)) return true;
+  return std::ranges::all_of(lines.subspan(2), [&](const TableLine& line) {
+    return has_text_where(fields_in(line, delimiter), next);
+  });
+}
+
+// With --skip the table begins where the user says.
+std::optional<TableStart> later_start(std::span<const TableLine> lines, bool begin_is_given) {
+  auto start = find_table_start(lines);
+  if (!start || start->first_row == 0) return std::nullopt;
+  const bool at_once = start->names == std::size_t{0};
+  return begin_is_given && !at_once ? std::nullopt : start;
+}
+
+CsvLayout layout_from(CsvLayout layout, std::span<const TableLine> lines, const TableStart& start) {
+  layout.delimiter = start.delimiter;
+  layout.columns.assign(start.columns, "");
+  layout.lines_before = start.names.value_or(start.first_row);
+  if (start.names)
+    take_header(layout, lines[*start.names],
+                *names_for(fields_in(lines[*start.names], start.delimiter), start));
+  if (start.units) layout.units_line = lines[*start.units].number;
+  take_units(layout,
+             start.units ? fields_in(lines[*start.units], start.delimiter) : std::vector<std::string>{});
+  layout.data_offset = lines[start.first_row].begin;
+  layout.data_line = lines[start.first_row].number;
+  return layout;
+}
+
+bool are_numbers_between_blanks(const TableLine& line) {
+  std::string fields(line.text);
+  std::ranges::replace(fields, '\t', ' ');
+  const auto words = fields_of(fields, ' ');
+  return std::ranges::none_of(words, is_name) && std::ranges::count_if(words, is_numeric) > 1;
+}
+
+bool has_no_number(const TableLine& line, char delimiter) {
+  return std::ranges::none_of(fields_in(line, delimiter), is_numeric);
+}
+
+// A text, or columns of a kind that is not read.
+Result<void> check_rows_follow(std::span<const TableLine> lines, char delimiter, const std::string& file) {
+  const auto none = [&](const TableLine& line) { return has_no_number(line, delimiter); };
+  if (lines.size() < 2 || !std::ranges::all_of(lines, none)) return {};
+  const std::string where =
+      fmt::format("{}: lines {} to {}", file, lines.front().number, lines.back().number);
+  if (are_numbers_between_blanks(lines.back()))
+    return fail(Fault::malformed, "has blanks between its columns", where,
+                "save it with commas, semicolons or tabs between them");
+  return fail(Fault::malformed, "holds no numbers there", where,
+              "a table has rows of numbers; --skip N passes over N lines before it");
+}
+
+Result<CsvLayout> layout_at_once(CsvLayout layout, std::span<const TableLine> lines, bool whole,
+                                 const std::string& file) {
+  const auto first = fields_in(lines[0], layout.delimiter);
+  const auto next = lines.size() > 1 ? fields_in(lines[1], layout.delimiter) : std::vector<std::string>{};
+  layout.columns.resize(first.size());
+  const FirstLine kind = kind_of(first, next);
+  if (kind == FirstLine::mixed) return mixed_first_line(lines[0], first, file);
+  if (const auto rows = check_rows_follow(lines, layout.delimiter, file); !rows)
+    return schema::forward_error(rows);
+  if (kind == FirstLine::header) take_header(layout, lines[0], first);
+  take_units(layout, {});
+  if (layout.header && lines.size() == 1 && whole)
+    return fail(Fault::malformed, "has a header but no data",
+                fmt::format("{}: line {}", file, lines[0].number));
+  return layout;
+}
+
+Result<Beginning> after_lines(std::string_view head, Beginning at, std::size_t skip, char line_end,
+                              const std::string& file) {
+  for (std::size_t skipped = 0; skipped < skip; ++skipped, ++at.line) {
+    const auto end = head.find(line_end, at.offset);
+    if (end == std::string_view::npos)
+      return fail(Fault::usage, fmt::format("no table can follow {} lines: there are {}", skip, skipped),
+                  fmt::format("--skip, {}", file), "give the number of lines before the table");
+    at.offset = end + 1;
+  }
+  return at;
+}
+
+}  // namespace
+
+Result<CsvLayout> find_csv_layout(std::string_view head, bool whole, const std::string& file,
+                                  std::size_t skip) {
+  if (const auto text = check_text(head, file); !text) return schema::forward_error(text);
+  CsvLayout layout;
+  const bool old_mac = head.find('\n') == std::string_view::npos && head.find('\r') != std::string_view::npos;
+  layout.line_end = old_mac ? '\r' : '\n';
+  const std::size_t mark = head.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  const auto begin = after_lines(head, {mark, 1}, skip, layout.line_end, file);
+  if (!begin) return schema::forward_error(begin);
+  layout.data_offset = begin->offset;
+  layout.data_line = begin->line;
+  const auto lines = sample_lines(head, whole, *begin, layout.line_end, kSampledLines);
+  if (lines.empty()) return no_lines(head.substr(layout.data_offset), whole, file);
+  layout.delimiter = find_delimiter(lines);
+  if (!begins_at_once(lines, layout.delimiter)) {
+    const auto more = sample_lines(head, whole, *begin, layout.line_end, head.size());
+    if (const auto start = later_start(more, skip > 0)) return layout_from(layout, more, *start);
+  }
+  return layout_at_once(layout, lines, whole, file);
+}
+
+}  // namespace tacto::capture

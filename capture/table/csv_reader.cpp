@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/table/csv_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+
+#include "capture/table/csv_fields.hpp"
+#include "capture/table/plain_decimal.hpp"
+#include "capture/table/plain_rows.hpp"
+#include "capture/table/text_encoding.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+// What a message shows of a field: a mistaken file can have a page of text in it.
+std::string shown(std::string_view field) {
+  constexpr std::size_t kMost = 40;
+  const std::string text = to_utf8(trimmed(field).substr(0, kMost));
+  return trimmed(field).size() > kMost ? text + "..." : text;
+}
+
+std::string words_for(NumberFault fault, std::string_view field) {
+  switch (fault) {
+    case NumberFault::missing:
+      return "has no value";
+    case NumberFault::nan:
+      return fmt::format("is NaN ('{}')", shown(field));
+    case NumberFault::infinite:
+      return fmt::format("is infinite ('{}')", shown(field));
+    case NumberFault::too_large:
+      return fmt::format("'{}' is beyond what a number can hold", shown(field));
+    case NumberFault::mixed_marks:
+      return fmt::format("'{}' has another decimal mark than the rows before", shown(field));
+    default:
+      return fmt::format("'{}' is no number", shown(field));
+  }
+}
+
+std::string remedy_for(NumberFault fault) {
+  const bool unknown =
+      fault == NumberFault::nan || fault == NumberFault::infinite || fault == NumberFault::missing;
+  return unknown ? "import the part without it: a value that isn't known is never filled in" : "";
+}
+
+}  // namespace
+
+std::string column_in_words(const std::vector<std::string>& names, std::size_t column) {
+  if (names[column].empty()) return fmt::format("column {}", column + 1);
+  return fmt::format("column {} ('{}')", column + 1, names[column]);
+}
+
+std::size_t line_of_row(const std::deque<CsvReader::Landmark>& landmarks, std::size_t row) {
+  const auto after = std::ranges::upper_bound(landmarks, row, {}, &CsvReader::Landmark::row);
+  assert(after != landmarks.begin());
+  const auto& last = *(after - 1);
+  return last.line + (row - last.row);
+}
+
+CsvReader::CsvReader(CsvLayout layout, const std::vector<std::size_t>& columns, std::string file)
+    : layout_(std::move(layout)),
+      file_(std::move(file)),
+      places_(layout_.columns.size(), RowForm::kSkipped),
+      kept_(columns.size()),
+      line_(layout_.data_line) {
+  for (std::size_t k = 0; k < columns.size(); ++k) places_[columns[k]] = k;
+}
+
+Result<void> CsvReader::feed(std::string_view piece) {
+  assert(!error_);
+  if (piece.empty()) return {};
+  if (!carried_.empty()) {
+    const std::size_t end = std::min(piece.find(layout_.line_end), piece.size() - 1);
+    carried_ += piece.substr(0, end + 1);
+    piece.remove_prefix(std::min(end + 1, piece.size()));
+    std::string_view whole = carried_;
+    if (!take_lines(whole)) return tl::unexpected(*error_);
+    carried_.erase(0, carried_.size() - whole.size());
+  }
+  if (!take_lines(piece)) return tl::unexpected(*error_);
+  carried_ += piece;
+  return {};
+}
+
+Result<void> CsvReader::finish() {
+  if (!carried_.empty() && !take_line(carried_)) return tl::unexpected(*error_);
+  carried_.clear();
+  if (rows_ == 0) return schema::fail(Fault::malformed, "holds no row of numbers", file_);
+  return {};
+}
+
+void CsvReader::drop_rows() {
+  count_ = 0;
+  dropped_ = rows_;
+  const std::size_t oldest = rows_ - std::min(rows_, kRowsRemembered);
+  while (landmarks_.size() > 1 && landmarks_[1].row <= oldest) landmarks_.pop_front();
+}
+
+// Takes all whole lines and leaves what comes after them.
+bool CsvReader::take_lines(std::string_view& bytes) {
+  for (;;) {
+    take_plain_rows(bytes);
+    const auto end = bytes.find(layout_.line_end);
+    if (end == std::string_view::npos) return true;
+    if (!take_line(bytes.substr(0, end))) return false;
+    bytes.remove_prefix(end + 1);
+  }
+}
+
+void CsvReader::take_plain_rows(std::string_view& bytes) {
+  const RowForm form{layout_.delimiter, layout_.line_end, decimal_mark_ == 0 ? '.' : decimal_mark_, places_,
+                     kept_};
+  if (blank_line_ != 0 || form.mark == form.delimiter) return;
+  make_room(bytes.size() / 2 + kept_);
+  const PlainRows read = read_plain_rows(bytes, form, numbers_.get() + count_);
+  if (read.rows == 0) return;
+  if (read.marked) decimal_mark_ = form.mark;
+  note_rows(read.rows);
+  line_ += read.rows;
+  bytes.remove_prefix(read.bytes);
+}
+
+bool CsvReader::take_line(std::string_view line) {
+  line = without_returns(line);
+  if (!line.empty() && line[0] > '#') {  // most lines: a digit or a minus, neither blank nor comment
+    if (!take_row(line)) return false;
+  } else if (is_blank_line(line)) {
+    if (blank_line_ == 0) blank_line_ = line_;
+  } else if (!is_comment_line(line)) {
+    if (!take_row(line)) return false;
+  }
+  ++line_;
+  return true;
+}
+
+bool CsvReader::take_row(std::string_view line) {
+  if (blank_line_ != 0 && rows_ > 0) return refuse_blank();
+  make_room(kept_);
+  std::size_t at = 0;
+  for (std::size_t column = 0; column < places_.size(); ++column) {
+    if (at > line.size()) return refuse_ragged(line);
+    if (places_[column] == RowForm::kSkipped) {
+      at = field_end(line, at, layout_.delimiter);
+    } else if (!take_number(line, at, column)) {
+      return false;
+    }
+    ++at;  // over the delimiter
+  }
+  if (at <= line.size()) return refuse_ragged(line);
+  note_rows(1);
+  return true;
+}
+
+bool CsvReader::take_number(std::string_view line, std::size_t& at, std::size_t column) {
+  double& value = numbers_[count_ + places_[column]];
+  if (decimal_mark_ != ',' && take_plain_number(line, at, value)) return true;
+  const std::size_t end = field_end(line, at, layout_.delimiter);
+  const std::string field = unquoted(line.substr(at, end - at));
+  const NumberFault fault = read_number(field, decimal_mark_, value);
+  if (fault != NumberFault::none) return refuse_number(fault, line, field, column);
+  at = end;
+  return true;
+}
+
+// The common case, quickly: a bare number right up to its delimiter.
+bool CsvReader::take_plain_number(std::string_view line, std::size_t& at, double& value) {
+  const char* const begin = line.data() + at;
+  const char* const end = line.data() + line.size();
+  PlainDecimal number = read_plain_decimal(begin, end);
+  if (number.stop == nullptr) {
+    const auto [stop, error] = std::from_chars(begin, end, number.value);
+    if (error != std::errc() || !std::isfinite(number.value)) return false;
+    number.stop = stop;
+    number.point = decimal_mark_ == 0 && std::find(begin, stop, '.') != stop;
+  }
+  if (number.stop != end && *number.stop != layout_.delimiter) return false;
+  if (number.point) decimal_mark_ = '.';
+  value = number.value;
+  at = static_cast<std::size_t>(number.stop - line.data());
+  return true;
+}
+
+bool CsvReader::refuse_number(NumberFault fault, std::string_view line, std::string_view field,
+                              std::size_t column) {
+  if (field_count(line, layout_.delimiter) != places_.size()) return refuse_ragged(line);
+  return refuse(words_for(fault, field), remedy_for(fault), column);
+}
+
+bool CsvReader::refuse_ragged(std::string_view line) {
+  constexpr std::size_t kFirstRows = 5;  // where lines before the table may have been taken for rows
+  const std::size_t fields = field_count(line, layout_.delimiter);
+  std::string remedy =
+      fmt::format("the delimiter was taken to be {}",
+                  layout_.delimiter == '\t' ? std::string("a tab") : fmt::format("'{}'", layout_.delimiter));
+  if (rows_ < kFirstRows) remedy += "; --skip N passes over N lines before the table";
+  return refuse(
+      fmt::format("has {} field{} where {} are due", fields, fields == 1 ? "" : "s", places_.size()),
+      std::move(remedy));
+}
+
+bool CsvReader::refuse_blank() {
+  line_ = blank_line_;
+  return refuse("is blank, with rows after it",
+                "a missing row is never passed over: import the parts one by one");
+}
+
+bool CsvReader::refuse(std::string what, std::string remedy, std::optional<std::size_t> column) {
+  std::string where = fmt::format("{}: line {}", file_, line_);
+  if (column) where += ", " + column_in_words(layout_.columns, *column);
+  error_ = schema::Error{Fault::malformed, std::move(what), std::move(where), std::move(remedy)};
+  return false;
+}
+
+// Not a vector: it would set to zero what is about to be written.
+void CsvReader::make_room(std::size_t numbers) {
+  if (room_ - count_ >= numbers) return;
+  const std::size_t room = std::max(2 * room_, count_ + numbers);
+  auto larger = std::make_unique_for_overwrite<double[]>(room);
+  std::copy_n(numbers_.get(), count_, larger.get());
+  numbers_ = std::move(larger);
+  room_ = room;
+}
+
+// Rows on lines that follow each other, the first on the next line.
+void CsvReader::note_rows(std::size_t rows) {
+  const bool follows =
+      !landmarks_.empty() && landmarks_.back().line + (rows_ - landmarks_.back().row) == line_;
+  if (!follows) landmarks_.push_back({rows_, line_});
+  blank_line_ = 0;
+  rows_ += rows;
+  count_ += rows * kept_;
+}
+
+}  // namespace tacto::capture

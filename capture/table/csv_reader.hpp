@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The numbers of some columns of a table, piece by piece.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "capture/table/csv_layout.hpp"
+#include "capture/table/csv_number.hpp"
+#include "data-schema/base/error.hpp"
+
+namespace tacto::capture {
+
+/// Takes a table's bytes in pieces of any size and gives the numbers of the chosen columns, row by row. No
+/// input or output of its own: what it gives depends on the bytes alone, not on how they were cut. Other
+/// columns may hold anything, but every row must have all of them. Comment lines are passed over, blank lines
+/// only before the first row and after the last. Memory: the rows that were not dropped, and the longest
+/// line. Not safe in the tick.
+class CsvReader {
+ public:
+  /// `columns`: 0-based, each once, inside layout.columns. `file` is for messages.
+  CsvReader(CsvLayout layout, const std::vector<std::size_t>& columns, std::string file);
+
+  /// The next bytes from layout.data_offset on. Errors: malformed, with line and column: a ragged row, text
+  /// in a number, NaN, Inf, a missing value, a number no double holds, mixed decimal marks, a blank line
+  /// among rows. After an error the reader is of no more use.
+  schema::Result<void> feed(std::string_view piece);
+  /// The end of the file: its last line may lack a line end. Errors: as feed(); malformed, where there is no
+  /// row.
+  schema::Result<void> finish();
+
+  /// Whole rows that came since drop_rows(), each with its numbers in the order of `columns`.
+  std::span<const double> rows() const { return {numbers_.get(), count_}; }
+  std::size_t first_row() const { return dropped_; }  ///< which row of the table is the first of rows()
+  void drop_rows();
+
+  /// Rows before first_row() of which the line is still known.
+  static constexpr std::size_t kRowsRemembered = 4;
+  /// The file's line, from 1, of each row that doesn't stand on the line after the row before it.
+  struct Landmark {
+    std::size_t row = 0;
+    std::size_t line = 0;
+  };
+  const std::deque<Landmark>& landmarks() const { return landmarks_; }
+
+  /// The decimal mark that the numbers showed: '.', ',', or 0 where there was none.
+  char decimal_mark() const { return decimal_mark_; }
+
+ private:
+  bool take_lines(std::string_view& bytes);
+  void take_plain_rows(std::string_view& bytes);
+  bool take_line(std::string_view line);
+  bool take_row(std::string_view line);
+  bool take_number(std::string_view line, std::size_t& at, std::size_t column);
+  bool take_plain_number(std::string_view line, std::size_t& at, double& value);
+  bool refuse_number(NumberFault fault, std::string_view line, std::string_view field, std::size_t column);
+  bool refuse_ragged(std::string_view line);
+  bool refuse_blank();
+  bool refuse(std::string what, std::string remedy, std::optional<std::size_t> column = std::nullopt);
+  void make_room(std::size_t numbers);
+  void note_rows(std::size_t rows);
+
+  CsvLayout layout_;
+  std::string file_;
+  std::vector<std::size_t> places_;  // of each column of the file: its place in a row, or RowForm::kSkipped
+  std::size_t kept_;                 // numbers of a row
+  std::unique_ptr<double[]> numbers_;
+  std::size_t count_ = 0, room_ = 0;
+  std::deque<Landmark> landmarks_;
+  std::string carried_;  // a line whose end has not come yet
+  std::size_t line_;     // number of the line that comes next
+  std::size_t rows_ = 0, dropped_ = 0;
+  std::size_t blank_line_ = 0;  // the first blank line since the last row, 0 for none
+  char decimal_mark_ = 0;
+  std::optional<schema::Error> error_;
+};
+
+/// The line of a row, from 1.
+std::size_t line_of_row(const std::deque<CsvReader::Landmark>& landmarks, std::size_t row);
+
+/// "column 2 ('force')", or without the name where there is none. `column` is 0-based.
+std::string column_in_words(const std::vector<std::string>& names, std::size_t column);
+
+}  // namespace tacto::capture

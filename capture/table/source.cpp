@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "capture/table/source.hpp"
+
+#include <fmt/format.h>
+
+#include "capture/table/audio_source.hpp"
+#include "capture/table/foreign_format.hpp"
+#include "capture/table/input_file.hpp"
+#include "data-schema/recording/recording.hpp"
+
+namespace tacto::capture {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::size_t kPieceBytes = std::size_t{1} << 17;  // with its numbers it stays in the cache
+
+std::string table_format(const CsvLayout& layout) {
+  const char* const delimiter = layout.delimiter == '\t'  ? "tab"
+                                : layout.delimiter == ';' ? "semicolon"
+                                                          : "comma";
+  std::string format = fmt::format("table, {}, {} header", delimiter, layout.header ? "with" : "without");
+  if (layout.lines_before > 0 && layout.header) format += fmt::format(" in line {}", layout.header_line);
+  if (layout.lines_before > 0 && !layout.header) format += fmt::format(", from line {}", layout.data_line);
+  if (layout.lines_before > 0) format += " (lines before it passed over)";
+  if (layout.units_line > 0) format += fmt::format(", units in line {}", layout.units_line);
+  return format;
+}
+
+Result<Source> open_table(const std::string& file, std::string_view head, bool whole, std::size_t skip) {
+  auto layout = find_csv_layout(head, whole, file, skip);
+  if (!layout) return schema::forward_error(layout);
+  return Source{file, layout->columns, *layout, std::nullopt, 0, table_format(*layout), layout->units};
+}
+
+Result<Source> open_sound(const std::string& file, std::size_t skip) {
+  if (skip == 0) return open_audio(file);
+  return fail(Fault::usage, "has no lines that could be skipped", file, "leave --skip out: this is no table");
+}
+
+// Of MATLAB's files libsndfile takes any numbers for sound: only its own name their rate so.
+Result<Source> open_foreign(const std::string& file, const ForeignFormat& format, std::string_view head) {
+  if (format.may_be_sound && head.find("samplerate") != std::string_view::npos) return open_audio(file);
+  return fail(Fault::unsuitable, fmt::format("is {}, which import does not read", format.what), file,
+              std::string(format.remedy));
+}
+
+// Sound files have zero bytes among their first, text has none; UTF-16 has both and is a table to be
+// converted.
+bool is_binary(std::string_view head) {
+  const bool utf16 = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
+  return !utf16 && head.find('\0') != std::string_view::npos;
+}
+
+bool is_json(const std::string& file, std::string_view head) {
+  const auto first = head.find_first_not_of(" \t\r\n");
+  return file.ends_with(".json") || (first != std::string_view::npos && head[first] == '{');
+}
+
+Result<void> refuse_own(const std::string& file, std::string_view head) {
+  if (is_json(file, head))
+    return fail(Fault::unsuitable, "is JSON, not a table or a sound file", file,
+                "a recording needs no import: see 'tactograph info'");
+  if (file.ends_with(".texture.wav"))
+    return fail(Fault::unsuitable, "is a texture already", file, "see 'tactograph info'");
+  if (file.ends_with(".wav") && schema::open_recording(file))
+    return fail(Fault::unsuitable, "is a recording already", file, "see 'tactograph info'");
+  return {};
+}
+
+}  // namespace
+
+std::string RowBlock::place_of(std::uint64_t row) const {
+  if (landmarks == nullptr) return fmt::format("sample {}", row);
+  return fmt::format("line {}", line_of_row(*landmarks, row));
+}
+
+std::string columns_in_words(const std::vector<std::string>& columns) {
+  std::string list;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", i + 1);
+    if (!columns[i].empty()) list += fmt::format(" '{}'", columns[i]);
+  }
+  return list;
+}
+
+Result<Source> open_source(const std::string& file, std::size_t skip) {
+  auto input = InputFile::open(file);
+  if (!input) return schema::forward_error(input);
+  std::string head(kLayoutBytes, '\0');
+  const auto got = input->read(head);
+  if (!got) return schema::forward_error(got);
+  const bool whole = *got < head.size();
+  head.resize(*got);
+  if (const auto others = refuse_own(file, head); !others) return schema::forward_error(others);
+  if (const auto foreign = foreign_format(file, head)) return open_foreign(file, *foreign, head);
+  return is_binary(head) ? open_sound(file, skip) : open_table(file, head, whole, skip);
+}
+
+namespace {
+
+Result<void> hand_over(CsvReader& reader, std::size_t columns, const TakeRows& take) {
+  if (reader.rows().empty()) return {};
+  const auto taken =
+      take({reader.rows(), columns, reader.first_row(), &reader.landmarks(), reader.decimal_mark()});
+  reader.drop_rows();
+  return taken;
+}
+
+Result<void> read_table(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
+                        const std::function<void(double)>& progress, schema::Sha256* sum) {
+  auto input = InputFile::open(source.file);
+  if (!input) return schema::forward_error(input);
+  CsvReader reader(*source.csv, {columns.begin(), columns.end()}, source.file);
+  std::string piece(kPieceBytes, '\0');
+  std::size_t skipped = source.csv->data_offset;
+  for (std::size_t done = 0;;) {
+    const auto got = input->read(piece);
+    if (!got) return schema::forward_error(got);
+    if (*got == 0) break;
+    const std::string_view bytes = std::string_view(piece).substr(0, *got);
+    if (sum != nullptr) sum->add(bytes);
+    if (const auto fed = reader.feed(bytes.substr(std::min(skipped, bytes.size()))); !fed) return fed;
+    if (const auto taken = hand_over(reader, columns.size(), take); !taken) return taken;
+    skipped -= std::min(skipped, bytes.size());
+    done += *got;
+    progress(static_cast<double>(done) / static_cast<double>(std::max(input->size(), done)));
+  }
+  if (const auto ended = reader.finish(); !ended) return ended;
+  return hand_over(reader, columns.size(), take);
+}
+
+// libsndfile reads the file itself, so its bytes are read once more for the sum.
+Result<void> add_file(const std::string& file, schema::Sha256& sum) {
+  auto input = InputFile::open(file);
+  if (!input) return schema::forward_error(input);
+  std::string piece(kPieceBytes, '\0');
+  for (;;) {
+    const auto got = input->read(piece);
+    if (!got) return schema::forward_error(got);
+    if (*got == 0) return {};
+    sum.add(std::string_view(piece).substr(0, *got));
+  }
+}
+
+}  // namespace
+
+Result<void> read_source(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
+                         const std::function<void(double)>& progress, schema::Sha256* sum) {
+  if (source.csv) return read_table(source, columns, take, progress, sum);
+  const auto read = read_audio(source, columns, take, progress);
+  return read && sum != nullptr ? add_file(source.file, *sum) : read;
+}
+
+}  // namespace tacto::capture

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/base/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace tacto::schema {
+namespace {
+
+// In each dimension from small to large: for_people picks the largest unit that leaves the value at 1 or
+// above.
+constexpr double kStandardGravity = 9.80665;  // m/s^2, by definition (3rd CGPM 1901; ISO 80000-3)
+
+constexpr Unit kUnits[] = {
+    {"nm", Dimension::length, 1e-9},
+    {"um", Dimension::length, 1e-6},
+    {"mm", Dimension::length, 1e-3},
+    {"cm", Dimension::length, 1e-2},
+    {"m", Dimension::length, 1},
+    {"ns", Dimension::time, 1e-9},
+    {"us", Dimension::time, 1e-6},
+    {"ms", Dimension::time, 1e-3},
+    {"s", Dimension::time, 1},
+    {"min", Dimension::time, 60},
+    {"h", Dimension::time, 3600},
+    {"days", Dimension::time, 86400},
+    {"mHz", Dimension::frequency, 1e-3},
+    {"Hz", Dimension::frequency, 1},
+    {"kHz", Dimension::frequency, 1e3},
+    {"MHz", Dimension::frequency, 1e6},
+    {"/m", Dimension::spatial_frequency, 1},
+    {"/cm", Dimension::spatial_frequency, 1e2},
+    {"/mm", Dimension::spatial_frequency, 1e3},
+    {"/um", Dimension::spatial_frequency, 1e6},
+    {"um/s", Dimension::speed, 1e-6},
+    {"mm/s", Dimension::speed, 1e-3},
+    {"cm/s", Dimension::speed, 1e-2},
+    {"m/s", Dimension::speed, 1},
+    {"mm/s^2", Dimension::acceleration, 1e-3},
+    {"m/s^2", Dimension::acceleration, 1},
+    {"mg", Dimension::acceleration, 1e-3 * kStandardGravity},
+    {"g", Dimension::acceleration, kStandardGravity},
+    {"uN", Dimension::force, 1e-6},
+    {"mN", Dimension::force, 1e-3},
+    {"N", Dimension::force, 1},
+    {"kN", Dimension::force, 1e3},
+    {"uV", Dimension::voltage, 1e-6},
+    {"mV", Dimension::voltage, 1e-3},
+    {"V", Dimension::voltage, 1},
+    {"kV", Dimension::voltage, 1e3},
+    {"nm/N", Dimension::compliance, 1e-9},
+    {"um/N", Dimension::compliance, 1e-6},
+    {"mm/N", Dimension::compliance, 1e-3},
+    {"m/N", Dimension::compliance, 1},
+    {"1", Dimension::none, 1},
+    {"dB", Dimension::level, 1},
+    {"mg", Dimension::mass, 1e-6},
+    {"g", Dimension::mass, 1e-3},
+    {"kg", Dimension::mass, 1},
+    {"ppm", Dimension::share, 1e-6},
+    {"%", Dimension::share, 1e-2},
+};
+
+// Units that are read but never chosen to write with: "cm" would surprise where "12 mm" is expected.
+bool for_reading_only(const Unit& unit) {
+  const std::string_view symbol = unit.symbol;
+  const bool of_gravity = unit.dimension == Dimension::acceleration && symbol.ends_with('g');
+  return of_gravity || symbol == "cm" || symbol == "cm/s" || symbol == "/cm" || symbol == "/m" ||
+         symbol == "min" || symbol == "h" || symbol == "days" || symbol == "/um";
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+// Both Unicode micro signs (U+00B5 and U+03BC) become "u", a raised 2 "^2"; "1/mm" and "mm^-1" become "/mm".
+std::string canonical(std::string_view symbol) {
+  std::string text(trimmed(symbol));
+  for (std::string_view micro : {"\xC2\xB5", "\xCE\xBC"})
+    for (auto at = text.find(micro); at != std::string::npos; at = text.find(micro)) text.replace(at, 2, "u");
+  constexpr std::string_view kSquared = "\xC2\xB2";
+  if (text.ends_with(kSquared)) text.replace(text.size() - kSquared.size(), kSquared.size(), "^2");
+  if (text.size() > 2 && text.starts_with("1/")) text.erase(0, 1);
+  if (text.ends_with("^-1")) text = "/" + text.substr(0, text.size() - 3);
+  return text;
+}
+
+// "g" is a mass and an acceleration: the dimension that is wanted decides, else the first that has it.
+std::optional<Unit> unit_named(std::string_view symbol, Dimension wanted = Dimension::mass) {
+  std::optional<Unit> any;
+  for (const Unit& unit : kUnits) {
+    if (unit.symbol != symbol) continue;
+    if (unit.dimension == wanted) return unit;
+    if (!any) any = unit;
+  }
+  return any;
+}
+
+struct NumberAndUnit {
+  double number = 0;
+  std::string unit;
+};
+
+std::optional<NumberAndUnit> split(std::string_view text) {
+  NumberAndUnit parts;
+  text = trimmed(text);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), parts.number);
+  if (fault != std::errc() || !std::isfinite(parts.number)) return std::nullopt;
+  parts.unit = canonical(text.substr(static_cast<std::size_t>(end - text.data())));
+  return parts;
+}
+
+tl::unexpected<Error> wrong(std::string_view text, std::string_view why, Dimension dimension) {
+  return fail(Fault::usage, fmt::format("'{}' {}", text, why), {},
+              fmt::format("write a number with one of: {}", units_of(dimension)));
+}
+
+}  // namespace
+
+std::string units_of(Dimension dimension) {
+  std::string list;
+  for (const Unit& unit : kUnits) {
+    if (unit.dimension != dimension) continue;
+    list += (list.empty() ? "" : ", ") + std::string(unit.symbol);
+  }
+  return list;
+}
+
+Result<double> parse_quantity(std::string_view text, Dimension dimension) {
+  const auto parts = split(text);
+  if (!parts) return wrong(text, "is not a finite number with a unit", dimension);
+  if (parts->unit.empty()) {
+    if (dimension == Dimension::none) return parts->number;
+    return wrong(text, "has no unit", dimension);
+  }
+  const auto unit = unit_named(parts->unit, dimension);
+  if (!unit) return wrong(text, fmt::format("has the unknown unit '{}'", parts->unit), dimension);
+  if (unit->dimension != dimension) return wrong(text, "has a unit of another quantity", dimension);
+  return parts->number * unit->si;
+}
+
+Result<Unit> parse_unit(std::string_view symbol) {
+  if (const auto unit = unit_named(canonical(symbol))) return *unit;
+  std::string known;
+  for (const Unit& unit : kUnits)
+    if (unit_named(unit.symbol)->dimension == unit.dimension)  // once each
+      known += (known.empty() ? "" : ", ") + std::string(unit.symbol);
+  return fail(Fault::usage, fmt::format("'{}' is no known unit", symbol), {}, "the units are: " + known);
+}
+
+std::string_view si_symbol(Dimension dimension) {
+  constexpr std::array<std::string_view, 13> kSymbols = {"m", "s",   "Hz", "1/m", "m/s", "m/s^2", "N",
+                                                         "V", "m/N", "1",  "dB",  "kg",  "1"};
+  return kSymbols[static_cast<std::size_t>(dimension)];
+}
+
+std::string for_people(double value_si, Dimension dimension) {
+  const Unit* best = nullptr;
+  for (const Unit& unit : kUnits) {
+    if (unit.dimension != dimension || for_reading_only(unit)) continue;
+    if (best == nullptr || std::abs(value_si) >= unit.si || (value_si == 0 && unit.si <= 1)) best = &unit;
+  }
+  if (best->dimension == Dimension::none) return fmt::format("{:.4g}", value_si);
+  const bool inverse = best->symbol.starts_with('/');
+  return fmt::format("{:.4g}{}{}", value_si / best->si, inverse ? "" : " ", best->symbol);
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+
+#include "data-schema/calibration/calibration_json.hpp"
+#include "data-schema/files/config_folder.hpp"
+#include "data-schema/files/files.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kCalibrationKind = "calibration";
+
+bool fits_a_file_name(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+}
+
+std::string file_name_of(std::string serial) {
+  std::ranges::replace_if(
+      serial, [](char c) { return !fits_a_file_name(c); }, '_');
+  return serial + ".calibration.json";
+}
+
+const CalibrationEntry* newest(const CalibrationFile& file, std::string_view channel,
+                               std::optional<double> CalibrationEntry::*part) {
+  const CalibrationEntry* found = nullptr;
+  for (const CalibrationEntry& entry : file.entries)
+    if (entry.channel == channel && (entry.*part).has_value() && (!found || entry.date >= found->date))
+      found = &entry;
+  return found;
+}
+
+std::optional<std::time_t> time_of(const std::string& date) {
+  std::tm parts{};
+  const char* const end =
+      strptime(date.c_str(), date.size() > 10 ? "%Y-%m-%dT%H:%M:%SZ" : "%Y-%m-%d", &parts);
+  if (end == nullptr || *end != '\0') return std::nullopt;
+  return timegm(&parts);
+}
+
+}  // namespace
+
+Result<std::string> calibration_path(const std::string& serial) {
+  if (serial.empty())
+    return fail(Fault::unsuitable, "the device has no serial number to keep a calibration under", {},
+                "name a file with --calibration FILE");
+  return config_folder("calibrations").map([&](const std::filesystem::path& folder) {
+    return (folder / "calibrations" / file_name_of(serial)).string();
+  });
+}
+
+Result<CalibrationFile> read_calibration(const std::string& path) {
+  const auto document = open_document(path, kCalibrationKind);
+  if (!document) return forward_error(document);
+  CalibrationFile file = calibration_from(document->body);
+  file.extra_json = unknown_members(document->body, kCalibrationKind);
+  file.newer_version = document->newer_version;
+  return file;
+}
+
+Result<void> write_calibration(const std::string& path, const CalibrationFile& file) {
+  const auto text = document_text(kCalibrationKind, calibration_body(file), file.extra_json);
+  if (!text) return forward_error(text);
+  if (const auto made = make_folder_of(path); !made) return made;
+  PendingFiles pending;
+  if (const auto written = pending.write(path, *text); !written) return written;
+  return pending.commit();
+}
+
+Result<FolderLock> lock_calibration(const std::string& path) {
+  if (const auto made = make_folder_of(path); !made) return forward_error(made);
+  return FolderLock::take(path);
+}
+
+const CalibrationEntry* newest_scale(const CalibrationFile& file, std::string_view channel) {
+  return newest(file, channel, &CalibrationEntry::scale);
+}
+
+const CalibrationEntry* newest_zero(const CalibrationFile& file, std::string_view channel) {
+  return newest(file, channel, &CalibrationEntry::zero);
+}
+
+std::optional<double> seconds_between(const std::string& from, const std::string& to) {
+  const auto first = time_of(from), last = time_of(to);
+  return first && last ? std::optional(std::difftime(*last, *first)) : std::nullopt;
+}
+
+}  // namespace tacto::schema

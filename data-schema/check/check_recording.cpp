@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "data-schema/check/check_parts.hpp"
+#include "data-schema/recording/recording_json.hpp"
+#include "data-schema/transducer/transducer_plausible.hpp"
+
+namespace tacto::schema {
+namespace {
+
+// Times come from the gaps' counts; the number of the frame behind each tells whether a gap is missing, or
+// stands there twice. The first that does is enough: it moves all others.
+std::optional<Violation> sequence_breach(const RecordingHeader& header) {
+  std::uint64_t missing = 0;
+  for (std::size_t i = 0; i < header.gaps.size(); ++i) {
+    const Gap& gap = header.gaps[i];
+    missing += gap.count;
+    if (gap.device_sequence != gap.frame + missing)
+      return Violation{
+          fmt::format("/gaps/{}/device_sequence", i),
+          fmt::format("is {}, and by its frame and the gaps up to it {}: a gap is missing, or told "
+                      "twice",
+                      gap.device_sequence, gap.frame + missing)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Finding> check_recording(const std::string& path, const Document& document,
+                                     const Progress& progress) {
+  const RecordingHeader header = recording_header_unchecked(document);
+  std::vector<Finding> findings;
+  for (const auto& [pointer, what] : recording_breaches(header))
+    findings.push_back({fmt::format("{}#{}", path, pointer), what});
+  if (const auto breach = sequence_breach(header))
+    findings.push_back({fmt::format("{}#{}", path, breach->pointer), breach->what});
+  if (header.transducer)
+    if (const auto plausible = check_plausible(*header.transducer, path + "#/transducer"); !plausible)
+      findings.push_back({plausible.error().where, plausible.error().what});
+  const std::string wav = (std::filesystem::path(path).parent_path() / header.wav_file).string();
+  const auto more = check_wav(
+      {wav, header.sha256, header.format, header.frames, std::round(header.sample_rate_hz), header.channels},
+      progress);
+  findings.insert(findings.end(), more.begin(), more.end());
+  return findings;
+}
+
+}  // namespace tacto::schema

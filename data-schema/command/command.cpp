@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/command/command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <memory>
+
+#include "data-schema/base/nearest_word.hpp"
+#include "data-schema/command/failure.hpp"
+#include "data-schema/command/man_page.hpp"
+#include "data-schema/command/option_headings.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/report/report_entries.hpp"
+#include "data-schema/report/report_text.hpp"
+#include "data-schema/report/warnings.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::cli {
+namespace {
+
+constexpr std::string_view kFooter =
+    "Help on a verb or a topic (sim, units, exit-codes): tactograph help TOPIC\n"
+    "Exit codes: 0 done, 1 internal error, 2 command line, 3 file or device not found, 4 malformed file,\n"
+    "5 data that cannot be used for this, 6 file of a newer version, 7 can't write, 8 device failed.\n"
+    "Quantities carry their unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
+
+// A verb that writes its results to files says on the terminal what fits on half a screen.
+// Warnings are among these lines.
+constexpr std::size_t kLinesBesideFiles = 15, kFewestLines = 6;
+
+using Verbs = std::span<const Verb* const>;
+using Topics = std::span<const HelpTopic* const>;
+
+struct Entry {
+  CLI::App* app = nullptr;
+  Action action;
+  bool json = false;
+};
+
+Entry declare(CLI::App& parent, const Verb& verb) {
+  Entry entry;
+  entry.app = parent.add_subcommand(std::string(verb.name), std::string(verb.summary));
+  entry.app->footer(fmt::format("Example:\n  {}", verb.example));
+  entry.action = verb.declare(*entry.app);
+  return entry;
+}
+
+bool writes_files(const Entry& entry) {
+  const CLI::Option* output = entry.app->get_option_no_throw("--output");
+  return output != nullptr && (output->count() > 0 || !output->get_default_str().empty());
+}
+
+bool has_key(const Report& report, const std::string& key) {
+  return std::ranges::any_of(ReportPrinter::entries(report),
+                             [&](const auto& entry) { return entry.first == key; });
+}
+
+std::string printed(Report report, const Entry& entry) {
+  const std::size_t lines =
+      kLinesBesideFiles - std::min(printed_warnings(), kLinesBesideFiles - kFewestLines);
+  if (!entry.json) return text_of(report, {.lines = writes_files(entry) ? lines : 0});
+  if (const auto warnings = all_warnings(); !warnings.empty() && !has_key(report, "warnings"))
+    report.add("warnings", warnings);
+  return report.json();
+}
+
+// A full disk or a closed pipe behind stdout is a failure to write like any other.
+int print_report(const Report& report, const Entry& entry) {
+  const std::string text = printed(report, entry);
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (!written)
+    return print_error({schema::Fault::cannot_write, "the result could not be written", "stdout", ""},
+                       entry.json);
+  return report.exit_code();
+}
+
+int print_written(const schema::Result<void>& written, bool json) {
+  return written ? 0 : print_error(written.error(), json);
+}
+
+int act(const Entry& entry) {
+  const auto report = entry.action();
+  if (!report) return print_error(report.error(), entry.json);
+  return print_report(*report, entry);
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// The first argument that no option takes, with the option that was probably meant.
+std::string nearest_option(const CLI::App& app, const CLI::App& verb) {
+  for (const std::string& argument : app.remaining(true))
+    if (argument.starts_with("--"))
+      return schema::did_you_mean(argument.substr(0, argument.find('=')), option_names(verb));
+  return "";
+}
+
+int print_parse_error(const CLI::App& app, const CLI::ParseError& error, bool json) {
+  if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version arrive here too
+  const auto parsed = app.get_subcommands();
+  const CLI::App& verb = parsed.empty() ? app : *parsed.front();
+  const std::string name = parsed.empty() ? "" : verb.get_name() + " ";
+  return print_error({schema::Fault::usage, error.what() + nearest_option(app, verb), "",
+                      fmt::format("see 'tactograph {}--help'", name)},
+                     json);
+}
+
+void describe(CLI::App& app) {
+  app.footer(std::string(kFooter));
+  app.set_version_flag("--version", std::string(kCreator));
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  app.option_defaults()->always_capture_default();
+}
+
+std::vector<std::string> verb_names(Verbs verbs) {
+  std::vector<std::string> names;
+  for (const Verb* verb : verbs) names.emplace_back(verb->name);
+  names.insert(names.end(), {"help", "completion", "man-pages"});
+  return names;
+}
+
+// CLI11 would only say that a subcommand is required.
+bool is_unknown_verb(Verbs verbs, std::string_view word) {
+  const auto names = verb_names(verbs);
+  return !word.starts_with('-') && std::ranges::find(names, word) == names.end();
+}
+
+int refuse_verb(Verbs verbs, const std::string& word, bool json) {
+  const auto names = verb_names(verbs);
+  return print_error(
+      {schema::Fault::usage, fmt::format("there is no verb '{}'{}", word, schema::did_you_mean(word, names)),
+       "", fmt::format("the verbs are: {}", fmt::join(names, ", "))},
+      json);
+}
+
+int print_text(const std::string& text) {
+  return std::fputs(text.c_str(), stdout) < 0 ? schema::exit_code(schema::Fault::cannot_write) : 0;
+}
+
+// Of a verb, of a topic, or, without a word, of everything.
+int print_help(const CLI::App& app, const std::string& word, Topics topics, bool json) {
+  if (word.empty()) return print_text(app.help() + "\nTopics of 'tactograph help':\n" + topics_text(topics));
+  for (const CLI::App* verb : app.get_subcommands({}))
+    if (verb->get_name() == word) return print_text(verb->help(app.get_name()));
+  if (const std::string text = topic_text(word, topics); !text.empty()) return print_text(text);
+  auto known = topic_names(topics);
+  const std::string listed = fmt::format("the topics are: {}, and each verb", fmt::join(known, ", "));
+  for (const CLI::App* verb : app.get_subcommands({})) known.push_back(verb->get_name());
+  return print_error(
+      {schema::Fault::usage,
+       fmt::format("there is no help on '{}'{}", word, schema::did_you_mean(word, known)), "", listed},
+      json);
+}
+
+// Verbs that end in another way when asked (record) have handlers of their own meanwhile.
+void leave_nothing_behind(int signal) {
+  schema::remove_pending_files();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void handle_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (std::signal(signal, leave_nothing_behind) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a file beyond the shell's limit is then an error of writing, as a full disk is
+}
+
+}  // namespace
+
+int run_command(Verbs verbs, int argc, const char* const* argv, Topics topics) {
+  handle_signals();
+  const bool json = asks_for_json(argc, argv);
+  if (argc > 1 && is_unknown_verb(verbs, argv[1])) return refuse_verb(verbs, argv[1], json);
+  CLI::App app(
+      "Records how a surface pulls on a finger, turns it into force against position, and plays it back.",
+      "tactograph");
+  describe(app);
+  std::vector<std::unique_ptr<Entry>> entries;
+  for (const Verb* verb : verbs) {
+    entries.push_back(std::make_unique<Entry>(declare(app, *verb)));
+    entries.back()->app->add_flag("--json", entries.back()->json, "Print the result as JSON, and errors too");
+    put_below_headings(verb->name, *entries.back()->app);
+  }
+  CLI::App* help = app.add_subcommand("help", "Explain a verb or a topic: sim, units, exit-codes");
+  std::string word;
+  help->add_option("TOPIC", word, "A verb or a topic");
+  CLI::App* completion = app.add_subcommand("completion", "Print the bash completion script");
+  completion->footer("Example:\n  tactograph completion > /etc/bash_completion.d/tactograph");
+  CLI::App* manual = app.add_subcommand("man-pages", "Write the manual pages into a folder");
+  std::string manual_folder;
+  manual->add_option("folder", manual_folder, "An existing folder, such as /usr/share/man/man1")->required();
+  manual->footer("Example:\n  tactograph man-pages /usr/share/man/man1");
+  try {
+    app.parse(argc, argv);
+    if (help->parsed()) return print_help(app, word, topics, json);
+    if (manual->parsed()) return print_written(write_man_pages(manual_folder, verbs), json);
+    if (completion->parsed()) return print_text(bash_completion(verbs, topics));
+    for (const auto& entry : entries)
+      if (entry->app->parsed()) return act(*entry);
+  } catch (const CLI::ParseError& error) {
+    return print_parse_error(app, error, json);
+  } catch (const std::exception& error) {
+    return print_error({schema::Fault::internal, error.what(), "internal error", "please report it"}, json);
+  }
+  return 0;
+}
+
+}  // namespace tacto::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command itself: from a table of verbs and an argument list to output and an exit code.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "data-schema/command/help.hpp"
+#include "data-schema/command/verb.hpp"
+
+namespace tacto::cli {
+
+/// Runs one command line; `topics` are what `help` explains beside verbs. Results go to stdout, talk and
+/// errors to stderr. Gives the exit code: 0, or exit_code() of the fault (2 for the command line itself).
+int run_command(std::span<const Verb* const> verbs, int argc, const char* const* argv,
+                std::span<const HelpTopic* const> topics = {});
+
+/// The script that makes bash complete verbs, options, their values and units, presets, keys of `sim:` (the
+/// first words of that topic's lines) and file names, made from the same table.
+std::string bash_completion(std::span<const Verb* const> verbs,
+                            std::span<const HelpTopic* const> topics = {});
+
+}  // namespace tacto::cli

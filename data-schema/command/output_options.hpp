@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// --force and --unfit-transducer, alike in every verb that has them.
+#pragma once
+
+#include "data-schema/command/verb.hpp"
+#include "data-schema/files/files.hpp"
+
+namespace tacto::cli {
+
+/// --force: outputs replace files of their names. Sets `existing` to keep, with the flag to replace; it must
+/// outlive the parser.
+void declare_force(CLI::App& app, schema::Existing& existing);
+
+/// --unfit-transducer; `taken` must outlive the parser.
+void declare_unfit_transducer(CLI::App& app, bool& taken);
+
+/// For a verb that replaces no files: --force is refused, and the message names --unfit-transducer, which was
+/// once called so.
+void refuse_force(CLI::App& app);
+
+}  // namespace tacto::cli

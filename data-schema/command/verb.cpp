@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/command/verb.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "data-schema/base/nearest_word.hpp"
+#include "data-schema/report/warnings.hpp"
+
+namespace tacto::cli {
+namespace {
+
+std::string type_name(schema::Dimension dimension) {
+  if (dimension == schema::Dimension::none) return "NUMBER";
+  return "NUMBER+UNIT(" + schema::units_of(dimension) + ")";
+}
+
+double parsed(const std::string& name, const std::string& text, schema::Dimension dimension) {
+  const auto value = schema::parse_quantity(text, dimension);
+  if (!value) throw CLI::ValidationError(name, schema::message(value.error()));
+  return *value;
+}
+
+}  // namespace
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value_si,
+                          schema::Dimension dimension, const std::string& help) {
+  auto read = [name, &value_si, dimension](const std::string& text) {
+    value_si = parsed(name, text, dimension);
+  };
+  return app.add_option_function<std::string>(name, read, help)
+      ->type_name(type_name(dimension))
+      ->default_str(schema::for_people(value_si, dimension));
+}
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, std::optional<double>& value_si,
+                          schema::Dimension dimension, const std::string& help) {
+  auto read = [name, &value_si, dimension](const std::string& text) {
+    value_si = parsed(name, text, dimension);
+  };
+  return app.add_option_function<std::string>(name, read, help)->type_name(type_name(dimension));
+}
+
+std::string words_of(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, "|"));
+}
+
+std::size_t choose(const std::string& option, const std::string& word,
+                   const std::vector<std::string>& words) {
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end())
+    throw CLI::ValidationError(
+        option, fmt::format("there is no '{}'{}: take one of {}", word, schema::did_you_mean(word, words),
+                            fmt::join(words, ", ")));
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+// CLI11's own says between which 309 digits the number must be.
+const CLI::Validator& from_one() {
+  static const CLI::Validator kFromOne(
+      [](std::string& text) {
+        const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+        const bool fits = digits && text.find_first_not_of('0') != std::string::npos;
+        return fits ? std::string() : fmt::format("'{}' is no whole number from 1 on", text);
+      },
+      "POSITIVE");
+  return kFromOne;
+}
+
+void warn(const std::string& text) {
+  print_warning(text);
+}
+
+}  // namespace tacto::cli

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A verb of the command line: its entry in the table, and how it declares options with units.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/report/report.hpp"
+
+namespace tacto::cli {
+
+/// What a verb does once its options are read: the report for stdout, or the error for stderr and the exit
+/// code.
+using Action = std::function<schema::Result<Report>()>;
+
+/// An entry of the table in tactograph.cpp. `declare` adds the options to `app`, keeps their values in an
+/// object that the action shares, and gives the action.
+struct Verb {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view example;  ///< shown by --help; one or more command lines
+  Action (*declare)(CLI::App& app);
+};
+
+/// An option that takes a number with a unit of `dimension`; bare numbers are refused by name of the fitting
+/// units.
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value_si,
+                          schema::Dimension dimension, const std::string& help);
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, std::optional<double>& value_si,
+                          schema::Dimension dimension, const std::string& help);
+
+/// The words that an option takes and what each means; the first that has the value is the default shown.
+template <class Choice>
+using Choices = std::vector<std::pair<std::string, Choice>>;
+
+/// "a|b|c"
+std::string words_of(const std::vector<std::string>& words);
+/// The word's index. Throws CLI::ValidationError, with the words there are: for use in an option's callback
+/// only.
+std::size_t choose(const std::string& option, const std::string& word, const std::vector<std::string>& words);
+
+/// An option that takes one of some words.
+template <class Choice>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Choice& value, const Choices<Choice>& choices,
+                        const std::string& help) {
+  std::vector<std::string> words;
+  std::string standard;
+  for (const auto& [word, meaning] : choices) {
+    words.push_back(word);
+    if (meaning == value && standard.empty()) standard = word;
+  }
+  auto read = [name, words, choices, &value](const std::string& word) {
+    value = choices[choose(name, word, words)].second;
+  };
+  return app.add_option_function<std::string>(name, read, help)
+      ->type_name(words_of(words))
+      ->default_str(standard);
+}
+
+/// For an option that counts: a whole number from 1.
+const CLI::Validator& from_one();
+
+/// One line to stderr: what the user should know although the job goes on.
+void warn(const std::string& text);
+
+}  // namespace tacto::cli

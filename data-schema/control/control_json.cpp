@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "data-schema/control/control.hpp"
+#include "data-schema/json/json_schema.hpp"
+#include "data-schema/json/json_text.hpp"
+#include "data-schema/json/known_members.hpp"
+#include "data-schema/scene/playback_choices_json.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::array<std::string_view, 9> kControlVerbs = {"hello",  "load", "arm",    "play", "stop",
+                                                           "disarm", "gain", "status", "watch"};
+constexpr int kDeepestRequest = 3;
+constexpr std::string_view kRequestWhere = "request";
+
+// What an object says twice is named; all else that is no request is answered alike.
+Result<Json> request_json(std::string_view line) {
+  auto body = parse_json(line, std::string(kRequestWhere), kDeepestRequest);
+  if (body || !body.error().remedy.empty()) return body;
+  return fail(Fault::malformed, "the line is not one JSON object", std::string(kRequestWhere),
+              R"(send lines such as {"request":"status"})");
+}
+
+std::string id_in(const Json& body) try {
+  if (!body.is_object() || !body.contains("id")) return {};
+  const Json& id = body["id"];
+  return id.is_string() || id.is_number() ? id.dump() : std::string();
+} catch (const std::exception&) {  // text that is not UTF-8
+  return {};
+}
+
+tl::unexpected<Error> bad_member(const char* member, std::string what, std::string remedy) {
+  return fail(Fault::malformed, std::move(what), fmt::format("{}#/{}", kRequestWhere, member),
+              std::move(remedy));
+}
+
+// A member says what it is; without one the request itself is wrong.
+std::string remedy_for(const std::string& pointer, const Json& rules) {
+  if (auto range = remedy_at(pointer, rules); !range.empty()) return range;
+  if (auto meaning = meaning_at(pointer, rules); !meaning.empty()) return meaning;
+  return fmt::format("the requests are {}", fmt::join(kControlVerbs, ", "));
+}
+
+Result<void> check_version_of(const std::string& version) {
+  const auto major = [](std::string_view text) { return text.substr(0, text.find('.')); };
+  if (major(version) == major(kControlVersion)) return {};
+  return fail(Fault::unsupported_version,
+              fmt::format("the client speaks version {} of the control protocol, this daemon {}", version,
+                          kControlVersion),
+              std::string(kRequestWhere), "use the tactograph that came with the daemon");
+}
+
+Result<void> check_members(const ControlRequest& request) {
+  if (request.verb == ControlVerb::hello && request.version.empty())
+    return bad_member("version", "hello says no version", R"(add "version":"1.0")");
+  if (request.verb == ControlVerb::load && request.file.empty())
+    return bad_member("file", "load names no file", "add the file of a texture or scene");
+  if (request.verb == ControlVerb::gain && !request.gain)
+    return bad_member("gain", "gain has no gain", R"(add a factor, as in "gain":0.5)");
+  if (request.verb == ControlVerb::hello) return check_version_of(request.version);
+  return {};
+}
+
+// Who says what another request is told means that one: it is not lost, for it may be a limit.
+Result<void> check_taken(const Json& body, ControlVerb verb) {
+  constexpr std::array<std::pair<const char*, ControlVerb>, 12> kTakenBy = {
+      {{"version", ControlVerb::hello},
+       {"token", ControlVerb::hello},
+       {"file", ControlVerb::load},
+       {"at_m", ControlVerb::load},
+       {"gain_m_per_n", ControlVerb::load},
+       {"ends", ControlVerb::load},
+       {"fade_s", ControlVerb::load},
+       {"playback", ControlVerb::load},
+       {"while_connected", ControlVerb::arm},
+       {"dead_man_s", ControlVerb::arm},
+       {"gain", ControlVerb::gain},
+       {"save", ControlVerb::gain}}};
+  const auto word = [](ControlVerb of) { return kControlVerbs[static_cast<std::size_t>(of)]; };
+  for (const auto& [name, taker] : kTakenBy)
+    if (body.contains(name) && verb != taker)
+      return bad_member(name, fmt::format("'{}' takes no '{}'", word(verb), name),
+                        fmt::format("send it with '{}'", word(taker)));
+  return {};
+}
+
+std::optional<double> asked_number(const Json& body, const char* name) {
+  return body.contains(name) ? std::optional(body[name].get<double>()) : std::nullopt;
+}
+
+ControlRequest request_of(const Json& body) {
+  ControlRequest request;
+  request.verb = static_cast<ControlVerb>(std::ranges::find(kControlVerbs, text_or(body, "request")) -
+                                          kControlVerbs.begin());
+  request.id_json = id_in(body);
+  request.version = text_or(body, "version");
+  request.token = text_or(body, "token");
+  request.file = text_or(body, "file");
+  request.at_m = asked_number(body, "at_m");
+  request.gain_m_per_n = asked_number(body, "gain_m_per_n");
+  request.fade_s = asked_number(body, "fade_s");
+  request.playback = playback_choices_in(body);
+  request.while_connected = body.value("while_connected", false);
+  request.dead_man_s = asked_number(body, "dead_man_s");
+  request.gain = asked_number(body, "gain");
+  request.save = body.value("save", false);
+  for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
+    if (text_or(body, "ends") == word_of(ends)) request.ends = ends;
+  return request;
+}
+
+Json value_json(const ControlValue& value) {
+  return std::visit([](const auto& plain) { return Json(plain); }, value);
+}
+
+bool is_sendable(const ControlValue& value) {
+  const auto* number = std::get_if<double>(&value);
+  return number == nullptr || std::isfinite(*number);
+}
+
+// Text of the system's that is no UTF-8 must not make a reply fail.
+std::string line_of(const Json& body) {
+  return body.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void put_fields(Json& body, const ControlFields& fields) {
+  for (const auto& [name, value] : fields)
+    if (is_sendable(value)) body[name] = value_json(value);
+}
+
+Json begun(const std::string& id_json) {
+  Json body = Json::object();
+  if (!id_json.empty()) body["id"] = Json::parse(id_json, nullptr, false);
+  return body;
+}
+
+std::optional<ControlValue> value_from(const Json& value) {
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (value.is_number()) return value.get<double>();
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return std::nullopt;
+  std::vector<double> numbers;
+  for (const Json& number : value)
+    if (number.is_number()) numbers.push_back(number.get<double>());
+  return numbers;
+}
+
+ControlReply reply_from(const Json& body) {
+  ControlReply reply;
+  reply.ok = body.value("ok", false);
+  reply.event = text_or(body, "event");
+  for (const auto& [name, value] : body.items())
+    if (auto plain = value_from(value)) reply.fields.emplace_back(name, std::move(*plain));
+  if (!body.contains("error")) return reply;
+  const Json& error = body["error"];
+  reply.error = {static_cast<Fault>(error.value("fault", 0)), text_or(error, "what"), text_or(error, "where"),
+                 text_or(error, "remedy")};
+  return reply;
+}
+
+}  // namespace
+
+Result<ControlRequest> parse_control_request(std::string_view line, std::string* id_json) {
+  const auto body = request_json(line);
+  if (!body) return forward_error(body);
+  if (id_json != nullptr) *id_json = id_in(*body);
+  static const auto& kRules = schema_of("control");
+  const auto faults = breaches(*body, *kRules);
+  if (!faults.empty())
+    return fail(Fault::malformed, faults.front().what,
+                fmt::format("{}#{}", kRequestWhere, faults.front().pointer),
+                remedy_for(faults.front().pointer, *kRules));
+  if (body->contains("playback")) {
+    const auto known = check_members_known((*kRules)["properties"]["playback"], (*body)["playback"],
+                                           fmt::format("{}#/playback", kRequestWhere));
+    if (!known) return forward_error(known);
+  }
+  ControlRequest request = request_of(*body);
+  if (const auto taken = check_taken(*body, request.verb); !taken) return forward_error(taken);
+  request.passed_over = members_not_in(*kRules, *body);
+  if (const auto sound = check_members(request); !sound) return forward_error(sound);
+  return request;
+}
+
+std::string control_request_line(const ControlRequest& request) {
+  Json body = begun(request.id_json);
+  body["request"] = kControlVerbs[static_cast<std::size_t>(request.verb)];
+  put_text(body, "version", request.version);
+  put_text(body, "file", request.file);
+  if (request.at_m) body["at_m"] = *request.at_m;
+  if (request.gain_m_per_n) body["gain_m_per_n"] = *request.gain_m_per_n;
+  if (request.ends) body["ends"] = word_of(*request.ends);
+  if (request.fade_s) body["fade_s"] = *request.fade_s;
+  if (Json playback = playback_choices_body(request.playback); !playback.empty()) body["playback"] = playback;
+  if (request.while_connected) body["while_connected"] = true;
+  if (request.dead_man_s) body["dead_man_s"] = *request.dead_man_s;
+  if (request.gain) body["gain"] = *request.gain;
+  if (request.save) body["save"] = true;
+  return line_of(body);
+}
+
+std::string control_reply_line(const std::string& id_json, const ControlFields& fields) {
+  Json body = begun(id_json);
+  body["ok"] = true;
+  put_fields(body, fields);
+  return line_of(body);
+}
+
+std::string control_error_line(const std::string& id_json, const Error& error) {
+  Json body = begun(id_json);
+  body["ok"] = false;
+  body["error"] = {{"fault", static_cast<int>(error.fault)},
+                   {"what", error.what},
+                   {"where", error.where},
+                   {"remedy", error.remedy}};
+  return line_of(body);
+}
+
+std::string control_event_line(std::string_view name, const ControlFields& fields) {
+  Json body = {{"event", name}};
+  put_fields(body, fields);
+  return line_of(body);
+}
+
+Result<ControlReply> parse_control_reply(std::string_view line) try {
+  const auto body = parse_json(line, "reply");
+  if (body && body->is_object()) return reply_from(*body);
+  return fail(Fault::malformed, body ? "the daemon's reply is no JSON object" : body.error().what, "reply",
+              "is it tactographd that listens there?");
+} catch (const std::exception&) {  // a member of another type than ours has
+  return fail(Fault::malformed, "the daemon's reply is none of tactographd's", "reply",
+              "is it tactographd that listens there?");
+}
+
+double control_number(const ControlFields& fields, std::string_view name, double fallback) {
+  for (const auto& [key, value] : fields) {
+    if (key != name) continue;
+    if (const auto* number = std::get_if<double>(&value)) return *number;
+    if (const auto* count = std::get_if<std::int64_t>(&value)) return static_cast<double>(*count);
+  }
+  return fallback;
+}
+
+std::string control_text(const ControlFields& fields, std::string_view name) {
+  for (const auto& [key, value] : fields)
+    if (const auto* text = std::get_if<std::string>(&value); text != nullptr && key == name) return *text;
+  return {};
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/files/pending_names.hpp"
+
+#include <unistd.h>
+
+namespace tacto::schema {
+
+PendingName* PendingNames::keep(const std::string& path) {
+  const std::lock_guard lock(mutex_);
+  PendingName* name = nullptr;
+  if (free_.empty()) {
+    name = new PendingName;  // a handler may be reading it at any time to the process's end
+    name->next = first_.load();
+    first_.store(name);
+  } else {
+    name = free_.back();
+    free_.pop_back();
+  }
+  name->path = path;
+  name->there.store(true);
+  return name;
+}
+
+void PendingNames::forget(PendingName* name) {
+  const std::lock_guard lock(mutex_);
+  name->there.store(false);
+  free_.push_back(name);
+}
+
+void PendingNames::remove_all() const noexcept {
+  for (const PendingName* name = first_.load(); name != nullptr; name = name->next)
+    if (name->there.load()) unlink(name->path.c_str());
+}
+
+// Never destroyed: files may be pending in objects that outlive it.
+PendingNames& pending_names() {
+  static PendingNames& names = *new PendingNames;
+  return names;
+}
+
+}  // namespace tacto::schema

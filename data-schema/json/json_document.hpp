@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// JSON documents of ours: the wall around the JSON and JSON Schema libraries. Internal to this folder: its
+// other headers show no JSON. Nothing here throws.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+
+namespace tacto::schema {
+
+using Json = nlohmann::ordered_json;
+
+/// The formats' version, "major.minor", of every kind that has none of its own. A minor version only adds
+/// members.
+inline constexpr std::string_view kVersion = "1.0";
+
+/// The version of a kind's format.
+std::string_view version_of_kind(std::string_view kind);
+
+/// One breach of a schema: the JSON pointer ("" for the whole document) and what is wrong there.
+struct Violation {
+  std::string pointer;
+  std::string what;
+};
+
+/// A document that fits its schema. Members that the schema requires are there and have their types.
+struct Document {
+  Json body;
+  std::string newer_version;  ///< the file's version, where its minor version is newer than ours; else empty
+};
+
+/// Reads a file and checks kind, version and schema. Errors: not_found; malformed, with line and column or
+/// with "FILE#/json/pointer"; unsupported_version, naming both versions.
+Result<Document> open_document(const std::string& path, std::string_view kind);
+
+/// The same for a text in memory; `where` names it in errors.
+Result<Document> parse_document(std::string_view text, const std::string& where, std::string_view kind);
+
+/// The `kind` that a file says it is. Errors: not_found; malformed, where it isn't JSON or names no kind.
+Result<std::string> kind_of(const std::string& path);
+
+/// Every breach of the schema of the file's own kind; empty where it is sound. Errors: as open_document, but
+/// for the breaches themselves.
+Result<std::vector<Violation>> violations_of(const std::string& path);
+
+/// The document to write: kind and version, then `body`, then those members of `extra_json` (an object's
+/// text, or empty) that body lacks. Two spaces of indentation, a newline at the end; doubles read back to the
+/// same bits. Errors: unsuitable, by JSON pointer, where a number is not finite or the schema does not allow
+/// the document.
+Result<std::string> document_text(std::string_view kind, const Json& body, const std::string& extra_json);
+
+/// The members at top level that the schema of `kind` does not name, as an object's text for document_text;
+/// empty where there are none.
+std::string unknown_members(const Json& body, std::string_view kind);
+
+/// body[key] = text, but only where there is a text: optional members are left out, not empty.
+void put_text(Json& body, const char* key, const std::string& text);
+
+/// An optional member, or `fallback` where it is absent. For documents that fit their schema.
+std::string text_or(const Json& body, const char* key, const std::string& fallback = {});
+double number_or(const Json& body, const char* key, double fallback);
+
+}  // namespace tacto::schema

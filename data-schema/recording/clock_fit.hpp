@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The device's clock against the host's.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "data-schema/recording/recording.hpp"
+
+namespace tacto::schema {
+
+/// device_s - host_s = offset_s + drift (host_s - host_s of the first pair).
+struct ClockFit {
+  double drift_ppm = 0;              ///< above zero: the device's clock is fast
+  double drift_uncertainty_ppm = 0;  ///< standard, of the slope, from the scatter (type A)
+  double offset_s = 0;               ///< at the first pair
+  double scatter_s = 0;              ///< RMS of what the line leaves: how late messages come
+};
+
+/// Ordinary least squares over the pairs. None of fewer than 3 pairs, or where they span less than 10 s: the
+/// host's own lateness, some ms, would tell more than the clocks. The uncertainty takes pairs for
+/// independent: a host that is late for long stretches is worse than it says.
+std::optional<ClockFit> fit_clock(std::span<const ClockPair> pairs);
+
+}  // namespace tacto::schema

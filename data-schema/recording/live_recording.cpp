@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/recording/live_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "data-schema/files/background_sync.hpp"
+#include "data-schema/files/event_file.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording_close.hpp"
+#include "data-schema/recording/recording_events.hpp"
+#include "data-schema/recording/recording_place.hpp"
+
+namespace tacto::schema {
+
+struct LiveRecording::State {
+  std::string stem;
+  RecordingHeader header;
+  EventFile events;
+  WavWriter wav;
+  std::unique_ptr<BackgroundSync> sync;
+
+  Result<void> append(const std::string& line);
+  Result<void> check_place() const;
+};
+
+LiveRecording::LiveRecording(std::unique_ptr<State> state) : state_(std::move(state)) {}
+LiveRecording::LiveRecording(LiveRecording&&) noexcept = default;
+LiveRecording& LiveRecording::operator=(LiveRecording&&) noexcept = default;
+LiveRecording::~LiveRecording() = default;
+
+Result<LiveRecording> LiveRecording::create(const std::string& name, RecordingHeader header) {
+  assert(header.format == SampleFormat::pcm32);
+  const std::string stem = stem_of(name, ""), wav = stem + ".wav";
+  if (const auto named = check_stem(stem); !named) return forward_error(named);
+  if (const auto free = check_free(stem); !free) return forward_error(free);
+  header.wav_file = std::filesystem::path(wav).filename().string();
+  header.frames = 0;
+  if (const auto fits = check_storable(header); !fits) return forward_error(fits);
+  const auto first = begin_line(header);
+  if (!first) return forward_error(first);
+  auto events = EventFile::create(events_path(stem));
+  if (!events) return forward_error(events);
+  auto writer = WavWriter::create_new(wav, header.sample_rate_hz, header.channels.size(), header.format);
+  const auto begun = writer ? events->append(*first) : forward_error(writer);
+  if (!begun) {
+    if (const auto removed = events->remove(); !removed) return forward_error(removed);
+    return forward_error(begun);
+  }
+  if (const auto synced = sync_path(folder_of(wav)); !synced) return forward_error(synced);
+  auto sync = BackgroundSync::start({wav, events_path(stem)}, kSyncEvery_s);
+  if (!sync) return forward_error(sync);
+  auto state = std::make_unique<State>(
+      State{stem, std::move(header), std::move(*events), std::move(*writer), std::move(*sync)});
+  return LiveRecording(std::move(state));
+}
+
+Result<void> LiveRecording::State::append(const std::string& line) {
+  const auto appended = events.append(line);
+  return appended ? sync->written() : appended;
+}
+
+Result<void> LiveRecording::write(std::span<const std::int32_t> interleaved) {
+  if (const auto written = state_->wav.write(interleaved); !written) return written;
+  state_->header.frames += interleaved.size() / state_->header.channels.size();
+  return state_->sync->written();
+}
+
+Result<void> LiveRecording::add(const Gap& gap) {
+  state_->header.gaps.push_back(gap);
+  return state_->append(event_line(gap));
+}
+
+Result<void> LiveRecording::add(const Mark& mark) {
+  state_->header.marks.push_back(mark);
+  return state_->append(event_line(mark));
+}
+
+Result<void> LiveRecording::add(const ClockPair& pair) {
+  state_->header.clock_pairs.push_back(pair);
+  return state_->append(event_line(pair));
+}
+
+Result<void> LiveRecording::add(const FaultNote& fault) {
+  state_->header.faults.push_back(fault);
+  return state_->append(event_line(fault));
+}
+
+RecordingHeader& LiveRecording::header() {
+  return state_->header;
+}
+
+std::uint64_t LiveRecording::frames() const {
+  return state_->header.frames;
+}
+
+// Files that are open can be written whatever becomes of their names; to be closed they have to be found.
+Result<void> LiveRecording::State::check_place() const {
+  const std::string wav_name = stem + ".wav", place = events.place();
+  const bool at_its_path = events.is_at_its_path();
+  if (at_its_path && is_file(wav_name)) return {};
+  const std::string now = recording_stem_of(place);
+  if (events.is_deleted() || at_its_path || (!place.empty() && !is_file(now + ".wav")))
+    return fail(Fault::cannot_write, "was deleted while it was recorded: its frames are lost", wav_name,
+                "record again");
+  const char* const renamed = "was renamed, or its folder was, while it was recorded";
+  if (place.empty())
+    return fail(Fault::cannot_write, renamed, wav_name,
+                "find its .events.jsonl: 'tactograph recover' makes a recording of it and its WAV");
+  return fail(
+      Fault::cannot_write, renamed, wav_name,
+      fmt::format("its frames are in {0}.wav: 'tactograph recover {0}' makes a recording of them", now));
+}
+
+// A WAV that libsndfile could not complete is put right by what it holds.
+Result<Recording> LiveRecording::close() {
+  state_->sync.reset();  // closing syncs by itself
+  if (const auto there = state_->check_place(); !there) return forward_error(there);
+  [[maybe_unused]] const auto closed = state_->wav.close();
+  return close_recording(state_->stem, std::move(state_->header), state_->events);
+}
+
+Result<void> LiveRecording::discard() {
+  state_->sync.reset();
+  [[maybe_unused]] const auto closed = state_->wav.close();
+  std::error_code failed;
+  std::filesystem::remove(state_->stem + ".wav", failed);
+  if (failed)
+    return fail(Fault::cannot_write, "can't be removed: " + failed.message(), state_->stem + ".wav");
+  return state_->events.remove();
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/recording/recording_close.hpp"
+
+#include <fmt/format.h>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/clock_fit.hpp"
+#include "data-schema/recording/recording_place.hpp"
+#include "data-schema/wav/riff_repair.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::size_t kMostPairs = 1000;  // enough for a line and its scatter
+
+// Every second pair is left out until there are few; the first and the last stay.
+void thin(std::vector<ClockPair>& pairs) {
+  while (pairs.size() > kMostPairs) {
+    std::vector<ClockPair> fewer;
+    for (std::size_t i = 0; i < pairs.size(); i += 2) fewer.push_back(pairs[i]);
+    if (pairs.size() % 2 == 0) fewer.push_back(pairs.back());
+    pairs = std::move(fewer);
+  }
+}
+
+void note_clocks(RecordingHeader& header) {
+  const auto fit = fit_clock(header.clock_pairs);
+  if (!fit) return;
+  header.clock_drift_ppm = fit->drift_ppm;
+  header.clock_drift_uncertainty_ppm = fit->drift_uncertainty_ppm;
+  header.clock_offset_s = fit->offset_s;
+  header.clock_scatter_s = fit->scatter_s;
+}
+
+// What was noted of frames that did not come to the disk.
+void forget_beyond_end(RecordingHeader& header) {
+  const auto gaps = std::erase_if(header.gaps, [&](const Gap& gap) { return gap.frame > header.frames; });
+  const auto marks =
+      std::erase_if(header.marks, [&](const Mark& mark) { return mark.frame > header.frames; });
+  if (gaps + marks > 0)
+    header.warnings.push_back(fmt::format(
+        "{} marks and {} gaps lie beyond its last frame, {}, and were left out", marks, gaps, header.frames));
+  std::erase_if(header.strokes, [&](const StrokeFigures& stroke) {
+    return stroke.first_frame + stroke.frames > header.frames;
+  });
+}
+
+}  // namespace
+
+Result<Recording> close_recording(const std::string& stem, RecordingHeader header, EventFile& events) {
+  const std::string wav = stem + ".wav";
+  const auto frames = repair_riff(wav);
+  if (!frames) return forward_error(frames);
+  if (const auto synced = sync_path(wav); !synced) return forward_error(synced);
+  header.frames = *frames;
+  forget_beyond_end(header);
+  note_clocks(header);
+  thin(header.clock_pairs);
+  const auto text = completed_sidecar(header, wav);
+  if (!text) return forward_error(text);
+  events.release_room();
+  PendingFiles pending;
+  if (const auto written = pending.write(stem + ".json", *text); !written) return forward_error(written);
+  if (const auto committed = pending.commit(); !committed) return forward_error(committed);
+  if (const auto synced = sync_path(folder_of(wav)); !synced) return forward_error(synced);
+  if (const auto removed = events.remove(); !removed) return forward_error(removed);
+  return Recording{std::move(header), stem};
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The end of a recording that was made live, at once or afterwards. Internal to this folder.
+#pragma once
+
+#include <string>
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/files/event_file.hpp"
+#include "data-schema/recording/recording.hpp"
+
+namespace tacto::schema {
+
+/// Puts STEM.wav right, whose frames are what the recording has; writes STEM.json from the header; removes
+/// the events. Errors: malformed, where the WAV's header was never finished; cannot_write; unsuitable.
+Result<Recording> close_recording(const std::string& stem, RecordingHeader header, EventFile& events);
+
+}  // namespace tacto::schema

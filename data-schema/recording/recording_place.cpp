@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/recording/recording_place.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording_json.hpp"
+#include "data-schema/version.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kEventsEnding = ".events.jsonl";
+
+}  // namespace
+
+std::string events_path(const std::string& stem) {
+  return stem + std::string(kEventsEnding);
+}
+
+std::string recording_stem_of(const std::string& name) {
+  return name.ends_with(kEventsEnding) ? name.substr(0, name.size() - kEventsEnding.size())
+                                       : stem_of(name, "");
+}
+
+Result<void> check_free(const std::string& stem) {
+  std::error_code ignored;
+  for (const std::string& path : {stem + ".json", stem + ".wav", events_path(stem)})
+    if (std::filesystem::exists(path, ignored))
+      return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
+  return {};
+}
+
+Result<void> check_storable(const RecordingHeader& header) {
+  RecordingHeader complete = header;
+  complete.sha256 = std::string(64, '0');
+  complete.gaps.clear();  // they are measured against the frames to come
+  const auto text = recording_text(complete);
+  return text ? Result<void>{} : forward_error(text);
+}
+
+Result<std::string> completed_sidecar(RecordingHeader& header, const std::string& wav) {
+  const auto sum = sha256_of_file(wav);
+  if (!sum) return forward_error(sum);
+  header.sha256 = *sum;
+  header.created = creation_time();
+  header.creator = kCreator;
+  return recording_text(header);
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "data-schema/files/event_file.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/journal_gaps.hpp"
+#include "data-schema/recording/live_recording.hpp"
+#include "data-schema/recording/recording_close.hpp"
+#include "data-schema/recording/recording_events.hpp"
+#include "data-schema/recording/recording_place.hpp"
+#include "data-schema/recording/wav_remains.hpp"
+
+namespace tacto::schema {
+namespace {
+
+Result<void> check_recoverable(const std::string& stem) {
+  if (is_file(events_path(stem))) return {};
+  if (is_file(stem + ".json"))
+    return fail(Fault::unsuitable, "was closed: there is nothing to recover", stem + ".json",
+                "'tactograph validate' says whether it is sound");
+  return fail(Fault::not_found, "there is no recording under way or broken off", stem,
+              "name it by its stem: it has left NAME.wav and NAME.events.jsonl");
+}
+
+std::optional<Recording> open_closed(const std::string& stem) {
+  if (!is_file(stem + ".json")) return std::nullopt;
+  auto recording = open_recording(stem);
+  return recording ? std::optional(std::move(*recording)) : std::nullopt;
+}
+
+// The number of a stored frame, of one that was counted with those that the link lost.
+std::uint64_t stored_number(std::uint64_t device_sequence, const std::vector<Gap>& gaps) {
+  std::uint64_t lost = 0;
+  for (const Gap& gap : gaps)
+    if (gap.device_sequence <= device_sequence) lost += gap.count;
+  return device_sequence - std::min(device_sequence, lost);
+}
+
+// As many frames there were at least, by what was noted beside them.
+std::uint64_t frames_known_of(const RecordingHeader& header) {
+  std::uint64_t known = 0;
+  for (const Gap& gap : header.gaps) known = std::max(known, gap.frame);
+  for (const Mark& mark : header.marks) known = std::max(known, mark.frame);
+  for (const FaultNote& fault : header.faults) known = std::max(known, fault.frame);
+  for (const ClockPair& pair : header.clock_pairs)
+    known = std::max(known, stored_number(pair.device_sequence, header.gaps));
+  return known;
+}
+
+// What a sidecar can hold, of bytes that may be anything.
+std::string printable(std::string_view bytes) {
+  constexpr std::size_t kMost = 80;
+  std::string text(bytes.substr(0, kMost));
+  std::ranges::replace_if(
+      text, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+// Those that lie beyond the samples go later, when the samples are counted.
+std::vector<std::string> make_gaps_agree(std::vector<Gap>& gaps) {
+  AgreedGaps agreed = agreed_gaps(gaps);
+  gaps = std::move(agreed.gaps);
+  std::vector<std::string> notes;
+  if (agreed.left_out > 0)
+    notes.push_back(
+        fmt::format("{} gaps of its journal contradict those before them and were left out: its "
+                    "time may be wrong there",
+                    agreed.left_out));
+  if (agreed.untold > 0)
+    notes.push_back(
+        fmt::format("{} missing frames stood in no line of its journal that can be read: they are "
+                    "counted to the gap after them, and the time before it is too early",
+                    agreed.untold));
+  return notes;
+}
+
+std::vector<std::string> notes_on(const EventLog& log) {
+  std::vector<std::string> notes = {
+      "it was never closed: what came in its last 100 ms may be missing, or in a "
+      "second where the disk was busy and power was cut"};
+  if (!log.cut_line.empty()) notes.push_back("its last event was broken off: " + printable(log.cut_line));
+  if (log.bad_lines > 0)
+    notes.push_back(fmt::format(
+        "{} lines of its journal can't be read (the first is line {}) and were left out: a gap, a "
+        "mark or a fault may be unknown, and its time may have a hole",
+        log.bad_lines, log.first_bad_line));
+  return notes;
+}
+
+// Killed after its sidecar was there, before the events were removed: all is well.
+Result<Recovered> already_closed(Recording recording, EventFile& events) {
+  if (const auto removed = events.remove(); !removed) return forward_error(removed);
+  return Recovered{std::move(recording), {}};
+}
+
+}  // namespace
+
+Result<Recovered> recover_recording(const std::string& name) {
+  const std::string stem = recording_stem_of(name), wav = stem + ".wav";
+  if (const auto there = check_recoverable(stem); !there) return forward_error(there);
+  auto events = EventFile::lock(events_path(stem));
+  if (!events) return forward_error(events);
+  if (auto whole = open_closed(stem)) return already_closed(std::move(*whole), *events);
+  auto log = read_events(events_path(stem));
+  if (!log) return forward_error(log);
+  const auto gap_notes = make_gaps_agree(log->header.gaps);
+  const auto remains = salvage_wav(wav, log->header, frames_known_of(log->header));
+  if (!remains) return forward_error(remains);
+  Recovered recovered{{}, notes_on(*log)};
+  recovered.notes.insert(recovered.notes.end(), gap_notes.begin(), gap_notes.end());
+  recovered.notes.insert(recovered.notes.end(), remains->notes.begin(), remains->notes.end());
+  const auto said_before = static_cast<std::ptrdiff_t>(log->header.warnings.size());
+  log->header.ended = "broken off";
+  log->header.warnings.insert(log->header.warnings.end(), recovered.notes.begin(), recovered.notes.end());
+  auto recording = close_recording(stem, std::move(log->header), *events);
+  if (!recording) return forward_error(recording);
+  const auto& warnings = recording->header.warnings;  // closing adds its own
+  recovered.notes.assign(warnings.begin() + said_before, warnings.end());
+  recovered.recording = std::move(*recording);
+  return recovered;
+}
+
+}  // namespace tacto::schema

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/recording/wav_remains.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/wav/riff_layout.hpp"
+#include "data-schema/wav/riff_length.hpp"
+#include "data-schema/wav/zero_frames.hpp"
+
+namespace tacto::schema {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kOnItsWay_s = 0.1;       // events stand in the journal before their frames stand in the WAV
+constexpr std::size_t kFormatBytes = 48;  // "fmt " with its size and content
+constexpr std::uint64_t kPageBytes = 4096;  // a file system loses whole pages
+
+// What our writer puts before the first sample.
+struct EmptyWav {
+  std::string bytes;
+  RiffLayout layout;
+  std::string_view format() const {
+    return std::string_view(bytes).substr(layout.format_at - 8, kFormatBytes);
+  }
+};
+
+// Asked of the writer itself: another version of libsndfile may write another header.
+Result<EmptyWav> empty_wav(const std::string& wav, const RecordingHeader& header) {
+  PendingFiles beside;  // never committed
+  const auto path = beside.add(wav);
+  if (!path) return forward_error(path);
+  auto writer = WavWriter::create(*path, header.sample_rate_hz, header.channels.size(), header.format);
+  if (!writer) return forward_error(writer);
+  if (const auto closed = writer->close(); !closed) return forward_error(closed);
+  const auto layout = riff_layout(*path);
+  auto bytes = read_file(*path);
+  if (!bytes) return forward_error(bytes);
+  if (!layout || layout->format_at < 8 || layout->data_at < layout->format_at + kFormatBytes - 8)
+    return fail(Fault::internal, "an empty WAV has another header than is known", *path);
+  return EmptyWav{std::move(*bytes), *layout};
+}
+
+std::string first_bytes(const std::string& path, std::size_t count) {
+  std::string bytes(count, '\0');
+  std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(count));
+  return bytes;
+}
+
+bool is_sound(const std::string& wav, const EmptyWav& empty) {
+  const auto layout = riff_layout(wav);
+  if (!layout || layout->data_at > kPageBytes || layout->format_at < 8) return false;
+  return first_bytes(wav, layout->data_at).substr(layout->format_at - 8, kFormatBytes) == empty.format();
+}
+
+bool same_or_lost(std::string_view found, std::string_view ours) {
+  return std::ranges::equal(found, ours, [](char a, char b) { return a == b || a == '\0'; });
+}
+
+// Zeros where its header was; of the header's first bytes, which change, anything may be left.
+bool is_remnant(const std::string& wav, const EmptyWav& empty) {
+  const std::string head = first_bytes(wav, empty.layout.data_at);
+  const std::string_view found = head, ours = std::string_view(empty.bytes);
+  return same_or_lost(found.substr(8, 4), ours.substr(8, 4)) &&
+         same_or_lost(found.substr(empty.layout.format_at - 8, kFormatBytes), empty.format()) &&
+         same_or_lost(found.substr(empty.layout.data_at - 8, 4), ours.substr(empty.layout.data_at - 8, 4));
+}
+
+tl::unexpected<Error> unknown_content(const std::string& wav, const EmptyWav& empty) {
+  const auto bytes = empty.layout.data_at;
+  return fail(Fault::malformed,
+              fmt::format("is not the WAV of this recording: its first {} bytes are neither its header nor "
+                          "zeros; nothing was changed",
+                          bytes),
+              wav,
+              fmt::format("where its frames are sound behind them, 'dd if=/dev/zero of={} bs={} count=1 "
+                          "conv=notrunc' on a copy makes it recoverable",
+                          wav, bytes));
+}
+
+Result<void> write_header(const std::string& wav, const EmptyWav& empty) {
+  std::fstream file(wav, std::ios::binary | std::ios::in | std::ios::out);
+  file.write(empty.bytes.data(), static_cast<std::streamsize>(empty.layout.data_at));
+  file.close();
+  return file ? Result<void>{} : fail(Fault::cannot_write, "its header can't be written", wav);
+}
+
+Result<void> cut_off_at(const std::string& wav, std::uint64_t bytes) {
+  std::error_code failed;
+  fs::resize_file(wav, bytes, failed);
+  return failed ? fail(Fault::cannot_write, "can't be shortened: " + failed.message(), wav) : Result<void>{};
+}
+
+std::uint64_t size_of(const std::string& path) {
+  std::error_code unknown;
+  const auto size = fs::file_size(path, unknown);
+  return unknown ? 0 : size;
+}
+
+std::string stretch(std::uint64_t frames, const RecordingHeader& header) {
+  return fmt::format("{} frames ({:.3g} s)", frames, static_cast<double>(frames) / header.sample_rate_hz);
+}
+
+Result<void> check_holds_something(const std::string& wav, const EmptyWav& empty,
+                                   const RecordingHeader& header, std::uint64_t known_frames) {
+  const std::uint64_t block = empty.layout.block_bytes;
+  const bool early = static_cast<double>(known_frames) <= kOnItsWay_s * header.sample_rate_hz;
+  if (early || size_of(wav) >= empty.layout.data_at + block) return {};
+  return fail(Fault::malformed,
+              fmt::format("holds no frames, though the journal beside it knows of {}; nothing was changed",
+                          known_frames),
+              wav, "look for the WAV elsewhere (lost+found, a backup) and put it here");
+}
+
+// The header's sizes are written after the frames that they count.
+Result<void> cut_unwritten(const std::string& wav, const RecordingHeader& header, WavRemains& remains) {
+  const auto layout = riff_layout(wav);
+  const auto length = riff_length(wav);
+  if (!length) return {};
+  const std::uint64_t frames = layout->present_bytes / layout->block_bytes;
+  const std::uint64_t written = frames - zero_frames_at_end(wav, *layout);
+  const std::uint64_t kept = std::clamp(length->promised_frames, std::min(written, frames), frames);
+  if (kept == frames) return {};
+  remains.notes.push_back(fmt::format("its last {} were zeros that were never written: they were cut off",
+                                      stretch(frames - kept, header)));
+  return cut_off_at(wav, layout->data_at + kept * layout->block_bytes);
+}
+
+void note_zeros(const std::string& wav, const RiffLayout& layout, const RecordingHeader& header,
+                WavRemains& remains) {
+  const std::uint64_t first = zero_frames_at_start(wav, layout), last = zero_frames_at_end(wav, layout);
+  const auto note = [&](const char* where, std::uint64_t frames) {
+    remains.notes.push_back(
+        fmt::format("its {} {} are zeros: they may have been lost", where, stretch(frames, header)));
+  };
+  if ((first + 1) * layout.block_bytes > kPageBytes - layout.data_at) note("first", first);
+  if (last * layout.block_bytes >= kPageBytes && last < remains.frames) note("last", last);
+}
+
+void note_what_is_missing(const RecordingHeader& header, std::uint64_t known_frames, WavRemains& remains) {
+  if (known_frames > remains.frames)
+    remains.notes.push_back(
+        fmt::format("its journal knows of frame {}, and it ends at {}: at least {} are lost", known_frames,
+                    remains.frames, stretch(known_frames - remains.frames, header)));
+}
+
+Result<void> make_header_sound(const std::string& wav, const EmptyWav& empty, WavRemains& remains) {
+  if (!is_remnant(wav, empty)) return unknown_content(wav, empty);
+  if (size_of(wav) >= empty.layout.data_at)
+    remains.notes.push_back(
+        "its WAV's header was damaged and was written anew: frames near it may be damaged too");
+  return write_header(wav, empty);
+}
+
+}  // namespace
+
+Result<WavRemains> salvage_wav(const std::string& wav, const RecordingHeader& header,
+                               std::uint64_t known_frames) {
+  if (!is_file(wav))
+    return fail(Fault::not_found, "is missing: only its journal is there", wav,
+                "put it beside the journal; where nothing was recorded, delete the journal");
+  const auto empty = empty_wav(wav, header);
+  if (!empty) return forward_error(empty);
+  if (const auto some = check_holds_something(wav, *empty, header, known_frames); !some)
+    return forward_error(some);
+  WavRemains remains;
+  const bool sound = is_sound(wav, *empty);
+  if (const auto made = sound ? Result<void>{} : make_header_sound(wav, *empty, remains); !made)
+    return forward_error(made);
+  // A header that was lost promises nothing.
+  if (const auto cut = sound ? cut_unwritten(wav, header, remains) : Result<void>{}; !cut)
+    return forward_error(cut);
+  const auto layout = riff_layout(wav);
+  if (!layout) return fail(Fault::malformed, "is no WAV", wav);
+  remains.frames = layout->present_bytes / layout->block_bytes;
+  note_zeros(wav, *layout, header, remains);
+  if (const auto left = layout->present_bytes % layout->block_bytes; left != 0)
+    remains.notes.push_back(fmt::format("its last frame was broken off: {} bytes of it were cut off", left));
+  note_what_is_missing(header, known_frames, remains);
+  return remains;
+}
+
+}  // namespace tacto::schema

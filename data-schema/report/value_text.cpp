@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/report/value_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/report/harmless.hpp"
+
+namespace tacto::cli {
+
+using schema::Dimension;
+
+namespace {
+
+struct Suffix {
+  std::string_view text;
+  std::optional<Dimension> dimension;  // none: the unit is printed as it is
+  std::string_view unit;
+};
+
+// Longest first, so that "_n_per_m" is not taken for "_per_m".
+constexpr Suffix kSuffixes[] = {
+    {"_n_per_sqrt_hz", std::nullopt, "N/sqrt(Hz)"},
+    {"_n_s_per_m", std::nullopt, "N s/m"},
+    {"_v_per_n", std::nullopt, "V/N"},
+    {"_v_per_s", std::nullopt, "V/s"},
+    {"_n_per_m", std::nullopt, "N/m"},
+    {"_n_per_v", std::nullopt, "N/V"},
+    {"_m_per_n", Dimension::compliance, ""},
+    {"_m_per_v", std::nullopt, "m/V"},
+    {"_per_m", Dimension::spatial_frequency, ""},
+    {"_percent", std::nullopt, "%"},
+    {"_mb_per_s", std::nullopt, "MB/s"},
+    {"_ppm", std::nullopt, "ppm"},
+    {"_mps2", Dimension::acceleration, ""},
+    {"_mps", Dimension::speed, ""},
+    {"_ohm", std::nullopt, "ohm"},
+    {"_hz", Dimension::frequency, ""},
+    {"_kg", std::nullopt, "kg"},
+    {"_db", std::nullopt, "dB"},
+    {"_s", Dimension::time, ""},
+    {"_m", Dimension::length, ""},
+    {"_n", Dimension::force, ""},
+    {"_v", Dimension::voltage, ""},
+    {"_f", std::nullopt, "F"},
+};
+
+const Suffix* suffix_of(std::string_view key) {
+  const auto found = std::ranges::find_if(kSuffixes, [&](const Suffix& s) { return key.ends_with(s.text); });
+  return found == std::end(kSuffixes) ? nullptr : found;
+}
+
+std::string number_for_people(std::string_view key, double value) {
+  const Suffix* suffix = suffix_of(key);
+  if (!std::isfinite(value)) return "unknown";
+  if (suffix == nullptr) return fmt::format("{:.4g}", value);
+  if (suffix->dimension) return schema::for_people(value, *suffix->dimension);
+  return fmt::format("{:.4g} {}", value, suffix->unit);
+}
+
+}  // namespace
+
+std::string label_of(std::string_view key) {
+  if (const Suffix* suffix = suffix_of(key)) key.remove_suffix(suffix->text.size());
+  std::string label(key);
+  std::ranges::replace(label, '_', ' ');
+  return label;
+}
+
+std::string cell_text(const std::string& key, const ReportPrinter::Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return number_for_people(key, *number);
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
+  if (const auto* text = std::get_if<std::string>(&value)) return harmless(*text);
+  if (const auto* lines = std::get_if<std::vector<std::string>>(&value))
+    return harmless(fmt::format("{}", fmt::join(*lines, "; ")));
+  return "";
+}
+
+// UTF-8's continuation bytes take no room.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, width_of(text)), ' ');
+}
+
+}  // namespace tacto::cli

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keys and values of a report in words. Internal to this folder.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "data-schema/report/report_entries.hpp"
+
+namespace tacto::cli {
+
+/// The key without the ending of its unit: "force_rms_n" is "force rms".
+std::string label_of(std::string_view key);
+
+/// The value with its unit and four digits. Empty for a list of reports.
+std::string cell_text(const std::string& key, const ReportPrinter::Value& value);
+
+/// Columns on a terminal: one for each letter of UTF-8.
+std::size_t width_of(std::string_view text);
+
+/// With spaces up to the width.
+std::string padded(const std::string& text, std::size_t width);
+
+}  // namespace tacto::cli

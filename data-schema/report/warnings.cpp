@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/report/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <mutex>
+
+#include "data-schema/report/harmless.hpp"
+#include "data-schema/report/talk.hpp"
+
+namespace tacto::cli {
+namespace {
+
+// Verbs warn from several threads.
+struct Kept {
+  std::mutex mutex;
+  std::vector<std::string> warnings;
+  std::size_t printed = 0;
+};
+
+Kept& kept() {
+  static Kept all;
+  return all;
+}
+
+void keep(const std::string& text) {
+  const std::lock_guard lock(kept().mutex);
+  kept().warnings.push_back(text);
+}
+
+void print_line(const std::string& text) {
+  {
+    const std::lock_guard lock(kept().mutex);
+    ++kept().printed;
+  }
+  talk(fmt::format("tactograph: warning: {}\n", on_one_line(text)));
+}
+
+struct Group {
+  const Warning* shown = nullptr;
+  std::size_t count = 0;
+  bool sized = false;  // their sizes differ: the one shown is the worst
+};
+
+std::string line_of(const Group& group) {
+  if (group.count == 1) return sentence(*group.shown);
+  return fmt::format("{} ({} of {} alike; --json lists all)", sentence(*group.shown),
+                     group.sized ? "the worst" : "the first", group.count);
+}
+
+std::vector<Group> groups_of(std::span<const Warning> warnings) {
+  std::vector<Group> groups;
+  std::map<std::string, std::size_t> places;
+  for (const Warning& warning : warnings) {
+    const auto [place, is_new] = places.try_emplace(warning.kind, groups.size());
+    if (is_new || warning.kind.empty()) {
+      groups.push_back({&warning, 1, false});
+      continue;
+    }
+    Group& group = groups[place->second];
+    ++group.count;
+    if (warning.size != group.shown->size) group.sized = true;
+    if (warning.size > group.shown->size) group.shown = &warning;
+  }
+  return groups;
+}
+
+// Numbers, with what may follow them in a name, as one sign.
+std::string without_numbers(const std::string& text) {
+  std::string kind;
+  for (const char c : text) {
+    const bool digit = std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.';
+    if (!digit || kind.empty() || kind.back() != '#') kind += digit ? '#' : c;
+  }
+  return kind;
+}
+
+}  // namespace
+
+std::string sentence(const Warning& warning) {
+  return warning.about.empty() ? warning.text : warning.about + ": " + warning.text;
+}
+
+std::vector<std::string> grouped(std::span<const Warning> warnings) {
+  std::vector<std::string> lines;
+  for (const Group& group : groups_of(warnings)) lines.push_back(line_of(group));
+  return lines;
+}
+
+void warn_grouped(std::span<const Warning> warnings) {
+  for (const Warning& warning : warnings) keep(sentence(warning));
+  for (const std::string& line : grouped(warnings)) print_line(line);
+}
+
+void warn_grouped(std::span<const std::string> sentences) {
+  std::vector<Warning> warnings;
+  for (const std::string& each : sentences) warnings.push_back({"", each, without_numbers(each)});
+  warn_grouped(warnings);
+}
+
+std::vector<std::string> all_warnings() {
+  const std::lock_guard lock(kept().mutex);
+  return kept().warnings;
+}
+
+std::size_t printed_warnings() {
+  const std::lock_guard lock(kept().mutex);
+  return kept().printed;
+}
+
+void print_warning(const std::string& text) {
+  keep(text);
+  print_line(text);
+}
+
+}  // namespace tacto::cli

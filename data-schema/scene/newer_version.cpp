@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/scene/newer_version.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "data-schema/json/json_document.hpp"
+
+namespace tacto::schema {
+
+std::vector<std::string> member_names(const std::string& extra_json, const std::string& place) {
+  std::vector<std::string> names;
+  if (extra_json.empty()) return names;
+  const Json extra = Json::parse(extra_json);
+  for (const auto& member : extra.items()) names.push_back(place + member.key());
+  return names;
+}
+
+std::string note_of_newer_version(const std::string& path, const std::string& newer_version,
+                                  const std::vector<std::string>& passed_over) {
+  if (newer_version.empty()) return {};
+  const std::string names = passed_over.empty() ? "" : fmt::format(": {}", fmt::join(passed_over, ", "));
+  return fmt::format("{}: its version {} is newer than this program's; what it doesn't know is passed over{}",
+                     path, newer_version, names);
+}
+
+std::string note_of_newer_version(const std::string& path, const Scene& scene) {
+  std::vector<std::string> names = member_names(scene.extra_json);
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    const auto& extra = std::visit([](const auto& layer) { return layer.extra_json; }, scene.layers[i]);
+    std::ranges::copy(member_names(extra, fmt::format("layers/{}/", i)), std::back_inserter(names));
+  }
+  return note_of_newer_version(path, scene.newer_version, names);
+}
+
+}  // namespace tacto::schema

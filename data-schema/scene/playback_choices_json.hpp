@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The object `playback` of scenes, requests, configurations and sessions. Internal to this folder.
+#pragma once
+
+#include "data-schema/json/json_document.hpp"
+#include "data-schema/scene/playback_choices.hpp"
+
+namespace tacto::schema {
+
+/// Precondition: it fits the schemas' definition.
+PlaybackChoices playback_choices_from(const Json& body);
+/// Only what was said.
+Json playback_choices_body(const PlaybackChoices& choices);
+/// Of the member `playback`, where there is one.
+PlaybackChoices playback_choices_in(const Json& document);
+
+}  // namespace tacto::schema

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/json/json_document.hpp"
+#include "data-schema/json/json_schema.hpp"
+#include "data-schema/json/known_members.hpp"
+#include "data-schema/scene/playback_choices_json.hpp"
+#include "data-schema/scene/scene.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kSceneKind = "scene";
+constexpr std::string_view kSceneSuffix = ".scene";
+constexpr std::array<std::string_view, 3> kEndsWords = {"stop", "mirror", "loop"};
+constexpr std::array<std::string_view, 7> kTextureMembers = {
+    "type", "texture", "at_m", "gain_m_per_n", "gain_set_by", "gain_set_on", "ends"};
+
+std::string extra_members(const Json& body) {
+  Json extra = Json::object();
+  for (const auto& [name, value] : body.items())
+    if (std::ranges::find(kTextureMembers, name) == kTextureMembers.end()) extra[name] = value;
+  return extra.empty() ? "" : extra.dump();
+}
+
+TextureLayer texture_layer_from(const Json& body) {
+  TextureLayer layer;
+  layer.texture = text_or(body, "texture");
+  layer.at_m = number_or(body, "at_m", 0);
+  layer.gain_m_per_n = number_or(body, "gain_m_per_n", 0);
+  layer.gain_set_by = text_or(body, "gain_set_by");
+  layer.gain_set_on = text_or(body, "gain_set_on");
+  const auto ends = std::ranges::find(kEndsWords, text_or(body, "ends", "stop"));
+  layer.ends = static_cast<TextureEnds>(ends - kEndsWords.begin());
+  layer.extra_json = extra_members(body);
+  return layer;
+}
+
+Json texture_layer_body(const TextureLayer& layer) {
+  Json body = {{"type", "texture"}, {"texture", layer.texture}};
+  body["at_m"] = layer.at_m;
+  body["gain_m_per_n"] = layer.gain_m_per_n;
+  put_text(body, "gain_set_by", layer.gain_set_by);
+  put_text(body, "gain_set_on", layer.gain_set_on);
+  body["ends"] = word_of(layer.ends);
+  if (!layer.extra_json.empty()) body.update(Json::parse(layer.extra_json));
+  return body;
+}
+
+Json layer_body(const Layer& layer) {
+  return std::visit([](const TextureLayer& texture) { return texture_layer_body(texture); }, layer);
+}
+
+Result<Layer> layer_from(const Json& body, const std::string& place) {
+  if (const std::string type = text_or(body, "type"); type != "texture")
+    return fail(Fault::unsuitable, fmt::format("'{}' is no type of layer that this program knows", type),
+                place + "/type", "the types are: texture");
+  return texture_layer_from(body);
+}
+
+// A scene of our own version says nothing that we don't know, but for what is misspelt. What a newer one adds
+// is kept.
+Result<void> check_known(const Document& document, const std::string& where) {
+  if (!document.newer_version.empty()) return {};
+  static const auto kRules = schema_of(kSceneKind);
+  const Json& rules = (*kRules)["properties"];
+  const Json& body = document.body;
+  if (const auto known = check_members_known(*kRules, body, where); !known) return known;
+  for (std::size_t i = 0; i < body["layers"].size(); ++i) {
+    const auto known = check_members_known(rules["layers"]["items"], body["layers"][i],
+                                           fmt::format("{}#/layers/{}", where, i));
+    if (!known) return known;
+  }
+  if (!body.contains("playback")) return {};
+  return check_members_known(rules["playback"], body["playback"], where + "#/playback");
+}
+
+// Where several lie along a path, what lies beyond one's ends is another's place.
+Result<void> check_ends(const Scene& scene, const std::string& where) {
+  const auto goes_on = [](const Layer& layer) {
+    return std::visit([](const TextureLayer& texture) { return texture.ends != TextureEnds::stop; }, layer);
+  };
+  if (scene.layers.size() == 1) return {};
+  const auto layer = std::ranges::find_if(scene.layers, goes_on);
+  if (layer == scene.layers.end()) return {};
+  return fail(Fault::unsuitable, "one of several textures can't go on beyond its ends",
+              fmt::format("{}#/layers/{}/ends", where, layer - scene.layers.begin()), R"(make it "stop")");
+}
+
+Result<Scene> scene_from(const Document& document, const std::string& where) {
+  Scene scene;
+  for (const Json& body : document.body["layers"]) {
+    auto layer = layer_from(body, fmt::format("{}#/layers/{}", where, scene.layers.size()));
+    if (!layer) return forward_error(layer);
+    scene.layers.push_back(std::move(*layer));
+  }
+  if (const auto known = check_known(document, where); !known) return forward_error(known);
+  if (const auto sound = check_ends(scene, where); !sound) return forward_error(sound);
+  scene.name = text_or(document.body, "name");
+  scene.notes = text_or(document.body, "notes");
+  scene.created = text_or(document.body, "created");
+  scene.creator = text_or(document.body, "creator");
+  scene.playback = playback_choices_in(document.body);
+  scene.extra_json = unknown_members(document.body, kSceneKind);
+  scene.newer_version = document.newer_version;
+  return scene;
+}
+
+Json scene_body(const Scene& scene) {
+  Json body = Json::object();
+  put_text(body, "version", scene.newer_version);
+  put_text(body, "name", scene.name);
+  put_text(body, "notes", scene.notes);
+  put_text(body, "created", scene.created);
+  put_text(body, "creator", scene.creator);
+  if (Json playback = playback_choices_body(scene.playback); !playback.empty()) body["playback"] = playback;
+  body["layers"] = Json::array();
+  for (const Layer& layer : scene.layers) body["layers"].push_back(layer_body(layer));
+  return body;
+}
+
+}  // namespace
+
+std::string_view word_of(TextureEnds ends) {
+  return kEndsWords[static_cast<std::size_t>(ends)];
+}
+
+std::string scene_path(const std::string& name) {
+  return stem_of(name, kSceneSuffix) + std::string(kSceneSuffix) + ".json";
+}
+
+Result<Scene> parse_scene(std::string_view text, const std::string& where) {
+  const auto document = parse_document(text, where, kSceneKind);
+  return document ? scene_from(*document, where) : forward_error(document);
+}
+
+Result<Scene> read_scene(const std::string& name) {
+  const std::string path = scene_path(name);
+  const auto document = open_document(path, kSceneKind);
+  return document ? scene_from(*document, path) : forward_error(document);
+}
+
+Result<void> write_scene(const std::string& stem, const Scene& scene) {
+  const auto text = document_text(kSceneKind, scene_body(scene), scene.extra_json);
+  if (!text) return forward_error(text);
+  const std::string path = scene_path(stem);
+  if (is_file(path))
+    if (const auto free = check_changeable(path); !free) return free;
+  PendingFiles pending;
+  if (const auto written = pending.write(path, *text); !written) return written;
+  return pending.commit();
+}
+
+std::string texture_in_scene(const std::string& scene_path, const std::string& texture) {
+  return (std::filesystem::path(scene_path).parent_path() / texture).string();
+}
+
+}  // namespace tacto::schema

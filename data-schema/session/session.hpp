@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session: what was played on what, every tick and every command, from arming to disarming. SESSION.md
+// describes the bytes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/scene/scene.hpp"
+#include "data-schema/transducer/transducer.hpp"
+
+namespace tacto::schema {
+
+/// One tick of the drive.
+struct SessionTick {
+  std::uint64_t tick = 0;                       ///< since arming
+  std::int64_t time_ns = 0;                     ///< by the device's clock
+  std::int32_t encoder = 0;                     ///< counts
+  float drive_v = 0;                            ///< at the amplifier's input
+  std::uint32_t flags = 0;                      ///< as in the wire's `ticks` (firmware-host/core/WIRE.md)
+  std::int32_t lateness_ns = kLatenessUnknown;  ///< behind its time
+  static constexpr std::int32_t kLatenessUnknown = INT32_MIN;
+  bool operator==(const SessionTick&) const = default;
+};
+
+/// A command as it was sent: a frame of the wire. It took effect in the first tick whose flags count it, and
+/// not before tick `not_before`.
+struct SessionCommand {
+  std::uint64_t not_before = 0;
+  std::int64_t time_ns = 0;  ///< host's steady clock, when it was answered
+  std::vector<std::uint8_t> frame;
+};
+
+/// What the sensor of the driven tray measured: frames that follow each other at the sensor's rate.
+struct SessionSamples {
+  std::uint64_t first_frame = 0;  ///< since the sensor began; frames between two of these are missing
+  std::int64_t time_ns = 0;       ///< of the first frame, by the clock of the ticks
+  std::vector<std::int32_t> codes;
+  bool operator==(const SessionSamples&) const = default;
+};
+
+/// That sensor, as the device describes its channel: displacement in m = code x scale + offset.
+struct SessionSensor {
+  std::string channel, source, calibrated;
+  double rate_hz = 0, scale = 1, offset = 0;
+};
+
+/// Ticks that are not in the file, and why.
+struct SessionLoss {
+  enum class Why : std::uint8_t { link = 0, recorder = 1, disk = 2 };
+  std::uint64_t first_tick = 0, count = 0;
+  Why why = Why::link;
+};
+
+/// Something that happened, in words: a state, a fault.
+struct SessionEvent {
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  std::string text;
+};
+
+/// The last block of a session that was closed.
+struct SessionEnd {
+  std::uint64_t ticks = 0, lost_ticks = 0, late_ticks = 0;
+};
+
+struct SessionTexture {
+  std::string file, sha256;
+  double at_m = 0, gain_m_per_n = 0;
+  TextureEnds ends = TextureEnds::stop;
+  double seam_m = 1e-3;  ///< of a loop: what fades of its end into its beginning; older sessions: 1 mm
+};
+
+/// What is played, and how the drive is made of it.
+struct SessionProgram {
+  std::string scene_file, scene_sha256;  ///< empty where a texture was played by itself
+  std::vector<SessionTexture> textures;
+  std::string inverse;
+  PlaybackChoices choices;  ///< with which it was played; older sessions tell the inverse alone
+  double delay_s = 0, low_hz = 0, high_hz = 0;
+  double loop_delay_s = 0;  ///< of a loop closed on the host: from the count to the drive at the device
+};
+
+/// It begins with the program that was armed.
+struct SessionHeader : SessionProgram {
+  std::string created, creator, build;
+  std::string loop = "device";  ///< or "host"
+  double rate_hz = 0, clock_hz = 0, metres_per_count = 0;
+  std::string device_uri, device_name, device_serial, device_firmware, simulated;
+  std::string device_protocol;  ///< "1.2", of the wire; empty: not told, older
+  Transducer transducer;
+  std::string transducer_sha256;
+  std::optional<SessionSensor> sensor;  ///< none: the device does not report its tray; older sessions
+  double initial_gain = 1;
+  std::int32_t initial_encoder = 0;
+  std::string extra_json;
+  std::string newer_version;
+};
+
+/// What the next `change` among the commands brings. Where several stand before it, the last one: an earlier
+/// one came to nothing.
+struct SessionChange {
+  std::uint64_t not_before = 0;
+  std::int64_t time_ns = 0;  ///< host's steady clock, before its upload
+  SessionProgram program;
+};
+
+/// The header as JSON and back; `where` names the file in errors. Errors: as document_text, parse_document.
+Result<std::string> session_header_text(const SessionHeader& header);
+Result<SessionHeader> parse_session_header(std::string_view text, const std::string& where);
+
+/// A change's program likewise. Errors: as of the header's; unsuitable, where it takes more than a block
+/// holds.
+Result<std::string> session_program_text(const SessionProgram& program);
+Result<SessionProgram> parse_session_program(std::string_view text, const std::string& where);
+
+/// NAME.session of a stem or file name.
+std::string session_path(const std::string& name);
+
+}  // namespace tacto::schema

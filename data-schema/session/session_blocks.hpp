@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The bytes of a session's blocks (SESSION.md). Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "data-schema/session/session.hpp"
+
+namespace tacto::schema {
+
+enum class BlockType : std::uint8_t {
+  header = 0,
+  ticks = 1,
+  command = 2,
+  loss = 3,
+  event = 4,
+  end = 5,
+  change = 6,
+  samples = 7
+};
+
+inline constexpr std::uint32_t kBlockMagic = 0x31534354;
+inline constexpr std::size_t kBlockHead = 20;
+inline constexpr std::size_t kMostPayload = std::size_t{1} << 20;
+inline constexpr std::size_t kMostBlockTicks = 4096;
+
+/// A whole block. Precondition: at most kMostPayload bytes.
+std::string sealed_block(BlockType type, std::string_view payload);
+
+/// What the first bytes of a block say; none where they are no block's.
+struct BlockHead {
+  BlockType type = BlockType::header;
+  std::size_t size = 0;
+  std::string check;
+};
+std::optional<BlockHead> block_head(std::string_view bytes);
+bool check_is_right(const BlockHead& head, std::string_view payload);
+
+/// Payloads. Of ticks: at most kMostBlockTicks, following each other without holes, within 4 s.
+std::string ticks_payload(std::span<const SessionTick> ticks);
+std::string command_payload(const SessionCommand& command);
+std::string loss_payload(const SessionLoss& loss);
+std::string event_payload(const SessionEvent& event);
+/// At most kMostBlockTicks codes, at least one.
+std::string samples_payload(std::uint64_t first_frame, std::int64_t time_ns,
+                            std::span<const std::int32_t> codes);
+std::string end_payload(const SessionEnd& end);
+/// Errors: as session_program_text.
+Result<std::string> change_payload(const SessionChange& change);
+
+/// And back; none where the size does not fit.
+std::optional<std::vector<SessionTick>> ticks_from(std::string_view payload);
+std::optional<SessionCommand> command_from(std::string_view payload);
+std::optional<SessionLoss> loss_from(std::string_view payload);
+std::optional<SessionEvent> event_from(std::string_view payload);
+std::optional<SessionEnd> end_from(std::string_view payload);
+std::optional<SessionChange> change_from(std::string_view payload);
+std::optional<SessionSamples> samples_from(std::string_view payload);
+
+}  // namespace tacto::schema

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/texture/texture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/json/json_document.hpp"
+#include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/texture/texture_json.hpp"
+#include "data-schema/texture/texture_wav.hpp"
+#include "data-schema/wav/wav.hpp"
+
+namespace tacto::schema {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kTextureKind = "texture";
+constexpr std::string_view kTextureSuffix = ".texture";
+
+// A recording under the name is the commonest mistake, and is answered as such.
+tl::unexpected<Error> absent(const std::string& name) {
+  const auto others = stored_files(name);
+  if (others && others->front().kind == FileKind::recording)
+    return fail(Fault::unsuitable, "is a recording", name, "make a texture with 'tactograph spatial'");
+  if (others && others->front().kind != FileKind::texture)
+    return fail(Fault::unsuitable, fmt::format("is a {}, not a texture", kind_name(others->front().kind)),
+                name);
+  return fail(Fault::not_found, "there is no such texture", name,
+              "a texture is NAME.texture.json and NAME.texture.wav");
+}
+
+Result<void> check_layout(const std::string& wav, const TextureData& data, double pitch_m) {
+  const auto reader = WavReader::open(wav);
+  if (!reader) return forward_error(reader);
+  const WavInfo& info = reader->info();
+  if (info.frames != data.samples)
+    return fail(Fault::malformed,
+                fmt::format("holds {} samples, its sidecar says {}", info.frames, data.samples), wav);
+  if (info.channels != data.channels)
+    return fail(Fault::malformed,
+                fmt::format("has {} channels, its sidecar describes {}", info.channels, data.channels), wav);
+  if (info.sample_rate_hz != header_rate_of(pitch_m))
+    return fail(
+        Fault::malformed,
+        fmt::format("has {} samples a metre, its sidecar a pitch of {} m", info.sample_rate_hz, pitch_m),
+        wav);
+  return {};
+}
+
+Result<void> check_finite(const std::vector<double>& samples, const std::string& where, Fault fault) {
+  const auto broken = std::ranges::find_if(samples, [](double each) { return !std::isfinite(each); });
+  if (broken == samples.end()) return {};
+  return fail(fault, fmt::format("sample {} is not a finite number", broken - samples.begin()), where);
+}
+
+// The WAV holds single precision: up to 3.4e38, and whole digits from 1.2e-38 on.
+Result<void> check_single(const std::vector<double>& samples, const std::string& unit,
+                          const std::string& where) {
+  const auto beyond = [](double each) { return !std::isfinite(static_cast<float>(each)); };
+  const auto found = std::ranges::find_if(samples, beyond);
+  if (found == samples.end()) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("sample {} is {:.4g} {}, beyond the 3.4e38 that a texture's file holds",
+                          found - samples.begin(), *found, unit),
+              where, "look at the channel's scale: 'tactograph info' of the recording shows it");
+}
+
+Result<void> check_not_lost(const std::vector<double>& samples, const std::string& unit,
+                            const std::string& where) {
+  double largest = 0;
+  for (const double each : samples) largest = std::max(largest, std::abs(each));
+  if (largest == 0 || largest >= static_cast<double>(std::numeric_limits<float>::min())) return {};
+  return fail(
+      Fault::unsuitable,
+      fmt::format("its largest value is {:.4g} {}, below the 1.2e-38 that a texture's file holds: all "
+                  "would be stored as zeros, or nearly",
+                  largest, unit),
+      where, "look at the channel's scale: 'tactograph info' of the recording shows it");
+}
+
+Result<std::vector<double>> read_samples(const std::string& wav, std::size_t channel) {
+  auto samples = read_wav_channel(wav, channel);
+  if (!samples) return samples;
+  const auto finite = check_finite(*samples, wav, Fault::malformed);
+  return finite ? samples : forward_error(finite);
+}
+
+// Mean and spread of an average, interleaved.
+std::vector<double> frames_of(const Texture& texture) {
+  std::vector<double> frames;
+  frames.reserve(2 * texture.signal.values.size());
+  for (std::size_t i = 0; i < texture.signal.values.size(); ++i)
+    frames.insert(frames.end(), {texture.signal.values[i], texture.average->spread[i]});
+  return frames;
+}
+
+Result<void> write_samples(const std::string& path, const Texture& texture) {
+  const std::size_t channels = texture.average ? 2 : 1;
+  auto writer =
+      WavWriter::create(path, header_rate_of(texture.signal.pitch_m), channels, SampleFormat::float32);
+  if (!writer) return forward_error(writer);
+  auto written = texture.average ? writer->write(frames_of(texture)) : writer->write(texture.signal.values);
+  return written ? writer->close() : written;
+}
+
+Result<void> check_writable(const std::string& stem, const Texture& texture) {
+  const SpaceSignal& signal = texture.signal;
+  if (signal.values.empty()) return fail(Fault::unsuitable, "the texture has no samples", stem);
+  if (!(signal.pitch_m > 0)) return fail(Fault::unsuitable, "the texture's pitch is not above 0", stem);
+  if (auto finite = check_finite(signal.values, stem, Fault::unsuitable); !finite) return finite;
+  if (auto held = check_single(signal.values, texture.unit, stem); !held) return held;
+  if (auto kept = check_not_lost(signal.values, texture.unit, stem); !kept || !texture.average) return kept;
+  if (texture.average->spread.size() != signal.values.size())
+    return fail(Fault::unsuitable, "the texture's spread has another length than its mean", stem);
+  if (auto finite = check_finite(texture.average->spread, stem, Fault::unsuitable); !finite) return finite;
+  return check_single(texture.average->spread, texture.unit, stem);
+}
+
+std::string sidecar_path(const std::string& name) {
+  return stem_of(name, kTextureSuffix) + ".texture.json";
+}
+
+Result<Document> open_sidecar(const std::string& name) {
+  const std::string path = sidecar_path(name);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return absent(name);
+  return open_document(path, kTextureKind);
+}
+
+}  // namespace
+
+Result<Texture> read_texture(const std::string& name) {
+  const auto document = open_sidecar(name);
+  if (!document) return forward_error(document);
+  const std::string path = sidecar_path(name);
+  Texture texture = texture_from(document->body);
+  const TextureData data = texture_data_from(document->body);
+  const std::string wav = (fs::path(path).parent_path() / data.file).string();
+  if (const auto fits = check_layout(wav, data, texture.signal.pitch_m); !fits) return forward_error(fits);
+  auto samples = read_samples(wav, 0);
+  if (!samples) return forward_error(samples);
+  texture.signal.values = std::move(*samples);
+  if (texture.average) {
+    auto spread = read_samples(wav, 1);
+    if (!spread) return forward_error(spread);
+    texture.average->spread = std::move(*spread);
+  }
+  if (const auto right = check_sum(wav, data.sha256); !right) return forward_error(right);
+  texture.extra_json = unknown_members(document->body, kTextureKind);
+  texture.newer_version = document->newer_version;
+  return texture;
+}
+
+Result<TextureWav> texture_wav(const std::string& name) {
+  const std::string path = sidecar_path(name);
+  const auto document = open_document(path, kTextureKind);
+  if (!document) return forward_error(document);
+  const TextureData data = texture_data_from(document->body);
+  return TextureWav{(fs::path(path).parent_path() / data.file).string(), data.sha256};
+}
+
+Result<std::optional<PlaybackGain>> read_playback_gain(const std::string& name) {
+  const auto document = open_sidecar(name);
+  return document ? texture_from(document->body).playback_gain
+                  : Result<std::optional<PlaybackGain>>(forward_error(document));
+}
+
+Result<void> write_playback_gain(const std::string& name, const PlaybackGain& gain) {
+  auto document = open_sidecar(name);
+  if (!document) return forward_error(document);
+  const std::string path = sidecar_path(name);
+  if (const auto free = check_changeable(path); !free) return free;
+  document->body["playback_gain"] = playback_gain_body(gain);
+  const auto text = document_text(kTextureKind, document->body, {});
+  if (!text) return forward_error(text);
+  PendingFiles pending;
+  if (const auto written = pending.write(path, *text); !written) return written;
+  return pending.commit();
+}
+
+Result<void> add_texture(PendingFiles& pending, const std::string& name, const Texture& texture) {
+  const std::string stem = stem_of(name, kTextureSuffix);
+  if (auto named = check_stem(stem); !named) return named;
+  if (auto writable = check_writable(stem, texture); !writable) return writable;
+  const std::string wav = stem + ".texture.wav";
+  const auto temporary = pending.add(wav);
+  if (!temporary) return forward_error(temporary);
+  if (auto written = write_samples(*temporary, texture); !written) return written;
+  const auto sha256 = sha256_of_file(*temporary);
+  if (!sha256) return forward_error(sha256);
+  const TextureData data{fs::path(wav).filename().string(), *sha256, texture.signal.values.size(),
+                         texture.average ? 2U : 1U};
+  const auto text = document_text(kTextureKind, texture_body(texture, data), texture.extra_json);
+  if (!text) return forward_error(text);
+  return pending.write(stem + ".texture.json", *text);
+}
+
+Result<void> write_texture(const std::string& name, const Texture& texture) {
+  PendingFiles pending;
+  if (auto added = add_texture(pending, name, texture); !added) return added;
+  return pending.commit();
+}
+
+std::string whole_rms_band(const Texture& texture) {
+  const TextureSource& source = texture.source;
+  if (source.filter.empty() || source.filter == "none") return "all samples, unfiltered";
+  if (source.high_per_m)
+    return fmt::format("all samples, filtered to {:.4g}-{:.4g} /mm", 1e-3 * source.low_per_m.value_or(0),
+                       1e-3 * *source.high_per_m);
+  return fmt::format("all samples, filtered to {:.4g}-{:.4g} Hz", source.low_hz, source.high_hz);
+}
+
+Result<void> check_texture_free(const std::string& name, Existing existing) {
+  const std::string stem = stem_of(name, kTextureSuffix);
+  for (const char* ending : {".texture.json", ".texture.wav"})
+    if (auto free = check_output_free(stem + ending, existing); !free) return free;
+  return {};
+}
+
+}  // namespace tacto::schema

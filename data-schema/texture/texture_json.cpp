@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/texture/texture_json.hpp"
+
+#include <cmath>
+
+#include "data-schema/json/json_document.hpp"
+#include "data-schema/texture/certificate_json.hpp"
+
+namespace tacto::schema {
+namespace {
+
+struct TextureText {
+  const char* name;
+  std::string Texture::*member;
+};
+
+constexpr TextureText kTextureTexts[] = {
+    {"simulated", &Texture::simulated}, {"surface", &Texture::surface}, {"subject", &Texture::subject},
+    {"finger", &Texture::finger},       {"notes", &Texture::notes},     {"created", &Texture::created},
+    {"creator", &Texture::creator},
+};
+
+struct SourceText {
+  const char* name;
+  std::string TextureSource::*member;
+};
+
+constexpr SourceText kSourceTexts[] = {
+    {"recording", &TextureSource::recording}, {"recording_sha256", &TextureSource::recording_sha256},
+    {"method", &TextureSource::method},       {"filter", &TextureSource::filter},
+    {"edges", &TextureSource::edges},
+};
+
+struct SourceNumber {
+  const char* name;
+  double TextureSource::*member;
+};
+
+constexpr SourceNumber kSourceNumbers[] = {
+    {"from_s", &TextureSource::from_s},
+    {"to_s", &TextureSource::to_s},
+    {"low_hz", &TextureSource::low_hz},
+    {"high_hz", &TextureSource::high_hz},
+    {"mean_speed_mps", &TextureSource::mean_speed_mps},
+    {"min_speed_mps", &TextureSource::min_speed_mps},
+    {"max_speed_mps", &TextureSource::max_speed_mps},
+    {"position_moved_m", &TextureSource::position_moved_m},
+    {"position_quantum_m", &TextureSource::position_quantum_m},
+    {"position_noise_m", &TextureSource::position_noise_m},
+};
+
+// Left out where they are 0.
+struct SourceCount {
+  const char* name;
+  int TextureSource::*member;
+};
+
+constexpr SourceCount kSourceCounts[] = {
+    {"stroke", &TextureSource::stroke},
+    {"order", &TextureSource::order},
+    {"counter_bits", &TextureSource::counter_bits},
+    {"counter_wraps", &TextureSource::counter_wraps},
+};
+
+struct SourceOption {
+  const char* name;
+  std::optional<double> TextureSource::*member;
+};
+
+constexpr SourceOption kSourceOptions[] = {
+    {"low_per_m", &TextureSource::low_per_m},
+    {"high_per_m", &TextureSource::high_per_m},
+    {"normal_force_n", &TextureSource::normal_force_n},
+};
+
+Json source_body(const TextureSource& source) {
+  Json body = Json::object();
+  for (const auto& [name, member] : kSourceTexts) put_text(body, name, source.*member);
+  for (const auto& [name, member] : kSourceNumbers) body[name] = source.*member;
+  for (const auto& [name, member] : kSourceCounts)
+    if (source.*member != 0) body[name] = source.*member;
+  body["equalised"] = source.equalised;
+  for (const auto& [name, member] : kSourceOptions)
+    if (source.*member) body[name] = *(source.*member);
+  if (source.finger_up) body["finger_up"] = true;
+  return body;
+}
+
+TextureSource source_from(const Json& body) {
+  TextureSource source;
+  for (const auto& [name, member] : kSourceTexts) source.*member = text_or(body, name);
+  for (const auto& [name, member] : kSourceNumbers) source.*member = number_or(body, name, 0);
+  for (const auto& [name, member] : kSourceCounts)
+    source.*member = static_cast<int>(number_or(body, name, 0));
+  source.equalised = body.value("equalised", false);
+  for (const auto& [name, member] : kSourceOptions)
+    if (body.contains(name)) source.*member = body[name].get<double>();
+  source.finger_up = body.value("finger_up", false);
+  return source;
+}
+
+Json band_body(const std::vector<BandPoint>& band) {
+  Json body = Json::array();
+  for (const BandPoint& point : band)
+    body.push_back(
+        {{"position_m", point.position_m}, {"low_per_m", point.low_per_m}, {"high_per_m", point.high_per_m}});
+  return body;
+}
+
+std::vector<BandPoint> band_points_from(const Json& body) {
+  std::vector<BandPoint> band;
+  for (const Json& point : body)
+    band.push_back({point["position_m"].get<double>(), point["low_per_m"].get<double>(),
+                    point["high_per_m"].get<double>()});
+  return band;
+}
+
+Json channels_body(const std::string& unit) {
+  return Json::array({{{"name", "mean"}, {"unit", unit}}, {{"name", "standard_deviation"}, {"unit", unit}}});
+}
+
+Json stroke_body(const AveragedStroke& stroke) {
+  Json body = {{"stroke", stroke.stroke},
+               {"from_s", stroke.from_s},
+               {"to_s", stroke.to_s},
+               {"direction", stroke.direction},
+               {"shift_m", stroke.shift_m}};
+  if (stroke.correlation) body["correlation"] = *stroke.correlation;
+  put_text(body, "recording", stroke.recording);
+  put_text(body, "recording_sha256", stroke.recording_sha256);
+  return body;
+}
+
+AveragedStroke averaged_stroke_from(const Json& body) {
+  AveragedStroke stroke{static_cast<int>(number_or(body, "stroke", 0)), number_or(body, "from_s", 0),
+                        number_or(body, "to_s", 0), static_cast<int>(number_or(body, "direction", 1)),
+                        number_or(body, "shift_m", 0)};
+  if (body.contains("correlation")) stroke.correlation = body["correlation"].get<double>();
+  stroke.recording = text_or(body, "recording");
+  stroke.recording_sha256 = text_or(body, "recording_sha256");
+  return stroke;
+}
+
+Json average_body(const TextureAverage& average) {
+  Json strokes = Json::array(), counts = Json::array();
+  for (const AveragedStroke& stroke : average.strokes) strokes.push_back(stroke_body(stroke));
+  for (const StrokeCount& count : average.counts)
+    counts.push_back({{"position_m", count.position_m}, {"strokes", count.strokes}});
+  return {{"align", average.align}, {"strokes", strokes}, {"counts", counts}};
+}
+
+TextureAverage average_from(const Json& body) {
+  TextureAverage average;
+  average.align = text_or(body, "align");
+  for (const Json& stroke : body["strokes"]) average.strokes.push_back(averaged_stroke_from(stroke));
+  for (const Json& count : body["counts"])
+    average.counts.push_back({count["position_m"].get<double>(), count["strokes"].get<int>()});
+  return average;
+}
+
+PlaybackGain playback_gain_from(const Json& body) {
+  return {body["gain_m_per_n"].get<double>(), text_or(body, "who"), text_or(body, "when")};
+}
+
+}  // namespace
+
+Json playback_gain_body(const PlaybackGain& gain) {
+  Json body = {{"gain_m_per_n", gain.gain_m_per_n}};
+  put_text(body, "who", gain.who);
+  put_text(body, "when", gain.when);
+  return body;
+}
+
+Json texture_body(const Texture& texture, const TextureData& data) {
+  Json body = {{"data", {{"file", data.file}, {"sha256", data.sha256}, {"samples", data.samples}}}};
+  body["pitch_m"] = texture.signal.pitch_m;
+  body["quantity"] = texture.quantity;
+  body["unit"] = texture.unit;
+  body["direction"] = texture.direction;
+  body["source_origin_m"] = texture.source_origin_m;
+  if (!texture.valid_band.empty()) body["valid_band"] = band_body(texture.valid_band);
+  // A texture that was drawn or computed, not recorded, names no recording.
+  if (!texture.source.recording.empty()) body["source"] = source_body(texture.source);
+  if (texture.average) {
+    body["channels"] = channels_body(texture.unit);
+    body["average"] = average_body(*texture.average);
+  }
+  if (texture.playback_gain) body["playback_gain"] = playback_gain_body(*texture.playback_gain);
+  for (const auto& [name, member] : kTextureTexts) put_text(body, name, texture.*member);
+  if (texture.certificate) body["certificate"] = certificate_body(*texture.certificate);
+  return body;
+}
+
+Texture texture_from(const Json& body) {
+  Texture texture;
+  texture.signal.pitch_m = body["pitch_m"].get<double>();
+  texture.quantity = text_or(body, "quantity");
+  texture.unit = text_or(body, "unit");
+  texture.direction = body["direction"].get<int>();
+  texture.source_origin_m = number_or(body, "source_origin_m", 0);
+  if (body.contains("valid_band")) texture.valid_band = band_points_from(body["valid_band"]);
+  if (body.contains("source")) texture.source = source_from(body["source"]);
+  if (body.contains("average")) texture.average = average_from(body["average"]);
+  if (body.contains("certificate")) texture.certificate = certificate_from(body["certificate"]);
+  if (body.contains("playback_gain")) texture.playback_gain = playback_gain_from(body["playback_gain"]);
+  for (const auto& [name, member] : kTextureTexts) texture.*member = text_or(body, name);
+  return texture;
+}
+
+TextureData texture_data_from(const Json& body) {
+  const Json& data = body["data"];
+  return {text_or(data, "file"), text_or(data, "sha256"), data["samples"].get<std::uint64_t>(),
+          body.contains("average") ? 2U : 1U};
+}
+
+double header_rate_of(double pitch_m) {
+  return std::round(1 / pitch_m);
+}
+
+}  // namespace tacto::schema

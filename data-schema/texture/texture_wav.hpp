@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a texture's samples lie.
+#pragma once
+
+#include <string>
+
+#include "data-schema/base/error.hpp"
+
+namespace tacto::schema {
+
+/// The WAV that a texture's sidecar names, and the SHA-256 that it says of it (which read_texture checks). It
+/// may have another name than the sidecar.
+struct TextureWav {
+  std::string path, sha256;
+};
+
+/// By stem, NAME.texture.json or NAME.texture.wav. Errors: as read_texture, of the sidecar.
+Result<TextureWav> texture_wav(const std::string& name);
+
+}  // namespace tacto::schema

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The piezo transducer's parameters and its complex frequency response, after Wiertlewski, Lozada and Hayward
+// 2011.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/transducer/transducer_extras.hpp"
+
+namespace tacto::schema {
+
+/// Names and symbols are the paper's (Table I, equations 1 to 6). All obligatory, but for what is optional.
+struct Transducer {
+  std::string name;
+  double deflection_m = 0;               ///< delta, largest unloaded deflection
+  double max_voltage_v = 0;              ///< v_max, on one layer
+  double bender_stiffness_n_per_m = 0;   ///< k_p
+  double flexure_stiffness_n_per_m = 0;  ///< k_r
+  double mass_kg = 0;                    ///< m
+  double damping_n_s_per_m = 0;          ///< b_r
+  double capacitance_f = 0;              ///< C_p, one layer
+  double sensor_gain = 0;                ///< G_s
+  double sensor_resistance_ohm = 0;      ///< R_s
+  double amplifier_gain = 0;             ///< G_a
+  double amplifier_resistance_ohm = 0;   ///< R_a
+  /// Identified over theoretical gain: theory fixes the shape of a response, identification its size.
+  double sensor_scale = 1;
+  double actuator_scale = 1;
+  int converter_bits = 16;
+  double converter_range_v = 10;    ///< +-
+  double noise_n_per_sqrt_hz = 0;   ///< sensor's noise floor, as force
+  double drive_limit_v = 0;         ///< |V_a| at the amplifier's input
+  double displacement_limit_m = 0;  ///< |X|
+  double slew_limit_v_per_s = 0;    ///< |dV_a/dt|
+  std::string origin;               ///< paper and equation, identification and date
+  std::optional<Hysteresis> hysteresis;
+  std::optional<ModeAbove> second_mode;
+  std::optional<Identification> identification;
+  std::string extra_json;
+  std::string newer_version;
+};
+
+/// beta = delta / (2 v_max), m/V. Equation (2).
+double piezo_coefficient_m_per_v(const Transducer& transducer);
+
+/// H_s = -2 G_s R_s k_p beta s / ((1 + 2 R_s C_p s)(m s^2 + b_r s + k_r + k_p)) x sensor_scale, V/N, s = 2 pi
+/// i f.
+std::complex<double> sensor_response(const Transducer& transducer, double frequency_hz);
+
+/// H_a = 2 beta k_p G_a / ((1 + 2 R_a C_p s)(m s^2 + b_r s + k_r + k_p)) x actuator_scale, m/V. Equations
+/// (5), (6): with the factor 2 that the printed H_a lacks; a second mode adds its compliance. A hysteresis is
+/// none of it: no transfer function has one.
+std::complex<double> actuator_response(const Transducer& transducer, double frequency_hz);
+
+/// Unit-gain analog Butterworth low-pass of order 3, as the paper's reconstruction filter (600 Hz), 1.
+std::complex<double> butterworth3_response(double cutoff_hz, double frequency_hz);
+
+/// Newtons for each volt that the sensor gives in its flat middle, sign included: 1 / Re(H_s) at 100 Hz.
+double nominal_newtons_per_volt(const Transducer& transducer);
+
+/// sqrt((k_r + k_p) / m) / 2 pi: the tray's undamped resonance without a finger.
+double resonance_hz(const Transducer& transducer);
+
+/// b_r / (2 sqrt((k_r + k_p) m)), 1.
+double damping_ratio(const Transducer& transducer);
+
+/// 1 / (4 pi R C_p): the sensor's high-pass (R_s) and the amplifier's low-pass (R_a).
+double sensor_pole_hz(const Transducer& transducer);
+double actuator_pole_hz(const Transducer& transducer);
+
+/// The names of the transducers that come with tactograph.
+std::vector<std::string_view> preset_names();
+
+/// What the schema can't say of a transducer: that the hysteresis is an operator with an inverse, and that
+/// the identified band goes upwards. Errors: malformed, in `where`#/field.
+Result<void> check_extras(const Transducer& transducer, const std::string& where);
+
+/// Whether something may be played through it: errors: unsuitable, where its own identification says that it
+/// did not converge or that the model is wrong, and nobody forces it.
+Result<void> check_usable(const Transducer& transducer, bool forced);
+
+/// Which numbers a file may hold: those of a transducer that can be made, or, where somebody insists, all
+/// that can be computed with (transducer_plausible.hpp).
+enum class Numbers { plausible, computable };
+
+/// By preset name, stem or file (NAME.transducer.json). Errors: not_found (with the presets), malformed (also
+/// by check_extras), unsupported_version; unsuitable, by check_plausible and check_computable.
+Result<Transducer> read_transducer(const std::string& name, Numbers numbers = Numbers::plausible);
+
+/// Errors: cannot_write; malformed: by check_extras.
+Result<void> write_transducer(const std::string& stem, const Transducer& transducer);
+
+}  // namespace tacto::schema

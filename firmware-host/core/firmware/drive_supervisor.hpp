@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// When there may be a drive, and when it has to go.
+#pragma once
+
+#include "firmware-host/core/kernel/shared.hpp"
+#include "firmware-host/core/wire/host_messages.hpp"
+
+namespace tacto::core {
+
+/// release_s + drive_v / slew_v_per_s of the limits is at most this, so that within 20 ms of a fault the
+/// drive is at zero at 1 kHz and above: this, and two ticks.
+inline constexpr float kLongestReleaseS = 0.018F;
+
+/// What the main loop wants of the drive.
+enum class Aim : uint8_t { off, hold, play };
+
+/// What the tick saw.
+struct TickSights {
+  uint32_t encoder_jump = 0;  ///< counts; 0: none
+  bool enabled = false;
+  bool drive_lacks = false;  ///< the host's drive has not come
+  bool blind = false;        ///< nor has the encoder's count: no fault, but the drive falls
+};
+
+/// States and transitions (idle: no output; armed: zero; playing; fault: ramping, or at zero):
+///   idle -> armed by arm(); armed <-> playing by aim(); armed, playing or fault -> idle by aim(off), once at
+///   rest; armed or playing -> fault by a silent host, an open enable input, an encoder's jump, a drive that
+///   lacks for the watchdog's time, a drive that is no number.
+/// The main loop calls arm(), aim() and heard(); the tick all else.
+class DriveSupervisor {
+ public:
+  /// In idle only.
+  void arm(const wire::Limits& limits, uint32_t rate_millihertz) noexcept;
+  void aim(Aim aim) noexcept { aim_.store(aim); }
+  Aim aim() const noexcept { return aim_.load(); }
+  /// A sound frame has come from the host.
+  void heard() noexcept { heard_.store(heard_.load() + 1); }
+  wire::DriveState state() const noexcept { return state_.load(); }
+  wire::FaultCode fault() const noexcept { return fault_.load(); }
+  uint32_t fault_detail() const noexcept { return detail_; }
+
+  /// (tick) True where the drive may rise. In idle nothing happens.
+  bool observe(const TickSights& sights) noexcept;
+  /// (tick) After the kernel: a drive that was no number, and whether the drive is at rest.
+  void settle(bool sound, bool at_rest) noexcept;
+
+ private:
+  void fail(wire::FaultCode code, uint32_t detail) noexcept;
+  void watch_host() noexcept;
+  void watch_drive(bool lacks) noexcept;
+
+  Shared<wire::DriveState> state_{wire::DriveState::idle};
+  Shared<Aim> aim_{Aim::off};
+  Shared<uint32_t> heard_;
+  Shared<wire::FaultCode> fault_{wire::FaultCode::none};
+  uint32_t detail_ = 0;
+  uint32_t watchdog_ticks_ = 0;
+  uint32_t last_heard_ = 0, silent_ticks_ = 0, lacking_ticks_ = 0;
+};
+
+}  // namespace tacto::core

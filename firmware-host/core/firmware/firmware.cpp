@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/firmware/firmware.hpp"
+
+namespace tacto::core {
+
+Firmware::Firmware(const Board& board, const Hal& hal) noexcept
+    : board_(board),
+      hal_(hal),
+      ticker_(hal),
+      upload_(board.profile_memory, board.profile_samples),
+      next_(board.profile_memory, board.profile_samples) {
+  wire::Welcome& about = board_.about;
+  about.major = wire::kProtocolMajor;
+  about.minor = wire::kProtocolMinor;
+  about.features |= wire::kFeatureTextures | wire::kFeatureHysteresis;
+  about.channels = board.channel_count;
+  about.notes = board.note_count;
+  about.most_sections = wire::kMaxSections;
+  about.ring_records = kRingRecords;
+  about.profile_samples = board.profile_samples;
+  about.drive_queue = kDriveQueue;
+  described_ = static_cast<uint16_t>(1 + board.channel_count + board.note_count);
+  filters_.count = 0;
+}
+
+void Firmware::poll() noexcept {
+  do {
+    while (flush() && compose()) {
+    }
+  } while (receive());
+  rest_if_unused();
+}
+
+// One command at a time: the next is read once this one's answer is on its way.
+bool Firmware::receive() noexcept {
+  if (owed_ != Owed::nothing) return false;
+  if (received_used_ == received_size_) {
+    received_size_ = hal_.receive(hal_.board, received_, sizeof received_);
+    received_used_ = 0;
+  }
+  wire::Frame frame;
+  size_t used = 0;
+  const wire::Arrival arrival =
+      decoder_.take(received_ + received_used_, received_size_ - received_used_, used, frame);
+  received_used_ += used;
+  if (arrival == wire::Arrival::frame) accept(frame);
+  return arrival != wire::Arrival::nothing || received_size_ > 0;
+}
+
+void Firmware::accept(const wire::Frame& frame) noexcept {
+  const bool hello = frame.header.type == static_cast<uint8_t>(wire::MessageType::hello);
+  if (hello) order_.expect_any();
+  if (order_.check(frame.header.sequence) == wire::Order::stale) return;
+  if (hello) return greet(frame);
+  ticker_.supervisor().heard();
+  obey(frame);
+}
+
+void Firmware::rest_if_unused() noexcept {
+  if (rate_millihertz_ == 0 || ticker_.streaming() || !idle()) return;
+  rate_millihertz_ = 0;
+  hal_.set_rate(hal_.board, 0);
+}
+
+}  // namespace tacto::core

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device: commands in, frames out. The same source on a board, in a gadget and in the emulated device.
+#pragma once
+
+#include "firmware-host/core/firmware/board.hpp"
+#include "firmware-host/core/firmware/profile_upload.hpp"
+#include "firmware-host/core/firmware/stream_blocks.hpp"
+#include "firmware-host/core/firmware/ticker.hpp"
+#include "firmware-host/core/wire/frame_decoder.hpp"
+#include "firmware-host/core/wire/sequence_check.hpp"
+
+namespace tacto::core {
+
+/// Begins with no output and no stream. tick() in the timer's interrupt, poll() in the main loop, as often as
+/// it can: tick() may interrupt poll() anywhere, poll() never runs within a tick (one core; a host calls both
+/// from one thread). 47 KB, the profile's memory (the board's) apart. No heap, no locks, no libm.
+class Firmware {
+ public:
+  /// Precondition: the board's channels and rates are as Board says.
+  Firmware(const Board& board, const Hal& hal) noexcept;
+
+  void tick() noexcept { ticker_.tick(); }
+  /// Handles what the host sent and sends what is ready, as far as the link takes it. Never waits.
+  void poll() noexcept;
+
+  wire::DriveState drive_state() const noexcept { return ticker_.supervisor().state(); }
+  const DriveSupervisor& supervisor() const noexcept { return ticker_.supervisor(); }
+
+ private:
+  enum class Owed : uint8_t { nothing, answer, answer_after_data, pulse };
+
+  // Sending (firmware_sending.cpp).
+  bool flush() noexcept;
+  bool compose() noexcept;
+  bool compose_prompt() noexcept;
+  bool compose_owed() noexcept;
+  bool compose_description() noexcept;
+  bool compose_fault() noexcept;
+  bool compose_data() noexcept;
+  bool compose_full_blocks() noexcept;
+  bool gather() noexcept;
+  bool streams_data() noexcept;
+  wire::Pulse pulse() noexcept;
+  template <class Message>
+  bool put(const Message& message) noexcept;
+  template <class Block>
+  bool put_block(Block& block) noexcept;
+
+  // Receiving (firmware.cpp).
+  bool receive() noexcept;
+  void accept(const wire::Frame& frame) noexcept;
+  void rest_if_unused() noexcept;
+
+  // Commands (firmware_commands.cpp).
+  void greet(const wire::Frame& frame) noexcept;
+  void obey(const wire::Frame& frame) noexcept;
+  Reply reply_to(const wire::Frame& frame) noexcept;
+  Reply reply_to_setup(const wire::Frame& frame) noexcept;
+  Reply reply_to_texture(const wire::Frame& frame) noexcept;
+  template <class Message>
+  Reply with(const wire::Frame& frame, Message& message, Reply (Firmware::*command)(const Message&)) noexcept;
+  template <class Message>
+  Reply in_idle(const wire::Frame& frame, Message& message,
+                Reply (Firmware::*command)(const Message&)) noexcept;
+  template <class Message>
+  Reply to_profile(const wire::Frame& frame, Message& message,
+                   Reply (Firmware::*command)(const Message&)) noexcept;
+  Reply stream_start(const wire::StreamStart& message) noexcept;
+  Reply stream_stop() noexcept;
+  Reply limits(const wire::Limits& message) noexcept;
+  Reply profile_begin(const wire::ProfileBegin& message) noexcept;
+  Reply next_profile_begin(const wire::ProfileBegin& message) noexcept;
+  Reply profile_levels(const wire::ProfileLevels& message) noexcept { return building().levels(message); }
+  Reply profile_chunk(const wire::ProfileChunk& message) noexcept { return building().chunk(message); }
+  Reply profile_end(const wire::ProfileEnd& message) noexcept { return building().end(message); }
+  Reply filters(const wire::Filters& message) noexcept;
+  Reply taps(const wire::Taps& message) noexcept;
+  Reply hysteresis(const wire::Hysteresis& message) noexcept;
+  Reply tracking(const wire::Tracking& message) noexcept;
+  Reply energy(const wire::Energy& message) noexcept;
+  Reply contact(const wire::Contact& message) noexcept;
+  Reply change(const wire::Change& message) noexcept;
+  TextureSetup texture_setup() const noexcept;
+  KernelSetup kernel_setup(const wire::Arm& message) const noexcept;
+  Reply gain(const wire::Gain& message) noexcept;
+  Reply sweep(const wire::Sweep& message) noexcept;
+  Reply arm(const wire::Arm& message) noexcept;
+  Reply ready(const wire::Arm& message) noexcept;
+  Reply play() noexcept;
+  Reply stop() noexcept;
+  Reply disarm() noexcept;
+  Reply reset() noexcept;
+  Reply drive(const wire::Drive& message) noexcept;
+  Reply take_rate(uint32_t rate_millihertz) noexcept;
+  Reply wrong_state() const noexcept;
+  bool idle() const noexcept { return drive_state() == wire::DriveState::idle; }
+  /// Armed or playing, and not on its way to idle: it is not idle before the main loop says so.
+  bool runs() const noexcept;
+  bool plays_profile() const noexcept;
+  ProfileUpload& building() noexcept { return idle() ? upload_ : next_; }
+
+  Board board_;
+  Hal hal_;
+  Ticker ticker_;
+  ProfileUpload upload_, next_;  // next: uploaded while the other one plays
+  wire::FrameDecoder decoder_;
+  wire::SequenceCheck order_;
+  wire::Limits limits_;
+  wire::Filters filters_;
+  wire::Taps taps_, new_taps_;
+  wire::Hysteresis hysteresis_, new_hysteresis_;
+  wire::Tracking tracking_, next_tracking_;
+  wire::Energy energy_;
+  wire::Contact contact_;
+  wire::Sweep sweep_;
+  wire::ProfileChunk chunk_;  // members, not locals: small cores have small stacks
+  wire::Drive drive_;
+  SampleBlock samples_;
+  TickBlock ticks_;
+  wire::Answer answer_;
+  uint32_t nonce_ = 0, token_ = 0;
+  uint32_t rate_millihertz_ = 0;  // 0: not ticking
+  uint32_t sequence_ = 0;
+  uint16_t described_ = 0;  // of welcome, channels, notes; all of them: nothing to describe
+  uint8_t run_ = 0;
+  Owed owed_ = Owed::nothing;
+  bool greeted_ = false, limited_ = false;
+  bool changed_ = false;  // and no next profile has begun since
+  wire::FaultCode told_ = wire::FaultCode::none, stream_fault_ = wire::FaultCode::none;
+  uint8_t received_[512];
+  size_t received_size_ = 0, received_used_ = 0;
+  uint8_t sending_[wire::kMaxFrame];
+  size_t sending_size_ = 0, sent_ = 0;
+};
+
+}  // namespace tacto::core

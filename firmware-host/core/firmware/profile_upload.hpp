@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A profile on its way in, chunk by chunk.
+#pragma once
+
+#include "firmware-host/core/kernel/profile.hpp"
+#include "firmware-host/core/wire/host_messages.hpp"
+
+namespace tacto::core {
+
+inline constexpr uint32_t kLeastProfile = 6;  ///< samples: what one interpolation reads
+
+/// An answer to a command, with its detail.
+struct Reply {
+  wire::AnswerCode code = wire::AnswerCode::ok;
+  uint32_t detail = 0;
+};
+
+/// By the field's place in its message.
+inline Reply bad_value(uint32_t field) noexcept {
+  return {wire::AnswerCode::bad_value, field};
+}
+
+/// Keeps the samples in memory that the board gives. Chunks come in order; one that comes again is written
+/// again. Only a profile whose check is right can be armed. The check is taken chunk by chunk: nothing here
+/// takes longer than a chunk does, unless one came again. For the main loop.
+class ProfileUpload {
+ public:
+  ProfileUpload(float* memory, uint32_t capacity) noexcept : memory_(memory), capacity_(capacity) {}
+
+  /// In all of the memory.
+  Reply begin(const wire::ProfileBegin& message) noexcept;
+  /// In what another one, begun in the same memory, leaves free: at the other end of it, so that all that is
+  /// free is always in one piece.
+  Reply begin_beside(const ProfileUpload& other, const wire::ProfileBegin& message) noexcept;
+  /// After begin(): all samples together are those of so many levels.
+  Reply levels(const wire::ProfileLevels& message) noexcept;
+  Reply chunk(const wire::ProfileChunk& message) noexcept;
+  Reply end(const wire::ProfileEnd& message) noexcept;
+  void forget() noexcept;
+
+  bool begun() const noexcept { return samples_ > 0; }
+  bool complete() const noexcept { return complete_; }
+  uint32_t here() const noexcept { return here_; }
+  uint32_t capacity() const noexcept { return capacity_; }
+  Profile profile() const noexcept { return {memory_ + place_, scale_}; }
+
+ private:
+  Reply begin_within(uint32_t room, const wire::ProfileBegin& message) noexcept;
+  void check_up_to(uint32_t end) noexcept;
+
+  float* memory_;
+  uint32_t capacity_;
+  ProfileScale scale_;
+  uint32_t place_ = 0;    // of the first sample in the memory
+  uint32_t samples_ = 0;  // of all levels
+  uint32_t here_ = 0;
+  uint32_t checked_ = 0, check_ = 0;  // samples that the check holds
+  bool complete_ = false;
+};
+
+}  // namespace tacto::core

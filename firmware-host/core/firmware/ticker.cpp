@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/firmware/ticker.hpp"
+
+namespace tacto::core {
+
+using wire::DriveSource;
+using wire::DriveState;
+using wire::FaultCode;
+
+uint8_t Ticker::start_stream() noexcept {
+  stream_.store(Stream::off);
+  run_.store(static_cast<uint8_t>(run_.load() + 1));
+  records_.clear();
+  stream_fault_.store(FaultCode::none);
+  stream_.store(Stream::starting);
+  return run_.load();
+}
+
+void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept {
+  source_ = source;
+  tick_ = 0;
+  drive_queue_.clear();
+  kernel_.set(setup);
+  steered_.store(0);
+  steered_taken_ = 0;
+  gain_taken_ = gain_.load();
+  change_.store(kNoChange);
+  change_taken_ = false;
+  supervisor_.arm(setup.limits, rate_millihertz);
+  watch_.arm(setup.limits.counts_per_tick, setup.rate_hz, hal_.read_encoder(hal_.board));
+}
+
+// What the tick reads is written before the word that sends it there.
+void Ticker::change(const TextureSetup& texture, float fade_s) noexcept {
+  next_texture_ = texture;
+  fade_s_ = fade_s;
+  const auto count = static_cast<uint8_t>(steered_.load() + 1);
+  change_.store(static_cast<uint16_t>(kChangeAsked | count));
+  steered();
+}
+
+FaultCode Ticker::take_stream_fault() noexcept {
+  const FaultCode code = stream_fault_.load();
+  if (code != FaultCode::none) stream_fault_.store(FaultCode::none);
+  return code;
+}
+
+void Ticker::look(Record& record) noexcept {
+  record.clock = hal_.clock(hal_.board);
+  record.encoder = hal_.read_encoder(hal_.board);
+  record.flags = hal_.enable_closed(hal_.board) ? wire::kTickEnabled : 0U;
+  if (ticked_ && record.clock - last_clock_ > late_clocks_) record.flags |= wire::kTickLate;
+  last_clock_ = record.clock;
+  ticked_ = true;
+}
+
+void Ticker::sample(Record& record) noexcept {
+  record.sampled = stream_.load() != Stream::off;
+  if (!record.sampled) return;
+  if (stream_.load() == Stream::starting) frame_ = 0;
+  stream_.store(Stream::on);
+  record.run = run_.load();
+  record.frame = frame_++;
+  record.sampled = hal_.read_channels(hal_.board, record.codes);
+  if (record.sampled) return;
+  stream_.store(Stream::off);
+  tell(FaultCode::converter);
+}
+
+// A session can be replayed to the bit because each tick says which commands it knew.
+void Ticker::take_steering(Record& record) noexcept {
+  if (const uint8_t steered = steered_.load(); steered != steered_taken_) {
+    steered_taken_ = steered;
+    gain_taken_ = gain_.load();
+    take_change();
+  }
+  record.flags |= uint32_t{steered_taken_} << wire::kTickSteeredShift;
+}
+
+// Not before its own count: a tick may come between the word and the count, and take an earlier command.
+void Ticker::take_change() noexcept {
+  const uint16_t asked = change_.load();
+  const auto since = static_cast<int8_t>(steered_taken_ - static_cast<uint8_t>(asked));
+  if (asked == kNoChange || change_taken_ || since < 0) return;
+  kernel_.change(next_texture_, fade_s_);
+  change_taken_ = true;
+}
+
+// From here on nothing reads the texture that left.
+void Ticker::end_change() noexcept {
+  if (!change_taken_ || kernel_.changing()) return;
+  change_taken_ = false;
+  change_.store(kNoChange);
+}
+
+// The host's drive is for this tick or for none: what was not played in its time is not played later.
+float Ticker::wanted(int32_t count, bool& lacks) noexcept {
+  if (source_ == DriveSource::profile) {
+    const float wanted = kernel_.wanted(count, gain_taken_);
+    end_change();
+    return wanted;
+  }
+  if (source_ == DriveSource::sweep) return supervisor_.state() == DriveState::playing ? sweep_.next() : 0;
+  const float* next = drive_queue_.front();
+  lacks = next == nullptr;
+  if (lacks) return kernel_.last_v();
+  const float drive_v = *next;
+  drive_queue_.pop();
+  return drive_v;
+}
+
+// The count that is played: not always the one that the encoder shows.
+int32_t Ticker::follow(Record& record) noexcept {
+  const uint32_t unseen = hal_.encoder_unseen != nullptr ? hal_.encoder_unseen(hal_.board) : 0;
+  const int32_t count = watch_.see(record.encoder, unseen, kernel_.at_rest());
+  if (watch_.found()) kernel_.forget_finger();
+  if (watch_.blind()) record.flags |= wire::kTickBlind;
+  return count;
+}
+
+// A converter that gives nothing touches nothing.
+float Ticker::normal_force(Record& record) noexcept {
+  if (!(contact_.on_n > 0)) return kNoForce;
+  if (!record.sampled && !hal_.read_channels(hal_.board, record.codes)) return 0;
+  return static_cast<float>(record.codes[contact_.channel]) * contact_.newtons_per_code + contact_.offset_n;
+}
+
+void Ticker::drive(Record& record) noexcept {
+  record.driven = supervisor_.state() != DriveState::idle;
+  record.drive_v = 0;
+  if (!record.driven) return hal_.write_drive(hal_.board, 0);
+  take_steering(record);
+  const FaultCode before = supervisor_.fault();
+  const int32_t count = follow(record);
+  TickSights sights{watch_.jump(), (record.flags & wire::kTickEnabled) != 0, false, watch_.blind()};
+  const float wanted_v = wanted(count, sights.drive_lacks);
+  const bool raise = supervisor_.observe(sights);
+  const TickOutput output = kernel_.drive(wanted_v, raise, normal_force(record));
+  record.drive_v = output.drive_v;
+  record.flags |= output.flags;
+  hal_.write_drive(hal_.board, record.drive_v);
+  supervisor_.settle(output.sound, kernel_.at_rest());
+  record.tick = tick_++;
+  if (supervisor_.state() == DriveState::playing) record.flags |= wire::kTickPlaying;
+  if (supervisor_.state() == DriveState::fault) record.flags |= wire::kTickFault;
+  if (supervisor_.fault() != before) fault_clock_ = record.clock;
+  counts_.underruns += sights.drive_lacks && supervisor_.aim() == Aim::play;
+}
+
+void Ticker::count(uint32_t flags) noexcept {
+  counts_.late += (flags & wire::kTickLate) != 0;
+  counts_.amplitude_limited += (flags & wire::kTickAmplitudeLimited) != 0;
+  counts_.slew_limited += (flags & wire::kTickSlewLimited) != 0;
+}
+
+void Ticker::keep(bool there, const Record& record) noexcept {
+  if (!record.sampled && !record.driven) return;
+  if (there) records_.push();
+  if (!there) ++counts_.lost_records;
+  if (!there && !losing_) tell(FaultCode::ring_full);
+  losing_ = !there;
+}
+
+void Ticker::tick() noexcept {
+  Record* place = records_.place();
+  Record& record = place != nullptr ? *place : spare_;
+  look(record);
+  sample(record);
+  drive(record);
+  count(record.flags);
+  keep(place != nullptr, record);
+}
+
+}  // namespace tacto::core

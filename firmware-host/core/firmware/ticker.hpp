@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tick: look, decide, drive, leave a record.
+#pragma once
+
+#include "firmware-host/core/firmware/drive_supervisor.hpp"
+#include "firmware-host/core/firmware/encoder_watch.hpp"
+#include "firmware-host/core/firmware/hal.hpp"
+#include "firmware-host/core/firmware/record.hpp"
+#include "firmware-host/core/firmware/sweep_generator.hpp"
+#include "firmware-host/core/kernel/ring.hpp"
+#include "firmware-host/core/kernel/tick_kernel.hpp"
+
+namespace tacto::core {
+
+/// What the tick counts; the main loop reads.
+struct TickCounts {
+  uint32_t late = 0, lost_records = 0, underruns = 0, amplitude_limited = 0, slew_limited = 0;
+};
+
+/// tick() is called by the timer's interrupt and neither waits, allocates, locks nor throws; all else is the
+/// main loop's.
+class Ticker {
+ public:
+  explicit Ticker(const Hal& hal) noexcept : hal_(hal) {}
+
+  void tick() noexcept;
+
+  /// Before the first tick at a rate. The clock's ticks in a period.
+  void set_period(float clocks) noexcept {
+    late_clocks_ = static_cast<uint32_t>(1.5F * clocks), ticked_ = false;
+  }
+  /// Frames begin at 0 with the next tick; records of this run carry the number that is given back.
+  uint8_t start_stream() noexcept;
+  void stop_stream() noexcept { stream_.store(Stream::off); }
+  bool streaming() const noexcept { return stream_.load() != Stream::off; }
+
+  /// In idle only; what the source needs is set.
+  void arm(wire::DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept;
+  /// Before arm(): which channel holds the normal force.
+  void watch_force(const wire::Contact& contact) noexcept { contact_ = contact; }
+  /// Taken by the tick that first counts it.
+  void set_gain(float gain) noexcept { gain_.store(gain), steered(); }
+  /// Another texture fades in over fade_s, beginning in the tick that first counts it. Armed by a profile,
+  /// and not while fading().
+  void change(const TextureSetup& texture, float fade_s) noexcept;
+  /// A change is under way: the texture that leaves is still read. Of use until the drive is idle.
+  bool fading() const noexcept { return change_.load() != kNoChange; }
+  wire::DriveSource source() const noexcept { return source_; }
+  /// A command to the drive has been obeyed.
+  void steered() noexcept { steered_.store(static_cast<uint8_t>(steered_.load() + 1)); }
+  TickKernel& kernel() noexcept { return kernel_; }
+  SweepGenerator& sweep() noexcept { return sweep_; }
+  DriveSupervisor& supervisor() noexcept { return supervisor_; }
+  const DriveSupervisor& supervisor() const noexcept { return supervisor_; }
+  Ring<float, kDriveQueue>& drive_queue() noexcept { return drive_queue_; }
+  Ring<Record, kRingRecords>& records() noexcept { return records_; }
+
+  const TickCounts& counts() const noexcept { return counts_; }
+  void forget_counts() noexcept { counts_ = {}; }
+  /// The stream's own fault, once; none where there is none.
+  wire::FaultCode take_stream_fault() noexcept;
+  uint64_t fault_clock() const noexcept { return fault_clock_; }
+
+ private:
+  enum class Stream : uint8_t { off, starting, on };
+  void look(Record& record) noexcept;
+  void sample(Record& record) noexcept;
+  void drive(Record& record) noexcept;
+  void take_steering(Record& record) noexcept;
+  void take_change() noexcept;
+  void end_change() noexcept;
+  int32_t follow(Record& record) noexcept;
+  float wanted(int32_t count, bool& lacks) noexcept;
+  float normal_force(Record& record) noexcept;
+  void count(uint32_t flags) noexcept;
+  void keep(bool there, const Record& record) noexcept;
+  void tell(wire::FaultCode code) noexcept { stream_fault_.store(code); }
+
+  Hal hal_;
+  TickKernel kernel_;
+  SweepGenerator sweep_;
+  DriveSupervisor supervisor_;
+  EncoderWatch watch_;
+  Ring<float, kDriveQueue> drive_queue_;
+  Ring<Record, kRingRecords> records_;
+  Record spare_;
+  wire::DriveSource source_ = wire::DriveSource::profile;
+  wire::Contact contact_;
+  Shared<float> gain_{1.0F};
+  Shared<uint8_t> steered_;
+  // The main loop writes this word where it is kNoChange, the tick where it is not.
+  static constexpr uint16_t kNoChange = 0, kChangeAsked = 0x100;  // and the count of commands that it is
+  Shared<uint16_t> change_{kNoChange};
+  TextureSetup next_texture_;
+  float fade_s_ = 0;
+  float gain_taken_ = 1;
+  uint8_t steered_taken_ = 0;
+  bool change_taken_ = false;
+  Shared<Stream> stream_{Stream::off};
+  Shared<wire::FaultCode> stream_fault_{wire::FaultCode::none};
+  Shared<uint8_t> run_;
+  uint64_t frame_ = 0, tick_ = 0, last_clock_ = 0, fault_clock_ = 0;
+  uint32_t late_clocks_ = 0;
+  bool ticked_ = false, losing_ = false;
+  TickCounts counts_;
+};
+
+}  // namespace tacto::core

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The texture on the device: what is wanted against encoder count, in copies of falling detail, read between
+// samples.
+#pragma once
+
+#include "firmware-host/core/kernel/detail.hpp"
+#include "firmware-host/core/kernel/interpolation.hpp"
+
+namespace tacto::core {
+
+/// Where counts lie on the samples: sample x 2^32 = (count - origin_count) samples_per_count_q32 +
+/// at_origin_q32, exactly, in 64-bit integers: no position is lost in a float's 24 bits.
+struct ProfileScale {
+  uint32_t samples = 0;  ///< of the first level
+  int32_t origin_count = 0;
+  int64_t at_origin_q32 = 0;
+  uint64_t samples_per_count_q32 = 0;
+  wire::ProfileEnds ends = wire::ProfileEnds::stop;
+  uint8_t levels = 1;  ///< at most kMaxLevels
+  wire::Interpolation interpolation = wire::Interpolation::hermite;
+};
+
+/// Counts farther than this from the origin read zero, whatever the ends: 268 m of a 1 um grid.
+int32_t reach_counts(const ProfileScale& scale) noexcept;
+
+/// Samples of a level: every second one goes with each second level. A loop's first level has a multiple of
+/// 2^((levels - 1) / 2) samples, other ends' one more.
+uint32_t level_samples(const ProfileScale& scale, uint32_t level) noexcept;
+/// Of all levels, which lie one after the other.
+uint32_t pyramid_samples(const ProfileScale& scale) noexcept;
+
+/// A pyramid: level n holds the texture up to a spatial frequency that falls by the square root of two with
+/// each level. Ends: stop: samples outside are zero; loop: sample n is sample 0; mirror: about the first and
+/// last sample. Interpolation's errors stand at interpolated().
+class Profile {
+ public:
+  Profile() = default;
+  /// At least 6 samples, which are not copied. `scale` as a ProfileUpload lets through.
+  Profile(const float* samples, const ProfileScale& scale) noexcept;
+
+  /// At a count, of the first level. Safe in the tick.
+  float at(int32_t count) const noexcept { return at(count, 0, {}); }
+
+  /// At count + offset, in so much detail: level `coarser` - 1 fades evenly into level `coarser`, beyond the
+  /// last one into silence: all is continuous. A profile of one level serves at every speed. Beyond
+  /// reach_counts() it is zero. Safe in the tick.
+  float at(int32_t count, float offset, Detail detail) const noexcept;
+
+ private:
+  struct Level {
+    const float* samples = nullptr;
+    int32_t size = 0;
+  };
+  bool place_of(int32_t count, float offset, int64_t& place) const noexcept;
+  Four read(uint32_t level, int64_t place) const noexcept;
+  [[gnu::noinline]] Four read_near_end(const Level& level, int32_t first, float u) const noexcept;
+  void gather(const Level& level, int32_t first, float* y) const noexcept;
+
+  ProfileScale scale_;
+  int32_t reach_ = 0;
+  float farthest_ = 0;  // the same
+  Level levels_[wire::kMaxLevels];
+};
+
+}  // namespace tacto::core

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The texture under the finger: place and speed, the level of detail that the speed allows, and a change of
+// texture.
+#pragma once
+
+#include "firmware-host/core/kernel/finger_tracker.hpp"
+#include "firmware-host/core/kernel/profile.hpp"
+
+namespace tacto::core {
+
+/// A texture and how it is followed.
+struct TextureSetup {
+  Profile profile;
+  TrackerSetup tracker;
+  /// 1 / the speed (counts a tick) up to which the first level holds nothing beyond the band: half-octaves of
+  /// speed count from there. 0: the first level serves always.
+  float per_full_detail = 0;
+};
+
+inline float per_full_detail(float counts_per_tick) noexcept {
+  return counts_per_tick > 0 ? 1 / counts_per_tick : 0;
+}
+
+/// wanted = gain x texture(place). A gain goes evenly to its new value within `gain_ticks`, and is then
+/// exactly that; another texture fades in by a raised weight w = u^2 (3 - 2 u). Safe in the tick.
+class TexturePlayer {
+ public:
+  void set(const TextureSetup& texture, float gain_ticks) noexcept;
+  /// Forgets finger, gain and what is leaving.
+  void begin(float gain_ticks) noexcept;
+  void change(const TextureSetup& texture, float fade_ticks) noexcept;
+  /// The finger is somewhere else, at a speed that nobody knows.
+  void forget_finger() noexcept { tracker_.set(playing().tracker); }
+  bool changing() const noexcept { return fade_ > 0; }
+  float wanted(int32_t count, float gain) noexcept;
+  FingerPlace place() const noexcept { return place_; }
+
+ private:
+  float read(const TextureSetup& texture) const noexcept;
+  [[gnu::noinline]] float faded(float value) noexcept;  // seldom: out of the usual tick's way
+  float follow(float gain) noexcept;
+
+  TextureSetup& playing() noexcept { return textures_[which_]; }
+  const TextureSetup& leaving() const noexcept { return textures_[1 - which_]; }
+
+  TextureSetup textures_[2];  // the one that plays and the one that leaves: a change copies one, not both
+  uint8_t which_ = 0;
+  FingerTracker tracker_;
+  FingerPlace place_;
+  float gain_ = 0, gain_aim_ = 0, gain_step_ = 0;
+  float fade_ = 0, fade_step_ = 0;  // of what is leaving, 1 to 0
+  uint32_t gain_left_ = 0, gain_ticks_ = 1;
+  bool gained_ = false;
+};
+
+}  // namespace tacto::core

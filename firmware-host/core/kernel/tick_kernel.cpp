@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/kernel/tick_kernel.hpp"
+
+#include "firmware-host/core/kernel/finite.hpp"
+
+namespace tacto::core {
+namespace {
+constexpr float kGainS = 0.01F;
+constexpr float kGateS = 0.02F;
+}  // namespace
+
+void TickKernel::set(const wire::Limits& limits, float rate_hz) noexcept {
+  rate_hz_ = rate_hz;
+  envelope_.set(limits.onset_s * rate_hz, limits.release_s * rate_hz);
+  limiter_.set(limits.drive_v, limits.slew_v_per_s / rate_hz);
+  energy_.set(0, 1);
+  gate_.set(0, 0, 1);
+  player_.begin(kGainS * rate_hz);
+  fir_.rest();
+  plays_.rest();
+  sections_.rest();
+}
+
+void TickKernel::set(const KernelSetup& setup) noexcept {
+  player_.set(setup.texture, kGainS * setup.rate_hz);
+  fir_.set(setup.taps, setup.tap_count);
+  plays_.clear();
+  if (setup.hysteresis != nullptr) plays_.set(*setup.hysteresis);
+  sections_.set(setup.sections, setup.section_count);
+  set(setup.limits, setup.rate_hz);
+  energy_.set(setup.energy_rms_v, setup.energy_window_s * setup.rate_hz);
+  gate_.set(setup.gate_on_n, setup.gate_off_n, kGateS * setup.rate_hz);
+}
+
+TickOutput TickKernel::tick(const TickInput& input) noexcept {
+  return drive(player_.wanted(input.count, input.gain), input.raise, input.normal_force_n);
+}
+
+[[gnu::flatten]] TickOutput TickKernel::drive(float wanted, bool raise, float normal_force_n) noexcept {
+  TickOutput output;
+  const float filtered = sections_.filter(plays_.follow(fir_.filter(wanted)));
+  output.sound = is_finite(filtered);
+  if (!output.sound) {
+    fir_.rest();
+    plays_.rest();
+    sections_.rest();
+  }
+  const float touch = gate_.step(normal_force_n);
+  if (touch < 1) output.flags |= wire::kTickGated;
+  if (gate_.touching()) output.flags |= wire::kTickTouching;
+  const float weight = envelope_.step(raise && output.sound) * touch;
+  output.wished_v = output.sound ? filtered * weight : 0;
+  output.drive_v = limiter_.limit(energy_.limit(output.wished_v, output.flags), output.flags);
+  return output;
+}
+
+}  // namespace tacto::core

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one tick kernel: what is wanted becomes what is driven.
+#pragma once
+
+#include "firmware-host/core/kernel/contact_gate.hpp"
+#include "firmware-host/core/kernel/drive_limiter.hpp"
+#include "firmware-host/core/kernel/energy_limiter.hpp"
+#include "firmware-host/core/kernel/fir_filter.hpp"
+#include "firmware-host/core/kernel/play_operators.hpp"
+#include "firmware-host/core/kernel/section_chain.hpp"
+#include "firmware-host/core/kernel/texture_player.hpp"
+
+namespace tacto::core {
+
+/// All that the kernel plays, as plain data; what is pointed at outlives the kernel's use of it.
+struct KernelSetup {
+  TextureSetup texture;
+  const float* taps = nullptr;
+  uint16_t tap_count = 0;
+  const wire::Hysteresis* hysteresis = nullptr;
+  const wire::Section* sections = nullptr;
+  uint8_t section_count = 0;
+  wire::Limits limits;
+  float rate_hz = 10e3F;
+  float energy_rms_v = 0, energy_window_s = 0;  ///< 0: no limit
+  float gate_on_n = 0, gate_off_n = 0;          ///< 0: not gated
+};
+
+/// The rate as both sides of the wire compute it, Hz.
+inline float rate_of(uint32_t millihertz) noexcept {
+  return 1e-3F * static_cast<float>(millihertz);
+}
+
+/// What a tick is told.
+struct TickInput {
+  int32_t count = 0;                ///< of the encoder
+  float gain = 0;                   ///< of the texture; a change takes 10 ms
+  bool raise = false;               ///< towards the full drive, else towards zero
+  float normal_force_n = kNoForce;  ///< where somebody reports it
+};
+
+/// What a tick did.
+struct TickOutput {
+  float drive_v = 0;
+  float wished_v = 0;  ///< before the limits: their difference is what was taken away
+  uint32_t flags = 0;  ///< wire::TickFlag: amplitude, slew, energy, gated, touching
+  bool sound = true;   ///< false where what was wished is no finite number; then the drive falls
+};
+
+/// drive = limits(energy(envelope x gate x sections(plays(taps(wanted))))), where wanted = gain x
+/// texture(place of the finger), or comes from elsewhere. Single precision, no contraction, no libm: the same
+/// bits on host and device (a test holds the two against each other). Against double precision: a texture
+/// with levels, taps, following and limits, 2 kHz to 20 kHz: -105 dB of the drive; eight sections, 20 kHz:
+/// -100 dB for an actuator's inverse (poles of radius 0.99 at most), -64 dB where three of them are
+/// high-passes of 15 Hz (0.9967): such belong into the texture. A drive that is cut at its limits has the
+/// error that it has uncut. Nothing here allocates, locks, throws or calls.
+class TickKernel {
+ public:
+  /// Comes to rest at zero, with all that is to be played.
+  void set(const KernelSetup& setup) noexcept;
+  /// Only the limits, at a rate in Hz, above zero; comes to rest at zero. Neither energy nor touch matter.
+  void set(const wire::Limits& limits, float rate_hz) noexcept;
+  void set_profile(const Profile& profile) noexcept { player_.set({profile, {}, 0}, 1); }
+  SectionChain& sections() noexcept { return sections_; }
+  FirFilter& fir() noexcept { return fir_; }
+
+  /// Another texture: the old one fades into it over `fade_s`; until then both must be there. Between ticks.
+  void change(const TextureSetup& texture, float fade_s) noexcept {
+    player_.change(texture, fade_s * rate_hz_);
+  }
+  /// What was known of its speed: between ticks, at rest.
+  void forget_finger() noexcept { player_.forget_finger(); }
+  bool changing() const noexcept { return player_.changing(); }
+
+  /// One tick of the texture.
+  TickOutput tick(const TickInput& input) noexcept;
+
+  /// What the texture wants at a count; once a tick.
+  float wanted(int32_t count, float gain) noexcept { return player_.wanted(count, gain); }
+  /// One tick of what is wanted, by the texture or by somebody else.
+  TickOutput drive(float wanted, bool raise, float normal_force_n) noexcept;
+  /// The same where nobody reports a force. What is no finite number drives zero, and `sound` is false.
+  float tick(float wanted, bool raise, uint32_t& flags, bool& sound) noexcept {
+    const TickOutput output = drive(wanted, raise, kNoForce);
+    flags |= output.flags;
+    sound = output.sound;
+    return output.drive_v;
+  }
+
+  bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.last_v() == 0; }
+  float last_v() const noexcept { return limiter_.last_v(); }
+  /// Of the finger, as of the last tick: counts a tick, with its sign.
+  FingerPlace place() const noexcept { return player_.place(); }
+
+ private:
+  TexturePlayer player_;
+  FirFilter fir_;
+  PlayOperators plays_;
+  SectionChain sections_;
+  ContactGate gate_;
+  EnergyLimiter energy_;
+  Envelope envelope_;
+  DriveLimiter limiter_;
+  float rate_hz_ = 1;
+};
+
+}  // namespace tacto::core

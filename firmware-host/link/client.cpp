@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/link/client.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "data-schema/version.hpp"
+#include "firmware-host/link/wire_words.hpp"
+
+namespace tacto::firmware_host {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+using wire::MessageType;
+using wire::Parse;
+
+constexpr double kAnswerTimeoutS = 0.5;
+constexpr double kStallS = 1;
+constexpr int kAttempts = 3;
+constexpr double kMostBehindS = 10;  // of frames that stand before an answer; a device queues no more
+constexpr std::size_t kReceiveBytes = 16384;
+constexpr std::size_t kMostTicksKept = 4096;  // messages; 40 s where nobody takes them
+
+template <class Message>
+bool understood(const wire::Frame& frame, Message& message) {
+  return wire::parse(frame.payload, frame.header.length, message) == Parse::ok;
+}
+
+}  // namespace
+
+Client::Client(std::unique_ptr<Transport> transport, std::string where)
+    : transport_(std::move(transport)), where_(std::move(where)), received_(kReceiveBytes) {}
+
+Result<std::unique_ptr<Client>> Client::connect(std::unique_ptr<Transport> transport, std::string where) {
+  std::unique_ptr<Client> client(new Client(std::move(transport), std::move(where)));
+  if (const auto greeted = client->greet(); !greeted) return schema::forward_error(greeted);
+  return client;
+}
+
+Result<void> Client::greet() {
+  Asking asking{transport_->now_s(), blocks_seen_};
+  while (may_ask(asking)) {
+    if (const auto flushed = asking.times > 1 ? flush() : Result<void>(); !flushed) return flushed;
+    const auto greeted = greet_once();
+    if (!greeted) return schema::forward_error(greeted);
+    if (!description_.welcome.major) continue;
+    if (const auto version = check_version(); !version) return version;
+    if (*greeted) return {};
+  }
+  return silent(MessageType::hello, asking);
+}
+
+// A device may have seconds of frames waiting for a slow bus, and its answer stands behind them: as long as
+// they come, it is not silent.
+bool Client::may_ask(Asking& asking) const {
+  const bool sends = blocks_seen_ > asking.blocks_seen;
+  asking.blocks_seen = blocks_seen_;
+  const bool in_time = transport_->now_s() - asking.since_s < kMostBehindS;
+  if (asking.times >= kAttempts && !(sends && in_time)) return false;
+  ++asking.times;
+  return true;
+}
+
+// An earlier program may have left half a frame: a device that waits for its end gets it, and finds the hello
+// behind it.
+Result<void> Client::flush() {
+  constexpr std::array<std::uint8_t, wire::kMaxFrame> kNoFrame{};
+  return transport_->write(kNoFrame, kAnswerTimeoutS);
+}
+
+// True once the whole description is here.
+Result<bool> Client::greet_once() {
+  description_ = {};
+  description_.welcome.major = 0;
+  order_.expect_any();
+  const auto now_us = static_cast<std::uint64_t>(transport_->now_s() * 1e6);
+  nonce_ = nonce_ * 1664525 + 1013904223 + static_cast<std::uint32_t>(now_us);
+  wire::Hello hello;
+  hello.nonce = nonce_;
+  const auto sent = send([&](std::uint32_t sequence, std::span<std::uint8_t> frame) {
+    return wire::encode_frame(hello, sequence, frame.data(), frame.size());
+  });
+  if (!sent) return schema::forward_error(sent);
+  return await(kAnswerTimeoutS, [&] { return described(); });
+}
+
+// Of another version, no more than its welcome can be expected.
+bool Client::described() const {
+  const wire::Welcome& welcome = description_.welcome;
+  if (welcome.major == 0) return false;
+  if (welcome.major != wire::kProtocolMajor) return true;
+  return description_.channels.size() == welcome.channels && description_.notes.size() == welcome.notes;
+}
+
+Result<void> Client::check_version() const {
+  const wire::Welcome& device = description_.welcome;
+  const bool newer = device.major > wire::kProtocolMajor;
+  if (!newer && device.major >= wire::kOldestMajor) return {};
+  return fail(
+      Fault::unsupported_version,
+      fmt::format("'{}' (serial {}, firmware {}) speaks version {}.{} of the protocol; {} speaks {}.{}",
+                  device.name, device.serial, device.firmware, device.major, device.minor, kCreator,
+                  wire::kProtocolMajor, wire::kProtocolMinor),
+      where_, newer ? "update tactograph" : "update the device's firmware");
+}
+
+Result<std::uint32_t> Client::send(const Encoder& encode) {
+  std::array<std::uint8_t, wire::kMaxFrame> frame;
+  const std::uint32_t sequence = sequence_++;
+  const std::size_t size = encode(sequence, frame);
+  sent_.assign(frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(size));
+  const auto written = transport_->write(sent_, kAnswerTimeoutS);
+  if (!written) return schema::forward_error(written);
+  return sequence;
+}
+
+template <class Done>
+Result<bool> Client::await(double timeout_s, Done done) {
+  const double deadline_s = transport_->now_s() + timeout_s;
+  while (!done()) {
+    const double left_s = deadline_s - transport_->now_s();
+    if (left_s <= 0) return false;
+    if (const auto received = receive(left_s); !received) return schema::forward_error(received);
+  }
+  return true;
+}
+
+// An answer to any of its attempts will do.
+Result<void> Client::exchange(const Encoder& encode, MessageType type) {
+  answer_.reset();
+  const std::uint32_t first = sequence_;
+  Asking asking{transport_->now_s(), blocks_seen_};
+  while (may_ask(asking)) {
+    if (const auto sent = send(encode); !sent) return schema::forward_error(sent);
+    const auto answered = await(kAnswerTimeoutS, [&] {
+      return answer_ && answer_->of == type && answer_->of_sequence - first < sequence_ - first;
+    });
+    if (!answered) return schema::forward_error(answered);
+    if (!*answered) continue;
+    if (answer_->code != wire::AnswerCode::ok) return refused(type, *answer_);
+    if (obeyed_) obeyed_(sent_);
+    return {};
+  }
+  return silent(type, asking);
+}
+
+tl::unexpected<schema::Error> Client::refused(MessageType type, const wire::Answer& answer) const {
+  FaultWords words = words_of(answer.code, answer.detail);
+  return fail(Fault::device, fmt::format("{} was refused: {}", word_of(type), words.what), where_,
+              std::move(words.remedy));
+}
+
+tl::unexpected<schema::Error> Client::silent(MessageType type, const Asking& asking) const {
+  return fail(Fault::device,
+              fmt::format("the device did not answer {}, asked {} times in {:g} s", word_of(type),
+                          asking.times, asking.times * kAnswerTimeoutS),
+              where_, "unplug it and plug it in again");
+}
+
+Result<void> Client::send_drive(const wire::Drive& drive) {
+  const auto sent = send([&](std::uint32_t sequence, std::span<std::uint8_t> frame) {
+    return wire::encode_frame(drive, sequence, frame.data(), frame.size());
+  });
+  if (!sent) return schema::forward_error(sent);
+  return {};
+}
+
+Result<wire::Pulse> Client::heartbeat() {
+  pulse_.reset();
+  Asking asking{transport_->now_s(), blocks_seen_};
+  while (may_ask(asking)) {
+    std::uint32_t token = 0;
+    const auto sent = send([&](std::uint32_t sequence, std::span<std::uint8_t> frame) {
+      token = sequence;
+      return wire::encode_frame(wire::Heartbeat{token}, sequence, frame.data(), frame.size());
+    });
+    if (!sent) return schema::forward_error(sent);
+    const auto answered = await(kAnswerTimeoutS, [&] { return pulse_ && pulse_->token == token; });
+    if (!answered) return schema::forward_error(answered);
+    if (*answered) return *pulse_;
+  }
+  return silent(MessageType::heartbeat, asking);
+}
+
+Result<void> Client::start_stream(std::uint32_t rate_millihertz, std::uint8_t block_frames) {
+  samples_.begin(description_.channels.size());
+  last_arrival_.reset();
+  converter_failed_ = false;
+  return command(wire::StreamStart{rate_millihertz, block_frames});
+}
+
+Result<void> Client::stop_stream() {
+  return command(wire::StreamStop{});
+}
+
+Result<void> Client::await_samples(std::size_t frames) {
+  const auto enough = [&] { return samples_.frames() >= frames || samples_.has_gap(); };
+  while (!enough()) {
+    if (converter_failed_)
+      return fail(Fault::device, words_of(wire::FaultCode::converter, 0).what, where_,
+                  words_of(wire::FaultCode::converter, 0).remedy);
+    const std::uint64_t before = samples_.pushed();
+    const auto came =
+        await(kStallS, [&] { return samples_.pushed() > before || enough() || converter_failed_; });
+    if (!came) return schema::forward_error(came);
+    if (!*came)
+      return fail(Fault::device, fmt::format("no frames have come for {:g} s", kStallS), where_,
+                  "the device has stopped or restarted: see its supply and its cable");
+  }
+  return {};
+}
+
+Result<void> Client::receive(double timeout_s) {
+  const auto got = transport_->read(received_, timeout_s);
+  if (!got) return schema::forward_error(got);
+  wire::Arrival arrival = wire::Arrival::frame;
+  for (std::size_t at = 0; at < *got || arrival != wire::Arrival::nothing;) {
+    wire::Frame frame;
+    std::size_t used = 0;
+    arrival = decoder_.take(received_.data() + at, *got - at, used, frame);
+    at += used;
+    if (arrival == wire::Arrival::frame) accept(frame);
+  }
+  return {};
+}
+
+void Client::accept(const wire::Frame& frame) {
+  const auto type = static_cast<MessageType>(frame.header.type);
+  if (type == MessageType::samples) ++blocks_seen_;
+  if (type == MessageType::welcome) return accept_welcome(frame);
+  if (description_.welcome.major == 0 || frame.header.major != wire::kProtocolMajor) return;
+  if (order_.check(frame.header.sequence) == wire::Order::stale) return;
+  if (type == MessageType::samples) return accept_samples(frame);
+  if (type == MessageType::answer) return accept_answer(frame);
+  if (wire::Pulse pulse; type == MessageType::pulse && understood(frame, pulse)) pulse_ = pulse;
+  if (wire::Channel channel; type == MessageType::channel && understood(frame, channel))
+    if (channel.index == description_.channels.size()) description_.channels.push_back(channel);
+  if (wire::Note note; type == MessageType::note && understood(frame, note))
+    if (note.index == description_.notes.size()) description_.notes.push_back(note);
+  if (wire::Ticks ticks; type == MessageType::ticks && understood(frame, ticks))
+    if (ticks_.size() < kMostTicksKept) ticks_.push_back(ticks);
+  if (wire::Fault fault; type == MessageType::fault && understood(frame, fault)) {
+    faults_.push_back(fault);
+    converter_failed_ = converter_failed_ || fault.code == wire::FaultCode::converter;
+  }
+}
+
+// Another version's welcome may be shorter: what names the device stands first.
+void Client::accept_welcome(const wire::Frame& frame) {
+  wire::Welcome welcome;
+  const Parse parsed = wire::parse(frame.payload, frame.header.length, welcome);
+  if (welcome.nonce != nonce_ || welcome.major == 0) return;
+  if (parsed != Parse::ok && welcome.major == wire::kProtocolMajor) return;
+  order_.expect_any();
+  order_.check(frame.header.sequence);
+  description_ = {welcome, {}, {}};
+}
+
+void Client::accept_answer(const wire::Frame& frame) {
+  wire::Answer answer;
+  if (!understood(frame, answer)) return;
+  if (answer.of == MessageType::drive) ++refused_drives_;
+  if (answer.of != MessageType::drive) answer_ = answer;
+}
+
+void Client::accept_samples(const wire::Frame& frame) {
+  if (!understood(frame, block_)) return;
+  samples_.push(block_);
+  const double clock_hz = std::max(1U, description_.welcome.clock_hz);
+  last_arrival_ = FrameArrival{block_.first_frame, static_cast<double>(block_.device_ticks) / clock_hz,
+                               transport_->now_s()};
+}
+
+LinkCounts Client::counts() const {
+  return {decoder_.counts(), order_.lost(), order_.stale(), refused_drives_};
+}
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The host's side of the wire: greets a device, commands it, and receives its streams, over any transport.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware-host/core/wire/device_messages.hpp"
+#include "firmware-host/core/wire/frame_decoder.hpp"
+#include "firmware-host/core/wire/host_messages.hpp"
+#include "firmware-host/core/wire/sequence_check.hpp"
+#include "firmware-host/link/sample_queue.hpp"
+#include "firmware-host/link/transport.hpp"
+
+namespace tacto::firmware_host {
+
+/// What a device said of itself.
+struct Description {
+  wire::Welcome welcome;
+  std::vector<wire::Channel> channels;
+  std::vector<wire::Note> notes;
+};
+
+/// When a frame was taken, and when its message came here.
+struct FrameArrival {
+  std::uint64_t frame = 0;  ///< the device's number
+  double device_s = 0, host_s = 0;
+};
+
+/// What came from the device damaged, twice or not at all.
+struct LinkCounts {
+  wire::DecoderCounts frames;
+  std::uint32_t lost = 0, stale = 0;
+  std::uint32_t refused_drives = 0;
+};
+
+/// One connection. Every call ends within its timeouts, whatever the device does. One thread.
+class Client {
+ public:
+  /// Says hello and waits for the description, as often as command(). Errors: device: no answer, or none that
+  /// makes sense; unsupported_version: a device of a major version that is not spoken here, by name.
+  static schema::Result<std::unique_ptr<Client>> connect(std::unique_ptr<Transport> transport,
+                                                         std::string where);
+
+  const Description& description() const { return description_; }
+  Transport& transport() { return *transport_; }
+  const std::string& where() const { return where_; }
+
+  /// Sends a command and waits for its answer; sends again where none comes: three times in 1.5 s, and up to
+  /// 10 s while a device is still sending frames that it had before. Errors: device: no answer, gone, or
+  /// refused, with the reason.
+  template <class Message>
+  schema::Result<void> command(const Message& message) {
+    return exchange(
+        [&](std::uint32_t sequence, std::span<std::uint8_t> frame) {
+          return wire::encode_frame(message, sequence, frame.data(), frame.size());
+        },
+        Message::kType);
+  }
+  /// From now on `told` hears each command that the device has obeyed, as the frame that was sent.
+  void listen(std::function<void(std::span<const std::uint8_t> frame)> told) { obeyed_ = std::move(told); }
+  /// Sends without waiting: drive. Errors: device: gone.
+  schema::Result<void> send_drive(const wire::Drive& drive);
+  /// Feeds the watchdog; gives the device's state. Errors: as of command().
+  schema::Result<wire::Pulse> heartbeat();
+
+  /// Frames begin at 0. Errors: as of command().
+  schema::Result<void> start_stream(std::uint32_t rate_millihertz, std::uint8_t block_frames);
+  schema::Result<void> stop_stream();
+  /// Waits until `frames` are in the queue, or a gap is reached. Errors: device: gone, silent for a second,
+  /// or its converter failed; what came before is in the queue.
+  schema::Result<void> await_samples(std::size_t frames);
+  SampleQueue& samples() { return samples_; }
+
+  /// Takes in what has come, waiting at most `timeout_s` for it.
+  schema::Result<void> receive(double timeout_s);
+  std::vector<wire::Fault> take_faults() { return std::exchange(faults_, {}); }
+  std::vector<wire::Ticks> take_ticks() { return std::exchange(ticks_, {}); }
+  /// The last samples message's.
+  const std::optional<FrameArrival>& last_arrival() const { return last_arrival_; }
+  LinkCounts counts() const;
+
+ private:
+  struct Asking {
+    double since_s = 0;
+    std::uint64_t blocks_seen = 0;  // when it was asked last
+    int times = 0;
+  };
+  using Encoder = std::function<std::size_t(std::uint32_t sequence, std::span<std::uint8_t> frame)>;
+  Client(std::unique_ptr<Transport> transport, std::string where);
+  schema::Result<void> greet();
+  schema::Result<void> flush();
+  schema::Result<bool> greet_once();
+  void accept_answer(const wire::Frame& frame);
+  schema::Result<void> check_version() const;
+  bool described() const;
+  schema::Result<void> exchange(const Encoder& encode, wire::MessageType type);
+  schema::Result<std::uint32_t> send(const Encoder& encode);
+  template <class Done>
+  schema::Result<bool> await(double timeout_s, Done done);
+  void accept(const wire::Frame& frame);
+  void accept_welcome(const wire::Frame& frame);
+  void accept_samples(const wire::Frame& frame);
+  tl::unexpected<schema::Error> refused(wire::MessageType type, const wire::Answer& answer) const;
+  bool may_ask(Asking& asking) const;
+  tl::unexpected<schema::Error> silent(wire::MessageType type, const Asking& asking) const;
+
+  std::unique_ptr<Transport> transport_;
+  std::string where_;
+  Description description_;
+  wire::FrameDecoder decoder_;
+  wire::SequenceCheck order_;
+  std::uint32_t sequence_ = 0;
+  std::uint32_t nonce_ = 0;
+  std::optional<wire::Answer> answer_;
+  std::optional<wire::Pulse> pulse_;
+  wire::Samples block_;
+  SampleQueue samples_;
+  std::optional<FrameArrival> last_arrival_;
+  std::vector<wire::Fault> faults_;
+  std::vector<wire::Ticks> ticks_;
+  bool converter_failed_ = false;
+  std::uint32_t refused_drives_ = 0;
+  std::vector<std::uint8_t> received_;
+  std::uint64_t blocks_seen_ = 0;   // messages of samples, of an earlier program too
+  std::vector<std::uint8_t> sent_;  // the last frame
+  std::function<void(std::span<const std::uint8_t>)> obeyed_;
+};
+
+}  // namespace tacto::firmware_host

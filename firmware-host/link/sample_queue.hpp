@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Frames between the wire and whoever reads, in order, with what is missing.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "data-schema/recording/recording.hpp"
+#include "firmware-host/core/wire/device_messages.hpp"
+
+namespace tacto::firmware_host {
+
+/// Frames are numbered by the device; a number that is passed over is a gap, one that was here before is
+/// dropped. Memory: what was pushed and not yet taken.
+class SampleQueue {
+ public:
+  void begin(std::size_t channels);
+  void push(const wire::Samples& samples);
+
+  /// Whole frames that can be taken before the next gap.
+  std::size_t frames() const;
+  bool has_gap() const { return !gaps_.empty(); }
+  bool at_gap() const { return !gaps_.empty() && gaps_.front().frame == taken_; }
+  /// A gap that stands before the next frame: `frame` counts the frames that were taken before it.
+  /// Precondition: at_gap().
+  schema::Gap take_gap();
+  /// Fills whole frames, at most frames(); gives their number.
+  std::size_t take(std::span<std::int32_t> interleaved);
+  std::uint64_t pushed() const { return pushed_; }
+  std::uint64_t lost() const { return lost_; }
+
+ private:
+  void note_gap(std::uint64_t first_frame);
+  void compact();
+
+  std::size_t channels_ = 1;
+  std::vector<std::int32_t> codes_;
+  std::size_t used_ = 0;  // of codes_
+  std::deque<schema::Gap> gaps_;
+  std::uint64_t taken_ = 0, pushed_ = 0;  // frames
+  std::uint64_t next_frame_ = 0, lost_ = 0;
+};
+
+}  // namespace tacto::firmware_host

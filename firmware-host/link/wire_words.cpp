@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "firmware-host/link/wire_words.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace tacto::firmware_host {
+
+using wire::AnswerCode;
+using wire::DriveState;
+using wire::FaultCode;
+using wire::MessageType;
+
+FaultWords words_of(FaultCode code, std::uint32_t detail) {
+  switch (code) {
+    case FaultCode::none:
+      return {"nothing is wrong", ""};
+    case FaultCode::host_silent:
+      return {fmt::format("the device heard nothing from this computer for {} ticks", detail),
+              "see whether the computer stalls; a longer watchdog waits longer"};
+    case FaultCode::enable_open:
+      return {"the hardware enable input is open", "close it, disarm and arm again"};
+    case FaultCode::encoder_jump:
+      return {fmt::format("the encoder jumped by {} counts in one tick", detail),
+              "check the encoder's cable and its mount, and whether the finger may go faster than the limit "
+              "(of the "
+              "daemon: most_speed_mps); then disarm and arm again"};
+    case FaultCode::drive_underrun:
+      return {fmt::format("the drive from this computer did not come for {} ticks", detail),
+              "send further ahead, or let the device close the loop"};
+    case FaultCode::not_a_number:
+      return {"the drive was no finite number", "check texture, gain and filters"};
+    case FaultCode::converter:
+      return {"a converter of the device failed", "check its supply and its cables"};
+    case FaultCode::ring_full:
+      return {fmt::format("the device could not send fast enough; {} records are lost", detail),
+              "a lower rate, or fewer channels"};
+  }
+  return {fmt::format("the device reports fault {}, which is of a newer version", static_cast<int>(code)),
+          "update tactograph"};
+}
+
+FaultWords words_of(AnswerCode code, std::uint32_t detail) {
+  switch (code) {
+    case AnswerCode::ok:
+      return {"done", ""};
+    case AnswerCode::unknown_type:
+      return {"the device does not know this command", "update its firmware"};
+    case AnswerCode::bad_payload:
+      return {fmt::format("the device cannot read a payload of {} bytes", detail), ""};
+    case AnswerCode::bad_value:
+      return {fmt::format("value {} is out of the device's range", detail + 1),
+              "the limits are in its description"};
+    case AnswerCode::wrong_state:
+      return {fmt::format("the device is {}", word_of(static_cast<DriveState>(detail))), "disarm first"};
+    case AnswerCode::too_large:
+      return {fmt::format("the device can hold {}", detail), ""};
+    case AnswerCode::check_failed:
+      return {"what arrived is not what was sent", "send it again"};
+    case AnswerCode::incomplete:
+      return {fmt::format("the device has {} samples of it", detail), "send the rest"};
+    case AnswerCode::no_limits:
+      return {"the device has no limits yet", "set them before arming"};
+    case AnswerCode::enable_open:
+      return {"the hardware enable input is open", "close it"};
+    case AnswerCode::wrong_version:
+      return {fmt::format("the device speaks version {} of the protocol", detail), "update the older side"};
+  }
+  return {fmt::format("the device refuses, for reason {}", static_cast<int>(code)), "update tactograph"};
+}
+
+std::string_view word_of(DriveState state) {
+  constexpr std::string_view kWords[] = {"idle", "armed", "playing", "in fault"};
+  const auto index = static_cast<std::size_t>(state);
+  return index < std::size(kWords) ? kWords[index] : "not greeted yet";
+}
+
+std::string_view word_of(MessageType type) {
+  constexpr std::pair<MessageType, std::string_view> kWords[] = {
+      {MessageType::hello, "hello"},
+      {MessageType::stream_start, "stream_start"},
+      {MessageType::stream_stop, "stream_stop"},
+      {MessageType::limits, "limits"},
+      {MessageType::profile_begin, "profile_begin"},
+      {MessageType::profile_chunk, "profile_chunk"},
+      {MessageType::profile_end, "profile_end"},
+      {MessageType::filters, "filters"},
+      {MessageType::gain, "gain"},
+      {MessageType::sweep, "sweep"},
+      {MessageType::arm, "arm"},
+      {MessageType::play, "play"},
+      {MessageType::stop, "stop"},
+      {MessageType::disarm, "disarm"},
+      {MessageType::drive, "drive"},
+      {MessageType::heartbeat, "heartbeat"},
+      {MessageType::reset, "reset"},
+      {MessageType::profile_levels, "profile_levels"},
+      {MessageType::taps, "taps"},
+      {MessageType::tracking, "tracking"},
+      {MessageType::energy, "energy"},
+      {MessageType::contact, "contact"},
+      {MessageType::hysteresis, "hysteresis"},
+      {MessageType::change, "change"},
+  };
+  for (const auto& [key, word] : kWords)
+    if (key == type) return word;
+  return "message";
+}
+
+}  // namespace tacto::firmware_host

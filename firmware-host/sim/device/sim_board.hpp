@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The emulated device's board: the firmware's own core, with physics behind its hardware layer.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "firmware-host/core/firmware/firmware.hpp"
+#include "firmware-host/link/hosted_board.hpp"
+#include "firmware-host/sim/bench/actuated_tray.hpp"
+#include "firmware-host/sim/device/frame_source.hpp"
+#include "firmware-host/sim/device/sim_parameters.hpp"
+#include "firmware-host/sim/device/tray_sensor.hpp"
+#include "firmware-host/sim/physics/surface.hpp"
+
+namespace tacto::firmware_host {
+
+/// One thread calls step() and poll(). Each time the rate is set, the finger begins anew: equal parameters
+/// give equal frames. While there is a drive, the tray answers it beside the sensor, with hysteresis, second
+/// mode and a finger's load where the parameters say so.
+class SimBoard {
+ public:
+  SimBoard(const SimParameters& parameters, schema::Transducer transducer, Surface surface);
+  SimBoard(const SimBoard&) = delete;
+  SimBoard& operator=(const SimBoard&) = delete;
+
+  bool ticking() const { return rate_millihertz_ > 0; }
+  double period_s() const { return 1e3 / rate_millihertz_; }
+  /// The same by the host's clock: the device's may be off.
+  double host_period_s() const { return period_s() / (1 + 1e-6 * parameters_.errors.clock_ppm); }
+  /// One sample period of physics, then the firmware's tick. Precondition: ticking().
+  void step();
+  void poll() { firmware_->poll(); }
+
+  std::vector<std::uint8_t>& from_host() { return from_host_; }
+  std::vector<std::uint8_t>& to_host() { return to_host_; }
+  void set_enabled(bool enabled) { enabled_.store(enabled); }  // from any thread
+  /// From the next time the rate is set, the encoder goes where this says (m, against seconds since then),
+  /// and there is no other physics of the finger. It presses with what the parameter `load` says, or with
+  /// normal_n (N, against the same time); the other channels read zero.
+  void set_script(std::function<double(double time_s)> position_m,
+                  std::function<double(double time_s)> normal_n = {}) {
+    script_ = std::move(position_m);
+    normal_n_ = std::move(normal_n);
+  }
+  /// The script stays at its beginning, or goes on from there. From any thread.
+  void hold_script(bool held) { script_held_.store(held); }
+  /// Bytes to the host that the link holds; what does not fit stays in the firmware's ring, as long as that
+  /// has room.
+  void set_link_bytes(std::size_t bytes) { link_bytes_ = bytes; }
+  /// Of the stream, while ticking: what the link has to carry, in bytes a second.
+  double stream_bytes_per_s() const;
+
+  /// Where the motion has diverged: when, in seconds since the rate was set. Negative while it has not.
+  double diverged_s() const { return diverged_s_; }
+  double drive_v() const { return drive_v_; }
+  double displacement_m() const { return tray_ ? tray_->displacement_m() : 0; }
+  wire::DriveState drive_state() const { return firmware_->drive_state(); }
+  const core::DriveSupervisor& supervisor() const { return firmware_->supervisor(); }
+
+ private:
+  static SimBoard& of(void* board) noexcept { return *static_cast<SimBoard*>(board); }
+  core::Hal hal();
+  core::Board about();
+  void set_rate(std::uint32_t rate_millihertz);
+  std::size_t send(std::span<const std::uint8_t> bytes);
+  std::unique_ptr<FrameSource> source_at(const SimParameters& parameters) const;
+  std::function<std::int32_t(double)> scripted_force() const;
+  std::uint64_t clock() const;
+  SimParameters parameters_at(std::uint32_t rate_millihertz) const;
+  void describe();
+
+  SimParameters parameters_;
+  schema::Transducer transducer_;
+  HeightProfile profile_;
+  std::function<double(double)> script_, normal_n_;
+  std::atomic<bool> script_held_{false};
+  std::vector<wire::Channel> channels_;
+  std::vector<wire::Note> notes_;
+  HostedProfile texture_;
+  std::vector<std::uint8_t> from_host_, to_host_;
+  std::size_t link_bytes_ = static_cast<std::size_t>(-1);
+  std::unique_ptr<FrameSource> source_;
+  std::unique_ptr<ActuatedTray> tray_;
+  std::optional<TraySensor> tray_sensor_;
+  std::int32_t frame_[wire::kMaxChannels] = {};
+  std::uint32_t rate_millihertz_ = 0;
+  std::uint64_t steps_ = 0, clock_before_ = 0;
+  std::atomic<bool> enabled_{true};
+  double drive_v_ = 0, diverged_s_ = -1;
+  std::string surface_words_;
+  std::unique_ptr<core::Firmware> firmware_;
+};
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One run of the emulated device, from its first frame on.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "data-schema/transducer/transducer.hpp"
+#include "firmware-host/sim/bench/bench.hpp"
+#include "firmware-host/sim/bench/lvdt.hpp"
+#include "firmware-host/sim/device/frame_source.hpp"
+#include "firmware-host/sim/device/sim_parameters.hpp"
+#include "firmware-host/sim/physics/converter.hpp"
+#include "firmware-host/sim/physics/finger_path.hpp"
+#include "firmware-host/sim/physics/height_profile.hpp"
+#include "firmware-host/sim/physics/load_cell.hpp"
+#include "firmware-host/sim/physics/spline_noise.hpp"
+
+namespace tacto::firmware_host {
+
+/// The bench (a finger on a surface, or a known force) and what reads it: the piezo's converter with the
+/// noise floor before it, the encoder or LVDT, the load cell's axes, and in the pull of a known force a cell
+/// that is as fast as the converter. Frame i is of (i + 1) / rate seconds.
+class SimRun final : public FrameSource {
+ public:
+  SimRun(const SimParameters& parameters, const schema::Transducer& transducer, const HeightProfile& profile);
+
+  /// Codes of tangential_force, position, normal_force, net_force, and applied_force where it is known. False
+  /// where the simulated motion has diverged.
+  bool next(std::span<std::int32_t> frame) override;
+  std::int32_t encoder_count() const override { return count_; }
+  const LoadCell& normal_cell() const { return normal_cell_; }
+  const LoadCell& net_cell() const { return net_cell_; }
+  const Converter& converter() const { return converter_; }
+  /// Null where a finger pulls.
+  const Converter* reference_cell() const { return reference_cell_ ? &*reference_cell_ : nullptr; }
+  /// Null where the encoder gives the position.
+  const Lvdt* lvdt() const { return lvdt_ ? &*lvdt_ : nullptr; }
+
+ private:
+  double load_n(const FingerPlace& place);
+  std::int32_t count_at(double position_m) const;
+
+  SimParameters parameters_;
+  FingerPath path_;
+  SplineNoise load_wander_;
+  std::unique_ptr<Bench> bench_;
+  Random noise_;
+  double noise_v_;
+  Converter converter_;
+  LoadCell normal_cell_, net_cell_;
+  std::optional<Converter> reference_cell_;
+  std::optional<Lvdt> lvdt_;
+  std::int32_t count_;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace tacto::firmware_host

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cable to the emulated device: bytes through memory, and time that goes on while somebody waits.
+#pragma once
+
+#include <optional>
+
+#include "firmware-host/link/pacer.hpp"
+#include "firmware-host/link/transport.hpp"
+#include "firmware-host/sim/device/sim_board.hpp"
+
+namespace tacto::firmware_host {
+
+/// Emulated time passes in read(), until there is something to read: as fast as it can, or paced by the
+/// clock. now_s() is emulated time, so timeouts are exact and cost nothing. Paced with a link that holds a
+/// limited time of the stream, the device does not wait for a late reader: it ticks as often as it had to,
+/// and loses what neither link nor ring hold. The board outlives it.
+class SimTransport final : public Transport {
+ public:
+  SimTransport(SimBoard& board, bool paced, std::optional<double> link_buffer_s = std::nullopt);
+
+  schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override;
+  schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override;
+  double now_s() override { return now_s_; }
+
+ private:
+  void pass_time(double until_s);
+  void pass_real_time(double until_s);
+  void tick();
+
+  SimBoard& board_;
+  std::optional<Pacer> pacer_;
+  std::optional<double> link_buffer_s_;
+  double now_s_ = 0;
+};
+
+}  // namespace tacto::firmware_host

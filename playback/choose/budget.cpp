@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/choose/budget.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "playback/choose/budget_words.hpp"
+#include "playback/model/spatial_content.hpp"
+#include "playback/prepare/pyramid_shape.hpp"
+#include "playback/prepare/texture_layout.hpp"
+#include "playback/prepare/undone_chain.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+constexpr double kOfWhatLiesBeyondTheBand = std::numbers::sqrt2;
+constexpr double kAlikeError = 1.01;  // a hundredth less error is not worth another choice
+constexpr double kMostAsked = 0.1;    // what prepare() asks of an inverse, too
+
+using Choices = std::vector<TickChoice>;
+
+Result<void> check_budget(const TickBudget& budget) {
+  if (!budget.by_error() && !(budget.error.most_error() > 0 && budget.error.most_error() <= kMostAsked))
+    return fail(Fault::usage, fmt::format("an error of {}", percent(budget.error.most_error())),
+                "error budget", "above 0 and at most 10%");
+  if (budget.max_tick_ns && !(*budget.max_tick_ns > 0))
+    return fail(Fault::usage, "a tick that takes no time", "time budget", "a tick takes some 100ns");
+  return {};
+}
+
+// A hysteresis that stays, or whose inverse is only near, leaves what nobody computed.
+Result<void> check_hysteresis(const schema::Transducer& transducer, const PrepareOptions& options) {
+  if (!transducer.hysteresis) return {};
+  const auto refused = [](const char* what, const char* remedy) {
+    return fail(Fault::unsuitable, fmt::format("no error can be promised: {}", what), "transducer", remedy);
+  };
+  if (!options.undo_hysteresis)
+    return refused("the bender's hysteresis is not undone", "play without --keep-hysteresis");
+  if (options.reconstruction != Reconstruction::none)
+    return refused("a filter behind the converter loses the corners that undo the hysteresis",
+                   "play without it, or without a budget");
+  const auto plays = std::ranges::count_if(transducer.hysteresis->weights, [](double w) { return w > 0; });
+  if (plays > static_cast<std::ptrdiff_t>(wire::kMaxPlays) + 1)
+    return refused("its hysteresis has more plays than the kernel undoes", "identify it with fewer");
+  return {};
+}
+
+/// The readings that the table knows, in every density, and what each takes. Those that the memory has no
+/// room for are left out.
+struct Readings {
+  Choices choices;
+  std::size_t least_samples = 0;  ///< of any, in memory or not
+};
+
+Readings readings_of(std::span<const PlacedTexture> textures, const PrepareOptions& options,
+                     double passes_to_hz, const schema::TradeTable& table, bool keep_reading) {
+  const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m);
+  const double highest_per_m = highest_spatial_frequency(path);
+  Readings readings;
+  for (const schema::MeasuredChoice& measured : table.at("reading")) {
+    const auto kind = interpolation_of(measured.name);
+    if (!kind || (keep_reading && *kind != options.interpolation)) continue;
+    for (const schema::ErrorPoint& point : measured.errors) {
+      TickChoice choice{*kind, kStopOverPass * point.points_per_period, {}, point.error, 0, measured.cost_ns,
+                        0};
+      const std::size_t samples =
+          pyramid_size(path, pyramid_shape(highest_per_m, passes_to_hz, choice.in(options)));
+      choice.memory_bytes = static_cast<double>(samples * sizeof(float));
+      readings.least_samples =
+          readings.least_samples == 0 ? samples : std::min(readings.least_samples, samples);
+      if (samples <= options.most_samples) readings.choices.push_back(choice);
+    }
+  }
+  return readings;
+}
+
+double cost_of(const schema::TradeTable& table, const std::string& stage) {
+  const auto measured = table.at(stage);
+  return measured.empty() ? 0 : measured.front().cost_ns;
+}
+
+Choices all_choices(const Choices& readings, const std::vector<InverseChoice>& inverses,
+                    bool undoes_hysteresis, const schema::TradeTable& table) {
+  const double tap_ns = cost_of(table, "inverse");
+  const double plays_ns = undoes_hysteresis ? cost_of(table, "hysteresis") : 0;
+  Choices choices;
+  for (const TickChoice& reading : readings)
+    for (const InverseChoice& inverse : inverses) {
+      TickChoice choice = reading;
+      choice.inverse = inverse;
+      choice.error = kOfWhatLiesBeyondTheBand * reading.reading_error + inverse.error + kKernelsOwnError;
+      choice.tick_ns += tap_ns * inverse.taps + plays_ns;
+      choices.push_back(choice);
+    }
+  return choices;
+}
+
+void keep_least(Choices& choices, double TickChoice::*member, double times, double plus) {
+  const double least = (*std::ranges::min_element(choices, {}, member)).*member;
+  std::erase_if(choices, [&](const TickChoice& choice) { return choice.*member > times * least + plus; });
+}
+
+Choices kept_by(const Choices& all, const TickBudget& budget, bool in_time) {
+  Choices kept = all;
+  std::erase_if(kept, [&](const TickChoice& choice) {
+    return choice.error > budget.error.most_error() ||
+           (in_time && budget.max_tick_ns && choice.tick_ns > *budget.max_tick_ns);
+  });
+  return kept;
+}
+
+tl::unexpected<schema::Error> no_room(const Readings& readings, const PrepareOptions& options) {
+  if (readings.least_samples == 0)
+    return fail(Fault::unsuitable, "knows no interpolation of this program", "table of measured choices",
+                "'tactograph trade --calibrate' measures them");
+  return fail(Fault::unsuitable,
+              fmt::format("the texture takes {} samples at least, there is room for {}",
+                          readings.least_samples, options.most_samples),
+              "texture", ways_to_fit(options.interpolation));
+}
+
+tl::unexpected<schema::Error> not_kept(const Choices& all, const TickBudget& budget) {
+  if (const Choices slow = kept_by(all, budget, false); !slow.empty()) {
+    const TickChoice best = best_of(slow, false);
+    return fail(Fault::unsuitable,
+                fmt::format("no tick of {:.3g} ns or less keeps it: {:.3g} ns is the least ({})",
+                            *budget.max_tick_ns, best.tick_ns, words_of(best)),
+                "time budget", "allow that, more error, or a lower rate");
+  }
+  const TickChoice best = best_of(all, true);
+  return fail(Fault::unsuitable,
+              fmt::format("nothing keeps {}: {} is the least ({}), as {}", percent(budget.error.most_error()),
+                          percent(best.error), words_of(best), limited_by(best)),
+              "error budget", fmt::format("ask for --max-error {} or more", percent_or_more(best.error)));
+}
+
+}  // namespace
+
+TickChoice best_of(std::vector<TickChoice> choices, bool most_exact) {
+  if (most_exact) keep_least(choices, &TickChoice::error, kAlikeError, 0);
+  keep_least(choices, &TickChoice::tick_ns, 1, kAlikeNs);
+  keep_least(choices, &TickChoice::memory_bytes, 1, 0);
+  return *std::ranges::min_element(
+      choices, {}, [](const TickChoice& choice) { return std::pair(choice.inverse.delay_s, choice.error); });
+}
+
+PrepareOptions TickChoice::in(PrepareOptions options) const {
+  if (inverse.taps > 0) options = inverse.in(options);
+  options.interpolation = interpolation;
+  options.samples_per_period = samples_per_period;
+  return options;
+}
+
+Result<TickDecision> decide(std::span<const PlacedTexture> textures,
+                            const std::vector<InverseChoice>& inverses, bool undoes_hysteresis,
+                            const PrepareOptions& options, const TickBudget& budget,
+                            const schema::FoundTradeTable& found) {
+  if (auto sound = check_budget(budget); !sound) return schema::forward_error(sound);
+  if (auto sound = check_prepare(textures, options); !sound) return schema::forward_error(sound);
+  const double passes_to_hz = undone_chain({}, options).band.high_hz;
+  const Readings readings = readings_of(textures, options, passes_to_hz, found.table, budget.keep_reading);
+  if (readings.choices.empty()) return no_room(readings, options);
+  const Choices all = all_choices(readings.choices, inverses, undoes_hysteresis, found.table);
+  const Choices kept = kept_by(all, budget, true);
+  if (kept.empty()) return not_kept(all, budget);
+  TickDecision decision{best_of(kept, budget.by_error()), {}, found.origin, !budget.by_error()};
+  decision.reasons = reasons_for(decision.chosen, all, budget);
+  const double delay_s = decision.chosen.inverse.delay_s;
+  decision.reasons.push_back(
+      words_of_hand(wandering_error(textures, {}, options, delay_s), {}, delay_s + options.loop_delay_s));
+  return decision;
+}
+
+Result<TickDecision> decide(std::span<const PlacedTexture> textures, const schema::Transducer& transducer,
+                            const PrepareOptions& options, const TickBudget& budget,
+                            const schema::FoundTradeTable& found) {
+  if (auto sound = check_prepare(textures, options); !sound) return schema::forward_error(sound);
+  if (auto sound = check_hysteresis(transducer, options); !sound) return schema::forward_error(sound);
+  const auto inverses =
+      budget.filter ? std::vector{*budget.filter} : inverse_choices(transducer, options, budget.keep_inverse);
+  return decide(textures, inverses, undoes_hysteresis(transducer, options), options, budget, found);
+}
+
+Result<double> tick_cost_ns(const schema::TradeTable& table, wire::Interpolation interpolation,
+                            std::size_t taps, bool undoes_hysteresis) {
+  for (const schema::MeasuredChoice& measured : table.at("reading"))
+    if (interpolation_of(measured.name) == interpolation)
+      return measured.cost_ns + cost_of(table, "inverse") * static_cast<double>(taps) +
+             (undoes_hysteresis ? cost_of(table, "hysteresis") : 0);
+  return fail(Fault::unsuitable, fmt::format("does not know what {} costs", word_of(interpolation)),
+              "table of measured choices", "'tactograph trade --calibrate' measures it");
+}
+
+}  // namespace tacto::playback

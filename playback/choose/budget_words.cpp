@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/choose/budget_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace tacto::playback {
+namespace {
+
+constexpr std::pair<std::string_view, wire::Interpolation> kInterpolations[] = {
+    {"nearest", wire::Interpolation::nearest},
+    {"linear", wire::Interpolation::linear},
+    {"hermite", wire::Interpolation::hermite},
+    {"sinc", wire::Interpolation::sinc}};
+
+constexpr const char* kNotPromised =
+    "not promised: the encoder's steps, changes of speed while looking ahead, speeds beyond the greatest, a "
+    "texture's ends, a drive at its limits, and a finger or transducer that is not what the file says; a "
+    "tick's "
+    "time on a device that closes the loop itself";
+
+std::string words_of_inverse(const InverseChoice& inverse) {
+  if (inverse.inverse == Inverse::gain) return "its gain alone";
+  if (inverse.inverse == Inverse::none) return "no inverse";
+  return fmt::format("{} taps, {:g} ms", inverse.taps, 1e3 * inverse.delay_s);
+}
+
+// What the best of some others would have been.
+std::string verdict_on(const std::vector<TickChoice>& others, const TickChoice& chosen,
+                       const TickBudget& budget) {
+  std::vector<TickChoice> kept = others;
+  std::erase_if(kept, [&](const TickChoice& other) {
+    return other.error > (budget.by_error() ? chosen.error : budget.error.most_error());
+  });
+  if (kept.empty()) return fmt::format("{} at best", percent(best_of(others, true).error));
+  const TickChoice best = best_of(kept, false);
+  const std::string how = fmt::format("{:.3g} ns a tick, {:.3g} MB, {}", best.tick_ns,
+                                      1e-6 * best.memory_bytes, percent(best.error));
+  if (budget.max_tick_ns && best.tick_ns > *budget.max_tick_ns) return how + ": too slow";
+  if (best.tick_ns > chosen.tick_ns + kAlikeNs) return how + ": dearer";
+  return how + (best.memory_bytes > chosen.memory_bytes ? ": as dear, more memory" : ": as dear, more delay");
+}
+
+template <class Key>
+std::vector<TickChoice> those(const std::vector<TickChoice>& all, Key key) {
+  std::vector<TickChoice> some;
+  std::ranges::copy_if(all, std::back_inserter(some), key);
+  return some;
+}
+
+void add_other_readings(std::vector<std::string>& reasons, const TickChoice& chosen,
+                        const std::vector<TickChoice>& all, const TickBudget& budget) {
+  for (const auto& [word, kind] : kInterpolations) {
+    const auto others = those(all, [kind = kind](const TickChoice& c) { return c.interpolation == kind; });
+    if (kind == chosen.interpolation || others.empty()) continue;
+    reasons.push_back(fmt::format("{}: {}", word, verdict_on(others, chosen, budget)));
+  }
+}
+
+void add_other_inverses(std::vector<std::string>& reasons, const TickChoice& chosen,
+                        const std::vector<TickChoice>& all, const TickBudget& budget) {
+  std::set<std::uint16_t> counts;
+  for (const TickChoice& choice : all) counts.insert(choice.inverse.taps);
+  for (const std::uint16_t taps : counts) {
+    if (taps == chosen.inverse.taps) continue;
+    const auto others = those(all, [&](const TickChoice& c) {
+      return c.inverse.taps == taps && c.interpolation == chosen.interpolation;
+    });
+    reasons.push_back(fmt::format(
+        "{}: {}",
+        taps == 1 ? words_of_inverse(others.front().inverse) : fmt::format("an inverse of {} taps", taps),
+        verdict_on(others, chosen, budget)));
+  }
+}
+
+std::string asked_for(const TickBudget& budget) {
+  std::string asked = budget.by_error() ? "the least there is" : percent(budget.error.most_error());
+  if (budget.max_tick_ns) asked += fmt::format(", {:.3g} ns a tick", *budget.max_tick_ns);
+  return asked;
+}
+
+}  // namespace
+
+std::string_view word_of(wire::Interpolation interpolation) {
+  return std::ranges::find(kInterpolations, interpolation,
+                           &std::pair<std::string_view, wire::Interpolation>::second)
+      ->first;
+}
+
+std::optional<wire::Interpolation> interpolation_of(std::string_view word) {
+  for (const auto& [name, kind] : kInterpolations)
+    if (name == word) return kind;
+  return std::nullopt;
+}
+
+std::string percent(double part) {
+  return fmt::format("{:.3g} %", 100 * part);
+}
+
+std::string words_of_hand(double error, const WanderingHand& hand, double delay_s) {
+  return fmt::format(
+      "a hand that goes at {:g} mm/s and wanders by {} at {:g} Hz adds up to {:.2g} % (estimated, an "
+      "encoder's steps apart: the delay of "
+      "{:.2g} ms is looked ahead by)",
+      1e3 * hand.speed_mps, percent(hand.part), hand.rate_hz, 100 * error, 1e3 * delay_s);
+}
+
+std::string percent_or_more(double part) {
+  const double digit = std::pow(10, std::floor(std::log10(100 * part)) - 1);
+  return fmt::format("{:.2g}%", digit * std::ceil(100 * part / digit));
+}
+
+std::string words_of(const TickChoice& choice) {
+  return fmt::format("{}, {:.3g} samples a period, {}", word_of(choice.interpolation),
+                     choice.samples_per_period, words_of_inverse(choice.inverse));
+}
+
+std::string limited_by(const TickChoice& choice) {
+  if (choice.inverse.error > 0.5 * choice.error)
+    return fmt::format("the inverse of the transducer leaves {}", percent(choice.inverse.error));
+  if (choice.reading_error > 0.25 * choice.error)
+    return fmt::format("reading between samples leaves {}", percent(choice.reading_error));
+  return fmt::format("single precision leaves {}", percent(kKernelsOwnError));
+}
+
+std::vector<std::string> reasons_for(const TickChoice& chosen, const std::vector<TickChoice>& all,
+                                     const TickBudget& budget) {
+  std::vector<std::string> reasons{
+      fmt::format("{}: at most {} of error (asked: {}), {:.3g} ns a tick, {:.3g} MB", words_of(chosen),
+                  percent(chosen.error), asked_for(budget), chosen.tick_ns, 1e-6 * chosen.memory_bytes),
+      fmt::format("of the error the inverse leaves {}, reading {}, single precision {}",
+                  percent(chosen.inverse.error),
+                  percent(chosen.error - chosen.inverse.error - kKernelsOwnError),
+                  percent(kKernelsOwnError))};
+  add_other_readings(reasons, chosen, all, budget);
+  add_other_inverses(reasons, chosen, all, budget);
+  reasons.emplace_back(kNotPromised);
+  return reasons;
+}
+
+}  // namespace tacto::playback

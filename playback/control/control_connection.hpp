@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A client's side of the control socket.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "data-schema/control/control.hpp"
+
+namespace tacto::playback {
+
+class ControlConnection {
+ public:
+  /// Connects and says hello. Errors: as connect_control_socket; unsupported_version; device: no answer.
+  static schema::Result<ControlConnection> open(const std::string& socket);
+  /// Says hello and asks in one piece, and hangs up: for `stop` and `disarm`, which a daemon whose places are
+  /// all taken answers at once. Errors: as open() and ask().
+  static schema::Result<schema::ControlFields> ask_at_once(const std::string& socket,
+                                                           const schema::ControlRequest& request);
+  ControlConnection(ControlConnection&& other) noexcept;
+  ControlConnection& operator=(ControlConnection&& other) noexcept;
+  ~ControlConnection();
+
+  /// Sends and waits, 10 s at most. Errors: the daemon's own; device: it hung up, or says nothing.
+  schema::Result<schema::ControlFields> ask(const schema::ControlRequest& request);
+  /// After `watch`: the next event; none where nothing came for `timeout_ms`, or a signal did. Errors:
+  /// device: it hung up; malformed: a line that is no event.
+  schema::Result<std::optional<schema::ControlReply>> next_event(int timeout_ms);
+  const schema::ControlFields& hello() const { return hello_; }
+  const std::string& socket() const { return socket_; }
+
+ private:
+  ControlConnection(std::string socket, int descriptor)
+      : socket_(std::move(socket)), descriptor_(descriptor) {}
+  void say(const std::string& text) const;
+  schema::Result<schema::ControlFields> answer(int timeout_ms);
+  schema::Result<std::optional<std::string>> line(int timeout_ms);
+  std::string socket_;
+  int descriptor_;
+  std::string received_;
+  schema::ControlFields hello_;
+};
+
+}  // namespace tacto::playback

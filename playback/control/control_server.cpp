@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/control/control_server.hpp"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tacto::playback {
+namespace {
+
+using schema::ControlRequest;
+using schema::ControlVerb;
+using schema::Fault;
+using schema::Result;
+
+constexpr int kLinesAtOnce = 2, kAcceptAtOnce = 128;  // few: between two serve() the device is looked after
+constexpr short kSomethingCame = POLLIN | POLLHUP | POLLERR;
+constexpr std::chrono::seconds kGreetsWithin{5}, kStopPlaceFor{5};
+constexpr std::ptrdiff_t kStopPlaces = 8;  // of each socket, and what came since the last serve()
+constexpr std::size_t kListening = 2;      // descriptors before the clients'
+constexpr std::size_t kMostEvents = 1000;  // between two serve(): ten a second are usual
+
+const schema::Error kTooLong{Fault::malformed,
+                             fmt::format("a line has more than {} bytes", schema::kMostControlLine),
+                             "request", "end each request with a newline"};
+const schema::Error kNotGreeted{Fault::usage, "the first request must be hello", "request",
+                                R"(send {"request":"hello","version":"1.0"} first)"};
+const schema::Error kSilent{Fault::usage, "no hello came within 5 s of connecting", "request",
+                            R"(send {"request":"hello","version":"1.0"} first)"};
+const schema::Error kUnknown{Fault::usage, "by TCP the first request must be hello with the token", "request",
+                             R"(send {"request":"hello","version":"1.0","token":"..."}: the token is the )"
+                             "first line of the file that tcp_token_file names"};
+const schema::Error kOnlyWatches{Fault::usage, "who watches can't ask", "request", "open another connection"};
+
+// Of who waits for an answer more is looked at, for a `stop` may be in it.
+bool wants_more(const ControlClient& client) {
+  if (client.silent() || client.leaves_at) return false;
+  return (client.waits_for ? client.has_room() : !client.has_line());
+}
+
+bool stops(const ControlRequest& request) {
+  return request.verb == ControlVerb::stop || request.verb == ControlVerb::disarm;
+}
+
+bool is_stranger(const ControlClient& client) {
+  return client.by_tcp && !client.greeted;
+}
+
+// Newer clients may say what we don't know; who misspelt something is told.
+schema::ControlFields with_passed_over(schema::ControlFields fields, const std::vector<std::string>& names) {
+  if (!names.empty()) fields.emplace_back("passed_over", fmt::format("{}", fmt::join(names, ", ")));
+  return fields;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ControlServer>> ControlServer::listen(const SocketPlace& place) {
+  const auto opened = open_control_socket(place.path, place.group);
+  if (!opened) return schema::forward_error(opened);
+  std::unique_ptr<ControlServer> server(new ControlServer(place, *opened));
+  if (!place.loopback) return server;
+  const auto tcp = open_loopback_socket(place.loopback->port);
+  if (!tcp) return schema::forward_error(tcp);
+  server->tcp_ = *tcp;
+  return server;
+}
+
+ControlServer::~ControlServer() {
+  ::close(descriptor_);
+  if (tcp_.descriptor >= 0) ::close(tcp_.descriptor);
+  unlink(place_.path.c_str());
+}
+
+std::size_t ControlServer::watchers() const {
+  return static_cast<std::size_t>(std::ranges::count_if(clients_, &ControlClient::watching));
+}
+
+schema::Error ControlServer::full() const {
+  return {Fault::unsuitable, fmt::format("{} clients are connected already", place_.most_clients),
+          place_.path,
+          "close one, or raise most_clients in the configuration; stop and disarm are taken all the same"};
+}
+
+void ControlServer::disconnect(ControlClient& client, const schema::Error& why) {
+  client.send(schema::control_error_line("", why));
+  client.gone = true;
+}
+
+bool ControlServer::has_place(bool by_tcp) const {
+  const auto taken = [&](bool tcp_only) {
+    return std::ranges::count_if(clients_, [&](const ControlClient& one) {
+      return !one.gone && !one.for_stop && (one.by_tcp || !tcp_only);
+    });
+  };
+  if (by_tcp && taken(true) >= std::max(1, place_.most_clients / 2)) return false;
+  return taken(false) < place_.most_clients;
+}
+
+// Strangers by TCP are gone by then (let_go): this is for whoever came by the Unix socket and says nothing.
+bool ControlServer::make_place(bool by_tcp) {
+  if (has_place(by_tcp)) return true;
+  const Time now = place_.now();
+  const auto silent = std::ranges::find_if(clients_, [&](const ControlClient& one) {
+    return !one.gone && !one.for_stop && !one.by_tcp && !one.greeted && now >= one.since + kGreetsWithin;
+  });
+  if (silent == clients_.end()) return false;
+  disconnect(*silent, kSilent);
+  return has_place(by_tcp);
+}
+
+// Everybody who has one was attended to at least once: what came after them may have their place. Who said
+// hello stays longer, for its `stop` follows.
+void ControlServer::free_stop_places(bool by_tcp) {
+  const auto keeps = [&](const ControlClient& one) {
+    return !one.gone && one.for_stop && one.by_tcp == by_tcp;
+  };
+  const auto keeps_silent = [&](const ControlClient& one) { return keeps(one) && !one.greeted; };
+  for (auto many = std::ranges::count_if(clients_, keeps) - kStopPlaces; many > 0; --many) {
+    auto leaving = std::ranges::find_if(clients_, keeps_silent);
+    if (leaving == clients_.end()) leaving = std::ranges::find_if(clients_, keeps);
+    disconnect(*leaving, full());
+  }
+}
+
+// Anybody on the machine may connect by TCP: so not to all places, and not for long without the token.
+void ControlServer::accept_from(int listening, bool by_tcp) {
+  for (int i = 0; i < kAcceptAtOnce; ++i) {
+    const int accepted = accept4(listening, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (accepted < 0) break;
+    ControlClient client(accepted);
+    client.id = ++last_id_;
+    client.since = place_.now();
+    client.by_tcp = by_tcp;
+    if (!by_tcp) client.user = peer_user(accepted);
+    client.for_stop = !make_place(by_tcp);
+    clients_.push_back(std::move(client));
+  }
+}
+
+// A right token goes before a wrong one that waits for its answer.
+void ControlServer::leave_stop_place(ControlClient& client) {
+  if (!has_place(client.by_tcp) && client.by_tcp) {
+    const auto waiting = std::ranges::find_if(clients_, [](const ControlClient& one) {
+      return !one.gone && !one.for_stop && one.by_tcp && one.leaves_at;
+    });
+    if (waiting != clients_.end()) disconnect(*waiting, full());
+  }
+  client.for_stop = !has_place(client.by_tcp);
+}
+
+// Who is to be gone by now, and who finds a place among the others.
+void ControlServer::let_go() {
+  const Time now = place_.now();
+  for (ControlClient& one : clients_) {
+    if (is_stranger(one) && !one.leaves_at && now > one.since + kGreetsWithin) disconnect(one, kSilent);
+    if (!one.gone && one.for_stop && now > one.since + kStopPlaceFor) disconnect(one, full());
+    if (one.gone || !one.leaves_at || now < *one.leaves_at) continue;
+    one.send(one.last_line);
+    one.gone = true;
+  }
+  std::erase_if(clients_, [](const ControlClient& one) { return one.gone; });
+  for (ControlClient& one : clients_)
+    if (one.for_stop) one.for_stop = !has_place(one.by_tcp);
+}
+
+// None where the request is one that this client may make.
+std::optional<schema::Error> ControlServer::refusal_of(const ControlClient& client,
+                                                       const Result<ControlRequest>& request) const {
+  const bool greets = request && request->verb == ControlVerb::hello;
+  if (is_stranger(client)) {
+    if (!request && request.error().fault == Fault::unsupported_version) return request.error();
+    if (!greets || !is_token(request->token, place_.loopback->token)) return kUnknown;
+  }
+  if (!request) return request.error();
+  if (client.watching) return kOnlyWatches;
+  if (!client.greeted && !greets) return kNotGreeted;
+  if (client.for_stop && !greets && !stops(*request)) return full();
+  return std::nullopt;
+}
+
+// None where the answer waits, as that to one wrong token of many does.
+std::optional<std::string> ControlServer::refuse(ControlClient& client, const std::string& line,
+                                                 const ControlRequest* request) {
+  const bool wrong_token = is_stranger(client) && request != nullptr && !request->token.empty();
+  const auto wait = wrong_token ? wrong_tokens_.wait_of(place_.now()) : std::chrono::seconds(0);
+  if (wait.count() > 0) {
+    client.leaves_at = place_.now() + wait;
+    client.last_line = line;
+    return std::nullopt;
+  }
+  client.unwelcome = is_stranger(client) || (client.for_stop && request != nullptr);
+  return line;
+}
+
+// None where the answer comes later.
+std::optional<std::string> ControlServer::answer_to(ControlClient& client, const std::string& line,
+                                                    const Handler& handler) {
+  std::string id;
+  auto request = schema::parse_control_request(line, &id);
+  if (const auto refusal = refusal_of(client, request))
+    return refuse(client, schema::control_error_line(id, *refusal), request ? &*request : nullptr);
+  request->client = client.id;
+  request->by_tcp = client.by_tcp;
+  if (request->save) request->asked_by = client.user ? user_name(*client.user) : "token";
+  const Answer fields = handler(*request);
+  if (!fields) {
+    client.waits_for = {id, request->passed_over};
+    return std::nullopt;
+  }
+  if (!*fields) return schema::control_error_line(id, fields->error());
+  client.greeted = client.greeted || request->verb == ControlVerb::hello;
+  client.watching = client.watching || request->verb == ControlVerb::watch;
+  if (client.for_stop && request->verb == ControlVerb::hello) leave_stop_place(client);
+  return schema::control_reply_line(id, with_passed_over(**fields, request->passed_over));
+}
+
+void ControlServer::answer_late(const Result<schema::ControlFields>& fields) {
+  const auto client =
+      std::ranges::find_if(clients_, [](const ControlClient& one) { return one.waits_for.has_value(); });
+  if (client == clients_.end()) return;
+  const LateRequest request = *std::exchange(client->waits_for, std::nullopt);
+  const bool here = client->send(
+      fields ? schema::control_reply_line(request.id, with_passed_over(*fields, request.passed_over))
+             : schema::control_error_line(request.id, fields.error()));
+  if (!here) clients_.erase(client);
+}
+
+bool ControlServer::stop_waits() const {
+  const auto is_stop = [](const std::string& line) {
+    const auto request = schema::parse_control_request(line);
+    return request && stops(*request);
+  };
+  return std::ranges::any_of(clients_, [&](const ControlClient& client) {
+    return client.waits_for && std::ranges::any_of(client.waiting_lines(), is_stop);
+  });
+}
+
+bool ControlServer::answer_lines(ControlClient& client, const Handler& handler) {
+  for (int i = 0; i < kLinesAtOnce && !client.waits_for && !client.leaves_at; ++i) {
+    const auto line = client.take_line();
+    if (!line) break;
+    const auto answer = answer_to(client, *line, handler);
+    if (answer && !client.send(*answer)) return false;
+    if (client.unwelcome) return false;
+  }
+  if (!client.is_endless()) return true;
+  client.send(schema::control_error_line("", kTooLong));
+  return false;
+}
+
+// False where the client is to go. Who says no more is answered all the same, as far as he takes it. More is
+// received only once the lines that are here are answered: so little is kept of anybody.
+bool ControlServer::attend(ControlClient& client, short events, const Handler& handler) {
+  if (client.gone) return false;
+  if ((events & (POLLOUT | POLLHUP | POLLERR)) != 0 && !client.flush()) return false;
+  if ((events & POLLHUP) != 0 && client.waits_for) return false;
+  if ((events & kSomethingCame) != 0 && wants_more(client)) take_in(client);
+  if (!answer_lines(client, handler)) return false;
+  return !client.silent() || client.has_line() || client.wants_to_send() || client.waits_for;
+}
+
+void ControlServer::take_in(ControlClient& client) {
+  const std::uint64_t before = client.lines;
+  client.receive();
+  if (client.greeted) lines_ += client.lines - before;
+}
+
+// Answering one client may close another connection: connections are removed after all have been served.
+void ControlServer::attend_all(const std::vector<pollfd>& waiting, const Handler& handler) {
+  for (std::size_t i = 0; i < clients_.size(); ++i)
+    if (!attend(clients_[i], waiting[i + kListening].revents, handler)) clients_[i].gone = true;
+  std::erase_if(clients_, [](const ControlClient& one) { return one.gone; });
+}
+
+LinesHeard ControlServer::heard_of(std::optional<std::uint64_t> client) const {
+  if (!client) return {true, lines_};
+  const auto found = std::ranges::find(clients_, *client, &ControlClient::id);
+  return found == clients_.end() ? LinesHeard{false, 0} : LinesHeard{true, found->lines};
+}
+
+std::vector<pollfd> ControlServer::what_is_waited_for() const {
+  std::vector<pollfd> waiting{{descriptor_, POLLIN, 0}, {tcp_.descriptor, POLLIN, 0}};
+  for (const ControlClient& client : clients_) {
+    const int in = wants_more(client) ? POLLIN : 0;
+    const int out = client.wants_to_send() ? POLLOUT : 0;
+    waiting.push_back({client.descriptor(), static_cast<short>(in | out), 0});
+  }
+  return waiting;
+}
+
+// What a client has sent already, poll() knows nothing of.
+void ControlServer::serve(int timeout_ms, const Handler& handler) {
+  let_go();
+  std::vector<pollfd> waiting = what_is_waited_for();
+  const bool ready = std::ranges::any_of(
+      clients_, [](const ControlClient& one) { return one.has_line() && !one.waits_for && !one.leaves_at; });
+  const bool some = poll(waiting.data(), waiting.size(), ready ? 0 : timeout_ms) > 0;
+  if (some || ready) attend_all(waiting, handler);
+  for (const bool by_tcp : {false, true}) free_stop_places(by_tcp);
+  if (some && (waiting[0].revents & POLLIN) != 0) accept_from(descriptor_, false);
+  if (some && (waiting[1].revents & POLLIN) != 0) accept_from(tcp_.descriptor, true);
+  std::erase_if(clients_, [](const ControlClient& one) { return one.gone; });
+  deliver();
+}
+
+void ControlServer::publish(std::string_view event, const schema::ControlFields& fields) {
+  if (events_.size() < kMostEvents) events_.push_back(schema::control_event_line(event, fields));
+}
+
+void ControlServer::deliver() {
+  for (const std::string& line : events_)
+    std::erase_if(clients_,
+                  [&](ControlClient& client) { return client.watching && !client.send_event(line); });
+  events_.clear();
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The firmware's core on this computer: its hardware is another thread, reached without locks.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "firmware-host/core/firmware/firmware.hpp"
+#include "firmware-host/core/kernel/ring.hpp"
+#include "firmware-host/link/client.hpp"
+#include "firmware-host/link/hosted_board.hpp"
+#include "playback/host-loop/byte_ring.hpp"
+#include "playback/host-loop/count_track.hpp"
+#include "playback/host-loop/sensor_track.hpp"
+
+namespace tacto::playback {
+
+/// What a tick wants driven, and when that was.
+struct TimedDrive {
+  std::int64_t time_ns = 0;
+  float drive_v = 0;
+  std::int64_t reading_ns = 0;  ///< when the device took its count
+};
+
+/// tick() and rest() are the real-time thread's; inputs and outputs other threads'.
+class HostBoard {
+ public:
+  static constexpr std::uint32_t kClockHz = 1'000'000'000;
+
+  /// Says of itself what the device said, but ticks at one rate.
+  HostBoard(const firmware_host::Description& device, double rate_hz);
+  HostBoard(const HostBoard&) = delete;
+  HostBoard& operator=(const HostBoard&) = delete;
+
+  /// Safe in the tick: neither allocates, locks nor calls the system.
+  void tick(std::int64_t now_ns, std::int64_t late_ns) noexcept;
+  /// Answers the player while nothing ticks.
+  void rest(std::int64_t now_ns) noexcept;
+  bool ticking() const noexcept { return ticking_; }
+
+  // From other threads.
+  /// Each count that the device made, in their order, by the device's period.
+  void put_count(std::uint32_t period, std::int32_t encoder, std::int64_t made_ns) noexcept {
+    counts_.put(period, encoder, made_ns);
+  }
+  /// Before anything ticks: as CountTrack::set_reserve().
+  void set_reserve(std::uint32_t periods) noexcept { counts_.set_reserve(periods); }
+  /// Before put_count(): what the tray's sensor said in that period.
+  void put_sample(std::uint32_t period, std::int32_t code) noexcept { sensor_.put(period, code); }
+  /// What it said up to the count that a tick played: SensorTrack::take(). The player's thread.
+  void take_samples(std::uint64_t tick, SampleRun& into) { sensor_.take(tick, due_ns(tick), into); }
+  void set_enabled(bool enabled) noexcept { enabled_.store(enabled, std::memory_order_release); }
+  /// Before put_count(): the codes of the device's channels in the same period.
+  void set_codes(std::span<const std::int32_t> codes) noexcept {
+    for (std::size_t i = 0; i < std::min(codes.size(), codes_.size()); ++i)
+      codes_[i].store(codes[i], std::memory_order_relaxed);
+    coded_.store(true, std::memory_order_release);
+  }
+  ByteRing<65536>& from_player() noexcept { return from_player_; }
+  ByteRing<262144>& to_player() noexcept { return to_player_; }
+  core::Ring<TimedDrive, 1024>& drives() noexcept { return drives_; }
+  bool wants_drive() const noexcept { return wants_drive_.load(std::memory_order_acquire); }
+  /// Of one of the last 16,384 ticks since arming.
+  std::int32_t lateness_ns(std::uint64_t tick) const noexcept {
+    return lateness_[tick % kLatenesses].load(std::memory_order_relaxed);
+  }
+  /// When that tick was due, by the clock of kClockHz.
+  std::int64_t due_ns(std::uint64_t tick) const noexcept {
+    return dues_[tick % kLatenesses].load(std::memory_order_relaxed);
+  }
+  std::uint64_t drives_lost() const noexcept { return drives_lost_.load(std::memory_order_relaxed); }
+
+ private:
+  static constexpr std::size_t kLatenesses = 16384;
+  static HostBoard& of(void* board) noexcept { return *static_cast<HostBoard*>(board); }
+  core::Board board();
+  core::Hal hal();
+  bool read_codes(std::int32_t* codes) const noexcept;
+  void look_at_count(std::int64_t late_ns) noexcept;
+
+  firmware_host::Description about_;
+  firmware_host::HostedProfile profile_;
+  CountTrack counts_;
+  SensorTrack sensor_;
+  std::atomic<bool> enabled_{false}, wants_drive_{false}, coded_{false};
+  ByteRing<65536> from_player_;
+  ByteRing<262144> to_player_;
+  core::Ring<TimedDrive, 1024> drives_;
+  std::array<std::atomic<std::int32_t>, kLatenesses> lateness_{};
+  std::array<std::atomic<std::int64_t>, kLatenesses> dues_{};
+  std::atomic<std::uint64_t> drives_lost_{0};
+  std::array<std::atomic<std::int32_t>, wire::kMaxChannels> codes_{};
+  std::int64_t period_ns_;
+  std::uint32_t age_ = 0, unseen_ = 0;  // in periods
+  std::int32_t encoder_ = 0;
+  std::int64_t reading_ns_ = 0;
+  std::uint32_t read_period_ = 0;
+  float read_part_ = 0;
+  std::uint64_t ticks_ = 0;  // since arming
+  std::int64_t now_ns_ = 0, began_ns_ = 0;
+  float drive_v_ = 0;
+  bool ticking_ = false;
+  std::unique_ptr<core::Firmware> firmware_;
+};
+
+}  // namespace tacto::playback

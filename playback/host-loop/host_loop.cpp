@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/host-loop/host_loop.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <optional>
+
+#include "firmware-host/link/awake_cores.hpp"
+#include "firmware-host/link/realtime_priority.hpp"
+#include "firmware-host/link/wire_fields.hpp"
+#include "firmware-host/link/wire_words.hpp"
+#include "playback/host-loop/tray_samples.hpp"
+#include "playback/prepare/upload.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kCarryS = 0.5e-3;
+constexpr std::int64_t kStaleNs = 20'000'000, kRestNs = 200'000;
+constexpr double kQueueS = 4e-3;  // of drives on the device: what the carrier's own sleep may take
+constexpr float kDeviceReleaseS = 0.01F;
+constexpr int kLooks = 100;
+constexpr double kQueueShare = 0.2, kFollowS = 0.5, kMostLonger = 5e-3;
+
+// The player's cable: bytes in memory.
+class LoopTransport final : public firmware_host::Transport {
+ public:
+  explicit LoopTransport(HostBoard& board) : board_(board) {}
+  Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override {
+    for (const double end_s = now_s() + timeout_s;;) {
+      if (const std::size_t got = board_.to_player().take(bytes); got > 0) return got;
+      if (now_s() >= end_s) return std::size_t{0};
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  }
+  Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override {
+    for (const double end_s = now_s() + timeout_s; !bytes.empty();) {
+      bytes = bytes.subspan(board_.from_player().put(bytes));
+      if (!bytes.empty() && now_s() >= end_s)
+        return fail(Fault::device, "the real-time thread takes nothing", "host loop");
+      if (!bytes.empty()) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    return {};
+  }
+  double now_s() override { return 1e-9 * static_cast<double>(TickClock::now_ns()); }
+
+ private:
+  HostBoard& board_;
+};
+
+std::int64_t median_of(std::vector<std::int64_t>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Result<std::size_t> position_channel(const firmware_host::Description& about) {
+  for (std::size_t i = 0; i < about.channels.size(); ++i)
+    if (std::strcmp(about.channels[i].quantity, "position") == 0) return i;
+  return fail(Fault::device, "the device streams no position", "host loop");
+}
+
+}  // namespace
+
+HostLoop::HostLoop(firmware_host::Client& device, const HostLoopOptions& options, std::size_t channel)
+    : device_(device),
+      options_(options),
+      position_channel_(channel),
+      sensor_channel_(tray_sensor_channel(device.description())),
+      board_(std::make_unique<HostBoard>(device.description(), options.rate_hz)),
+      codes_(1024 * device.description().channels.size()) {}
+
+Result<std::unique_ptr<HostLoop>> HostLoop::begin(firmware_host::Client& device,
+                                                  const HostLoopOptions& options) {
+  const auto channel = position_channel(device.description());
+  if (!channel) return schema::forward_error(channel);
+  if (const auto fits = check_rate(device, options.rate_hz); !fits) return schema::forward_error(fits);
+  std::unique_ptr<HostLoop> loop(new HostLoop(device, options, *channel));
+  if (const auto started = device.start_stream(firmware_host::millihertz(options.rate_hz), 1); !started)
+    return schema::forward_error(started);
+  if (const auto first = device.await_samples(1); !first) return schema::forward_error(first);
+  if (const auto measured = loop->measure_delay(); !measured) return schema::forward_error(measured);
+  loop->tick_thread_ = std::thread([&self = *loop] { self.tick_forever(); });
+  loop->carry_thread_ = std::thread([&self = *loop] { self.carry_forever(); });
+  return loop;
+}
+
+// A count waits for those that come with it and for one more, and twice for the carrier; then the device's
+// queue, and the cable there and back. Medians, for a computer may stall.
+Result<void> HostLoop::measure_delay() {
+  std::vector<std::int64_t> batches, trips;
+  for (int i = 0; i < kLooks; ++i) {
+    const std::uint32_t before = periods_;
+    if (const auto came = device_.receive(kCarryS); !came) return came;
+    take_counts();
+    if (periods_ > before) batches.push_back(periods_ - before);
+    if (i % 10 != 0) continue;
+    const std::int64_t asked_ns = TickClock::now_ns();
+    if (const auto pulse = device_.heartbeat(); !pulse) return schema::forward_error(pulse);
+    trips.push_back(TickClock::now_ns() - asked_ns);
+  }
+  const double batch = batches.empty() ? 0 : static_cast<double>(median_of(batches));
+  board_->set_reserve(static_cast<std::uint32_t>(batch) + 1);
+  delay_s_ = (batch + 1 + queue_target()) / options_.rate_hz + 2 * kCarryS +
+             1e-9 * static_cast<double>(median_of(trips));
+  return {};
+}
+
+HostLoop::~HostLoop() {
+  ending_.store(true);
+  if (tick_thread_.joinable()) tick_thread_.join();
+  if (carry_thread_.joinable()) carry_thread_.join();
+}
+
+std::unique_ptr<firmware_host::Transport> HostLoop::transport() {
+  return std::make_unique<LoopTransport>(*board_);
+}
+
+HostLoopStatus HostLoop::status() const {
+  HostLoopStatus status;
+  status.wake_p50_s = wake_.quantile_s(0.5);
+  status.wake_p99_s = wake_.quantile_s(0.99);
+  status.wake_p999_s = wake_.quantile_s(0.999);
+  status.busy_p99_s = busy_.quantile_s(0.99);
+  std::ranges::transform(kLateBoundsS, status.late_parts.begin(),
+                         [this](double bound_s) { return wake_.part_over(bound_s); });
+  status.latency = latency();
+  status.looked_ahead_s = delay_s_;
+  status.missed_ticks = missed_.load();
+  status.stale_drives = stale_.load();
+  status.trimmed_drives = trimmed_.load();
+  status.real_time = real_time_.load();
+  const std::lock_guard lock(fault_mutex_);
+  status.device_fault = fault_;
+  return status;
+}
+
+// The real-time thread. While nothing ticks it answers the player a thousand times a second.
+void HostLoop::tick_forever() {
+  const firmware_host::RealtimePriority priority(options_.priority);
+  real_time_.store(priority.granted());
+  std::optional<firmware_host::AwakeCores> awake;
+  TickClock clock;
+  std::uint64_t missed = 0;
+  bool ticked = false;
+  while (!ending_.load(std::memory_order_relaxed)) {
+    if (!board_->ticking()) {
+      ticked = false;
+      awake.reset();
+      std::this_thread::sleep_for(std::chrono::nanoseconds(kRestNs));
+      board_->rest(TickClock::now_ns());
+      continue;
+    }
+    if (!ticked) {
+      awake.emplace();
+      clock.begin(options_.rate_hz);
+    }
+    ticked = true;
+    clock.lengthen(longer_ns_.load(std::memory_order_relaxed));
+    const std::int64_t late_ns = clock.wait(missed);
+    const std::int64_t began_ns = TickClock::now_ns();
+    board_->tick(began_ns, late_ns);
+    wake_.add(late_ns);
+    busy_.add(TickClock::now_ns() - began_ns);
+    missed_.store(missed, std::memory_order_relaxed);
+  }
+}
+
+void HostLoop::give_up(const std::string& why) {
+  sound_ = false;
+  const std::lock_guard lock(fault_mutex_);
+  fault_ = why;
+}
+
+// The newest of them was taken just now, each other one a period before the next.
+void HostLoop::take_counts() {
+  const std::size_t channels = device_.description().channels.size();
+  const double period_ns = 1e9 / options_.rate_hz;
+  auto& queue = device_.samples();
+  for (bool more = true; more;) {
+    while (queue.at_gap()) periods_ += static_cast<std::uint32_t>(queue.take_gap().count);
+    const std::size_t frames = queue.take(codes_);
+    more = frames > 0;
+    if (!more) break;
+    last_count_ns_ = TickClock::now_ns();
+    board_->set_codes(std::span(codes_).subspan((frames - 1) * channels, channels));
+    for (std::size_t i = 0; i < frames; ++i) {
+      const auto age_ns = static_cast<std::int64_t>(static_cast<double>(frames - 1 - i) * period_ns);
+      ++periods_;
+      if (sensor_channel_) board_->put_sample(periods_, codes_[i * channels + *sensor_channel_]);
+      board_->put_count(periods_, codes_[i * channels + position_channel_], last_count_ns_ - age_ns);
+    }
+    board_->set_enabled(sound_ && enabled_);
+  }
+}
+
+void HostLoop::take_faults() {
+  for (const wire::Ticks& message : device_.take_ticks())
+    if (message.count > 0) enabled_ = (message.ticks[message.count - 1].flags & wire::kTickEnabled) != 0;
+  for (const wire::Fault& fault : device_.take_faults())
+    if (fault.code != wire::FaultCode::ring_full)
+      give_up(firmware_host::words_of(fault.code, fault.detail).what);
+}
+
+// The device is armed while the loop is, and no longer.
+void HostLoop::follow_arming() {
+  const bool wanted = board_->wants_drive();
+  if (wanted == armed_) return;
+  armed_ = wanted;
+  to_trim_ = to_pad_ = 0;
+  last_drive_v_ = 0;
+  while (board_->drives().front() != nullptr) board_->drives().pop();
+  sound_ = true;  // disarming ends a fault, here as on a device
+  if (!wanted) return (void)device_.command(wire::Disarm{});
+  {
+    const std::lock_guard lock(fault_mutex_);
+    fault_.clear();
+  }
+  const wire::Welcome& about = device_.description().welcome;
+  const wire::Limits limits{about.drive_limit_v, about.slew_limit_v_per_s, 0,
+                            kDeviceReleaseS,     options_.watchdog_ms,     UINT16_MAX};
+  const wire::Arm arm{wire::DriveSource::host, firmware_host::millihertz(options_.rate_hz)};
+  (void)device_.command(wire::Disarm{});
+  auto done = device_.command(limits);
+  if (done) done = device_.command(arm);
+  if (done) done = device_.command(wire::Play{});
+  if (!done) give_up(schema::message(done.error()));
+  to_pad_ = queue_target();
+  queue_mean_ = to_pad_;
+  longer_ns_.store(0, std::memory_order_relaxed);
+}
+
+void HostLoop::send_drives() {
+  wire::Drive message;
+  for (; to_pad_ > 0; --to_pad_) message.drive_v[message.count++] = last_drive_v_;
+  const std::int64_t now_ns = TickClock::now_ns(), oldest_ns = now_ns - kStaleNs;
+  for (const TimedDrive* drive = board_->drives().front();
+       drive != nullptr && message.count < wire::kMaxChunk; drive = board_->drives().front()) {
+    const bool stale = drive->time_ns < oldest_ns;
+    if (stale) stale_.fetch_add(1, std::memory_order_relaxed);
+    if (!stale && to_trim_ > 0) {
+      --to_trim_;
+      trimmed_.fetch_add(1, std::memory_order_relaxed);
+    } else if (!stale) {
+      message.drive_v[message.count++] = last_drive_v_ = drive->drive_v;
+      latency_.add(now_ns - drive->reading_ns + round_trip_ns_ + queue_ns_);
+    }
+    board_->drives().pop();
+  }
+  if (message.count == 0) return;
+  if (const auto sent = device_.send_drive(message); !sent) give_up(schema::message(sent.error()));
+}
+
+// Never more than a message takes.
+std::uint32_t HostLoop::queue_target() const {
+  return std::clamp(static_cast<std::uint32_t>(kQueueS * options_.rate_hz), 4U, 200U);
+}
+
+// A queue that grows tells of a device whose clock is slower, or of a stall: the ticks follow it, within half
+// a percent, instead of leaving drives out.
+void HostLoop::follow_queue(std::uint32_t queued) {
+  queue_mean_ += kQueueShare * (queued - queue_mean_);
+  const double part = (queue_mean_ - queue_target()) / options_.rate_hz / kFollowS;
+  const double longer = std::clamp(part, -kMostLonger, kMostLonger) * 1e9 / options_.rate_hz;
+  longer_ns_.store(static_cast<std::int64_t>(longer), std::memory_order_relaxed);
+}
+
+// Feeds the device's watchdog, and sees how deep its queue is.
+void HostLoop::beat() {
+  const std::int64_t now = TickClock::now_ns();
+  if (now < next_beat_ns_) return;
+  next_beat_ns_ = now + std::int64_t{options_.watchdog_ms} * 250'000;
+  const std::int64_t asked_ns = TickClock::now_ns();
+  const auto pulse = device_.heartbeat();
+  round_trip_ns_ = TickClock::now_ns() - asked_ns;
+  if (!pulse) return give_up(schema::message(pulse.error()));
+  if (!armed_) enabled_ = pulse->enabled;  // no ticks tell it now
+  if (!armed_) return;
+  const std::uint32_t target = queue_target(), queued = pulse->drive_queued;
+  queue_ns_ = static_cast<std::int64_t>(1e9 * queued / options_.rate_hz);
+  follow_queue(queued);
+  if (queued > 2 * target) to_trim_ = queued - target;
+  if (queued < target / 4) to_pad_ = target - queued;
+}
+
+// Below the ticks, above all else: what comes late is felt late.
+void HostLoop::carry_forever() {
+  const firmware_host::RealtimePriority priority(options_.priority / 2);
+  const std::int64_t silence_ns = std::int64_t{options_.watchdog_ms} * 1'000'000;
+  last_count_ns_ = TickClock::now_ns();
+  while (!ending_.load(std::memory_order_relaxed)) {
+    follow_arming();
+    if (const auto came = device_.receive(kCarryS); !came) give_up(schema::message(came.error()));
+    take_faults();
+    take_counts();
+    if (TickClock::now_ns() - last_count_ns_ > silence_ns) give_up("the device gives no counts");
+    if (!sound_) board_->set_enabled(false);
+    if (armed_ && sound_) send_drives();
+    beat();
+  }
+  (void)device_.command(wire::Disarm{});
+  (void)device_.stop_stream();
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "data-schema/files/files.hpp"
+#include "playback/model/finger_path.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kColumns = {"time_s", "position_m", "normal_force_n"};
+constexpr std::size_t kNeeded = 2, kForce = 2;
+constexpr std::string_view kRemedy = "write a header line 'time_s,position_m', then one row a knot";
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  auto end = text.find(separator);
+  for (; end != std::string_view::npos; end = text.find(separator)) {
+    parts.push_back(trimmed(text.substr(0, end)));
+    text.remove_prefix(end + 1);
+  }
+  parts.push_back(trimmed(text));
+  return parts;
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  auto lines = split(text, '\n');
+  while (!lines.empty() && lines.back().empty()) lines.pop_back();
+  return lines;
+}
+
+// Where columns are not parted by commas, a comma is a decimal mark as well as a point is.
+char separator_of(std::string_view header) {
+  if (header.find('\t') != std::string_view::npos) return '\t';
+  return header.find(';') != std::string_view::npos ? ';' : ',';
+}
+
+std::optional<double> number_in(std::string_view field, char separator) {
+  double value = 0;
+  if (field.starts_with('+')) field.remove_prefix(1);
+  std::string text(field);
+  if (separator != ',' && std::ranges::count(text, ',') == 1 && text.find('.') == std::string::npos)
+    std::ranges::replace(text, ',', '.');
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+struct Table {
+  const std::string& name;
+  char separator;
+  std::vector<std::string_view> header;
+  std::array<std::size_t, kColumns.size()> column{};  // where they stand in the header
+  bool tells_force = false;
+
+  std::string place(std::size_t line, std::size_t which) const {
+    return fmt::format("{}, line {}, column {} ({})", name, line, column[which] + 1, kColumns[which]);
+  }
+};
+
+Result<Table> read_header(std::string_view line, const std::string& name) {
+  if (std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
+    return fail(Fault::malformed, "this is no table: its first line holds binary data", name,
+                "a path is a CSV with the columns time_s,position_m");
+  const char separator = separator_of(line);
+  Table table{name, separator, split(line, separator), {}, false};
+  for (std::size_t which = 0; which < kColumns.size(); ++which) {
+    const auto found = std::ranges::find(table.header, kColumns[which]);
+    if (which == kForce) table.tells_force = found != table.header.end();
+    if (which < kNeeded && found == table.header.end())
+      return fail(
+          Fault::malformed,
+          fmt::format("there is no column '{}', only {}", kColumns[which], fmt::join(table.header, ", ")),
+          name + ", line 1", std::string(kRemedy));
+    table.column[which] = static_cast<std::size_t>(found - table.header.begin());
+  }
+  return table;
+}
+
+Result<double> cell(const Table& table, const std::vector<std::string_view>& fields, std::size_t line,
+                    std::size_t which) {
+  const std::string_view text = fields[table.column[which]];
+  const auto value = number_in(text, table.separator);
+  if (!value) return fail(Fault::malformed, fmt::format("'{}' is no number", text), table.place(line, which));
+  if (!std::isfinite(*value))
+    return fail(Fault::malformed, fmt::format("'{}' is not finite", text), table.place(line, which));
+  return *value;
+}
+
+Result<void> add_row(FingerPath& path, const Table& table, std::string_view text, std::size_t line) {
+  const auto fields = split(text, table.separator);
+  if (fields.size() != table.header.size())
+    return fail(Fault::malformed,
+                fmt::format("the row has {} fields, the header {}", fields.size(), table.header.size()),
+                fmt::format("{}, line {}", table.name, line));
+  const auto time_s = cell(table, fields, line, 0);
+  if (!time_s) return schema::forward_error(time_s);
+  const auto position_m = cell(table, fields, line, 1);
+  if (!position_m) return schema::forward_error(position_m);
+  if (!path.time_s.empty() && *time_s <= path.time_s.back())
+    return fail(Fault::malformed,
+                fmt::format("time does not grow: {} s after {} s", *time_s, path.time_s.back()),
+                table.place(line, 0), "each row must be later than the one before");
+  path.time_s.push_back(*time_s);
+  path.position_m.push_back(*position_m);
+  if (!table.tells_force) return {};
+  const auto force_n = cell(table, fields, line, kForce);
+  if (!force_n) return schema::forward_error(force_n);
+  path.normal_force_n.push_back(*force_n);
+  return {};
+}
+
+}  // namespace
+
+Result<FingerPath> parse_finger_path(std::string_view text, const std::string& name) {
+  const auto lines = lines_of(text);
+  if (lines.empty()) return fail(Fault::malformed, "the file is empty", name, std::string(kRemedy));
+  const auto table = read_header(lines.front(), name);
+  if (!table) return schema::forward_error(table);
+  FingerPath path;
+  for (std::size_t i = 1; i < lines.size(); ++i)
+    if (const auto row = add_row(path, *table, lines[i], i + 1); !row) return schema::forward_error(row);
+  if (path.time_s.size() < 2)
+    return fail(Fault::malformed,
+                fmt::format("a path needs at least 2 rows, here are {}", path.time_s.size()), name,
+                std::string(kRemedy));
+  return path;
+}
+
+Result<FingerPath> read_finger_path(const std::string& file) {
+  const auto text = schema::read_file(file);
+  if (!text) return schema::forward_error(text);
+  return parse_finger_path(*text, file);
+}
+
+}  // namespace tacto::playback

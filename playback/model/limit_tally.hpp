@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the limits took away, told and not hidden.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "firmware-host/core/kernel/tick_kernel.hpp"
+
+namespace tacto::playback {
+
+/// Fed every tick's output. noexcept and without allocation: safe in the tick.
+class LimitTally {
+ public:
+  void add(const core::TickOutput& output) noexcept {
+    ++ticks_;
+    amplitude_ += (output.flags & wire::kTickAmplitudeLimited) != 0;
+    slew_ += (output.flags & wire::kTickSlewLimited) != 0;
+    energy_ += (output.flags & wire::kTickEnergyLimited) != 0;
+    gated_ += (output.flags & wire::kTickGated) != 0;
+    const double wished_v = output.wished_v, removed_v = wished_v - output.drive_v;
+    wished_v2_ += wished_v * wished_v;
+    removed_v2_ += removed_v * removed_v;
+  }
+  /// Of other ticks.
+  void add(const LimitTally& other) noexcept {
+    ticks_ += other.ticks_;
+    amplitude_ += other.amplitude_, slew_ += other.slew_, energy_ += other.energy_;
+    gated_ += other.gated_;
+    wished_v2_ += other.wished_v2_, removed_v2_ += other.removed_v2_;
+  }
+  std::uint64_t ticks() const { return ticks_; }
+  std::uint64_t amplitude_limited() const { return amplitude_; }
+  std::uint64_t slew_limited() const { return slew_; }
+  std::uint64_t energy_limited() const { return energy_; }
+  std::uint64_t gated() const { return gated_; }
+  bool removed_any() const { return removed_v2_ > 0; }
+  /// RMS of what amplitude, slew and energy took away, re RMS of the wished drive; at least -300.
+  double removed_db() const {
+    return wished_v2_ > 0 && removed_v2_ > 0 ? std::max(10 * std::log10(removed_v2_ / wished_v2_), -300.0)
+                                             : -300.0;
+  }
+
+ private:
+  std::uint64_t ticks_ = 0, amplitude_ = 0, slew_ = 0, energy_ = 0, gated_ = 0;
+  double wished_v2_ = 0, removed_v2_ = 0;
+};
+
+}  // namespace tacto::playback

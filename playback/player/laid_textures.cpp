@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/laid_textures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/scene/newer_version.hpp"
+#include "data-schema/texture/texture_wav.hpp"
+#include "playback/player/served_folder.hpp"
+#include "playback/render/played_ends.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+using schema::TextureLayer;
+
+namespace {
+
+constexpr double kUsualGain = 1e-3;  // of a texture that nobody gave one: a fingertip has about 1e3 N/m
+constexpr double kMostPathSamples = 1 << 24;  // 168 m at 10 um; as many as all levels together may have
+
+// What was asked for, else what the texture keeps, else the usual.
+Result<schema::Scene> scene_of_texture(const ProgramRequest& request,
+                                       std::optional<schema::PlaybackGain>& kept_gain) {
+  if (!request.gain_m_per_n) {
+    auto kept = schema::read_playback_gain(request.file);
+    if (!kept) return schema::forward_error(kept);
+    kept_gain = std::move(*kept);
+  }
+  const double usual = kept_gain ? kept_gain->gain_m_per_n : kUsualGain;
+  schema::Scene alone;
+  alone.layers = {TextureLayer{request.file, request.at_m.value_or(0), request.gain_m_per_n.value_or(usual),
+                               "", "", request.ends.value_or(schema::TextureEnds::stop), ""}};
+  return alone;
+}
+
+Result<schema::Scene> scene_of(const ProgramRequest& request,
+                               std::optional<schema::PlaybackGain>& kept_gain) {
+  if (!names_a_scene(request.file)) return scene_of_texture(request, kept_gain);
+  if (request.at_m || request.gain_m_per_n || request.ends)
+    return fail(Fault::usage, "a scene says itself where its textures lie, with which gains and ends",
+                request.file, "change the scene, or name a texture");
+  return schema::read_scene(request.file);
+}
+
+// What a newer version limits must not be played without.
+Result<void> check_choices(const schema::Scene& scene) {
+  if (scene.playback.extra_json.empty()) return {};
+  return fail(Fault::unsuitable,
+              fmt::format("is of version {}, and its playback says what this program does not know: {}",
+                          scene.newer_version, scene.playback.extra_json),
+              "scene#/playback", "play it with a newer tactograph, or take that out");
+}
+
+}  // namespace
+
+bool names_a_scene(const std::string& file) {
+  if (file.ends_with(".scene.json") || file.ends_with(".scene")) return true;
+  return !schema::is_file(file) && schema::is_file(file + ".scene.json");
+}
+
+std::string full_path(const std::string& path) {
+  std::error_code ignored;
+  const auto full = std::filesystem::absolute(path, ignored);
+  return ignored ? path : full.lexically_normal().string();
+}
+
+std::vector<PlacedTexture> LaidTextures::placed() const {
+  std::vector<PlacedTexture> list;
+  for (std::size_t i = 0; i < layers_.size(); ++i)
+    list.push_back({&texture(i), layers_[i].at_m, layers_[i].gain_m_per_n / gain()});
+  return list;
+}
+
+double LaidTextures::gain() const {
+  double most = 0;
+  for (const TextureLayer& layer : layers_) most = std::max(most, std::abs(layer.gain_m_per_n));
+  return most;
+}
+
+double LaidTextures::signed_gain() const {
+  const auto size = [](const TextureLayer& layer) { return std::abs(layer.gain_m_per_n); };
+  return std::ranges::max(layers_, {}, size).gain_m_per_n;
+}
+
+Ends LaidTextures::ends() const {
+  return ends_of(layers_.front().ends);
+}
+
+double LaidTextures::start_m() const {
+  return std::ranges::min(layers_, {}, &TextureLayer::at_m).at_m;
+}
+
+double LaidTextures::end_m() const {
+  double end = layers_.front().at_m;
+  for (std::size_t i = 0; i < layers_.size(); ++i)
+    end = std::max(end, layers_[i].at_m + texture(i).signal.length_m());
+  return end;
+}
+
+/// Reads them into one.
+class TextureReader {
+ public:
+  explicit TextureReader(LaidTextures& laid) : laid_(laid) {}
+
+  Result<void> read(const schema::Scene& scene) {
+    if (const auto known = check_choices(scene); !known) return known;
+    laid_.choices_ = scene.playback;
+    note(schema::note_of_newer_version(laid_.scene_path_, scene));
+    for (const schema::Layer& layer : scene.layers) {
+      const auto added = std::visit([&](const TextureLayer& texture) { return add(texture); }, layer);
+      if (!added) return added;
+    }
+    if (const auto near = check_reach(); !near) return near;
+    if (laid_.gain() == 0)
+      return fail(Fault::unsuitable, "every gain is 0", laid_.scene_path_, "give one a gain");
+    return {};
+  }
+  void keep_gain(std::optional<schema::PlaybackGain> gain) { laid_.kept_gain_ = std::move(gain); }
+  void name_scene(const std::string& path) { laid_.scene_path_ = path; }
+
+ private:
+  Result<void> add(const TextureLayer& layer) {
+    const std::string& scene_path = laid_.scene_path_;
+    const std::string file =
+        scene_path.empty() ? layer.texture : schema::texture_in_scene(scene_path, layer.texture);
+    const std::string stem = schema::stem_of(file, ".texture") + ".texture";
+    if (!laid_.files_.contains(stem)) {
+      auto texture = schema::read_texture(file);
+      if (!texture) return schema::forward_error(texture);
+      const auto wav = schema::texture_wav(file);
+      if (!wav) return schema::forward_error(wav);
+      note(schema::note_of_newer_version(stem + ".json", texture->newer_version,
+                                         schema::member_names(texture->extra_json)));
+      laid_.files_.emplace(stem, LaidTextures::File{std::move(*texture), wav->sha256});
+    }
+    laid_.stems_.push_back(stem);
+    laid_.layers_.push_back(layer);
+    laid_.rows_.push_back(
+        {full_path(stem + ".json"), laid_.files_.at(stem).sum, layer.at_m, layer.gain_m_per_n, layer.ends});
+    return {};
+  }
+  void note(std::string words) {
+    if (!words.empty()) laid_.notes_.push_back(std::move(words));
+  }
+  // Before memory is taken for all that lies between the textures.
+  Result<void> check_reach() const {
+    double pitch_m = laid_.texture(0).signal.pitch_m, start_m = laid_.layers_.front().at_m, end_m = start_m;
+    for (std::size_t i = 0; i < laid_.layers_.size(); ++i) {
+      pitch_m = std::min(pitch_m, laid_.texture(i).signal.pitch_m);
+      start_m = std::min(start_m, laid_.layers_[i].at_m);
+      end_m = std::max(end_m, laid_.layers_[i].at_m + laid_.texture(i).signal.length_m());
+      const double reach_m = end_m - start_m;
+      if (reach_m / pitch_m <= kMostPathSamples) continue;
+      const std::string layer = fmt::format("{}#/layers/{}/at_m", laid_.scene_path_, i);
+      return fail(Fault::unsuitable,
+                  fmt::format("the textures reach over {:g} m, at a pitch of {:g} um: over {:.0f} samples",
+                              reach_m, 1e6 * pitch_m, kMostPathSamples),
+                  laid_.scene_path_.empty() ? laid_.rows_[i].file : layer,
+                  "lay them closer, or play a shorter part");
+    }
+    return {};
+  }
+
+  LaidTextures& laid_;
+};
+
+Result<LaidTextures> lay_textures(const ProgramRequest& asked) {
+  ProgramRequest request = asked;
+  if (asked.only_in) {
+    auto served = served_file(*asked.only_in, asked.file);
+    if (!served) return schema::forward_error(served);
+    request.file = std::move(*served);
+  }
+  std::optional<schema::PlaybackGain> kept_gain;
+  const auto scene = scene_of(request, kept_gain);
+  if (!scene) return schema::forward_error(scene);
+  LaidTextures laid;
+  TextureReader reader(laid);
+  reader.keep_gain(std::move(kept_gain));
+  if (names_a_scene(request.file)) reader.name_scene(schema::scene_path(request.file));
+  if (const auto read = reader.read(*scene); !read) return schema::forward_error(read);
+  return laid;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/live_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "firmware-host/link/wire_words.hpp"
+#include "playback/session/session_limits.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::SessionCommand;
+using schema::SessionTick;
+
+std::optional<double> db_of(const LimitTally& tally) {
+  return tally.removed_any() ? std::optional(tally.removed_db()) : std::nullopt;
+}
+
+}  // namespace
+
+LiveLimits::LiveLimits(const schema::SessionHeader& header, std::size_t profile_samples)
+    : rate_hz_(header.rate_hz),
+      tells_touch_(tells_touch(header)),
+      board_(std::make_unique<SessionBoard>(header, BoardLimits::lifted, profile_samples)) {}
+
+void LiveLimits::give_up(std::string why) {
+  board_.reset();
+  waiting_.clear();
+  const std::lock_guard lock(mutex_);
+  told_ = {{}, {}, std::move(why)};
+}
+
+void LiveLimits::hear(const SessionCommand& command) {
+  if (!board_) return;
+  const auto contact = message_in_frame<wire::Contact>(command.frame);
+  if (contact && contact->on_n > 0 && !tells_touch_)
+    return give_up("the device does not tell when the finger touches");
+  beats_.see(command, rate_hz_);
+  commands_.hand(command, [this](const SessionCommand& due) { obey(due); });
+}
+
+void LiveLimits::obey(const SessionCommand& command) {
+  if (!board_) return;
+  const auto answer = board_->say_frame(command.frame);
+  if (answer && answer->code == wire::AnswerCode::ok) return;
+  give_up(fmt::format("{} is refused here", firmware_host::word_of(type_of(command))));
+}
+
+void LiveLimits::take(std::span<const SessionTick> ticks) {
+  for (const SessionTick& tick : ticks) {
+    if (!board_) return;
+    if (tick.tick != expected_++) return give_up("ticks are missing");
+    beats_.see(tick);
+    waiting_.push_back(tick);
+  }
+  follow(beats_.looks_ahead());
+  tell();
+}
+
+void LiveLimits::lose(const std::string& what) {
+  if (board_) give_up(what + " are missing");
+}
+
+void LiveLimits::follow(std::uint64_t held_back) {
+  while (board_ && waiting_.size() > held_back) {
+    const SessionTick tick = waiting_.front();
+    waiting_.pop_front();
+    play(tick);
+  }
+}
+
+void LiveLimits::play(const SessionTick& tick) {
+  if (tick.tick == 0) board_->rest_at(tick.encoder);
+  commands_.before(tick, [this](const SessionCommand& due) { obey(due); });
+  if (!board_) return;
+  if (beats_.beats_before(tick.tick)) board_->say(wire::Heartbeat{});
+  const float wished_v = board_->tick(tick);
+  limited_ = limited_ || (tick.flags & kEveryLimit) != 0;
+  if (!limited_ && wished_v != tick.drive_v) return give_up("the device computes another drive");
+  count(tick, wished_v);
+}
+
+void LiveLimits::count(const SessionTick& tick, float wished_v) {
+  const auto part = static_cast<std::uint64_t>(static_cast<double>(tick.tick) * kParts / rate_hz_);
+  if (part != std::exchange(part_, part)) parts_[part % kParts] = {};
+  const core::TickOutput output = limited_tick(tick.drive_v, wished_v, tick.flags);
+  whole_.add(output);
+  parts_[part % kParts].add(output);
+}
+
+void LiveLimits::end() {
+  follow(0);
+  tell();
+  board_.reset();
+}
+
+void LiveLimits::tell() {
+  if (!board_) return;
+  LimitTally second;
+  for (const LimitTally& part : parts_) second.add(part);
+  const std::lock_guard lock(mutex_);
+  told_ = {db_of(whole_), db_of(second), {}};
+}
+
+LimitsTook LiveLimits::told() const {
+  const std::lock_guard lock(mutex_);
+  return told_;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/play.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "data-schema/files/files.hpp"
+#include "firmware-host/link/wire_device.hpp"
+#include "playback/host-loop/locked_memory.hpp"
+#include "playback/player/loop_here.hpp"
+#include "playback/player/player_device.hpp"
+#include "playback/player/silent_play.hpp"
+#include "playback/session/session_limits.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr int kUsualPriority = 50;  // as the daemon's
+constexpr double kUsualS = 10, kPlayStepS = 0.01, kReleaseWaitS = 0.05;
+
+double time_of(const PlayOptions& options, const std::optional<FingerScript>& script) {
+  if (options.time_s) return *options.time_s;
+  return script ? script->path.duration_s() : kUsualS;
+}
+
+Result<void> check_play_options(const PlayOptions& options) {
+  if (options.time_s && !(*options.time_s > 0))
+    return fail(Fault::usage, fmt::format("a time of {:g} s", *options.time_s), {}, "a time above 0 s");
+  return schema::check_stem(schema::stem_of("/" + options.session, ".session").substr(1));
+}
+
+Result<std::string> transducer_for(const PlayOptions& options, const firmware_host::Capabilities& about) {
+  if (!options.transducer.empty()) return options.transducer;
+  if (about.transducer) return about.transducer->name;
+  return fail(Fault::usage, "the device does not say which transducer it has", about.uri,
+              "name it with --transducer");
+}
+
+Result<Program> program_for(const PlayOptions& options, const PlayerDevice& device, const LoopHere& here,
+                            double metres_per_count) {
+  const auto transducer = transducer_for(options, device.device->capabilities());
+  if (!transducer) return schema::forward_error(transducer);
+  PrepareOptions prepare = options.prepare;
+  prepare.metres_per_count = metres_per_count;
+  const firmware_host::Client& plays = here ? *here.client : *device.client;
+  prepare.most_samples = plays.description().welcome.profile_samples;
+  if (here) prepare.loop_delay_s = here.loop->delay_s();
+  return make_program(options.program, *transducer, prepare);
+}
+
+// Seconds of ticks since arming.
+struct PlayTime {
+  double from_s = 0, to_s = 0;
+};
+
+Result<void> run_until(Player& player, const PlayTime& time, const std::function<bool()>& stop_asked,
+                       const std::function<void(double)>& progress) {
+  while (player.armed_s() < time.to_s && !stop_asked()) {
+    if (const auto done = player.step(kPlayStepS); !done) return done;
+    if (player.state() == PlayerState::fault) break;
+    if (progress) progress(std::max(0.0, (player.armed_s() - time.from_s) / (time.to_s - time.from_s)));
+  }
+  return {};
+}
+
+// Where this computer closes the loop, the path begins now and reaches the tray later, by the delay of the
+// loop.
+PlayTime begin_path(const Player& player, const PlayerDevice& device, const LoopHere& here, double time_s) {
+  if (!device.begin_path) return {0, time_s};
+  device.begin_path();
+  const double from_s = player.armed_s() + (here ? here.loop->delay_s() : 0);
+  return {from_s, from_s + time_s};
+}
+
+// The ramp is part of the session.
+Result<void> ramp_down(Player& player) {
+  if (const auto stopped = player.stop(); !stopped) return stopped;
+  const double until_s = player.armed_s() + kReleaseWaitS;
+  while (player.armed_s() < until_s)
+    if (const auto done = player.step(kPlayStepS); !done) return done;
+  return {};
+}
+
+PlayOutcome outcome_of(const Program& program) {
+  const Prepared& made = program.prepared;
+  PlayOutcome outcome;
+  outcome.decision = program.decision;
+  outcome.passes_to_hz = made.passes_to_hz;
+  outcome.delay_s = made.delay_s;
+  outcome.delay_left_s = made.delay_left_s;
+  outcome.inverse_error_db = made.inverse_error_db;
+  outcome.loop_period_m = made.loop_period_m, outcome.loop_seam_m = made.loop_seam_m;
+  outcome.notes = made.notes;
+  outcome.gain_m_per_n = program.gain_m_per_n;
+  outcome.kept_gain = program.kept_gain;
+  outcome.choices = choices_in(program.options);
+  return outcome;
+}
+
+// What is played on, from the device to the player.
+struct Playing {
+  PlayerDevice& device;
+  const LoopHere& here;
+  Player& player;
+};
+
+Result<void> play_through(const Playing& playing, const PlayOptions& options,
+                          const std::function<bool()>& stop_asked,
+                          const std::function<void(double)>& progress, PlayOutcome& outcome) {
+  Player& player = playing.player;
+  if (const auto done = player.gain(options.gain); !done) return done;
+  if (const auto done = player.arm(options.session); !done) return done;
+  if (const auto done = player.play(); !done) return done;
+  const PlayTime time = begin_path(player, playing.device, playing.here, outcome.asked_s);
+  if (const auto done = run_until(player, time, stop_asked, progress); !done) return done;
+  outcome.status = player.status();
+  if (player.state() != PlayerState::fault)
+    if (const auto done = ramp_down(player); !done) return done;
+  return player.disarm();
+}
+
+void tell_limits(const std::string& session, PlayOutcome& outcome) {
+  const auto tally = tally_session(session);
+  if (tally) outcome.limits = *tally;
+  if (!tally) outcome.notes.push_back(schema::message(tally.error()));
+}
+
+// Time that runs as fast as it can has no real-time thread that could keep up with it.
+Result<LoopHere> loop_of(const PlayOptions& options, PlayerDevice& device, PlayerOptions& player_options) {
+  if (!options.loop_here) return LoopHere{};
+  if (!device.device->keeps_time())
+    return fail(Fault::usage, "this computer closes no loop on a device that keeps no time", device.uri,
+                "add paced=1 (-d sim:paced=1)");
+  const HostLoopOptions loop{options.prepare.rate_hz, kUsualPriority, options.prepare.watchdog_ms};
+  return close_loop_here(*device.client, device.uri, loop, player_options);
+}
+
+LoopedHere looped_by(const HostLoop& loop) {
+  return {loop.latency(), loop.delay_s(), loop.status().missed_ticks};
+}
+
+}  // namespace
+
+Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
+                              const std::function<void(double)>& progress) {
+  if (const auto sound = check_play_options(options); !sound) return schema::forward_error(sound);
+  auto script = read_finger_script(options.finger_path, false);
+  if (!script) return schema::forward_error(script);
+  // The emulated finger moves from the stream's beginning on; here that is before the loop's delay is
+  // measured.
+  if (*script) (*script)->waits = options.loop_here;
+  auto device = open_player_device(options.device_uri, *script);
+  if (!device) return schema::forward_error(device);
+  PlayerOptions player_options;
+  // In emulated time nobody waits, so nothing may be lost.
+  player_options.full_queue = device->device->keeps_time() ? FullQueue::lose : FullQueue::wait;
+  const auto here = loop_of(options, *device, player_options);
+  if (!here) return schema::forward_error(here);
+  const auto player = Player::make(*here ? *here->client : *device->client, device->uri, player_options);
+  if (!player) return schema::forward_error(player);
+  auto program = program_for(options, *device, *here, (*player)->metres_per_count());
+  if (!program) return schema::forward_error(program);
+  PlayOutcome outcome = outcome_of(*program);
+  const Feelable what = feelable(*program);
+  outcome.device = device->uri;
+  outcome.simulated = firmware_host::simulated_device(device->client->description());
+  outcome.asked_s = time_of(options, *script);
+  if (const auto loaded = (*player)->load(std::move(*program)); !loaded) return schema::forward_error(loaded);
+  if (*here) lock_memory();
+  const auto played = play_through({*device, *here, **player}, options, stop_asked, progress, outcome);
+  if (!played) return schema::forward_error(played);
+  outcome.recorder = (*player)->last_session();
+  if (*here) outcome.looped = looped_by(*here->loop);
+  tell_limits(options.session, outcome);
+  if (auto silence = note_of_silence(outcome.status.ticks, what))
+    outcome.notes.push_back(std::move(*silence));
+  return outcome;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/player.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "firmware-host/link/wire_device.hpp"
+#include "firmware-host/link/wire_fields.hpp"
+#include "firmware-host/link/wire_words.hpp"
+#include "playback/prepare/displacement_limit.hpp"
+#include "playback/prepare/texture_change.hpp"
+#include "playback/prepare/upload.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+constexpr double kIdleWaitS = 1, kIdleStepS = 0.01;
+constexpr double kLongestFadeS = 10;  // the wire's
+constexpr double kBehindS = 0.05;     // how far the device may be ahead of the ticks that have come
+
+std::int64_t steady_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+PlayerState state_of(std::uint32_t flags) {
+  if ((flags & wire::kTickFault) != 0) return PlayerState::fault;
+  return (flags & wire::kTickPlaying) != 0 ? PlayerState::playing : PlayerState::armed;
+}
+
+bool runs(PlayerState state) {
+  return state == PlayerState::armed || state == PlayerState::playing;
+}
+
+// The encoder's step stands in the description of the channel that it gives.
+Result<double> encoder_step(const firmware_host::Description& about, const std::string& uri) {
+  for (const wire::Channel& channel : about.channels)
+    if (std::strcmp(channel.quantity, "position") == 0 && std::isfinite(channel.scale) && channel.scale != 0)
+      return channel.scale;
+  return fail(Fault::device, "the device does not say what its encoder counts", uri,
+              "it lacks a channel of the quantity position");
+}
+
+// The device knows no files.
+schema::Error naming(schema::Error error, const Program& program) {
+  error.where = fmt::format("{}, on {}", program.name(), error.where);
+  return error;
+}
+
+// By a factor on the program's gains.
+Result<void> within_reach(const Program& program, double peak_m, double factor) {
+  const schema::Transducer& transducer = program.session.transducer;
+  auto near = check_displacement(peak_m, factor, program.prepared.gain_m_per_n, transducer);
+  if (!near) near.error().remedy += rate_as_cause(program.prepared, transducer, program.options);
+  return near;
+}
+
+}  // namespace
+
+std::string_view word_of(PlayerState state) {
+  constexpr std::string_view kWords[] = {"idle", "armed", "playing", "fault", "lost"};
+  return kWords[static_cast<std::size_t>(state)];
+}
+
+Player::Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres)
+    : client_(client), uri_(std::move(uri)), options_(options), metres_per_count_(metres), tray_(client) {
+  client_.listen([this](std::span<const std::uint8_t> frame) { keep(frame); });
+}
+
+Player::~Player() {
+  client_.listen({});
+}
+
+Result<std::unique_ptr<Player>> Player::make(firmware_host::Client& client, std::string uri,
+                                             const PlayerOptions& options) {
+  if ((client.description().welcome.features & wire::kFeatureDrive) == 0)
+    return fail(Fault::device, "the device has no output", uri);
+  const auto step = encoder_step(client.description(), uri);
+  if (!step) return schema::forward_error(step);
+  return std::unique_ptr<Player>(new Player(client, std::move(uri), options, *step));
+}
+
+Result<void> Player::require(bool allowed, const char* what, const char* remedy) const {
+  if (allowed) return {};
+  return fail(Fault::usage, fmt::format("can't {} in the state {}", what, word_of(state_)), uri_, remedy);
+}
+
+// Every command that the device obeys is part of the session, but for those of the samples' stream.
+void Player::keep(std::span<const std::uint8_t> frame) {
+  if (TraySamples::streams(frame)) return;
+  if (recorder_) recorder_->command({view_.expected(), steady_ns(), {frame.begin(), frame.end()}});
+}
+
+// A command to a running drive: what it answers, and what the device has said meanwhile.
+template <class Message>
+Result<void> Player::steer(const Message& message) {
+  const auto done = client_.command(message);
+  take_ticks();
+  take_faults();
+  return done;
+}
+
+Result<void> Player::may_load() const {
+  return require(state_ == PlayerState::idle || runs(state_), "load", "disarm first");
+}
+
+Result<void> Player::load(Program program, double fade_s) {
+  if (const auto may = may_load(); !may) return may;
+  const double factor = runs(state_) ? gain_ : 1;
+  if (const auto near = within_reach(program, program.tray_peak_m, factor); !near) return near;
+  const wire::Welcome& about = client_.description().welcome;
+  wire::Limits& limits = program.prepared.limits;
+  limits.drive_v = std::min(limits.drive_v, about.drive_limit_v);
+  limits.slew_v_per_s = std::min(limits.slew_v_per_s, about.slew_limit_v_per_s);
+  if (runs(state_)) return change(std::move(program), fade_s);
+  if (auto fits = check_upload(client_, program.prepared); !fits)
+    return tl::unexpected(naming(fits.error(), program));
+  program_ = std::move(program);
+  return {};
+}
+
+Result<void> Player::may_change(const Program& program, double fade_s) const {
+  if (!(fade_s >= 0 && fade_s <= kLongestFadeS))
+    return fail(Fault::usage, fmt::format("a fade of {:g} s", fade_s), uri_, "0 s to 10 s; 50 ms is usual");
+  if (view_.expected() < faded_at_)
+    return fail(Fault::usage, "the last change of texture is not through yet", uri_, "load again once it is");
+  return check_texture_change(program_->prepared, program.prepared,
+                              client_.description().welcome.profile_samples);
+}
+
+// The device's gain stays what it is, so that a gain that comes later is a factor of the same.
+Result<void> Player::change(Program program, double fade_s) {
+  if (const auto may = may_change(program, fade_s); !may) return may;
+  const schema::SessionProgram& brought = program.session;  // of a header, what a change brings
+  recorder_->change({view_.expected(), steady_ns(), brought});
+  const auto done = upload_change(client_, program.prepared, device_gain_m_per_n_, fade_s);
+  take_ticks();
+  take_faults();
+  if (!done) return done;
+  leaving_peak_m_ = program_->tray_peak_m;
+  program_ = std::move(program);
+  faded_at_ = view_.expected() + static_cast<std::uint64_t>((fade_s + kBehindS) * program_->prepared.rate_hz);
+  recorder_->event({view_.expected(), steady_ns(), "texture changed to " + program_->name()});
+  return {};
+}
+
+schema::SessionHeader Player::session_header() const {
+  const firmware_host::Description& about = client_.description();
+  schema::SessionHeader header = program_->session;
+  header.clock_hz = about.welcome.clock_hz;
+  header.loop = options_.loop;
+  header.device_uri = uri_;
+  header.device_name = about.welcome.name;
+  header.device_serial = about.welcome.serial;
+  header.device_firmware = about.welcome.firmware;
+  header.device_protocol = fmt::format("{}.{}", about.welcome.major, about.welcome.minor);
+  header.initial_gain = gain_;
+  header.sensor = tray_.sensor(header.rate_hz);
+  header.simulated = firmware_host::simulated_device(about);
+  return header;
+}
+
+Result<void> Player::begin_session(const std::string& path) {
+  const schema::SessionHeader header = session_header();
+  const std::size_t samples = client_.description().welcome.profile_samples;
+  std::unique_ptr<LiveLimits> limits;
+  if (options_.tell_limits) limits = std::make_unique<LiveLimits>(header, samples);
+  auto recorder = FlightRecorder::begin(path, header, options_.full_queue, limits.get());
+  if (!recorder) return schema::forward_error(recorder);
+  recorder_ = std::move(*recorder);
+  limits_ = std::move(limits);
+  tray_.begin(header.rate_hz, [this](schema::SessionSamples run) { recorder_->measured(std::move(run)); });
+  return {};
+}
+
+Result<void> Player::arm(const std::string& session_path) {
+  if (const auto may = require(state_ == PlayerState::idle, "arm", "disarm first"); !may) return may;
+  if (const auto may = require(loaded(), "arm", "load a texture or scene first"); !may) return may;
+  if (const auto may = may_gain(gain_); !may) return may;
+  // Another program may have been killed in mid-play: the device is then still on its way to rest.
+  if (const auto rests = wait_for_idle(); !rests) return rests;
+  if (const auto begun = begin_session(session_path); !begun) return begun;
+  fault_.clear();
+  stopped_because_.clear();
+  view_.begin(program_->prepared.rate_hz, metres_per_count_);
+  device_gain_m_per_n_ = program_->prepared.gain_m_per_n;
+  faded_at_ = 0;
+  const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};
+  auto done = upload(client_, program_->prepared);
+  if (done) done = client_.command(device_gain());
+  client_.take_ticks();  // of an earlier run, be it another program's that was killed
+  if (done) done = recorder_->start();
+  if (done) done = client_.command(arm);
+  if (!done) {
+    recorder_->discard();
+    recorder_.reset();
+    limits_.reset();
+    return done;
+  }
+  session_path_ = session_path;
+  if (const auto streams = options_.measured ? Result<void>() : tray_.begin_stream(); !streams)
+    recorder_->event({0, steady_ns(), "no samples of the tray: " + schema::message(streams.error())});
+  const auto beaten = beat();
+  enter(PlayerState::armed, "");
+  return beaten;
+}
+
+Result<void> Player::play() {
+  const char* const remedy = state_ == PlayerState::fault ? "disarm first, then arm" : "arm first";
+  if (const auto allowed = require(runs(state_), "play", remedy); !allowed) return allowed;
+  stopped_because_.clear();
+  return steer(wire::Play{});
+}
+
+Result<void> Player::stop(const std::string& why) {
+  const bool may = state_ != PlayerState::idle && state_ != PlayerState::lost;
+  if (const auto allowed = require(may, "stop", "nothing plays"); !allowed) return allowed;
+  stopped_because_ = why;
+  return steer(wire::Stop{});
+}
+
+Result<void> Player::may_gain(double gain) const {
+  if (!std::isfinite(gain)) return fail(Fault::usage, "the gain is no finite number", uri_);
+  if (!program_) return {};
+  const bool fades = recorder_ != nullptr && view_.expected() < faded_at_;
+  const double peak_m = std::max(program_->tray_peak_m, fades ? leaving_peak_m_ : 0);
+  return within_reach(*program_, peak_m, gain);
+}
+
+Result<void> Player::gain(double gain) {
+  if (const auto may = may_gain(gain); !may) return may;
+  gain_ = gain;
+  if (!recorder_) return {};
+  const auto done = steer(device_gain());
+  if (done) recorder_->event({view_.expected(), steady_ns(), fmt::format("gain {:g}", gain)});
+  return done;
+}
+
+wire::Gain Player::device_gain() const {
+  return {static_cast<float>(gain_ * device_gain_m_per_n_)};
+}
+
+Result<void> Player::wait_for_idle() {
+  for (double waited_s = 0; waited_s < kIdleWaitS; waited_s += kIdleStepS) {
+    const auto pulse = client_.heartbeat();
+    if (!pulse) return schema::forward_error(pulse);
+    take_ticks();
+    if (pulse->state == wire::DriveState::idle) return {};
+    if (const auto received = client_.receive(kIdleStepS); !received) return schema::forward_error(received);
+  }
+  return fail(Fault::device, "the device did not come to rest", uri_, "switch off the amplifier");
+}
+
+Result<void> Player::disarm(const std::string& why) {
+  if (state_ == PlayerState::idle) return {};
+  if (const auto may = require(state_ != PlayerState::lost, "disarm", "the device is gone"); !may) return may;
+  auto done = steer(wire::Disarm{});
+  if (done) done = wait_for_idle();
+  if (done) done = tray_.end_stream();
+  if (!done) return lose(done.error());
+  enter(PlayerState::idle, why);
+  return end_session();
+}
+
+// A device that closes the loop itself reads the encoder and drives in one tick.
+std::string Player::latency_words() const {
+  if (options_.latency) return options_.latency();
+  return fmt::format("from the encoder's edge to the drive: the device's own tick, at most {:g} ms",
+                     1e3 / program_->prepared.rate_hz);
+}
+
+Result<void> Player::end_session() {
+  if (!recorder_) return {};
+  tray_.end();
+  if (view_.ticks() > 0) recorder_->event({view_.expected(), steady_ns(), latency_words()});
+  const auto closed = recorder_->close();
+  last_session_ = recorder_->counts();
+  recorder_.reset();
+  return closed;
+}
+
+Result<void> Player::lose(const schema::Error& error) {
+  const bool first = state_ != PlayerState::lost;
+  if (first) enter(PlayerState::lost, schema::message(error));
+  (void)end_session();
+  return tl::unexpected(error);
+}
+
+Result<void> Player::beat() {
+  const double asked_s = client_.transport().now_s();
+  const auto pulse = client_.heartbeat();
+  if (!pulse) return schema::forward_error(pulse);
+  round_trip_s_ = client_.transport().now_s() - asked_s;
+  pulse_s_ = static_cast<double>(pulse->device_ticks) / std::max(1U, client_.description().welcome.clock_hz);
+  next_beat_s_ = client_.transport().now_s() + options_.heartbeat_s;
+  return {};
+}
+
+Result<void> Player::step(double timeout_s) {
+  if (state_ == PlayerState::lost || state_ == PlayerState::idle) return {};
+  auto done = client_.receive(timeout_s);
+  if (done && client_.transport().now_s() >= next_beat_s_) done = beat();
+  take_faults();
+  take_ticks();
+  if (!done) return lose(done.error());
+  watch_lateness();
+  return {};
+}
+
+void Player::take(const wire::Ticks& message) {
+  if (message.first_tick > view_.expected()) {
+    const std::uint64_t lost = message.first_tick - view_.expected();
+    view_.take_loss(lost);
+    recorder_->loss({view_.expected(), lost, schema::SessionLoss::Why::link});
+  }
+  const wire::Welcome& about = client_.description().welcome;
+  const double ns_per_clock = 1e9 / std::max(1U, about.clock_hz);
+  const auto time_ns = std::llround(static_cast<double>(message.device_ticks) * ns_per_clock);
+  const double period_ns = 1e9 / program_->prepared.rate_hz;
+  for (std::uint8_t i = 0; i < message.count; ++i) {
+    const wire::Tick& tick = message.ticks[i];
+    const std::uint64_t number = message.first_tick + i;
+    const schema::SessionTick row{
+        number,
+        options_.due_ns ? options_.due_ns(number) : time_ns + std::llround(i * period_ns),
+        tick.encoder,
+        tick.drive_v,
+        tick.flags,
+        options_.lateness_ns ? options_.lateness_ns(number) : schema::SessionTick::kLatenessUnknown};
+    view_.take(row);
+    recorder_->tick(row);
+    if (tray_.run() != nullptr && options_.measured) options_.measured(number, *tray_.run());
+  }
+}
+
+// Of a run that is over, ticks may still be on their way: they belong to nobody.
+void Player::take_ticks() {
+  tray_.take();
+  for (const wire::Ticks& message : client_.take_ticks()) {
+    if (!recorder_ || message.count == 0 || message.first_tick < view_.expected()) continue;
+    take(message);
+    const PlayerState seen = state_of(view_.last().flags);
+    if (seen != state_ && state_ != PlayerState::fault && state_ != PlayerState::idle)
+      enter(seen, seen == PlayerState::armed ? stopped_because_ : fault_);
+  }
+}
+
+void Player::take_faults() {
+  for (const wire::Fault& fault : client_.take_faults()) {
+    const firmware_host::FaultWords words = firmware_host::words_of(fault.code, fault.detail);
+    if (!recorder_) continue;
+    // A converter that fails ends the stream of samples; the drive goes on.
+    if (fault.code == wire::FaultCode::ring_full || fault.code == wire::FaultCode::converter) {
+      recorder_->event({view_.expected(), steady_ns(), words.what});
+      continue;
+    }
+    fault_ = words.remedy.empty() ? words.what : words.what + " (" + words.remedy + ")";
+    enter(PlayerState::fault, fault_);
+  }
+}
+
+// Late ticks play what the finger felt too late: beyond a limit, not at all.
+void Player::watch_lateness() {
+  if (state_ != PlayerState::playing || view_.late_part() <= options_.most_late) return;
+  fault_ = fmt::format(
+      "{:.0f} % of the ticks of a second were late (fewer programs beside this one, or a lower rate)",
+      100 * view_.late_part());
+  (void)steer(wire::Stop{});
+  enter(PlayerState::fault, fault_);
+}
+
+void Player::enter(PlayerState state, const std::string& why) {
+  if (state == state_) return;
+  state_ = state;
+  if (state == PlayerState::lost) fault_ = why;
+  const std::string words = fmt::format("{}{}{}", word_of(state), why.empty() ? "" : ": ", why);
+  if (recorder_) recorder_->event({view_.expected(), steady_ns(), words});
+  // Before the first tick has come the heartbeat's answer knows the time.
+  const double device_s = view_.ticks() > 0 ? 1e-9 * static_cast<double>(view_.last().time_ns) : pulse_s_;
+  if (listener_) listener_(state, why, device_s);
+}
+
+// What was lost stays told until the next session begins.
+PlayerStatus Player::status() const {
+  PlayerStatus status{state_, fault_, gain_, view_, recorded(), {}, session_path_, round_trip_s_};
+  if (!status.recorder && !session_path_.empty()) status.recorder = last_session_;
+  if (limits_) status.limits = limits_->told();
+  return status;
+}
+
+}  // namespace tacto::playback

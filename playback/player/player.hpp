@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plays on a device that closes the loop: uploads, arms, steers, supervises, records. The device may be on
+// USB, emulated, or the host's own real-time loop: it is spoken to alike.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "firmware-host/link/client.hpp"
+#include "playback/host-loop/tray_samples.hpp"
+#include "playback/player/flight_recorder.hpp"
+#include "playback/player/program.hpp"
+#include "playback/session/tick_view.hpp"
+
+namespace tacto::playback {
+
+/// idle: no output. armed: ticking, the drive at zero. playing. fault: the drive has been ramped to zero,
+/// until disarm. lost: the device does not answer any more (its own watchdog has ramped it to zero).
+///   idle -> armed by arm; armed -> playing by play; playing -> armed by stop; armed, playing, fault -> idle
+///   by disarm; armed, playing -> fault by the device (its words in PlayerStatus::fault) or by too many late
+///   ticks; any -> lost by a device that does not answer.
+enum class PlayerState { idle, armed, playing, fault, lost };
+std::string_view word_of(PlayerState state);
+
+struct PlayerOptions {
+  FullQueue full_queue = FullQueue::lose;
+  double heartbeat_s = 0.025;
+  double most_late = 0.2;       ///< part of the ticks within a second; more of them is a fault
+  std::string loop = "device";  ///< who closes it, for the session
+  bool tell_limits = false;     ///< live, by a second kernel on the recorder's thread (live_limits.hpp)
+  /// How late a tick was, where somebody measures it.
+  std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
+  /// When a tick was due, by the device's clock, where somebody knows it better than its message.
+  std::function<std::int64_t(std::uint64_t tick)> due_ns;
+  /// Hands over what the tray's sensor said up to a tick, where somebody else takes the device's samples.
+  std::function<void(std::uint64_t tick, SampleRun& into)> measured;
+  /// From the encoder's edge to the drive, in words, as it was measured until now: for the session.
+  std::function<std::string()> latency;
+};
+
+struct PlayerStatus {
+  PlayerState state = PlayerState::idle;
+  std::string fault;  ///< why, and what to do; empty where nothing is wrong
+  double gain = 1;
+  TickView ticks;  ///< since arming
+  std::optional<RecorderCounts> recorder;
+  LimitsTook limits;        ///< since arming, where it is asked for
+  std::string session;      ///< file being written, or written last
+  double round_trip_s = 0;  ///< of the last heartbeat
+};
+
+inline constexpr double kUsualFadeS = 0.05;  ///< of a change of texture
+
+/// One thread, which also owns the client. Every call ends within the client's timeouts. What cannot be done
+/// in the state that it is in is refused (usage), with what to do first.
+class Player {
+ public:
+  /// Told of every change of state, with words.
+  using Listener = std::function<void(PlayerState state, const std::string& why, double device_s)>;
+
+  /// The client outlives it. Errors: device: no output, or no encoder whose step it tells.
+  static schema::Result<std::unique_ptr<Player>> make(firmware_host::Client& client, std::string uri,
+                                                      const PlayerOptions& options);
+  ~Player();
+
+  /// The encoder's step, m a count.
+  double metres_per_count() const { return metres_per_count_; }
+  void listen(Listener listener) { listener_ = std::move(listener); }
+
+  /// In idle: kept for arm(), which uploads it. Armed or playing: the texture changes to it, over `fade_s` (0
+  /// to 10 s); gain() goes on from what it is. Errors: as check_upload(), in idle; usage, in another state,
+  /// while an earlier change still fades, or for another fade; unsuitable, where the tray would go beyond its
+  /// limit; as of check_texture_change(); device. After an error the texture that played plays on.
+  schema::Result<void> load(Program program, double fade_s = kUsualFadeS);
+  /// Whether it may be loaded in this state. Errors: usage.
+  schema::Result<void> may_load() const;
+  bool loaded() const { return program_.has_value(); }
+  /// Begins a session (never over a file that is there), and arms once its header and upload are on the disk.
+  /// In idle, loaded. Errors: usage; device; cannot_write. After one there is no session.
+  schema::Result<void> arm(const std::string& session_path);
+  schema::Result<void> play();
+  /// `why`, where given, is published with the state that follows.
+  schema::Result<void> stop(const std::string& why = {});
+  /// At any time; kept for the next session. Errors: as may_gain; device.
+  schema::Result<void> gain(double gain);
+  /// Errors: usage, for a gain that is no number; unsuitable, for one that would move the tray beyond its
+  /// limit, with the largest that fits.
+  schema::Result<void> may_gain(double gain) const;
+  /// Ramps to zero, waits for idle (a second at most), and closes the session; `why` as in stop(). Errors:
+  /// device; cannot_write.
+  schema::Result<void> disarm(const std::string& why = {});
+
+  /// Takes in what the device says, waiting at most `timeout_s` for it, and keeps it alive. An error (the
+  /// device is gone) is told once; from then on the state is lost.
+  schema::Result<void> step(double timeout_s);
+
+  PlayerState state() const { return state_; }
+  /// Counts of the session that is being written; none where none is.
+  std::optional<RecorderCounts> recorded() const {
+    return recorder_ ? std::optional(recorder_->counts()) : std::nullopt;
+  }
+  /// Counts of the session that was closed last.
+  const RecorderCounts& last_session() const { return last_session_; }
+  PlayerStatus status() const;
+  /// Seconds of ticks since arming, by the device's clock.
+  double armed_s() const { return view_.span_s(); }
+
+ private:
+  Player(firmware_host::Client& client, std::string uri, const PlayerOptions& options, double metres);
+  template <class Message>
+  schema::Result<void> steer(const Message& message);
+  void keep(std::span<const std::uint8_t> frame);
+  wire::Gain device_gain() const;
+  schema::Result<void> wait_for_idle();
+  schema::Result<void> beat();
+  schema::Result<void> require(bool allowed, const char* what, const char* remedy) const;
+  schema::Result<void> change(Program program, double fade_s);
+  schema::Result<void> may_change(const Program& program, double fade_s) const;
+  schema::SessionHeader session_header() const;
+  schema::Result<void> begin_session(const std::string& path);
+  void take_ticks();
+  void take(const wire::Ticks& message);
+  void take_faults();
+  void watch_lateness();
+  void enter(PlayerState state, const std::string& why);
+  void follow(const TickView& view);
+  schema::Result<void> lose(const schema::Error& error);
+  schema::Result<void> end_session();
+  std::string latency_words() const;
+
+  firmware_host::Client& client_;
+  std::string uri_;
+  PlayerOptions options_;
+  double metres_per_count_ = 0;
+  Listener listener_;
+  std::optional<Program> program_;
+  std::unique_ptr<LiveLimits> limits_;  // where they are told; before the recorder, which speaks to it
+  std::unique_ptr<FlightRecorder> recorder_;
+  std::string session_path_;
+  RecorderCounts last_session_;
+  PlayerState state_ = PlayerState::idle;
+  std::string fault_, stopped_because_;
+  double gain_ = 1;
+  double leaving_peak_m_ = 0;       // of the tray, by the texture that the last change left
+  double device_gain_m_per_n_ = 0;  // that gain_ is a factor of; since arming
+  std::uint64_t faded_at_ = 0;      // the tick by which the last change is through
+  TickView view_;
+  TraySamples tray_;
+  double pulse_s_ = 0;  // the device's clock at the last heartbeat
+  double next_beat_s_ = 0, round_trip_s_ = 0;
+};
+
+}  // namespace tacto::playback

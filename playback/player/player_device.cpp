@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/player_device.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "firmware-host/open_device.hpp"
+#include "firmware-host/sim/device/sim_device.hpp"
+#include "spatial/dsp/resample/hermite.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::string_view kSimScheme = "sim:";
+constexpr mode_t kForAll = 0666;
+
+std::string lock_path(const std::string& device_name) {
+  std::string name = device_name;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-'; }, '_');
+  const bool usual = access("/run/lock", W_OK) == 0;
+  return (usual ? "/run/lock/tactograph-" : "/tmp/tactograph-") + name.substr(0, 100) + ".lock";
+}
+
+// Nearer than encoders count.
+constexpr double kMeetM = 1e-6;
+
+bool ends_where_it_began(const FingerPath& path) {
+  return std::abs(path.position_m.back() - path.position_m.front()) < kMeetM;
+}
+
+// Positions along a path at any time: the knots alone are kept, for a path may last for hours.
+class Script {
+ public:
+  explicit Script(const FingerScript& script)
+      : repeated_(script.repeated),
+        closed_(ends_where_it_began(script.path)),
+        knots_(std::make_shared<const Knots>(script.path)) {}
+
+  double operator()(double time_s) const { return knots_->curve(on_path(time_s)); }
+  /// Precondition: the path tells it.
+  double force_n(double time_s) const {
+    const FingerPath& path = knots_->path;
+    const double at_s = on_path(time_s);
+    const auto next = std::ranges::upper_bound(path.time_s, at_s);
+    if (next == path.time_s.end()) return path.normal_force_n.back();
+    const auto i = static_cast<std::size_t>(next - path.time_s.begin());  // above 0: the first is not later
+    const double part = (at_s - path.time_s[i - 1]) / (path.time_s[i] - path.time_s[i - 1]);
+    return std::lerp(path.normal_force_n[i - 1], path.normal_force_n[i], part);
+  }
+
+ private:
+  double on_path(double time_s) const {
+    const double whole_s = knots_->path.duration_s();
+    if (repeated_ && closed_)
+      time_s = std::fmod(time_s, whole_s);
+    else if (repeated_)
+      time_s = whole_s - std::abs(std::fmod(time_s, 2 * whole_s) - whole_s);
+    return knots_->path.time_s.front() + std::clamp(time_s, 0.0, whole_s);
+  }
+
+  struct Knots {
+    explicit Knots(FingerPath along) : path(std::move(along)), curve(path.time_s, path.position_m) {}
+    FingerPath path;
+    spatial::HermiteCurve curve;
+  };
+  bool repeated_, closed_;
+  std::shared_ptr<const Knots> knots_;
+};
+
+struct ScriptedDevice {
+  std::unique_ptr<firmware_host::Device> device;
+  std::function<void()> begin_path;
+};
+
+Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript& script) {
+  if (!uri.starts_with(kSimScheme)) {
+    if (const auto other = firmware_host::open_device(uri); !other) return schema::forward_error(other);
+    return fail(Fault::unsuitable, "only an emulated finger goes where it is told", uri,
+                "leave the finger's path out, or play on sim:");
+  }
+  auto device = firmware_host::make_sim_device(uri, std::string_view(uri).substr(kSimScheme.size()));
+  if (!device) return schema::forward_error(device);
+  const Script way(script);
+  std::function<double(double)> force_n;
+  if (!script.path.normal_force_n.empty()) force_n = [way](double time_s) { return way.force_n(time_s); };
+  firmware_host::SimBoard& board = (*device)->board();
+  board.set_script(way, std::move(force_n));
+  board.hold_script(script.waits);
+  ScriptedDevice scripted{std::move(*device), {}};
+  if (script.waits) scripted.begin_path = [&board] { board.hold_script(false); };
+  return scripted;
+}
+
+Result<ScriptedDevice> open_with(const std::string& uri, const std::optional<FingerScript>& script) {
+  if (script) return open_scripted(uri, *script);
+  auto device = firmware_host::open_device(uri);
+  if (!device) return schema::forward_error(device);
+  return ScriptedDevice{std::move(*device), {}};
+}
+
+}  // namespace
+
+DeviceLock::DeviceLock(DeviceLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+DeviceLock& DeviceLock::operator=(DeviceLock&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+DeviceLock::~DeviceLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
+  const std::string path = lock_path(device_name);
+  int opened = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+  if (opened < 0) opened = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kForAll);
+  if (opened < 0)
+    return fail(Fault::cannot_write, fmt::format("the lock can't be made: {}", std::strerror(errno)), path,
+                "see who owns it and its folder");
+  [[maybe_unused]] const int shared = fchmod(opened, kForAll);
+  if (flock(opened, LOCK_EX | LOCK_NB) == 0) return DeviceLock(opened);
+  ::close(opened);
+  return fail(Fault::unsuitable, "another program plays on the device", device_name,
+              "stop it: tactographd, or tactograph play");
+}
+
+Result<std::optional<FingerScript>> read_finger_script(const std::string& file, bool repeated) {
+  if (file.empty()) return std::optional<FingerScript>();
+  auto path = read_finger_path(file);
+  if (!path) return schema::forward_error(path);
+  return std::optional(FingerScript{std::move(*path), repeated});
+}
+
+Result<PlayerDevice> open_player_device(const std::string& uri, const std::optional<FingerScript>& script) {
+  auto opened = open_with(uri, script);
+  if (!opened) return schema::forward_error(opened);
+  auto& device = opened->device;
+  firmware_host::Client* const client = device->conversation();
+  if (client == nullptr)
+    return fail(Fault::unsuitable, "nothing can be played on a replay", uri, "play on sim: or usb:");
+  const firmware_host::Capabilities& about = device->capabilities();
+  PlayerDevice player{std::move(device), client, about.uri, {}, std::move(opened->begin_path)};
+  if (uri.starts_with(kSimScheme)) return player;  // an emulation of this process alone
+  auto lock = DeviceLock::take(about.simulated.empty() ? about.serial : about.uri);
+  if (!lock) return schema::forward_error(lock);
+  player.lock = std::move(*lock);
+  return player;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/program.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/scene/newer_version.hpp"
+#include "data-schema/version.hpp"
+#include "firmware-host/core/kernel/profile.hpp"
+#include "playback/player/laid_textures.hpp"
+#include "playback/prepare/displacement_limit.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kLongestOnsetS = 10;  // the wire's
+
+std::string transducer_sum(const std::string& name) {
+  for (const std::string& path : {name, name + ".transducer.json"})
+    if (schema::is_file(path)) return schema::sha256_of_file(path).value_or("");
+  return {};
+}
+
+void describe(schema::SessionHeader& session, const Prepared& prepared, const PrepareOptions& options) {
+  session.created = schema::creation_time();
+  session.creator = kCreator;
+  session.build = __VERSION__;
+  session.rate_hz = options.rate_hz;
+  session.metres_per_count = options.metres_per_count;
+  session.inverse = word_of(options.inverse);
+  session.choices = choices_in(options);
+  session.delay_s = prepared.delay_left_s;
+  session.loop_delay_s = options.loop_delay_s;
+  session.low_hz = options.band.low_hz;
+  session.high_hz = prepared.passes_to_hz;
+}
+
+// What the budget chooses goes into the options.
+Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& textures,
+                                            const schema::Transducer& transducer, const TickBudget& budget,
+                                            PrepareOptions& options) {
+  if (!budget.asked()) return std::nullopt;
+  const auto table = schema::find_trade_table();
+  if (!table) return schema::forward_error(table);
+  auto decision = decide(textures, transducer, options, budget, *table);
+  if (!decision) return schema::forward_error(decision);
+  options = decision->chosen.in(options);
+  return std::move(*decision);
+}
+
+// Before what prepare() notes.
+void add_notes(Program& program, const LaidTextures& laid, const std::string& transducer) {
+  const schema::Transducer& read = program.session.transducer;
+  std::vector<std::string> first = laid.notes();
+  first.push_back(
+      schema::note_of_newer_version(transducer, read.newer_version, schema::member_names(read.extra_json)));
+  std::erase(first, "");
+  std::vector<std::string>& notes = program.prepared.notes;
+  notes.insert(notes.begin(), first.begin(), first.end());
+}
+
+void name_files(Program& program, const LaidTextures& laid) {
+  program.session.textures = laid.rows();
+  program.session.textures.front().seam_m = program.prepared.loop_seam_m;
+  if (program.scene_path.empty()) return;
+  program.session.scene_file = full_path(program.scene_path);
+  program.session.scene_sha256 = schema::sha256_of_file(program.scene_path).value_or("");
+}
+
+// What the device would refuse by numbers of its own.
+Result<void> check_onset(const PrepareOptions& options) {
+  if (options.onset_s <= kLongestOnsetS) return {};
+  return fail(
+      Fault::usage, fmt::format("an onset of {:g} s", options.onset_s), {},
+      fmt::format("0 s to {:g} s (--onset, or onset_s in the daemon's configuration)", kLongestOnsetS));
+}
+
+// Farther away the kernel reads zero.
+Result<void> check_place(const LaidTextures& laid, double farthest_m) {
+  const double at_m = std::max(std::abs(laid.start_m()), std::abs(laid.end_m()));
+  if (at_m < farthest_m) return {};
+  return fail(Fault::usage, fmt::format("lies as far as {:g} m from the encoder's zero", at_m),
+              laid.rows().front().file,
+              fmt::format("lay it within {:.4g} m (--at, or at_m in the scene)", farthest_m));
+}
+
+// Of a texture by itself the file is known; of several, the scene.
+schema::Error naming_the_file(schema::Error error, const LaidTextures& laid, const std::string& scene_path) {
+  if (laid.rows().size() == 1 && error.where.starts_with("texture"))
+    error.where = laid.rows().front().file + error.where.substr(std::string_view("texture").size());
+  if (error.where == "texture") error.where = scene_path;
+  return error;
+}
+
+// What was named stays, whatever else would be cheaper.
+TickBudget budget_of(const ProgramRequest& request, const schema::PlaybackChoices& choices) {
+  TickBudget budget = request.budget;
+  budget.keep_inverse = budget.keep_inverse || choices.inverse.has_value();
+  budget.keep_reading = budget.keep_reading || choices.interpolation.has_value();
+  return budget;
+}
+
+// A request is held to what it means; a scene or configuration may say more, for those who name what it is
+// of.
+Result<PrepareOptions> options_of(const ProgramRequest& request, const schema::PlaybackChoices& choices,
+                                  const PrepareOptions& options) {
+  if (const auto meant = check_meant(request.choices, choices); !meant) return schema::forward_error(meant);
+  return with_choices(options, choices);
+}
+
+Result<void> prepare_laid(Program& program, const LaidTextures& laid, const TickBudget& budget) {
+  PrepareOptions& options = program.options;
+  const schema::Transducer& transducer = program.session.transducer;
+  options.gain_m_per_n = laid.gain();
+  options.ends = laid.ends();
+  if (const auto soft = check_onset(options); !soft) return soft;
+  auto decision = decided(laid.placed(), transducer, budget, options);
+  if (!decision) return schema::forward_error(decision);
+  program.decision = std::move(*decision);
+  auto prepared = prepare(laid.placed(), transducer, options);
+  if (!prepared) return tl::unexpected(naming_the_file(prepared.error(), laid, program.scene_path));
+  program.reach_m = std::abs(options.metres_per_count) * core::reach_counts(prepared->scale);
+  if (const auto near = check_place(laid, program.reach_m); !near) return near;
+  program.prepared = std::move(*prepared);
+  program.prepared.built.texture_files = laid.file_count();
+  program.tray_peak_m = tray_peak_m(program.prepared, transducer, options);
+  program.gain_m_per_n = laid.signed_gain();
+  program.start_m = laid.start_m();
+  program.length_m = laid.end_m() - laid.start_m();
+  return {};
+}
+
+}  // namespace
+
+Result<Program> make_program(const ProgramRequest& request, const std::string& transducer_name,
+                             PrepareOptions options) {
+  Program program;
+  const auto laid = lay_textures(request);
+  if (!laid) return schema::forward_error(laid);
+  program.kept_gain = laid->kept_gain();
+  program.scene_path = laid->scene_path();
+  const schema::PlaybackChoices choices = request.choices.over(laid->choices().over(request.defaults));
+  const auto chosen = options_of(request, choices, options);
+  if (!chosen) return schema::forward_error(chosen);
+  const auto transducer = schema::read_transducer(
+      transducer_name, request.implausible ? schema::Numbers::computable : schema::Numbers::plausible);
+  if (!transducer) return schema::forward_error(transducer);
+  if (const auto usable = schema::check_usable(*transducer, request.unfit_transducer); !usable)
+    return schema::forward_error(usable);
+  program.session.transducer = *transducer;
+  program.session.transducer_sha256 = transducer_sum(transducer_name);
+  program.options = *chosen;
+  const auto made = prepare_laid(program, *laid, budget_of(request, choices));
+  if (!made) return schema::forward_error(made);
+  add_notes(program, *laid, transducer_name);
+  if (request.any_displacement) program.tray_peak_m = 0;
+  name_files(program, *laid);
+  describe(program.session, program.prepared, program.options);
+  if (const auto fits = schema::session_program_text(program.session); !fits)
+    return schema::forward_error(fits);
+  return program;
+}
+
+}  // namespace tacto::playback

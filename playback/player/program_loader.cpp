@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/program_loader.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <new>
+#include <utility>
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+Result<Program> made_within_memory(const ProgramLoader::Make& make) try {
+  return make();
+} catch (const std::bad_alloc&) {
+  return fail(Fault::unsuitable, "takes more memory than there is", "load", "play a shorter part");
+}
+
+// Some three to one, so that it is made in the end on a busy machine too.
+void step_back(pid_t thread) {
+  constexpr int kNice = 5;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(thread), kNice);
+}
+
+}  // namespace
+
+ProgramLoader::~ProgramLoader() {
+  if (works())
+    thread_.detach();
+  else
+    forget();
+}
+
+void ProgramLoader::begin(Make make, Beside beside) {
+  next_ = {std::move(make), beside};
+  wanted_ = true;
+  given_up_ = false;
+  start_next();
+}
+
+void ProgramLoader::start_next() {
+  if (!next_ || works()) return;
+  forget();
+  work_ = std::make_shared<Work>();
+  thread_ = std::thread([work = work_, next = *std::exchange(next_, std::nullopt)] {
+    const auto& [make, beside] = next;
+    work->thread.store(gettid());
+    if (beside == Beside::playing) step_back(gettid());
+    work->result = made_within_memory(make);
+    work->done.store(true);
+  });
+}
+
+void ProgramLoader::forget() {
+  if (thread_.joinable()) thread_.join();
+  work_.reset();
+}
+
+bool ProgramLoader::busy() const {
+  return next_ || works();
+}
+
+bool ProgramLoader::works() const {
+  return work_ != nullptr && !work_->done.load();
+}
+
+void ProgramLoader::give_up() {
+  given_up_ = wanted_;
+  if (given_up_ && works() && work_->thread.load() != 0) step_back(work_->thread.load());
+}
+
+std::optional<Result<Program>> ProgramLoader::take() {
+  start_next();
+  if (!wanted_ || (busy() && !given_up_)) return std::nullopt;
+  wanted_ = false;
+  next_.reset();
+  if (given_up_) return fail(Fault::usage, "the load was given up, for a stop came", "load", "load again");
+  std::optional<Result<Program>> result = std::move(work_->result);
+  forget();
+  return result;
+}
+
+}  // namespace tacto::playback

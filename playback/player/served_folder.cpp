@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/player/served_folder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <variant>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/scene/scene.hpp"
+#include "data-schema/texture/texture_wav.hpp"
+#include "playback/player/laid_textures.hpp"
+
+namespace tacto::playback {
+namespace {
+
+namespace fs = std::filesystem;
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+bool stays_below(const fs::path& name) {
+  return name.is_relative() && std::ranges::find(name, fs::path("..")) == name.end();
+}
+
+// With every link followed. A name that changes after this is somebody's who may write into the folder.
+bool is_within(const fs::path& folder, const fs::path& path) {
+  std::error_code failed;
+  const fs::path real = fs::canonical(path, failed);
+  if (failed || !fs::is_regular_file(real, failed)) return false;
+  const fs::path home = fs::canonical(folder, failed);
+  return !failed && std::ranges::mismatch(home, real).in1 == home.end();
+}
+
+bool serves_texture(const fs::path& folder, const std::string& name) {
+  const std::string sidecar = schema::stem_of(name, ".texture") + ".texture.json";
+  if (!is_within(folder, sidecar)) return false;
+  const auto wav = schema::texture_wav(name);
+  return !wav || is_within(folder, wav->path);  // a sidecar that can't be read has an error of its own
+}
+
+bool serves_scene(const fs::path& folder, const std::string& name) {
+  const std::string path = schema::scene_path(name);
+  if (!is_within(folder, path)) return false;
+  const auto scene = schema::read_scene(path);
+  if (!scene) return true;  // its error is the file's own
+  return std::ranges::all_of(scene->layers, [&](const schema::Layer& layer) {
+    return std::visit(
+        [&](const auto& each) {
+          return serves_texture(folder, schema::texture_in_scene(path, each.texture));
+        },
+        layer);
+  });
+}
+
+}  // namespace
+
+Result<std::string> served_file(const std::string& folder, const std::string& file) {
+  if (folder.empty())
+    return fail(Fault::unsuitable, "clients over TCP may load nothing here", "load",
+                "name the folder that they may load from: files, in the daemon's configuration");
+  const std::string path = (fs::path(folder) / file).string();
+  const bool served =
+      stays_below(file) && (names_a_scene(path) ? serves_scene(folder, path) : serves_texture(folder, path));
+  if (served) return path;
+  return fail(Fault::not_found, "there is no such texture or scene in the folder for clients over TCP", file,
+              "name one by its path within that folder: files, in the daemon's configuration");
+}
+
+}  // namespace tacto::playback

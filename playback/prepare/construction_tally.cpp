@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/prepare/construction_tally.hpp"
+
+#include <fmt/format.h>
+
+#include "playback/prepare/prepare.hpp"
+
+namespace tacto::playback {
+namespace {
+
+LeftOut levels_left_out(const Prepared& prepared) {
+  const double coarsest_per_m = prepared.finest_per_m * std::exp2(-0.5 * (prepared.scale.levels - 1));
+  return {fmt::format("{} of {} levels", wire::kMaxLevels - prepared.scale.levels, wire::kMaxLevels),
+          fmt::format("nothing finer than {:.4g} /mm is there, nothing faster than {:.3g} m/s comes",
+                      1e-3 * prepared.finest_per_m, prepared.passes_to_hz / coarsest_per_m)};
+}
+
+}  // namespace
+
+std::vector<LeftOut> left_out_of(const Prepared& prepared) {
+  const ConstructionTally& built = prepared.built;
+  std::vector<LeftOut> left_out;
+  const auto tell = [&](std::size_t count, const char* part, const char* because) {
+    if (count == 0) left_out.push_back({part, because});
+  };
+  tell(built.seams, "a loop's seam",
+       prepared.loop_period_m > 0 ? "the texture's end meets its beginning" : "nothing loops");
+  if (built.levels < wire::kMaxLevels) left_out.push_back(levels_left_out(prepared));
+  tell(built.filters, "a filter that undoes the transducer", "its gain alone, or no inverse, was asked for");
+  tell(built.hysteresis, "plays that undo a hysteresis", "the transducer's file tells none, or it is kept");
+  tell(built.sections, "recursive sections", "only an undone hysteresis needs one");
+  tell(built.energy_limits, "an energy limit", "none is named");
+  tell(built.touch_gates, "a touch gate", "no normal force is asked for");
+  tell(built.following, "looking ahead and the timing of edges", "turned off");
+  left_out.push_back(
+      {"a texture besides those named", "only one that is loaded while this plays takes room beside them"});
+  return left_out;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/prepare/displacement_limit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "data-schema/base/quantity.hpp"
+#include "playback/model/chain.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr int kPeakGrid = 512;
+constexpr double kSinglePrecision = 1 + 1e-6;
+
+double taps_response(const Prepared& prepared, double frequency_hz) {
+  std::complex<double> sum = 0;
+  const double turn = -2 * std::numbers::pi * frequency_hz / prepared.rate_hz;
+  for (std::size_t i = 0; i < prepared.taps.size(); ++i)
+    sum += double{prepared.taps[i]} * std::polar(1.0, turn * static_cast<double>(i));
+  return std::abs(sum);
+}
+
+struct Peak {
+  double at_hz = 0, most = 0;
+};
+
+// Of a sharp resonance the top lies between the grid's places.
+template <class Response>
+Peak highest_peak(double highest_hz, const Response& response) {
+  constexpr int kRounds = 6, kPlaces = 8;
+  double step_hz = highest_hz / kPeakGrid, best_hz = 0, most = response(0);
+  const auto try_at = [&](double f) {
+    if (const double here = response(std::clamp(f, 0.0, highest_hz)); here > most) most = here, best_hz = f;
+  };
+  for (int i = 1; i <= kPeakGrid; ++i) try_at(step_hz * i);
+  for (int round = 0; round < kRounds; ++round, step_hz /= kPlaces) {
+    const double middle_hz = best_hz;
+    for (int i = -kPlaces; i <= kPlaces; ++i) try_at(middle_hz + step_hz * i / kPlaces);
+  }
+  return {std::clamp(best_hz, 0.0, highest_hz), most};
+}
+
+Peak tray_response(const Prepared& prepared, const schema::Transducer& transducer,
+                   const PrepareOptions& options) {
+  Chain chain{transducer, options.reconstruction, options.reconstruction_cutoff_hz, options.hold,
+              prepared.rate_hz};
+  if (!prepared.sections.empty()) chain.led_pole_hz = schema::actuator_pole_hz(transducer);
+  const double highest_hz = std::min(prepared.stops_at_hz, prepared.rate_hz / 2);
+  return highest_peak(
+      highest_hz, [&](double f) { return std::abs(chain_response(chain, f)) * taps_response(prepared, f); });
+}
+
+// Rounded down in the fourth digit, so that what a message names does fit.
+double fitting(double value) {
+  const double digit = std::pow(10, std::floor(std::log10(value)) - 3);
+  return std::floor(value / digit) * digit;
+}
+
+}  // namespace
+
+double tray_peak_m(const Prepared& prepared, const schema::Transducer& transducer,
+                   const PrepareOptions& options) {
+  float largest = 0;
+  for (const float sample : prepared.samples) largest = std::max(largest, std::abs(sample));
+  return tray_response(prepared, transducer, options).most * double{largest} * double{prepared.gain_m_per_n};
+}
+
+std::string rate_as_cause(const Prepared& prepared, const schema::Transducer& transducer,
+                          const PrepareOptions& options) {
+  const double at_hz = tray_response(prepared, transducer, options).at_hz;
+  if (prepared.passes_to_hz >= options.band.high_hz || at_hz <= prepared.passes_to_hz) return {};
+  const double whole_at_hz = options.band.high_hz * prepared.rate_hz / prepared.passes_to_hz;
+  return fmt::format(
+      "; it would go that far at {:.4g} Hz, above the band, which ends at {:.4g} Hz because {:g} ticks a "
+      "second are too few: from {:g} on (--rate; rate_hz in the configuration) it is whole",
+      at_hz, prepared.passes_to_hz, prepared.rate_hz, whole_at_hz);
+}
+
+schema::Result<void> check_displacement(double peak_m, double factor, double gain_m_per_n,
+                                        const schema::Transducer& transducer) {
+  const double limit_m = transducer.displacement_limit_m, reached_m = std::abs(factor) * peak_m;
+  if (!(reached_m > kSinglePrecision * limit_m)) return {};
+  const double most = fitting(limit_m / peak_m);
+  return schema::fail(schema::Fault::unsuitable,
+                      fmt::format("the tray could go as far as {}, at worst; its limit is {}",
+                                  schema::for_people(reached_m, schema::Dimension::length),
+                                  schema::for_people(limit_m, schema::Dimension::length)),
+                      transducer.name,
+                      fmt::format("the largest gain that fits is {:.4g}mm/N, or a factor of {:.4g}",
+                                  1e3 * most * std::abs(gain_m_per_n), most));
+}
+
+}  // namespace tacto::playback

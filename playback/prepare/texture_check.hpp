@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether a texture can be played at all.
+#pragma once
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/texture/texture.hpp"
+
+namespace tacto::playback {
+
+/// Errors: unsuitable, for a texture that isn't force in N, has fewer than 2 samples, or one (by number) that
+/// is no finite number.
+schema::Result<void> check_playable(const schema::Texture& texture);
+
+}  // namespace tacto::playback

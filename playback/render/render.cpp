@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/render/render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "data-schema/recording/statistics.hpp"
+#include "playback/model/identified_band.hpp"
+#include "playback/model/spatial_content.hpp"
+#include "playback/prepare/texture_check.hpp"
+#include "playback/prepare/texture_layout.hpp"
+#include "playback/render/felt_path.hpp"
+#include "playback/render/kept_error.hpp"
+#include "playback/render/reference/exact_drive.hpp"
+#include "playback/render/reference/wanted.hpp"
+#include "playback/render/render_job.hpp"
+#include "playback/render/render_kernel.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+// Beyond this the padded transforms alone take over a gigabyte.
+constexpr double kMostSamples = 1 << 24;
+// A thousand times the compliance of a fingertip: more is a slip of the unit.
+constexpr double kLargestGain = 1;
+
+double level_db(double ratio) {
+  return 20 * std::log10(ratio);
+}
+
+Result<void> check_options(const RenderOptions& o) {
+  const auto wrong = [](std::string what, std::string remedy) {
+    return fail(Fault::usage, std::move(what), {}, std::move(remedy));
+  };
+  if (!(o.band.low_hz > 0 && o.band.low_hz < o.band.high_hz && std::isfinite(o.band.high_hz)))
+    return wrong("the band is empty or reaches 0 Hz", "0 < --low < --high");
+  if (!(o.rate_hz > 2 * o.band.high_hz && std::isfinite(o.rate_hz)))
+    return wrong(fmt::format("a rate of {:g} Hz can't hold a band up to {:g} Hz", o.rate_hz, o.band.high_hz),
+                 fmt::format("take a --rate above {:g}Hz", 2 * o.band.high_hz));
+  if (!(o.gain_m_per_n > 0 && o.gain_m_per_n <= kLargestGain))
+    return wrong("the gain is not between 0 and 1 m/N", "a fingertip asks for about 1mm/N");
+  if (!std::isfinite(o.at_m)) return wrong("the texture's place is not finite", "give --at a length");
+  if (const double onset_s = o.onset_s.value_or(0); !(onset_s >= 0 && std::isfinite(onset_s)))
+    return wrong("the onset is below 0", "0s turns it off");
+  if (!(o.encoder_step_m > 0 && o.encoder_step_m < 1))
+    return wrong("the encoder's step is not above 0", "1um is usual");
+  if (!(o.reconstruction_cutoff_hz > 0))
+    return wrong("the filter's cut-off is not above 0", "the paper's is 600Hz");
+  return {};
+}
+
+Result<void> check_length(const FingerPath& path, const RenderOptions& options) {
+  if (path.duration_s() < 1 / options.band.low_hz)
+    return fail(Fault::unsuitable,
+                fmt::format("the path takes {:.4g} s, one period of {:g} Hz is longer", path.duration_s(),
+                            options.band.low_hz),
+                "path", "take a longer path, or a higher --low");
+  if (path.duration_s() * options.rate_hz > kMostSamples)
+    return fail(Fault::unsuitable,
+                fmt::format("the path of {:.4g} s is too long to render at once", path.duration_s()), "path",
+                fmt::format("cut it into parts of at most {:.0f} s", kMostSamples / options.rate_hz));
+  return {};
+}
+
+Result<void> check_textures(std::span<const PlacedTexture> textures, Ends ends) {
+  for (const PlacedTexture& placed : textures)
+    if (auto sound = check_playable(*placed.texture); !sound) return sound;
+  if (textures.size() > 1 && ends != Ends::stop)
+    return fail(Fault::unsuitable, "one of several textures can't go on beyond its ends", "ends",
+                "let them stop");
+  return {};
+}
+
+Result<void> check_inputs(std::span<const PlacedTexture> textures, const FingerPath& path,
+                          const RenderOptions& options) {
+  if (auto sound = check_options(options); !sound) return sound;
+  if (auto sound = check_textures(textures, options.ends); !sound) return sound;
+  if (auto sound = check_finger_path(path); !sound) return sound;
+  return check_length(path, options);
+}
+
+Clipping clipping_of(const std::vector<double>& wished, const std::vector<double>& clipped) {
+  std::vector<double> removed(wished.size());
+  std::ranges::transform(wished, clipped, removed.begin(), std::minus<>());
+  const auto peak = [](const std::vector<double>& v) {
+    return std::abs(*std::ranges::max_element(v, {}, [](double x) { return std::abs(x); }));
+  };
+  const double smallest = 1e-6 * peak(wished);
+  Clipping clipping;
+  clipping.samples = static_cast<std::size_t>(
+      std::ranges::count_if(removed, [&](double value) { return std::abs(value) > smallest; }));
+  clipping.peak_reduced_db = level_db(peak(wished) / peak(clipped));
+  clipping.removed_db = level_db(schema::statistics_of(removed).rms() / schema::statistics_of(wished).rms());
+  return clipping;
+}
+
+Result<ExactDrive> limited_drive(Rendering& rendering, const PaddedSpectrum& wanted, const Chain& chain,
+                                 const RenderOptions& options) {
+  auto drive = exact_drive(wanted, options.band, chain, options.inverse);
+  const auto within = check_limits(drive.peaks, options.gain_m_per_n);
+  if (within) return drive;
+  if (options.over_limit == OverLimit::refuse) return schema::forward_error(within);
+  auto held = clipped_drive(wanted, options.band, chain, options.inverse);
+  if (held) rendering.clipping = clipping_of(drive.drive_v, held->drive_v);
+  return held;
+}
+
+double error_db(const Rendering& rendering, const PaddedSpectrum& wanted, const spatial::Band& band) {
+  std::vector<double> difference(rendering.wanted_m.values.size());
+  std::ranges::transform(rendering.modelled_m.values, rendering.wanted_m.values, difference.begin(),
+                         std::minus<>());
+  const auto error = spectrum_of(difference, wanted.rate_hz, wanted.period);
+  const auto whole = spectrum_of(rendering.wanted_m.values, wanted.rate_hz, wanted.period);
+  return level_db(std::sqrt(energy_in(error, band) / energy_in(whole, band)));
+}
+
+void warn_of_folding(Rendering& rendering, const ReadingGrid& grid, const spatial::Band& band) {
+  const double safe_hz = grid.reading_rate_hz() - band.high_hz;
+  rendering.warnings.push_back(fmt::format(
+      "the path is too long to read the texture's finest content at full speed: what is finer than "
+      "{:.4g} /mm may fold into the band at {:.4g} mm/s",
+      1e-3 * safe_hz / rendering.max_speed_mps, 1e3 * rendering.max_speed_mps));
+}
+
+void tell_loop_of(Rendering& rendering, const schema::SpaceSignal& whole) {
+  rendering.loop_seam_m = seam_of_loop(whole, PrepareOptions{}.seam_m);
+  rendering.loop_period_m = static_cast<double>(whole.values.size()) * whole.pitch_m - rendering.loop_seam_m;
+}
+
+Rendering described(std::span<const PlacedTexture> textures, const FingerPath& path,
+                    const RenderOptions& options, Engine engine) {
+  const double usual_onset_s = engine == Engine::kernel ? kKernelOnsetS : kReferenceOnsetS;
+  Rendering rendering;
+  rendering.max_speed_mps = greatest_speed_mps(path);
+  rendering.highest_passed_per_m = options.band.high_hz / rendering.max_speed_mps;
+  for (const PlacedTexture& placed : textures)
+    rendering.texture_highest_per_m =
+        std::max(rendering.texture_highest_per_m, highest_spatial_frequency(placed.texture->signal));
+  rendering.onset_s = std::min(options.onset_s.value_or(usual_onset_s), path.duration_s() / 4);
+  if (options.ends == Ends::loop) tell_loop_of(rendering, textures.front().texture->signal);
+  return rendering;
+}
+
+Chain chain_of(const schema::Transducer& transducer, const RenderOptions& o) {
+  return {transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz};
+}
+
+// Both engines, offline: the kernel's error is measured against what the reference computes anyway.
+Engine engine_for(const RenderOptions& o, const schema::Transducer& transducer,
+                  std::vector<std::string>& reasons) {
+  if (!o.budget.asked() || o.keep_engine) return o.engine;
+  if (o.budget.max_tick_ns) {
+    reasons.emplace_back("the kernel: the reference has no ticks");
+    return Engine::kernel;
+  }
+  if (transducer.hysteresis && o.undo_hysteresis) {
+    reasons.emplace_back("the kernel: the reference does not undo the bender's hysteresis");
+    return Engine::kernel;
+  }
+  reasons.emplace_back(
+      "the reference: exact, and cheaper offline than the kernel, whose error would be measured against it");
+  return Engine::reference;
+}
+
+Result<void> check_engine(Engine engine, const RenderOptions& o) {
+  if (engine == Engine::kernel || !(o.budget.keep_reading || o.energy_rms_v > 0)) return {};
+  return fail(Fault::usage, "the reference reads the texture exactly, and has no energy limit",
+              o.budget.keep_reading ? "--interpolation" : "--energy-limit", "add --engine kernel");
+}
+
+Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job) {
+  auto drive = engine == Engine::kernel ? kernels_drive(rendering, job)
+                                        : limited_drive(rendering, job.wanted, job.chain, job.options);
+  if (!drive) return schema::forward_error(drive);
+  const double start_s = job.path.time_s.front(), rate_hz = job.options.rate_hz;
+  rendering.engine = engine;
+  rendering.drive_v = {rate_hz, start_s, std::move(drive->drive_v)};
+  rendering.modelled_m = {rate_hz, start_s, std::move(drive->modelled_m)};
+  rendering.peaks = drive->peaks;
+  rendering.error_db = error_db(rendering, job.wanted, job.options.band);
+  const double interior_db = level_db(error_between_ends(rendering, job.wanted, job.options.band));
+  if (std::isfinite(interior_db)) rendering.interior_error_db = interior_db;
+  return {};
+}
+
+// The error, where it is more than what was asked.
+std::optional<double> missed_error(const Rendering& rendering, const RenderJob& job) {
+  if (job.options.budget.by_error()) return std::nullopt;
+  const double error = error_between_ends(rendering, job.wanted, job.options.band);
+  return error <= job.options.budget.error.most_error() ? std::nullopt : std::optional(error);
+}
+
+std::string words_of_miss(double error, const RenderOptions& o) {
+  return fmt::format("error is {:.3g} % between the path's ends, asked: {:.3g} %", 100 * error,
+                     100 * o.budget.error.most_error());
+}
+
+// Whether the encoder's step is to blame is tried: with a tenth of it.
+std::string ways_for_kernel(const Rendering& missed, RenderJob job) {
+  job.options.encoder_step_m /= 10;
+  Rendering finer = missed;
+  if (!check_counts(job.path, job.options) || !drive_by(Engine::kernel, finer, job))
+    return "allow more, or leave --engine and --max-tick away";
+  if (!missed_error(finer, job))
+    return fmt::format("--encoder-step {:.4g}um keeps it; or allow more", 1e6 * job.options.encoder_step_m);
+  return fmt::format(
+      "allow more, or leave --engine and --max-tick away: with a tenth of --encoder-step it is {:.3g} %",
+      100 * error_between_ends(finer, job.wanted, job.options.band));
+}
+
+std::string ways_for_reference(const RenderJob& job) {
+  if (job.chain.transducer.hysteresis)
+    return "allow more, or let the kernel undo the bender's hysteresis: leave --engine and --keep-hysteresis "
+           "away";
+  return "allow more, or name less: --inverse full, a smaller --gain within the limits";
+}
+
+Result<void> refuse_miss(double error, const Rendering& rendering, const RenderJob& job) {
+  if (std::isnan(error))
+    return fail(Fault::unsuitable, "nothing is wanted in the band: no error can be told", "error budget",
+                "render without a budget");
+  return fail(Fault::unsuitable, "the rendering's " + words_of_miss(error, job.options), "error budget",
+              rendering.engine == Engine::kernel ? ways_for_kernel(rendering, job) : ways_for_reference(job));
+}
+
+// A choice's promise is of even speed and true places: what the path and the encoder add is told where it is
+// more than all of it.
+void warn_beyond_promise(Rendering& rendering, const RenderJob& job) {
+  if (!rendering.decision) return;
+  const double error = error_between_ends(rendering, job.wanted, job.options.band);
+  const double promised = rendering.decision->chosen.error;
+  if (!(error > promised)) return;
+  rendering.warnings.push_back(
+      fmt::format("the rendering errs by {:.3g} % between the path's ends: of that the choice's {:.3g} % are "
+                  "promised, the rest is what the encoder's step of {:.4g} um and changes of speed add",
+                  100 * error, 100 * promised, 1e6 * job.options.encoder_step_m));
+}
+
+// Of a hysteresis or an energy limit the reference knows nothing: it can't take over, nor from a kernel that
+// was named.
+Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
+  auto missed = missed_error(rendering, job);
+  const bool stays =
+      job.options.keep_engine || job.chain.transducer.hysteresis || job.options.energy_rms_v > 0;
+  if (missed && !std::isnan(*missed) && rendering.engine == Engine::kernel && !stays) {
+    rendering.warnings.push_back("the reference takes over: the kernel's " +
+                                 words_of_miss(*missed, job.options));
+    rendering.clipping.reset();
+    rendering.removed_db.reset();
+    rendering.decision.reset();
+    rendering.delay_s = 0;
+    if (auto driven = drive_by(Engine::reference, rendering, job); !driven) return driven;
+    missed = missed_error(rendering, job);
+  }
+  if (missed) return refuse_miss(*missed, rendering, job);
+  warn_beyond_promise(rendering, job);
+  return {};
+}
+
+// The kernel's own notes tell of the band.
+void warn_of_model(Rendering& rendering, const schema::Transducer& transducer, const spatial::Band& band,
+                   Engine engine) {
+  if (engine == Engine::kernel) return;
+  if (auto beyond = beyond_identified(transducer, band)) rendering.warnings.push_back(std::move(*beyond));
+  if (transducer.hysteresis)
+    rendering.warnings.push_back(
+        "the reference undoes the linear model alone: the bender's hysteresis stays (--engine kernel undoes "
+        "it)");
+}
+
+}  // namespace
+
+Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPath& path,
+                         const schema::Transducer& transducer, const RenderOptions& options,
+                         const std::function<void(double)>& progress) {
+  if (auto sound = check_inputs(textures, path, options); !sound) return schema::forward_error(sound);
+  const auto report = [&](double fraction) {
+    if (progress) progress(fraction);
+  };
+  std::vector<std::string> reasons;
+  const Engine engine = engine_for(options, transducer, reasons);
+  if (auto knows = check_engine(engine, options); !knows) return schema::forward_error(knows);
+  if (engine == Engine::kernel)
+    if (auto near = check_counts(path, options); !near) return schema::forward_error(near);
+  Rendering rendering = described(textures, path, options, engine);
+  rendering.reasons = std::move(reasons);
+  const auto felt = FeltPath::make(textures, path, options.ends);
+  if (!felt) return schema::forward_error(felt);
+  const double finest_hz = rendering.texture_highest_per_m * rendering.max_speed_mps;
+  const auto grid = reading_grid(path.duration_s(), options.rate_hz, options.band, finest_hz);
+  rendering.samples_outside = felt->count_outside(grid);
+  if (rendering.samples_outside == grid.samples) return felt->never_met();
+  if (grid.capped) warn_of_folding(rendering, grid, options.band);
+  rendering.reading_rate_hz = grid.reading_rate_hz();
+  rendering.fade_m = felt->fade_m();
+  report(0.1);
+  const auto wanted = felt->wanted(grid, options.band, options.gain_m_per_n, rendering.onset_s);
+  report(0.8);
+  warn_of_model(rendering, transducer, options.band, engine);
+  const RenderJob job{textures, path, wanted, chain_of(transducer, options), options};
+  rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};
+  if (auto driven = drive_by(engine, rendering, job); !driven) return schema::forward_error(driven);
+  if (auto kept = keep_budget(rendering, job); !kept) return schema::forward_error(kept);
+  report(1);
+  return rendering;
+}
+
+Result<Rendering> render(const schema::Texture& texture, const FingerPath& path,
+                         const schema::Transducer& transducer, const RenderOptions& options,
+                         const std::function<void(double)>& progress) {
+  const PlacedTexture placed{&texture, options.at_m, 1};
+  return render(std::span(&placed, 1), path, transducer, options, progress);
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/render/render_kernel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware-host/core/kernel/profile.hpp"
+#include "playback/model/limits.hpp"
+#include "playback/prepare/kernel_drive.hpp"
+
+namespace tacto::playback {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+namespace {
+
+constexpr int kMostGains = 30;
+
+PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
+  PrepareOptions options;
+  options.rate_hz = o.rate_hz;
+  options.metres_per_count = o.encoder_step_m;
+  options.gain_m_per_n = o.gain_m_per_n;
+  options.band = o.band;
+  options.ends = o.ends;
+  options.inverse = o.inverse;
+  options.reconstruction = o.reconstruction;
+  options.reconstruction_cutoff_hz = o.reconstruction_cutoff_hz;
+  options.hold = o.hold;
+  options.onset_s = onset_s;
+  options.interpolation = o.interpolation;
+  options.energy_rms_v = o.energy_rms_v;
+  options.energy_window_s = o.energy_window_s;
+  options.undo_hysteresis = o.undo_hysteresis;
+  return options;
+}
+
+// What the budget chooses goes into the options.
+Result<void> decide_kernel(Rendering& rendering, const RenderJob& job, PrepareOptions& options) {
+  const TickBudget& budget = job.options.budget;
+  if (!budget.asked()) return {};
+  const auto table = schema::find_trade_table();
+  if (!table) return schema::forward_error(table);
+  auto decision = decide(job.textures, job.chain.transducer, options, budget, *table);
+  if (!decision) return schema::forward_error(decision);
+  options = decision->chosen.in(options);
+  rendering.decision = std::move(*decision);
+  return {};
+}
+
+/// One texture along one path at any gain.
+struct KernelRun {
+  const Prepared& prepared;
+  const PrepareOptions& options;
+  const RenderJob& job;
+
+  // Of what the limits were asked to hold.
+  Peaks asked_at(double gain_m_per_n) const {
+    const auto drive_v = unlimited_drive(prepared, gain_m_per_n, job.path, options, job.wanted.samples);
+    Peaks peaks = moved_by(drive_v, job.wanted, job.chain).peaks;
+    peaks.slew_v_per_s =
+        peaks_of(drive_v, {}, options.rate_hz, job.chain.transducer, AfterDrive::more).slew_v_per_s;
+    return peaks;
+  }
+};
+
+// An energy limit and a hysteresis are not proportional to the gain: what a proportion names is tried. 0:
+// none was found.
+double fitting_gain(const KernelRun& run, Peaks peaks) {
+  double gain_m_per_n = run.job.options.gain_m_per_n;
+  for (int tries = 0; tries < kMostGains && gain_m_per_n > 0; ++tries) {
+    gain_m_per_n = proportional_fit(peaks, gain_m_per_n);
+    peaks = run.asked_at(gain_m_per_n);
+    if (peaks.fit()) return gain_m_per_n;
+  }
+  return 0;
+}
+
+tl::unexpected<schema::Error> refuse_cut(const KernelRun& run, bool may_clip) {
+  const Peaks asked = run.asked_at(run.job.options.gain_m_per_n);
+  return limit_passed(asked.tightest(), fitting_gain(run, asked), may_clip);
+}
+
+tl::unexpected<schema::Error> refuse_displacement(const KernelRun& run, const Peak& displacement_m) {
+  const Peaks asked = run.asked_at(run.job.options.gain_m_per_n);
+  return limit_passed(displacement_m, fitting_gain(run, asked), false);
+}
+
+// What was cut is told; nobody clips the displacement.
+Result<ExactDrive> within_limits(Rendering& rendering, const KernelRun& run, const KernelDrive& drive) {
+  const auto clipped =
+      static_cast<std::size_t>(std::max(drive.tally.amplitude_limited(), drive.tally.slew_limited()));
+  ExactDrive moved = moved_by(drive.drive_v, run.job.wanted, run.job.chain);
+  const bool too_far = moved.peaks.displacement_m.used() > 1;
+  if (clipped > 0 && run.job.options.over_limit == OverLimit::refuse) return refuse_cut(run, !too_far);
+  if (too_far) return refuse_displacement(run, moved.peaks.displacement_m);
+  if (clipped > 0) rendering.clipping = {clipped, 0, drive.tally.removed_db()};
+  rendering.energy_limited_samples = drive.tally.energy_limited();
+  if (drive.tally.removed_any()) rendering.removed_db = drive.tally.removed_db();
+  return moved;
+}
+
+double farthest_of(const FingerPath& path) {
+  double farthest_m = 0;
+  for (const double position_m : path.position_m) farthest_m = std::max(farthest_m, std::abs(position_m));
+  return farthest_m;
+}
+
+// Of a texture with several samples a count it reads less far than it counts.
+Result<void> check_read(const Prepared& prepared, const FingerPath& path, const PrepareOptions& options) {
+  const double farthest_m = farthest_of(path);
+  const double reach_m = options.metres_per_count * core::reach_counts(prepared.scale);
+  if (farthest_m <= reach_m) return {};
+  return fail(
+      Fault::unsuitable,
+      fmt::format("the path goes to {:.4g} m, and the kernel reads the texture as far as {:.4g} m from "
+                  "the encoder's zero",
+                  farthest_m, reach_m),
+      "--path", "lay path and texture (--at) nearer to it, or render with --engine reference");
+}
+
+}  // namespace
+
+// Beyond that the kernel is silent (core/profile.cpp).
+Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
+  constexpr double kFarthestCount = 1 << 29;
+  const double farthest_m = farthest_of(path);
+  if (farthest_m / o.encoder_step_m < kFarthestCount) return {};
+  return fail(
+      Fault::unsuitable,
+      fmt::format("the path goes to {:.4g} m, which is over 2^29 of the encoder's counts", farthest_m),
+      "--encoder-step",
+      fmt::format("{:.3g} nm and more reach as far", std::ceil(1e9 * farthest_m / kFarthestCount * 1.01)));
+}
+
+Result<ExactDrive> kernels_drive(Rendering& rendering, const RenderJob& job) {
+  PrepareOptions options = kernel_options(job.options, rendering.onset_s);
+  if (auto chosen = decide_kernel(rendering, job, options); !chosen) return schema::forward_error(chosen);
+  const auto prepared = prepare(job.textures, job.chain.transducer, options);
+  if (!prepared) return schema::forward_error(prepared);
+  if (const auto near = check_read(*prepared, job.path, options); !near) return schema::forward_error(near);
+  const KernelDrive drive = kernel_drive(*prepared, job.path, options, job.wanted.samples);
+  auto moved = within_limits(rendering, {*prepared, options, job}, drive);
+  if (!moved) return moved;
+  rendering.warnings.insert(rendering.warnings.end(), prepared->notes.begin(), prepared->notes.end());
+  rendering.delay_s = prepared->delay_left_s;
+  return moved;
+}
+
+}  // namespace tacto::playback

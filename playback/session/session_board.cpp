@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/session/session_board.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware-host/link/hosted_board.hpp"
+#include "firmware-host/link/wire_fields.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr std::uint32_t kReplayClockHz = 1'000'000;
+
+// No drive comes near them, and their ratio takes nothing of the time that a release may take.
+constexpr float kNoDriveLimitV = 1e12F, kNoSlewLimitVPerS = 1e30F;
+
+template <class Message>
+std::vector<std::uint8_t> frame_of(const Message& message) {
+  std::vector<std::uint8_t> frame(wire::kMaxFrame);
+  frame.resize(wire::encode_frame(message, 0, frame.data(), frame.size()));
+  return frame;
+}
+
+// Which channel it was, and in which units, did its work when the device decided: its ticks say what came of
+// it. So the gate is given a force of one newton, or of none.
+wire::Contact as_decided(const wire::Contact& contact) {
+  const float threshold = contact.on_n > 0 ? 0.5F : 0;
+  return {0, {}, threshold, threshold, 1, 0};
+}
+
+wire::Limits lifted(wire::Limits limits) {
+  limits.drive_v = kNoDriveLimitV;
+  limits.slew_v_per_s = kNoSlewLimitVPerS;
+  return limits;
+}
+
+}  // namespace
+
+bool is_frame(std::span<const std::uint8_t> bytes) {
+  wire::FrameHeader header;
+  const std::size_t around = wire::kHeaderSize + wire::kCheckSize;
+  return bytes.size() >= around && wire::read_header(bytes.data(), header) &&
+         header.length <= wire::kMaxPayload && bytes.size() == around + header.length;
+}
+
+bool tells_touch(const schema::SessionHeader& header) {
+  const std::string& protocol = header.device_protocol;
+  return !protocol.empty() && protocol != "1.0" && protocol != "1.1";
+}
+
+SessionBoard::SessionBoard(const schema::SessionHeader& header, BoardLimits limits,
+                           std::size_t profile_samples)
+    : header_(header),
+      limits_(limits),
+      profile_samples_(profile_samples),
+      profile_(std::make_unique_for_overwrite<float[]>(profile_samples)),
+      encoder_(header.initial_encoder) {
+  firmware_ = std::make_unique<core::Firmware>(board(), hal());
+  say(wire::Hello{});
+}
+
+core::Board SessionBoard::board() {
+  core::Board board;
+  board.profile_memory = profile_.get();
+  board.profile_samples = static_cast<std::uint32_t>(profile_samples_);
+  board.channels = &force_;
+  board.channel_count = 1;
+  wire::Welcome& about = board.about;
+  about.features = wire::kFeatureDrive;
+  about.clock_hz = kReplayClockHz;
+  const std::uint32_t rate = firmware_host::millihertz(header_.rate_hz);
+  about.default_rate_millihertz = about.least_rate_millihertz = about.most_rate_millihertz = rate;
+  about.drive_limit_v = static_cast<float>(header_.transducer.drive_limit_v);
+  about.slew_limit_v_per_s = static_cast<float>(header_.transducer.slew_limit_v_per_s);
+  if (limits_ == BoardLimits::lifted) {
+    about.drive_limit_v = kNoDriveLimitV;
+    about.slew_limit_v_per_s = kNoSlewLimitVPerS;
+  }
+  return board;
+}
+
+core::Hal SessionBoard::hal() {
+  core::Hal hal;
+  hal.board = this;
+  hal.read_encoder = [](void* b) noexcept { return of(b).encoder_; };
+  hal.encoder_unseen = [](void* b) noexcept { return of(b).unseen_; };
+  hal.read_channels = [](void* b, std::int32_t* codes) noexcept {
+    codes[0] = of(b).touching_;
+    return true;
+  };
+  hal.write_drive = [](void* b, float volts) noexcept { of(b).drive_v_ = volts; };
+  hal.enable_closed = [](void* b) noexcept { return of(b).enabled_; };
+  hal.clock = [](void* b) noexcept { return of(b).clock_; };
+  hal.set_rate = [](void*, std::uint32_t) noexcept {};
+  hal.receive = [](void* b, std::uint8_t* bytes, std::size_t size) noexcept {
+    return firmware_host::take_first(of(b).from_host_, {bytes, size});
+  };
+  hal.send = [](void* b, const std::uint8_t* bytes, std::size_t size) noexcept {
+    of(b).to_host_.insert(of(b).to_host_.end(), bytes, bytes + size);
+    return size;
+  };
+  hal.restart = [](void*) noexcept {};
+  return hal;
+}
+
+// Of what the core says, only answers matter.
+void SessionBoard::listen() {
+  std::size_t at = 0;
+  wire::Frame frame;
+  for (wire::Arrival arrival = wire::Arrival::frame;
+       at < to_host_.size() || arrival != wire::Arrival::nothing;) {
+    std::size_t used = 0;
+    arrival = decoder_.take(to_host_.data() + at, to_host_.size() - at, used, frame);
+    at += used;
+    if (arrival != wire::Arrival::frame) continue;
+    wire::Answer answer;
+    const bool is_answer = frame.header.type == static_cast<std::uint8_t>(wire::MessageType::answer);
+    if (is_answer && wire::parse(frame.payload, frame.header.length, answer) == wire::Parse::ok)
+      answer_ = answer;
+  }
+  to_host_.clear();
+}
+
+std::vector<std::uint8_t> SessionBoard::as_replayed(std::span<const std::uint8_t> frame) const {
+  if (const auto contact = message_in_frame<wire::Contact>(frame)) return frame_of(as_decided(*contact));
+  if (limits_ == BoardLimits::lifted) {
+    if (const auto limits = message_in_frame<wire::Limits>(frame)) return frame_of(lifted(*limits));
+    if (message_in_frame<wire::Energy>(frame)) return frame_of(wire::Energy{0, 1});
+  }
+  return {frame.begin(), frame.end()};
+}
+
+// Each frame gets the next sequence number: the core drops what it has heard before.
+std::optional<wire::Answer> SessionBoard::say_frame(std::span<const std::uint8_t> frame) {
+  std::vector<std::uint8_t> sealed = as_replayed(frame);
+  const wire::FrameHeader header{
+      wire::kProtocolMajor, sealed[3],
+      static_cast<std::uint16_t>(sealed.size() - wire::kHeaderSize - wire::kCheckSize), sequence_++};
+  sealed.resize(wire::seal_frame(header, sealed.data()));
+  from_host_.insert(from_host_.end(), sealed.begin(), sealed.end());
+  answer_.reset();
+  firmware_->poll();
+  listen();
+  return answer_;
+}
+
+// How long it was is not recorded, but what came of it is: blindness, a jump that was one, or nothing.
+std::uint32_t SessionBoard::unseen_in(const schema::SessionTick& recorded) const {
+  if ((recorded.flags & wire::kTickBlind) != 0) return UINT32_MAX;
+  const bool fault = (recorded.flags & wire::kTickFault) != 0;
+  return fault ? 0 : core::blind_ticks(static_cast<float>(header_.rate_hz));
+}
+
+float SessionBoard::tick(const schema::SessionTick& recorded) {
+  encoder_ = recorded.encoder;
+  enabled_ = (recorded.flags & wire::kTickEnabled) != 0;
+  touching_ = (recorded.flags & wire::kTickTouching) != 0 ? 1 : 0;
+  unseen_ = unseen_in(recorded);
+  clock_ += static_cast<std::uint64_t>(std::llround(kReplayClockHz / header_.rate_hz));
+  firmware_->tick();
+  firmware_->poll();
+  to_host_.clear();
+  return drive_v_;
+}
+
+}  // namespace tacto::playback

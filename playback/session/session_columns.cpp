@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/session/session_columns.hpp"
+
+#include <fmt/format.h>
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr std::uint64_t kMostColumnTicks = std::uint64_t{1} << 24;
+
+void add_row(SessionColumns& columns, const SessionRow& row) {
+  columns.tick.push_back(row.tick);
+  columns.position_m.push_back(row.position_m);
+  columns.drive_v.push_back(row.drive_v);
+}
+
+}  // namespace
+
+Result<SessionColumns> read_session_columns(const std::string& name) {
+  const auto overview = session_overview(name);
+  if (!overview) return schema::forward_error(overview);
+  if (overview->ticks > kMostColumnTicks)
+    return fail(Fault::unsuitable, fmt::format("has over {} ticks", kMostColumnTicks), overview->path,
+                "`tactograph session` judges and exports it, whatever its length");
+  SessionColumns columns;
+  columns.header = overview->header;
+  columns.lost_at = overview->lost_at;
+  columns.lost = overview->lost;
+  RowMaker maker(*overview);
+  const auto read = read_rows(maker, name, [&](const SessionRow& row) { add_row(columns, row); });
+  if (!read) return schema::forward_error(read);
+  return columns;
+}
+
+}  // namespace tacto::playback

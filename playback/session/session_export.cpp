@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/session/session_export.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/session/session_netcdf.hpp"
+#include "data-schema/wav/wav.hpp"
+#include "firmware-host/core/wire/message_types.hpp"
+#include "playback/session/sensor_samples.hpp"
+#include "playback/session/session_rows.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr std::size_t kBlockRows = 65536;
+
+constexpr std::string_view kColumns =
+    "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s,energy_limited,gated,"
+    "touching,gain,device_time_s,measured_m";
+
+// With which a table begins in every version.
+constexpr std::string_view kOldestColumns =
+    "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s";
+
+using schema::fail;
+using schema::Fault;
+using schema::PendingFiles;
+using schema::Result;
+using schema::SessionTick;
+using Heard = std::function<void(double)>;
+
+bool is_session_table(std::string_view line) {
+  return line.starts_with(kOldestColumns);
+}
+
+int flag(std::uint32_t flags, std::uint32_t which) {
+  return (flags & which) != 0 ? 1 : 0;
+}
+
+std::string line_of(const SessionTick& t, const SessionRow& row, std::optional<double> measured_m) {
+  const bool measured = t.lateness_ns != SessionTick::kLatenessUnknown;
+  return fmt::format(
+      "{},{:.9f},{},{:.12g},{:.9g},{},{},{},{},{},{},{},{},{:.9g},{:.9f},{}\n", t.tick, row.time_s, t.encoder,
+      row.position_m, t.drive_v, flag(t.flags, wire::kTickPlaying), flag(t.flags, wire::kTickFault),
+      flag(t.flags, wire::kTickLate), flag(t.flags, wire::kTickAmplitudeLimited | wire::kTickSlewLimited),
+      measured ? fmt::format("{:.9g}", 1e-9 * t.lateness_ns) : "", flag(t.flags, wire::kTickEnergyLimited),
+      flag(t.flags, wire::kTickGated), flag(t.flags, wire::kTickTouching), row.gain, row.device_time_s,
+      measured_m ? fmt::format("{:.9g}", *measured_m) : "");
+}
+
+Result<std::string> write_csv(const std::string& session, const std::string& temporary,
+                              const Heard& progress) {
+  const auto overview = session_overview(session, part_of(progress, 0, 0.3));
+  if (!overview) return schema::forward_error(overview);
+  auto reader = schema::SessionReader::open(session);
+  if (!reader) return schema::forward_error(reader);
+  std::ofstream out(temporary, std::ios::binary);
+  out << kColumns << '\n';
+  RowMaker maker(*overview);
+  SensorSamples sensor(*overview);
+  const auto told = part_of(progress, 0.3, 1);
+  while (const auto block = reader->next()) {
+    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
+      for (const SessionTick& tick : *ticks)
+        maker.take(tick,
+                   [&](const SessionRow& row) { out << line_of(tick, row, sensor.at(row.device_time_s)); });
+    if (told) told(part_read(*reader));
+  }
+  out.flush();
+  return out ? Result<std::string>()
+             : fail(Fault::cannot_write, "can't be written", temporary, "is the disk full?");
+}
+
+// What a WAV would hold of periods without a tick: at most as much as of the others, or half an hour.
+Result<void> check_even(const SessionOverview& overview) {
+  const auto most = std::max(overview.ticks, static_cast<std::uint64_t>(1800 * overview.header.rate_hz));
+  if (overview.lost_at)
+    return fail(Fault::unsuitable,
+                fmt::format("ticks are missing from {} on, which a WAV can't show", *overview.lost_at),
+                overview.path, "export CSV or netCDF, which carry the time");
+  if (overview.missing_periods > most)
+    return fail(Fault::unsuitable,
+                fmt::format("{} periods passed without a tick, beside {} ticks: most of the WAV would be "
+                            "made up",
+                            overview.missing_periods, overview.ticks),
+                overview.path, "export CSV or netCDF, which carry the time");
+  return {};
+}
+
+std::string words_of_missing(const SessionOverview& overview, std::uint64_t unmeasured) {
+  std::string words;
+  if (overview.missing_periods > 0)
+    words = fmt::format(
+        "{} ticks were never made, for the computer stood still: the WAV goes straight from one neighbour to "
+        "the other",
+        overview.missing_periods);
+  if (unmeasured > 0)
+    words +=
+        fmt::format("{}at {} frames there is no sample of the tray's sensor: the WAV repeats the last one",
+                    words.empty() ? "" : "; ", unmeasured);
+  return words;
+}
+
+// Frames are written in blocks; the first failure stays.
+class FrameWriter {
+ public:
+  FrameWriter(schema::WavWriter& wav, const SessionOverview& overview) : wav_(wav) {
+    if (overview.header.sensor) sensor_.emplace(overview);
+  }
+  void add(const SessionRow& row) {
+    frames_.insert(frames_.end(), {row.drive_v, row.position_m});
+    if (sensor_) frames_.push_back(measured_m(row));
+    if (frames_.size() >= 3 * kBlockRows) write();
+  }
+  std::uint64_t unmeasured() const { return unmeasured_; }
+  Result<void> close() {
+    write();
+    return written_ ? wav_.close() : written_;
+  }
+
+ private:
+  // Where there is no sample, the last one stays.
+  double measured_m(const SessionRow& row) {
+    const auto measured_m = sensor_->at(row.device_time_s);
+    unmeasured_ += !measured_m;
+    return last_m_ = measured_m.value_or(last_m_);
+  }
+  void write() {
+    if (written_) written_ = wav_.write(frames_);
+    frames_.clear();
+  }
+  schema::WavWriter& wav_;
+  std::optional<SensorSamples> sensor_;
+  double last_m_ = 0;
+  std::uint64_t unmeasured_ = 0;
+  std::vector<double> frames_;
+  Result<void> written_;
+};
+
+Result<std::string> write_wav(const std::string& session, const std::string& temporary,
+                              const Heard& progress) {
+  const auto overview = session_overview(session, part_of(progress, 0, 0.3));
+  if (!overview) return schema::forward_error(overview);
+  if (const auto even = check_even(*overview); !even) return schema::forward_error(even);
+  const unsigned channels = overview->header.sensor ? 3 : 2;
+  auto wav =
+      schema::WavWriter::create(temporary, overview->header.rate_hz, channels, schema::SampleFormat::float64);
+  if (!wav) return schema::forward_error(wav);
+  FrameWriter frames(*wav, *overview);
+  RowMaker maker(*overview, UINT64_MAX);
+  const auto read = read_rows(
+      maker, session, [&](const SessionRow& row) { frames.add(row); }, part_of(progress, 0.3, 1));
+  if (!read) return schema::forward_error(read);
+  if (const auto written = frames.close(); !written) return schema::forward_error(written);
+  return words_of_missing(*overview, frames.unmeasured());
+}
+
+std::vector<schema::SessionTurn> named_turns(const RowMaker& maker, double rate_hz) {
+  std::vector<schema::SessionTurn> turns;
+  for (const TextureTurn& turn : maker.turns())
+    turns.push_back({turn.time_s, turn.fade_ticks / rate_hz,
+                     turn.brings ? turn.brings->textures : std::vector<schema::SessionTexture>()});
+  return turns;
+}
+
+Result<std::string> write_netcdf(const std::string& session, const std::string& temporary,
+                                 const Heard& progress) {
+  const auto overview = session_overview(session, part_of(progress, 0, 0.3));
+  if (!overview) return schema::forward_error(overview);
+  std::vector<schema::SessionVariable> variables{
+      {"tick", "1", "tick since arming"},
+      {"encoder_count", "1", "encoder's count"},
+      {"position", "m", "position of the finger: the middle of the count"},
+      {"drive", "V", "drive at the amplifier's input"},
+      {"gain", "1", "factor on the textures' gains"},
+      {"flags", "1", "flags of the wire's ticks"},
+      {"device_time", "s", "time by the device's own clock"}};
+  if (overview->header.sensor)
+    variables.push_back(
+        {"measured", "m", "displacement of the tray by its sensor, at the tick; NaN: no sample"});
+  schema::SessionNetcdf file(temporary, overview->header, overview->ticks, variables);
+  RowMaker maker(*overview);
+  SensorSamples sensor(*overview);
+  const auto add = [&](const SessionRow& row) {
+    const double values[] = {static_cast<double>(row.tick),
+                             static_cast<double>(row.encoder),
+                             row.position_m,
+                             row.drive_v,
+                             row.gain,
+                             static_cast<double>(row.flags),
+                             row.device_time_s,
+                             sensor.at(row.device_time_s).value_or(NAN)};
+    file.add(row.time_s, std::span(values).first(variables.size()));
+  };
+  if (const auto read = read_rows(maker, session, add, part_of(progress, 0.3, 1)); !read)
+    return schema::forward_error(read);
+  const auto written = file.close(named_turns(maker, overview->header.rate_hz));
+  return written ? Result<std::string>() : schema::forward_error(written);
+}
+
+Result<void> check_table(const std::string& file, schema::Existing existing) {
+  return schema::check_table_free(file, existing, is_session_table);
+}
+
+Result<void> check_netcdf(const std::string& file, schema::Existing existing) {
+  if (!schema::is_file(file) || schema::is_session_netcdf(file))
+    return schema::check_output_free(file, existing);
+  return fail(Fault::usage, "holds something else, and would be lost", file,
+              "choose another name, or remove it first");
+}
+
+struct Format {
+  std::string_view ending;
+  Result<void> (*check)(const std::string& file, schema::Existing existing);
+  Result<std::string> (*write)(const std::string& session, const std::string& temporary,
+                               const Heard& progress);
+};
+constexpr Format kFormats[] = {{".csv", check_table, write_csv},
+                               {".wav", schema::check_wav_free, write_wav},
+                               {".nc", check_netcdf, write_netcdf}};
+
+Result<const Format*> format_of(const std::string& file) {
+  for (const Format& format : kFormats)
+    if (file.ends_with(format.ending)) return &format;
+  return fail(Fault::usage, fmt::format("'{}' is no format that a session can be exported to", file),
+              "output", "name a file that ends in .csv, .wav or .nc");
+}
+
+}  // namespace
+
+Result<void> check_session_output(const std::string& file, schema::Existing existing) {
+  const auto format = format_of(file);
+  return format ? (*format)->check(file, existing) : schema::forward_error(format);
+}
+
+Result<std::string> export_session(const std::string& session, const std::string& file,
+                                   schema::Existing existing, const std::function<void(double)>& progress) {
+  if (auto free = check_session_output(file, existing); !free) return schema::forward_error(free);
+  PendingFiles pending;
+  const auto temporary = pending.add(file);
+  if (!temporary) return schema::forward_error(temporary);
+  auto said = (*format_of(file))->write(session, *temporary, progress);
+  if (!said) return said;
+  const auto kept = pending.commit(existing);
+  return kept ? said : schema::forward_error(kept);
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/session/session_replay.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <memory>
+
+#include "firmware-host/link/wire_words.hpp"
+#include "playback/session/session_board.hpp"
+#include "playback/session/session_commands.hpp"
+#include "playback/session/session_rows.hpp"
+#include "playback/session/upload_watch.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+using schema::SessionCommand;
+using schema::SessionTick;
+
+// What has to be known of the whole before its first tick.
+struct Overview {
+  HostBeats beats;
+  bool gated = false;  // by contact
+  std::uint64_t lost = 0;
+  schema::SessionEnding ending = schema::SessionEnding::unread;
+  std::optional<std::uint64_t> damaged_at;
+  UploadWatch upload;
+  bool ticks = false;  // it holds some
+};
+
+Result<Overview> overview_of(const std::string& name) {
+  auto reader = schema::SessionReader::open(name);
+  if (!reader) return schema::forward_error(reader);
+  Overview seen;
+  while (const auto block = reader->next()) {
+    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) {
+      seen.ticks = true;
+      for (const SessionTick& tick : *ticks) seen.beats.see(tick);
+    }
+    if (const auto* loss = std::get_if<schema::SessionLoss>(&*block)) seen.lost += loss->count;
+    if (const auto* end = std::get_if<schema::SessionEnd>(&*block)) seen.lost = end->lost_ticks;
+    const auto* command = std::get_if<SessionCommand>(&*block);
+    if (command == nullptr) continue;
+    seen.upload.see(*command);
+    if (!is_frame(command->frame))
+      return fail(Fault::malformed, "a command in it is no frame of the wire", reader->path());
+    seen.beats.see(*command, reader->header().rate_hz);
+    if (const auto contact = message_in_frame<wire::Contact>(command->frame)) seen.gated = contact->on_n > 0;
+  }
+  seen.ending = reader->ending();
+  if (seen.ending == schema::SessionEnding::damaged) seen.damaged_at = reader->sound_bytes();
+  return seen;
+}
+
+class SessionPlayer {
+ public:
+  SessionPlayer(const schema::SessionHeader& header, const HostBeats& beats, const WishListener& wishes)
+      : board_(header), beats_(beats), wishes_(wishes) {
+    if (wishes_) unlimited_ = std::make_unique<SessionBoard>(header, BoardLimits::lifted);
+  }
+
+  void hand(const SessionCommand& command) { commands_.hand(command, obey_); }
+  void play(const std::vector<SessionTick>& ticks) {
+    for (const SessionTick& tick : ticks) {
+      if (is_over()) return;
+      take(tick);
+    }
+  }
+
+  bool is_over() const { return refused_.has_value() || outcome_.first_difference || outcome_.lost_at; }
+  const std::optional<std::string>& refused() const { return refused_; }
+  const ReplayOutcome& outcome() const { return outcome_; }
+
+ private:
+  void obey(const SessionCommand& command) {
+    if (refused_) return;
+    const auto answer = board_.say_frame(command.frame);
+    if (unlimited_) unlimited_->say_frame(command.frame);
+    if (answer && answer->code == wire::AnswerCode::ok) return;
+    const auto words = answer ? firmware_host::words_of(answer->code, answer->detail).what : "no answer";
+    refused_ = fmt::format("{} is refused: {}", firmware_host::word_of(type_of(command)), words);
+  }
+  void take(const SessionTick& tick) {
+    if (tick.tick != outcome_.ticks) {
+      outcome_.lost_at = outcome_.ticks;
+      return;
+    }
+    if (tick.tick == 0) {
+      board_.rest_at(tick.encoder);
+      if (unlimited_) unlimited_->rest_at(tick.encoder);
+    }
+    commands_.before(tick, obey_);
+    const bool beats = beats_.beats_before(tick.tick);
+    if (beats) board_.say(wire::Heartbeat{});
+    compare(tick, board_.tick(tick));
+    if (unlimited_) tell_wish(tick, beats);
+  }
+  void tell_wish(const SessionTick& tick, bool beats) {
+    if (beats) unlimited_->say(wire::Heartbeat{});
+    const float wished_v = unlimited_->tick(tick);
+    if (!outcome_.first_difference) wishes_(tick, wished_v);
+  }
+  void compare(const SessionTick& tick, float replayed_v) {
+    ++outcome_.ticks;
+    if (std::bit_cast<std::uint32_t>(replayed_v) == std::bit_cast<std::uint32_t>(tick.drive_v)) return;
+    outcome_.first_difference = {tick.tick, tick.drive_v, replayed_v};
+  }
+
+  SessionBoard board_;
+  std::unique_ptr<SessionBoard> unlimited_;  // where somebody asks for its drive
+  HostBeats beats_;
+  const WishListener& wishes_;
+  SessionCommands commands_;
+  SessionCommands::Obey obey_ = [this](const SessionCommand& command) { obey(command); };
+  std::optional<std::string> refused_;
+  ReplayOutcome outcome_;
+};
+
+// Commands stand in the file where they were sent; a tick that took one may stand before it by what was on
+// its way. They are few: all are read first.
+Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) {
+  auto reader = schema::SessionReader::open(name);
+  if (!reader) return schema::forward_error(reader);
+  while (const auto block = reader->next())
+    if (const auto* command = std::get_if<SessionCommand>(&*block)) player.hand(*command);
+  return {};
+}
+
+// A damaged file may lack what stood behind the damage.
+Result<void> check_replayable(const Overview& seen, const schema::SessionReader& reader) {
+  const std::string missing = seen.upload.missing();
+  if (!missing.empty() && seen.ticks && !seen.damaged_at)
+    return fail(Fault::unsuitable,
+                fmt::format("lacks {}: the disk did not take it (was it full?), and without it the drive "
+                            "can't be computed again",
+                            missing),
+                reader.path(), "the ticks that are in it can be exported: tactograph session");
+  if (!seen.gated || tells_touch(reader.header())) return {};
+  return fail(Fault::unsuitable,
+              "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
+              "computed again",
+              reader.path(), "play anew, on firmware of protocol 1.2 or newer");
+}
+
+}  // namespace
+
+Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
+                                     const WishListener& wishes) {
+  const auto seen = overview_of(name);
+  if (!seen) return schema::forward_error(seen);
+  auto reader = schema::SessionReader::open(name);
+  if (!reader) return schema::forward_error(reader);
+  if (const auto may = check_replayable(*seen, *reader); !may) return schema::forward_error(may);
+  SessionPlayer player(reader->header(), seen->beats, wishes);
+  if (const auto handed = hand_over_commands(name, player); !handed) return schema::forward_error(handed);
+  while (const auto block = reader->next()) {
+    if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) player.play(*ticks);
+    if (player.is_over()) break;
+    if (progress) progress(part_read(*reader));
+  }
+  if (player.refused() && !seen->damaged_at)
+    return fail(Fault::unsuitable, *player.refused(), reader->path(), "was it made by a newer version?");
+  ReplayOutcome outcome = player.outcome();
+  if (outcome.ticks == 0 && !outcome.lost_at)
+    return tl::unexpected(no_ticks_in(reader->path(), seen->damaged_at));
+  outcome.lost = seen->lost;
+  outcome.ending = seen->ending;
+  outcome.damaged_at = seen->damaged_at;
+  if (!player.is_over() && outcome.lost > 0) outcome.lost_at = outcome.ticks;  // after the last one
+  return outcome;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/strokes/block_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tacto::playback {
+namespace {
+
+constexpr double kMostBlockRows = 1 << 19;  // whatever the rate
+
+std::size_t rows_in(double seconds, double rate_hz) {
+  return static_cast<std::size_t>(std::clamp(std::ceil(seconds * rate_hz), 1.0, kMostBlockRows));
+}
+
+}  // namespace
+
+// What lies on the other side of a stop that is longer than what is around a block has no part in it.
+BlockJudge::BlockJudge(const SessionOverview& overview, const JudgedBlocks& blocks,
+                       std::function<void(const StrokeSums&)> found)
+    : overview_(overview),
+      block_rows_(rows_in(blocks.block_s, overview.header.rate_hz)),
+      around_rows_(rows_in(blocks.around_s, overview.header.rate_hz)),
+      maker_(overview, 2 * around_rows_),
+      follower_(overview),
+      wanted_(overview),
+      measured_(MeasuredReader::open(overview)),
+      strokes_(std::move(found)) {}
+
+void BlockJudge::take(const schema::SessionTick& tick, std::optional<float> wished_v) {
+  maker_.take(tick, [&](const SessionRow& row) {
+    rows_.push_back(follower_.next(row, maker_.turns()));
+    wished_v_.push_back(wished_v);
+    if (rows_.size() == judged_ + block_rows_ + around_rows_) judge(block_rows_);
+  });
+}
+
+void BlockJudge::finish(LastWay last) {
+  judge(rows_.size() - judged_);
+  if (last == LastWay::whole) strokes_.end();
+}
+
+void BlockJudge::judge(std::size_t rows) {
+  const SessionWanted wanted = wanted_.wanted_in(rows_);
+  const auto predicted_m = predicted_displacement_m(overview_.header, rows_);
+  const auto measured = measured_ ? std::optional(measured_->in(rows_)) : std::nullopt;
+  for (std::size_t i = judged_; i < judged_ + rows; ++i)
+    strokes_.add({first_row_ + i, rows_[i].row, wanted.displacement_m[i], predicted_m[i], !wanted.unknown[i],
+                  measured ? measured->at(i) : std::nullopt, wished_v_[i]});
+  judged_ += rows;
+  const std::size_t done = judged_ - std::min(judged_, around_rows_);
+  rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(done));
+  wished_v_.erase(wished_v_.begin(), wished_v_.begin() + static_cast<std::ptrdiff_t>(done));
+  judged_ -= done, first_row_ += done;
+}
+
+}  // namespace tacto::playback

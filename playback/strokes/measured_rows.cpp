@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/strokes/measured_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "playback/render/reference/wanted.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr double kReadingsAPeriod = 32;                        // of the band's upper edge
+constexpr double kRingsS = 0.3;                                // a period of the lower edge's skirt, 3 Hz
+constexpr double kRestS = 0.05;                                // around the play the tray is at rest
+constexpr double kShiftAroundS = 2e-3;                         // twice the greatest shift
+constexpr std::uint64_t kMostFilled = std::uint64_t{1} << 22;  // frames; numbers of a damaged file
+
+double time_of(const JudgedRow& row) {
+  return row.row.device_time_s;
+}
+
+// Rows within a ringing's time of what is missing are not known.
+void forget_near(const std::pair<double, double>& missing_s, std::span<const JudgedRow> rows,
+                 std::vector<bool>& known) {
+  const auto from = std::ranges::lower_bound(rows, missing_s.first - kRingsS, {}, time_of);
+  const auto to = std::ranges::upper_bound(rows, missing_s.second + kRingsS, {}, time_of);
+  for (auto row = from; row < to; ++row) known[static_cast<std::size_t>(row - rows.begin())] = false;
+}
+
+// On lines between the times of frames, at rest beside them.
+std::vector<double> frames_at(std::span<const JudgedRow> rows, const std::vector<double>& time_s) {
+  std::vector<double> at(rows.size());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double t = time_of(rows[i]);
+    while (next < time_s.size() && time_s[next] <= t) ++next;
+    const auto before = static_cast<double>(next) - 1;
+    at[i] = next == 0               ? 0
+            : next == time_s.size() ? before
+                                    : before + (t - time_s[next - 1]) / (time_s[next] - time_s[next - 1]);
+  }
+  return at;
+}
+
+}  // namespace
+
+// Catmull and Rom's cubic; the same weights at each shift that is a whole number of readings away would do,
+// but shifts are not.
+std::optional<MeasuredRow> MeasuredStretch::at(std::size_t row) const {
+  if (!known_[row]) return std::nullopt;
+  const double last = static_cast<double>(fine_m_.size()) - 1;
+  const auto reading = [&](double index) {
+    return fine_m_[static_cast<std::size_t>(std::clamp(index, 0.0, last))];
+  };
+  MeasuredRow values;
+  for (std::size_t i = 0; i < kMeasuredShifts; ++i) {
+    const double index = at_fine_[row] + measured_shift_s(static_cast<double>(i)) * fine_rate_hz_;
+    const double whole = std::floor(index), u = index - whole;
+    const double a = reading(whole - 1), b = reading(whole), c = reading(whole + 1), d = reading(whole + 2);
+    const double value = b + 0.5 * u * (c - a + u * (2 * a - 5 * b + 4 * c - d + u * (3 * (b - c) + d - a)));
+    values[i] = static_cast<float>(value);
+  }
+  return values;
+}
+
+std::optional<MeasuredReader> MeasuredReader::open(const SessionOverview& overview) {
+  if (!overview.header.sensor) return std::nullopt;
+  return MeasuredReader(overview);
+}
+
+MeasuredReader::Filled MeasuredReader::filled(double from_s, double to_s) const {
+  Filled all;
+  const auto add = [&](double time_s, double displacement_m) {
+    all.time_s.push_back(time_s);
+    all.displacement_m.push_back(displacement_m);
+  };
+  const SensorFrame* before = nullptr;
+  for (const SensorFrame& frame : samples_.frames()) {
+    const std::uint64_t steps = before == nullptr ? 1 : frame.number - before->number;
+    if (steps > kMostFilled) return {};
+    if (steps > 1) all.missing_s.emplace_back(before->time_s, frame.time_s);
+    for (std::uint64_t i = 1; i < steps; ++i) {
+      const double u = static_cast<double>(i) / static_cast<double>(steps);
+      add(std::lerp(before->time_s, frame.time_s, u),
+          std::lerp(before->displacement_m, frame.displacement_m, u));
+    }
+    add(frame.time_s, frame.displacement_m);
+    before = &frame;
+    if (frame.time_s > to_s) break;
+  }
+  if (all.time_s.empty()) return all;
+  if (all.time_s.front() > from_s + kRestS) all.missing_s.emplace_back(from_s, all.time_s.front());
+  if (all.time_s.back() < to_s - kRestS) all.missing_s.emplace_back(all.time_s.back(), to_s);
+  return all;
+}
+
+MeasuredStretch MeasuredReader::in(std::span<const JudgedRow> rows) {
+  const double from_s = time_of(rows.front()), to_s = time_of(rows.back());
+  samples_.read_to(to_s + kShiftAroundS);
+  samples_.forget_before(from_s - kShiftAroundS);
+  const Filled frames = filled(from_s, to_s + kShiftAroundS);
+  MeasuredStretch stretch;
+  stretch.known_.assign(rows.size(), samples_.sound() && frames.time_s.size() > 1);
+  if (frames.time_s.size() < 2) return stretch;
+  for (const auto& missing_s : frames.missing_s) forget_near(missing_s, rows, stretch.known_);
+  const double rate_hz = header_.sensor->rate_hz;
+  const spatial::Band band{header_.low_hz, header_.high_hz};
+  Rests rests;  // where the sensor says that it stands
+  if (begins_at_rest(rows)) rests.start = frames.displacement_m.front();
+  if (ends_at_rest(rows)) rests.end = frames.displacement_m.back();
+  ReadingGrid grid = reading_grid(static_cast<double>(frames.time_s.size() - 1) / rate_hz, rate_hz, band, 0);
+  grid.samples = frames.time_s.size();
+  const auto between = static_cast<std::size_t>(std::ceil(kReadingsAPeriod * band.high_hz / rate_hz));
+  stretch.fine_m_ = signal_of(wanted_of_readings(frames.displacement_m, grid, band, 0, rests), between);
+  stretch.fine_rate_hz_ = rate_hz * static_cast<double>(between);
+  stretch.at_fine_ = frames_at(rows, frames.time_s);
+  for (double& at : stretch.at_fine_) at *= static_cast<double>(between);
+  return stretch;
+}
+
+}  // namespace tacto::playback

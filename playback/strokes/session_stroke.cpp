@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/strokes/session_stroke.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "playback/strokes/judged_rows.hpp"
+#include "playback/strokes/stroke_finder.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::fail;
+using schema::Fault;
+using schema::Result;
+
+constexpr double kAroundS = 5;  // as JudgedBlocks
+constexpr std::uint64_t kMostStrokeRows = std::uint64_t{1} << 22;
+
+std::uint64_t rows_around(const schema::SessionHeader& header) {
+  return static_cast<std::uint64_t>(std::clamp(kAroundS * header.rate_hz, 1.0, 524288.0));
+}
+
+double way_of(const StrokeSums& stroke) {
+  return std::abs(stroke.last.row.position_m - stroke.first.row.position_m);
+}
+
+struct Found {
+  std::uint64_t strokes = 0, chosen = 0;
+  StrokeSums sums;
+};
+
+Result<Found> find_stroke(const std::string& name, const SessionOverview& overview, std::uint64_t asked,
+                          const std::function<void(double)>& progress) {
+  Found found;
+  StrokeFinder finder([&](const StrokeSums& sums) {
+    const bool taken =
+        asked > 0 ? ++found.strokes == asked : ++found.strokes == 1 || way_of(sums) > way_of(found.sums);
+    if (taken) found.chosen = found.strokes, found.sums = sums;
+  });
+  RowMaker maker(overview, 2 * rows_around(overview.header));
+  std::uint64_t index = 0;
+  const auto read = read_rows(
+      maker, name,
+      [&](const SessionRow& row) {
+        finder.add({index++, row, 0, 0, true, {}, {}});
+      },
+      progress);
+  if (!read) return schema::forward_error(read);
+  finder.end();
+  return found;
+}
+
+Result<void> check_found(const Found& found, std::uint64_t asked, const std::string& session) {
+  if (found.strokes == 0) return fail(Fault::unsuitable, "holds no stroke of 5 mm while it plays", session);
+  if (found.chosen == 0)
+    return fail(Fault::usage, fmt::format("has {} strokes, and no stroke {}", found.strokes, asked), session);
+  if (found.sums.rows > kMostStrokeRows)
+    return fail(
+        Fault::unsuitable,
+        fmt::format("its stroke {} goes on for {} ticks without a turn", found.chosen, found.sums.rows),
+        session, fmt::format("name one of at most {} ticks", kMostStrokeRows));
+  return {};
+}
+
+// With what is around it.
+Result<std::vector<JudgedRow>> rows_of(const std::string& name, const StrokeSums& sums, SessionStroke& of,
+                                       const std::function<void(double)>& progress) {
+  const std::uint64_t around = rows_around(of.overview.header);
+  const std::uint64_t first = sums.first.index - std::min(sums.first.index, around);
+  std::vector<JudgedRow> rows;
+  RowMaker maker(of.overview, 2 * around);
+  RowFollower follower(of.overview);
+  std::uint64_t index = 0;
+  const auto read = read_rows(
+      maker, name,
+      [&](const SessionRow& row) {
+        const JudgedRow judged = follower.next(row, maker.turns());
+        if (index >= first && index <= sums.last.index + around) rows.push_back(judged);
+        ++index;
+      },
+      progress);
+  if (!read) return schema::forward_error(read);
+  of.turns = maker.turns();
+  return rows;
+}
+
+void keep_stroke(const std::vector<JudgedRow>& rows, std::uint64_t before, std::uint64_t count,
+                 SessionStroke& of) {
+  const auto predicted_m = predicted_displacement_m(of.overview.header, rows);
+  for (std::uint64_t i = before; i < before + count; ++i) {
+    of.rows.push_back(rows[i].row);
+    of.predicted_m.push_back(predicted_m[i]);
+  }
+}
+
+}  // namespace
+
+Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t stroke,
+                                          const std::function<void(double)>& progress) {
+  auto overview = session_overview(name, part_of(progress, 0, 1. / 3));
+  if (!overview) return schema::forward_error(overview);
+  if (overview->lost_at)
+    return fail(Fault::unsuitable, fmt::format("{} ticks are missing", overview->lost), name,
+                "compare a session that is whole");
+  const auto found = find_stroke(name, *overview, stroke, part_of(progress, 1. / 3, 2. / 3));
+  if (!found) return schema::forward_error(found);
+  if (const auto fits = check_found(*found, stroke, name); !fits) return schema::forward_error(fits);
+  SessionStroke of{std::move(*overview), {}, found->chosen, found->strokes, found->sums.first.index, {}, {}};
+  const auto rows = rows_of(name, found->sums, of, part_of(progress, 2. / 3, 1));
+  if (!rows) return schema::forward_error(rows);
+  const auto before = std::min(of.first_row, rows_around(of.overview.header));
+  keep_stroke(*rows, before, found->sums.rows, of);
+  return of;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/strokes/stroke_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware-host/core/wire/message_types.hpp"
+#include "playback/session/session_limits.hpp"
+
+namespace tacto::playback {
+namespace {
+
+constexpr double kTurnM = 0.2e-3;  // a finger that goes back by less has not turned
+
+double square(double value) {
+  return value * value;
+}
+
+double way_m(const StrokeRow& from, const StrokeRow& to) {
+  return to.row.position_m - from.row.position_m;
+}
+
+}  // namespace
+
+void StrokeSums::add(const StrokeRow& r) {
+  if (rows++ == 0) first = r;
+  last = r;
+  wanted_m2 += square(r.wanted_m);
+  predicted_m2 += square(r.predicted_m);
+  difference_m2 += square(r.predicted_m - r.wanted_m);
+  const std::uint32_t flags = r.row.flags;
+  limited_ticks += (flags & (wire::kTickAmplitudeLimited | wire::kTickSlewLimited)) != 0;
+  energy_limited_ticks += (flags & wire::kTickEnergyLimited) != 0;
+  gated_ticks += (flags & wire::kTickGated) != 0;
+  known = known && r.known;
+  wishes_known = wishes_known && r.wished_v;
+  add_measured(r);
+  if (r.wished_v && !r.row.put_in)
+    limits.add(limited_tick(static_cast<float>(r.row.drive_v), *r.wished_v, flags));
+}
+
+void StrokeSums::add_measured(const StrokeRow& r) {
+  measured_known = measured_known && r.measured;
+  if (!r.measured) return;
+  measured_m2 += square(double{(*r.measured)[kUnshifted]});
+  for (std::size_t i = 0; i < kMeasuredShifts; ++i)
+    measured_difference_m2[i] += square(double{(*r.measured)[i]} - r.wanted_m);
+}
+
+void StrokeSums::add(const StrokeSums& later) {
+  if (later.rows == 0) return;
+  rows += later.rows;
+  last = later.last;
+  wanted_m2 += later.wanted_m2, predicted_m2 += later.predicted_m2, difference_m2 += later.difference_m2;
+  limited_ticks += later.limited_ticks, energy_limited_ticks += later.energy_limited_ticks;
+  gated_ticks += later.gated_ticks;
+  known = known && later.known, wishes_known = wishes_known && later.wishes_known;
+  measured_known = measured_known && later.measured_known;
+  measured_m2 += later.measured_m2;
+  for (std::size_t i = 0; i < kMeasuredShifts; ++i)
+    measured_difference_m2[i] += later.measured_difference_m2[i];
+  limits.add(later.limits);
+}
+
+void StrokeFinder::start_at(const StrokeRow& row) {
+  so_far_ = since_ = {};
+  so_far_.add(row);
+  direction_ = 0;
+}
+
+// The farthest row is the last of one stroke and the first of the next.
+void StrokeFinder::turn() {
+  const StrokeRow farthest = so_far_.last;
+  const StrokeSums since = since_;
+  const int back = -direction_;
+  end();
+  start_at(farthest);
+  so_far_.add(since);
+  direction_ = back;
+}
+
+void StrokeFinder::add(const StrokeRow& row) {
+  if ((row.row.flags & wire::kTickBlind) != 0) {
+    end();
+    begun_ = false;
+    return;
+  }
+  const bool playing = (row.row.flags & wire::kTickPlaying) != 0;
+  if (!std::exchange(begun_, true) || !playing) {
+    end();
+    return start_at(row);
+  }
+  ++played_;
+  since_.add(row);
+  const double started = way_m(so_far_.first, row), ahead = way_m(so_far_.last, row);
+  if (direction_ == 0 && std::abs(started) > kTurnM) direction_ = started > 0 ? 1 : -1;
+  if (direction_ == 0) return;
+  if (direction_ * ahead >= 0) {
+    so_far_.add(since_);
+    since_ = {};
+  } else if (-direction_ * ahead > kTurnM) {
+    turn();
+  }
+}
+
+void StrokeFinder::end() {
+  if (direction_ == 0) return;
+  const double length_m = std::abs(way_m(so_far_.first, so_far_.last));
+  longest_way_m_ = std::max(longest_way_m_, length_m);
+  if (length_m >= kShortestStrokeM) found_(so_far_);
+  direction_ = 0;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "playback/strokes/stroke_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "data-schema/base/quantity.hpp"
+#include "playback/session/session_limits.hpp"
+#include "playback/strokes/block_judge.hpp"
+
+namespace tacto::playback {
+namespace {
+
+using schema::Result;
+
+// What the band's filters leave beside a texture is no wish.
+constexpr double kLeastWantedM = 1e-12;
+
+bool nothing_was_wanted(const StrokeSums& sums) {
+  return sums.known && sums.wanted_m2 < kLeastWantedM * kLeastWantedM * static_cast<double>(sums.rows);
+}
+
+double over_db(double value_m, double of_m) {
+  return 20 * std::log10(value_m / of_m);
+}
+
+// The polynomial through the five values around the least, at `u` steps from the middle one: for what is
+// sampled 24 times a period of 500 Hz it errs by less than 2e-6 of what is measured (Lagrange).
+double between_five(std::span<const double, 5> e, double u) {
+  double sum = 0;
+  constexpr std::array<double, 5> kAt = {-2, -1, 0, 1, 2};
+  for (std::size_t i = 0; i < kAt.size(); ++i) {
+    double weight = 1;
+    for (std::size_t j = 0; j < kAt.size(); ++j)
+      if (j != i) weight *= (u - kAt[j]) / (kAt[i] - kAt[j]);
+    sum += weight * e[i];
+  }
+  return sum;
+}
+
+struct LeastError {
+  double shift = 0, difference_m2 = 0;  // in steps from the first
+};
+
+// To a hundredth of a step: the rest of 1 us is -52 dB of 500 Hz at most.
+LeastError least_error(const std::array<double, kMeasuredShifts>& difference_m2) {
+  constexpr int kParts = 100;
+  const auto least = std::ranges::min_element(difference_m2) - difference_m2.begin();
+  const auto middle = std::clamp<std::ptrdiff_t>(least, 2, kMeasuredShifts - 3);
+  const std::span<const double, 5> around(&difference_m2[static_cast<std::size_t>(middle - 2)], 5);
+  LeastError found{static_cast<double>(least), difference_m2[static_cast<std::size_t>(least)]};
+  for (int part = -2 * kParts; part <= 2 * kParts; ++part) {
+    const double u = static_cast<double>(part) / kParts, difference = between_five(around, u);
+    if (difference < found.difference_m2) found = {static_cast<double>(middle) + u, difference};
+  }
+  return {found.shift, std::max(found.difference_m2, 0.0)};
+}
+
+std::optional<MeasuredDisplacement> measured_of(const StrokeSums& sums, double wanted_rms_m) {
+  if (!sums.measured_known) return std::nullopt;
+  const auto rms = [&](double sum) { return std::sqrt(sum / static_cast<double>(sums.rows)); };
+  MeasuredDisplacement measured;
+  measured.rms_m = rms(sums.measured_m2);
+  if (wanted_rms_m == 0) return measured;
+  const LeastError least = least_error(sums.measured_difference_m2);
+  measured.error_db = over_db(rms(least.difference_m2), wanted_rms_m);
+  measured.level_db = over_db(measured.rms_m, wanted_rms_m);
+  measured.shift_s = measured_shift_s(least.shift);
+  return measured;
+}
+
+PlayedStroke stroke_of(const StrokeSums& sums) {
+  const auto rms = [&](double sum) { return std::sqrt(sum / static_cast<double>(sums.rows)); };
+  PlayedStroke stroke;
+  stroke.from_s = sums.first.row.time_s, stroke.to_s = sums.last.row.time_s;
+  stroke.from_m = sums.first.row.position_m, stroke.to_m = sums.last.row.position_m;
+  stroke.predicted.rms_m = rms(sums.predicted_m2);
+  stroke.limited_ticks = sums.limited_ticks;
+  stroke.energy_limited_ticks = sums.energy_limited_ticks;
+  stroke.gated_ticks = sums.gated_ticks;
+  if (sums.wishes_known) stroke.limits = sums.limits;
+  if (sums.known && !nothing_was_wanted(sums)) stroke.wanted_rms_m = rms(sums.wanted_m2);
+  stroke.measured = measured_of(sums, stroke.wanted_rms_m);
+  if (stroke.wanted_rms_m == 0) return stroke;
+  stroke.predicted.error_db = over_db(rms(sums.difference_m2), stroke.wanted_rms_m);
+  stroke.predicted.level_db = over_db(stroke.predicted.rms_m, stroke.wanted_rms_m);
+  return stroke;
+}
+
+std::string note_of_stops(const SessionOverview& overview) {
+  return fmt::format(
+      "{} ticks were never made, for the computer stood still; {} stops were longer than 10 ms: "
+      "strokes end there",
+      overview.missing_periods, overview.stops);
+}
+
+std::string note_of_loss(const SessionOverview& overview) {
+  return fmt::format(
+      "{} ticks are missing, from tick {} on: only strokes that end before it are judged, for what "
+      "the device knew after it is not known",
+      overview.lost, *overview.lost_at);
+}
+
+std::string note_of_blindness(const SessionOverview& overview) {
+  return fmt::format(
+      "in {} ticks no count of the encoder had come for 10 ms, and the drive fell: strokes end there, "
+      "and the way until the next count is not judged",
+      overview.blind_ticks);
+}
+
+StrokeReport begun_report(const SessionOverview& overview) {
+  StrokeReport report;
+  report.low_hz = overview.header.low_hz, report.high_hz = overview.header.high_hz;
+  report.damaged = overview.damaged_at.has_value();
+  if (!overview.closed && !report.damaged)
+    report.notes.emplace_back("the session was never closed: what is in it is told");
+  if (report.damaged)
+    report.notes.push_back(
+        fmt::format("{} is damaged from byte {} on: what comes after it is not in the report", overview.path,
+                    *overview.damaged_at));
+  if (!overview.not_uploaded.empty() && !report.damaged)
+    report.notes.push_back(
+        fmt::format("{} lacks {}: the disk did not take it (was it full?), and `replay` can't "
+                    "compute its drive again",
+                    overview.path, overview.not_uploaded));
+  if (overview.lost_at)
+    report.notes.push_back(note_of_loss(overview));
+  else if (overview.missing_periods > 0)
+    report.notes.push_back(note_of_stops(overview));
+  if (overview.blind_ticks > 0) report.notes.push_back(note_of_blindness(overview));
+  return report;
+}
+
+// No stroke is an answer, too, but not without its reason.
+std::string note_of_none(const StrokeFinder& strokes, bool lost) {
+  if (lost) return "no stroke ends before it";
+  if (strokes.played() == 0) return "nothing was played: there is no stroke to judge";
+  const double longest_m = strokes.longest_way_m();
+  return fmt::format(
+      "no stroke: the finger's longest way without turning, while playing, is {}, and a stroke is at least "
+      "{}",
+      longest_m > 0 ? schema::length_for_people(longest_m) : "under 0.2 mm",
+      schema::length_for_people(kShortestStrokeM));
+}
+
+std::string note_of_unwanted(std::uint64_t unwanted, std::uint64_t all) {
+  return fmt::format(
+      "in {} of {} strokes nothing was wanted: no texture of the session lies where the finger went, or "
+      "those "
+      "that do cancel each other, so there is no wanted RMS and no error to tell",
+      unwanted, all);
+}
+
+std::string note_of_unmeasured(std::uint64_t unmeasured, std::uint64_t all) {
+  return fmt::format(
+      "in {} of {} strokes samples of the tray's sensor are missing (within 0.3 s of them): what it measured "
+      "there is not told",
+      unmeasured, all);
+}
+
+void keep_stroke(const PlayedStroke& stroke, const StrokeListener& listener, StrokeReport& report) {
+  ++report.stroke_count;
+  if (report.strokes.size() < kMostStrokesKept) report.strokes.push_back(stroke);
+  if (listener.stroke) listener.stroke(stroke);
+}
+
+}  // namespace
+
+Result<StrokeReport> report_strokes(const std::string& name, const StrokeListener& listener,
+                                    const JudgedBlocks& blocks) {
+  const auto overview = session_overview(name, part_of(listener.progress, 0, 0.1));
+  if (!overview) return schema::forward_error(overview);
+  StrokeReport report = begun_report(*overview);
+  const std::uint64_t end = overview->lost_at.value_or(UINT64_MAX);
+  if (end == 0) return report;
+  LimitTally whole;
+  std::uint64_t unwanted = 0, unmeasured = 0;
+  BlockJudge judge(*overview, blocks, [&](const StrokeSums& sums) {
+    unwanted += nothing_was_wanted(sums);
+    unmeasured += !sums.measured_known;
+    keep_stroke(stroke_of(sums), listener, report);
+  });
+  const auto each = [&](const schema::SessionTick& tick, std::optional<float> wished_v) {
+    if (wished_v) whole.add(limited_tick(tick.drive_v, *wished_v, tick.flags));
+    if (tick.tick < end) judge.take(tick, wished_v);
+  };
+  const auto unknown = hear_every_wish(name, each, part_of(listener.progress, 0.1, 1));
+  if (!unknown) return schema::forward_error(unknown);
+  judge.finish(overview->lost_at ? LastWay::cut : LastWay::whole);
+  const auto notes = report.stroke_count > 0 ? judge.notes() : std::vector<std::string>();
+  report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+  if (report.stroke_count == 0)
+    report.notes.push_back(note_of_none(judge.strokes(), overview->lost_at.has_value()));
+  if (unwanted > 0) report.notes.push_back(note_of_unwanted(unwanted, report.stroke_count));
+  if (overview->header.sensor && unmeasured > 0)
+    report.notes.push_back(note_of_unmeasured(unmeasured, report.stroke_count));
+  if (*unknown) report.notes.push_back(schema::message(**unknown));
+  if (!*unknown) report.limits = whole;
+  return report;
+}
+
+}  // namespace tacto::playback

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The band-pass that the treated Fourier filter is: the ideal kernel under a window, so that it ends.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "spatial/dsp/filter/band.hpp"
+
+namespace tacto::spatial {
+
+/// Share of the kernel's half length over which the window is 1.
+inline constexpr double kFlatShare = 0.3;
+
+/// The window at a distance of `share` of the half length: 1 up to kFlatShare, then down to 0 at 1 with three
+/// continuous derivatives.
+double kernel_window(double share);
+
+/// Taps 0 ... reach of the symmetric kernel k(n) = w(n / reach) (2 h sinc(2 h n) - 2 l sinc(2 l n)), h and l
+/// the edges over the sample rate. What lies at 0 Hz passes whole (from 0 Hz) or not at all; an edge at half
+/// the rate passes everything below it. The band's edges are as wide as the window makes them: what lies
+/// further from an edge than 2.5 sample_rate_hz / reach passes or is stopped to 1e-3, than 8 sample_rate_hz /
+/// reach to 1e-6. At least 2 taps.
+std::vector<double> band_kernel(Band band, double sample_rate_hz, std::size_t reach);
+
+}  // namespace tacto::spatial

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/dsp/filter/block_fourier_filter.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+#include "spatial/dsp/filter/band_kernel.hpp"
+#include "spatial/dsp/filter/overlap_save.hpp"
+#include "spatial/dsp/filter/record_ends.hpp"
+#include "spatial/dsp/fourier/fft.hpp"
+#include "spatial/dsp/resample/rate_chain.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+constexpr std::size_t kLongestReach = 32768;
+// The ends of a record are treated for the lowest frequency, but for no lower one than this share of the
+// highest.
+constexpr double kLowestTreated = 1.0 / 512;
+// With a gain the kernel is so much longer, for the gain's impulse response.
+constexpr double kRoomForGain = 1.25;
+constexpr std::size_t kFrame = 8192, kFewestPerFrame = 64;
+constexpr double kNothing = 1e-9;
+// More values than any record has.
+constexpr double kEndless = 1e15;
+
+double lowest_treated(Band band, double sample_rate_hz) {
+  return std::max(band.low_hz, kLowestTreated * std::min(band.high_hz, sample_rate_hz / 2));
+}
+
+std::size_t reach_of(double low_hz, double rate_hz) {
+  if (low_hz <= 0) return kLongestReach / 2;
+  const double samples = std::ceil(kBandKernelPeriods / low_hz * rate_hz);
+  return static_cast<std::size_t>(std::clamp(samples, 1.0, static_cast<double>(kLongestReach)));
+}
+
+// About as much again as the kernel takes: longer blocks cost the same per value.
+std::size_t block_length(std::size_t reach, std::size_t longest) {
+  const std::size_t usual = std::bit_ceil(std::max<std::size_t>(7 * reach / 2, 1024));
+  const bool shorter = longest < usual - 2 * reach;
+  return shorter ? fast_length(longest + 2 * reach) : usual;
+}
+
+// The gain's impulse response beyond the kernel is tapered to its end, and what lies further is left out.
+std::vector<double> shortened(std::vector<double> circle, std::size_t reach, std::size_t longer) {
+  const std::size_t length = circle.size();
+  for (std::size_t k = reach; k <= length - reach; ++k) {
+    const std::size_t distance = std::min(k, length - k);
+    const double beyond = static_cast<double>(distance - reach) / static_cast<double>(longer - reach);
+    circle[k] *= distance >= longer ? 0 : kernel_window(kFlatShare + (1 - kFlatShare) * beyond);
+  }
+  return circle;
+}
+
+KernelSpectrum with_gain(KernelSpectrum kernel, double rate_hz, const SpectralGain& gain) {
+  const double bin_hz = rate_hz / static_cast<double>(kernel.length);
+  for (std::size_t k = 0; k < kernel.bins.size(); ++k)
+    if (std::abs(kernel.bins[k]) > kNothing) kernel.bins[k] *= gain(static_cast<double>(k) * bin_hz);
+  RealFft fft(kernel.length);
+  std::vector<double> circle(kernel.length);
+  fft.inverse(kernel.bins, circle);
+  const auto longer = static_cast<std::size_t>(kRoomForGain * static_cast<double>(kernel.reach)) + 1;
+  fft.forward(shortened(std::move(circle), kernel.reach, longer), kernel.bins);
+  kernel.reach = longer;
+  return kernel;
+}
+
+// What a band's kernel is made of; the same numbers make the same kernel to the bit.
+struct KernelDesign {
+  double low_hz, high_hz, rate_hz;
+  std::size_t reach, length;
+  bool operator==(const KernelDesign&) const = default;
+};
+
+// A folder of recordings asks for one band at one rate again and again: the last kernels are kept.
+KernelSpectrum band_spectrum(const KernelDesign& wanted) {
+  constexpr std::size_t kMost = 4, kLongest = std::size_t{1} << 17;  // 1 MB each
+  static std::mutex mutex;
+  static std::deque<std::pair<KernelDesign, KernelSpectrum>> recent;
+  {
+    const std::lock_guard lock(mutex);
+    for (const auto& [design, kernel] : recent)
+      if (design == wanted) return kernel;
+  }
+  KernelSpectrum made = kernel_spectrum(
+      band_kernel({wanted.low_hz, wanted.high_hz}, wanted.rate_hz, wanted.reach), wanted.length);
+  if (wanted.length > kLongest) return made;
+  const std::lock_guard lock(mutex);
+  recent.emplace_front(wanted, made);
+  if (recent.size() > kMost) recent.pop_back();
+  return made;
+}
+
+KernelSpectrum design(Band band, double rate_hz, const SpectralGain& gain, std::size_t longest) {
+  const std::size_t reach = reach_of(band.low_hz, rate_hz);
+  const auto room = static_cast<std::size_t>(kRoomForGain * static_cast<double>(reach)) + 1;
+  const std::size_t length = block_length(gain ? room : reach, longest);
+  KernelSpectrum kernel = band_spectrum({band.low_hz, band.high_hz, rate_hz, reach, length});
+  return gain ? with_gain(std::move(kernel), rate_hz, gain) : kernel;
+}
+
+}  // namespace
+
+class BlockFourierFilter::State {
+ public:
+  State(double sample_rate_hz, Band band, const SpectralGain& gain, std::size_t longest)
+      : extended_(lowest_treated(band, sample_rate_hz), sample_rate_hz),
+        chain_(sample_rate_hz, band.high_hz),
+        frame_(std::max(kFrame, kFewestPerFrame * chain_.factor())),
+        convolution_(
+            design(band, sample_rate_hz / factor(), gain, lower_count(longest, band, sample_rate_hz))),
+        reach_s_(static_cast<double>(reach_of(band.low_hz, sample_rate_hz / factor())) * factor() /
+                 sample_rate_hz),
+        level_gain_(band.low_hz > 0 ? 0
+                    : gain          ? gain(0).real()
+                                    : 1) {
+    reset();
+  }
+
+  double reach_s() const { return reach_s_; }
+
+  void push(std::span<const double> values, std::vector<double>& out) {
+    taken_ += values.size();
+    if (!values.empty()) first_ = taken_ == values.size() ? values.front() : first_;
+    while (!values.empty()) {
+      const auto chunk = values.first(std::min(values.size(), frame_));
+      extended_.push(chunk, waiting_);
+      run_frames(out);
+      values = values.subspan(chunk.size());
+    }
+  }
+
+  void finish(std::vector<double>& out) {
+    if (taken_ == 1) out.push_back(level_gain_ * first_);
+    if (taken_ > 1) finish_record(out);
+    reset();
+  }
+
+  void reset() {
+    extended_.reset();
+    chain_.reset();
+    convolution_.reset();
+    waiting_.assign(lead(), 0.0);
+    taken_ = passed_ = 0;
+  }
+
+ private:
+  double factor() const { return static_cast<double>(chain_.factor()); }
+  // Zeros before the record, so that what the chain remembers of them is true.
+  std::size_t lead() const { return chain_.memory() / chain_.factor() * chain_.factor(); }
+  // Values that come out before the record's first.
+  std::size_t late() const { return lead() + chain_.delay() + extended_.padding(); }
+
+  // How many values of the lower rate the longest record takes, with what is beyond its ends.
+  std::size_t lower_count(std::size_t longest, Band band, double sample_rate_hz) const {
+    const EndTreatment ends = EndTreatment::for_lowest(lowest_treated(band, sample_rate_hz), sample_rate_hz,
+                                                       std::max<std::size_t>(longest, 2));
+    const double beyond = 2 * static_cast<double>(ends.padding) + 4 * static_cast<double>(chain_.memory());
+    const double lower = (static_cast<double>(longest) + beyond) / factor() + 1;
+    return lower < kEndless ? static_cast<std::size_t>(lower) : longest;
+  }
+
+  void run_frames(std::vector<double>& out) {
+    std::size_t begin = 0;
+    for (; waiting_.size() - begin >= frame_; begin += frame_)
+      convolution_.push(chain_.down(std::span(waiting_).subspan(begin, frame_)), sink_to(out));
+    if (begin > 0) waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(begin));
+  }
+
+  OverlapSave::Sink sink_to(std::vector<double>& out) {
+    return [this, &out](std::span<const double> lower) {
+      const std::size_t most = frame_ / chain_.factor();
+      for (; !lower.empty(); lower = lower.subspan(std::min(most, lower.size())))
+        give(chain_.up(lower.first(std::min(most, lower.size()))), out);
+    };
+  }
+
+  // Leaves out what is before the record and beyond its end.
+  void give(std::span<const double> values, std::vector<double>& out) {
+    const std::size_t begin = passed_, end = passed_ + values.size();
+    passed_ = end;
+    const std::size_t from = std::clamp(late(), begin, end), to = std::clamp(late() + taken_, begin, end);
+    const double level = level_gain_ * extended_.start_level();
+    const auto wanted = values.subspan(from - begin, to - from);
+    out.insert(out.end(), wanted.begin(), wanted.end());
+    if (level != 0)
+      for (double& value : std::span(out).last(wanted.size())) value += level;
+  }
+
+  // After its end the record stays level: once the chain knows nothing else, the lower rate has that level.
+  void finish_record(std::vector<double>& out) {
+    extended_.finish(waiting_);
+    const std::size_t size = waiting_.size() + chain_.memory();
+    waiting_.resize((size + frame_ - 1) / frame_ * frame_, extended_.final_value());
+    run_frames(out);
+    const std::size_t needed = (late() + taken_ + chain_.factor() - 1) / chain_.factor();
+    convolution_.finish(extended_.final_value(), needed, sink_to(out));
+  }
+
+  ExtendedRecord extended_;
+  RateChain chain_;
+  std::size_t frame_;
+  OverlapSave convolution_;
+  double reach_s_;
+  double level_gain_;  // of a record's level, which is taken out of it
+  std::vector<double> waiting_;
+  std::size_t taken_ = 0, passed_ = 0;
+  double first_ = 0;
+};
+
+BlockFourierFilter::BlockFourierFilter(double sample_rate_hz, Band band, const SpectralGain& gain,
+                                       std::size_t longest)
+    : state_(std::make_unique<State>(sample_rate_hz, band, gain, longest)) {
+  assert(sample_rate_hz > 0 && band.low_hz >= 0 && band.low_hz < band.high_hz);
+}
+BlockFourierFilter::BlockFourierFilter(BlockFourierFilter&&) noexcept = default;
+BlockFourierFilter& BlockFourierFilter::operator=(BlockFourierFilter&&) noexcept = default;
+BlockFourierFilter::~BlockFourierFilter() = default;
+
+void BlockFourierFilter::push(std::span<const double> values, std::vector<double>& out) {
+  state_->push(values, out);
+}
+
+void BlockFourierFilter::finish(std::vector<double>& out) {
+  state_->finish(out);
+}
+
+void BlockFourierFilter::reset() {
+  state_->reset();
+}
+
+double BlockFourierFilter::reach_s() const {
+  return state_->reach_s();
+}
+
+}  // namespace tacto::spatial

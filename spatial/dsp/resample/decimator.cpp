@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/dsp/resample/decimator.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#include "spatial/dsp/resample/low_pass.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+// Four numbers in one register on every machine that we build for (GCC's and Clang's vector extension).
+using Quad = float __attribute__((vector_size(16)));
+constexpr std::size_t kQuads = 8;  // at a time: their sums stay in registers
+constexpr std::size_t kLane = 4 * kQuads;
+
+Quad quad_at(const float* values) {
+  Quad quad;
+  std::memcpy(&quad, values, sizeof quad);
+  return quad;
+}
+
+std::vector<float> single(const std::vector<double>& values) {
+  return {values.begin(), values.end()};
+}
+
+void sum_lane(std::span<const Tap> taps, std::size_t at, float* out) {
+  Quad sums[kQuads] = {};
+  for (const Tap& tap : taps) {
+    const float* source = tap.source + at;
+    for (std::size_t i = 0; i < kQuads; ++i) sums[i] += tap.weight * quad_at(source + 4 * i);
+  }
+  std::memcpy(out, sums, sizeof sums);
+}
+
+// Small weights first: what is added while the sum is small is rounded little (9 dB on the whole).
+void order(std::vector<Tap>& taps) {
+  std::ranges::sort(taps, {}, [](const Tap& tap) { return std::abs(tap.weight); });
+}
+
+// The usual case, in a form that compilers vectorise.
+void deal_to_four(std::span<const float> values, std::vector<std::vector<float>>& hands) {
+  const std::size_t rounds = values.size() / 4;
+  const float* __restrict from = values.data();
+  float* __restrict first = hands[0].data();
+  float* __restrict second = hands[1].data();
+  float* __restrict third = hands[2].data();
+  float* __restrict fourth = hands[3].data();
+  for (std::size_t i = 0; i < rounds; ++i) {
+    first[i] = from[4 * i];
+    second[i] = from[4 * i + 1];
+    third[i] = from[4 * i + 2];
+    fourth[i] = from[4 * i + 3];
+  }
+}
+
+void deal(std::span<const float> values, std::vector<std::vector<float>>& hands) {
+  const std::size_t players = hands.size(), rounds = values.size() / players;
+  if (players == 4) return deal_to_four(values, hands);
+  for (std::size_t player = 0; player < players; ++player)
+    for (std::size_t i = 0; i < rounds; ++i) hands[player][i] = values[i * players + player];
+}
+
+}  // namespace
+
+void weighted_sum(std::span<const Tap> taps, std::span<float> out) {
+  std::size_t at = 0;
+  for (; at + kLane <= out.size(); at += kLane) sum_lane(taps, at, out.data() + at);
+  for (; at < out.size(); ++at) {
+    out[at] = 0;
+    for (const Tap& tap : taps) out[at] += tap.weight * tap.source[at];
+  }
+}
+
+Decimator::Decimator(const Decimation& d, std::size_t longest_block)
+    : factor_(d.factor), grid_(d.grid), phases_(d.factor / d.grid) {
+  assert(factor_ > 1 && factor_ % grid_ == 0);
+  const auto grid = static_cast<double>(grid_);
+  if (grid_ > 1) coarse_ = single(low_pass(d.pass, coarse_stop(d)));
+  if (phases_ > 1) fine_ = single(low_pass(d.pass * grid, d.stop * grid));
+  coarse_reach_ = coarse_.size() / 2;
+  fine_reach_ = fine_.size() / 2;
+  const std::size_t gridded = longest_block / grid_ + 1 + 2 * fine_reach_;
+  split_.assign(grid_, std::vector<float>(gridded + coarse_.size() / grid_ + 1));
+  gridded_.resize(gridded);
+  smooth_.resize(gridded);
+  phase_.assign(phases_, std::vector<float>(gridded / phases_ + 1));
+}
+
+// gridded[i] = sum_u coarse[u] samples[grid i + u]; with u = grid a + q, sample grid (i + a) + q is the
+// (i + a)-th of start q.
+void Decimator::to_grid(std::span<const float> samples, std::size_t count) {
+  deal(samples, split_);
+  taps_.clear();
+  for (std::size_t u = 0; u < coarse_.size(); ++u)
+    taps_.push_back({split_[u % grid_].data() + u / grid_, coarse_[u]});
+  order(taps_);
+  weighted_sum(taps_, std::span(gridded_).first(count));
+}
+
+void Decimator::to_phases(std::span<const float> values) {
+  deal(values, phase_);
+  for (std::size_t rest = values.size() / phases_ * phases_; rest < values.size(); ++rest)
+    phase_[rest % phases_][rest / phases_] = values[rest];
+}
+
+void Decimator::run(std::span<const float> samples, std::size_t length) {
+  assert(samples.size() == length + 2 * reach() + grid_);
+  const std::size_t points = length / grid_ + 1;
+  std::span<const float> on_grid = samples;
+  if (grid_ > 1) {
+    to_grid(samples, points + 2 * fine_reach_);
+    on_grid = std::span(gridded_).first(points + 2 * fine_reach_);
+  }
+  if (phases_ == 1) return to_phases(on_grid.first(points));
+  taps_.clear();
+  for (std::size_t u = 0; u < fine_.size(); ++u) taps_.push_back({on_grid.data() + u, fine_[u]});
+  order(taps_);
+  const auto smooth = std::span(smooth_).first(points);
+  weighted_sum(taps_, smooth);
+  to_phases(smooth);
+}
+
+const float* Decimator::from(std::size_t offset) const {
+  assert(offset % grid_ == 0);
+  const std::size_t point = offset / grid_;
+  return phase_[point % phases_].data() + point / phases_;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/features/description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "data-schema/base/quantity.hpp"
+#include "spatial/features/steady_part.hpp"
+#include "spatial/features/third_octaves.hpp"
+#include "spatial/numbers/welch.hpp"
+#include "spatial/texture/make_texture.hpp"
+#include "spatial/texture/valid_band.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::BandPoint;
+using schema::Description;
+using schema::Dimension;
+using schema::Fault;
+using schema::Result;
+using schema::Texture;
+using schema::ThirdOctaveBand;
+
+BandPoint valid_band_of(const Texture& texture) {
+  if (texture.valid_band.empty()) return {0, 0, INFINITY};
+  return band_throughout(texture.valid_band);
+}
+
+// Long enough to tell the lowest band from its neighbours, as short as steadies the estimate.
+double usual_window_m(const Texture& texture, double low_per_m) {
+  constexpr double kWavelengths = 8;
+  const double length_m = static_cast<double>(texture.signal.values.size()) * texture.signal.pitch_m;
+  const double wanted_m = low_per_m > 0 ? std::max(kWavelengths / low_per_m, length_m / 4) : length_m / 4;
+  return std::min(wanted_m, length_m);
+}
+
+Result<std::size_t> window_samples(const Texture& texture, const DescriptionOptions& options,
+                                   double low_per_m) {
+  const double pitch_m = texture.signal.pitch_m;
+  const std::size_t have = texture.signal.values.size();
+  const double wanted = options.window_m.value_or(usual_window_m(texture, low_per_m)) / pitch_m;
+  const double samples =
+      options.window_m ? wanted : std::max(wanted, static_cast<double>(kShortestWelchWindow));
+  if (std::isfinite(samples) && samples >= kShortestWelchWindow - 0.5 &&
+      samples < static_cast<double>(have) + 0.5)
+    return static_cast<std::size_t>(std::llround(samples));
+  return schema::fail(
+      Fault::usage,
+      fmt::format("a window of {} can't be used", schema::for_people(wanted * pitch_m, Dimension::length)),
+      "window",
+      fmt::format("take {} to {} (the texture)",
+                  schema::for_people(kShortestWelchWindow * pitch_m, Dimension::length),
+                  schema::for_people(static_cast<double>(have) * pitch_m, Dimension::length)));
+}
+
+std::vector<ThirdOctaveBand> bands_of(const WelchSpectrum& spectrum, double low_per_m, double high_per_m) {
+  auto bands = third_octaves(low_per_m, high_per_m);
+  for (ThirdOctaveBand& band : bands) {
+    const double from = std::max(band.low_per_m, low_per_m), to = std::min(band.high_per_m, high_per_m);
+    const double power = spectrum.power(from, to);
+    band.rms = std::sqrt(power);
+    band.density = power / (to - from);
+  }
+  return bands;
+}
+
+// Weighted least squares; see the header.
+double slope_of(const std::vector<ThirdOctaveBand>& bands, double low_per_m, double high_per_m) {
+  if (!(high_per_m >= 2 * low_per_m)) return NAN;
+  double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
+  for (const ThirdOctaveBand& band : bands) {
+    if (!(band.density > 0)) continue;
+    const double from = std::max(band.low_per_m, low_per_m), to = std::min(band.high_per_m, high_per_m);
+    const double weight = std::log2(to / from);
+    const double x = 0.5 * std::log2(from * to), y = 10 * std::log10(band.density);
+    w += weight;
+    wx += weight * x;
+    wy += weight * y;
+    wxx += weight * x * x;
+    wxy += weight * x * y;
+  }
+  const double spread = w * wxx - wx * wx;
+  return spread > 0 ? (w * wxy - wx * wy) / spread : NAN;
+}
+
+Description header_of(const Texture& texture, const SteadyPart& part) {
+  Description description;
+  description.quantity = texture.quantity;
+  description.unit = texture.unit;
+  description.length_m = texture.signal.length_m();
+  description.from_m = part.from_m;
+  description.to_m = part.to_m;
+  description.pitch_m = texture.signal.pitch_m;
+  description.mean_speed_mps = texture.source.mean_speed_mps;
+  description.total_rms = rms_of(part.texture);
+  description.simulated = texture.simulated;
+  return description;
+}
+
+void add_spectrum(Description& description, const WelchSpectrum& spectrum) {
+  const double low = description.low_per_m, high = description.high_per_m;
+  const double power = spectrum.power(low, high);
+  description.rms = std::sqrt(power);
+  description.centroid_per_m = power > 0 ? spectrum.moment(low, high) / power : NAN;
+  description.bands = bands_of(spectrum, low, high);
+  description.slope_db_per_octave = slope_of(description.bands, low, high);
+}
+
+}  // namespace
+
+Result<Description> describe(const Texture& texture, const DescriptionOptions& options) {
+  if (texture.signal.values.size() < kShortestWelchWindow)
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("has {} samples, too few for a spectrum", texture.signal.values.size()),
+                        "texture");
+  const SteadyPart part = steady_part(texture);
+  const BandPoint valid = valid_band_of(part.texture);
+  const auto window = window_samples(part.texture, options, valid.low_per_m);
+  if (!window) return schema::forward_error(window);
+  Description description = header_of(texture, part);
+  description.window_m = static_cast<double>(*window) * texture.signal.pitch_m;
+  description.low_per_m = std::max(valid.low_per_m, 1.5 / description.window_m);
+  description.high_per_m = std::min(valid.high_per_m, 0.5 / texture.signal.pitch_m);
+  if (!(description.low_per_m < description.high_per_m))
+    return schema::fail(Fault::unsuitable, "no band is valid along the steady part of the texture", "texture",
+                        "make it from a stretch of steadier speed, or take a longer --window");
+  add_spectrum(description, WelchSpectrum(part.texture.signal.values, texture.signal.pitch_m, *window));
+  return description;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/features/formants.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spatial/features/ridge_tracker.hpp"
+#include "spatial/numbers/robust_statistics.hpp"
+#include "spatial/spectrogram/known_bins.hpp"
+#include "spatial/spectrogram/spectrogram_background.hpp"
+#include "spatial/spectrogram/spectrogram_summary.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+using schema::Formant;
+using schema::Result;
+using schema::Spectrogram;
+
+// Half the amplitude: what is left of a line where the window's middle meets its end.
+constexpr double kEnd_db = 6.0206;
+
+Result<void> check(const Spectrogram& spectrogram, const FormantOptions& options) {
+  if (!std::isfinite(options.start_db) || !std::isfinite(options.go_on_db) ||
+      options.go_on_db > options.start_db)
+    return schema::fail(Fault::usage, "a ridge starts at a prominence no lower than that at which it goes on",
+                        "formants", "13 and 8 dB are usual");
+  for (const auto& length_m : {options.shortest_m, options.bridge_m})
+    if (length_m && !(std::isfinite(*length_m) && *length_m >= 0))
+      return schema::fail(Fault::usage, "a length must be 0 or more", "formants");
+  if (spectrogram.scaling != schema::Scaling::density)
+    return schema::fail(Fault::unsuitable, "formants are found in densities, not in amplitudes",
+                        spectrogram.name);
+  if (spectrogram.position_m.empty() || spectrogram.bins < 3)
+    return schema::fail(Fault::unsuitable, "the spectrogram has nothing to find formants in",
+                        spectrogram.name);
+  return {};
+}
+
+std::vector<Ridge> all_ridges(const Spectrogram& spectrogram, const FormantOptions& options) {
+  const auto known = known_bins(spectrogram);
+  const SpectrogramBackground background(spectrogram, known);
+  const double bridge_m = options.bridge_m.value_or(spectrogram.window_m / 2);
+  RidgeTracker tracker(resolution_per_m(spectrogram) / 2,
+                       static_cast<std::size_t>(std::lround(bridge_m / spectrogram.hop_m)));
+  for (std::size_t row = 0; row < known.size(); ++row)
+    tracker.add_row(row, ridge_points(spectrogram, row, known[row], background, options.go_on_db));
+  return tracker.finish();
+}
+
+double level_of(const RidgePoint& point) {
+  return 10 * std::log10(point.density);
+}
+
+// How many points from the ridge's beginning lie more than 6 dB under the strongest within a window from
+// there.
+template <class Iterator>
+std::ptrdiff_t faint_points(Iterator begin, Iterator end, std::size_t window_rows) {
+  const auto away = [&](const RidgePoint& p) {
+    return p.row > begin->row ? p.row - begin->row : begin->row - p.row;
+  };
+  double strongest = level_of(*begin);
+  for (auto p = begin; p != end && away(*p) <= window_rows; ++p)
+    strongest = std::max(strongest, level_of(*p));
+  return std::find_if(begin, end, [&](const RidgePoint& p) { return level_of(p) >= strongest - kEnd_db; }) -
+         begin;
+}
+
+void cut_ends(Ridge& ridge, std::size_t window_rows) {
+  ridge.erase(ridge.begin(), ridge.begin() + faint_points(ridge.begin(), ridge.end(), window_rows));
+  ridge.erase(ridge.end() - faint_points(ridge.rbegin(), ridge.rend(), window_rows), ridge.end());
+}
+
+void add_track(Formant& formant, const Spectrogram& spectrogram, const Ridge& ridge) {
+  const LevelReference reference = level_reference(spectrogram);
+  for (const RidgePoint& point : ridge)
+    formant.track.push_back({spectrogram.position_m[point.row], point.frequency_per_m,
+                             level_db(point.density, reference), point.prominence_db});
+}
+
+void add_strength(Formant& formant, const Spectrogram& spectrogram, const Ridge& ridge) {
+  double power = 0, weighted = 0, prominence = 0;
+  for (const RidgePoint& point : ridge) {
+    power += point.density;
+    weighted += point.density * point.frequency_per_m;
+    prominence += point.prominence_db;
+  }
+  const auto count = static_cast<double>(ridge.size());
+  const LevelReference reference = level_reference(spectrogram);
+  const auto peak = std::ranges::max_element(ridge, {}, &RidgePoint::density);
+  formant.frequency_per_m = weighted / power;
+  formant.level_db = level_db(power / count, reference);
+  formant.prominence_db = prominence / count;
+  formant.peak_level_db = level_db(peak->density, reference);
+  formant.peak_position_m = spectrogram.position_m[peak->row];
+}
+
+void add_extent(Formant& formant, const Spectrogram& spectrogram, const Ridge& ridge) {
+  const auto [lowest, highest] = std::ranges::minmax_element(ridge, {}, &RidgePoint::frequency_per_m);
+  std::vector<double> widths;
+  for (const RidgePoint& point : ridge) widths.push_back(point.width_per_m);
+  formant.from_m = spectrogram.position_m[ridge.front().row];
+  formant.to_m = spectrogram.position_m[ridge.back().row];
+  formant.open_from = ridge.front().row == 0;
+  formant.open_to = ridge.back().row + 1 == spectrogram.position_m.size();
+  formant.lowest_per_m = lowest->frequency_per_m;
+  formant.highest_per_m = highest->frequency_per_m;
+  formant.width_per_m = median_of(widths);
+}
+
+Formant formant_of(const Spectrogram& spectrogram, const Ridge& ridge) {
+  Formant formant;
+  add_track(formant, spectrogram, ridge);
+  add_strength(formant, spectrogram, ridge);
+  add_extent(formant, spectrogram, ridge);
+  return formant;
+}
+
+bool long_enough(const Formant& formant, double shortest_m) {
+  return formant.to_m - formant.from_m >= shortest_m * (1 - 1e-9);
+}
+
+}  // namespace
+
+Result<std::vector<Formant>> find_formants(const Spectrogram& spectrogram, const FormantOptions& options) {
+  if (auto checked = check(spectrogram, options); !checked) return schema::forward_error(checked);
+  const double whole_m = spectrogram.position_m.back() - spectrogram.position_m.front();
+  const double shortest_m = std::min(options.shortest_m.value_or(spectrogram.window_m / 2), whole_m);
+  const auto window_rows = static_cast<std::size_t>(std::lround(spectrogram.window_m / spectrogram.hop_m));
+  std::vector<Formant> formants;
+  for (Ridge& ridge : all_ridges(spectrogram, options)) {
+    if (std::ranges::max(ridge, {}, &RidgePoint::prominence_db).prominence_db < options.start_db) continue;
+    cut_ends(ridge, window_rows);
+    Formant formant = formant_of(spectrogram, ridge);
+    if (long_enough(formant, shortest_m)) formants.push_back(std::move(formant));
+  }
+  std::ranges::sort(formants, std::greater(), &Formant::peak_level_db);
+  return formants;
+}
+
+Result<schema::FormantTable> formant_table(const Spectrogram& spectrogram, const FormantOptions& options) {
+  auto formants = find_formants(spectrogram, options);
+  if (!formants) return schema::forward_error(formants);
+  return schema::FormantTable{spectrogram.name,
+                              spectrogram.quantity,
+                              spectrogram.unit,
+                              level_reference(spectrogram).unit,
+                              spectrogram.window_m,
+                              spectrogram.hop_m,
+                              resolution_per_m(spectrogram),
+                              options.start_db,
+                              options.go_on_db,
+                              spectrogram.simulated,
+                              std::move(*formants)};
+}
+
+}  // namespace tacto::spatial

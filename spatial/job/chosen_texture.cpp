@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/job/chosen_texture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "spatial/dsp/filter/block_fourier_filter.hpp"
+#include "spatial/texture/band_share.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Fault;
+using schema::Result;
+
+Result<TextureNeed> need_of(const SpatialOptions& options, const TextureOptions& wanted,
+                            const TouchRecord& record, const std::vector<StrokeJob>& jobs) {
+  if (wanted.filter.method != FilterMethod::fourier || wanted.space)
+    return schema::fail(Fault::usage, "an error can only be promised of a band that ends",
+                        options.chosen_by.budget.max_error ? "--max-error" : "--quality",
+                        "leave --filter and --band-in away, or name --method and --grid yourself");
+  const double rate_hz = record.header().sample_rate_hz;
+  TextureNeed need{rate_hz, wanted.filter.passed(rate_hz).high_hz, 1e300, options.method, options.pitch_m};
+  for (const StrokeJob& job : jobs)
+    need.slowest_mps = std::min(need.slowest_mps, record.mean_speed_mps(job.stroke));
+  return need;
+}
+
+Report row_of(const TextureChoice& choice, const TextureChoice& taken) {
+  const bool is_taken = choice.method == taken.method && choice.pitch_m == taken.pitch_m;
+  return Report()
+      .add("method", std::string(name_of(choice.method)))
+      .add("grid_m", choice.pitch_m)
+      .add("error_percent", 100 * choice.error)
+      .add("cost_us_per_mm", 1e-6 * choice.cost_ns_per_m)
+      .add("kib_per_mm", 1e-3 * choice.bytes_per_m / 1024)
+      .add("taken", is_taken);
+}
+
+std::string asked(const schema::Budget& budget) {
+  return budget.most_exact() ? "the most exact" : fmt::format("at most {:g} %", 100 * budget.most_error());
+}
+
+// The promise is of the force behind the band-pass, so what this takes is told by itself, as measured.
+std::string counts_not(double lowest_hz, const BandShare& share) {
+  return fmt::format(
+      "what the band-pass itself takes: in this recording's worst stroke {:.3g} % of the RMS of what passes, "
+      "{:.3g} % in its middle half (what lies outside of the band: drift, slow friction, the force's steps "
+      "where the finger sets out and stops); what lies within {:.2g} s beyond the record's ends, which "
+      "nobody "
+      "knows; the encoder's rounding and noise; a speed that comes and goes within {:g} frames; slower "
+      "places "
+      "(the valid band says how far they reach)",
+      100 * share.whole, 100 * share.inside, kBandKernelPeriods / lowest_hz, kSteadyFrames);
+}
+
+Result<BandShare> share_of(const TextureOptions& wanted, const TouchRecord& record,
+                           const std::vector<StrokeJob>& jobs) {
+  std::vector<Stroke> strokes;
+  for (const StrokeJob& job : jobs) strokes.push_back(job.stroke);
+  return band_share(record, wanted.filter, strokes);
+}
+
+void explain(Report& report, const TextureChoices& choices, const TextureNeed& need, double lowest_hz,
+             const BandShare& share, const schema::FoundTradeTable& found) {
+  report.add("by_table", found.origin);
+  report.add("counts",
+             fmt::format("what method and grid lose of {:g} Hz and below, read between the grid's points, "
+                         "where the finger goes at {} or more",
+                         need.highest_hz,
+                         schema::for_people(kPromisedSpeed * need.slowest_mps, schema::Dimension::speed)));
+  report.add("band_pass_took_percent", 100 * share.whole)
+      .add("band_pass_took_inside_percent", 100 * share.inside);
+  report.add("counts_not", counts_not(lowest_hz, share));
+  std::vector<Report> rows;
+  for (const TextureChoice& choice : choices.tried) rows.push_back(row_of(choice, choices.taken));
+  report.add("tried", std::move(rows));
+}
+
+}  // namespace
+
+Result<ChosenTexture> choose_texture(const SpatialOptions& options, const TextureOptions& wanted,
+                                     const TouchRecord& record, const std::vector<StrokeJob>& jobs) {
+  const schema::Budget& budget = options.chosen_by.budget;
+  const auto need = need_of(options, wanted, record, jobs);
+  if (!need) return schema::forward_error(need);
+  const auto found = schema::find_trade_table();
+  if (!found) return schema::forward_error(found);
+  auto choices = choose_texture(found->table, *need, budget);
+  if (!choices) {
+    if (choices.error().where.empty()) choices.error().where = record.where();
+    return schema::forward_error(choices);
+  }
+  ChosenTexture chosen{wanted, {}};
+  chosen.options.method = choices->taken.method;
+  chosen.options.pitch_m = choices->taken.pitch_m;
+  chosen.report.add("method", std::string(name_of(choices->taken.method)))
+      .add("promised_error_percent", 100 * choices->taken.error)
+      .add("asked_error", asked(budget))
+      .add("promise_is", "against the force behind the same band-pass; what that takes: --explain");
+  if (!options.chosen_by.explain) return chosen;
+  const auto share = share_of(wanted, record, jobs);
+  if (!share) return schema::forward_error(share);
+  explain(chosen.report, *choices, *need, wanted.filter.passed(need->sample_rate_hz).low_hz, *share, *found);
+  return chosen;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/job/spatial_batch.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <thread>
+
+#include "data-schema/kinds/file_kind.hpp"
+#include "data-schema/report/progress.hpp"
+#include "spatial/job/spatial_recording.hpp"
+#include "spatial/job/spatial_takes.hpp"
+#include "spatial/job/texture_names.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Fault;
+using schema::Result;
+
+struct Sorted {
+  std::vector<std::string> recordings, skipped;
+};
+
+// A name that stands for no recording is skipped; one that stands for nothing is left to fail by itself.
+Sorted sorted(const std::vector<std::string>& names) {
+  Sorted result;
+  for (const std::string& name : names) {
+    const auto files = schema::stored_files(name);
+    const bool other = files && files->front().kind != schema::FileKind::recording;
+    if (other)
+      result.skipped.push_back(fmt::format("{} ({})", name, schema::kind_name(files->front().kind)));
+    else
+      result.recordings.push_back(name);
+  }
+  return result;
+}
+
+// Works on the recordings, `jobs` at a time; outcomes come in the order of their names.
+class Batch {
+ public:
+  Batch(const SpatialOptions& options, const std::vector<std::string>& names,
+        const std::vector<std::string>& stems)
+      : options_(options), names_(names), stems_(stems), outcomes_(names.size()), done_(names.size(), 0.0) {}
+
+  const std::vector<SpatialOutcome>& run() {
+    {
+      const auto jobs = std::min(static_cast<std::size_t>(options_.jobs), names_.size());
+      std::vector<std::jthread> workers;
+      for (std::size_t j = 0; j < jobs; ++j) workers.emplace_back([this] { work(); });
+    }
+    return outcomes_;
+  }
+
+ private:
+  void work() {
+    for (std::size_t i = next_++; i < names_.size(); i = next_++) {
+      outcomes_[i] =
+          spatial_recording(options_, names_[i], stems_[i], [this, i](double part) { update(i, part); });
+      update(i, 1);
+    }
+  }
+
+  void update(std::size_t i, double fraction) {
+    const std::lock_guard lock(printing_);
+    done_[i] = fraction;
+    progress_.update(std::accumulate(done_.begin(), done_.end(), 0.0) / static_cast<double>(done_.size()));
+  }
+
+  const SpatialOptions& options_;
+  const std::vector<std::string>&names_, &stems_;
+  std::vector<SpatialOutcome> outcomes_;
+  std::vector<double> done_;  // fraction of each
+  std::atomic<std::size_t> next_ = 0;
+  std::mutex printing_;
+  cli::Progress progress_{"recordings"};
+};
+
+Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<std::string>& skipped) {
+  std::vector<Report> made;
+  std::vector<std::string> failed;
+  std::optional<Fault> fault;
+  for (const SpatialOutcome& outcome : outcomes) {
+    if (outcome.report) {
+      made.push_back(*outcome.report);
+      continue;
+    }
+    failed.push_back(schema::message(outcome.report.error()));
+    fault = fault.value_or(outcome.report.error().fault);
+  }
+  Report report;
+  report.add("done", made.size());
+  report.add("recordings", std::move(made));
+  if (!skipped.empty()) report.add("skipped", skipped);
+  if (fault) report.add("failed", std::move(failed)).ends_with(*fault);
+  return report;
+}
+
+}  // namespace
+
+Result<Report> spatial_batch(const SpatialOptions& options) {
+  const Sorted files = sorted(options.recordings);
+  if (!files.skipped.empty())
+    cli::warn(fmt::format("skipped, no recordings: {}", fmt::join(files.skipped, ", ")));
+  if (files.recordings.empty())
+    return schema::fail(Fault::unsuitable, "there is no recording among the files");
+  if (asks_for_takes(options)) return spatial_takes(options, files.recordings);
+  const auto stems = texture_stems(files.recordings, options.output);
+  if (!stems) return schema::forward_error(stems);
+  Batch batch(options, files.recordings, *stems);
+  const auto& outcomes = batch.run();
+  // Of all recordings together: a folder of them may have one warning of a kind each.
+  std::vector<cli::Warning> warnings;
+  for (const SpatialOutcome& outcome : outcomes)
+    warnings.insert(warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+  cli::warn_grouped(warnings);
+  for (const SpatialOutcome& outcome : outcomes)
+    if (!outcome.report) cli::warn("failed: " + schema::message(outcome.report.error()));
+  return report_of(outcomes, files.skipped);
+}
+
+}  // namespace tacto::spatial

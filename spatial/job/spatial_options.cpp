@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/job/spatial_options.hpp"
+
+#include "data-schema/command/output_options.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Dimension;
+using schema::Fault;
+using schema::Result;
+
+std::string where_of_band(const std::string& text) {
+  return "--band " + text;
+}
+
+struct Edge {
+  double low, high;
+};
+
+// LOW..HIGH, in Hz or in cycles per length.
+Result<Edge> parse_band(const std::string& text, Dimension dimension) {
+  const std::size_t dots = text.find("..");
+  if (dots == std::string::npos)
+    return schema::fail(
+        Fault::usage, "is neither 'off' nor two frequencies", where_of_band(text),
+        dimension == Dimension::frequency ? "write it like 15Hz..500Hz" : "write it like 0.5/mm..10/mm");
+  const auto end = [&](const std::string& words) -> Result<double> {
+    auto value = schema::parse_quantity(words, dimension);
+    if (!value) value.error().where = where_of_band(text);
+    return value;
+  };
+  const auto low = end(text.substr(0, dots)), high = end(text.substr(dots + 2));
+  if (!low) return schema::forward_error(low);
+  if (!high) return schema::forward_error(high);
+  if (*low < *high) return Edge{*low, *high};
+  return schema::fail(Fault::usage, "does not rise", where_of_band(text), "write the lower end first");
+}
+
+Result<SpaceFilter> space_filter(const SpatialOptions& options) {
+  const TimeFilter& filter = options.texture.filter;
+  if (options.band.empty())
+    return schema::fail(Fault::usage, "--band-in space has no band of its own", {},
+                        "say it with --band, like 0.5/mm..10/mm");
+  const auto band = parse_band(options.band, Dimension::spatial_frequency);
+  if (!band) return schema::forward_error(band);
+  return SpaceFilter{filter.method, band->low, band->high, filter.edges, filter.order};
+}
+
+void declare_stretch(CLI::App& app, SpatialOptions& options) {
+  auto* stroke = app.add_option("--stroke", options.stroke, "Only this stroke of those found, from 1");
+  auto* from = cli::add_quantity(app, "--from", options.from_s, Dimension::time,
+                                 "Only the stretch from this time on (default: the recording's start)");
+  auto* to = cli::add_quantity(app, "--to", options.to_s, Dimension::time,
+                               "Only the stretch up to this time (default: the recording's end)");
+  stroke->excludes(from)->excludes(to);
+  app.add_flag("--finger-up", options.finger_up,
+               "Textures of strokes with the finger up, too (by the normal force)");
+  app.add_flag("--list", options.list, "Only list the strokes found; write nothing");
+  auto* average =
+      app.add_flag("--average", options.average,
+                   "The mean of all strokes of a direction, and their standard deviation; of several "
+                   "recordings one mean where -o names it, else one of each");
+  average->excludes(stroke)->excludes(from)->excludes(to);
+}
+
+void declare_average(CLI::App& app, SpatialOptions& options) {
+  app.add_flag("--both-ways", options.both_ways, "Average strokes of both directions into one")
+      ->needs("--average");
+  cli::add_choice<Align>(
+      app, "--align", options.align, {{"position", Align::position}, {"correlation", Align::correlation}},
+      "Average strokes as they lie on the bench, or each shifted to agree best with those before")
+      ->needs("--average");
+  cli::add_quantity(app, "--align-range", options.align_range_m, Dimension::length,
+                    "The largest shift that --align correlation tries")
+      ->needs("--average");
+}
+
+void declare_filter(CLI::App& app, SpatialOptions& options) {
+  TimeFilter& filter = options.texture.filter;
+  auto* band =
+      app.add_option("--band", options.band, "Frequencies that pass, LOW..HIGH, or off (default 15Hz..500Hz)")
+          ->type_name("LOW..HIGH");
+  auto* band_in = cli::add_choice<BandIn>(
+      app, "--band-in", options.band_in, {{"time", BandIn::time}, {"space", BandIn::space}},
+      "Where the band-pass is: over time, before, or along position, after, "
+      "with --band in cycles per length");
+  auto* low = cli::add_quantity(app, "--low", options.low_hz, Dimension::frequency,
+                                "Lowest frequency that passes (default 15Hz)");
+  auto* high = cli::add_quantity(app, "--high", options.high_hz, Dimension::frequency,
+                                 "Highest frequency that passes (default 500Hz)");
+  band->excludes(low)->excludes(high);
+  band_in->excludes(low)->excludes(high);
+  cli::add_choice<FilterMethod>(app, "--filter", filter.method,
+                                {{"fourier", FilterMethod::fourier},
+                                 {"butterworth", FilterMethod::butterworth},
+                                 {"none", FilterMethod::none}},
+                                "fourier truncates the spectrum, butterworth runs forwards and backwards");
+  app.add_option("--order", filter.order, "Order of the Butterworth filter, before it is run both ways")
+      ->check(CLI::Range(1, 20));
+  cli::add_choice<Edges>(app, "--edges", filter.edges, {{"treated", Edges::treated}, {"none", Edges::none}},
+                         "treated keeps the record's ends from ringing, none is the plain filter");
+}
+
+}  // namespace
+
+void declare_spatial(CLI::App& app, SpatialOptions& options) {
+  app.add_option("recording", options.recordings, "Recordings, by name or file")->required();
+  app.add_option(
+      "-o,--output", options.output,
+      "Name of the texture; of several strokes, NAME-01 and on (default: the recording's). A folder, "
+      "or a name with {} for the recording's, where there are several recordings");
+  cli::declare_force(app, options.existing);
+  app.add_option("--jobs", options.jobs, "Recordings worked on at a time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--channel", options.texture.channel,
+                 "The channel that becomes the texture [tangential_force, else the only one that can]");
+  declare_stretch(app, options);
+  declare_average(app, options);
+  declare_filter(app, options);
+  cli::add_quantity(app, "--grid", options.pitch_m, Dimension::length,
+                    "Distance of the texture's samples [1um, or by --quality]");
+  cli::add_choice<std::optional<ResampleMethod>>(
+      app, "--method", options.method,
+      {{"hermite", ResampleMethod::hermite},
+       {"linear", ResampleMethod::linear},
+       {"swapped", ResampleMethod::swapped},
+       {"sinc", ResampleMethod::sinc}},
+      "How values go to space: monotone cubics and their true inverse, straight lines, cubics with "
+      "the axes swapped, or a windowed sinc at the true inverse (exact to 3e-7 up to 0.3 of the "
+      "recording's rate, ten times the work; the cubics keep nine tenths up to 0.24 of it) [hermite, or by "
+      "--quality]");
+  cli::declare_budget(app, options.chosen_by, "method and grid");
+  cli::add_choice<Equalise>(
+      app, "--equalise", options.texture.equalise,
+      {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
+      "Divide by the transducer's sensor response; auto: a tangential force, where the recording names one");
+}
+
+// --band, --low and --high, --filter none: all say the same thing, the filter.
+Result<TextureOptions> texture_options(const SpatialOptions& options) {
+  TextureOptions texture = options.texture;
+  texture.method = options.method.value_or(texture.method);
+  texture.pitch_m = options.pitch_m.value_or(texture.pitch_m);
+  if (options.band == "off") {
+    texture.filter.method = FilterMethod::none;
+  } else if (options.band_in == BandIn::space) {
+    const auto space = space_filter(options);
+    if (!space) return schema::forward_error(space);
+    texture.space = *space;
+  } else if (!options.band.empty()) {
+    const auto band = parse_band(options.band, Dimension::frequency);
+    if (!band) return schema::forward_error(band);
+    texture.filter.band = {band->low, band->high};
+  }
+  texture.filter.band.low_hz = options.low_hz.value_or(texture.filter.band.low_hz);
+  texture.filter.band.high_hz = options.high_hz.value_or(texture.filter.band.high_hz);
+  return texture;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `tactograph spatial` is asked for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/command/budget_options.hpp"
+#include "data-schema/command/verb.hpp"
+#include "data-schema/files/files.hpp"
+#include "spatial/texture/make_texture.hpp"
+
+namespace tacto::spatial {
+
+enum class Align { position, correlation };
+enum class BandIn { time, space };
+
+struct SpatialOptions {
+  std::vector<std::string> recordings;
+  std::string output;
+  TextureOptions texture;
+  std::optional<ResampleMethod> method;  ///< where they are named
+  std::optional<double> pitch_m;
+  cli::BudgetOptions chosen_by;
+  std::string band;
+  BandIn band_in = BandIn::time;
+  std::optional<double> low_hz, high_hz, from_s, to_s;
+  std::optional<int> stroke;
+  bool list = false, finger_up = false, average = false, both_ways = false;
+  schema::Existing existing = schema::Existing::keep;
+  Align align = Align::position;
+  double align_range_m = 0.5e-3;
+  int jobs = 1;
+};
+
+/// Declares the options on the verb's parser; `options` must outlive it.
+void declare_spatial(CLI::App& app, SpatialOptions& options);
+
+/// The options of textures, with --band, --low and --high read. Errors: usage.
+schema::Result<TextureOptions> texture_options(const SpatialOptions& options);
+
+}  // namespace tacto::spatial

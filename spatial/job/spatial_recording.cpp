@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/job/spatial_recording.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/job/chosen_texture.hpp"
+#include "spatial/job/spatial_average.hpp"
+#include "spatial/job/spatial_report.hpp"
+#include "spatial/job/texture_names.hpp"
+#include "spatial/strokes/finger_contact.hpp"
+#include "spatial/texture/texture_warnings.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Fault;
+using schema::Result;
+
+// One recording on its way.
+class Run {
+ public:
+  Run(const SpatialOptions& options, std::string stem, const std::function<void(double)>& progress,
+      std::vector<cli::Warning>& warnings)
+      : options_(options), stem_(std::move(stem)), progress_(progress), warnings_(warnings) {}
+
+  Result<Report> on(const std::string& name);
+  Result<Take> take(const std::string& name);
+
+ private:
+  Result<TouchRecord> opened(const std::string& name, const TextureOptions& wanted);
+  Result<TextureMaker> ready(TouchRecord record, const TextureOptions& wanted);
+  Result<Report> list(const TouchRecord& record) const;
+  Result<std::vector<StrokeJob>> jobs(const TouchRecord& record);
+  Result<std::vector<StrokeJob>> one_job(const Result<Stroke>& stroke, int number) const;
+  Result<std::vector<StrokeJob>> found_strokes(const TouchRecord& record);
+  std::vector<StrokeJob> down_only(const TouchRecord& record, std::vector<StrokeJob> jobs);
+  Result<ChosenTexture> texture_choice(const TextureOptions& wanted, const TouchRecord& record,
+                                       const std::vector<StrokeJob>& jobs);
+  Result<Report> textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
+  Result<Report> averages(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
+  Result<void> check_names(const std::vector<std::string>& stems);
+  void warn(const std::string& text) { warnings_.push_back({"", text}); }
+  void warn_of_short_runs(const TouchRecord& record);
+  void warn_of_jumps(const TouchRecord& record);
+  void warn_of(const std::string& what, const schema::Texture& texture);
+
+  const SpatialOptions& options_;
+  std::string stem_;
+  const std::function<void(double)>& progress_;
+  std::vector<cli::Warning>& warnings_;
+};
+
+Result<Report> Run::list(const TouchRecord& record) const {
+  std::vector<Report> rows;
+  for (std::size_t i = 0; i < record.strokes().size(); ++i)
+    rows.push_back(stroke_row(record, {record.strokes()[i], static_cast<int>(i) + 1, ""}));
+  Report report;
+  report.add("recording", record.where());
+  add_position(report, record);
+  report.add("found", rows.size());
+  if (record.short_runs() > 0) report.add("shorter_passed_over", record.short_runs());
+  if (!record.jumps().empty()) report.add("position_jumps", jump_rows(record));
+  if (!rows.empty()) report.add("strokes", std::move(rows));
+  return report;
+}
+
+Result<std::vector<StrokeJob>> Run::one_job(const Result<Stroke>& stroke, int number) const {
+  if (!stroke) return schema::forward_error(stroke);
+  return std::vector<StrokeJob>{{*stroke, number, stem_}};
+}
+
+void Run::warn_of_short_runs(const TouchRecord& record) {
+  if (record.short_runs() == 0) return;
+  warn(fmt::format(
+      "{}: {} shorter than 5 % of the longest stroke {} no texture; --from and --to make one of it",
+      record.where(), record.short_runs() == 1 ? "a run" : fmt::format("{} runs", record.short_runs()),
+      record.short_runs() == 1 ? "makes" : "make"));
+}
+
+// What lies after a jump lies elsewhere on the bench than what was before it.
+void Run::warn_of_jumps(const TouchRecord& record) {
+  const auto& jumps = record.jumps();
+  if (jumps.empty()) return;
+  const auto& largest =
+      *std::ranges::max_element(jumps, {}, [](const PositionJump& jump) { return std::abs(jump.step_m); });
+  warn(fmt::format(
+      "{}: {}{}; places before and after differ by that", record.where(), record.refusal(largest).what,
+      jumps.size() == 1 ? "" : fmt::format(" ({} such jumps; this is the largest)", jumps.size())));
+}
+
+// Leaves out the strokes with the finger up, and says so.
+std::vector<StrokeJob> Run::down_only(const TouchRecord& record, std::vector<StrokeJob> jobs) {
+  std::vector<int> up;
+  for (const StrokeJob& job : jobs)
+    if (job.stroke.finger_up) up.push_back(job.number);
+  if (up.empty() || options_.finger_up) return jobs;
+  warn(
+      fmt::format("{}: finger up in stroke{} {} (normal force below {}): no texture of {}; --finger-up or "
+                  "--stroke N makes it",
+                  record.where(), up.size() == 1 ? "" : "s", fmt::join(up, ", "),
+                  why_finger_up(*record.finger_up_below_n()), up.size() == 1 ? "it" : "them"));
+  std::erase_if(jobs, [](const StrokeJob& job) { return job.stroke.finger_up; });
+  return jobs;
+}
+
+Result<std::vector<StrokeJob>> Run::found_strokes(const TouchRecord& record) {
+  std::vector<StrokeJob> all;
+  for (const Stroke& stroke : record.strokes())
+    all.push_back({stroke, static_cast<int>(all.size()) + 1, stem_});
+  if (all.empty())
+    return schema::fail(Fault::unsuitable, "no stroke was found", record.where(),
+                        "ask for a stretch with --from and --to");
+  warn_of_short_runs(record);
+  warn_of_jumps(record);
+  std::vector<StrokeJob> jobs = down_only(record, std::move(all));
+  if (jobs.empty())
+    return schema::fail(Fault::unsuitable, "in all strokes the finger was up", record.where(),
+                        "--finger-up makes textures all the same");
+  if (jobs.size() > 1)
+    for (StrokeJob& job : jobs) job.stem = fmt::format("{}-{:02}", stem_, job.number);
+  return jobs;
+}
+
+Result<std::vector<StrokeJob>> Run::jobs(const TouchRecord& record) {
+  if (options_.stroke) return one_job(record.stroke(*options_.stroke), *options_.stroke);
+  if (!options_.from_s && !options_.to_s) return found_strokes(record);
+  const Stroke whole{{0, record.header().frames}, 1};
+  const double from_s = options_.from_s.value_or(record.from_s(whole));
+  return one_job(record.stretch(from_s, options_.to_s.value_or(record.to_s(whole))), 0);
+}
+
+Result<void> Run::check_names(const std::vector<std::string>& stems) {
+  for (const std::string& stem : stems)
+    if (auto free = schema::check_texture_free(stem, options_.existing); !free) return free;
+  const auto others = other_textures(stem_, stems);
+  if (!others.empty())
+    warn(fmt::format("{} {} beside, of another run: {}", others.size() == 1 ? "a texture" : "textures",
+                     others.size() == 1 ? "lies" : "lie", fmt::join(others, ", ")));
+  return {};
+}
+
+void Run::warn_of(const std::string& what, const schema::Texture& texture) {
+  for (const TextureWarning& warning : texture_warnings(texture))
+    warnings_.push_back({what, warning.text, warning.kind, warning.size});
+}
+
+// Among several strokes found, one that makes no texture is passed over with a warning.
+Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs) {
+  std::vector<std::string> stems;
+  for (const StrokeJob& job : jobs) stems.push_back(job.stem);
+  if (auto free = check_names(stems); !free) return schema::forward_error(free);
+  schema::PendingFiles pending;
+  std::vector<Report> rows;
+  std::optional<Report> head;
+  std::optional<schema::Error> first;  // why a stroke makes no texture
+  for (const StrokeJob& job : jobs) {
+    const auto texture = maker.make(job.stroke, job.number);
+    if (!texture && (jobs.size() == 1 || texture.error().fault != Fault::unsuitable))
+      return schema::forward_error(texture);
+    if (!texture) {
+      first = first.value_or(texture.error());
+      warnings_.push_back({fmt::format("stroke {}", job.number),
+                           "makes no texture: " + schema::message(texture.error()), "no texture"});
+      continue;
+    }
+    if (auto added = schema::add_texture(pending, job.stem, *texture); !added)
+      return schema::forward_error(added);
+    if (!head) head = head_of(maker.record(), *texture);
+    warn_of(job.stem, *texture);
+    rows.push_back(texture_row(maker.record(), job, *texture));
+    progress_(static_cast<double>(&job - jobs.data() + 1) / static_cast<double>(jobs.size()));
+  }
+  if (!head) {
+    first->what = "none of the strokes found makes a texture; of the first, " + first->what;
+    return tl::unexpected(*first);
+  }
+  if (auto done = pending.commit(options_.existing); !done) return schema::forward_error(done);
+  head->add("textures", std::move(rows));
+  return std::move(*head);
+}
+
+Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& jobs) {
+  const auto groups = average_groups(jobs, options_.both_ways, stem_);
+  std::vector<std::string> stems;
+  for (const AverageGroup& group : groups) stems.push_back(group.stem);
+  if (auto free = check_names(stems); !free) return schema::forward_error(free);
+  schema::PendingFiles pending;
+  std::vector<Report> rows;
+  std::optional<Report> head;
+  for (const AverageGroup& group : groups) {
+    std::vector<std::string> left_out;
+    const auto texture = averaged(maker, group, options_, left_out, progress_);
+    for (const std::string& warning : left_out) warn(warning);
+    if (!texture && (groups.size() == 1 || texture.error().fault != Fault::unsuitable))
+      return schema::forward_error(texture);
+    if (!texture) {
+      warn(fmt::format("{}: no average: {}", group.stem, schema::message(texture.error())));
+      continue;
+    }
+    if (auto added = schema::add_texture(pending, group.stem, *texture); !added)
+      return schema::forward_error(added);
+    if (!head) head = head_of(maker.record(), *texture);
+    warn_of(group.stem, *texture);
+    rows.push_back(average_row(group.stem, *texture));
+  }
+  if (!head)
+    return schema::fail(Fault::unsuitable, "no two strokes can be averaged", maker.record().where(),
+                        "the warnings say why");
+  if (auto done = pending.commit(options_.existing); !done) return schema::forward_error(done);
+  head->add("averages", std::move(rows));
+  return std::move(*head);
+}
+
+// By the budget, where there is one.
+Result<ChosenTexture> Run::texture_choice(const TextureOptions& wanted, const TouchRecord& record,
+                                          const std::vector<StrokeJob>& jobs) {
+  if (options_.chosen_by.budget.asked()) return choose_texture(options_, wanted, record, jobs);
+  if (options_.chosen_by.explain)
+    return schema::fail(Fault::usage, "there is nothing to explain: nothing was chosen", "--explain",
+                        "add --quality or --max-error");
+  return ChosenTexture{wanted, {}};
+}
+
+Result<TouchRecord> Run::opened(const std::string& name, const TextureOptions& wanted) {
+  const auto recording = schema::open_recording(name);
+  if (!recording) return schema::forward_error(recording);
+  if (const std::string& version = recording->header.newer_version; !version.empty())
+    warn(fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", name, version));
+  // A texture says of which samples it was made.
+  if (const auto sound = schema::check_samples_sum(*recording); !sound) return schema::forward_error(sound);
+  auto record = TouchRecord::open(*recording, wanted.channel);
+  if (!record) return record;
+  if (const std::string note = channel_note(wanted, *record); !note.empty()) warn(note);
+  return record;
+}
+
+Result<TextureMaker> Run::ready(TouchRecord record, const TextureOptions& wanted) {
+  const std::string name = record.where();
+  const double rate_hz = record.header().sample_rate_hz;
+  auto maker = TextureMaker::open(std::move(record), wanted);
+  if (!maker) return maker;
+  if (const std::string lost = rate_warning(wanted, rate_hz); !lost.empty())
+    warn(fmt::format("{}: {}", name, lost));
+  return maker;
+}
+
+Result<Take> Run::take(const std::string& name) {
+  const auto wanted = texture_options(options_);
+  if (!wanted) return schema::forward_error(wanted);
+  auto record = opened(name, *wanted);
+  if (!record) return schema::forward_error(record);
+  auto chosen = jobs(*record);
+  if (!chosen) return schema::forward_error(chosen);
+  auto maker = ready(std::move(*record), *wanted);
+  if (!maker) return schema::forward_error(maker);
+  return Take{std::move(*maker), std::move(*chosen)};
+}
+
+Result<Report> Run::on(const std::string& name) {
+  const auto wanted = texture_options(options_);
+  if (!wanted) return schema::forward_error(wanted);
+  auto record = opened(name, *wanted);
+  if (!record) return schema::forward_error(record);
+  if (options_.list) return list(*record);
+  const std::size_t said = warnings_.size();
+  const auto chosen = jobs(*record);
+  if (!chosen) return schema::forward_error(chosen);
+  const auto choice = texture_choice(*wanted, *record, *chosen);
+  if (!choice) return schema::forward_error(choice);
+  auto maker = ready(std::move(*record), choice->options);
+  if (!maker) {
+    warnings_.resize(said);  // what was said of strokes that nothing comes of
+    return schema::forward_error(maker);
+  }
+  auto report = options_.average ? averages(*maker, *chosen) : textures(*maker, *chosen);
+  if (report && options_.chosen_by.budget.asked()) report->add("chosen", std::vector<Report>{choice->report});
+  return report;
+}
+
+}  // namespace
+
+SpatialOutcome spatial_recording(const SpatialOptions& options, const std::string& recording,
+                                 const std::string& stem, const std::function<void(double)>& progress) {
+  SpatialOutcome outcome;
+  outcome.report = Run(options, stem, progress, outcome.warnings).on(recording);
+  return outcome;
+}
+
+Result<Take> open_take(const SpatialOptions& options, const std::string& recording,
+                       std::vector<std::string>& warnings) {
+  const std::function<void(double)> nothing = [](double) {};
+  std::vector<cli::Warning> said;
+  auto take = Run(options, "", nothing, said).take(recording);
+  for (const cli::Warning& warning : said) warnings.push_back(cli::sentence(warning));
+  return take;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/job/spatial_takes.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "data-schema/files/files.hpp"
+#include "data-schema/report/progress.hpp"
+#include "spatial/job/spatial_average.hpp"
+#include "spatial/job/spatial_recording.hpp"
+#include "spatial/job/spatial_report.hpp"
+#include "spatial/job/texture_names.hpp"
+#include "spatial/texture/average_textures.hpp"
+#include "spatial/texture/texture_warnings.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using cli::Report;
+using schema::Fault;
+using schema::Result;
+
+// The mean of one direction, or of both.
+struct Mean {
+  std::string ending;
+  TextureAverager averager;
+};
+
+class Takes {
+ public:
+  explicit Takes(const SpatialOptions& options, std::string stem)
+      : options_(options), stem_(std::move(stem)), means_{{"-forward", {}}, {"-backward", {}}} {}
+
+  Result<void> add(const std::string& recording, const std::function<void(double)>& progress);
+  Result<Report> finish();
+
+ private:
+  std::string stem_of(const Mean& mean) const;
+
+  const SpatialOptions& options_;
+  std::string stem_;
+  std::vector<Mean> means_;
+  std::vector<Report> takes_;
+  std::vector<std::string> warnings_;
+};
+
+// All warnings of a recording name it.
+Result<void> Takes::add(const std::string& recording, const std::function<void(double)>& progress) {
+  warnings_.clear();
+  auto take = open_take(options_, recording, warnings_);
+  if (!take && take.error().fault != Fault::unsuitable) return schema::forward_error(take);
+  std::size_t strokes = 0;
+  if (!take) warnings_.push_back("left out: " + schema::message(take.error()));
+  if (take)
+    for (const AverageGroup& group : average_groups(take->jobs, options_.both_ways, "")) {
+      const bool backward = !options_.both_ways && group.jobs.front().stroke.direction < 0;
+      TextureAverager& averager = means_[backward ? 1 : 0].averager;
+      const std::size_t before = averager.strokes();
+      const auto added =
+          add_strokes(take->maker, group.jobs, {options_, warnings_, progress, true}, averager);
+      if (!added) return added;
+      strokes += averager.strokes() - before;
+    }
+  for (const std::string& warning : warnings_)
+    cli::warn(warning.starts_with(recording) ? warning : fmt::format("{}: {}", recording, warning));
+  takes_.push_back(Report().add("recording", recording).add("strokes_averaged", strokes));
+  return {};
+}
+
+std::string Takes::stem_of(const Mean& mean) const {
+  const bool both = means_.front().averager.strokes() > 0 && means_.back().averager.strokes() > 0;
+  return both ? stem_ + mean.ending : stem_;
+}
+
+Result<Report> Takes::finish() {
+  schema::PendingFiles pending;
+  std::vector<Report> rows;
+  for (const Mean& mean : means_) {
+    if (mean.averager.strokes() == 0) continue;
+    const std::string stem = stem_of(mean);
+    const auto texture = mean.averager.finish(name_of(options_.align));
+    if (!texture) {
+      cli::warn(fmt::format("{}: no average: {}", stem, schema::message(texture.error())));
+      continue;
+    }
+    if (auto free = schema::check_texture_free(stem, options_.existing); !free)
+      return schema::forward_error(free);
+    if (auto added = schema::add_texture(pending, stem, *texture); !added)
+      return schema::forward_error(added);
+    for (const TextureWarning& warning : texture_warnings(*texture)) cli::warn(stem + ": " + warning.text);
+    rows.push_back(average_row(stem, *texture));
+  }
+  if (rows.empty())
+    return schema::fail(Fault::unsuitable, "no two strokes of these recordings can be averaged", stem_,
+                        "the warnings say why; --list shows where strokes lie");
+  if (auto done = pending.commit(options_.existing); !done) return schema::forward_error(done);
+  return Report().add("takes", std::move(takes_)).add("averages", std::move(rows));
+}
+
+Result<void> check_options(const SpatialOptions& options) {
+  if (!options.chosen_by.budget.asked() && !options.chosen_by.explain) return {};
+  return schema::fail(Fault::usage, "nothing is chosen for the mean of several recordings", "--quality",
+                      "name --method and --grid");
+}
+
+}  // namespace
+
+bool asks_for_takes(const SpatialOptions& options) {
+  return options.average && !options.list && names_one_texture(options.output);
+}
+
+Result<Report> spatial_takes(const SpatialOptions& options, const std::vector<std::string>& recordings) {
+  if (auto sound = check_options(options); !sound) return schema::forward_error(sound);
+  const auto each = texture_stems(recordings, "");  // that no recording is named twice
+  if (!each) return schema::forward_error(each);
+  const auto stem = texture_stems({recordings.front()}, options.output);
+  if (!stem) return schema::forward_error(stem);
+  Takes takes(options, stem->front());
+  cli::Progress progress("takes");
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const auto tell = [&](double part) {
+      progress.update((static_cast<double>(i) + part) / static_cast<double>(recordings.size()));
+    };
+    if (auto added = takes.add(recordings[i], tell); !added) return schema::forward_error(added);
+  }
+  return takes.finish();
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A stroke or stretch that is to become a texture.
+#pragma once
+
+#include <string>
+
+#include "spatial/strokes/strokes.hpp"
+
+namespace tacto::spatial {
+
+struct StrokeJob {
+  Stroke stroke;
+  int number = 0;    ///< 0 for a stretch
+  std::string stem;  ///< the texture's
+};
+
+}  // namespace tacto::spatial

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/numbers/robust_statistics.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace tacto::spatial {
+
+template <class Value>
+double median_of(std::vector<Value>& values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return static_cast<double>(*middle);
+}
+
+template double median_of(std::vector<float>& values);
+template double median_of(std::vector<double>& values);
+
+double robust_slope(std::span<const double> x, std::span<const double> y) {
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = i + 1; j < x.size(); ++j)
+      if (x[i] != x[j]) slopes.push_back((y[j] - y[i]) / (x[j] - x[i]));
+  return slopes.empty() ? 0 : median_of(slopes);
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/spectrogram/spectrogram_maker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "data-schema/base/quantity.hpp"
+#include "spatial/dsp/spectrum/window.hpp"
+#include "spatial/spectrogram/known_band.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+using schema::Scaling;
+using schema::SpectrogramHeader;
+using schema::Texture;
+
+// Files hold unit^2 mm: a thousand times the number.
+constexpr float kLargestCell = 3e35F;
+
+// Rounded down to three digits, so that the length that is suggested does fit.
+double rounded_down(double length_m) {
+  const double digit = std::pow(10.0, std::floor(std::log10(length_m)) - 2);
+  return std::floor(length_m / digit * (1 + 1e-12)) * digit;
+}
+
+// The factor on X whose square is the cell (density), or whose size is it (amplitude); of one-sided bins.
+double gain_of(Scaling scaling, std::span<const double> window, double pitch_m) {
+  if (scaling == Scaling::amplitude) return 2 / std::accumulate(window.begin(), window.end(), 0.0);
+  return std::sqrt(2 * pitch_m / std::inner_product(window.begin(), window.end(), window.begin(), 0.0));
+}
+
+ShortTimeTransform transform_for(const SpectrogramOptions& options, const FrameShape& shape,
+                                 const Decimation& decimation, double pitch_m, std::size_t rows) {
+  const auto window = blackman(shape.window);
+  return {shape,
+          decimation,
+          window,
+          gain_of(options.scaling, window, pitch_m),
+          options.detrend == Detrend::constant,
+          rows};
+}
+
+Result<void> check_length(const Texture& texture, std::size_t window) {
+  const auto& signal = texture.signal;
+  if (signal.values.size() >= window) return {};
+  const double have_m = static_cast<double>(signal.values.size()) * signal.pitch_m;
+  return schema::fail(
+      Fault::unsuitable,
+      fmt::format("the texture of {} is shorter than the window of {}", schema::length_for_people(have_m),
+                  schema::length_for_people(static_cast<double>(window) * signal.pitch_m)),
+      "texture",
+      signal.values.size() < kShortestWindow
+          ? "it is too short for any window"
+          : fmt::format("a window of {} would fit", schema::length_for_people(rounded_down(have_m))));
+}
+
+Result<void> check_finite(const Texture& texture) {
+  const auto& values = texture.signal.values;
+  const auto bad = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
+  if (bad == values.end()) return {};
+  return schema::fail(Fault::unsuitable, "a value is not finite",
+                      fmt::format("sample {}", bad - values.begin()),
+                      "make the texture again from a recording without gaps");
+}
+
+Result<void> check_pitch(const Texture& texture, double pitch_m) {
+  if (std::abs(texture.signal.pitch_m - pitch_m) <= 1e-9 * pitch_m) return {};
+  return schema::fail(
+      Fault::unsuitable,
+      fmt::format("has a grid of {}, not {}", schema::length_for_people(texture.signal.pitch_m),
+                  schema::length_for_people(pitch_m)),
+      "texture", "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
+}
+
+constexpr double kFaintest = 1e-12;
+constexpr const char* kTakeAmplitudes =
+    "'tactograph spectrogram --scaling amplitude' can show it; or import the recording in a fitting unit";
+
+Result<void> check_cells(std::span<const float> cells) {
+  if (std::ranges::all_of(cells, [](float cell) { return cell <= kLargestCell; })) return {};
+  return schema::fail(Fault::unsuitable, "its densities do not fit single precision", "texture",
+                      kTakeAmplitudes);
+}
+
+// Densities are squares: in single precision those of the faintest forces would all be zero.
+Result<void> check_faintness(const Texture& texture, Scaling scaling) {
+  if (scaling == Scaling::amplitude) return {};
+  double largest = 0;
+  for (const double value : texture.signal.values) largest = std::max(largest, std::abs(value));
+  if (largest == 0 || largest >= kFaintest) return {};
+  return schema::fail(
+      Fault::unsuitable,
+      fmt::format("its largest value is {:.3g} {}, whose densities do not fit single precision", largest,
+                  texture.unit),
+      "texture", kTakeAmplitudes);
+}
+
+}  // namespace
+
+SpectrogramMaker::SpectrogramMaker(const SpectrogramOptions& options, const FrameShape& shape,
+                                   const Decimation& decimation, double pitch_m, std::size_t rows)
+    : options_(options),
+      shape_(shape),
+      decimation_(decimation),
+      pitch_m_(pitch_m),
+      transform_(transform_for(options, shape, decimation, pitch_m, rows)),
+      cells_(schema::rows_at_once(shape.bins) * shape.bins) {}
+
+Result<SpectrogramMaker> SpectrogramMaker::prepare(const SpectrogramOptions& options, double pitch_m,
+                                                   std::size_t rows) {
+  const auto shape = frame_shape(options, pitch_m);
+  if (!shape) return schema::forward_error(shape);
+  const Decimation decimation =
+      options.resolution == Resolution::whole ? Decimation{} : decimation_for(*shape);
+  return SpectrogramMaker(options, *shape, decimation, pitch_m, rows);
+}
+
+Result<SpectrogramHeader> SpectrogramMaker::describe(const Texture& texture) const {
+  if (auto fits = check_pitch(texture, pitch_m_); !fits) return schema::forward_error(fits);
+  if (auto fits = check_length(texture, shape_.window); !fits) return schema::forward_error(fits);
+  if (auto fits = check_finite(texture); !fits) return schema::forward_error(fits);
+  if (auto fits = check_faintness(texture, options_.scaling); !fits) return schema::forward_error(fits);
+  SpectrogramHeader header;
+  const std::size_t rows = transform_.rows_of(texture.signal.values.size());
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double samples = static_cast<double>(row * shape_.hop) + 0.5 * static_cast<double>(shape_.window);
+    header.position_m.push_back(texture.signal.origin_m + samples * pitch_m_);
+  }
+  header.bins = shape_.bins;
+  header.frequency_step_per_m = 1 / (static_cast<double>(shape_.padded) * pitch_m_);
+  header.scaling = options_.scaling;
+  header.quantity = texture.quantity;
+  header.unit = texture.unit;
+  header.window = "blackman";
+  header.coherent_gain = kBlackmanMean;
+  header.detrend = options_.detrend == Detrend::constant ? "constant" : "none";
+  header.window_m = static_cast<double>(shape_.window) * pitch_m_;
+  header.hop_m = static_cast<double>(shape_.hop) * pitch_m_;
+  header.pitch_m = pitch_m_;
+  header.padded_samples = shape_.padded;
+  header.decimation = decimation_.factor;
+  header.simulated = texture.simulated;
+  header.known = known_bands(texture.valid_band, header.position_m, header.window_m);
+  return header;
+}
+
+// Zero and half the sampling frequency have no twin at negative frequencies.
+void SpectrogramMaker::finish(std::span<float> row, int exponent) const {
+  row.front() *= options_.scaling == Scaling::density ? 0.5F : 0.25F;
+  if (2 * (shape_.bins - 1) == shape_.padded)
+    row.back() *= options_.scaling == Scaling::density ? 0.5F : 0.25F;
+  if (options_.scaling == Scaling::amplitude)
+    for (float& cell : row) cell = std::sqrt(cell);
+  if (exponent == 0) return;
+  const float step = std::ldexp(1.0F, exponent);
+  for (float& cell : row) cell *= step;
+  if (options_.scaling == Scaling::density)
+    for (float& cell : row) cell *= step;
+}
+
+void SpectrogramMaker::unpack(const PackedRows& rows, std::span<float> a, std::span<float> b) const {
+  rows.powers(a, b);
+  finish(a, rows.exponent);
+  finish(b, rows.exponent);
+}
+
+Result<void> SpectrogramMaker::make(const Texture& texture, const CellSink& sink) {
+  const std::size_t rows = transform_.rows_of(texture.signal.values.size());
+  const std::size_t at_once = cells_.size() / shape_.bins;
+  const auto row_at = [&](std::size_t row) {
+    return std::span(cells_).subspan(row * shape_.bins, shape_.bins);
+  };
+  std::size_t first = 0;
+  return transform_.transform(texture.signal.values, [&](const PackedRows& pair) -> Result<void> {
+    const std::size_t at = pair.row - first;
+    unpack(pair, row_at(at), row_at(at + 1));
+    const std::size_t ready = at + (pair.two ? 2 : 1);
+    if (ready < at_once && first + ready < rows) return {};
+    const auto cells = std::span<const float>(cells_).first(ready * shape_.bins);
+    if (pair.exponent > 0)
+      if (auto fits = check_cells(cells); !fits) return fits;
+    const std::size_t from = std::exchange(first, first + ready);
+    return sink(from, cells);
+  });
+}
+
+}  // namespace tacto::spatial

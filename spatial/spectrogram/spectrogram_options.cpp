@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/spectrogram/spectrogram_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "data-schema/base/quantity.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+using schema::Result;
+
+// A length in samples, and the range that it must lie in; `least` names its lower end for people.
+struct Asked {
+  const char* what;
+  const char* where;
+  double length_m;
+  std::size_t least;
+  std::string least_name;
+};
+
+// NaN lies in no range.
+Result<std::size_t> samples_of(const Asked& asked, double pitch_m) {
+  const double samples = asked.length_m / pitch_m;
+  const auto least = static_cast<double>(asked.least), most = static_cast<double>(kLongestTransform);
+  if (samples > least - 0.5 && samples < most + 0.5)
+    return std::clamp(static_cast<std::size_t>(std::llround(samples)), asked.least, kLongestTransform);
+  return schema::fail(
+      Fault::usage,
+      fmt::format("{} of {} can't be used", asked.what, schema::length_for_people(asked.length_m)),
+      asked.where,
+      fmt::format("take {} ({}) to {} (2^24 samples)", schema::length_for_people(least * pitch_m),
+                  asked.least_name, schema::length_for_people(most * pitch_m)));
+}
+
+// A bin that lies on the limit is kept in spite of rounding.
+std::size_t bins_to(double frequency_per_m, std::size_t padded, double pitch_m) {
+  const double last = frequency_per_m * static_cast<double>(padded) * pitch_m * (1 + 1e-12);
+  return 1 +
+         static_cast<std::size_t>(std::min(std::floor(last), std::floor(static_cast<double>(padded) / 2)));
+}
+
+}  // namespace
+
+Result<FrameShape> frame_shape(const SpectrogramOptions& options, double pitch_m) {
+  FrameShape shape;
+  const auto window =
+      samples_of({"a window", "window", options.window_m, kShortestWindow, "8 samples"}, pitch_m);
+  if (!window) return schema::forward_error(window);
+  shape.window = *window;
+  const auto hop = samples_of({"a hop", "hop", options.hop_m, 1, "one sample"}, pitch_m);
+  if (!hop) return schema::forward_error(hop);
+  shape.hop = *hop;
+  shape.padded = std::bit_ceil(shape.window);
+  if (options.padded_m) {
+    const auto padded =
+        samples_of({"a padded length", "padding", *options.padded_m, shape.window, "the window"}, pitch_m);
+    if (!padded) return schema::forward_error(padded);
+    shape.padded = *padded;
+  }
+  if (!(options.max_frequency_per_m > 0))
+    return schema::fail(Fault::usage, "the maximum frequency must be above 0", "maximum frequency",
+                        "15/mm is usual");
+  shape.bins = bins_to(options.max_frequency_per_m, shape.padded, pitch_m);
+  return shape;
+}
+
+}  // namespace tacto::spatial

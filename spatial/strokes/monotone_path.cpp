@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/strokes/monotone_path.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace tacto::spatial {
+namespace {
+
+constexpr double kLeastCreep = 1e-3;
+
+// Samples [first, last] that are given one level.
+struct Block {
+  double level;
+  std::size_t first, last;
+  double count() const { return static_cast<double>(last - first + 1); }
+};
+
+void pool(Block& into, const Block& next) {
+  // Equal levels stay what they are to the bit.
+  if (into.level != next.level)
+    into.level = (into.level * into.count() + next.level * next.count()) / (into.count() + next.count());
+  into.last = next.last;
+}
+
+// Isotonic regression: blocks with strictly increasing levels.
+std::vector<Block> pooled(std::span<const double> way_m) {
+  std::vector<Block> blocks;
+  blocks.reserve(way_m.size());
+  for (std::size_t i = 0; i < way_m.size(); ++i) {
+    blocks.push_back({way_m[i], i, i});
+    while (blocks.size() > 1 && blocks[blocks.size() - 2].level >= blocks.back().level) {
+      const Block last = blocks.back();
+      blocks.pop_back();
+      pool(blocks.back(), last);
+    }
+  }
+  return blocks;
+}
+
+// How far block i may creep: what its rounding hides, and no further than its neighbours. Where no quantum
+// shows, it stands still in truth and moves only so much that it can be inverted.
+double room_of(std::span<const Block> blocks, std::size_t i, double quantum_m) {
+  double gap = std::numeric_limits<double>::infinity();
+  if (i > 0) gap = std::min(gap, blocks[i].level - blocks[i - 1].level);
+  if (i + 1 < blocks.size()) gap = std::min(gap, blocks[i + 1].level - blocks[i].level);
+  return quantum_m > 0 ? std::min(gap, quantum_m) : kLeastCreep * gap;
+}
+
+// An even motion of one quantum in n samples, seen in n samples, spans (1 - 1/n) quanta: half of it to each
+// side.
+double half_creep(std::span<const Block> blocks, std::size_t i, double quantum_m) {
+  return room_of(blocks, i, quantum_m) / 2 * (1 - 1 / blocks[i].count());
+}
+
+void add_knot(MonotonePath& path, std::size_t sample, double way_m) {
+  path.sample.push_back(static_cast<double>(sample));
+  path.way_m.push_back(way_m);
+}
+
+void add_block(MonotonePath& path, const Block& block, double half) {
+  add_knot(path, block.first, block.level - half);
+  // Where the creep is below what a double resolves there, one knot stands for the block.
+  if (block.level + half > block.level - half) add_knot(path, block.last, block.level + half);
+}
+
+double furthest_moved(const Block& block, std::span<const double> way_m, double half) {
+  double moved = 0;
+  for (std::size_t k = block.first; k <= block.last; ++k)
+    moved = std::max(moved, std::abs(way_m[k] - block.level));
+  return moved + half;
+}
+
+bool grows(std::span<const double> way_m) {
+  return std::ranges::adjacent_find(way_m, std::greater_equal()) == way_m.end();
+}
+
+// The mean over `half` samples to both sides, fewer towards the ends.
+std::vector<double> averaged(std::span<const double> values, std::size_t half) {
+  const std::size_t n = values.size();
+  std::vector<double> sums(n + 1, 0.0), means(n);
+  for (std::size_t i = 0; i < n; ++i) sums[i + 1] = sums[i] + (values[i] - values.front());
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t reach = std::min({half, i, n - 1 - i});
+    means[i] = values.front() + (sums[i + reach + 1] - sums[i - reach]) / static_cast<double>(2 * reach + 1);
+  }
+  return means;
+}
+
+std::vector<double> twiced(std::span<const double> values, std::size_t half) {
+  std::vector<double> once = averaged(values, half);
+  const std::vector<double> again = averaged(once, half);
+  for (std::size_t i = 0; i < once.size(); ++i) once[i] = 2 * once[i] - again[i];
+  return once;
+}
+
+double furthest_apart(std::span<const double> a, std::span<const double> b) {
+  double apart = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) apart = std::max(apart, std::abs(a[i] - b[i]));
+  return apart;
+}
+
+MonotonePath path_through(std::span<const Block> blocks, std::span<const double> way_m, double creep_m) {
+  MonotonePath path;
+  path.sample.reserve(2 * blocks.size());
+  path.way_m.reserve(2 * blocks.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const double half = half_creep(blocks, i, creep_m);
+    add_block(path, blocks[i], half);
+    path.moved_m = std::max(path.moved_m, furthest_moved(blocks[i], way_m, half));
+  }
+  return path;
+}
+
+}  // namespace
+
+std::vector<double> smoothed_way(std::span<const double> way_m, double noise_m) {
+  for (std::size_t half = std::bit_floor(way_m.size() / 16); half >= 1; half /= 2) {
+    std::vector<double> smoothed = twiced(way_m, half);
+    if (furthest_apart(smoothed, way_m) <= PositionError::kNoiseReach * noise_m) return smoothed;
+  }
+  return {way_m.begin(), way_m.end()};
+}
+
+MonotonePath monotone_path(std::span<const double> position_m, int direction, PositionError error) {
+  std::vector<double> way(position_m.begin(), position_m.end());
+  for (double& position : way) position *= direction;
+  const bool noisy = error.noise_m > 0 && !grows(way);
+  const std::vector<Block> blocks = pooled(noisy ? smoothed_way(way, error.noise_m) : way);
+  if (blocks.size() < 2) return {};
+  return path_through(blocks, way, std::max(error.quantum_m, error.noise_m));
+}
+
+}  // namespace tacto::spatial

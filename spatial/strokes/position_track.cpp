@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/strokes/position_track.hpp"
+
+#include <cmath>
+
+namespace tacto::spatial {
+namespace {
+
+constexpr std::size_t kShortFrames = 1000000;
+
+}  // namespace
+
+schema::Result<PositionTrack> PositionTrack::open(TouchSource& source, std::size_t frames,
+                                                  std::span<const schema::Gap> gaps) {
+  PositionTrack track(source);
+  if (auto done = track.survey(frames, gaps); !done) return schema::forward_error(done);
+  if (frames > kShortFrames) return track;
+  std::vector<double> all(frames);
+  if (auto done = track.read(0, all); !done) return schema::forward_error(done);
+  track.kept_m_ = std::move(all);
+  return track;
+}
+
+schema::Result<void> PositionTrack::survey(std::size_t frames, std::span<const schema::Gap> gaps) {
+  CounterWrapFinder finder(gaps);
+  std::vector<double> chunk(std::min(kChunkFrames, frames));
+  const auto add = [&](FrameRange part) -> schema::Result<void> {
+    const auto counts = std::span(chunk).first(part.size());
+    if (auto done = source_->read_stored(Track::position, part.begin, counts); !done) return done;
+    finder.add(counts);
+    return {};
+  };
+  if (auto done = chunk_by_chunk({0, frames}, add); !done) return done;
+  const schema::Channel& told = *source_->channel(Track::position);
+  const double counts = std::max(std::abs(finder.lowest()), std::abs(finder.highest()));
+  furthest_m_ = counts * std::abs(told.scale) + std::abs(told.offset);
+  moves_ = finder.lowest() < finder.highest() && told.scale != 0;
+  wraps_ = finder.finish();
+  return {};
+}
+
+schema::Result<void> PositionTrack::read(std::size_t first, std::span<double> out) const {
+  if (!kept_m_.empty()) {
+    std::ranges::copy(std::span(kept_m_).subspan(first, out.size()), out.begin());
+    return {};
+  }
+  if (auto done = source_->read_stored(Track::position, first, out); !done) return done;
+  wraps_.unwrap(first, out);
+  const schema::Channel& told = *source_->channel(Track::position);
+  for (double& value : out) value = value * told.scale + told.offset;
+  return {};
+}
+
+schema::Result<std::vector<double>> PositionTrack::read(FrameRange frames) const {
+  std::vector<double> positions(frames.size());
+  if (auto done = read(frames.begin, positions); !done) return schema::forward_error(done);
+  return positions;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The finger's speed from positions that are quantised or noisy: differences over a window, not from sample
+// to sample.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "spatial/strokes/frame_range.hpp"
+
+namespace tacto::spatial {
+
+/// Speed at each sample, in m/s with its sign: the difference over `window` samples around it (>= 2; rounded
+/// down to even), over what there is of them at the ends. Error from a quantum q: q / (window /
+/// sample_rate_hz) at most. At least 2 positions, in m.
+std::vector<double> smoothed_speed(std::span<const double> position_m, double sample_rate_hz,
+                                   std::size_t window);
+
+/// The window that brings an error of `resolution_m` under 10 % of `speed_mps`: 20 ms, or 10 resolutions at
+/// that speed where that is longer, 0.5 s at most. In samples, at least 2.
+std::size_t speed_window(double resolution_m, double speed_mps, double sample_rate_hz);
+
+/// Calls visit(frame, speed_mps, position_m) for the frames `within` a stretch without gaps, in order; the
+/// speeds are those of smoothed_speed() over the whole stretch. Holds a chunk and a window in memory. Errors:
+/// of reading.
+template <class Visit>
+schema::Result<void> visit_speeds(const ReadFrames& read, FrameRange stretch, FrameRange within,
+                                  double sample_rate_hz, std::size_t window, const Visit& visit) {
+  std::vector<double> positions;
+  const std::size_t half = window / 2;
+  return chunk_by_chunk(within, [&](FrameRange part) -> schema::Result<void> {
+    const FrameRange seen{std::max(part.begin, stretch.begin + half) - half,
+                          std::min(part.end + half, stretch.end)};
+    if (seen.size() < 2) return {};
+    positions.resize(seen.size());
+    if (auto done = read(seen.begin, positions); !done) return done;
+    const auto speeds = smoothed_speed(positions, sample_rate_hz, window);
+    for (std::size_t i = part.begin; i < part.end; ++i)
+      visit(i, speeds[i - seen.begin], positions[i - seen.begin]);
+    return {};
+  });
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/strokes/touch_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <ranges>
+
+#include "data-schema/base/quantity.hpp"
+#include "spatial/strokes/finger_contact.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+
+// What a finger may go back within a stretch and still be said to go one way: a few counts, or its elastic
+// rebound.
+constexpr double kBackwardQuanta = 4;
+constexpr double kBackwardSigmas = 10;  // the noise of the furthest forward and the furthest back of 1e6
+constexpr double kBackwardOfWay = 0.002;
+// Less is dither, or the creep of a resting finger.
+constexpr double kShortestTravelResolutions = 20;
+constexpr double kNearJump_s = 0.1;  // the pause that ends a stroke
+// Half a sample period belongs to its frame: a time that was written with few digits still names it.
+constexpr double kWithinFrame = 0.5;
+
+std::string seconds(double s) {
+  return fmt::format("{:.4g} s", s);
+}
+
+}  // namespace
+
+schema::Result<TouchRecord> TouchRecord::open(const schema::Recording& recording,
+                                              const std::string& channel) {
+  auto source = open_touch_source(recording, channel);
+  if (!source) return schema::forward_error(source);
+  return open(std::move(*source), recording.header, recording.stem);
+}
+
+schema::Result<TouchRecord> TouchRecord::open(std::unique_ptr<TouchSource> source,
+                                              schema::RecordingHeader header, std::string where) {
+  TouchRecord record;
+  record.header_ = std::move(header);
+  record.where_ = std::move(where);
+  record.source_ = std::move(source);
+  if (const auto surveyed = record.survey(); !surveyed) return schema::forward_error(surveyed);
+  return record;
+}
+
+schema::Result<void> TouchRecord::survey() {
+  auto track = PositionTrack::open(*source_, header_.frames, header_.gaps);
+  if (!track) return schema::forward_error(track);
+  track_ = std::move(*track);
+  if (!track_->moves())
+    return schema::fail(Fault::unsuitable, "the position never moves", where_,
+                        "a texture needs a finger that strokes; is this the right position channel?");
+  pieces_ = pieces_between_gaps(header_.frames, header_.gaps);
+  const ReadFrames read = [this](std::size_t first, std::span<double> out) {
+    return track_->read(first, out);
+  };
+  auto jumps = find_position_jumps(read, pieces_, header_.sample_rate_hz);
+  if (!jumps) return schema::forward_error(jumps);
+  jumps_ = std::move(*jumps);
+  const auto sound = pieces_between_jumps(pieces_, jumps_);
+  auto facts = spatial::position_facts(read, sound, header_.sample_rate_hz, track_->furthest_m());
+  if (!facts) return schema::forward_error(facts);
+  facts_ = *facts;
+  auto strokes = find_strokes(read, sound, header_.sample_rate_hz, facts_);
+  if (!strokes) return schema::forward_error(strokes);
+  strokes_ = std::move(strokes->strokes);
+  short_runs_ = strokes->short_runs;
+  mark_cut_strokes();
+  if (source_->channel(Track::normal_force) == nullptr) return {};
+  for (Stroke& stroke : strokes_)
+    if (auto done = weigh(stroke); !done) return done;
+  up_below_n_ = spatial::finger_up_below_n(strokes_);
+  for (Stroke& stroke : strokes_) stroke.finger_up = stroke.force_n < *up_below_n_;
+  return {};
+}
+
+// A stroke that ends or begins where the position jumps went on there, or came from there.
+void TouchRecord::mark_cut_strokes() {
+  const auto near = static_cast<std::size_t>(kNearJump_s * header_.sample_rate_hz) + 1;
+  for (Stroke& stroke : strokes_)
+    for (const PositionJump& jump : jumps_)
+      if (jump.frame + near > stroke.frames.begin && jump.frame < stroke.frames.end + near)
+        stroke.jump = jump;
+}
+
+schema::Error TouchRecord::refusal(const PositionJump& jump) const {
+  return {Fault::unsuitable,
+          fmt::format("the position jumps by {} from sample {} to sample {}, at {}, as no finger does",
+                      schema::length_for_people(jump.step_m), jump.frame - 1, jump.frame,
+                      seconds(schema::frame_time_s(header_, jump.frame))),
+          where_,
+          "look at the encoder and its cable; --from and --to make a texture of what lies before or after"};
+}
+
+// Sets the stroke's mean normal force.
+schema::Result<void> TouchRecord::weigh(Stroke& stroke) const {
+  if (source_->channel(Track::normal_force) == nullptr) return {};
+  double sum_n = 0;
+  std::vector<double> chunk;
+  const auto add = [&](FrameRange part) -> schema::Result<void> {
+    chunk.resize(part.size());
+    if (auto done = source_->read(Track::normal_force, part.begin, chunk); !done) return done;
+    sum_n = std::accumulate(chunk.begin(), chunk.end(), sum_n);
+    return {};
+  };
+  if (auto done = chunk_by_chunk(stroke.frames, add); !done) return done;
+  stroke.force_n = sum_n / static_cast<double>(stroke.frames.size());
+  return {};
+}
+
+double TouchRecord::from_s(const Stroke& stroke) const {
+  return schema::frame_time_s(header_, stroke.frames.begin);
+}
+
+double TouchRecord::to_s(const Stroke& stroke) const {
+  return schema::frame_time_s(header_, stroke.frames.end - 1);
+}
+
+double TouchRecord::length_m(const Stroke& stroke) const {
+  return std::abs(stroke.to_m - stroke.from_m);
+}
+
+double TouchRecord::mean_speed_mps(const Stroke& stroke) const {
+  return length_m(stroke) / (to_s(stroke) - from_s(stroke));
+}
+
+std::string TouchRecord::list_of_strokes() const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < strokes_.size(); ++i)
+    lines.push_back(
+        fmt::format("{}: {} to {}", i + 1, seconds(from_s(strokes_[i])), seconds(to_s(strokes_[i]))));
+  return lines.empty() ? "no stroke was found" : fmt::format("there are {}", fmt::join(lines, ", "));
+}
+
+schema::Result<Stroke> TouchRecord::stroke(int number) const {
+  if (number >= 1 && static_cast<std::size_t>(number) <= strokes_.size())
+    return strokes_[static_cast<std::size_t>(number) - 1];
+  return schema::fail(Fault::unsuitable, fmt::format("there is no stroke {}", number), where_,
+                      list_of_strokes());
+}
+
+schema::Result<FrameRange> TouchRecord::frames_between(double from_s, double to_s) const {
+  const std::size_t frames = header_.frames;
+  const double slack_s = kWithinFrame / header_.sample_rate_hz;
+  const double first_s = schema::frame_time_s(header_, 0), last_s = schema::frame_time_s(header_, frames - 1);
+  if (!(from_s < to_s))
+    return schema::fail(
+        Fault::usage,
+        fmt::format("the stretch ends at {}, not after its start at {}", seconds(to_s), seconds(from_s)),
+        where_);
+  if (from_s < first_s - slack_s || to_s > last_s + 3 * slack_s)
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("the stretch {} to {} reaches out of the recording", seconds(from_s), seconds(to_s)),
+        where_, fmt::format("it lasts from {} to {}", seconds(first_s), seconds(last_s)));
+  const auto first_from = [&](double time_s) {
+    const auto frame_numbers = std::views::iota(std::size_t{0}, frames);
+    const auto time_of = [&](std::size_t frame) { return schema::frame_time_s(header_, frame); };
+    return *std::ranges::lower_bound(frame_numbers, time_s, {}, time_of);
+  };
+  return FrameRange{first_from(from_s - slack_s), first_from(to_s + slack_s)};
+}
+
+schema::Result<void> TouchRecord::check_gapless(FrameRange frames) const {
+  for (const schema::Gap& gap : header_.gaps)
+    if (gap.frame > frames.begin && gap.frame < frames.end)
+      return schema::fail(Fault::unsuitable,
+                          fmt::format("{} frames are missing at {}, inside the stretch", gap.count,
+                                      seconds(schema::frame_time_s(header_, gap.frame))),
+                          where_, "ask for a stretch before or after them");
+  return {};
+}
+
+schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
+  const auto read = position_m(frames);
+  if (!read) return schema::forward_error(read);
+  const std::vector<double>& positions = *read;
+  if (positions.size() < 2 || positions.front() == positions.back())
+    return schema::fail(Fault::unsuitable, "the finger gets nowhere in the stretch", where_,
+                        list_of_strokes());
+  const double advance_m = std::abs(positions.back() - positions.front());
+  const int direction = positions.back() > positions.front() ? 1 : -1;
+  const double backward_m = backward_travel(positions, direction);
+  const double unseen_m = std::max(kBackwardQuanta * facts_.quantum_m, kBackwardSigmas * facts_.noise_m);
+  if (backward_m > std::max(unseen_m, kBackwardOfWay * advance_m))
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("the finger turns round in the stretch, by {}", schema::length_for_people(backward_m)),
+        where_, list_of_strokes());
+  if (advance_m < kShortestTravelResolutions * facts_.resolution_m())
+    return schema::fail(
+        Fault::unsuitable,
+        fmt::format("the finger all but rests in the stretch: it gets {} far, and its "
+                    "position is known to {}",
+                    schema::length_for_people(advance_m), schema::length_for_people(facts_.resolution_m())),
+        where_, list_of_strokes());
+  Stroke stroke{frames, direction, positions.front(), positions.back(), {}, false};
+  if (auto done = weigh(stroke); !done) return schema::forward_error(done);
+  stroke.finger_up = up_below_n_ && stroke.force_n < *up_below_n_;
+  return stroke;
+}
+
+schema::Result<void> TouchRecord::check_jumpless(FrameRange frames) const {
+  for (const PositionJump& jump : jumps_)
+    if (jump.frame > frames.begin && jump.frame < frames.end) return tl::unexpected(refusal(jump));
+  return {};
+}
+
+schema::Result<Stroke> TouchRecord::stretch(double from_s, double to_s) const {
+  const auto frames = frames_between(from_s, to_s);
+  if (!frames) return schema::forward_error(frames);
+  if (const auto gapless = check_gapless(*frames); !gapless) return schema::forward_error(gapless);
+  if (const auto jumpless = check_jumpless(*frames); !jumpless) return schema::forward_error(jumpless);
+  return directed(*frames);
+}
+
+}  // namespace tacto::spatial

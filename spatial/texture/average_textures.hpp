@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mean of several strokes over one place, and how much they differ.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/texture/texture.hpp"
+
+namespace tacto::spatial {
+
+/// Takes textures one by one, of one recording or several, holds sums only (24 bytes a sample of what they
+/// cover).
+class TextureAverager {
+ public:
+  /// A texture that lies on the common grid, and how it was shifted onto it. Errors: unsuitable, where its
+  /// pitch, quantity or unit differ from the first one's, or where it lies over 10 lengths of the first away.
+  schema::Result<void> add(const schema::Texture& texture, const schema::AveragedStroke& stroke);
+
+  std::size_t strokes() const { return strokes_.size(); }
+  /// The mean so far, of what was covered at all, from first() pitches on the bench on.
+  std::vector<double> mean() const;
+  double first() const { return static_cast<double>(first_); }
+
+  /// Mean and standard deviation (over n - 1) where at least half of the strokes, and 2, were; the longest
+  /// stretch of that. The valid band is what all strokes know there. Errors: unsuitable, for fewer than 2
+  /// strokes, or where no 2 of them overlap.
+  schema::Result<schema::Texture> finish(const std::string& align) const;
+
+ private:
+  struct Cell {
+    double mean = 0, squares = 0;  // Welford 1962: sum of squared deviations
+    std::int32_t count = 0;
+  };
+  struct Stretch {
+    std::size_t begin = 0, end = 0;
+  };
+  schema::Result<void> check(const schema::Texture& texture, std::int64_t first) const;
+  void cover(std::int64_t first, std::size_t size);
+  void narrow_band(const schema::Texture& texture);
+  Stretch well_covered() const;
+  std::vector<schema::StrokeCount> counts(Stretch stretch) const;
+  std::vector<schema::BandPoint> band(double origin_m, double length_m) const;
+  void keep_what_all_say(const schema::Texture& texture);
+  schema::Texture described() const;
+
+  schema::Texture model_;   // of all strokes, without values
+  std::int64_t first_ = 0;  // of cells_, in pitches on the bench
+  std::vector<Cell> cells_;
+  std::vector<schema::AveragedStroke> strokes_;
+  std::map<std::int64_t, schema::BandPoint> band_;  // by tenths of a millimetre on the bench
+  double speeds_mps_ = 0;
+  std::set<std::string> recordings_;
+};
+
+}  // namespace tacto::spatial

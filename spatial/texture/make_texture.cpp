@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/texture/make_texture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "data-schema/base/creation_time.hpp"
+#include "data-schema/base/quantity.hpp"
+#include "data-schema/transducer/transducer_plausible.hpp"
+#include "data-schema/version.hpp"
+#include "spatial/dsp/resample/thinned.hpp"
+#include "spatial/strokes/smoothed_speed.hpp"
+#include "spatial/texture/equaliser.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+
+constexpr double kSlowPart = 0.25;   // of the median speed
+constexpr double kMostFiner = 4096;  // 1 um of a grid of 4 mm
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace
+
+TextureMaker::TextureMaker(TouchRecord record, TextureOptions options)
+    : record_(std::move(record)), options_(std::move(options)), resampler_(options_.method) {}
+
+schema::Result<TextureMaker> TextureMaker::open(const schema::Recording& recording,
+                                                const TextureOptions& options) {
+  auto record = TouchRecord::open(recording, options.channel);
+  if (!record) return schema::forward_error(record);
+  return open(std::move(*record), options);
+}
+
+schema::Result<TextureMaker> TextureMaker::open(TouchRecord record, const TextureOptions& options) {
+  TextureMaker maker(std::move(record), options);
+  if (const auto prepared = maker.prepare(); !prepared) return schema::forward_error(prepared);
+  return maker;
+}
+
+schema::Result<void> TextureMaker::prepare() {
+  if (!(options_.pitch_m > 0)) return schema::fail(Fault::usage, "the grid's pitch must be above 0");
+  const schema::RecordingHeader& header = record_.header();
+  if (auto fits = check(options_.filter, header.sample_rate_hz); !fits) {
+    fits.error().where = record_.where();
+    return fits;
+  }
+  if (options_.space) options_.filter.method = FilterMethod::none;
+  if (const auto equalised = choose_equaliser(); !equalised) return equalised;
+  filtered_.emplace(record_.source(), header.sample_rate_hz, options_.filter, equaliser_);
+  return {};
+}
+
+schema::Result<void> TextureMaker::choose_equaliser() {
+  const schema::RecordingHeader& header = record_.header();
+  if (options_.equalise == Equalise::off) return {};
+  if (options_.equalise == Equalise::on && !header.transducer)
+    return schema::fail(Fault::unsuitable, "names no transducer, so there is no response to divide by",
+                        record_.where(), "leave --equalise away");
+  const bool of_transducer = record_.channel().quantity == "tangential_force";
+  if (options_.equalise == Equalise::on && !of_transducer)
+    return schema::fail(Fault::unsuitable,
+                        record_.channel().name +
+                            " did not pass through the transducer, whose response says "
+                            "nothing of it",
+                        record_.where(), "leave --equalise away, or take tangential_force");
+  if (!header.transducer || !of_transducer) return {};
+  const auto plausible = schema::check_plausible(*header.transducer, record_.where() + "#/transducer");
+  if (!plausible)
+    return schema::fail(Fault::unsuitable, plausible.error().what, plausible.error().where,
+                        "correct it, or leave the response in with --equalise off");
+  equaliser_ = equaliser(*header.transducer);
+  return {};
+}
+
+schema::Result<void> TextureMaker::check_duration(const Stroke& stroke) const {
+  const double low_hz = options_.filter.passed(record_.header().sample_rate_hz).low_hz;
+  const double duration_s = record_.to_s(stroke) - record_.from_s(stroke);
+  if (duration_s * low_hz >= 1 || low_hz == 0) return {};
+  return schema::fail(Fault::unsuitable,
+                      fmt::format("the stroke at {:.4g} s lasts {:.3g} s, less than one period of {:g} Hz",
+                                  record_.from_s(stroke), duration_s, low_hz),
+                      record_.where(), "raise --low, or turn the band off with --band off");
+}
+
+schema::Result<MonotonePath> TextureMaker::path_of(const Stroke& stroke, double shift_m) const {
+  const auto positions = record_.position_m(stroke.frames);
+  if (!positions) return schema::forward_error(positions);
+  MonotonePath path = monotone_path(*positions, stroke.direction, record_.position_error());
+  if (path.way_m.empty())
+    return schema::fail(Fault::unsuitable, "the finger gets nowhere in the stroke", record_.where());
+  if (shift_m != 0)
+    for (double& way_m : path.way_m) way_m += stroke.direction * shift_m;
+  return path;
+}
+
+schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke, const MonotonePath& path,
+                                                            const SpaceGrid& grid) {
+  const auto holds = [&](const FrameRange& piece) { return piece.contains(stroke.frames); };
+  const auto piece = std::ranges::find_if(record_.pieces(), holds);
+  if (piece == record_.pieces().end())
+    return schema::fail(Fault::unsuitable, "frames are missing inside the stroke", record_.where());
+  // Beyond the stroke's ends, so that S_f is there what it is in the whole signal.
+  const std::size_t margin = margin_of(options_.method);
+  const std::size_t before = std::min(margin, stroke.frames.begin - piece->begin);
+  const FrameRange frames{stroke.frames.begin - before, std::min(stroke.frames.end + margin, piece->end)};
+  const auto seen = filtered_->values(*piece, frames);
+  if (!seen) return schema::forward_error(seen);
+  std::vector<double> values(grid.count);
+  resampler_(path, stroke.direction, grid, *seen, before, values);
+  return values;
+}
+
+SpeedProfile TextureMaker::profile_of(const Stroke& stroke, const MonotonePath& path,
+                                      const SpaceGrid& grid) const {
+  const double rate_hz = record_.header().sample_rate_hz;
+  const auto window = speed_window(record_.facts().resolution_m(), record_.mean_speed_mps(stroke), rate_hz);
+  const Band band = options_.filter.passed(rate_hz);
+  const LocalSpeed speed(
+      path, rate_hz,
+      speed_windows(record_.facts().resolution_m(), static_cast<double>(window), band, rate_hz));
+  const double length_m = static_cast<double>(grid.count - 1) * grid.pitch_m;
+  return speed_profile(speed, grid.origin_m(), length_m, stroke.direction);
+}
+
+Band TextureMaker::kept_band() const {
+  const double rate_hz = record_.header().sample_rate_hz;
+  Band band = options_.filter.kept(rate_hz);
+  band.high_hz = std::min(band.high_hz, kept_hz(options_.method, rate_hz));
+  return band;
+}
+
+// Samples that far apart would fold what lies beyond half a cycle a sample onto what they can hold.
+schema::Result<std::vector<double>> TextureMaker::on_grid(const Stroke& stroke, const MonotonePath& path,
+                                                          const SpaceGrid& grid, std::size_t finer) {
+  const auto times = static_cast<double>(finer);
+  const SpaceGrid fine{grid.pitch_m / times, grid.first * times, (grid.count - 1) * finer + 1};
+  auto values = resampled(stroke, path, fine);
+  if (!values) return values;
+  if (finer > 1) *values = thinned(*values, finer);
+  return options_.space ? filter_in_space(*values, grid.pitch_m, *options_.space) : values;
+}
+
+// A finger that all but rests has its band at frequencies that no grid holds: what came out would be noise.
+schema::Result<void> TextureMaker::check_band(double usual_mps) const {
+  const Band band = options_.filter.passed(record_.header().sample_rate_hz);
+  const double highest_per_m = 1 / (2 * options_.pitch_m);
+  if (band.low_hz <= highest_per_m * usual_mps) return {};
+  const auto text = [](double value, schema::Dimension dimension) {
+    return schema::for_people(value, dimension);
+  };
+  return schema::fail(
+      Fault::unsuitable,
+      fmt::format("the finger all but rests: at {} the band from {:g} Hz on lies above {}, and a grid of {} "
+                  "ends at {}",
+                  text(usual_mps, schema::Dimension::speed), band.low_hz,
+                  text(band.low_hz / usual_mps, schema::Dimension::spatial_frequency),
+                  text(options_.pitch_m, schema::Dimension::length),
+                  text(highest_per_m, schema::Dimension::spatial_frequency)),
+      record_.where(), "ask for a stretch in which it moves; --list shows the strokes");
+}
+
+schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int number, double shift_m) {
+  if (stroke.jump) return tl::unexpected(record_.refusal(*stroke.jump));
+  if (const auto fine = check_duration(stroke); !fine) return schema::forward_error(fine);
+  const auto path = path_of(stroke, shift_m);
+  if (!path) return schema::forward_error(path);
+  const auto grid = grid_along(*path, stroke.direction, options_.pitch_m);
+  if (!grid) return schema::forward_error(grid);
+  const SpeedProfile profile = profile_of(stroke, *path, *grid);
+  const double usual_mps = median(profile.speed_mps);
+  if (const auto fine = check_band(usual_mps); !fine) return schema::forward_error(fine);
+  const std::size_t finer = finer_grid(
+      options_.pitch_m, options_.filter.passed(record_.header().sample_rate_hz).high_hz, usual_mps);
+  auto values = on_grid(stroke, *path, *grid, finer);
+  if (!values) return schema::forward_error(values);
+
+  schema::Texture texture;
+  texture.signal = {grid->pitch_m, 0, std::move(*values)};
+  texture.source_origin_m = grid->origin_m();
+  texture.source.position_moved_m = path->moved_m;
+  const auto [slowest, fastest] = std::ranges::minmax(profile.speed_mps);
+  texture.source.min_speed_mps = slowest;
+  texture.source.max_speed_mps = fastest;
+  texture.valid_band = valid_band(profile, kept_band());
+  narrow(texture.valid_band, 0, (finer > 1 ? kThinnedPass : 0.5) / options_.pitch_m);
+  if (options_.space) {
+    const auto [low_per_m, high_per_m] = options_.space->kept(options_.pitch_m);
+    narrow(texture.valid_band, low_per_m, high_per_m);
+  }
+  describe(texture, stroke, number);
+  return texture;
+}
+
+void TextureMaker::describe_filter(schema::TextureSource& source) const {
+  const TimeFilter& filter = options_.filter;
+  const Band band = filter.passed(record_.header().sample_rate_hz);
+  const FilterMethod method = options_.space ? options_.space->method : filter.method;
+  source.filter = name_of(method);
+  source.edges = name_of(options_.space ? options_.space->edges : filter.edges);
+  source.order = method != FilterMethod::butterworth ? 0
+                 : options_.space                    ? options_.space->order
+                                                     : filter.order;
+  source.low_hz = band.low_hz;
+  source.high_hz = band.high_hz;
+  if (!options_.space) return;
+  source.low_per_m = options_.space->low_per_m;
+  source.high_per_m = options_.space->high_per_m;
+}
+
+void TextureMaker::describe_position(schema::TextureSource& source, const Stroke& stroke) const {
+  source.mean_speed_mps = record_.mean_speed_mps(stroke);
+  source.position_quantum_m = record_.facts().quantum_m;
+  source.position_noise_m = record_.facts().noise_m;
+  source.counter_bits = record_.counter_wraps().bits;
+  source.counter_wraps =
+      static_cast<int>(record_.counter_wraps().count_in(stroke.frames.begin, stroke.frames.end));
+  source.normal_force_n = stroke.force_n;
+  source.finger_up = stroke.finger_up;
+}
+
+void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int number) const {
+  const schema::RecordingHeader& header = record_.header();
+  texture.quantity = record_.channel().quantity;
+  texture.unit = record_.channel().unit;
+  texture.direction = stroke.direction;
+  schema::TextureSource& source = texture.source;
+  source.recording = std::filesystem::path(record_.where()).filename().string() + ".json";
+  source.recording_sha256 = header.sha256;
+  source.from_s = record_.from_s(stroke);
+  source.to_s = record_.to_s(stroke);
+  source.stroke = number;
+  source.method = name_of(options_.method);
+  describe_filter(source);
+  source.equalised = static_cast<bool>(equaliser_);
+  describe_position(source, stroke);
+  texture.simulated = header.simulated;
+  texture.surface = header.surface;
+  texture.subject = header.subject;
+  texture.finger = header.finger;
+  texture.notes = header.notes;
+  texture.created = schema::creation_time();
+  texture.creator = kCreator;
+}
+
+std::size_t finer_grid(double pitch_m, double highest_hz, double usual_mps) {
+  const double times = std::ceil(2 * pitch_m * highest_hz / (kSlowPart * usual_mps));
+  return static_cast<std::size_t>(std::clamp(times, 1.0, kMostFiner));
+}
+
+double rms_of(const schema::Texture& texture) {
+  double squares = 0;
+  for (const double value : texture.signal.values) squares += value * value;
+  return std::sqrt(squares / static_cast<double>(texture.signal.values.size()));
+}
+
+}  // namespace tacto::spatial

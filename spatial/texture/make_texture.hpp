@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a recording to textures: band-pass in time, path made invertible, resampled to space, described.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data-schema/base/error.hpp"
+#include "data-schema/recording/recording.hpp"
+#include "data-schema/texture/texture.hpp"
+#include "spatial/strokes/monotone_path.hpp"
+#include "spatial/strokes/touch_record.hpp"
+#include "spatial/texture/filtered_track.hpp"
+#include "spatial/texture/resample.hpp"
+#include "spatial/texture/space_filter.hpp"
+#include "spatial/texture/time_filter.hpp"
+#include "spatial/texture/valid_band.hpp"
+
+namespace tacto::spatial {
+
+/// Whether to divide by the sensor's response. automatic: where the recording names its transducer and the
+/// channel is a tangential force.
+enum class Equalise { automatic, on, off };
+
+struct TextureOptions {
+  std::string channel;  ///< empty: tangential_force, else the only one that can be a texture
+  TimeFilter filter;
+  /// Where it is set, the band is in space: the filter is run along position on each texture, none in time.
+  std::optional<SpaceFilter> space;
+  Equalise equalise = Equalise::automatic;
+  double pitch_m = 1e-6;
+  ResampleMethod method = ResampleMethod::hermite;
+};
+
+/// Makes the textures of one recording, of any length in little memory: it holds a stroke, not the recording.
+/// Not shared between threads.
+class TextureMaker {
+ public:
+  /// Errors: of TouchRecord::open; unsuitable (a filter that does not fit the rate, equalising without a
+  /// transducer, or a channel that is no tangential force); usage (a pitch that is not above 0).
+  static schema::Result<TextureMaker> open(const schema::Recording& recording, const TextureOptions& options);
+  /// Of a record that is open; options.channel is not read.
+  static schema::Result<TextureMaker> open(TouchRecord record, const TextureOptions& options);
+
+  const TouchRecord& record() const { return record_; }
+
+  /// The texture of a stroke or stretch of record(). All between two gaps is filtered, then the stroke is
+  /// resampled; strokes by time are the fast way. Its position 0 is a multiple of the pitch on the bench.
+  /// `number` is kept as the stroke's, 0 for a stretch. `shift_m` is added to its positions on the bench.
+  /// Errors: unsuitable, for a stroke that a jump of the position cuts off, for one shorter than one period
+  /// of the lowest frequency, for one so slow that its whole band lies beyond what the grid can hold, and of
+  /// grid_along(); of reading.
+  schema::Result<schema::Texture> make(const Stroke& stroke, int number, double shift_m = 0);
+
+ private:
+  TextureMaker(TouchRecord record, TextureOptions options);
+  schema::Result<void> prepare();
+  schema::Result<void> choose_equaliser();
+  schema::Result<void> check_duration(const Stroke& stroke) const;
+  schema::Result<void> check_band(double usual_mps) const;
+  schema::Result<MonotonePath> path_of(const Stroke& stroke, double shift_m) const;
+  schema::Result<std::vector<double>> resampled(const Stroke& stroke, const MonotonePath& path,
+                                                const SpaceGrid& grid);
+  Band kept_band() const;
+  schema::Result<std::vector<double>> on_grid(const Stroke& stroke, const MonotonePath& path,
+                                              const SpaceGrid& grid, std::size_t finer);
+  SpeedProfile profile_of(const Stroke& stroke, const MonotonePath& path, const SpaceGrid& grid) const;
+  void describe(schema::Texture& texture, const Stroke& stroke, int number) const;
+  void describe_filter(schema::TextureSource& source) const;
+  void describe_position(schema::TextureSource& source, const Stroke& stroke) const;
+
+  TouchRecord record_;
+  TextureOptions options_;
+  SpectralGain equaliser_;
+  std::optional<FilteredTrack> filtered_;
+  Resampler resampler_;
+};
+
+/// How many times finer than the texture's a grid is resampled on, before it is thinned: to hold what lies up
+/// to `highest_hz` where the finger goes at a quarter of its usual speed. At its stops no grid does.
+std::size_t finer_grid(double pitch_m, double highest_hz, double usual_mps);
+
+/// Root of the mean square of a texture's values, in their unit.
+double rms_of(const schema::Texture& texture);
+
+}  // namespace tacto::spatial

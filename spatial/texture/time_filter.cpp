@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/texture/time_filter.hpp"
+
+#include <fmt/format.h>
+
+#include "spatial/dsp/filter/butterworth.hpp"
+#include "spatial/texture/block_time_filter.hpp"
+
+namespace tacto::spatial {
+namespace {
+
+using schema::Fault;
+
+}  // namespace
+
+Band TimeFilter::passed(double sample_rate_hz) const {
+  return method == FilterMethod::none ? Band{0, sample_rate_hz / 2} : band;
+}
+
+Band TimeFilter::kept(double sample_rate_hz) const {
+  return method == FilterMethod::butterworth ? zero_phase_band(order, band, sample_rate_hz, kKeptAmplitude)
+                                             : passed(sample_rate_hz);
+}
+
+std::string_view name_of(FilterMethod method) {
+  switch (method) {
+    case FilterMethod::fourier:
+      return "fourier";
+    case FilterMethod::butterworth:
+      return "butterworth";
+    case FilterMethod::none:
+      break;
+  }
+  return "none";
+}
+
+std::string_view name_of(Edges edges) {
+  return edges == Edges::treated ? "treated" : "none";
+}
+
+schema::Result<void> check(const TimeFilter& filter, double sample_rate_hz) {
+  const auto [low_hz, high_hz] = filter.band;
+  if (filter.method == FilterMethod::none) return {};
+  if (!(low_hz >= 0 && low_hz < high_hz))
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("the band {:g} Hz to {:g} Hz does not rise", low_hz, high_hz));
+  if (high_hz > sample_rate_hz / 2)
+    return schema::fail(Fault::unsuitable,
+                        fmt::format("the band reaches to {:g} Hz, the recording only to {:g} Hz", high_hz,
+                                    sample_rate_hz / 2),
+                        {}, "choose a band under half the sample rate, or --band off");
+  if (filter.method == FilterMethod::fourier) return {};
+  const auto sections = butterworth_band_pass(filter.order, filter.band, sample_rate_hz);
+  return sections ? schema::Result<void>{} : schema::forward_error(sections);
+}
+
+schema::Result<std::vector<double>> filter_in_time(std::span<const double> values, double sample_rate_hz,
+                                                   const TimeFilter& filter, const SpectralGain& equaliser) {
+  auto fed = BlockTimeFilter::open(sample_rate_hz, filter, equaliser, values.size());
+  if (!fed) return schema::forward_error(fed);
+  std::vector<double> filtered;
+  filtered.reserve(values.size());
+  if (const auto taken = fed->push(values, filtered); !taken) return schema::forward_error(taken);
+  fed->finish(filtered);
+  return filtered;
+}
+
+}  // namespace tacto::spatial

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which folder may include which. A folder that is not here has no place in the house yet; the table must stay
+without cycles (include_graph_test.py). `room/{a b}` is room/a and room/b; `room/.` its sources outside folders.
+"""
+
+MAY_INCLUDE = {
+    "data-schema/base": "",
+    "data-schema/calibration": "data-schema/{base files json}",
+    "data-schema/check":
+        "data-schema/{base files json kinds recording results scene session spectrogram texture transducer wav}",
+    "data-schema/cli":
+        "data-schema/{calibration check command kinds recording report results scene session spectrogram texture "
+        "transducer}",
+    "data-schema/command": "data-schema/{base files report results}",
+    "data-schema/control": "data-schema/{base json results scene}",
+    "data-schema/files": "data-schema/base",
+    "data-schema/json": "data-schema/{base files}",
+    "data-schema/kinds": "data-schema/{base files json session transducer}",
+    "data-schema/recording": "data-schema/{base files json transducer wav}",
+    "data-schema/report": "data-schema/{base scene}",
+    "data-schema/results": "data-schema/{base files json kinds}",
+    "data-schema/scene": "data-schema/{base files json}",
+    "data-schema/session": "data-schema/{base files json scene spectrogram transducer}",
+    "data-schema/spectrogram": "data-schema/{base files}",
+    "data-schema/texture": "data-schema/{base files json kinds wav}",
+    "data-schema/transducer": "data-schema/{base files json}",
+    "data-schema/wav": "data-schema/{base files}",
+    "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics usb}",
+    "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
+    "firmware-host/core/firmware": "firmware-host/{core/kernel core/wire}",
+    "firmware-host/core/kernel": "firmware-host/core/wire",
+    "firmware-host/core/wire": "",
+    "firmware-host/gadget":
+        "data-schema/{base recording report} firmware-host/{core/firmware core/wire link sim/device}",
+    "firmware-host/link":
+        "data-schema/{base recording transducer} firmware-host/{core/firmware core/kernel core/wire}",
+    "firmware-host/reference": "firmware-host/core/wire",
+    "firmware-host/replay": "data-schema/wav firmware-host/link",
+    "firmware-host/sim/bench": "data-schema/transducer firmware-host/sim/physics",
+    "firmware-host/sim/device":
+        "data-schema/{base transducer} firmware-host/{core/firmware core/wire link sim/bench sim/physics}",
+    "firmware-host/sim/physics": "data-schema/{base texture transducer}",
+    "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
+    "capture/calibrate": "capture/record data-schema/{calibration recording transducer} firmware-host/link",
+    "capture/cli":
+        "capture/{calibrate doctor import record} data-schema/{base cli command files recording report} "
+        "firmware-host/{. sim/device}",
+    "capture/doctor": "capture/record data-schema/{base files recording} firmware-host/{. link}",
+    "capture/import": "capture/{calibrate table} data-schema/{base calibration files recording texture}",
+    "capture/record": "capture/table data-schema/{base calibration files kinds recording} firmware-host/link",
+    "capture/table": "data-schema/{base files recording wav}",
+    "spatial/certificate": "data-schema/{base texture} spatial/features",
+    "spatial/cli":
+        "data-schema/{base command files kinds recording report spectrogram texture} spatial/{certificate features "
+        "job picture spectrogram texture}",
+    "spatial/dsp/filter": "data-schema/base spatial/{dsp/fourier dsp/resample}",
+    "spatial/dsp/fourier": "data-schema/files",
+    "spatial/dsp/resample": "spatial/dsp/fourier",
+    "spatial/dsp/spectrum": "data-schema/base spatial/{dsp/filter dsp/fourier dsp/resample}",
+    "spatial/features": "data-schema/{base spectrogram texture} spatial/{numbers spectrogram texture}",
+    "spatial/job":
+        "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter spectrogram strokes "
+        "texture}",
+    "spatial/numbers": "data-schema/texture spatial/dsp/fourier",
+    "spatial/picture": "data-schema/{base files spectrogram texture} spatial/{numbers picture/draw spectrogram}",
+    "spatial/picture/draw": "data-schema/base",
+    "spatial/reference": "spatial/{dsp/filter dsp/resample}",
+    "spatial/spectrogram":
+        "data-schema/{base results spectrogram texture} spatial/{dsp/resample dsp/spectrum numbers texture}",
+    "spatial/strokes": "data-schema/{base recording} spatial/numbers",
+    "spatial/texture":
+        "data-schema/{base recording spectrogram texture transducer} spatial/{dsp/filter dsp/fourier dsp/resample "
+        "numbers strokes}",
+    "playback/choose": "data-schema/{results scene} playback/{model prepare}",
+    "playback/cli":
+        "data-schema/{base command control files recording report scene session texture} firmware-host/link "
+        "playback/{choose control host-loop model player render session strokes}",
+    "playback/control": "data-schema/{base control files} playback/session",
+    "playback/daemon":
+        "data-schema/{base control files report scene} playback/{control host-loop model player session}",
+    "playback/host-loop": "data-schema/session firmware-host/{core/firmware core/kernel link} playback/prepare",
+    "playback/model":
+        "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
+        "dsp/fourier dsp/resample}",
+    "playback/player":
+        "data-schema/{base files scene session texture} firmware-host/{. core/kernel core/wire link sim/device} "
+        "playback/{choose host-loop model prepare render session} spatial/dsp/resample",
+    "playback/prepare":
+        "data-schema/{base texture transducer} firmware-host/{core/kernel core/wire link} playback/model "
+        "spatial/{dsp/filter dsp/fourier}",
+    "playback/render":
+        "data-schema/{base recording scene texture transducer} firmware-host/core/kernel playback/{choose model "
+        "prepare render/reference} spatial/dsp/filter",
+    "playback/render/reference": "data-schema/base playback/{model prepare} spatial/{dsp/filter dsp/fourier}",
+    "playback/session":
+        "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
+        "playback/model",
+    "playback/strokes":
+        "data-schema/{base texture} firmware-host/{core/kernel core/wire} playback/{choose model render "
+        "render/reference session}",
+    "analysis/cli":
+        "analysis/{compare demo extremes fidelity identify/fit identify/measure identify/report report trade "
+        "trade/rows} data-schema/{base command files kinds report results scene texture} playback/{model player "
+        "session} spatial/{cli picture}",
+    "analysis/compare":
+        "analysis/page data-schema/{base results session texture} playback/{session strokes} spatial/{dsp/filter "
+        "dsp/fourier dsp/resample features spectrogram strokes texture}",
+    "analysis/demo":
+        "analysis/page capture/record data-schema/{base files spectrogram texture} firmware-host/{. link "
+        "sim/bench} playback/render spatial/{dsp/filter dsp/fourier picture spectrogram texture}",
+    "analysis/extremes":
+        "analysis/{compare identify/fit} capture/{calibrate import record table} data-schema/recording "
+        "playback/{prepare render/reference} spatial/{dsp/filter dsp/resample features reference spectrogram}",
+    "analysis/fidelity":
+        "analysis/{compare page} data-schema/{base files results texture transducer} firmware-host/{sim/bench "
+        "sim/device sim/physics} playback/{model player render/reference session} spatial/{dsp/filter dsp/fourier "
+        "features texture}",
+    "analysis/identify/fit": "analysis/identify/measure data-schema/{base transducer} playback/model",
+    "analysis/identify/measure":
+        "capture/table data-schema/{base files recording transducer} firmware-host/link playback/model "
+        "spatial/dsp/fourier",
+    "analysis/identify/report":
+        "analysis/{identify/fit identify/measure} data-schema/{base results} firmware-host/sim/physics "
+        "spatial/{picture picture/draw}",
+    "analysis/page": "data-schema/{base results} spatial/picture",
+    "analysis/report":
+        "analysis/{identify/measure page} data-schema/{base calibration check files kinds recording results scene "
+        "session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
+        "texture}",
+    "analysis/trade":
+        "analysis/{page trade/offline trade/rows} data-schema/{base results texture transducer} "
+        "firmware-host/sim/device playback/{choose host-loop model prepare} spatial/picture",
+    "analysis/trade/offline":
+        "analysis/trade/rows data-schema/{base results spectrogram texture} playback/{choose model} "
+        "spatial/{dsp/spectrum reference spectrogram texture}",
+    "analysis/trade/rows":
+        "data-schema/{base texture} firmware-host/sim/physics playback/{model prepare render/reference} "
+        "spatial/{dsp/fourier dsp/resample strokes texture}",
+}
