@@ -54,11 +54,11 @@ Result<std::vector<std::string>> textures_named(const std::string& what) {
   if (const auto note = schema::note_of_newer_version(files->front().path, *scene); !note.empty())
     cli::warn(note);
   std::vector<std::string> names;
-  for (const schema::Layer& layer : scene->layers) {
-    const auto& laid = std::get<schema::TextureLayer>(layer);
-    const std::string name = schema::texture_in_scene(files->front().path, laid.texture);
-    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-  }
+  for (const schema::Layer& layer : scene->layers)
+    layer.visit([&](const schema::TextureLayer& texture) {
+      const std::string name = schema::texture_in_scene(files->front().path, texture.texture);
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    });
   return names;
 }
 

@@ -152,10 +152,11 @@ Result<void> add_scene(const std::string& path, ProjectFile& file) {
   file.date = scene->created;
   file.origin = scene->name;
   for (const schema::Layer& layer : scene->layers)
-    if (const auto* texture = std::get_if<schema::TextureLayer>(&layer))
+    layer.visit([&](const schema::TextureLayer& texture) {
       file.figures.push_back(
-          {texture->texture, fmt::format("at {}, {}", for_people(texture->at_m, Dimension::length),
-                                         for_people(texture->gain_m_per_n, Dimension::compliance))});
+          {texture.texture, fmt::format("at {}, {}", for_people(texture.at_m, Dimension::length),
+                                        for_people(texture.gain_m_per_n, Dimension::compliance))});
+    });
   return {};
 }
 

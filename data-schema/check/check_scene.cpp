@@ -29,7 +29,7 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
   const auto scene = parse_scene(document.body.dump(), path);
   if (!scene) return {fault_of(scene.error())};
   for (std::size_t i = 0; i < scene->layers.size(); ++i)
-    std::visit([&](const TextureLayer& layer) { check_layer(path, i, layer, findings); }, scene->layers[i]);
+    scene->layers[i].visit([&](const TextureLayer& layer) { check_layer(path, i, layer, findings); });
   return findings;
 }
 

@@ -25,7 +25,7 @@ Result<cli::Report> describe_scene(const std::string& path) {
   add_text(report, "name", scene->name);
   std::vector<cli::Report> rows;
   for (const Layer& layer : scene->layers)
-    rows.push_back(std::visit([](const TextureLayer& texture) { return row_of(texture); }, layer));
+    rows.push_back(layer.visit([](const TextureLayer& texture) { return row_of(texture); }));
   report.add("layers", std::move(rows));
   cli::add_choices(report, scene->playback);
   add_text(report, "notes", scene->notes);

@@ -23,11 +23,6 @@ struct Refusal {
   std::string what, pointer, remedy;
 };
 
-// Names come from outside: a long one is not repeated.
-std::string quoted(const std::string& name) {
-  return name.size() <= 64 ? fmt::format("'{}'", name) : fmt::format("with a name of {} bytes", name.size());
-}
-
 /// Follows the parser's events: how deep they are, and which members each open object has.
 class ParserWatch {
  public:
@@ -53,7 +48,7 @@ class ParserWatch {
 
   void name_member(const std::string& name) {
     if (!open_.back().names.insert(name).second)
-      throw Refusal{fmt::format("the member {} appears twice", quoted(name)), place_of_object(),
+      throw Refusal{fmt::format("the member {} appears twice", quoted_name(name)), place_of_object(),
                     "keep one of the two"};
     open_.back().name = name;
   }
@@ -73,6 +68,10 @@ class ParserWatch {
 };
 
 }  // namespace
+
+std::string quoted_name(const std::string& name) {
+  return name.size() <= 64 ? fmt::format("'{}'", name) : fmt::format("with a name of {} bytes", name.size());
+}
 
 // "[json.exception.parse_error.101] parse error at line 1, column 2: " goes.
 std::string json_reason(const std::string& said) {

@@ -17,6 +17,9 @@ inline constexpr int kDeepestDocument = 32;  ///< ours nest five deep
 /// and the object's place as a JSON pointer (readers differ in which of the two they take, so neither is).
 Result<Json> parse_json(std::string_view text, const std::string& where, int deepest = kDeepestDocument);
 
+/// A member's name as a message quotes it. Names come from outside: a long one is not repeated.
+std::string quoted_name(const std::string& name);
+
 /// What the library's exception says, without its own name and place.
 std::string json_reason(const std::string& said);
 

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "data-schema/json/json_text.hpp"
+
 namespace tacto::schema {
 namespace {
 
@@ -46,11 +48,6 @@ std::string remedy_for(const std::string& said, const Json& rule) {
   return fmt::format("its members are {}", fmt::join(names, ", "));
 }
 
-// Whole characters of what may be long, and may be no UTF-8 where it is cut.
-std::string quoted(const std::string& said) {
-  return said.size() <= 64 ? fmt::format("'{}'", said) : fmt::format("a name of {} bytes", said.size());
-}
-
 }  // namespace
 
 std::vector<std::string> members_not_in(const Json& rule, const Json& body) {
@@ -63,7 +60,7 @@ std::vector<std::string> members_not_in(const Json& rule, const Json& body) {
 Result<void> check_members_known(const Json& rule, const Json& body, const std::string& where) {
   const auto unknown = members_not_in(rule, body);
   if (unknown.empty()) return {};
-  return fail(Fault::malformed, fmt::format("{} is no member that is known here", quoted(unknown.front())),
+  return fail(Fault::malformed, fmt::format("the member {} is not known here", quoted_name(unknown.front())),
               where, remedy_for(unknown.front(), rule));
 }
 

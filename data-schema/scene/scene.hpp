@@ -3,10 +3,10 @@
 #pragma once
 
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "data-schema/base/error.hpp"
+#include "data-schema/base/one_of.hpp"
 #include "data-schema/scene/playback_choices.hpp"
 
 namespace tacto::schema {
@@ -24,9 +24,9 @@ struct TextureLayer {
   std::string extra_json;                ///< members of a newer version
 };
 
-/// One kind of thing in a scene. Height maps, walls, friction and contact transients become further
-/// alternatives: whoever visits a layer then has to say what he does with them, or does not compile.
-using Layer = std::variant<TextureLayer>;
+/// One layer of a scene, of one kind. Code that reads a layer handles every kind of it, or does not compile:
+/// height maps, walls, friction and contact transients become further kinds.
+using Layer = OneOf<TextureLayer>;
 
 struct Scene {
   std::vector<Layer> layers;  ///< at least one; their wanted displacements add up

@@ -53,7 +53,7 @@ Json texture_layer_body(const TextureLayer& layer) {
 }
 
 Json layer_body(const Layer& layer) {
-  return std::visit([](const TextureLayer& texture) { return texture_layer_body(texture); }, layer);
+  return layer.visit([](const TextureLayer& texture) { return texture_layer_body(texture); });
 }
 
 Result<Layer> layer_from(const Json& body, const std::string& place) {
@@ -83,7 +83,7 @@ Result<void> check_known(const Document& document, const std::string& where) {
 // Where several lie along a path, what lies beyond one's ends is another's place.
 Result<void> check_ends(const Scene& scene, const std::string& where) {
   const auto goes_on = [](const Layer& layer) {
-    return std::visit([](const TextureLayer& texture) { return texture.ends != TextureEnds::stop; }, layer);
+    return layer.visit([](const TextureLayer& texture) { return texture.ends != TextureEnds::stop; });
   };
   if (scene.layers.size() == 1) return {};
   const auto layer = std::ranges::find_if(scene.layers, goes_on);

@@ -281,13 +281,11 @@ Result<void> Service::save_scene_gain(double factor, const std::string& who) {
   auto scene = schema::read_scene(scene_path_);
   if (!scene) return schema::forward_error(scene);
   for (schema::Layer& layer : scene->layers)
-    std::visit(
-        [&](schema::TextureLayer& texture) {
-          texture.gain_m_per_n *= factor / saved_gain_;
-          texture.gain_set_by = who;
-          texture.gain_set_on = schema::creation_time();
-        },
-        layer);
+    layer.visit([&](schema::TextureLayer& texture) {
+      texture.gain_m_per_n *= factor / saved_gain_;
+      texture.gain_set_by = who;
+      texture.gain_set_on = schema::creation_time();
+    });
   auto written = schema::write_scene(scene_path_, *scene);
   if (written) saved_gain_ = factor;
   return written;

@@ -116,7 +116,7 @@ class TextureReader {
     laid_.choices_ = scene.playback;
     note(schema::note_of_newer_version(laid_.scene_path_, scene));
     for (const schema::Layer& layer : scene.layers) {
-      const auto added = std::visit([&](const TextureLayer& texture) { return add(texture); }, layer);
+      const auto added = layer.visit([&](const TextureLayer& texture) { return add(texture); });
       if (!added) return added;
     }
     if (const auto near = check_reach(); !near) return near;

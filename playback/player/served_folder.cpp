@@ -44,11 +44,9 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
   const auto scene = schema::read_scene(path);
   if (!scene) return true;  // its error is the file's own
   return std::ranges::all_of(scene->layers, [&](const schema::Layer& layer) {
-    return std::visit(
-        [&](const auto& each) {
-          return serves_texture(folder, schema::texture_in_scene(path, each.texture));
-        },
-        layer);
+    return layer.visit([&](const schema::TextureLayer& texture) {
+      return serves_texture(folder, schema::texture_in_scene(path, texture.texture));
+    });
   });
 }
 

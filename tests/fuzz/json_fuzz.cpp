@@ -53,7 +53,7 @@ void scene(const std::string& text) {
   }
   demand(!read->layers.empty() && read->layers.size() <= 256);
   for (const Layer& layer : read->layers) {
-    const auto& texture = std::get<TextureLayer>(layer);
+    const auto texture = layer.visit([](const TextureLayer& of) { return of; });
     demand(!texture.texture.empty() && std::abs(texture.at_m) <= 1000);
     demand(std::abs(texture.gain_m_per_n) <= 1 && texture.ends <= TextureEnds::loop);
   }
