@@ -24,7 +24,7 @@ bool has_strokes_key(std::string_view parameters) {
 Result<DeviceToRecord> open_sim_to_record(const std::string& uri) {
   std::string parameters = uri.substr(kSimScheme.size());
   const auto asked = parse_sim_parameters(parameters);
-  if (!asked) return schema::forward_error(asked);
+  TACTO_TRY(asked);
   DeviceToRecord opened;
   const bool strokes_asked = has_strokes_key(parameters) || asked->counter || asked->known_force;
   if (strokes_asked)
@@ -32,7 +32,7 @@ Result<DeviceToRecord> open_sim_to_record(const std::string& uri) {
   else
     parameters.append(parameters.empty() ? "" : ",").append(kStrokesWithoutEnd);
   auto device = make_sim_device(uri, parameters);
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   opened.device = std::move(*device);
   return opened;
 }
@@ -42,7 +42,7 @@ Result<DeviceToRecord> open_sim_to_record(const std::string& uri) {
 Result<DeviceToRecord> open_device_to_record(const std::string& uri) {
   if (uri.starts_with(kSimScheme)) return open_sim_to_record(uri);
   auto device = open_device(uri);
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   return DeviceToRecord{std::move(*device), uri.starts_with(kReplayScheme), std::nullopt};
 }
 

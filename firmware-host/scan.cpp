@@ -10,7 +10,7 @@ namespace {
 
 schema::Result<Capabilities> asked(const std::string& uri) {
   const auto device = open_device(uri);
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   return (*device)->capabilities();
 }
 

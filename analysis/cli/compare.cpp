@@ -66,22 +66,22 @@ schema::Results compare_results(const CompareVerbOptions& o, const ComparedNames
 }
 
 Result<Report> run_compare(const CompareVerbOptions& o, bool json) {
-  if (const auto free = check_outputs(o.outputs, o.existing); !free) return schema::forward_error(free);
+  TACTO_TRY(check_outputs(o.outputs, o.existing));
   cli::Progress progress("comparing");
   const std::function<void(double)> tell = [&](double part) { progress.update(part); };
   auto a = compared_input(o.a, o.stroke_a, playback::part_of(tell, 0, 0.4));
-  if (!a) return schema::forward_error(a);
+  TACTO_TRY(a);
   auto b = compared_input(o.b, o.stroke_b, playback::part_of(tell, 0.4, 0.8));
-  if (!b) return schema::forward_error(b);
-  if (const auto matched = match_session(*a, *b); !matched) return schema::forward_error(matched);
+  TACTO_TRY(b);
+  TACTO_TRY(match_session(*a, *b));
   const ComparedNames names{a->name, b->name};
   const auto comparison = compare(a->texture, b->texture, o.compare, playback::part_of(tell, 0.8, 1));
-  if (!comparison) return schema::forward_error(comparison);
+  TACTO_TRY(comparison);
   for (const std::string& note : comparison->notes) cli::warn(note);
   Report report = compare_report(names, *comparison);
   const auto written = write_outputs(o.outputs, o.existing, compare_results(o, names, *comparison), report,
                                      [&] { return comparison_page(*comparison, names); });
-  if (!written) return schema::forward_error(written);
+  TACTO_TRY(written);
   if (o.outputs.empty()) return report;
   if (!json) return brief_compare_report(names, *comparison, o.outputs);
   return report.add("written", o.outputs);

@@ -22,7 +22,7 @@ bool names_a_session(const std::string& name) {
 Result<ComparedInput> session_input(const std::string& name, std::size_t stroke,
                                     const std::function<void(double)>& progress) {
   auto played = played_texture(name, stroke, progress);
-  if (!played) return schema::forward_error(played);
+  TACTO_TRY(played);
   ComparedInput input{fmt::format("{}, stroke {}", name, played->stroke), "", played->texture, {}};
   input.played = std::move(*played);
   return input;
@@ -39,7 +39,7 @@ Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, con
                         name);
   for (std::size_t i = 1;; ++i) {
     auto next = inputs.next();
-    if (!next) return schema::forward_error(next);
+    TACTO_TRY(next);
     if (!*next) return schema::fail(Fault::unsuitable, "makes no such texture", name);
     if (i >= stroke) return std::move(**next);
   }
@@ -51,9 +51,9 @@ Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke
                                      const std::function<void(double)>& progress) {
   if (names_a_session(name)) return session_input(name, stroke, progress);
   auto inputs = spatial::TextureInputs::find({name}, {});
-  if (!inputs) return schema::forward_error(inputs);
+  TACTO_TRY(inputs);
   auto texture = chosen_texture(*inputs, name, stroke);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   return ComparedInput{texture->name, texture->stored ? texture->path : "", std::move(texture->texture), {}};
 }
 
@@ -66,7 +66,7 @@ Result<void> match_session(ComparedInput& a, ComparedInput& b) {
                         "is no stored texture: a session is compared with the one it played", texture.name);
   const std::string stem = schema::stem_of(texture.file, ".texture");
   auto wanted = wanted_of(texture.texture, stem, *session.played);
-  if (!wanted) return schema::forward_error(wanted);
+  TACTO_TRY(wanted);
   texture.texture = std::move(*wanted);
   texture.name += " as wanted";
   return {};

@@ -31,7 +31,7 @@ cli::Report row_of(const DemoSurface& surface) {
 schema::Result<cli::Report> demonstrate(const DemoOptions& options) {
   cli::Progress progress("demo");
   const auto summary = run_demo(options.folder, [&](double fraction) { progress.update(fraction); });
-  if (!summary) return schema::forward_error(summary);
+  TACTO_TRY(summary);
   std::vector<cli::Report> rows;
   for (const DemoSurface& surface : summary->surfaces) rows.push_back(row_of(surface));
   cli::Report report;

@@ -109,12 +109,12 @@ Result<Fidelity> found_until_stopped(FidelityVerbOptions& o, bool& stopped) {
 }
 
 Result<Report> run_fidelity(FidelityVerbOptions o) {
-  if (const auto free = check_outputs(o.outputs, o.existing); !free) return schema::forward_error(free);
-  if (const auto read = read_speeds(o); !read) return schema::forward_error(read);
+  TACTO_TRY(check_outputs(o.outputs, o.existing));
+  TACTO_TRY(read_speeds(o));
   bool stopped = false;
   const auto found = found_until_stopped(o, stopped);
   if (!found && stopped) end_as_stopped();
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   std::vector<std::string> notes;
   for (const FidelitySpeed& speed : found->speeds)
     notes.insert(notes.end(), speed.notes.begin(), speed.notes.end());
@@ -122,7 +122,7 @@ Result<Report> run_fidelity(FidelityVerbOptions o) {
   Report report = fidelity_report(*found);
   const auto written = write_outputs(o.outputs, o.existing, fidelity_results(*found), report,
                                      [&] { return fidelity_page(*found); });
-  if (!written) return schema::forward_error(written);
+  TACTO_TRY(written);
   if (!o.outputs.empty()) report.add("written", o.outputs);
   return report;
 }

@@ -120,18 +120,18 @@ Result<void> check_band(const IdentifyOptions& o) {
 Result<IdentifySource> asked_of(const IdentifyOptions& o) {
   if (o.file.empty() == o.device_uri.empty())
     return fail(Fault::usage, "name either a file or a device", "identify", "-d sim:tray_sensor=on, or FILE");
-  if (const auto sound = check_band(o); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_band(o));
   if (o.model.finger && (o.model.second_mode || o.base.empty()))
     return fail(Fault::usage, "a finger's load is found on a transducer that is known", "--finger",
                 "name it with --start-from; its second mode is taken from there");
   IdentifySource asked;
   if (!o.device_uri.empty()) {
     auto opened = playback::open_player_device(o.device_uri, std::nullopt);
-    if (!opened) return schema::forward_error(opened);
+    TACTO_TRY(opened);
     asked.device = std::move(*opened);
   }
   auto base = base_of(o, asked.device.device.get());
-  if (!base) return schema::forward_error(base);
+  TACTO_TRY(base);
   asked.base = std::move(*base);
   return asked;
 }
@@ -142,7 +142,7 @@ bool is_table(const std::string& file) {
 
 Result<BodeData> recorded_response(const IdentifyOptions& o) {
   auto pair = read_recorded_pair(o.file, o.input, o.output);
-  if (!pair) return schema::forward_error(pair);
+  TACTO_TRY(pair);
   auto data =
       response_of_record(pair->input, pair->output, pair->rate_hz, o.plan.low_hz, o.plan.high_hz, o.file);
   if (!data) return data;
@@ -154,10 +154,10 @@ Result<BodeData> recorded_response(const IdentifyOptions& o) {
 
 Result<BodeData> tabled_response(const IdentifyOptions& o) {
   const auto bode = is_bode_table(o.file);
-  if (!bode) return schema::forward_error(bode);
+  TACTO_TRY(bode);
   if (*bode) return read_bode_table(o.file, o.units);
   const auto tray = read_driven_table(o.file);
-  if (!tray) return schema::forward_error(tray);
+  TACTO_TRY(tray);
   const double rate_hz = tray->rate_hz > 0 ? tray->rate_hz : o.rate_hz.value_or(0);
   if (!(rate_hz > 0))
     return fail(Fault::usage, "nobody says how fast it was sampled", o.file,
@@ -188,21 +188,18 @@ Result<BodeData> response_of(const IdentifyOptions& o, IdentifySource& asked) {
 
 Result<Report> identify_response(const IdentifyOptions& o, IdentifySource& asked) {
   auto data = response_of(o, asked);
-  if (!data) return schema::forward_error(data);
+  TACTO_TRY(data);
   add_model_conditions(o, *data);
   ModelChoice choice = o.model;
   choice.direction = data->direction;
   const auto sound = check_measured(*data, choice, asked.base, {o.phase_sign < 0, o.invert});
-  if (!sound) return schema::forward_error(sound);
+  TACTO_TRY(sound);
   const ResponseFit fit = fit_response(*data, choice, asked.base);
-  if (const auto fitted = check_fitted(o, fit, choice, asked.base); !fitted)
-    return schema::forward_error(fitted);
+  TACTO_TRY(check_fitted(o, fit, choice, asked.base));
   const schema::Transducer found = identified(fit, asked.base, transducer_name_of(o));
-  if (const auto written = schema::write_transducer(o.stem, found); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(schema::write_transducer(o.stem, found));
   Report report = response_report(fit, choice, asked.base, found, transducer_file_of(o));
-  if (const auto drawn = draw_identified(o, BodeFigure(fit), report); !drawn)
-    return schema::forward_error(drawn);
+  TACTO_TRY(draw_identified(o, BodeFigure(fit), report));
   return with_identify_results(
       o, [&] { return identify_results(fit, choice, asked.base, found); }, std::move(report));
 }
@@ -214,20 +211,19 @@ Result<Report> identify_taps(const IdentifyOptions& o, const IdentifySource& ask
     return fail(Fault::usage, "taps come from a table and need its rate", "--method taps",
                 "identify taps.csv --rate 100kHz");
   const auto taps = read_taps(o.file, *o.rate_hz);
-  if (!taps) return schema::forward_error(taps);
+  TACTO_TRY(taps);
   const auto fit = fit_taps(*taps);
-  if (!fit) return schema::forward_error(fit);
+  TACTO_TRY(fit);
   const std::size_t fitted = o.taps_fitted > 0 ? o.taps_fitted : taps->taps.size() / 2;
   if (fitted < 2 || fitted + 2 > taps->taps.size())
     return fail(Fault::usage, "two taps at least on either side", "--fit-on", "leave it to half of them");
   const auto foretold = foretell_taps(*taps, fitted);
-  if (!foretold) return schema::forward_error(foretold);
+  TACTO_TRY(foretold);
   schema::Identification about;
   about.source = o.file;
   about.conditions = "ringing after taps";
   const schema::Transducer found = identified(*fit, asked.base, transducer_name_of(o), about);
-  if (const auto written = schema::write_transducer(o.stem, found); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(schema::write_transducer(o.stem, found));
   Report report = taps_report(*fit, *foretold, found, transducer_file_of(o));
   return with_identify_results(
       o, [&] { return identify_results(*fit, *foretold, found); }, std::move(report));
@@ -252,11 +248,10 @@ Result<void> check_names_free(const IdentifyOptions& o) {
 }
 
 Result<Report> run_identify(const IdentifyOptions& o) {
-  if (const auto named = check_named(o.stem, o.results, o.picture); !named)
-    return schema::forward_error(named);
-  if (const auto free = check_names_free(o); !free) return schema::forward_error(free);
+  TACTO_TRY(check_named(o.stem, o.results, o.picture));
+  TACTO_TRY(check_names_free(o));
   auto asked = asked_of(o);
-  if (!asked) return schema::forward_error(asked);
+  TACTO_TRY(asked);
   auto report = identify_by(o, *asked);
   const bool stopped = !report && asked->stopped;
   asked->device = {};

@@ -74,11 +74,11 @@ Result<SweepAndLoops> measured_both(const IdentifyOptions& o, IdentifySource& so
   auto sweep = driven_response(device, IdentifyMethod::sweep, plan, source.base, stop_asked,
                                [&](double part) { progress.update(kSweepPart * part); });
   source.stopped = signals.stop_asked();
-  if (!sweep) return schema::forward_error(sweep);
+  TACTO_TRY(sweep);
   auto loops = drive_tray(device, slow_loops(plan.rate_hz, amplitude_v, plan.amplitude_v), stop_asked,
                           [&](double part) { progress.update(kSweepPart + (1 - kSweepPart) * part); });
   source.stopped = signals.stop_asked();
-  if (!loops) return schema::forward_error(loops);
+  TACTO_TRY(loops);
   sweep->data.conditions += ", and " + loops_words(amplitude_v);
   return SweepAndLoops{std::move(*sweep), std::move(*loops)};
 }
@@ -86,13 +86,11 @@ Result<SweepAndLoops> measured_both(const IdentifyOptions& o, IdentifySource& so
 Result<JointFit> joint_fit_of(const IdentifyOptions& o, SweepAndLoops& both, const schema::Transducer& base) {
   BodeData& data = both.sweep.data;
   add_model_conditions(o, data);
-  if (const auto sound = check_measured(data, o.model, base, {}); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_measured(data, o.model, base, {}));
   auto fit = fit_jointly(data, both.sweep.drive, both.loops, o.model, base);
   if (!fit) return fit;
-  if (const auto upright = check_upright(fit->loops, data.source); !upright)
-    return schema::forward_error(upright);
-  if (const auto sound = check_fitted(o, fit->response, o.model, base); !sound)
-    return schema::forward_error(sound);
+  TACTO_TRY(check_upright(fit->loops, data.source));
+  TACTO_TRY(check_fitted(o, fit->response, o.model, base));
   return fit;
 }
 
@@ -102,41 +100,35 @@ Result<Report> identify_loops(const IdentifyOptions& o, IdentifySource& source) 
   schema::Identification about;
   about.conditions = "loops measured elsewhere";
   const auto tray = loops_of(o, source, about);
-  if (!tray) return schema::forward_error(tray);
+  TACTO_TRY(tray);
   if (!(tray->rate_hz > 0))
     cli::warn("no rate is known: the linear model's own lag is counted as hysteresis");
   warn_of_limits("loops", tray->limited);
   const double held_s = source.has_device() ? 0.5 / tray->rate_hz : 0;
   const auto fit = fit_loops(tray->drive_v, tray->displacement_m, tray->rate_hz,
                              delay_at_rest_s(source.base) + held_s, source.base.drive_limit_v);
-  if (!fit) return schema::forward_error(fit);
-  if (const auto upright = check_upright(*fit, about.source, o.invert); !upright)
-    return schema::forward_error(upright);
-  if (const auto sized = o.implausible ? Result<void>() : check_size(*fit, source.base, about.source); !sized)
-    return schema::forward_error(sized);
+  TACTO_TRY(fit);
+  TACTO_TRY(check_upright(*fit, about.source, o.invert));
+  TACTO_TRY(o.implausible ? Result<void>() : check_size(*fit, source.base, about.source));
   const schema::Transducer found = identified(*fit, source.base, transducer_name_of(o), about);
-  if (const auto written = schema::write_transducer(o.stem, found); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(schema::write_transducer(o.stem, found));
   Report report = loop_report(*fit, found, transducer_file_of(o));
-  if (const auto drawn = draw_identified(o, loop_figure(*fit, found), report); !drawn)
-    return schema::forward_error(drawn);
+  TACTO_TRY(draw_identified(o, loop_figure(*fit, found), report));
   return with_identify_results(
       o, [&] { return identify_results(*fit, found); }, std::move(report));
 }
 
 Result<Report> identify_jointly(const IdentifyOptions& o, IdentifySource& source) {
   auto both = measured_both(o, source);
-  if (!both) return schema::forward_error(both);
+  TACTO_TRY(both);
   warn_of_limits("sweep", both->sweep.data.limited);
   warn_of_limits("loops", both->loops.limited);
   const auto fit = joint_fit_of(o, *both, source.base);
-  if (!fit) return schema::forward_error(fit);
+  TACTO_TRY(fit);
   const schema::Transducer found = identified(*fit, source.base, transducer_name_of(o));
-  if (const auto written = schema::write_transducer(o.stem, found); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(schema::write_transducer(o.stem, found));
   Report report = joint_report(*fit, o.model, source.base, found, transducer_file_of(o));
-  if (const auto drawn = draw_identified(o, BodeFigure(fit->response), report); !drawn)
-    return schema::forward_error(drawn);
+  TACTO_TRY(draw_identified(o, BodeFigure(fit->response), report));
   return with_identify_results(
       o, [&] { return identify_results(*fit, o.model, source.base, found); }, std::move(report));
 }

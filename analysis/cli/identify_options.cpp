@@ -49,8 +49,7 @@ Result<Report> with_identify_results(const IdentifyOptions& o, const std::functi
   for (const std::string& input : {o.file, o.base})
     if (!input.empty()) results.inputs.push_back(input);
   const auto no_page = [] { return Result<std::string>(); };
-  if (auto written = write_outputs({o.results}, o.existing, std::move(results), report, no_page); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(write_outputs({o.results}, o.existing, std::move(results), report, no_page));
   return report.add("results", o.results);
 }
 

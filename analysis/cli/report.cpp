@@ -66,13 +66,13 @@ Result<void> write_page(const Project& project, const ReportVerbOptions& o) {
 Result<Report> run_report(const ReportVerbOptions& o) {
   if (!o.output.ends_with(".html"))
     return schema::fail(schema::Fault::usage, "doesn't end in .html", o.output, "a report is a page");
-  if (const auto free = check_outputs({o.output}, o.existing); !free) return schema::forward_error(free);
+  TACTO_TRY(check_outputs({o.output}, o.existing));
   cli::Progress progress("reading");
   auto project = read_project(o.folder, o.output, [&](double part) { progress.update(part); });
-  if (!project) return schema::forward_error(project);
+  TACTO_TRY(project);
   draw_pictures(*project);
   tell(*project);
-  if (const auto written = write_page(*project, o); !written) return schema::forward_error(written);
+  TACTO_TRY(write_page(*project, o));
   return project_report(*project, o.output);
 }
 

@@ -61,7 +61,7 @@ Result<void> write_outputs(const std::vector<std::string>& outputs, schema::Exis
   for (const std::string& path : outputs) {
     const OutputKind* kind = kind_of(path, more);
     const auto text = kind ? kind->make() : is_page(path) ? page() : schema::results_json(results);
-    if (!text) return schema::forward_error(text);
+    TACTO_TRY(text);
     if (auto written = files.write(path, *text); !written) return written;
   }
   return files.commit(existing);

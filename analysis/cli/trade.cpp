@@ -50,7 +50,7 @@ Result<std::vector<std::string>> textures_named(const std::string& what) {
   const auto files = schema::stored_files(what);
   if (!files || files->front().kind != schema::FileKind::scene) return std::vector{what};
   const auto scene = schema::read_scene(what);
-  if (!scene) return schema::forward_error(scene);
+  TACTO_TRY(scene);
   if (const auto note = schema::note_of_newer_version(files->front().path, *scene); !note.empty())
     cli::warn(note);
   std::vector<std::string> names;
@@ -122,7 +122,7 @@ schema::Results trade_results(const TradeVerbOptions& o, const Trade& trade) {
 Result<Trade> measured_on(const std::string& name, const TradeVerbOptions& o,
                           const schema::Transducer& transducer, const std::function<void(double)>& progress) {
   const auto input = compared_input(name, o.stroke);
-  if (!input) return schema::forward_error(input);
+  TACTO_TRY(input);
   auto trade = measure_trade(input->texture, transducer, o.halves, progress);
   if (!trade && trade.error().where == "the texture") trade.error().where = name;
   if (trade) trade->texture = input->name;
@@ -196,17 +196,16 @@ Result<schema::Transducer> transducer_of(const TradeVerbOptions& o) {
   auto transducer = schema::read_transducer(
       o.transducer, o.implausible ? schema::Numbers::computable : schema::Numbers::plausible);
   if (!transducer || o.halves == TradeHalves::offline) return transducer;
-  if (const auto usable = schema::check_usable(*transducer, o.unfit_transducer); !usable)
-    return schema::forward_error(usable);
+  TACTO_TRY(schema::check_usable(*transducer, o.unfit_transducer));
   if (const auto beyond = playback::beyond_identified(*transducer, spatial::Band{})) cli::warn(*beyond);
   return transducer;
 }
 
 Result<Trade> measured_on_all(const TradeVerbOptions& o) {
   const auto names = textures_named(o.what);
-  if (!names) return schema::forward_error(names);
+  TACTO_TRY(names);
   const auto transducer = transducer_of(o);
-  if (!transducer) return schema::forward_error(transducer);
+  TACTO_TRY(transducer);
   cli::Progress progress("trade");
   const auto count = static_cast<double>(names->size());
   std::vector<Trade> trades;
@@ -214,7 +213,7 @@ Result<Trade> measured_on_all(const TradeVerbOptions& o) {
     const auto before = static_cast<double>(trades.size());
     auto trade =
         measured_on(name, o, *transducer, [&](double part) { progress.update((before + part) / count); });
-    if (!trade) return schema::forward_error(trade);
+    TACTO_TRY(trade);
     trades.push_back(std::move(*trade));
   }
   Trade worst = worst_trade(trades);
@@ -226,15 +225,14 @@ Result<Trade> measured_on_all(const TradeVerbOptions& o) {
 Result<Report> measure(const TradeVerbOptions& o) {
   Trade trade;
   const auto kinds = trade_outputs(trade);
-  if (const auto free = check_outputs(o.outputs, o.existing, kinds); !free)
-    return schema::forward_error(free);
+  TACTO_TRY(check_outputs(o.outputs, o.existing, kinds));
   auto measured = measured_on_all(o);
-  if (!measured) return schema::forward_error(measured);
+  TACTO_TRY(measured);
   trade = std::move(*measured);
   Report report = trade_report(trade);
   const auto written = write_outputs(
       o.outputs, o.existing, trade_results(o, trade), report, [&] { return trade_page(trade); }, kinds);
-  if (!written) return schema::forward_error(written);
+  TACTO_TRY(written);
   if (!o.json()) return trade_for_people(o, trade);
   if (!o.outputs.empty()) report.add("written", o.outputs);
   return report;
@@ -255,10 +253,10 @@ Report table_report(const schema::TradeTable& table) {
 Result<std::string> write_table(const TradeVerbOptions& o, const schema::TradeTable& table) {
   if (o.outputs.empty()) return schema::write_machine_trade_table(table);
   const auto text = schema::trade_table_json(table);
-  if (!text) return schema::forward_error(text);
+  TACTO_TRY(text);
   schema::PendingFiles files;
-  if (const auto put = files.write(o.outputs.front(), *text); !put) return schema::forward_error(put);
-  if (const auto done = files.commit(o.existing); !done) return schema::forward_error(done);
+  TACTO_TRY(files.write(o.outputs.front(), *text));
+  TACTO_TRY(files.commit(o.existing));
   return o.outputs.front();
 }
 
@@ -284,11 +282,11 @@ Result<Report> calibrate(const TradeVerbOptions& o) {
     return schema::fail(Fault::usage, "a machine is measured without a texture", o.what, "leave it out");
   if (o.halves != TradeHalves::both)
     return schema::fail(Fault::usage, "a machine's table is of both halves", "--half", "leave it out");
-  if (const auto free = check_table_output(o); !free) return schema::forward_error(free);
+  TACTO_TRY(check_table_output(o));
   cli::Progress progress("calibrating");
   const schema::TradeTable table = measure_trade_table([&](double part) { progress.update(part); });
   const auto path = write_table(o, table);
-  if (!path) return schema::forward_error(path);
+  TACTO_TRY(path);
   return table_report(table).add("written", *path);
 }
 

@@ -47,7 +47,7 @@ Result<schema::Texture> texture_along(const SignalAlongPath& signal) {
   const auto path = spatial::monotone_path(signal.position_m, direction, {signal.quantum_m, 0});
   if (path.way_m.size() < 2) return schema::fail(Fault::unsuitable, "the finger gets nowhere", "stroke");
   const auto grid = spatial::grid_along(path, direction, signal.pitch_m);
-  if (!grid) return schema::forward_error(grid);
+  TACTO_TRY(grid);
   schema::Texture texture;
   texture.signal = {signal.pitch_m, 0,
                     spatial::resample(path, direction, *grid, signal.values, 0, kAlongMethod)};

@@ -145,7 +145,7 @@ Result<std::vector<schema::Formant>> formants_in(const std::vector<double>& valu
   texture.unit = comparison.pair.unit;
   texture.valid_band = {{0, comparison.pair.low_per_m, comparison.pair.high_per_m}};
   const auto spectrogram = spatial::spatial_spectrogram(texture, options.spectrogram, progress);
-  if (!spectrogram) return schema::forward_error(spectrogram);
+  TACTO_TRY(spectrogram);
   return spatial::find_formants(*spectrogram, options.formant);
 }
 
@@ -198,9 +198,9 @@ Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b, c
   if (!(options.tolerance_db > 0 && std::isfinite(options.tolerance_db)))
     return schema::fail(Fault::usage, "the tolerance has to be above 0 dB", "tolerance");
   auto pair = pair_textures(a, b, options.pair);
-  if (!pair) return schema::forward_error(pair);
+  TACTO_TRY(pair);
   const auto window = compare_window(*pair, options);
-  if (!window) return schema::forward_error(window);
+  TACTO_TRY(window);
   Comparison comparison;
   comparison.pair = std::move(*pair);
   comparison.notes = comparison.pair.notes;
@@ -208,8 +208,8 @@ Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b, c
   comparison.tolerance_db = options.tolerance_db;
   comparison.a_simulated = a.simulated;
   comparison.b_simulated = b.simulated;
-  if (const auto band = set_band(comparison); !band) return schema::forward_error(band);
-  if (const auto done = compare_spectra(comparison, *window); !done) return schema::forward_error(done);
+  TACTO_TRY(set_band(comparison));
+  TACTO_TRY(compare_spectra(comparison, *window));
   comparison.verdict = verdict_of(comparison.evidence, comparison.tolerance_db);
   compare_formants(comparison, options, progress);
   note_likeness(comparison);

@@ -252,7 +252,7 @@ std::vector<schema::ResultFigure> comparison_figures(const Comparison& c) {
 schema::Result<std::string> comparison_page(const Comparison& c, const ComparedNames& names) {
   const std::string simulated = simulated_of(c);
   const auto pictures = pictures_html(comparison_pictures(c, names), simulated);
-  if (!pictures) return schema::forward_error(pictures);
+  TACTO_TRY(pictures);
   std::string body = fmt::format("<h1>{} against {}</h1>\n", escaped(names.b), escaped(names.a)) +
                      answer(answer_words(c)) +
                      fmt::format("<p>A is {}, B is {}.</p>\n", escaped(names.a), escaped(names.b)) +

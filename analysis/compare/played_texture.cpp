@@ -47,12 +47,12 @@ Result<void> check_reach(const SessionStroke& stroke, const playback::ProfileRea
 
 // With the textures that the whole stroke is of.
 Result<schema::SessionHeader> header_of(const SessionStroke& stroke, const std::string& session) {
-  if (const auto steady = check_steady(stroke, session); !steady) return schema::forward_error(steady);
+  TACTO_TRY(check_steady(stroke, session));
   schema::SessionHeader header = stroke.overview.header;
   const auto later = std::ranges::find_if(
       stroke.turns, [&](const playback::TextureTurn& turn) { return turn.row > stroke.first_row; });
   const auto& reach = later == stroke.turns.begin() ? stroke.overview.reach : std::prev(later)->reach;
-  if (const auto read = check_reach(stroke, reach, session); !read) return schema::forward_error(read);
+  TACTO_TRY(check_reach(stroke, reach, session));
   if (later == stroke.turns.begin()) return header;
   const auto& brings = std::prev(later)->brings;
   if (!brings)
@@ -83,11 +83,11 @@ Result<schema::Texture> along(const SessionStroke& stroke) {
 Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke,
                                      const std::function<void(double)>& progress) {
   const auto found = playback::read_session_stroke(session, stroke, progress);
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   auto header = header_of(*found, session);
-  if (!header) return schema::forward_error(header);
+  TACTO_TRY(header);
   auto texture = along(*found);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   PlayedTexture played{std::move(*texture), std::move(*header), found->stroke, found->strokes,
                        found->rows.front().gain};
   played.texture.simulated = found->overview.header.simulated;
@@ -97,7 +97,7 @@ Result<PlayedTexture> played_texture(const std::string& session, std::size_t str
 Result<schema::Texture> wanted_of(const schema::Texture& texture, const std::string& file,
                                   const PlayedTexture& played) {
   const auto wav = schema::texture_wav(file);
-  if (!wav) return schema::forward_error(wav);
+  TACTO_TRY(wav);
   const auto row = std::ranges::find(played.header.textures, wav->sha256, &schema::SessionTexture::sha256);
   if (row == played.header.textures.end())
     return schema::fail(

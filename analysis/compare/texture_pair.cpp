@@ -204,7 +204,7 @@ Result<void> check_pair(const TexturePair& pair) {
 }  // namespace
 
 Result<TexturePair> pair_textures(const Texture& a, const Texture& b, const PairOptions& options) {
-  if (const auto alike = check_alike(a, b); !alike) return schema::forward_error(alike);
+  TACTO_TRY(check_alike(a, b));
   if (!(options.max_shift_m >= 0 && std::isfinite(options.max_shift_m)))
     return schema::fail(Fault::usage, "the largest shift has to be a length", "max-shift");
   if (a.signal.values.empty() || b.signal.values.empty())
@@ -217,7 +217,7 @@ Result<TexturePair> pair_textures(const Texture& a, const Texture& b, const Pair
   pair.low_per_m = std::max(left.band.low_per_m, right.band.low_per_m);
   pair.high_per_m = std::min(left.band.high_per_m, right.band.high_per_m);
   pair_places(left, right, options, pair);
-  if (const auto fine = check_pair(pair); !fine) return schema::forward_error(fine);
+  TACTO_TRY(check_pair(pair));
   return pair;
 }
 

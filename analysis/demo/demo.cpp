@@ -97,21 +97,21 @@ Result<void> check_replaceable(const std::string& stem) {
 Result<schema::Recording> recorded(const Sample& sample, const std::string& stem) {
   auto device = firmware_host::open_device(
       fmt::format("sim:surface={},speed={}mm/s,seed=1", sample.surface, kRecordSpeedMps * 1e3));
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   capture::RecordRequest request;
   request.name = stem;
   request.time_s = kRecordTimeS;
   request.notes = kNotes;
   auto done = capture::record(**device, request);
-  if (!done) return schema::forward_error(done);
+  TACTO_TRY(done);
   return std::move(done->recording);
 }
 
 Result<schema::Texture> first_texture(const schema::Recording& recording) {
   auto maker = spatial::TextureMaker::open(recording, {});
-  if (!maker) return schema::forward_error(maker);
+  TACTO_TRY(maker);
   const auto stroke = maker->record().stroke(1);
-  if (!stroke) return schema::forward_error(stroke);
+  TACTO_TRY(stroke);
   return maker->make(*stroke, 1);
 }
 
@@ -133,17 +133,17 @@ void describe_spectrogram(const Made& made, DemoSurface& row) {
 Result<Made> surface_made(const Sample& sample, const std::string& stem, DemoSurface& row) {
   remove_earlier(stem);
   const auto recording = recorded(sample, stem);
-  if (!recording) return schema::forward_error(recording);
+  TACTO_TRY(recording);
   auto texture = first_texture(*recording);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   auto spectrogram = spatial::spatial_spectrogram(*texture, {});
-  if (!spectrogram) return schema::forward_error(spectrogram);
+  TACTO_TRY(spectrogram);
   spectrogram->name = sample.surface;
   Made made{std::move(*texture), std::move(*spectrogram)};
   const spatial::SpectrogramFigure figure({{&made.texture, &made.spectrogram}});
-  if (auto written = write_made(stem, made, figure); !written) return schema::forward_error(written);
+  TACTO_TRY(write_made(stem, made, figure));
   auto svg = spatial::to_page_svg(figure);
-  if (!svg) return schema::forward_error(svg);
+  TACTO_TRY(svg);
   row.spectrogram_svg = std::move(*svg);
   describe_spectrogram(made, row);
   return made;
@@ -181,7 +181,7 @@ Result<double> fitting_gain_m_per_n(const Made& made, const playback::FingerPath
   const double wished = options.gain_m_per_n;
   options.gain_m_per_n = wished * 1e-3;
   const auto small = playback::render(made.texture, path, transducer, options);
-  if (!small) return schema::forward_error(small);
+  TACTO_TRY(small);
   return std::min(wished, 0.9 * options.gain_m_per_n / small->peaks.tightest().used());
 }
 
@@ -190,10 +190,10 @@ Result<void> replayed(const Made& made, const schema::Transducer& transducer, De
   playback::RenderOptions options;
   options.hold = playback::Hold::zero_order;
   const auto gain = fitting_gain_m_per_n(made, path, transducer, options);
-  if (!gain) return schema::forward_error(gain);
+  TACTO_TRY(gain);
   row.gain_m_per_n = options.gain_m_per_n = *gain;
   const auto rendering = playback::render(made.texture, path, transducer, options);
-  if (!rendering) return schema::forward_error(rendering);
+  TACTO_TRY(rendering);
   firmware_host::ActuatedTray tray(transducer, options.rate_hz);
   schema::TimeSignal came = rendering->drive_v;
   came.values = firmware_host::displacement_under(tray, rendering->drive_v.values);
@@ -205,7 +205,7 @@ Result<void> replayed(const Made& made, const schema::Transducer& transducer, De
   row.error_db = error.error_db;
   row.delay_s = error.delay_s;
   auto svg = spatial::to_page_svg(replay_figure(*rendering, came, row, made.texture.simulated));
-  if (!svg) return schema::forward_error(svg);
+  TACTO_TRY(svg);
   row.replay_svg = std::move(*svg);
   return {};
 }
@@ -238,12 +238,12 @@ Result<void> write_page(const DemoSummary& summary) {
 }  // namespace
 
 Result<DemoSummary> run_demo(const std::string& folder, const std::function<void(double)>& progress) {
-  if (auto made = make_folder(folder); !made) return schema::forward_error(made);
+  TACTO_TRY(make_folder(folder));
   const auto transducer = schema::read_transducer("wiertlewski2011");
-  if (!transducer) return schema::forward_error(transducer);
+  TACTO_TRY(transducer);
   DemoSummary summary;
   summary.page = folder + "/index.html";
-  if (const auto free = check_folder(folder, summary.page); !free) return schema::forward_error(free);
+  TACTO_TRY(check_folder(folder, summary.page));
   summary.simulated = fmt::format("by the emulated device of {}", kCreator);
   for (const Sample& sample : kSamples) {
     progress(static_cast<double>(summary.surfaces.size()) / kSamples.size());
@@ -252,11 +252,11 @@ Result<DemoSummary> run_demo(const std::string& folder, const std::function<void
     row.description = sample.description;
     row.record_speed_mps = kRecordSpeedMps;
     const auto made = surface_made(sample, folder + "/" + sample.surface, row);
-    if (!made) return schema::forward_error(made);
-    if (auto played = replayed(*made, *transducer, row); !played) return schema::forward_error(played);
+    TACTO_TRY(made);
+    TACTO_TRY(replayed(*made, *transducer, row));
     summary.surfaces.push_back(std::move(row));
   }
-  if (auto written = write_page(summary); !written) return schema::forward_error(written);
+  TACTO_TRY(write_page(summary));
   return summary;
 }
 

@@ -122,9 +122,8 @@ schema::Result<capture::UniformClock> clock_of(std::uint64_t rows, At at) {
   const auto place = [](std::uint64_t row) { return std::to_string(row); };
   const auto locate = [&](const auto& times) { return finder.locate(times, place, "times"); };
   (void)in_pieces(rows, at, survey);
-  if (const auto ended = finder.end_survey("times"); !ended) return schema::forward_error(ended);
-  if (finder.second_pass_needed())
-    if (const auto located = in_pieces(rows, at, locate); !located) return schema::forward_error(located);
+  TACTO_TRY(finder.end_survey("times"));
+  if (finder.second_pass_needed()) TACTO_TRY(in_pieces(rows, at, locate));
   return finder.clock();
 }
 

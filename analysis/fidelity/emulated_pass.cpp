@@ -63,25 +63,23 @@ Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::Pla
                                    double speed_mps, const std::function<bool()>& stop_asked,
                                    const std::function<void(double)>& progress) {
   const auto scratch = ScratchFolder::make();
-  if (!scratch) return schema::forward_error(scratch);
+  TACTO_TRY(scratch);
   const FingerPath path = straight_path(texture, options.program.at_m.value_or(0), speed_mps);
   options.finger_path = *scratch / "path.csv";
   options.session = *scratch / "pass.session";
   options.program.any_displacement = options.device_uri.starts_with("sim:");
-  if (const auto written = write_path(options.finger_path, path); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(write_path(options.finger_path, path));
   auto outcome = playback::play_once(options, stop_asked, progress);
-  if (!outcome) return schema::forward_error(outcome);
+  TACTO_TRY(outcome);
   if (stop_asked()) return schema::fail(Fault::usage, "stopped before the end", "fidelity");
   auto columns = playback::read_session_columns(options.session);
-  if (!columns) return schema::forward_error(columns);
+  TACTO_TRY(columns);
   EmulatedPass pass{std::move(*columns), std::move(*outcome), {}};
   // The ramp at the end outlasts the path, where the finger rests.
   const auto along = static_cast<std::size_t>(path.duration_s() * pass.columns.header.rate_hz);
   pass.position_m =
       true_positions(path, pass.columns.header.rate_hz, std::min(along, pass.columns.tick.size()));
-  if (const auto played = check_played(pass, options.device_uri); !played)
-    return schema::forward_error(played);
+  TACTO_TRY(check_played(pass, options.device_uri));
   return pass;
 }
 

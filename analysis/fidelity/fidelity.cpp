@@ -96,7 +96,7 @@ Result<FidelityRow> compared_row(const std::string& tray, const Texture& wanted,
   CompareOptions options;
   options.formants = false;
   auto comparison = compare(wanted, felt, options);
-  if (!comparison) return schema::forward_error(comparison);
+  TACTO_TRY(comparison);
   FidelityRow row;
   row.tray = tray;
   row.comparison = std::move(*comparison);
@@ -116,7 +116,7 @@ Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& wa
   const auto row_of = [&](const std::vector<double>& moved_m) -> Result<FidelityRow> {
     const auto felt =
         along_stretch(in_band(moved_m, wanted.stretch.rate_hz, wanted.band), wanted.stretch, wanted.band);
-    if (!felt) return schema::forward_error(felt);
+    TACTO_TRY(felt);
     return compared_row(tray, wanted.texture, *felt);
   };
   auto row = row_of(felt_m);
@@ -178,23 +178,23 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
                                      const std::function<void(double)>& progress) {
   const auto played = [&](double part) { progress(kPlayedShare * part); };
   const auto pass = emulated_pass(texture, options.play, speed_mps, options.stop_asked, played);
-  if (!pass) return schema::forward_error(pass);
+  TACTO_TRY(pass);
   FidelitySpeed speed = speed_of(*pass, texture, speed_mps);
   const spatial::Band band{speed.low_hz, speed.high_hz};
   const double at_m = options.play.program.at_m.value_or(0);
   const auto stretch = judged_stretch(*pass, texture, at_m, speed_mps);
-  if (!stretch) return schema::forward_error(stretch);
+  TACTO_TRY(stretch);
   const auto wanted_m = wanted_displacement_m(*pass, texture, at_m, gain_of(options), band);
   note_wish(speed, wanted_m, pass->columns.header.transducer.displacement_limit_m);
   const auto wanted = along_stretch(wanted_m, *stretch, band);
-  if (!wanted) return schema::forward_error(wanted);
+  TACTO_TRY(wanted);
   for (const Tray& tray : trays.trays) {
     if (options.stop_asked()) return fidelity_stopped();
     progress(kPlayedShare + (1 - kPlayedShare) * share_done(speed.rows.size(), trays.trays.size()));
     const auto felt_m = felt_displacement_m(*pass, trays.transducer, tray.physics);
     const auto seen_m = through_sensor(felt_m, stretch->rate_hz, trays.transducer);
     auto row = twice_compared_row(tray.name, {*wanted, *stretch, band}, felt_m, seen_m);
-    if (!row) return schema::forward_error(row);
+    TACTO_TRY(row);
     speed.rows.push_back(std::move(*row));
   }
   return speed;
@@ -203,7 +203,7 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
 Result<Fidelity> emulated_fidelity(const FidelityOptions& options, const Texture& texture,
                                    const std::function<void(double)>& progress) {
   const auto trays = trays_of(options.play.device_uri);
-  if (!trays) return schema::forward_error(trays);
+  TACTO_TRY(trays);
   Fidelity whole;
   whole.simulated = trays->simulated;
   whole.displacement =
@@ -213,7 +213,7 @@ Result<Fidelity> emulated_fidelity(const FidelityOptions& options, const Texture
     auto speed = emulated_speed(options, texture, *trays, speed_mps, [&](double part) {
       if (progress) progress(before + part * share_done(1, options.speeds_mps.size()));
     });
-    if (!speed) return schema::forward_error(speed);
+    TACTO_TRY(speed);
     whole.speeds.push_back(std::move(*speed));
   }
   return whole;
@@ -223,17 +223,17 @@ Result<Fidelity> emulated_fidelity(const FidelityOptions& options, const Texture
 Result<Fidelity> modelled_fidelity(const FidelityOptions& options, const Texture& texture,
                                    const std::function<void(double)>& progress) {
   const auto scratch = ScratchFolder::make();
-  if (!scratch) return schema::forward_error(scratch);
+  TACTO_TRY(scratch);
   playback::PlayOptions play = options.play;
   play.session = *scratch / "pass.session";
   const auto outcome = playback::play_once(play, options.stop_asked, progress);
-  if (!outcome) return schema::forward_error(outcome);
+  TACTO_TRY(outcome);
   const auto played = played_texture(play.session, 0);
-  if (!played) return schema::forward_error(played);
+  TACTO_TRY(played);
   const auto wanted = wanted_of(texture, play.program.file, *played);
-  if (!wanted) return schema::forward_error(wanted);
+  TACTO_TRY(wanted);
   auto row = compared_row("the model: no load, no hysteresis", *wanted, played->texture);
-  if (!row) return schema::forward_error(row);
+  TACTO_TRY(row);
   FidelitySpeed speed;
   speed.low_hz = played->header.low_hz;
   speed.high_hz = played->header.high_hz;
@@ -284,12 +284,11 @@ Result<void> check_duration(const FidelityOptions& options, const Texture& textu
 }  // namespace
 
 Result<Fidelity> fidelity(const FidelityOptions& options, const std::function<void(double)>& progress) {
-  if (const auto fine = check_speeds(options); !fine) return schema::forward_error(fine);
+  TACTO_TRY(check_speeds(options));
   const auto texture = schema::read_texture(options.play.program.file);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   const bool emulated = options.play.device_uri.starts_with("sim:");
-  if (emulated)
-    if (const auto fits = check_duration(options, *texture); !fits) return schema::forward_error(fits);
+  if (emulated) TACTO_TRY(check_duration(options, *texture));
   auto whole = emulated ? emulated_fidelity(options, *texture, progress)
                         : modelled_fidelity(options, *texture, progress);
   if (!whole) return whole;

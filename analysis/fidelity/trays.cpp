@@ -47,9 +47,9 @@ std::vector<Tray> usual_trays(const schema::Transducer& transducer) {
 schema::Result<Trays> trays_of(const std::string& uri) {
   constexpr std::string_view kScheme = "sim:";
   const auto parameters = firmware_host::parse_sim_parameters(std::string_view(uri).substr(kScheme.size()));
-  if (!parameters) return schema::forward_error(parameters);
+  TACTO_TRY(parameters);
   auto transducer = schema::read_transducer(parameters->transducer);
-  if (!transducer) return schema::forward_error(transducer);
+  TACTO_TRY(transducer);
   Trays trays{std::move(*transducer), fmt::format("by the emulated device of {}", kCreator), {}};
   const TrayPhysics named = parameters->tray();
   trays.trays = names_physics(named) ? std::vector<Tray>{{"as " + uri + " says", named}}

@@ -49,7 +49,7 @@ schema::Result<std::string> pictures_html(std::span<const schema::ResultPicture>
       continue;
     }
     const auto svg = spatial::to_page_svg(figure_of(picture, simulated));
-    if (!svg) return schema::forward_error(svg);
+    TACTO_TRY(svg);
     html += inline_svg(*svg, picture.title + (simulated.empty() ? "" : ", simulated"));
   }
   return html;

@@ -98,7 +98,7 @@ void add_file(const std::string& path, Project& project, const std::function<voi
 Result<Project> read_project(const std::string& folder, const std::string& leave_out,
                              const std::function<void(double)>& progress) {
   const auto paths = files_below(folder, leave_out);
-  if (!paths) return schema::forward_error(paths);
+  TACTO_TRY(paths);
   Project project;
   project.folder = folder;
   const auto files = static_cast<double>(paths->size());

@@ -29,7 +29,7 @@ std::string data_path(const schema::StoredFile& file) {
 
 Result<void> check(const schema::StoredFile& file, const Progress& progress) {
   const auto checked = schema::check_file(file, progress);
-  if (!checked) return schema::forward_error(checked);
+  TACTO_TRY(checked);
   if (checked->findings.empty()) return {};
   const auto& [where, what] = checked->findings.front();
   const std::size_t more = checked->findings.size() - 1;
@@ -71,15 +71,14 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
 }
 
 Result<ProjectFile> project_file(const schema::StoredFile& stored, const Progress& progress) {
-  if (const auto sound = check(stored, playback::part_of(progress, 0, kChecked)); !sound)
-    return schema::forward_error(sound);
+  TACTO_TRY(check(stored, playback::part_of(progress, 0, kChecked)));
   ProjectFile file;
   file.path = stored.path;
   file.kind = stored.kind;
   file.data = data_path(stored);
   if (const auto sum = schema::sha256_of_file(file.data)) file.checksum = sum->substr(0, 12);
   const auto read = read_into(stored.path, stored.kind, file, playback::part_of(progress, kChecked, 1));
-  if (!read) return schema::forward_error(read);
+  TACTO_TRY(read);
   return file;
 }
 

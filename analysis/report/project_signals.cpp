@@ -53,12 +53,12 @@ std::string missing_words(const schema::RecordingHeader& header) {
 Result<Envelope> channel_envelope(const schema::Recording& recording, std::size_t channel, double scale,
                                   const Progress& progress) {
   auto frames = schema::RecordingFrames::open(recording);
-  if (!frames) return schema::forward_error(frames);
+  TACTO_TRY(frames);
   Envelope envelope(recording.header.frames);
   std::vector<double> values;
   for (std::uint64_t at = 0; at < recording.header.frames; at += values.size()) {
     values.resize(std::min<std::uint64_t>(kChunk, recording.header.frames - at));
-    if (const auto read = frames->read(channel, at, values); !read) return schema::forward_error(read);
+    TACTO_TRY(frames->read(channel, at, values));
     for (std::size_t i = 0; i < values.size(); ++i)
       envelope.add(schema::frame_time_s(recording.header, at + i), scale * values[i]);
     if (progress) progress(static_cast<double>(at) / static_cast<double>(recording.header.frames));
@@ -107,7 +107,7 @@ Result<void> draw_texture(const schema::Texture& texture, const std::string& nam
   }
   spectrogram->name = name;
   auto svg = spatial::to_page_svg(spatial::SpectrogramFigure({{&texture, &*spectrogram}}));
-  if (!svg) return schema::forward_error(svg);
+  TACTO_TRY(svg);
   file.drawings.push_back(std::move(*svg));
   return {};
 }
@@ -159,7 +159,7 @@ schema::ResultPicture Envelope::picture(const std::string& title, const std::str
 
 Result<void> add_recording(const std::string& path, ProjectFile& file, const Progress& progress) {
   const auto recording = schema::open_recording(path);
-  if (!recording) return schema::forward_error(recording);
+  TACTO_TRY(recording);
   const schema::RecordingHeader& header = recording->header;
   file.date = header.recorded.empty() ? header.created : header.recorded;
   file.origin = header.device.empty() ? header.source_file : header.device;
@@ -174,7 +174,7 @@ Result<void> add_recording(const std::string& path, ProjectFile& file, const Pro
   const schema::Channel& shown = header.channels[channel];
   const ShownUnit unit = shown_unit(shown.unit);
   const auto envelope = channel_envelope(*recording, channel, unit.scale, progress);
-  if (!envelope) return schema::forward_error(envelope);
+  TACTO_TRY(envelope);
   file.pictures.push_back(envelope->picture(name_of_file(path), "time (s)",
                                             fmt::format("{} ({})", shown.name, unit.symbol), unit.symbol));
   return {};
@@ -182,7 +182,7 @@ Result<void> add_recording(const std::string& path, ProjectFile& file, const Pro
 
 Result<void> add_texture_file(const std::string& path, ProjectFile& file) {
   const auto texture = schema::read_texture(path);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   file.date = texture->created;
   file.origin = texture->source.recording;
   file.simulated = texture->simulated;
@@ -199,7 +199,7 @@ Result<void> add_texture_file(const std::string& path, ProjectFile& file) {
 
 Result<void> add_spectrogram(const std::string& path, ProjectFile& file) {
   const auto spectrogram = schema::read_spectrogram_nc(path);
-  if (!spectrogram) return schema::forward_error(spectrogram);
+  TACTO_TRY(spectrogram);
   file.origin = spectrogram->name;
   file.simulated = spectrogram->simulated;
   file.figures = {{"strokes", std::to_string(spectrogram->strokes)},
@@ -248,7 +248,7 @@ struct TicksShown {
 
 Result<void> add_session(const std::string& path, ProjectFile& file, const Progress& progress) {
   const auto overview = playback::session_overview(path, playback::part_of(progress, 0, 0.5));
-  if (!overview) return schema::forward_error(overview);
+  TACTO_TRY(overview);
   playback::RowMaker maker(*overview);
   TicksShown ticks(overview->ticks);
   const auto read = playback::read_rows(

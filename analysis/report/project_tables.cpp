@@ -87,7 +87,7 @@ ResultCurve bands_curve(const schema::Description& description) {
 
 Result<void> add_transducer(const std::string& path, ProjectFile& file) {
   const auto transducer = schema::read_transducer(path);
-  if (!transducer) return schema::forward_error(transducer);
+  TACTO_TRY(transducer);
   file.origin = transducer->name;
   file.figures = {{"resonance", for_people(schema::resonance_hz(*transducer), Dimension::frequency)},
                   {"damping ratio", fmt::format("{:.3g}", schema::damping_ratio(*transducer))},
@@ -102,7 +102,7 @@ Result<void> add_transducer(const std::string& path, ProjectFile& file) {
 
 Result<void> add_formants(const std::string& path, ProjectFile& file) {
   const auto formants = schema::read_formants(path);
-  if (!formants) return schema::forward_error(formants);
+  TACTO_TRY(formants);
   file.date = formants->created;
   for (const schema::FormantTable& table : formants->tables) {
     if (!table.simulated.empty()) file.simulated = table.simulated;
@@ -117,7 +117,7 @@ Result<void> add_formants(const std::string& path, ProjectFile& file) {
 
 Result<void> add_descriptions(const std::string& path, ProjectFile& file) {
   const auto descriptions = schema::read_descriptions(path);
-  if (!descriptions) return schema::forward_error(descriptions);
+  TACTO_TRY(descriptions);
   file.date = descriptions->created;
   schema::ResultPicture picture{
       "One-third-octave bands", "spatial frequency (1/mm)", "RMS (dB re 1 unit)", true, {}};
@@ -134,7 +134,7 @@ Result<void> add_descriptions(const std::string& path, ProjectFile& file) {
 
 Result<void> add_calibration(const std::string& path, ProjectFile& file) {
   const auto calibration = schema::read_calibration(path);
-  if (!calibration) return schema::forward_error(calibration);
+  TACTO_TRY(calibration);
   file.origin = calibration->serial;
   file.simulated = calibration->simulated;
   for (const schema::CalibrationEntry& entry : calibration->entries) {
@@ -148,7 +148,7 @@ Result<void> add_calibration(const std::string& path, ProjectFile& file) {
 
 Result<void> add_scene(const std::string& path, ProjectFile& file) {
   const auto scene = schema::read_scene(path);
-  if (!scene) return schema::forward_error(scene);
+  TACTO_TRY(scene);
   file.date = scene->created;
   file.origin = scene->name;
   for (const schema::Layer& layer : scene->layers)
@@ -162,7 +162,7 @@ Result<void> add_scene(const std::string& path, ProjectFile& file) {
 
 Result<void> add_trade_table(const std::string& path, ProjectFile& file) {
   const auto table = schema::read_trade_table(path);
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   file.date = table->created;
   file.origin = table->machine;
   for (const schema::MeasuredChoice& choice : table->choices)
@@ -173,7 +173,7 @@ Result<void> add_trade_table(const std::string& path, ProjectFile& file) {
 
 Result<void> add_session_table(const std::string& path, ProjectFile& file) {
   const auto table = schema::read_session_table(path);
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   file.date = table->created;
   file.origin = table->device;
   file.simulated = table->simulated;
@@ -187,7 +187,7 @@ Result<void> add_session_table(const std::string& path, ProjectFile& file) {
 
 Result<void> add_results(const std::string& path, ProjectFile& file) {
   auto results = schema::read_results(path);
-  if (!results) return schema::forward_error(results);
+  TACTO_TRY(results);
   file.date = results->created;
   file.origin = results->verb;
   for (const std::string& input : results->inputs) file.origin += " " + input;

@@ -23,8 +23,8 @@ Result<void> play_on(Client& client, const playback::Prepared& prepared) {
     return armed;
   if (auto playing = client.command(wire::Play{}); !playing) return playing;
   for (const double end_s = client.transport().now_s() + kMeasuredS; client.transport().now_s() < end_s;) {
-    if (auto pulse = client.heartbeat(); !pulse) return schema::forward_error(pulse);
-    if (auto received = client.receive(kListenS); !received) return schema::forward_error(received);
+    TACTO_TRY(client.heartbeat());
+    TACTO_TRY(client.receive(kListenS));
     (void)client.take_ticks();
   }
   return client.command(wire::Disarm{});
@@ -32,12 +32,12 @@ Result<void> play_on(Client& client, const playback::Prepared& prepared) {
 
 Result<playback::EdgeToDrive> measured_latency(const playback::Prepared& prepared) {
   auto device = firmware_host::make_sim_device("sim:paced=1", "paced=1,speed=40mm/s");
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   auto loop = playback::HostLoop::begin((*device)->client(), {prepared.rate_hz, 50, 1000});
-  if (!loop) return schema::forward_error(loop);
+  TACTO_TRY(loop);
   auto client = Client::connect((*loop)->transport(), "sim:");
-  if (!client) return schema::forward_error(client);
-  if (auto played = play_on(**client, prepared); !played) return schema::forward_error(played);
+  TACTO_TRY(client);
+  TACTO_TRY(play_on(**client, prepared));
   return (*loop)->latency();
 }
 

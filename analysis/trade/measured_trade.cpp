@@ -34,12 +34,12 @@ schema::Result<Trade> measure_trade(const schema::Texture& texture, const schema
   const double share = halves == TradeHalves::both ? 0.5 : 1;
   if (halves != TradeHalves::real_time) {
     auto rows = measure_offline(texture, [&](double part) { progress(share * part); });
-    if (!rows) return schema::forward_error(rows);
+    TACTO_TRY(rows);
     trade.halves.push_back({"offline", std::move(*rows)});
   }
   if (halves != TradeHalves::offline) {
     auto rows = measure_realtime(texture, transducer, [&](double part) { progress(1 - share * (1 - part)); });
-    if (!rows) return schema::forward_error(rows);
+    TACTO_TRY(rows);
     trade.halves.push_back({"real time", std::move(*rows)});
   }
   return trade;

@@ -280,7 +280,7 @@ void RealtimeTrade::add_loops() {
 
 Result<void> RealtimeTrade::check_felt() const {
   const auto played = play(reading_case(usual(), wire::Interpolation::hermite, 16));
-  if (!played) return schema::forward_error(played);
+  TACTO_TRY(played);
   if (!std::isnan(worst_of(played->errors()))) return {};
   return schema::fail(schema::Fault::unsuitable,
                       "has nothing within 15 to 500 Hz at " + speed_words(played->errors()), "the texture",
@@ -288,7 +288,7 @@ Result<void> RealtimeTrade::check_felt() const {
 }
 
 Result<std::vector<TradeRow>> RealtimeTrade::rows() {
-  if (const auto playable = check_felt(); !playable) return schema::forward_error(playable);
+  TACTO_TRY(check_felt());
   constexpr Part kParts[] = {
       &RealtimeTrade::add_readings,      &RealtimeTrade::add_densities,  &RealtimeTrade::add_inverses,
       &RealtimeTrade::add_looking_ahead, &RealtimeTrade::add_counts,     &RealtimeTrade::add_rates,

@@ -219,7 +219,7 @@ schema::Result<std::string> knob_pictures(const TradeHalf& half, const Trade& tr
       "gap:.5rem 1.5rem\">\n";
   for (const spatial::LineFigure& figure : knob_figures(half, trade)) {
     const auto svg = spatial::to_svg(figure);
-    if (!svg) return schema::forward_error(svg);
+    TACTO_TRY(svg);
     html += inline_svg(*svg, fmt::format("{}, {}: error against cost", half.name, figure.title));
   }
   return html + "</div>\n";
@@ -327,7 +327,7 @@ schema::Result<std::string> trade_page(const Trade& trade) {
   }
   for (const TradeHalf& half : trade.halves) {
     const auto pictures = knob_pictures(half, trade);
-    if (!pictures) return schema::forward_error(pictures);
+    TACTO_TRY(pictures);
     body += fmt::format("<h2>Error against cost, {}</h2>\n", escaped(half.name));
     body += *pictures;
     body += under_fold(fmt::format("All {} choices measured, {}", half.rows.size(), half.name),

@@ -140,7 +140,7 @@ Result<ReferenceScale> scale_by_reference(const Take& take, const std::string& c
   const auto x = schema::find_channel(take.header, channel), y = schema::find_channel(take.header, reference);
   if (!x) return schema::fail(Fault::usage, x.error().what, x.error().where, x.error().remedy);
   if (!y) return schema::fail(Fault::usage, y.error().what, y.error().where, y.error().remedy);
-  if (const auto sound = check(take, *x, *y); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check(take, *x, *y));
   const double own_scale = take.header.channels[*x].scale;
   const auto piezo = newtons(take, *x, own_scale), cell = newtons(take, *y, reference_scale.value);
   const auto bins = bins_of({piezo, cell, take.header.sample_rate_hz}, *take.header.transducer);

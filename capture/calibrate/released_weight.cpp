@@ -97,8 +97,8 @@ Result<Uncertain> gain_of(const Release& release, const std::string& channel) {
                         "load cells are calibrated by weights at rest: --mass 0g --mass 100g");
   if (!(release.force_n > 0)) return schema::fail(Fault::usage, "a release needs a weight", "release");
   const auto window = window_of(release, *index);
-  if (!window) return schema::forward_error(window);
-  if (const auto clear = check_stands_out(*window, channel); !clear) return schema::forward_error(clear);
+  TACTO_TRY(window);
+  TACTO_TRY(check_stands_out(*window, channel));
   return gain_of(*window, *transducer, release.force_n);
 }
 
@@ -121,7 +121,7 @@ Result<ReleasedScale> scale_by_releases(std::span<const Release> releases, const
   std::vector<Uncertain> gains;
   for (const Release& release : releases) {
     const auto gain = gain_of(release, channel);
-    if (!gain) return schema::forward_error(gain);
+    TACTO_TRY(gain);
     gains.push_back(*gain);
   }
   if (gains.empty()) return schema::fail(Fault::usage, "a release is needed", "release", "as --release 100g");

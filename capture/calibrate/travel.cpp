@@ -52,7 +52,7 @@ Result<void> check(std::span<const double> differences, double travel_m, double 
 
 Result<TravelScale> scale_by_travel(std::span<const double> differences, double travel_m,
                                     double travel_uncertainty_m, double step) {
-  if (const auto sound = check(differences, travel_m, step); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check(differences, travel_m, step));
   if (!(travel_uncertainty_m >= 0))
     return schema::fail(Fault::usage, "an uncertainty is zero or more", "--travel-uncertainty");
   const auto count = static_cast<double>(differences.size());

@@ -75,7 +75,7 @@ tl::unexpected<schema::Error> forgets_static_forces(const Take& take, const std:
 }  // namespace
 
 Result<WeighedScale> scale_by_weights(std::span<const Weighing> weighings, double relative) {
-  if (const auto enough = check(weighings); !enough) return schema::forward_error(enough);
+  TACTO_TRY(check(weighings));
   const Line line = fitted(weighings);
   if (!std::isfinite(line.slope) || std::abs(line.slope) < 5 * line.u_slope)
     return schema::fail(Fault::unsuitable, "the channel does not follow the forces", "mass",

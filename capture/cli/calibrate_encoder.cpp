@@ -38,13 +38,13 @@ Result<Travels> of_recordings(const CalibrateEncoderOptions& options) {
   Travels travels;
   for (const std::string& text : options.from) {
     const auto part = parse_recording_part(text);
-    if (!part) return schema::forward_error(part);
+    TACTO_TRY(part);
     auto take = take_from(*part);
-    if (!take) return schema::forward_error(take);
+    TACTO_TRY(take);
     if (travels.last && travels.last->header.serial != take->header.serial)
       return schema::fail(schema::Fault::unsuitable, "is of another device than the one before", text);
     const auto differences = count_differences(*take, options.channel);
-    if (!differences) return schema::forward_error(differences);
+    TACTO_TRY(differences);
     travels.differences.insert(travels.differences.end(), differences->begin(), differences->end());
     travels.step = std::max(1.0, step_of(take->codes[*schema::find_channel(take->header, options.channel)]));
     travels.last = std::move(*take);
@@ -59,7 +59,7 @@ void ask_for_end(std::size_t ends) {
 
 Result<Travels> of_device(const CalibrateEncoderOptions& options) {
   const auto device = firmware_host::open_device(options.common.device);
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   std::size_t ends = 0;
   ask_for_end(ends);
   const auto marked = [&] {
@@ -68,7 +68,7 @@ Result<Travels> of_device(const CalibrateEncoderOptions& options) {
     return pressed;
   };
   auto watched = watch_counts(**device, options.channel, options.repeats + 1, marked);
-  if (!watched) return schema::forward_error(watched);
+  TACTO_TRY(watched);
   Travels travels{std::move(watched->take), {}, 1};
   for (std::size_t i = 1; i < watched->counts.size(); ++i)
     travels.differences.push_back(travelled_counts(watched->counts[i - 1], watched->counts[i]));
@@ -77,10 +77,10 @@ Result<Travels> of_device(const CalibrateEncoderOptions& options) {
 
 Result<cli::Report> run_calibrate_encoder(const CalibrateEncoderOptions& options) {
   const auto travels = options.from.empty() ? of_device(options) : of_recordings(options);
-  if (!travels) return schema::forward_error(travels);
+  TACTO_TRY(travels);
   const auto found =
       scale_by_travel(travels->differences, options.travel_m, options.travel_uncertainty_m, travels->step);
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   const Take& take = *travels->last;
   const schema::Channel& channel = take.header.channels[*schema::find_channel(take.header, options.channel)];
   cli::Report report = report_on(take);

@@ -54,7 +54,7 @@ Result<Take> take_for(const Mass& mass, const CalibrateForceOptions& options) {
   const auto ready = wait_for_enter(
       mass.force_n == 0 ? "Take everything off " + options.channel
                         : fmt::format("Hang {} on {} and let it rest", mass.words, options.channel));
-  if (!ready) return schema::forward_error(ready);
+  TACTO_TRY(ready);
   const auto device = firmware_host::open_device(options.common.device);
   return device ? take_from(**device, options.time_s.value_or(3)) : schema::forward_error(device);
 }
@@ -91,13 +91,13 @@ Result<Weighed> weigh(const CalibrateForceOptions& options, double gravity_mps2)
   Weighed weighed;
   for (const std::string& text : options.masses) {
     auto mass = parse_mass(text, gravity_mps2);
-    if (!mass) return schema::forward_error(mass);
+    TACTO_TRY(mass);
     auto take = take_for(*mass, options);
-    if (!take) return schema::forward_error(take);
+    TACTO_TRY(take);
     if (weighed.last && weighed.last->header.serial != take->header.serial)
       return schema::fail(Fault::unsuitable, "is of another device than the one before", mass->recording);
     const auto weighing = weighing_of(*take, options.channel, mass->force_n);
-    if (!weighing) return schema::forward_error(weighing);
+    TACTO_TRY(weighing);
     weighed.weighings.push_back(*weighing);
     weighed.masses.push_back(std::move(*mass));
     weighed.last = std::move(*take);
@@ -116,9 +116,9 @@ double gravity_uncertainty(const CalibrateForceOptions& options, const std::vect
 Result<cli::Report> by_weights(const CalibrateForceOptions& options) {
   const double gravity_mps2 = options.gravity_mps2.value_or(kGravity_mps2);
   const auto weighed = weigh(options, gravity_mps2);
-  if (!weighed) return schema::forward_error(weighed);
+  TACTO_TRY(weighed);
   const auto found = scale_by_weights(weighed->weighings, gravity_uncertainty(options, options.masses));
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   const Take& take = *weighed->last;
   const schema::Channel& channel = take.header.channels[*schema::find_channel(take.header, options.channel)];
   cli::Report report = report_on(take);
@@ -146,11 +146,9 @@ Result<Take> pull_for(const CalibrateForceOptions& options) {
 
 Result<Take> take_of_release(const Mass& mass, const CalibrateForceOptions& options) {
   if (mass.recording.empty())
-    if (const auto ready = wait_for_enter(
-            fmt::format("Hang {} by a thread that pulls along +x; cut it within {:g} s after you", mass.words,
-                        options.time_s.value_or(10)));
-        !ready)
-      return schema::forward_error(ready);
+    TACTO_TRY(
+        wait_for_enter(fmt::format("Hang {} by a thread that pulls along +x; cut it within {:g} s after you",
+                                   mass.words, options.time_s.value_or(10))));
   CalibrateForceOptions plain = options;
   plain.from = mass.recording;
   return pull_for(plain);
@@ -173,11 +171,11 @@ Result<Uncertain> scale_of_reference(const CalibrateForceOptions& options, const
 
 Result<cli::Report> by_reference(const CalibrateForceOptions& options) {
   const auto take = pull_for(options);
-  if (!take) return schema::forward_error(take);
+  TACTO_TRY(take);
   const auto reference = scale_of_reference(options, *take);
-  if (!reference) return schema::forward_error(reference);
+  TACTO_TRY(reference);
   const auto found = scale_by_reference(*take, options.channel, options.reference, *reference);
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   const schema::Channel& channel =
       take->header.channels[*schema::find_channel(take->header, options.channel)];
   cli::Report report = report_on(*take);
@@ -192,14 +190,14 @@ Result<cli::Report> by_releases(const CalibrateForceOptions& options) {
   std::vector<Release> releases;
   for (const std::string& text : options.releases) {
     const auto mass = parse_mass(text, options.gravity_mps2.value_or(kGravity_mps2));
-    if (!mass) return schema::forward_error(mass);
+    TACTO_TRY(mass);
     auto take = take_of_release(*mass, options);
-    if (!take) return schema::forward_error(take);
+    TACTO_TRY(take);
     releases.push_back({std::move(*take), mass->force_n});
   }
   const auto found =
       scale_by_releases(releases, options.channel, gravity_uncertainty(options, options.releases));
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   const Take& take = releases.back().take;
   const schema::Channel& channel = take.header.channels[*schema::find_channel(take.header, options.channel)];
   cli::Report report = report_on(take);

@@ -52,13 +52,12 @@ void add_scale(cli::Report& report, const Uncertain& scale, double own_scale, co
 
 schema::Result<cli::Report> kept(cli::Report report, const CalibrateOptions& options, const Take& take,
                                  std::vector<schema::CalibrationEntry> entries) {
-  if (const auto right = check_scales(entries, options.dry_run || options.anyway); !right)
-    return schema::forward_error(right);
+  TACTO_TRY(check_scales(entries, options.dry_run || options.anyway));
   if (options.dry_run) return report;
   const std::string now = schema::creation_time();
   const auto path =
       keep_calibration(take.header, take.device_name, std::move(entries), options.calibration, now);
-  if (!path) return schema::forward_error(path);
+  TACTO_TRY(path);
   report.add("date", now).add("file", *path);
   return report.add("next", "tactograph record -d " + take.header.device + " -o oak");
 }

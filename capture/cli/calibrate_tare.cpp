@@ -58,11 +58,10 @@ Result<void> check_still(const Tare& tare, bool anyway) {
 
 Result<cli::Report> run_calibrate_tare(const CalibrateTareOptions& options) {
   const auto take = take_for(options);
-  if (!take) return schema::forward_error(take);
+  TACTO_TRY(take);
   const auto tare = tare_of(*take);
-  if (!tare) return schema::forward_error(tare);
-  if (const auto still = check_still(*tare, options.common.anyway); !still)
-    return schema::forward_error(still);
+  TACTO_TRY(tare);
+  TACTO_TRY(check_still(*tare, options.common.anyway));
   for (const std::string& warning : tare->warnings) cli::warn(warning);
   cli::Report report = report_on(*take);
   std::vector<cli::Report> rows;

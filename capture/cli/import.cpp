@@ -155,7 +155,7 @@ schema::Result<cli::Report> run_profile(const ImportRequest& request) {
     cli::Progress progress("importing");
     return import_profile(request, [&](double fraction) { progress.update(fraction); });
   }();
-  if (!imported) return schema::forward_error(imported);
+  TACTO_TRY(imported);
   const auto& [profile, stem] = *imported;
   const auto [lowest, highest] = std::ranges::minmax(profile.height_m);
   cli::Report report;
@@ -174,7 +174,7 @@ schema::Result<cli::Report> run_import(const ImportRequest& request) {
     cli::Progress progress("importing");
     return import_file(request, [&](double fraction) { progress.update(fraction); });
   }();
-  if (!imported) return schema::forward_error(imported);
+  TACTO_TRY(imported);
   cli::warn_grouped(imported->recording.header.warnings);
   return report_on(*imported, request);
 }

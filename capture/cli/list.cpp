@@ -54,7 +54,7 @@ cli::Report row_of(const ListedRecording& one) {
 
 schema::Result<cli::Report> run_list(const std::string& folder) {
   const auto list = list_recordings(folder);
-  if (!list) return schema::forward_error(list);
+  TACTO_TRY(list);
   std::vector<cli::Report> rows, troubled;
   for (const ListedRecording& one : *list)
     if (one.trouble.empty())

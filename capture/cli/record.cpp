@@ -180,23 +180,23 @@ class Console {
 Result<cli::Report> run_record(const RecordOptions& options) {
   RecordRequest request = options.request;
   auto name = chosen_name(options);
-  if (!name) return schema::forward_error(name);
+  TACTO_TRY(name);
   request.name = std::move(*name);
   request.stale_after_s = options.stale_after_s.value_or(kStaleAfter_s);
   const auto opened = firmware_host::open_device_to_record(options.device);
-  if (!opened) return schema::forward_error(opened);
-  if (const auto ends = check_end(*opened, options); !ends) return schema::forward_error(ends);
+  TACTO_TRY(opened);
+  TACTO_TRY(check_end(*opened, options));
   const auto& device = opened->device;
   if (!options.no_calibration) {
     auto calibration = calibration_of(device->capabilities().serial, options.calibration);
-    if (!calibration) return schema::forward_error(calibration);
+    TACTO_TRY(calibration);
     request.calibration = std::move(*calibration);
   }
   const Result<Recorded> recorded = [&] {
     Console console;
     return record(*device, request, console.hooks());
   }();
-  if (!recorded) return schema::forward_error(recorded);
+  TACTO_TRY(recorded);
   cli::warn_grouped(recorded->recording.header.warnings);
   cli::Report report = report_on(*recorded, *device);
   const bool gaps = !recorded->recording.header.gaps.empty() || recorded->counts.lost_frames > 0;

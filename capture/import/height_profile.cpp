@@ -42,7 +42,7 @@ struct Columns {
 
 Result<Columns> columns_of(const ImportRequest& request, const Source& source) {
   const auto specs = parse_channels(request.channels, {source.columns, source.units});
-  if (!specs) return schema::forward_error(specs);
+  TACTO_TRY(specs);
   std::optional<ScaledColumn> height, position;
   for (const ChannelSpec& spec : *specs) {
     if (spec.quantity == "height") height = spec.source;
@@ -144,11 +144,11 @@ Result<HeightProfile> profile_of(const ImportRequest& request, Table table) {
 Result<HeightProfile> read_profile_table(const ImportRequest& request,
                                          const std::function<void(double)>& progress) {
   const auto source = open_source(request.file, request.skip_lines);
-  if (!source) return schema::forward_error(source);
+  TACTO_TRY(source);
   if (!source->csv)
     return fail(Fault::unsuitable, "is no table", request.file, "a profile is a CSV table or XML");
   const auto columns = columns_of(request, *source);
-  if (!columns) return schema::forward_error(columns);
+  TACTO_TRY(columns);
   auto table = read_table(*source, *columns, progress);
   return table ? profile_of(request, std::move(*table)) : schema::forward_error(table);
 }
@@ -162,7 +162,7 @@ Result<void> check_xml_options(const ImportRequest& request) {
 
 Result<schema::Texture> texture_of(const HeightProfile& profile, const ImportRequest& request) {
   const auto sum = schema::sha256_of_file(request.file);
-  if (!sum) return schema::forward_error(sum);
+  TACTO_TRY(sum);
   schema::Texture texture;
   texture.signal.pitch_m = profile.pitch_m;
   texture.signal.values = profile.height_m;
@@ -204,20 +204,19 @@ bool asks_for_profile(const ImportRequest& request) {
 Result<HeightProfile> read_height_profile(const ImportRequest& request,
                                           const std::function<void(double)>& progress) {
   if (!is_xml(request.file)) return read_profile_table(request, progress);
-  if (const auto fits = check_xml_options(request); !fits) return schema::forward_error(fits);
+  TACTO_TRY(check_xml_options(request));
   return read_profile_xml(request.file);
 }
 
 Result<ImportedProfile> import_profile(const ImportRequest& request,
                                        const std::function<void(double)>& progress) {
   const std::string stem = schema::stem_of(request.name, ".texture");
-  if (const auto free = check_free(stem, request.replace); !free) return schema::forward_error(free);
+  TACTO_TRY(check_free(stem, request.replace));
   auto profile = read_height_profile(request, progress);
-  if (!profile) return schema::forward_error(profile);
+  TACTO_TRY(profile);
   const auto texture = texture_of(*profile, request);
-  if (!texture) return schema::forward_error(texture);
-  if (const auto written = schema::write_texture(stem, *texture); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(texture);
+  TACTO_TRY(schema::write_texture(stem, *texture));
   return ImportedProfile{std::move(*profile), stem};
 }
 

@@ -19,7 +19,6 @@
 namespace tacto::capture {
 namespace {
 
-using schema::forward_error;
 using schema::RecordingHeader;
 using schema::Result;
 using Progress = std::function<void(double)>;
@@ -183,7 +182,7 @@ Result<void> Import::mask_what_was_found() {
     std::ranges::copy(judged_unmasked_[k]->outlier_samples(), std::back_inserter(rows));
   }
   auto mask = OutlierMask::of(std::move(rows), rows_, request_.file);
-  if (!mask) return forward_error(mask);
+  TACTO_TRY(mask);
   mask_ = std::move(*mask);
   if (plan_.time) header_.sample_rate_hz = clock_.clock().rate_hz;
   header_.gaps = mask_.gaps_with(plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{});
@@ -235,7 +234,7 @@ Result<void> Import::write_all() {
   if (!clock_known_) written.sample_rate_hz = 1;  // until it is known
   if (derived_) written.channels.push_back(derived_->position.channel());
   auto writer = schema::RecordingWriter::create(request_.name, std::move(written), request_.replace);
-  if (!writer) return forward_error(writer);
+  TACTO_TRY(writer);
   writer_ = std::move(*writer);
   const auto done = read([this](const RowBlock& block) { return take(block); }, share(0.3, 0.8), &sum_);
   if (!done) return done;
@@ -320,7 +319,7 @@ Result<Imported> Import::close() {
   header.source_sha256 = sum_.hexadecimal();
   add_warnings(header);
   auto recording = writer_->close();
-  if (!recording) return forward_error(recording);
+  TACTO_TRY(recording);
   Imported imported{std::move(*recording), {}, plan_.source.format, outliers(), mask_.count()};
   if (decimal_comma_) imported.format += ", decimal commas";
   for (std::size_t k = 0; k < measured_.size(); ++k) {
@@ -335,13 +334,12 @@ Result<Imported> Import::close() {
 
 Result<Imported> Import::run() {
   if (request_.mask_outliers) {
-    if (const auto found = find_outliers(); !found) return forward_error(found);
+    TACTO_TRY(find_outliers());
   } else if (plan_.time && derived_) {
-    if (const auto known = first_clock(); !known) return forward_error(known);
+    TACTO_TRY(first_clock());
   }
-  if (const auto written = write_all(); !written) return forward_error(written);
-  if (!request_.mask_outliers && second_pass_needed())
-    if (const auto named = second_pass(0.8, 0.9); !named) return forward_error(named);
+  TACTO_TRY(write_all());
+  if (!request_.mask_outliers && second_pass_needed()) TACTO_TRY(second_pass(0.8, 0.9));
   return close();
 }
 
@@ -349,7 +347,7 @@ Result<Imported> Import::run() {
 
 Result<Imported> import_file(const ImportRequest& request, const std::function<void(double)>& progress) {
   auto plan = plan_import(request);
-  if (!plan) return forward_error(plan);
+  TACTO_TRY(plan);
   return Import(request, std::move(*plan), progress).run();
 }
 

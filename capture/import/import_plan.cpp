@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using schema::fail;
 using schema::Fault;
-using schema::forward_error;
 using schema::Result;
 
 Result<void> check_output(const ImportRequest& request) {
@@ -32,7 +31,7 @@ Result<void> check_output(const ImportRequest& request) {
     if (fs::exists(path, ignored) && !request.replace)
       return fail(Fault::usage, "is there already", path, "choose another name, or --force to replace it");
     schema::PendingFiles probe;
-    if (const auto writable = probe.add(path); !writable) return forward_error(writable);
+    TACTO_TRY(probe.add(path));
   }
   return {};
 }
@@ -142,17 +141,17 @@ Result<void> check_with_source(const ImportRequest& request, const ImportPlan& p
 }  // namespace
 
 Result<ImportPlan> plan_import(const ImportRequest& request) {
-  if (const auto fits = check_without_source(request); !fits) return forward_error(fits);
+  TACTO_TRY(check_without_source(request));
   auto source = open_source(request.file, request.skip_lines);
-  if (!source) return forward_error(source);
+  TACTO_TRY(source);
   auto channels = choose_channels(request, *source);
-  if (!channels) return forward_error(channels);
+  TACTO_TRY(channels);
   ImportPlan plan{std::move(*source), std::move(*channels), std::nullopt};
-  if (const auto fits = check_with_source(request, plan); !fits) return forward_error(fits);
+  TACTO_TRY(check_with_source(request, plan));
   if (request.time_column.empty()) return plan;
   const auto time = parse_scaled_column(request.time_column, schema::Dimension::time,
                                         {plan.source.columns, plan.source.units});
-  if (!time) return forward_error(time);
+  TACTO_TRY(time);
   plan.time = *time;
   return plan;
 }

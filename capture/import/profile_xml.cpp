@@ -89,14 +89,14 @@ Result<HeightProfile> profile_in(const Reader& reader) {
     return fail(Fault::unsuitable, fmt::format("holds {} data, not a profile", type), reader.file,
                 "take a profile from it, and import that");
   const auto unit_m = reader.unit();
-  if (!unit_m) return schema::forward_error(unit_m);
+  TACTO_TRY(unit_m);
   const auto spacing = reader.number("/DATA/DATAFILE/SPACING");
-  if (!spacing) return schema::forward_error(spacing);
+  TACTO_TRY(spacing);
   if (!(*spacing > 0)) return reader.broken("a spacing is above 0", "/DATA/DATAFILE/SPACING");
   auto heights = reader.heights(*unit_m);
-  if (!heights) return schema::forward_error(heights);
+  TACTO_TRY(heights);
   const auto points = reader.number("/DATA/DATAFILE/NUMPOINTS");
-  if (!points) return schema::forward_error(points);
+  TACTO_TRY(points);
   if (*points != static_cast<double>(heights->size()))
     return reader.broken(fmt::format("{} values where {} are promised", heights->size(), *points),
                          "/DATA/DATAFILE/NUMPOINTS");
@@ -114,7 +114,7 @@ Result<HeightProfile> profile_in(const Reader& reader) {
 
 Result<HeightProfile> read_profile_xml(const std::string& file) try {
   const auto bytes = schema::read_file(file);
-  if (!bytes) return schema::forward_error(bytes);
+  TACTO_TRY(bytes);
   Reader reader{file, {}};
   const auto parsed = reader.document.load_buffer(bytes->data(), bytes->size());
   if (!parsed)

@@ -100,8 +100,7 @@ Result<void> check_serial(const CalibrationFile& file, const std::string& serial
 Result<std::vector<std::string>> apply_calibration(schema::RecordingHeader& header,
                                                    const CalibrationFile& file, double stale_after_s,
                                                    const std::string& now) {
-  if (const auto same_device = check_serial(file, header.serial); !same_device)
-    return schema::forward_error(same_device);
+  TACTO_TRY(check_serial(file, header.serial));
   std::vector<std::string> warnings;
   for (Channel& channel : header.channels) {
     if (channel.calibration) continue;
@@ -122,7 +121,7 @@ Result<std::optional<CalibrationFile>> calibration_of(const std::string& serial,
     place = std::move(*usual);
   }
   auto file = schema::read_calibration(place);
-  if (!file) return schema::forward_error(file);
+  TACTO_TRY(file);
   return std::optional(std::move(*file));
 }
 
@@ -132,25 +131,23 @@ Result<std::string> keep_calibration(const schema::RecordingHeader& device, cons
   const auto place = path.empty() ? schema::calibration_path(device.serial) : Result<std::string>(path);
   if (!place) return place;
   const auto alone = schema::lock_calibration(*place);
-  if (!alone) return schema::forward_error(alone);
+  TACTO_TRY(alone);
   CalibrationFile file;
   if (schema::is_file(*place)) {
     auto before = schema::read_calibration(*place);
-    if (!before) return schema::forward_error(before);
+    TACTO_TRY(before);
     file = std::move(*before);
   } else {
     file.serial = device.serial;
   }
-  if (const auto same_device = check_serial(file, device.serial); !same_device)
-    return schema::forward_error(same_device);
+  TACTO_TRY(check_serial(file, device.serial));
   if (!name.empty()) file.device = name;
   file.simulated = device.simulated;
   for (CalibrationEntry& entry : entries) {
     entry.date = now;
     file.entries.push_back(std::move(entry));
   }
-  if (const auto written = schema::write_calibration(*place, file); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(schema::write_calibration(*place, file));
   return *place;
 }
 

@@ -197,7 +197,7 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
   const auto counts = device_.counts();
   const bool nothing = live.frames() == 0;
   if (nothing) {
-    if (const auto gone = live.discard(); !gone) return schema::forward_error(gone);
+    TACTO_TRY(live.discard());
     if (failure_) return tl::unexpected(*failure_);
     return schema::fail(Fault::device, "the device gave no frames", device_.capabilities().uri);
   }
@@ -209,7 +209,7 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
   for (std::string& warning : stream_warnings(counts, due)) header.warnings.push_back(std::move(warning));
   if (failure_) header.warnings.push_back("it ended early: " + schema::message(*failure_));
   auto recording = live.close();
-  if (!recording) return schema::forward_error(recording);
+  TACTO_TRY(recording);
   return Recorded{std::move(*recording), figures_.statistics(), counts, failure_};
 }
 
@@ -219,7 +219,7 @@ Result<schema::RecordingHeader> calibrated_header(const Device& device, const Re
   if (!header || !request.calibration) return header;
   auto warnings =
       apply_calibration(*header, *request.calibration, request.stale_after_s, schema::creation_time());
-  if (!warnings) return schema::forward_error(warnings);
+  TACTO_TRY(warnings);
   header->warnings = std::move(*warnings);
   return header;
 }
@@ -227,17 +227,17 @@ Result<schema::RecordingHeader> calibrated_header(const Device& device, const Re
 }  // namespace
 
 Result<Recorded> record(Device& device, const RecordRequest& request, const RecordHooks& hooks) {
-  if (const auto words = check_words(request); !words) return schema::forward_error(words);
-  if (const auto folder = check_folder(request); !folder) return schema::forward_error(folder);
+  TACTO_TRY(check_words(request));
+  TACTO_TRY(check_folder(request));
   const auto frames = frames_wanted(request, device.capabilities().sample_rate_hz);
-  if (!frames) return schema::forward_error(frames);
+  TACTO_TRY(frames);
   auto header = calibrated_header(device, request);
-  if (!header) return schema::forward_error(header);
-  if (const auto room = check_room(request, *header); !room) return schema::forward_error(room);
+  TACTO_TRY(header);
+  TACTO_TRY(check_room(request, *header));
   auto live = schema::LiveRecording::create(request.name, std::move(*header));
-  if (!live) return schema::forward_error(live);
+  TACTO_TRY(live);
   if (const auto started = device.start(); !started) {
-    if (const auto gone = live->discard(); !gone) return schema::forward_error(gone);
+    TACTO_TRY(live->discard());
     return schema::forward_error(started);
   }
   Capture capture(device, request, hooks, *live, *frames);

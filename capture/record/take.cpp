@@ -28,7 +28,7 @@ Result<void> fill(Take& take, firmware_host::Device& device, std::size_t frames)
   while (take.frames() < frames) {
     const std::size_t wanted = std::min(kBlockFrames, frames - take.frames());
     const auto got = device.read(std::span(block).first(wanted * take.codes.size()));
-    if (!got) return schema::forward_error(got);
+    TACTO_TRY(got);
     if (*got == 0) return schema::fail(Fault::device, "the stream ended too early", take.header.device);
     append(take, std::span<const std::int32_t>(block).first(*got * take.codes.size()));
   }
@@ -93,8 +93,8 @@ Result<RecordingPart> parse_recording_part(const std::string& text) {
   if (dots == std::string::npos)
     return schema::fail(Fault::usage, fmt::format("'{}' is no span of time", span), text, "as oak@1s..3s");
   const auto from_s = time_in(span.substr(0, dots), text), to_s = time_in(span.substr(dots + 2), text);
-  if (!from_s) return schema::forward_error(from_s);
-  if (!to_s) return schema::forward_error(to_s);
+  TACTO_TRY(from_s);
+  TACTO_TRY(to_s);
   return RecordingPart{text.substr(0, at), *from_s, *to_s};
 }
 
@@ -117,18 +117,18 @@ Result<Take> take_from(firmware_host::Device& device, double time_s) {
     return schema::fail(Fault::usage, fmt::format("{:g} s is no time to calibrate in", time_s), "time",
                         fmt::format("from {:g} s to {:g} s", kShortest_s, kLongest_s));
   auto header = header_for(device.capabilities(), {});
-  if (!header) return schema::forward_error(header);
+  TACTO_TRY(header);
   for (schema::Channel& channel : header->channels)
     channel = nominal(channel);  // a replay's may be calibrated
   const auto frames = static_cast<std::size_t>(time_s * header->sample_rate_hz);
   Take take{std::move(*header), device.capabilities().name, {}};
   take.codes.resize(take.header.channels.size());
-  if (const auto started = device.start(); !started) return schema::forward_error(started);
+  TACTO_TRY(device.start());
   const auto settling = static_cast<std::size_t>(kSettling_s * take.header.sample_rate_hz);
   const auto filled = fill(take, device, frames + settling);
   const auto stopped = device.stop();
-  if (!filled) return schema::forward_error(filled);
-  if (!stopped) return schema::forward_error(stopped);
+  TACTO_TRY(filled);
+  TACTO_TRY(stopped);
   for (std::vector<double>& codes : take.codes)
     codes.erase(codes.begin(), codes.begin() + static_cast<std::ptrdiff_t>(settling));
   return take;
@@ -136,17 +136,17 @@ Result<Take> take_from(firmware_host::Device& device, double time_s) {
 
 Result<Take> take_from(const RecordingPart& part) {
   auto recording = schema::open_recording(part.name);
-  if (!recording) return schema::forward_error(recording);
-  if (const auto sound = check_source(*recording); !sound) return schema::forward_error(sound);
+  TACTO_TRY(recording);
+  TACTO_TRY(check_source(*recording));
   const schema::RecordingHeader& header = recording->header;
-  if (const auto there = check_end(header, part); !there) return schema::forward_error(there);
+  TACTO_TRY(check_end(header, part));
   const std::uint64_t first = frame_at(header, part.from_s);
   const std::uint64_t last = std::max(first, frame_at(header, part.to_s));
-  if (const auto fits = check_part(header, part.name, first, last); !fits) return schema::forward_error(fits);
+  TACTO_TRY(check_part(header, part.name, first, last));
   Take take{header, {}, {}};
   for (std::size_t i = 0; i < header.channels.size(); ++i) {
     const auto codes = schema::read_stored(*recording, i);
-    if (!codes) return schema::forward_error(codes);
+    TACTO_TRY(codes);
     take.codes.emplace_back(codes->begin() + static_cast<std::ptrdiff_t>(first),
                             codes->begin() + static_cast<std::ptrdiff_t>(last));
     take.header.channels[i] = nominal(header.channels[i]);

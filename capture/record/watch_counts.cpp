@@ -21,7 +21,7 @@ struct Watch {
   // The channel's count at the end of the next block.
   Result<double> next() {
     const auto got = device.read(block);
-    if (!got) return schema::forward_error(got);
+    TACTO_TRY(got);
     if (*got == 0)
       return schema::fail(Fault::device, "the stream ended before the travels did",
                           device.capabilities().uri);
@@ -34,9 +34,9 @@ Result<std::vector<double>> counts_at_marks(Watch& watch, std::size_t marks,
   std::vector<double> counts;
   while (counts.size() < marks) {
     const auto count = watch.next();
-    if (!count) return schema::forward_error(count);
+    TACTO_TRY(count);
     const auto now = marked();
-    if (!now) return schema::forward_error(now);
+    TACTO_TRY(now);
     if (*now) counts.push_back(*count);
   }
   return counts;
@@ -47,18 +47,18 @@ Result<std::vector<double>> counts_at_marks(Watch& watch, std::size_t marks,
 Result<WatchedCounts> watch_counts(firmware_host::Device& device, const std::string& channel,
                                    std::size_t marks, const std::function<Result<bool>()>& marked) {
   auto header = header_for(device.capabilities(), {});
-  if (!header) return schema::forward_error(header);
+  TACTO_TRY(header);
   const auto index = schema::find_channel(*header, channel);
   if (!index)
     return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
   const std::size_t channels = header->channels.size();
   const auto frames = std::max<std::size_t>(1, static_cast<std::size_t>(header->sample_rate_hz * kWatch_s));
-  if (const auto started = device.start(); !started) return schema::forward_error(started);
+  TACTO_TRY(device.start());
   Watch watch{device, channels, *index, std::vector<std::int32_t>(frames * channels)};
   auto counts = counts_at_marks(watch, marks, marked);
   const auto stopped = device.stop();
-  if (!counts) return schema::forward_error(counts);
-  if (!stopped) return schema::forward_error(stopped);
+  TACTO_TRY(counts);
+  TACTO_TRY(stopped);
   return WatchedCounts{{std::move(*header), device.capabilities().name, {}}, std::move(*counts)};
 }
 

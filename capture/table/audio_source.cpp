@@ -58,12 +58,12 @@ Result<Source> open_audio(const std::string& file) {
 Result<void> read_audio(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
                         const std::function<void(double)>& progress) {
   auto reader = schema::WavReader::open(source.file);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   const std::size_t channels = source.columns.size();
   std::vector<double> piece(std::max<std::size_t>(kPieceSamples / channels, 1) * channels), rows;
   for (std::uint64_t done = 0;;) {
     const auto got = reader->read(std::span(piece));
-    if (!got) return schema::forward_error(got);
+    TACTO_TRY(got);
     if (*got == 0 && done == 0) return fail(Fault::malformed, "holds no samples", source.file);
     if (*got == 0) return {};
     const auto chosen = choose(source, columns, done, std::span(piece).first(*got * channels), rows);

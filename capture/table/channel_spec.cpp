@@ -142,13 +142,13 @@ tl::unexpected<schema::Error> in_option(const schema::Error& error, std::string_
 
 Result<ScaledColumn> scaled(std::string_view text, Dimension dimension, const ColumnNames& columns) {
   const auto cut = cut_column(text, columns.names);
-  if (!cut) return schema::forward_error(cut);
+  TACTO_TRY(cut);
   const auto calibration = read_calibration(cut->rest);
   if (!calibration)
     return fail(Fault::usage, fmt::format("'{}' is no scale and offset", cut->rest), {},
                 fmt::format("write COLUMN*SCALE+OFFSET and a unit of {}", schema::units_of(dimension)));
   const auto si = si_worth(calibration->unit, dimension, columns.units[cut->column]);
-  if (!si) return schema::forward_error(si);
+  TACTO_TRY(si);
   if (calibration->scale == 0) return fail(Fault::usage, "has a scale of zero: the column would be lost");
   return ScaledColumn{cut->column, calibration->scale * *si, calibration->offset * *si};
 }
@@ -157,7 +157,7 @@ Result<ChannelSpec> channel_without_column(std::string_view name) {
   const auto colon = name.rfind(':');
   const std::string quantity(colon == std::string_view::npos ? name : name.substr(colon + 1));
   const auto known = schema::quantity_named(quantity);
-  if (!known) return schema::forward_error(known);
+  TACTO_TRY(known);
   const std::string label(name.substr(0, colon));
   if (label.empty()) return fail(Fault::usage, "has an empty label before ':'");
   return ChannelSpec{label, quantity, known->dimension, {}};
@@ -188,7 +188,7 @@ Result<std::vector<ChannelSpec>> parse_channels(const std::vector<std::string>& 
   std::vector<ChannelSpec> specs;
   for (const std::string& text : texts) {
     auto spec = parse_channel(text, columns);
-    if (!spec) return schema::forward_error(spec);
+    TACTO_TRY(spec);
     if (std::ranges::find(specs, spec->name, &ChannelSpec::name) != specs.end())
       return in_option({Fault::usage,
                         fmt::format("there are two channels '{}'", spec->name),

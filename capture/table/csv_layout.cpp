@@ -184,8 +184,7 @@ Result<CsvLayout> layout_at_once(CsvLayout layout, std::span<const TableLine> li
   layout.columns.resize(first.size());
   const FirstLine kind = kind_of(first, next);
   if (kind == FirstLine::mixed) return mixed_first_line(lines[0], first, file);
-  if (const auto rows = check_rows_follow(lines, layout.delimiter, file); !rows)
-    return schema::forward_error(rows);
+  TACTO_TRY(check_rows_follow(lines, layout.delimiter, file));
   if (kind == FirstLine::header) take_header(layout, lines[0], first);
   take_units(layout, {});
   if (layout.header && lines.size() == 1 && whole)
@@ -210,13 +209,13 @@ Result<Beginning> after_lines(std::string_view head, Beginning at, std::size_t s
 
 Result<CsvLayout> find_csv_layout(std::string_view head, bool whole, const std::string& file,
                                   std::size_t skip) {
-  if (const auto text = check_text(head, file); !text) return schema::forward_error(text);
+  TACTO_TRY(check_text(head, file));
   CsvLayout layout;
   const bool old_mac = head.find('\n') == std::string_view::npos && head.find('\r') != std::string_view::npos;
   layout.line_end = old_mac ? '\r' : '\n';
   const std::size_t mark = head.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   const auto begin = after_lines(head, {mark, 1}, skip, layout.line_end, file);
-  if (!begin) return schema::forward_error(begin);
+  TACTO_TRY(begin);
   layout.data_offset = begin->offset;
   layout.data_line = begin->line;
   const auto lines = sample_lines(head, whole, *begin, layout.line_end, kSampledLines);

@@ -15,7 +15,7 @@ schema::Result<InputFile> InputFile::open(const std::string& path) {
   // A pipe could not be opened a second time, and opening one may wait for ever.
   if (std::filesystem::exists(status) && !is_regular_file(status) && !is_directory(status))
     return schema::fail(schema::Fault::not_found, "is no regular file", path, "write it to a file first");
-  if (const auto readable = schema::check_readable(path); !readable) return schema::forward_error(readable);
+  TACTO_TRY(schema::check_readable(path));
   InputFile input;
   input.path_ = path;
   input.file_.reset(std::fopen(path.c_str(), "rbe"));

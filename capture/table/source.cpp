@@ -31,7 +31,7 @@ std::string table_format(const CsvLayout& layout) {
 
 Result<Source> open_table(const std::string& file, std::string_view head, bool whole, std::size_t skip) {
   auto layout = find_csv_layout(head, whole, file, skip);
-  if (!layout) return schema::forward_error(layout);
+  TACTO_TRY(layout);
   return Source{file, layout->columns, *layout, std::nullopt, 0, table_format(*layout), layout->units};
 }
 
@@ -88,13 +88,13 @@ std::string columns_in_words(const std::vector<std::string>& columns) {
 
 Result<Source> open_source(const std::string& file, std::size_t skip) {
   auto input = InputFile::open(file);
-  if (!input) return schema::forward_error(input);
+  TACTO_TRY(input);
   std::string head(kLayoutBytes, '\0');
   const auto got = input->read(head);
-  if (!got) return schema::forward_error(got);
+  TACTO_TRY(got);
   const bool whole = *got < head.size();
   head.resize(*got);
-  if (const auto others = refuse_own(file, head); !others) return schema::forward_error(others);
+  TACTO_TRY(refuse_own(file, head));
   if (const auto foreign = foreign_format(file, head)) return open_foreign(file, *foreign, head);
   return is_binary(head) ? open_sound(file, skip) : open_table(file, head, whole, skip);
 }
@@ -112,13 +112,13 @@ Result<void> hand_over(CsvReader& reader, std::size_t columns, const TakeRows& t
 Result<void> read_table(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
                         const std::function<void(double)>& progress, schema::Sha256* sum) {
   auto input = InputFile::open(source.file);
-  if (!input) return schema::forward_error(input);
+  TACTO_TRY(input);
   CsvReader reader(*source.csv, {columns.begin(), columns.end()}, source.file);
   std::string piece(kPieceBytes, '\0');
   std::size_t skipped = source.csv->data_offset;
   for (std::size_t done = 0;;) {
     const auto got = input->read(piece);
-    if (!got) return schema::forward_error(got);
+    TACTO_TRY(got);
     if (*got == 0) break;
     const std::string_view bytes = std::string_view(piece).substr(0, *got);
     if (sum != nullptr) sum->add(bytes);
@@ -135,11 +135,11 @@ Result<void> read_table(const Source& source, std::span<const std::size_t> colum
 // libsndfile reads the file itself, so its bytes are read once more for the sum.
 Result<void> add_file(const std::string& file, schema::Sha256& sum) {
   auto input = InputFile::open(file);
-  if (!input) return schema::forward_error(input);
+  TACTO_TRY(input);
   std::string piece(kPieceBytes, '\0');
   for (;;) {
     const auto got = input->read(piece);
-    if (!got) return schema::forward_error(got);
+    TACTO_TRY(got);
     if (*got == 0) return {};
     sum.add(std::string_view(piece).substr(0, *got));
   }

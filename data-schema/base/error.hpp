@@ -43,6 +43,15 @@ tl::unexpected<Error> forward_error(const Result<T>& failed) {
   return tl::unexpected(failed.error());
 }
 
+/// TACTO_TRY(result) returns its error from the function around it, where it has one. Takes any expression
+/// that gives a Result; a value that is needed afterwards is a variable: `const auto x = f(); TACTO_TRY(x);
+/// use(*x);`.
+#define TACTO_TRY(...)                                           \
+  do {                                                           \
+    if (const auto& tried_result = (__VA_ARGS__); !tried_result) \
+      return ::tacto::schema::forward_error(tried_result);       \
+  } while (false)
+
 /// The process's exit code for a fault: 1 internal, 2 usage, 3 not found, ... in the order of Fault.
 constexpr int exit_code(Fault fault) {
   return static_cast<int>(fault) + 1;

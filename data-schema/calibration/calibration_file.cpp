@@ -54,7 +54,7 @@ Result<std::string> calibration_path(const std::string& serial) {
 
 Result<CalibrationFile> read_calibration(const std::string& path) {
   const auto document = open_document(path, kCalibrationKind);
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   CalibrationFile file = calibration_from(document->body);
   file.extra_json = unknown_members(document->body, kCalibrationKind);
   file.newer_version = document->newer_version;
@@ -63,7 +63,7 @@ Result<CalibrationFile> read_calibration(const std::string& path) {
 
 Result<void> write_calibration(const std::string& path, const CalibrationFile& file) {
   const auto text = document_text(kCalibrationKind, calibration_body(file), file.extra_json);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   if (const auto made = make_folder_of(path); !made) return made;
   PendingFiles pending;
   if (const auto written = pending.write(path, *text); !written) return written;
@@ -71,7 +71,7 @@ Result<void> write_calibration(const std::string& path, const CalibrationFile& f
 }
 
 Result<FolderLock> lock_calibration(const std::string& path) {
-  if (const auto made = make_folder_of(path); !made) return forward_error(made);
+  TACTO_TRY(make_folder_of(path));
   return FolderLock::take(path);
 }
 

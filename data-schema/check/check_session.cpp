@@ -8,7 +8,7 @@ namespace tacto::schema {
 
 Result<Checked> check_session(const std::string& path) {
   auto reader = SessionReader::open(path);
-  if (!reader) return forward_error(reader);
+  TACTO_TRY(reader);
   Checked checked{{}, reader->header().newer_version};
   const SessionTotals totals = session_totals(*reader);
   if (totals.ending == SessionEnding::damaged)

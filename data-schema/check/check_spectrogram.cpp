@@ -41,7 +41,7 @@ void add_cells(const std::string& path, const Spectrogram& spectrogram, std::vec
 // The checksum, and what was computed of the cells.
 Result<Checked> check_stored_cells(const std::string& path, Checked checked) {
   const auto stored = check_spectrogram_cells(path);
-  if (!stored) return forward_error(stored);
+  TACTO_TRY(stored);
   checked.note = stored->note;
   checked.findings.insert(checked.findings.end(), stored->findings.begin(), stored->findings.end());
   return checked;
@@ -53,7 +53,7 @@ Result<Checked> check_spectrogram(const std::string& path) {
   Checked checked;
   for (std::size_t stroke = 0, strokes = 1; stroke < strokes; ++stroke) {
     const auto spectrogram = read_spectrogram_nc(path, stroke);
-    if (!spectrogram) return forward_error(spectrogram);
+    TACTO_TRY(spectrogram);
     strokes = spectrogram->strokes;
     checked.newer_version = spectrogram->newer_version;
     const std::string where = strokes == 1 ? path : fmt::format("{}, stroke {}", path, stroke + 1);

@@ -142,7 +142,7 @@ Result<Checked> check_spectrogram_cells(const std::string& path) {
   const std::size_t count = file.count();
   for (std::size_t stroke = 0; stroke < count; ++stroke) {
     const StoredCells stored = file.read(stroke);
-    if (const auto sound = file.status(path); !sound) return forward_error(sound);
+    TACTO_TRY(file.status(path));
     const std::string where = count == 1 ? path : fmt::format("{}, stroke {}", path, stroke + 1);
     if (!sums.empty() && sum_of(stored) != nth_line(sums, stroke))
       checked.findings.push_back(

@@ -33,7 +33,7 @@ cli::Report row_of(const CalibrationEntry& entry) {
 
 Result<cli::Report> describe_calibration(const std::string& path) {
   const auto file = read_calibration(path);
-  if (!file) return forward_error(file);
+  TACTO_TRY(file);
   warn_of_version(path, file->newer_version);
   cli::Report report = report_of(FileKind::calibration, path, file->simulated);
   report.add("serial", file->serial);

@@ -87,13 +87,13 @@ void add_strokes(Report& report, const RecordingHeader& header) {
 
 Result<Report> describe_recording(const std::string& path) {
   const auto recording = open_recording(path);
-  if (!recording) return forward_error(recording);
+  TACTO_TRY(recording);
   const RecordingHeader& header = recording->header;
   warn_of_version(path, header.newer_version);
   cli::Progress progress("reading");
   const auto statistics = channel_statistics(wav_path(*recording), header.channels,
                                              [&](double fraction) { progress.update(fraction); });
-  if (!statistics) return forward_error(statistics);
+  TACTO_TRY(statistics);
   Report report = report_of(FileKind::recording, path, header.simulated);
   add_time(report, header);
   add_origin(report, header);

@@ -6,7 +6,7 @@ namespace tacto::schema {
 
 Result<cli::Report> describe_results(const std::string& path) {
   const auto file = read_results(path);
-  if (!file) return forward_error(file);
+  TACTO_TRY(file);
   warn_of_version(path, file->newer_version);
   cli::Report report = report_of(FileKind::results, path, file->simulated);
   report.add("verb", file->verb).add("inputs", file->inputs);

@@ -19,7 +19,7 @@ cli::Report row_of(const TextureLayer& layer) {
 
 Result<cli::Report> describe_scene(const std::string& path) {
   const auto scene = read_scene(path);
-  if (!scene) return forward_error(scene);
+  TACTO_TRY(scene);
   warn_of_version(path, scene->newer_version);
   cli::Report report = report_of(FileKind::scene, path, "");
   add_text(report, "name", scene->name);

@@ -6,7 +6,7 @@ namespace tacto::schema {
 
 Result<cli::Report> describe_session_table(const std::string& path) {
   const auto table = read_session_table(path);
-  if (!table) return forward_error(table);
+  TACTO_TRY(table);
   cli::Report report = report_of(FileKind::session_table, path, table->simulated);
   add_text(report, "created", table->created);
   add_text(report, "creator", table->creator);

@@ -38,7 +38,7 @@ void add_peak(Report& report, const Spectrogram& s) {
 
 Result<Report> describe_spectrogram(const std::string& path) {
   const auto spectrogram = read_spectrogram_nc(path);
-  if (!spectrogram) return forward_error(spectrogram);
+  TACTO_TRY(spectrogram);
   warn_of_version(path, spectrogram->newer_version);
   Report report = report_of(FileKind::spectrogram, path, spectrogram->simulated);
   report.add("texture", spectrogram->name)

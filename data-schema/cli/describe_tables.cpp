@@ -10,7 +10,7 @@ namespace tacto::schema {
 
 Result<cli::Report> describe_formants(const std::string& path) {
   const auto file = read_formants(path);
-  if (!file) return forward_error(file);
+  TACTO_TRY(file);
   warn_of_version(path, file->newer_version);
   cli::Report report = report_of(FileKind::formants, path, "");
   std::vector<cli::Report> rows;
@@ -30,7 +30,7 @@ Result<cli::Report> describe_formants(const std::string& path) {
 
 Result<cli::Report> describe_descriptions(const std::string& path) {
   const auto file = read_descriptions(path);
-  if (!file) return forward_error(file);
+  TACTO_TRY(file);
   warn_of_version(path, file->newer_version);
   cli::Report report = report_of(FileKind::descriptions, path, "");
   std::vector<cli::Report> rows;

@@ -91,7 +91,7 @@ void add_certificate(Report& report, const std::optional<Certificate>& certifica
 
 Result<Report> describe_texture(const std::string& path) {
   const auto texture = read_texture(path);
-  if (!texture) return forward_error(texture);
+  TACTO_TRY(texture);
   warn_of_version(path, texture->newer_version);
   Report report = report_of(FileKind::texture, path, texture->simulated);
   add_grid(report, *texture);

@@ -6,7 +6,7 @@ namespace tacto::schema {
 
 Result<cli::Report> describe_trade(const std::string& path) {
   const auto file = read_trade_table(path);
-  if (!file) return forward_error(file);
+  TACTO_TRY(file);
   warn_of_version(path, file->newer_version);
   cli::Report report = report_of(FileKind::trade, path, {});
   add_text(report, "machine", file->machine);

@@ -58,7 +58,7 @@ void add_identification(Report& report, const Transducer& t) {
 
 Result<Report> describe_transducer(const std::string& path) {
   const auto transducer = read_transducer(path, Numbers::computable);
-  if (!transducer) return forward_error(transducer);
+  TACTO_TRY(transducer);
   if (const auto plausible = check_plausible(*transducer, path); !plausible)
     cli::warn(message(plausible.error()));
   warn_of_version(path, transducer->newer_version);

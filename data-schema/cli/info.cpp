@@ -42,7 +42,7 @@ Result<cli::Report> describe(const StoredFile& file) {
 // A stem can stand for several files: the first is described, the others are named.
 Result<cli::Report> describe_name(const std::string& name) {
   const auto files = stored_files(name);
-  if (!files) return forward_error(files);
+  TACTO_TRY(files);
   auto report = describe(files->front());
   if (!report || files->size() == 1) return report;
   std::vector<std::string> others;

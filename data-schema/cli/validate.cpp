@@ -20,7 +20,7 @@ struct Outcome {
 Result<void> check(const StoredFile& file, Outcome& outcome) {
   cli::Progress progress("checking " + file.path);
   const auto checked = check_file(file, [&](double fraction) { progress.update(fraction); });
-  if (!checked) return forward_error(checked);
+  TACTO_TRY(checked);
   warn_of_version(file.path, checked->newer_version);
   cli::Report& row = outcome.files.emplace_back(report_of(file.kind, file.path, ""));
   row.add("valid", checked->findings.empty());

@@ -170,7 +170,7 @@ ControlReply reply_from(const Json& body) {
 
 Result<ControlRequest> parse_control_request(std::string_view line, std::string* id_json) {
   const auto body = request_json(line);
-  if (!body) return forward_error(body);
+  TACTO_TRY(body);
   if (id_json != nullptr) *id_json = id_in(*body);
   static const auto& kRules = schema_of("control");
   const auto faults = breaches(*body, *kRules);
@@ -181,12 +181,12 @@ Result<ControlRequest> parse_control_request(std::string_view line, std::string*
   if (body->contains("playback")) {
     const auto known = check_members_known((*kRules)["properties"]["playback"], (*body)["playback"],
                                            fmt::format("{}#/playback", kRequestWhere));
-    if (!known) return forward_error(known);
+    TACTO_TRY(known);
   }
   ControlRequest request = request_of(*body);
-  if (const auto taken = check_taken(*body, request.verb); !taken) return forward_error(taken);
+  TACTO_TRY(check_taken(*body, request.verb));
   request.passed_over = members_not_in(*kRules, *body);
-  if (const auto sound = check_members(request); !sound) return forward_error(sound);
+  TACTO_TRY(check_members(request));
   return request;
 }
 

@@ -32,9 +32,9 @@ Result<void> check_known(const Json& body, const std::string& path) {
 
 Result<DaemonConfig> read_daemon_config(const std::string& path) {
   const auto document = open_document(path, "daemon");
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   const Json& body = document->body;
-  if (const auto known = check_known(body, path); !known) return forward_error(known);
+  TACTO_TRY(check_known(body, path));
   DaemonConfig config;
   for (const auto& [name, member] :
        {std::pair{"device", &DaemonConfig::device}, std::pair{"transducer", &DaemonConfig::transducer},

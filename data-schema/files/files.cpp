@@ -52,7 +52,7 @@ Result<void> check_regular(const std::string& path) {
 
 // Nor is one waited for that takes the name in between.
 Result<OpenFile> opened(const std::string& path) {
-  if (const auto regular = check_regular(path); !regular) return forward_error(regular);
+  TACTO_TRY(check_regular(path));
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) return unreadable(path, errno);
   OpenFile file(fdopen(descriptor, "rb"));
@@ -66,7 +66,7 @@ Result<OpenFile> opened(const std::string& path) {
 template <class Take>
 Result<void> for_each_piece(const std::string& path, Take take) {
   const auto file = opened(path);
-  if (!file) return forward_error(file);
+  TACTO_TRY(file);
   std::vector<char> piece(std::size_t{1} << 17);  // stays in the cache
   for (std::size_t got = 1; got > 0;) {
     got = std::fread(piece.data(), 1, piece.size(), file->get());
@@ -196,7 +196,7 @@ Result<void> check_table_free(const std::string& path, Existing existing,
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return check_output_free(path, existing);
   const auto file = opened(path);
-  if (!file) return forward_error(file);
+  TACTO_TRY(file);
   std::string line(kLongestBeginning, '\0');
   line.resize(std::fread(line.data(), 1, line.size(), file->get()));
   if (line.empty() || ours(line.substr(0, line.find('\n')))) return check_output_free(path, existing);
@@ -210,7 +210,7 @@ void remove_pending_files() noexcept {
 
 Result<void> check_sum(const std::string& path, const std::string& sha256) {
   const auto is = sha256_of_file(path);
-  if (!is) return forward_error(is);
+  TACTO_TRY(is);
   if (*is == sha256) return {};
   return fail(Fault::malformed, "is not what its sidecar was written for: its SHA-256 is another", path,
               "bring the right one back, or make it anew; 'tactograph validate' says more");
@@ -224,12 +224,12 @@ PendingFiles::~PendingFiles() {
 }
 
 Result<std::string> PendingFiles::add(const std::string& path) {
-  if (const auto fits = check_target(path); !fits) return forward_error(fits);
+  TACTO_TRY(check_target(path));
   remove_leftovers_of_file(path);
   const std::string temporary = temporary_name_for(path);
   PendingName* const name = pending_names().keep(temporary);
   pending_.push_back({temporary, path, name});
-  if (const auto made = write_all(temporary, path, ""); !made) return forward_error(made);
+  TACTO_TRY(write_all(temporary, path, ""));
   return temporary;
 }
 

@@ -59,12 +59,12 @@ Result<std::string> newer_version(const Json& body, std::string_view kind, const
 
 Result<Document> checked(Json body, const std::string& where, std::string_view kind) {
   const auto found = kind_in(body, where);
-  if (!found) return forward_error(found);
+  TACTO_TRY(found);
   if (*found != kind)
     return fail(Fault::malformed, fmt::format("its kind is '{}', not '{}'", *found, kind),
                 place(where, "/kind"));
   auto newer = newer_version(body, kind, where);
-  if (!newer) return forward_error(newer);
+  TACTO_TRY(newer);
   const auto& rules = schema_of(kind);
   if (!rules) return fail(Fault::internal, fmt::format("there is no usable schema for '{}'", kind), where);
   const auto list = breaches(body, *rules);
@@ -76,7 +76,7 @@ Result<Document> checked(Json body, const std::string& where, std::string_view k
 
 Result<Json> read_json(const std::string& path) {
   const auto text = read_file(path);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   return parse_json(*text, path);
 }
 
@@ -133,13 +133,13 @@ Result<std::string> kind_of(const std::string& path) {
 
 Result<std::vector<Violation>> violations_of(const std::string& path) {
   const auto body = read_json(path);
-  if (!body) return forward_error(body);
+  TACTO_TRY(body);
   const auto kind = kind_in(*body, path);
-  if (!kind) return forward_error(kind);
+  TACTO_TRY(kind);
   const auto& rules = schema_of(*kind);
   if (!rules)
     return fail(Fault::malformed, fmt::format("'{}' is no kind of tactograph's", *kind), path + "#/kind");
-  if (const auto newer = newer_version(*body, *kind, path); !newer) return forward_error(newer);
+  TACTO_TRY(newer_version(*body, *kind, path));
   return breaches(*body, *rules);
 }
 

@@ -39,7 +39,7 @@ constexpr Ending kEndings[] = {
 
 Result<StoredFile> by_content(const std::string& path) {
   const auto name = kind_of(path);
-  if (!name) return forward_error(name);
+  TACTO_TRY(name);
   const auto found = std::ranges::find(kNames, *name);
   if (found == kNames.end())
     return fail(Fault::malformed, fmt::format("is of the kind '{}', which this program doesn't know", *name),

@@ -36,24 +36,24 @@ LiveRecording::~LiveRecording() = default;
 Result<LiveRecording> LiveRecording::create(const std::string& name, RecordingHeader header) {
   assert(header.format == SampleFormat::pcm32);
   const std::string stem = stem_of(name, ""), wav = stem + ".wav";
-  if (const auto named = check_stem(stem); !named) return forward_error(named);
-  if (const auto free = check_free(stem); !free) return forward_error(free);
+  TACTO_TRY(check_stem(stem));
+  TACTO_TRY(check_free(stem));
   header.wav_file = std::filesystem::path(wav).filename().string();
   header.frames = 0;
-  if (const auto fits = check_storable(header); !fits) return forward_error(fits);
+  TACTO_TRY(check_storable(header));
   const auto first = begin_line(header);
-  if (!first) return forward_error(first);
+  TACTO_TRY(first);
   auto events = EventFile::create(events_path(stem));
-  if (!events) return forward_error(events);
+  TACTO_TRY(events);
   auto writer = WavWriter::create_new(wav, header.sample_rate_hz, header.channels.size(), header.format);
   const auto begun = writer ? events->append(*first) : forward_error(writer);
   if (!begun) {
-    if (const auto removed = events->remove(); !removed) return forward_error(removed);
+    TACTO_TRY(events->remove());
     return forward_error(begun);
   }
-  if (const auto synced = sync_path(folder_of(wav)); !synced) return forward_error(synced);
+  TACTO_TRY(sync_path(folder_of(wav)));
   auto sync = BackgroundSync::start({wav, events_path(stem)}, kSyncEvery_s);
-  if (!sync) return forward_error(sync);
+  TACTO_TRY(sync);
   auto state = std::make_unique<State>(
       State{stem, std::move(header), std::move(*events), std::move(*writer), std::move(*sync)});
   return LiveRecording(std::move(state));
@@ -119,7 +119,7 @@ Result<void> LiveRecording::State::check_place() const {
 // A WAV that libsndfile could not complete is put right by what it holds.
 Result<Recording> LiveRecording::close() {
   state_->sync.reset();  // closing syncs by itself
-  if (const auto there = state_->check_place(); !there) return forward_error(there);
+  TACTO_TRY(state_->check_place());
   [[maybe_unused]] const auto closed = state_->wav.close();
   return close_recording(state_->stem, std::move(state_->header), state_->events);
 }

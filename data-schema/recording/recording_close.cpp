@@ -50,20 +50,20 @@ void forget_beyond_end(RecordingHeader& header) {
 Result<Recording> close_recording(const std::string& stem, RecordingHeader header, EventFile& events) {
   const std::string wav = stem + ".wav";
   const auto frames = repair_riff(wav);
-  if (!frames) return forward_error(frames);
-  if (const auto synced = sync_path(wav); !synced) return forward_error(synced);
+  TACTO_TRY(frames);
+  TACTO_TRY(sync_path(wav));
   header.frames = *frames;
   forget_beyond_end(header);
   note_clocks(header);
   thin(header.clock_pairs);
   const auto text = completed_sidecar(header, wav);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   events.release_room();
   PendingFiles pending;
-  if (const auto written = pending.write(stem + ".json", *text); !written) return forward_error(written);
-  if (const auto committed = pending.commit(); !committed) return forward_error(committed);
-  if (const auto synced = sync_path(folder_of(wav)); !synced) return forward_error(synced);
-  if (const auto removed = events.remove(); !removed) return forward_error(removed);
+  TACTO_TRY(pending.write(stem + ".json", *text));
+  TACTO_TRY(pending.commit());
+  TACTO_TRY(sync_path(folder_of(wav)));
+  TACTO_TRY(events.remove());
   return Recording{std::move(header), stem};
 }
 

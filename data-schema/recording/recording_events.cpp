@@ -19,7 +19,7 @@ std::string line_of(const char* event, const Json& body) {
 
 Result<RecordingHeader> header_in(std::string_view line, const std::string& path) try {
   const auto body = parse_json(line, path);
-  if (!body) return forward_error(body);
+  TACTO_TRY(body);
   const auto document = parse_document(body->at("recording").dump(), path, "recording");
   return document ? recording_header_from(*document, path) : forward_error(document);
 } catch (const std::exception&) {
@@ -55,7 +55,7 @@ Result<std::string> begin_line(const RecordingHeader& header) {
   RecordingHeader complete = header;
   complete.sha256 = std::string(64, '0');  // nobody knows it yet
   const auto text = recording_text(complete);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   return line_of("begin", {{"recording", Json::parse(*text)}});
 }
 
@@ -74,13 +74,13 @@ std::string event_line(const FaultNote& fault) {
 
 Result<EventLog> read_events(const std::string& path) {
   const auto file = read_file(path);
-  if (!file) return forward_error(file);
+  TACTO_TRY(file);
   std::string_view text = *file, line;
   if (!take_line(text, line))
     return fail(Fault::unsuitable, "ends before its first line does: nothing was recorded yet", path,
                 "delete it");
   auto header = header_in(line, path);
-  if (!header) return forward_error(header);
+  TACTO_TRY(header);
   EventLog log{.header = std::move(*header), .cut_line = {}};
   for (std::size_t number = 2; take_line(text, line); ++number)
     if (!add_event(log.header, line) && log.bad_lines++ == 0) log.first_bad_line = number;

@@ -22,7 +22,7 @@ RecordingFrames::RecordingFrames(WavReader reader, const Recording& recording)
 
 Result<RecordingFrames> RecordingFrames::open(const Recording& recording) {
   auto reader = WavReader::open(wav_path(recording));
-  if (!reader) return forward_error(reader);
+  TACTO_TRY(reader);
   return RecordingFrames(std::move(*reader), recording);
 }
 
@@ -38,7 +38,7 @@ Result<void> RecordingFrames::read_piece(std::size_t channel, std::uint64_t firs
   const std::size_t channels = channels_.size();
   const auto piece = std::span(interleaved_).first(out.size() * channels);
   const auto got = reader_.read(piece);
-  if (!got) return forward_error(got);
+  TACTO_TRY(got);
   if (*got < out.size()) return fail(Fault::malformed, fmt::format("ends at frame {}", first + *got), path_);
   next_ = first + out.size();
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = piece[i * channels + channel];

@@ -43,7 +43,7 @@ Result<void> check_storable(const RecordingHeader& header) {
 
 Result<std::string> completed_sidecar(RecordingHeader& header, const std::string& wav) {
   const auto sum = sha256_of_file(wav);
-  if (!sum) return forward_error(sum);
+  TACTO_TRY(sum);
   header.sha256 = *sum;
   header.created = creation_time();
   header.creator = kCreator;

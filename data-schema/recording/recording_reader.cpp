@@ -78,10 +78,9 @@ Result<Recording> open_recording(const std::string& name) {
   const std::string sidecar = stem + ".json";
   if (!is_file(sidecar)) return absent_recording(name, stem);
   auto header = read_sidecar(sidecar);
-  if (!header) return forward_error(header);
+  TACTO_TRY(header);
   Recording recording{std::move(*header), stem};
-  if (const auto whole = check_wav(recording.header, wav_path(recording)); !whole)
-    return forward_error(whole);
+  TACTO_TRY(check_wav(recording.header, wav_path(recording)));
   return recording;
 }
 
@@ -106,7 +105,7 @@ Result<std::vector<double>> read_stored(const Recording& recording, std::size_t 
 
 Result<TimeSignal> read_channel(const Recording& recording, std::size_t channel) {
   auto stored = read_stored(recording, channel);
-  if (!stored) return forward_error(stored);
+  TACTO_TRY(stored);
   const Channel& told = recording.header.channels[channel];
   TimeSignal signal{recording.header.sample_rate_hz, frame_time_s(recording.header, 0), std::move(*stored)};
   for (double& value : signal.values) value = value * told.scale + told.offset;

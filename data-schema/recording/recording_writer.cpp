@@ -34,16 +34,16 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& name, Recordi
                                                 bool replace) {
   auto state = std::make_unique<State>();
   state->stem = stem_of(name, "");
-  if (auto named = check_stem(state->stem); !named) return forward_error(named);
+  TACTO_TRY(check_stem(state->stem));
   if (const auto free = check_free(state->stem); !replace && !free) return forward_error(free);
   const std::string wav = state->stem + ".wav";
   header.wav_file = fs::path(wav).filename().string();
   header.frames = 0;
-  if (const auto fits = check_storable(header); !fits) return forward_error(fits);
+  TACTO_TRY(check_storable(header));
   const auto temporary = state->pending.add(wav);
-  if (!temporary) return forward_error(temporary);
+  TACTO_TRY(temporary);
   auto writer = WavWriter::create(*temporary, header.sample_rate_hz, header.channels.size(), header.format);
-  if (!writer) return forward_error(writer);
+  TACTO_TRY(writer);
   state->temporary_wav = *temporary;
   state->header = std::move(header);
   if (replace) state->existing = Existing::replace;
@@ -72,10 +72,9 @@ Result<Recording> RecordingWriter::close() {
   assert(state_->wav);
   const auto closed = state_->wav->close_at(state_->header.sample_rate_hz);
   state_->wav.reset();
-  if (!closed) return forward_error(closed);
-  if (const auto described = state_->describe(); !described) return forward_error(described);
-  if (const auto committed = state_->pending.commit(state_->existing); !committed)
-    return forward_error(committed);
+  TACTO_TRY(closed);
+  TACTO_TRY(state_->describe());
+  TACTO_TRY(state_->pending.commit(state_->existing));
   return Recording{state_->header, state_->stem};
 }
 

@@ -92,7 +92,7 @@ std::vector<std::string> notes_on(const EventLog& log) {
 
 // Killed after its sidecar was there, before the events were removed: all is well.
 Result<Recovered> already_closed(Recording recording, EventFile& events) {
-  if (const auto removed = events.remove(); !removed) return forward_error(removed);
+  TACTO_TRY(events.remove());
   return Recovered{std::move(recording), {}};
 }
 
@@ -100,15 +100,15 @@ Result<Recovered> already_closed(Recording recording, EventFile& events) {
 
 Result<Recovered> recover_recording(const std::string& name) {
   const std::string stem = recording_stem_of(name), wav = stem + ".wav";
-  if (const auto there = check_recoverable(stem); !there) return forward_error(there);
+  TACTO_TRY(check_recoverable(stem));
   auto events = EventFile::lock(events_path(stem));
-  if (!events) return forward_error(events);
+  TACTO_TRY(events);
   if (auto whole = open_closed(stem)) return already_closed(std::move(*whole), *events);
   auto log = read_events(events_path(stem));
-  if (!log) return forward_error(log);
+  TACTO_TRY(log);
   const auto gap_notes = make_gaps_agree(log->header.gaps);
   const auto remains = salvage_wav(wav, log->header, frames_known_of(log->header));
-  if (!remains) return forward_error(remains);
+  TACTO_TRY(remains);
   Recovered recovered{{}, notes_on(*log)};
   recovered.notes.insert(recovered.notes.end(), gap_notes.begin(), gap_notes.end());
   recovered.notes.insert(recovered.notes.end(), remains->notes.begin(), remains->notes.end());
@@ -116,7 +116,7 @@ Result<Recovered> recover_recording(const std::string& name) {
   log->header.ended = "broken off";
   log->header.warnings.insert(log->header.warnings.end(), recovered.notes.begin(), recovered.notes.end());
   auto recording = close_recording(stem, std::move(log->header), *events);
-  if (!recording) return forward_error(recording);
+  TACTO_TRY(recording);
   const auto& warnings = recording->header.warnings;  // closing adds its own
   recovered.notes.assign(warnings.begin() + said_before, warnings.end());
   recovered.recording = std::move(*recording);

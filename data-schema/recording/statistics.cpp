@@ -60,7 +60,7 @@ Statistics statistics_of(std::span<const double> values) {
 Result<std::vector<Statistics>> channel_statistics(const std::string& wav, std::span<const Channel> channels,
                                                    const std::function<void(double)>& progress) {
   auto reader = WavReader::open(wav);
-  if (!reader) return forward_error(reader);
+  TACTO_TRY(reader);
   const WavInfo info = reader->info();
   if (info.channels != channels.size())
     return fail(Fault::malformed,
@@ -69,7 +69,7 @@ Result<std::vector<Statistics>> channel_statistics(const std::string& wav, std::
   std::vector<double> block(kBlockFrames * channels.size());
   for (std::uint64_t done = 0;;) {
     const auto frames = reader->read(block);
-    if (!frames) return forward_error(frames);
+    TACTO_TRY(frames);
     if (*frames == 0) return statistics;
     add_frames(statistics, channels, std::span(block).first(*frames * channels.size()));
     done += *frames;

@@ -35,13 +35,13 @@ struct EmptyWav {
 Result<EmptyWav> empty_wav(const std::string& wav, const RecordingHeader& header) {
   PendingFiles beside;  // never committed
   const auto path = beside.add(wav);
-  if (!path) return forward_error(path);
+  TACTO_TRY(path);
   auto writer = WavWriter::create(*path, header.sample_rate_hz, header.channels.size(), header.format);
-  if (!writer) return forward_error(writer);
-  if (const auto closed = writer->close(); !closed) return forward_error(closed);
+  TACTO_TRY(writer);
+  TACTO_TRY(writer->close());
   const auto layout = riff_layout(*path);
   auto bytes = read_file(*path);
-  if (!bytes) return forward_error(bytes);
+  TACTO_TRY(bytes);
   if (!layout || layout->format_at < 8 || layout->data_at < layout->format_at + kFormatBytes - 8)
     return fail(Fault::internal, "an empty WAV has another header than is known", *path);
   return EmptyWav{std::move(*bytes), *layout};
@@ -166,16 +166,13 @@ Result<WavRemains> salvage_wav(const std::string& wav, const RecordingHeader& he
     return fail(Fault::not_found, "is missing: only its journal is there", wav,
                 "put it beside the journal; where nothing was recorded, delete the journal");
   const auto empty = empty_wav(wav, header);
-  if (!empty) return forward_error(empty);
-  if (const auto some = check_holds_something(wav, *empty, header, known_frames); !some)
-    return forward_error(some);
+  TACTO_TRY(empty);
+  TACTO_TRY(check_holds_something(wav, *empty, header, known_frames));
   WavRemains remains;
   const bool sound = is_sound(wav, *empty);
-  if (const auto made = sound ? Result<void>{} : make_header_sound(wav, *empty, remains); !made)
-    return forward_error(made);
+  TACTO_TRY(sound ? Result<void>{} : make_header_sound(wav, *empty, remains));
   // A header that was lost promises nothing.
-  if (const auto cut = sound ? cut_unwritten(wav, header, remains) : Result<void>{}; !cut)
-    return forward_error(cut);
+  TACTO_TRY(sound ? cut_unwritten(wav, header, remains) : Result<void>{});
   const auto layout = riff_layout(wav);
   if (!layout) return fail(Fault::malformed, "is no WAV", wav);
   remains.frames = layout->present_bytes / layout->block_bytes;

@@ -77,9 +77,9 @@ Result<Json> details_of(const std::string& text) {
 
 Result<Results> read_results(const std::string& name) {
   const auto document = open_document(results_path(name), kResultsKind);
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   const Json& body = document->body;
-  if (const auto sound = check_curves(body, results_path(name)); !sound) return forward_error(sound);
+  TACTO_TRY(check_curves(body, results_path(name)));
   Results results;
   results.verb = text_or(body, "verb");
   results.inputs = body["inputs"].get<std::vector<std::string>>();
@@ -98,7 +98,7 @@ Result<Results> read_results(const std::string& name) {
 
 Result<std::string> results_json(const Results& results) {
   const auto details = details_of(results.details_json);
-  if (!details) return forward_error(details);
+  TACTO_TRY(details);
   Json body = {{"verb", results.verb}, {"inputs", results.inputs}};
   put_text(body, "device", results.device);
   put_text(body, "simulated", results.simulated);

@@ -45,7 +45,7 @@ bool rises(const MeasuredChoice& choice) {
 }
 
 Result<TradeTable> table_of(const Result<Document>& document, const std::string& where) {
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   const Json& body = document->body;
   TradeTable table;
   table.machine = text_or(body, "machine");
@@ -140,7 +140,7 @@ Result<FoundTradeTable> find_trade_table() {
   const auto path = machine_trade_path();
   if (path && is_there(*path)) return machines_own(*path);
   auto shipped = shipped_trade_table();
-  if (!shipped) return forward_error(shipped);
+  TACTO_TRY(shipped);
   const std::string origin =
       fmt::format("the shipped table, measured on {}; 'tactograph trade --calibrate' measures this machine",
                   shipped->machine);
@@ -149,13 +149,13 @@ Result<FoundTradeTable> find_trade_table() {
 
 Result<std::string> write_machine_trade_table(const TradeTable& table) {
   const auto path = machine_trade_path();
-  if (!path) return forward_error(path);
+  TACTO_TRY(path);
   const auto text = trade_table_json(table);
-  if (!text) return forward_error(text);
-  if (const auto made = make_folder_of(*path); !made) return forward_error(made);
+  TACTO_TRY(text);
+  TACTO_TRY(make_folder_of(*path));
   PendingFiles pending;
-  if (const auto written = pending.write(*path, *text); !written) return forward_error(written);
-  if (const auto done = pending.commit(); !done) return forward_error(done);
+  TACTO_TRY(pending.write(*path, *text));
+  TACTO_TRY(pending.commit());
   return *path;
 }
 

@@ -96,11 +96,11 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
   Scene scene;
   for (const Json& body : document.body["layers"]) {
     auto layer = layer_from(body, fmt::format("{}#/layers/{}", where, scene.layers.size()));
-    if (!layer) return forward_error(layer);
+    TACTO_TRY(layer);
     scene.layers.push_back(std::move(*layer));
   }
-  if (const auto known = check_known(document, where); !known) return forward_error(known);
-  if (const auto sound = check_ends(scene, where); !sound) return forward_error(sound);
+  TACTO_TRY(check_known(document, where));
+  TACTO_TRY(check_ends(scene, where));
   scene.name = text_or(document.body, "name");
   scene.notes = text_or(document.body, "notes");
   scene.created = text_or(document.body, "created");
@@ -147,7 +147,7 @@ Result<Scene> read_scene(const std::string& name) {
 
 Result<void> write_scene(const std::string& stem, const Scene& scene) {
   const auto text = document_text(kSceneKind, scene_body(scene), scene.extra_json);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   const std::string path = scene_path(stem);
   if (is_file(path))
     if (const auto free = check_changeable(path); !free) return free;

@@ -176,7 +176,7 @@ std::optional<SessionEvent> event_from(std::string_view payload) {
 
 Result<std::string> change_payload(const SessionChange& change) {
   const auto text = session_program_text(change.program);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   std::string bytes;
   append_number(bytes, change.not_before);
   append_number(bytes, change.time_ns);

@@ -200,7 +200,7 @@ Result<std::string> session_program_text(const SessionProgram& program) {
 
 Result<SessionProgram> parse_session_program(std::string_view text, const std::string& where) {
   const auto document = parse_document(text, where, kChangeKind);
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   SessionProgram program;
   read_program(document->body, program);
   return program;
@@ -208,8 +208,8 @@ Result<SessionProgram> parse_session_program(std::string_view text, const std::s
 
 Result<SessionHeader> parse_session_header(std::string_view text, const std::string& where) {
   const auto document = parse_document(text, where, kSessionKind);
-  if (!document) return forward_error(document);
-  if (const auto sound = check_transducer_in(document->body, where); !sound) return forward_error(sound);
+  TACTO_TRY(document);
+  TACTO_TRY(check_transducer_in(document->body, where));
   SessionHeader header = session_from(document->body);
   header.extra_json = unknown_members(document->body, kSessionKind);
   header.newer_version = document->newer_version;

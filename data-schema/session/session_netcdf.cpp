@@ -106,7 +106,7 @@ Result<SessionTable> read_session_table(const std::string& path) {
   table.rate_hz = file.number("rate_hz");
   const bool ours = file.text("kind") == kSessionKind;
   const std::vector<double> time_s = file.axis("time");
-  if (const auto sound = file.status(path); !sound) return forward_error(sound);
+  TACTO_TRY(file.status(path));
   if (!ours) return fail(Fault::malformed, "is netCDF, but no session of tactograph", path);
   const auto stuck = std::ranges::adjacent_find(time_s, [](double a, double b) { return !(a < b); });
   if (time_s.empty() || stuck != time_s.end())

@@ -84,13 +84,13 @@ SessionReader::~SessionReader() = default;
 Result<SessionReader> SessionReader::open(const std::string& name) {
   auto state = std::make_unique<State>();
   state->path = session_path(name);
-  if (const auto there = check_readable(state->path); !there) return forward_error(there);
+  TACTO_TRY(check_readable(state->path));
   state->file.open(state->path, std::ios::binary);
   const auto first = state->take();
   if (!first || *first != BlockType::header)
     return fail(Fault::malformed, "does not begin with a session's header", state->path);
   auto header = parse_session_header(state->payload, state->path);
-  if (!header) return forward_error(header);
+  TACTO_TRY(header);
   state->header = std::move(*header);
   return SessionReader(std::move(state));
 }

@@ -47,7 +47,7 @@ SessionWriter::~SessionWriter() {
 
 Result<SessionWriter> SessionWriter::create(const std::string& path, const SessionHeader& header) {
   const auto text = session_header_text(header);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   const int opened = open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
   if (opened < 0) return unwritable_session(path, errno);
   SessionWriter writer(path, opened);
@@ -117,7 +117,7 @@ Result<void> SessionWriter::add(const SessionEvent& event) {
 
 Result<void> SessionWriter::add(const SessionChange& change) {
   const auto payload = change_payload(change);
-  if (!payload) return forward_error(payload);
+  TACTO_TRY(payload);
   return append(sealed_block(BlockType::change, *payload), kFreeOfNotes);
 }
 

@@ -27,7 +27,7 @@ Version version_of(const std::string& text) {
 }
 
 Result<Version> check_kind(NetcdfReader& file, const std::string& path) {
-  if (const auto sound = file.status(path); !sound) return forward_error(sound);
+  TACTO_TRY(file.status(path));
   const std::string text = file.text("version");
   const Version version = version_of(text);
   if (file.text("kind") != "spectrogram" || version.major == 0)
@@ -123,7 +123,7 @@ Result<Spectrogram> read_stroke(NetcdfReader& file, std::size_t stroke, const st
   read_axes(file, spectrogram);
   read_cells(file, stroke, spectrogram);
   read_known(file, stroke, spectrogram);
-  if (const auto sound = file.status(path); !sound) return forward_error(sound);
+  TACTO_TRY(file.status(path));
   return spectrogram;
 }
 
@@ -135,7 +135,7 @@ Result<Spectrogram> read_spectrogram_nc(const std::string& path, std::size_t str
     return fail(Fault::not_found, "there is no such file", path);
   NetcdfReader file(path);
   const auto version = check_kind(file, path);
-  if (!version) return forward_error(version);
+  TACTO_TRY(version);
   auto spectrogram = read_stroke(file, stroke, path);
   if (spectrogram && version->minor > kMinor) spectrogram->newer_version = file.text("version");
   return spectrogram;

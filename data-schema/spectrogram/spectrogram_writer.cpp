@@ -23,9 +23,9 @@ Result<void> write_whole(Open open, const std::string& path, std::span<const Spe
                          bool compress) {
   PendingFiles pending;
   const auto temporary = pending.add(path);
-  if (!temporary) return forward_error(temporary);
+  TACTO_TRY(temporary);
   auto writer = open(*temporary, {spectrograms.size() > 1, compress, path});
-  if (!writer) return forward_error(writer);
+  TACTO_TRY(writer);
   if (auto written = write_each(**writer, spectrograms); !written) return written;
   return pending.commit();
 }

@@ -71,7 +71,7 @@ Description description_from(const Json& body) {
 Result<DescriptionFile> read_descriptions(const std::string& name) {
   const auto document =
       open_document(stem_of(name, ".descriptions") + ".descriptions.json", kDescriptionsKind);
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   DescriptionFile file;
   for (const Json& each : document->body["textures"]) file.textures.push_back(description_from(each));
   file.created = text_or(document->body, "created");

@@ -105,7 +105,7 @@ FormantTable table_from(const Json& body) {
 
 Result<FormantFile> read_formants(const std::string& name) {
   const auto document = open_document(stem_of(name, ".formants") + ".formants.json", kFormantsKind);
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   FormantFile file;
   for (const Json& table : document->body["textures"]) file.tables.push_back(table_from(table));
   file.created = text_or(document->body, "created");

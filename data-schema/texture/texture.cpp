@@ -37,7 +37,7 @@ tl::unexpected<Error> absent(const std::string& name) {
 
 Result<void> check_layout(const std::string& wav, const TextureData& data, double pitch_m) {
   const auto reader = WavReader::open(wav);
-  if (!reader) return forward_error(reader);
+  TACTO_TRY(reader);
   const WavInfo& info = reader->info();
   if (info.frames != data.samples)
     return fail(Fault::malformed,
@@ -104,7 +104,7 @@ Result<void> write_samples(const std::string& path, const Texture& texture) {
   const std::size_t channels = texture.average ? 2 : 1;
   auto writer =
       WavWriter::create(path, header_rate_of(texture.signal.pitch_m), channels, SampleFormat::float32);
-  if (!writer) return forward_error(writer);
+  TACTO_TRY(writer);
   auto written = texture.average ? writer->write(frames_of(texture)) : writer->write(texture.signal.values);
   return written ? writer->close() : written;
 }
@@ -137,21 +137,21 @@ Result<Document> open_sidecar(const std::string& name) {
 
 Result<Texture> read_texture(const std::string& name) {
   const auto document = open_sidecar(name);
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   const std::string path = sidecar_path(name);
   Texture texture = texture_from(document->body);
   const TextureData data = texture_data_from(document->body);
   const std::string wav = (fs::path(path).parent_path() / data.file).string();
-  if (const auto fits = check_layout(wav, data, texture.signal.pitch_m); !fits) return forward_error(fits);
+  TACTO_TRY(check_layout(wav, data, texture.signal.pitch_m));
   auto samples = read_samples(wav, 0);
-  if (!samples) return forward_error(samples);
+  TACTO_TRY(samples);
   texture.signal.values = std::move(*samples);
   if (texture.average) {
     auto spread = read_samples(wav, 1);
-    if (!spread) return forward_error(spread);
+    TACTO_TRY(spread);
     texture.average->spread = std::move(*spread);
   }
-  if (const auto right = check_sum(wav, data.sha256); !right) return forward_error(right);
+  TACTO_TRY(check_sum(wav, data.sha256));
   texture.extra_json = unknown_members(document->body, kTextureKind);
   texture.newer_version = document->newer_version;
   return texture;
@@ -160,7 +160,7 @@ Result<Texture> read_texture(const std::string& name) {
 Result<TextureWav> texture_wav(const std::string& name) {
   const std::string path = sidecar_path(name);
   const auto document = open_document(path, kTextureKind);
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   const TextureData data = texture_data_from(document->body);
   return TextureWav{(fs::path(path).parent_path() / data.file).string(), data.sha256};
 }
@@ -173,12 +173,12 @@ Result<std::optional<PlaybackGain>> read_playback_gain(const std::string& name) 
 
 Result<void> write_playback_gain(const std::string& name, const PlaybackGain& gain) {
   auto document = open_sidecar(name);
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   const std::string path = sidecar_path(name);
   if (const auto free = check_changeable(path); !free) return free;
   document->body["playback_gain"] = playback_gain_body(gain);
   const auto text = document_text(kTextureKind, document->body, {});
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   PendingFiles pending;
   if (const auto written = pending.write(path, *text); !written) return written;
   return pending.commit();
@@ -190,14 +190,14 @@ Result<void> add_texture(PendingFiles& pending, const std::string& name, const T
   if (auto writable = check_writable(stem, texture); !writable) return writable;
   const std::string wav = stem + ".texture.wav";
   const auto temporary = pending.add(wav);
-  if (!temporary) return forward_error(temporary);
+  TACTO_TRY(temporary);
   if (auto written = write_samples(*temporary, texture); !written) return written;
   const auto sha256 = sha256_of_file(*temporary);
-  if (!sha256) return forward_error(sha256);
+  TACTO_TRY(sha256);
   const TextureData data{fs::path(wav).filename().string(), *sha256, texture.signal.values.size(),
                          texture.average ? 2U : 1U};
   const auto text = document_text(kTextureKind, texture_body(texture, data), texture.extra_json);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   return pending.write(stem + ".texture.json", *text);
 }
 

@@ -30,12 +30,12 @@ Result<void> check_numbers(const Transducer& transducer, const std::string& wher
 
 Result<Transducer> transducer_of(const Result<Document>& document, const std::string& where,
                                  Numbers numbers) {
-  if (!document) return forward_error(document);
+  TACTO_TRY(document);
   Transducer transducer = transducer_from(document->body);
   transducer.extra_json = unknown_members(document->body, kTransducerKind);
   transducer.newer_version = document->newer_version;
-  if (const auto sound = check_extras(transducer, where); !sound) return forward_error(sound);
-  if (const auto sound = check_numbers(transducer, where, numbers); !sound) return forward_error(sound);
+  TACTO_TRY(check_extras(transducer, where));
+  TACTO_TRY(check_numbers(transducer, where, numbers));
   return transducer;
 }
 
@@ -79,7 +79,7 @@ Result<void> write_transducer(const std::string& stem, const Transducer& transdu
   if (const auto sound = check_extras(transducer, path_of(stem_of(stem, kTransducerSuffix))); !sound)
     return sound;
   const auto text = document_text(kTransducerKind, transducer_body(transducer), transducer.extra_json);
-  if (!text) return forward_error(text);
+  TACTO_TRY(text);
   PendingFiles pending;
   if (const auto written = pending.write(path_of(stem_of(stem, kTransducerSuffix)), *text); !written)
     return written;

@@ -65,7 +65,7 @@ void set_sizes(Patch& patch, const RiffLayout& layout, std::uint64_t data_bytes)
 
 Result<void> set_riff_rate(const std::string& path, std::uint32_t sample_rate_hz) {
   const auto layout = layout_of(path);
-  if (!layout) return forward_error(layout);
+  TACTO_TRY(layout);
   Patch patch(path);
   patch.number(layout->format_at + 4, sample_rate_hz, 4);
   patch.number(layout->format_at + 8, sample_rate_hz * layout->block_bytes, 4);
@@ -74,14 +74,14 @@ Result<void> set_riff_rate(const std::string& path, std::uint32_t sample_rate_hz
 
 Result<std::uint64_t> repair_riff(const std::string& path) {
   const auto layout = layout_of(path);
-  if (!layout) return forward_error(layout);
+  TACTO_TRY(layout);
   const std::uint64_t frames = layout->present_bytes / layout->block_bytes;
   std::error_code failed;
   std::filesystem::resize_file(path, layout->data_at + frames * layout->block_bytes, failed);
   if (failed) return unwritable_header(path);
   Patch patch(path);
   set_sizes(patch, *layout, frames * layout->block_bytes);
-  if (const auto patched = patch.done(); !patched) return forward_error(patched);
+  TACTO_TRY(patch.done());
   return frames;
 }
 

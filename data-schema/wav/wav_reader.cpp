@@ -112,8 +112,8 @@ const WavInfo& WavReader::info() const {
 }
 
 Result<WavReader> WavReader::open(const std::string& path) {
-  if (const auto readable = check_readable(path); !readable) return forward_error(readable);
-  if (const auto whole = check_length(path); !whole) return forward_error(whole);
+  TACTO_TRY(check_readable(path));
+  TACTO_TRY(check_length(path));
   SF_INFO header{};
   OpenSound file(sf_open(path.c_str(), SFM_READ, &header));
   if (!file) return fail(Fault::malformed, fmt::format("not a sound file: {}", sf_strerror(nullptr)), path);
@@ -145,7 +145,7 @@ Result<void> WavReader::seek(std::uint64_t frame) {
 
 Result<std::vector<double>> read_wav_channel(const std::string& path, std::size_t channel) {
   auto reader = WavReader::open(path);
-  if (!reader) return forward_error(reader);
+  TACTO_TRY(reader);
   const std::size_t channels = reader->info().channels;
   if (channel >= channels)
     return fail(Fault::unsuitable, fmt::format("has {} channels, no channel {}", channels, channel + 1),
@@ -157,7 +157,7 @@ Result<std::vector<double>> read_wav_channel(const std::string& path, std::size_
   std::vector<double> values;
   for (;;) {
     const auto got = reader->read(std::span(piece));
-    if (!got) return forward_error(got);
+    TACTO_TRY(got);
     if (*got == 0) return values;
     for (std::size_t i = 0; i < *got; ++i) values.push_back(piece[i * channels + channel]);
   }

@@ -84,7 +84,7 @@ Result<WavWriter> WavWriter::create_new(const std::string& path, double sample_r
 
 Result<WavWriter> WavWriter::create(const std::string& path, int flags, double sample_rate_hz,
                                     std::size_t channels, SampleFormat format) {
-  if (const auto fits = check_rate(sample_rate_hz, path); !fits) return forward_error(fits);
+  TACTO_TRY(check_rate(sample_rate_hz, path));
   SF_INFO header{};
   header.samplerate = static_cast<int>(std::round(sample_rate_hz));
   header.channels = static_cast<int>(channels);

@@ -104,14 +104,14 @@ ConfigfsGadget::~ConfigfsGadget() {
 }
 
 Result<ConfigfsGadget> ConfigfsGadget::create(const std::string& port, const UsbIdentity& identity) {
-  if (const auto there = require_configfs(); !there) return schema::forward_error(there);
+  TACTO_TRY(require_configfs());
   const fs::path folder = kGadgets / ("tactograph-" + port);
   if (const std::string bound = text_of(folder / "UDC"); !bound.empty())
     return schema::fail(Fault::device, fmt::format("a tactograph runs on {} already", bound), folder.string(),
                         "end that one, or take another port with --udc");
   ConfigfsGadget gadget(folder, port);
   gadget.remove();
-  if (const auto made = gadget.make(identity); !made) return schema::forward_error(made);
+  TACTO_TRY(gadget.make(identity));
   return gadget;
 }
 

@@ -75,7 +75,7 @@ Result<FaultPlan> parse_fault_plan(std::string_view text) {
   FaultPlan plan;
   while (!text.empty()) {
     const std::size_t comma = std::min(text.find(','), text.size());
-    if (const auto read = read_pair(text.substr(0, comma), plan); !read) return schema::forward_error(read);
+    TACTO_TRY(read_pair(text.substr(0, comma), plan));
     text.remove_prefix(std::min(comma + 1, text.size()));
   }
   return plan;

@@ -65,16 +65,14 @@ Result<void> tell(const FileDescriptor& file, std::span<const std::uint8_t> byte
 Result<FunctionFs> open_files(const Mount& mount) {
   FunctionFs files;
   auto events = mount.open("ep0");
-  if (!events) return schema::forward_error(events);
+  TACTO_TRY(events);
   files.events = std::move(*events);
-  if (const auto told = tell(files.events, functionfs_descriptors(), "descriptors"); !told)
-    return schema::forward_error(told);
-  if (const auto told = tell(files.events, functionfs_strings(usb::kInterfaceName), "strings"); !told)
-    return schema::forward_error(told);
+  TACTO_TRY(tell(files.events, functionfs_descriptors(), "descriptors"));
+  TACTO_TRY(tell(files.events, functionfs_strings(usb::kInterfaceName), "strings"));
   auto in = mount.open("ep1");
-  if (!in) return schema::forward_error(in);
+  TACTO_TRY(in);
   auto out = mount.open("ep2");
-  if (!out) return schema::forward_error(out);
+  TACTO_TRY(out);
   files.in = std::move(*in);
   files.out = std::move(*out);
   return files;
@@ -84,7 +82,7 @@ Result<FunctionFs> open_files(const Mount& mount) {
 
 Result<FunctionFs> open_functionfs(const std::string& instance) {
   Mount mount;
-  if (const auto mounted = mount.mount(instance); !mounted) return schema::forward_error(mounted);
+  TACTO_TRY(mount.mount(instance));
   return open_files(mount);
 }
 

@@ -40,12 +40,12 @@ class SimGadgetBoard final : public GadgetBoard {
 
 Result<std::unique_ptr<GadgetBoard>> make_sim(std::string_view words, const std::string& serial) {
   auto parameters = parse_sim_parameters(words);
-  if (!parameters) return schema::forward_error(parameters);
+  TACTO_TRY(parameters);
   parameters->serial = serial;
   auto surface = make_surface(parameters->surface);
-  if (!surface) return schema::forward_error(surface);
+  TACTO_TRY(surface);
   const auto transducer = schema::read_transducer(parameters->transducer);
-  if (!transducer) return schema::forward_error(transducer);
+  TACTO_TRY(transducer);
   return std::make_unique<SimGadgetBoard>(*parameters, *transducer, std::move(*surface));
 }
 
@@ -53,7 +53,7 @@ Result<std::unique_ptr<GadgetBoard>> make_replay(std::string_view words, const s
   const bool loop = words.ends_with(kLoop);
   if (loop) words.remove_suffix(kLoop.size());
   auto board = ReplayBoard::open(std::string(words), loop, serial);
-  if (!board) return schema::forward_error(board);
+  TACTO_TRY(board);
   return std::unique_ptr<GadgetBoard>(std::move(*board));
 }
 

@@ -28,7 +28,7 @@ Result<void> read_id(const std::string& text, GadgetOptions& options) {
 
 Result<void> read_faults(const std::string& text, GadgetOptions& options) {
   auto plan = parse_fault_plan(text);
-  if (!plan) return schema::forward_error(plan);
+  TACTO_TRY(plan);
   options.faults = *plan;
   return {};
 }
@@ -69,7 +69,7 @@ Result<GadgetOptions> parse_gadget_options(std::span<const char* const> argument
     options.help = name == "--help" || name == "-h";
     if (options.help) return options;
     const char* value = i + 1 < arguments.size() ? arguments[i + 1] : nullptr;
-    if (const auto read = read_option(name, value, options); !read) return schema::forward_error(read);
+    TACTO_TRY(read_option(name, value, options));
   }
   return options;
 }

@@ -40,14 +40,14 @@ Result<void> run_plugged(ConfigfsGadget& gadget, GadgetBoard& board, FunctionFs 
 
 Result<void> run(const GadgetOptions& options) {
   auto board = make_gadget_board(options.board, options.serial);
-  if (!board) return schema::forward_error(board);
+  TACTO_TRY(board);
   const auto port = choose_port(options.udc);
-  if (!port) return schema::forward_error(port);
+  TACTO_TRY(port);
   auto gadget = ConfigfsGadget::create(
       *port, {options.vendor, options.product, (*board)->serial(), "tactograph device"});
-  if (!gadget) return schema::forward_error(gadget);
+  TACTO_TRY(gadget);
   auto files = open_functionfs(gadget->instance());
-  if (!files) return schema::forward_error(files);
+  TACTO_TRY(files);
   stop_on_signals();
   return run_plugged(*gadget, **board, std::move(*files), options, *port);
 }

@@ -35,10 +35,10 @@ Result<void> check(const schema::Recording& recording) {
 Result<std::unique_ptr<ReplayBoard>> ReplayBoard::open(const std::string& name, bool loop,
                                                        const std::string& serial) {
   auto recording = schema::open_recording(name);
-  if (!recording) return schema::forward_error(recording);
-  if (const auto suitable = check(*recording); !suitable) return schema::forward_error(suitable);
+  TACTO_TRY(recording);
+  TACTO_TRY(check(*recording));
   auto reader = schema::WavReader::open(schema::wav_path(*recording));
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   return std::unique_ptr<ReplayBoard>(
       new ReplayBoard(std::move(*recording), std::move(*reader), loop, serial));
 }

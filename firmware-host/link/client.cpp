@@ -36,7 +36,7 @@ Client::Client(std::unique_ptr<Transport> transport, std::string where)
 
 Result<std::unique_ptr<Client>> Client::connect(std::unique_ptr<Transport> transport, std::string where) {
   std::unique_ptr<Client> client(new Client(std::move(transport), std::move(where)));
-  if (const auto greeted = client->greet(); !greeted) return schema::forward_error(greeted);
+  TACTO_TRY(client->greet());
   return client;
 }
 
@@ -45,7 +45,7 @@ Result<void> Client::greet() {
   while (may_ask(asking)) {
     if (const auto flushed = asking.times > 1 ? flush() : Result<void>(); !flushed) return flushed;
     const auto greeted = greet_once();
-    if (!greeted) return schema::forward_error(greeted);
+    TACTO_TRY(greeted);
     if (!description_.welcome.major) continue;
     if (const auto version = check_version(); !version) return version;
     if (*greeted) return {};
@@ -83,7 +83,7 @@ Result<bool> Client::greet_once() {
   const auto sent = send([&](std::uint32_t sequence, std::span<std::uint8_t> frame) {
     return wire::encode_frame(hello, sequence, frame.data(), frame.size());
   });
-  if (!sent) return schema::forward_error(sent);
+  TACTO_TRY(sent);
   return await(kAnswerTimeoutS, [&] { return described(); });
 }
 
@@ -113,7 +113,7 @@ Result<std::uint32_t> Client::send(const Encoder& encode) {
   const std::size_t size = encode(sequence, frame);
   sent_.assign(frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(size));
   const auto written = transport_->write(sent_, kAnswerTimeoutS);
-  if (!written) return schema::forward_error(written);
+  TACTO_TRY(written);
   return sequence;
 }
 
@@ -123,7 +123,7 @@ Result<bool> Client::await(double timeout_s, Done done) {
   while (!done()) {
     const double left_s = deadline_s - transport_->now_s();
     if (left_s <= 0) return false;
-    if (const auto received = receive(left_s); !received) return schema::forward_error(received);
+    TACTO_TRY(receive(left_s));
   }
   return true;
 }
@@ -134,11 +134,11 @@ Result<void> Client::exchange(const Encoder& encode, MessageType type) {
   const std::uint32_t first = sequence_;
   Asking asking{transport_->now_s(), blocks_seen_};
   while (may_ask(asking)) {
-    if (const auto sent = send(encode); !sent) return schema::forward_error(sent);
+    TACTO_TRY(send(encode));
     const auto answered = await(kAnswerTimeoutS, [&] {
       return answer_ && answer_->of == type && answer_->of_sequence - first < sequence_ - first;
     });
-    if (!answered) return schema::forward_error(answered);
+    TACTO_TRY(answered);
     if (!*answered) continue;
     if (answer_->code != wire::AnswerCode::ok) return refused(type, *answer_);
     if (obeyed_) obeyed_(sent_);
@@ -164,7 +164,7 @@ Result<void> Client::send_drive(const wire::Drive& drive) {
   const auto sent = send([&](std::uint32_t sequence, std::span<std::uint8_t> frame) {
     return wire::encode_frame(drive, sequence, frame.data(), frame.size());
   });
-  if (!sent) return schema::forward_error(sent);
+  TACTO_TRY(sent);
   return {};
 }
 
@@ -177,9 +177,9 @@ Result<wire::Pulse> Client::heartbeat() {
       token = sequence;
       return wire::encode_frame(wire::Heartbeat{token}, sequence, frame.data(), frame.size());
     });
-    if (!sent) return schema::forward_error(sent);
+    TACTO_TRY(sent);
     const auto answered = await(kAnswerTimeoutS, [&] { return pulse_ && pulse_->token == token; });
-    if (!answered) return schema::forward_error(answered);
+    TACTO_TRY(answered);
     if (*answered) return *pulse_;
   }
   return silent(MessageType::heartbeat, asking);
@@ -205,7 +205,7 @@ Result<void> Client::await_samples(std::size_t frames) {
     const std::uint64_t before = samples_.pushed();
     const auto came =
         await(kStallS, [&] { return samples_.pushed() > before || enough() || converter_failed_; });
-    if (!came) return schema::forward_error(came);
+    TACTO_TRY(came);
     if (!*came)
       return fail(Fault::device, fmt::format("no frames have come for {:g} s", kStallS), where_,
                   "the device has stopped or restarted: see its supply and its cable");
@@ -215,7 +215,7 @@ Result<void> Client::await_samples(std::size_t frames) {
 
 Result<void> Client::receive(double timeout_s) {
   const auto got = transport_->read(received_, timeout_s);
-  if (!got) return schema::forward_error(got);
+  TACTO_TRY(got);
   wire::Arrival arrival = wire::Arrival::frame;
   for (std::size_t at = 0; at < *got || arrival != wire::Arrival::nothing;) {
     wire::Frame frame;

@@ -69,12 +69,12 @@ Result<Capabilities> capabilities_of(const Description& description, std::string
     return fail(Fault::device, "the device names no sampling rate or no channel", uri, "see its firmware");
   for (const wire::Channel& said : description.channels) {
     auto channel = channel_of(said, uri);
-    if (!channel) return schema::forward_error(channel);
+    TACTO_TRY(channel);
     capabilities.channels.push_back(std::move(*channel));
   }
   if (const std::string name = note_of(description, wire::NoteKind::transducer); !name.empty()) {
     auto transducer = schema::read_transducer(name);
-    if (!transducer) return schema::forward_error(transducer);
+    TACTO_TRY(transducer);
     capabilities.transducer = std::move(*transducer);
   }
   capabilities.uri = std::move(uri);

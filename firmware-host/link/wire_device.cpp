@@ -32,9 +32,9 @@ WireDevice::WireDevice(std::unique_ptr<Client> client, Capabilities capabilities
 
 Result<std::unique_ptr<WireDevice>> WireDevice::open(std::string uri, std::unique_ptr<Transport> transport) {
   auto client = Client::connect(std::move(transport), uri);
-  if (!client) return schema::forward_error(client);
+  TACTO_TRY(client);
   auto capabilities = capabilities_of((*client)->description(), std::move(uri));
-  if (!capabilities) return schema::forward_error(capabilities);
+  TACTO_TRY(capabilities);
   return std::unique_ptr<WireDevice>(new WireDevice(std::move(*client), std::move(*capabilities)));
 }
 
@@ -110,7 +110,7 @@ StreamEvents WireDevice::take_events() {
 Result<double> WireDevice::round_trip_s() {
   const auto asked = std::chrono::steady_clock::now();
   const auto pulse = client_->heartbeat();
-  if (!pulse) return schema::forward_error(pulse);
+  TACTO_TRY(pulse);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
 }
 

@@ -40,7 +40,7 @@ ReplayDevice::ReplayDevice(std::string uri, schema::Recording recording, bool pa
 
 Result<void> ReplayDevice::start() {
   auto reader = schema::WavReader::open(schema::wav_path(recording_));
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   reader_.emplace(std::move(*reader));
   if (paced_) pacer_.emplace();
   next_gap_ = 0;
@@ -90,7 +90,7 @@ Result<std::unique_ptr<Device>> open_replay_device(const std::string& uri, std::
   if (parameters.empty())
     return schema::fail(Fault::usage, "names no recording", uri, "as replay:oak, or replay:oak,paced=1");
   auto recording = schema::open_recording(std::string(parameters));
-  if (!recording) return schema::forward_error(recording);
+  TACTO_TRY(recording);
   if (recording->header.format != schema::SampleFormat::pcm32)
     return schema::fail(Fault::unsuitable, "holds numbers of another program, not a converter's codes", uri,
                         "only what a device recorded can be replayed as one");

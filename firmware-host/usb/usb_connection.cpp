@@ -19,17 +19,16 @@ Result<std::shared_ptr<libusb_context>> begin_usb() {
 // The connection is made first: it keeps libusb's session for what is found.
 Result<UsbConnection> UsbConnection::open(const UsbAddress& address) {
   auto context = begin_usb();
-  if (!context) return schema::forward_error(context);
+  TACTO_TRY(context);
   UsbConnection connection;
   connection.context_ = std::move(*context);
   const auto found = find_usb(connection.context_.get());
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   const std::vector<UsbName> names = names_of(*found);
   const auto chosen = choose_usb(names, address);
-  if (!chosen) return schema::forward_error(chosen);
+  TACTO_TRY(chosen);
   connection.uri_ = usb_uri(names, *chosen);
-  if (const auto claimed = connection.claim((*found)[*chosen]); !claimed)
-    return schema::forward_error(claimed);
+  TACTO_TRY(connection.claim((*found)[*chosen]));
   return connection;
 }
 

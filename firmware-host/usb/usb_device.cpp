@@ -10,20 +10,20 @@ using schema::Result;
 
 Result<std::unique_ptr<Device>> open_usb_device(const std::string&, std::string_view parameters) {
   const auto address = parse_usb_address(parameters);
-  if (!address) return schema::forward_error(address);
+  TACTO_TRY(address);
   auto connection = UsbConnection::open(*address);
-  if (!connection) return schema::forward_error(connection);
+  TACTO_TRY(connection);
   std::string uri = connection->uri();
   auto device = WireDevice::open(std::move(uri), std::make_unique<UsbTransport>(std::move(*connection)));
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   return std::unique_ptr<Device>(std::move(*device));
 }
 
 Result<std::vector<std::string>> usb_uris() {
   const auto context = begin_usb();
-  if (!context) return schema::forward_error(context);
+  TACTO_TRY(context);
   const auto found = find_usb(context->get());
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   const std::vector<UsbName> names = names_of(*found);
   std::vector<std::string> uris;
   for (std::size_t i = 0; i < names.size(); ++i) uris.push_back(usb_uri(names, i));

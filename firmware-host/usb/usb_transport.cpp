@@ -20,11 +20,11 @@ Result<std::size_t> UsbTransport::read(std::span<std::uint8_t> bytes, double tim
   for (bool over = false;;) {
     const auto going = inflow_.keep_going();
     if (const std::size_t taken = inflow_.take(bytes); taken > 0) return taken;
-    if (!going) return schema::forward_error(going);
+    TACTO_TRY(going);
     if (over) return 0;
     const double left_s = std::max(0.0, deadline_s - now_s());
     over = left_s == 0;
-    if (const auto waited = inflow_.wait(left_s); !waited) return schema::forward_error(waited);
+    TACTO_TRY(inflow_.wait(left_s));
   }
 }
 

@@ -162,8 +162,8 @@ Result<TickDecision> decide(std::span<const PlacedTexture> textures,
                             const std::vector<InverseChoice>& inverses, bool undoes_hysteresis,
                             const PrepareOptions& options, const TickBudget& budget,
                             const schema::FoundTradeTable& found) {
-  if (auto sound = check_budget(budget); !sound) return schema::forward_error(sound);
-  if (auto sound = check_prepare(textures, options); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_budget(budget));
+  TACTO_TRY(check_prepare(textures, options));
   const double passes_to_hz = undone_chain({}, options).band.high_hz;
   const Readings readings = readings_of(textures, options, passes_to_hz, found.table, budget.keep_reading);
   if (readings.choices.empty()) return no_room(readings, options);
@@ -181,8 +181,8 @@ Result<TickDecision> decide(std::span<const PlacedTexture> textures,
 Result<TickDecision> decide(std::span<const PlacedTexture> textures, const schema::Transducer& transducer,
                             const PrepareOptions& options, const TickBudget& budget,
                             const schema::FoundTradeTable& found) {
-  if (auto sound = check_prepare(textures, options); !sound) return schema::forward_error(sound);
-  if (auto sound = check_hysteresis(transducer, options); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_prepare(textures, options));
+  TACTO_TRY(check_hysteresis(transducer, options));
   const auto inverses =
       budget.filter ? std::vector{*budget.filter} : inverse_choices(transducer, options, budget.keep_inverse);
   return decide(textures, inverses, undoes_hysteresis(transducer, options), options, budget, found);

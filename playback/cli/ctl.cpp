@@ -98,7 +98,7 @@ Result<void> check_taken(const CtlOptions& o) {
 }
 
 Result<ControlRequest> request_of(const CtlOptions& o) {
-  if (const auto taken = check_taken(o); !taken) return schema::forward_error(taken);
+  TACTO_TRY(check_taken(o));
   ControlRequest request;
   const auto index = std::ranges::find(kCtlActions, o.action) - kCtlActions.begin();
   request.verb = o.action == "top" ? ControlVerb::watch : static_cast<ControlVerb>(index);
@@ -111,7 +111,7 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   request.save = o.save;
   if (request.verb != ControlVerb::gain) return request;
   const auto gain = gain_in(o.what);
-  if (!gain) return schema::forward_error(gain);
+  TACTO_TRY(gain);
   request.gain = *gain;
   return request;
 }
@@ -148,7 +148,7 @@ Result<void> show_top_now(ControlConnection& connection) {
   ControlRequest request;
   request.verb = ControlVerb::status;
   const auto answer = connection.ask(request);
-  if (!answer) return schema::forward_error(answer);
+  TACTO_TRY(answer);
   show_top(*answer);
   return {};
 }
@@ -162,7 +162,7 @@ Result<Report> watch(ControlConnection& connection, const CtlOptions& o) {
   };
   while (!signals.stop_asked() && (!o.time_s || elapsed_s() < *o.time_s)) {
     const auto event = connection.next_event(kEventMs);
-    if (!event) return schema::forward_error(event);
+    TACTO_TRY(event);
     if (*event) show_event(**event, o.action == "top");
   }
   return Report();
@@ -170,16 +170,16 @@ Result<Report> watch(ControlConnection& connection, const CtlOptions& o) {
 
 Result<Report> run_ctl(const CtlOptions& o) {
   const auto request = request_of(o);
-  if (!request) return schema::forward_error(request);
+  TACTO_TRY(request);
   Report report;
   if (request->verb == ControlVerb::stop || request->verb == ControlVerb::disarm) {
     const auto answer = ControlConnection::ask_at_once(o.socket, *request);
-    if (!answer) return schema::forward_error(answer);
+    TACTO_TRY(answer);
     add_fields(report, *answer);
     return report;
   }
   auto connection = ControlConnection::open(o.socket);
-  if (!connection) return schema::forward_error(connection);
+  TACTO_TRY(connection);
   if (o.watch)
     return watched_play(*connection, o.time_s, [state = std::string()](const ControlFields& status) mutable {
       show_played(status, state);
@@ -188,10 +188,9 @@ Result<Report> run_ctl(const CtlOptions& o) {
     add_fields(report, connection->hello());
     return report;
   }
-  if (o.action == "top")
-    if (const auto shown = show_top_now(*connection); !shown) return schema::forward_error(shown);
+  if (o.action == "top") TACTO_TRY(show_top_now(*connection));
   const auto answer = connection->ask(*request);
-  if (!answer) return schema::forward_error(answer);
+  TACTO_TRY(answer);
   if (request->verb == ControlVerb::watch) return watch(*connection, o);
   add_fields(report, *answer);
   return report;

@@ -88,10 +88,10 @@ void add_costs(Report& report, const Prepared& made, double tick_ns, const schem
 Result<Report> explained(const ExplainOptions& o, const Program& program) {
   const Prepared& made = program.prepared;
   const auto table = schema::find_trade_table();
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   const auto tick_ns =
       tick_cost_ns(table->table, made.scale.interpolation, made.built.taps, made.plays.count > 0);
-  if (!tick_ns) return schema::forward_error(tick_ns);
+  TACTO_TRY(tick_ns);
   Report report;
   report.add("what", program.name()).add("transducer", program.session.transducer.name);
   report.add("rate_hz", made.rate_hz).add("length_m", program.length_m);
@@ -124,7 +124,7 @@ Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgra
 
 Result<Report> run_explain(ExplainOptions o) {
   const auto budget = o.budget.budget();
-  if (!budget) return schema::forward_error(budget);
+  TACTO_TRY(budget);
   o.program.budget = *budget;
   if (o.device_memory > 0) o.prepare.most_samples = o.device_memory;
   const AskedProgram asked{o.program, o.transducer, o.prepare};

@@ -113,7 +113,7 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explai
 
 Result<Report> run_play(const PlayVerbOptions& asked) {
   const auto budget = asked.budget.budget();
-  if (!budget) return schema::forward_error(budget);
+  TACTO_TRY(budget);
   PlayOptions o = asked.play;
   o.program.budget = *budget;
   o.session = schema::session_path(asked.session.value_or(session_named_after(o.program.file)));
@@ -121,7 +121,7 @@ Result<Report> run_play(const PlayVerbOptions& asked) {
   cli::Progress progress("playing");
   const auto outcome = play_once(
       o, [&] { return signals.stop_asked(); }, [&](double part) { progress.update(part); });
-  if (!outcome) return schema::forward_error(outcome);
+  TACTO_TRY(outcome);
   return play_report(o, *outcome, asked.budget.options.explain);
 }
 

@@ -228,7 +228,7 @@ Result<void> check_outputs(const RenderVerbOptions& o) {
 // What a scene says of how it is to be played, where nobody named something else.
 Result<void> take_choices(RenderVerbOptions& o, const schema::PlaybackChoices& scene) {
   const auto played = with_choices({}, scene);
-  if (!played) return schema::forward_error(played);
+  TACTO_TRY(played);
   const auto take = [](bool said, const CLI::Option* named, auto& option, const auto& value) {
     if (said && named->count() == 0) option = value;
   };
@@ -248,15 +248,15 @@ Result<void> take_choices(RenderVerbOptions& o, const schema::PlaybackChoices& s
 
 Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& transducer) {
   const auto laid = lay_textures(o.what);
-  if (!laid) return schema::forward_error(laid);
-  if (const auto taken = take_choices(o, laid->choices()); !taken) return schema::forward_error(taken);
+  TACTO_TRY(laid);
+  TACTO_TRY(take_choices(o, laid->choices()));
   for (const std::string& note : laid->notes()) cli::warn(note);
   o.kept_gain = laid->kept_gain();
   o.render.gain_m_per_n = laid->gain();
   o.signed_gain = laid->signed_gain();
   o.render.ends = laid->ends();
   const auto path = read_finger_path(o.path);
-  if (!path) return schema::forward_error(path);
+  TACTO_TRY(path);
   cli::Progress progress("rendering");
   return render(laid->placed(), *path, transducer, o.render,
                 [&](double fraction) { progress.update(fraction); });
@@ -264,21 +264,19 @@ Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& trans
 
 Result<Report> run_render(RenderVerbOptions o) {
   const auto budget = o.budget.budget();
-  if (!budget) return schema::forward_error(budget);
+  TACTO_TRY(budget);
   o.render.budget = *budget;
   o.render.keep_engine = o.engine->count() > 0;
-  if (const auto knows = check_kernels(o); !knows) return schema::forward_error(knows);
-  if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_kernels(o));
+  TACTO_TRY(check_outputs(o));
   const auto transducer = schema::read_transducer(
       o.transducer, o.what.implausible ? schema::Numbers::computable : schema::Numbers::plausible);
-  if (!transducer) return schema::forward_error(transducer);
-  if (const auto usable = schema::check_usable(*transducer, o.what.unfit_transducer); !usable)
-    return schema::forward_error(usable);
+  TACTO_TRY(transducer);
+  TACTO_TRY(schema::check_usable(*transducer, o.what.unfit_transducer));
   warn_of_version(o.transducer, *transducer);
   const auto rendering = rendered(o, *transducer);
-  if (!rendering) return schema::forward_error(rendering);
-  if (const auto written = write_signal_files(files_of(o, *rendering), o.existing); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(rendering);
+  TACTO_TRY(write_signal_files(files_of(o, *rendering), o.existing));
   warn_of(*rendering);
   return report_of(o, *transducer, *rendering);
 }

@@ -32,7 +32,7 @@ void add_sameness(Report& report, const ReplayOutcome& outcome) {
 Result<Report> run_replay(const ReplayVerbOptions& o) {
   cli::Progress progress("replaying");
   const auto outcome = replay_session(o.session, [&](double part) { progress.update(part); });
-  if (!outcome) return schema::forward_error(outcome);
+  TACTO_TRY(outcome);
   Report report;
   report.add("session", schema::session_path(o.session)).add("ticks_compared", outcome->ticks);
   add_sameness(report, *outcome);

@@ -62,7 +62,7 @@ class StrokeTable {
  public:
   Result<void> open(const std::string& file) {
     const auto temporary = pending_.add(file);
-    if (!temporary) return schema::forward_error(temporary);
+    TACTO_TRY(temporary);
     file_ = file;
     out_.open(*temporary, std::ios::binary);
     out_ << kStrokeColumns << '\n';
@@ -128,7 +128,7 @@ Result<void> export_all(const SessionVerbOptions& o) {
     cli::Progress progress("exporting " + output);
     const auto said =
         export_session(o.session, output, o.existing, [&](double part) { progress.update(part); });
-    if (!said) return schema::forward_error(said);
+    TACTO_TRY(said);
     if (!said->empty()) cli::warn(fmt::format("{}: {}", output, *said));
   }
   return {};
@@ -136,8 +136,7 @@ Result<void> export_all(const SessionVerbOptions& o) {
 
 Result<StrokeReport> judge_all(const SessionVerbOptions& o) {
   StrokeTable table;
-  if (!o.strokes.empty())
-    if (const auto opened = table.open(o.strokes); !opened) return schema::forward_error(opened);
+  if (!o.strokes.empty()) TACTO_TRY(table.open(o.strokes));
   cli::Progress progress("judging");
   auto report = report_strokes(o.session, {[&](const PlayedStroke& stroke) { table.add(stroke); },
                                            [&](double part) { progress.update(part); }});
@@ -156,7 +155,7 @@ void warn_of(const StrokeReport& strokes) {
 // States, faults, gains, changes of texture.
 Result<void> add_events(Report& report, const std::string& session) {
   auto reader = schema::SessionReader::open(session);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   const schema::SessionTotals totals = session_totals(*reader);
   std::vector<Report> rows;
   for (const schema::SessionEvent& event : totals.events)
@@ -168,10 +167,10 @@ Result<void> add_events(Report& report, const std::string& session) {
 }
 
 Result<Report> run_session(const SessionVerbOptions& o) {
-  if (const auto sound = check_outputs(o); !sound) return schema::forward_error(sound);
-  if (const auto exported = export_all(o); !exported) return schema::forward_error(exported);
+  TACTO_TRY(check_outputs(o));
+  TACTO_TRY(export_all(o));
   const auto strokes = judge_all(o);
-  if (!strokes) return schema::forward_error(strokes);
+  TACTO_TRY(strokes);
   warn_of(*strokes);
   std::vector<std::string> written = o.outputs;
   if (!o.strokes.empty()) written.push_back(o.strokes);
@@ -185,7 +184,7 @@ Result<Report> run_session(const SessionVerbOptions& o) {
   std::vector<Report> rows;
   for (const PlayedStroke& stroke : strokes->strokes) rows.push_back(stroke_row(stroke));
   report.add("strokes", std::move(rows));
-  if (const auto added = add_events(report, o.session); !added) return schema::forward_error(added);
+  TACTO_TRY(add_events(report, o.session));
   if (strokes->damaged) report.ends_with(schema::Fault::malformed);
   return report;
 }

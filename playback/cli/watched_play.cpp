@@ -39,7 +39,7 @@ Result<void> arm_while_connected(ControlConnection& connection) {
   request.while_connected = true;
   request.dead_man_s = kDeadManS;
   const auto armed = connection.ask(request);
-  if (!armed) return schema::forward_error(armed);
+  TACTO_TRY(armed);
   if (says_while_connected(*armed)) return {};
   (void)asked(connection, ControlVerb::disarm);
   return schema::fail(
@@ -55,7 +55,7 @@ bool goes_on(const ControlFields& status) {
 
 Result<Report> report_of_end(ControlConnection& connection) {
   const auto status = asked(connection, ControlVerb::status);
-  if (!status) return schema::forward_error(status);
+  TACTO_TRY(status);
   constexpr std::array<std::string_view, 9> kTold = {
       "state", "why", "fault", "session", "played_s", "armed_s", "lost_ticks", "late_ticks", "drive_peak_v"};
   Report report;
@@ -81,14 +81,13 @@ Result<void> watch_until_the_end(ControlConnection& connection, std::optional<do
   };
   while (!signals.stop_asked() && !over()) {
     const auto status = asked(connection, ControlVerb::status);
-    if (!status) return schema::forward_error(status);
+    TACTO_TRY(status);
     show(*status);
     if (!goes_on(*status)) return {};
     // Nothing comes unasked: this waits, and a signal ends it.
-    if (const auto waited = connection.next_event(kBeatMs); !waited) return schema::forward_error(waited);
+    TACTO_TRY(connection.next_event(kBeatMs));
   }
-  if (const auto stopped = asked(connection, ControlVerb::stop); !stopped)
-    return schema::forward_error(stopped);
+  TACTO_TRY(asked(connection, ControlVerb::stop));
   const auto disarmed = asked(connection, ControlVerb::disarm);
   return disarmed ? Result<void>() : schema::forward_error(disarmed);
 }
@@ -98,10 +97,9 @@ Result<void> watch_until_the_end(ControlConnection& connection, std::optional<do
 Result<Report> watched_play(ControlConnection& connection, std::optional<double> time_s,
                             const std::function<void(const ControlFields&)>& show) {
   const cli::StopSignals signals;
-  if (const auto armed = arm_while_connected(connection); !armed) return schema::forward_error(armed);
-  if (const auto plays = asked(connection, ControlVerb::play); !plays) return schema::forward_error(plays);
-  if (const auto watched = watch_until_the_end(connection, time_s, signals, show); !watched)
-    return schema::forward_error(watched);
+  TACTO_TRY(arm_while_connected(connection));
+  TACTO_TRY(asked(connection, ControlVerb::play));
+  TACTO_TRY(watch_until_the_end(connection, time_s, signals, show));
   return report_of_end(connection);
 }
 

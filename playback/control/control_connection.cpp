@@ -52,10 +52,10 @@ ControlConnection::~ControlConnection() {
 
 Result<ControlConnection> ControlConnection::open(const std::string& socket) {
   const auto connected = connect_control_socket(socket);
-  if (!connected) return schema::forward_error(connected);
+  TACTO_TRY(connected);
   ControlConnection connection(socket, *connected);
   auto answer = connection.ask(hello_request());
-  if (!answer) return schema::forward_error(answer);
+  TACTO_TRY(answer);
   connection.hello_ = std::move(*answer);
   return connection;
 }
@@ -63,7 +63,7 @@ Result<ControlConnection> ControlConnection::open(const std::string& socket) {
 Result<ControlFields> ControlConnection::ask_at_once(const std::string& socket,
                                                      const ControlRequest& request) {
   const auto connected = connect_control_socket(socket);
-  if (!connected) return schema::forward_error(connected);
+  TACTO_TRY(connected);
   ControlConnection connection(socket, *connected);
   connection.say(schema::control_request_line(hello_request()) + schema::control_request_line(request));
   const auto greeted = connection.answer(kAnswerMs);
@@ -93,10 +93,10 @@ void ControlConnection::say(const std::string& text) const {
 
 Result<ControlFields> ControlConnection::answer(int timeout_ms) {
   const auto text = line(timeout_ms);
-  if (!text) return schema::forward_error(text);
+  TACTO_TRY(text);
   if (!*text) return fail(Fault::device, "the daemon says nothing", socket_, "see its journal");
   auto reply = schema::parse_control_reply(**text);
-  if (!reply) return schema::forward_error(reply);
+  TACTO_TRY(reply);
   if (!reply->ok) return tl::unexpected(reply->error);
   return std::move(reply->fields);
 }
@@ -108,7 +108,7 @@ Result<ControlFields> ControlConnection::ask(const ControlRequest& request) {
 
 Result<std::optional<ControlReply>> ControlConnection::next_event(int timeout_ms) {
   const auto text = line(timeout_ms);
-  if (!text) return schema::forward_error(text);
+  TACTO_TRY(text);
   if (!*text) return std::optional<ControlReply>();
   return schema::parse_control_reply(**text);
 }

@@ -59,11 +59,11 @@ schema::ControlFields with_passed_over(schema::ControlFields fields, const std::
 
 Result<std::unique_ptr<ControlServer>> ControlServer::listen(const SocketPlace& place) {
   const auto opened = open_control_socket(place.path, place.group);
-  if (!opened) return schema::forward_error(opened);
+  TACTO_TRY(opened);
   std::unique_ptr<ControlServer> server(new ControlServer(place, *opened));
   if (!place.loopback) return server;
   const auto tcp = open_loopback_socket(place.loopback->port);
-  if (!tcp) return schema::forward_error(tcp);
+  TACTO_TRY(tcp);
   server->tcp_ = *tcp;
   return server;
 }

@@ -74,7 +74,7 @@ Result<void> permit(const std::string& path, const std::string& group) {
     return chmod(path.c_str(), kOwnerOnly) == 0 ? Result<void>()
                                                 : fail(Fault::cannot_write, system_words(errno), path);
   const auto id = group_of(group);
-  if (!id) return schema::forward_error(id);
+  TACTO_TRY(id);
   const bool done =
       chown(path.c_str(), static_cast<uid_t>(-1), *id) == 0 && chmod(path.c_str(), kOwnerAndGroup) == 0;
   if (done) return {};
@@ -102,7 +102,7 @@ Result<void> bind_and_listen(int descriptor, const sockaddr_un& address, const s
 
 Result<int> open_control_socket(const std::string& path, const std::string& group) {
   const auto address = address_of(path);
-  if (!address) return schema::forward_error(address);
+  TACTO_TRY(address);
   if (somebody_listens(*address))
     return fail(Fault::unsuitable, "another daemon listens there", path, "stop it, or name another socket");
   remove_stale(path);
@@ -151,7 +151,7 @@ Result<LoopbackSocket> open_loopback_socket(int port) {
 
 Result<int> connect_control_socket(const std::string& path) {
   const auto address = address_of(path);
-  if (!address) return schema::forward_error(address);
+  TACTO_TRY(address);
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (descriptor >= 0 && connects(descriptor, *address)) return descriptor;
   const int why = errno;

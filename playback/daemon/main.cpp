@@ -103,7 +103,7 @@ schema::Result<std::unique_ptr<ControlServer>> listening(const schema::DaemonCon
   playback::SocketPlace place{config.socket, config.socket_group, config.most_clients, std::nullopt};
   if (config.tcp_port) {
     auto token = playback::read_control_token(config.tcp_token_file);
-    if (!token) return schema::forward_error(token);
+    TACTO_TRY(token);
     place.loopback = {*config.tcp_port, std::move(*token)};
   }
   return ControlServer::listen(place);

@@ -99,9 +99,8 @@ Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& confi
   if (failed) return fail(Fault::cannot_write, "can't be made: " + failed.message(), config.sessions);
   if (!config.files.empty() && !fs::is_directory(config.files, failed))
     return fail(Fault::not_found, "there is no such folder", config.files, "name one in files, or none");
-  if (const auto sound = schema::read_transducer(config.transducer); !sound)
-    return schema::forward_error(sound);
-  if (const auto connected = service->connect(); !connected) return schema::forward_error(connected);
+  TACTO_TRY(schema::read_transducer(config.transducer));
+  TACTO_TRY(service->connect());
   return service;
 }
 
@@ -111,9 +110,9 @@ Result<void> Service::connect() {
   here_.loop.reset();
   device_ = {};
   const auto script = read_finger_script(config_.finger_path, true);
-  if (!script) return schema::forward_error(script);
+  TACTO_TRY(script);
   auto device = open_player_device(paced(config_.device), *script);
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   PlayerOptions player_options;
   player_options.heartbeat_s = 1e-3 * config_.watchdog_ms / 4;
   player_options.tell_limits = true;
@@ -123,11 +122,11 @@ Result<void> Service::connect() {
     const HostLoopOptions loop{config_.rate_hz, config_.real_time_priority,
                                static_cast<std::uint16_t>(config_.watchdog_ms)};
     auto here = close_loop_here(*device_.client, device_.uri, loop, player_options);
-    if (!here) return schema::forward_error(here);
+    TACTO_TRY(here);
     here_ = std::move(*here);
   }
   auto player = Player::make(client(), device_.uri, player_options);
-  if (!player) return schema::forward_error(player);
+  TACTO_TRY(player);
   player_ = std::move(*player);
   player_->listen([this](PlayerState state, const std::string& why, double device_s) {
     why_ = why;
@@ -204,7 +203,7 @@ Result<ControlFields> Service::load(Program program) {
   const auto filter = program.decision ? std::optional(program.decision->chosen.inverse) : std::nullopt;
   const bool changes = player_->state() != PlayerState::idle;
   const double fade_s = load_request_.fade_s.value_or(kUsualFadeS);
-  if (const auto kept = player_->load(std::move(program), fade_s); !kept) return schema::forward_error(kept);
+  TACTO_TRY(player_->load(std::move(program), fade_s));
   loaded_ = file;
   passes_to_hz_ = passes_to_hz, loaded_gain_m_per_n_ = gain_m_per_n;
   loop_period_m_ = period_m, loop_seam_m_ = seam_m;
@@ -215,7 +214,7 @@ Result<ControlFields> Service::load(Program program) {
   fields.emplace_back("changed", changes);
   if (changes) fields.emplace_back("fade_s", fade_s);
   if (changes) return fields;
-  if (const auto fresh = player_->gain(1); !fresh) return schema::forward_error(fresh);
+  TACTO_TRY(player_->gain(1));
   return fields;
 }
 
@@ -224,9 +223,9 @@ std::string Service::next_session() const {
 }
 
 Result<ControlFields> Service::arm(const ControlRequest& request) {
-  if (const auto may = may_begin("arm"); !may) return schema::forward_error(may);
+  TACTO_TRY(may_begin("arm"));
   const std::string path = next_session();
-  if (const auto armed = player_->arm(path); !armed) return schema::forward_error(armed);
+  TACTO_TRY(player_->arm(path));
   told_lost_.reset();
   if (here_) missed_before_ = here_.loop->status().missed_ticks;
   lock_memory();  // also what came since the daemon began
@@ -279,7 +278,7 @@ Result<void> Service::save_gain(double factor, const std::string& who) {
 
 Result<void> Service::save_scene_gain(double factor, const std::string& who) {
   auto scene = schema::read_scene(scene_path_);
-  if (!scene) return schema::forward_error(scene);
+  TACTO_TRY(scene);
   for (schema::Layer& layer : scene->layers)
     layer.visit([&](schema::TextureLayer& texture) {
       texture.gain_m_per_n *= factor / saved_gain_;
@@ -293,11 +292,9 @@ Result<void> Service::save_scene_gain(double factor, const std::string& who) {
 
 // What is refused changes nothing: neither the file nor what is felt.
 Result<ControlFields> Service::gain(const ControlRequest& request) {
-  if (const auto may = player_->may_gain(*request.gain); !may) return schema::forward_error(may);
-  if (request.save)
-    if (const auto saved = save_gain(*request.gain, request.asked_by); !saved)
-      return schema::forward_error(saved);
-  if (const auto set = player_->gain(*request.gain); !set) return schema::forward_error(set);
+  TACTO_TRY(player_->may_gain(*request.gain));
+  if (request.save) TACTO_TRY(save_gain(*request.gain, request.asked_by));
+  TACTO_TRY(player_->gain(*request.gain));
   const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
   publish_("gain", {{"gain", *request.gain}, {"device_s", device_s}});
   ControlFields fields{{"gain", *request.gain}, {"saved", request.save}};
@@ -307,14 +304,13 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
 
 // The answer tells the state that the command led to, once the device's ticks show it.
 Result<ControlFields> Service::done(const Result<void>& result, PlayerState wanted) {
-  if (!result) return schema::forward_error(result);
+  TACTO_TRY(result);
   const double until_s = client().transport().now_s() + kObeyedS;
   const auto waits = [&] {
     const PlayerState state = player_->state();
     return state != wanted && state != PlayerState::lost && client().transport().now_s() < until_s;
   };
-  while (waits())
-    if (const auto stepped = player_->step(kLookS); !stepped) return schema::forward_error(stepped);
+  while (waits()) TACTO_TRY(player_->step(kLookS));
   return ControlFields{{"state", std::string(word_of(player_->state()))}};
 }
 
@@ -359,7 +355,7 @@ std::optional<Result<ControlFields>> Service::handle(const ControlRequest& reque
     case ControlVerb::hello:
       return hello();
     case ControlVerb::load:
-      if (const auto begun = begin_load(request); !begun) return schema::forward_error(begun);
+      TACTO_TRY(begin_load(request));
       return std::nullopt;
     case ControlVerb::arm:
       return arm(request);

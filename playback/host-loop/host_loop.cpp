@@ -78,13 +78,12 @@ HostLoop::HostLoop(firmware_host::Client& device, const HostLoopOptions& options
 Result<std::unique_ptr<HostLoop>> HostLoop::begin(firmware_host::Client& device,
                                                   const HostLoopOptions& options) {
   const auto channel = position_channel(device.description());
-  if (!channel) return schema::forward_error(channel);
-  if (const auto fits = check_rate(device, options.rate_hz); !fits) return schema::forward_error(fits);
+  TACTO_TRY(channel);
+  TACTO_TRY(check_rate(device, options.rate_hz));
   std::unique_ptr<HostLoop> loop(new HostLoop(device, options, *channel));
-  if (const auto started = device.start_stream(firmware_host::millihertz(options.rate_hz), 1); !started)
-    return schema::forward_error(started);
-  if (const auto first = device.await_samples(1); !first) return schema::forward_error(first);
-  if (const auto measured = loop->measure_delay(); !measured) return schema::forward_error(measured);
+  TACTO_TRY(device.start_stream(firmware_host::millihertz(options.rate_hz), 1));
+  TACTO_TRY(device.await_samples(1));
+  TACTO_TRY(loop->measure_delay());
   loop->tick_thread_ = std::thread([&self = *loop] { self.tick_forever(); });
   loop->carry_thread_ = std::thread([&self = *loop] { self.carry_forever(); });
   return loop;
@@ -101,7 +100,7 @@ Result<void> HostLoop::measure_delay() {
     if (periods_ > before) batches.push_back(periods_ - before);
     if (i % 10 != 0) continue;
     const std::int64_t asked_ns = TickClock::now_ns();
-    if (const auto pulse = device_.heartbeat(); !pulse) return schema::forward_error(pulse);
+    TACTO_TRY(device_.heartbeat());
     trips.push_back(TickClock::now_ns() - asked_ns);
   }
   const double batch = batches.empty() ? 0 : static_cast<double>(median_of(batches));

@@ -39,10 +39,10 @@ Result<void> check_storable(const SignalFile& file) {
 Result<void> write_one(schema::PendingFiles& pending, const SignalFile& file) {
   if (const auto storable = check_storable(file); !storable) return storable;
   const auto temporary = pending.add(file.path);
-  if (!temporary) return schema::forward_error(temporary);
+  TACTO_TRY(temporary);
   auto writer =
       schema::WavWriter::create(*temporary, file.signal->sample_rate_hz, 1, schema::SampleFormat::float32);
-  if (!writer) return schema::forward_error(writer);
+  TACTO_TRY(writer);
   if (auto written = writer->write(file.signal->values); !written) return written;
   return writer->close();
 }

@@ -113,9 +113,9 @@ Result<void> add_row(FingerPath& path, const Table& table, std::string_view text
                 fmt::format("the row has {} fields, the header {}", fields.size(), table.header.size()),
                 fmt::format("{}, line {}", table.name, line));
   const auto time_s = cell(table, fields, line, 0);
-  if (!time_s) return schema::forward_error(time_s);
+  TACTO_TRY(time_s);
   const auto position_m = cell(table, fields, line, 1);
-  if (!position_m) return schema::forward_error(position_m);
+  TACTO_TRY(position_m);
   if (!path.time_s.empty() && *time_s <= path.time_s.back())
     return fail(Fault::malformed,
                 fmt::format("time does not grow: {} s after {} s", *time_s, path.time_s.back()),
@@ -124,7 +124,7 @@ Result<void> add_row(FingerPath& path, const Table& table, std::string_view text
   path.position_m.push_back(*position_m);
   if (!table.tells_force) return {};
   const auto force_n = cell(table, fields, line, kForce);
-  if (!force_n) return schema::forward_error(force_n);
+  TACTO_TRY(force_n);
   path.normal_force_n.push_back(*force_n);
   return {};
 }
@@ -135,10 +135,9 @@ Result<FingerPath> parse_finger_path(std::string_view text, const std::string& n
   const auto lines = lines_of(text);
   if (lines.empty()) return fail(Fault::malformed, "the file is empty", name, std::string(kRemedy));
   const auto table = read_header(lines.front(), name);
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   FingerPath path;
-  for (std::size_t i = 1; i < lines.size(); ++i)
-    if (const auto row = add_row(path, *table, lines[i], i + 1); !row) return schema::forward_error(row);
+  for (std::size_t i = 1; i < lines.size(); ++i) TACTO_TRY(add_row(path, *table, lines[i], i + 1));
   if (path.time_s.size() < 2)
     return fail(Fault::malformed,
                 fmt::format("a path needs at least 2 rows, here are {}", path.time_s.size()), name,
@@ -148,7 +147,7 @@ Result<FingerPath> parse_finger_path(std::string_view text, const std::string& n
 
 Result<FingerPath> read_finger_path(const std::string& file) {
   const auto text = schema::read_file(file);
-  if (!text) return schema::forward_error(text);
+  TACTO_TRY(text);
   return parse_finger_path(*text, file);
 }
 

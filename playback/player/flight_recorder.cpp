@@ -43,7 +43,7 @@ Result<std::unique_ptr<FlightRecorder>> FlightRecorder::begin(const std::string&
                                                               const schema::SessionHeader& header,
                                                               FullQueue full, LiveLimits* limits) {
   auto writer = schema::SessionWriter::create(path, header);
-  if (!writer) return schema::forward_error(writer);
+  TACTO_TRY(writer);
   return std::unique_ptr<FlightRecorder>(new FlightRecorder(std::move(*writer), full, limits));
 }
 

@@ -32,7 +32,7 @@ Result<schema::Scene> scene_of_texture(const ProgramRequest& request,
                                        std::optional<schema::PlaybackGain>& kept_gain) {
   if (!request.gain_m_per_n) {
     auto kept = schema::read_playback_gain(request.file);
-    if (!kept) return schema::forward_error(kept);
+    TACTO_TRY(kept);
     kept_gain = std::move(*kept);
   }
   const double usual = kept_gain ? kept_gain->gain_m_per_n : kUsualGain;
@@ -135,9 +135,9 @@ class TextureReader {
     const std::string stem = schema::stem_of(file, ".texture") + ".texture";
     if (!laid_.files_.contains(stem)) {
       auto texture = schema::read_texture(file);
-      if (!texture) return schema::forward_error(texture);
+      TACTO_TRY(texture);
       const auto wav = schema::texture_wav(file);
-      if (!wav) return schema::forward_error(wav);
+      TACTO_TRY(wav);
       note(schema::note_of_newer_version(stem + ".json", texture->newer_version,
                                          schema::member_names(texture->extra_json)));
       laid_.files_.emplace(stem, LaidTextures::File{std::move(*texture), wav->sha256});
@@ -177,17 +177,17 @@ Result<LaidTextures> lay_textures(const ProgramRequest& asked) {
   ProgramRequest request = asked;
   if (asked.only_in) {
     auto served = served_file(*asked.only_in, asked.file);
-    if (!served) return schema::forward_error(served);
+    TACTO_TRY(served);
     request.file = std::move(*served);
   }
   std::optional<schema::PlaybackGain> kept_gain;
   const auto scene = scene_of(request, kept_gain);
-  if (!scene) return schema::forward_error(scene);
+  TACTO_TRY(scene);
   LaidTextures laid;
   TextureReader reader(laid);
   reader.keep_gain(std::move(kept_gain));
   if (names_a_scene(request.file)) reader.name_scene(schema::scene_path(request.file));
-  if (const auto read = reader.read(*scene); !read) return schema::forward_error(read);
+  TACTO_TRY(reader.read(*scene));
   return laid;
 }
 

@@ -18,10 +18,10 @@ schema::Result<LoopHere> close_loop_here(firmware_host::Client& device, const st
                                          const HostLoopOptions& loop_options, PlayerOptions& options) {
   LoopHere here;
   auto loop = HostLoop::begin(device, loop_options);
-  if (!loop) return schema::forward_error(loop);
+  TACTO_TRY(loop);
   here.loop = std::move(*loop);
   auto connected = firmware_host::Client::connect(here.loop->transport(), uri);
-  if (!connected) return schema::forward_error(connected);
+  TACTO_TRY(connected);
   here.client = std::move(*connected);
   options.loop = "host";
   options.lateness_ns = [&board = here.loop->board()](std::uint64_t tick) { return board.lateness_ns(tick); };

@@ -45,7 +45,7 @@ Result<std::string> transducer_for(const PlayOptions& options, const firmware_ho
 Result<Program> program_for(const PlayOptions& options, const PlayerDevice& device, const LoopHere& here,
                             double metres_per_count) {
   const auto transducer = transducer_for(options, device.device->capabilities());
-  if (!transducer) return schema::forward_error(transducer);
+  TACTO_TRY(transducer);
   PrepareOptions prepare = options.prepare;
   prepare.metres_per_count = metres_per_count;
   const firmware_host::Client& plays = here ? *here.client : *device.client;
@@ -149,32 +149,32 @@ LoopedHere looped_by(const HostLoop& loop) {
 
 Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                               const std::function<void(double)>& progress) {
-  if (const auto sound = check_play_options(options); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_play_options(options));
   auto script = read_finger_script(options.finger_path, false);
-  if (!script) return schema::forward_error(script);
+  TACTO_TRY(script);
   // The emulated finger moves from the stream's beginning on; here that is before the loop's delay is
   // measured.
   if (*script) (*script)->waits = options.loop_here;
   auto device = open_player_device(options.device_uri, *script);
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   PlayerOptions player_options;
   // In emulated time nobody waits, so nothing may be lost.
   player_options.full_queue = device->device->keeps_time() ? FullQueue::lose : FullQueue::wait;
   const auto here = loop_of(options, *device, player_options);
-  if (!here) return schema::forward_error(here);
+  TACTO_TRY(here);
   const auto player = Player::make(*here ? *here->client : *device->client, device->uri, player_options);
-  if (!player) return schema::forward_error(player);
+  TACTO_TRY(player);
   auto program = program_for(options, *device, *here, (*player)->metres_per_count());
-  if (!program) return schema::forward_error(program);
+  TACTO_TRY(program);
   PlayOutcome outcome = outcome_of(*program);
   const Feelable what = feelable(*program);
   outcome.device = device->uri;
   outcome.simulated = firmware_host::simulated_device(device->client->description());
   outcome.asked_s = time_of(options, *script);
-  if (const auto loaded = (*player)->load(std::move(*program)); !loaded) return schema::forward_error(loaded);
+  TACTO_TRY((*player)->load(std::move(*program)));
   if (*here) lock_memory();
   const auto played = play_through({*device, *here, **player}, options, stop_asked, progress, outcome);
-  if (!played) return schema::forward_error(played);
+  TACTO_TRY(played);
   outcome.recorder = (*player)->last_session();
   if (*here) outcome.looped = looped_by(*here->loop);
   tell_limits(options.session, outcome);

@@ -85,7 +85,7 @@ Result<std::unique_ptr<Player>> Player::make(firmware_host::Client& client, std:
   if ((client.description().welcome.features & wire::kFeatureDrive) == 0)
     return fail(Fault::device, "the device has no output", uri);
   const auto step = encoder_step(client.description(), uri);
-  if (!step) return schema::forward_error(step);
+  TACTO_TRY(step);
   return std::unique_ptr<Player>(new Player(client, std::move(uri), options, *step));
 }
 
@@ -175,7 +175,7 @@ Result<void> Player::begin_session(const std::string& path) {
   std::unique_ptr<LiveLimits> limits;
   if (options_.tell_limits) limits = std::make_unique<LiveLimits>(header, samples);
   auto recorder = FlightRecorder::begin(path, header, options_.full_queue, limits.get());
-  if (!recorder) return schema::forward_error(recorder);
+  TACTO_TRY(recorder);
   recorder_ = std::move(*recorder);
   limits_ = std::move(limits);
   tray_.begin(header.rate_hz, [this](schema::SessionSamples run) { recorder_->measured(std::move(run)); });
@@ -252,10 +252,10 @@ wire::Gain Player::device_gain() const {
 Result<void> Player::wait_for_idle() {
   for (double waited_s = 0; waited_s < kIdleWaitS; waited_s += kIdleStepS) {
     const auto pulse = client_.heartbeat();
-    if (!pulse) return schema::forward_error(pulse);
+    TACTO_TRY(pulse);
     take_ticks();
     if (pulse->state == wire::DriveState::idle) return {};
-    if (const auto received = client_.receive(kIdleStepS); !received) return schema::forward_error(received);
+    TACTO_TRY(client_.receive(kIdleStepS));
   }
   return fail(Fault::device, "the device did not come to rest", uri_, "switch off the amplifier");
 }
@@ -298,7 +298,7 @@ Result<void> Player::lose(const schema::Error& error) {
 Result<void> Player::beat() {
   const double asked_s = client_.transport().now_s();
   const auto pulse = client_.heartbeat();
-  if (!pulse) return schema::forward_error(pulse);
+  TACTO_TRY(pulse);
   round_trip_s_ = client_.transport().now_s() - asked_s;
   pulse_s_ = static_cast<double>(pulse->device_ticks) / std::max(1U, client_.description().welcome.clock_hz);
   next_beat_s_ = client_.transport().now_s() + options_.heartbeat_s;

@@ -89,12 +89,12 @@ struct ScriptedDevice {
 
 Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript& script) {
   if (!uri.starts_with(kSimScheme)) {
-    if (const auto other = firmware_host::open_device(uri); !other) return schema::forward_error(other);
+    TACTO_TRY(firmware_host::open_device(uri));
     return fail(Fault::unsuitable, "only an emulated finger goes where it is told", uri,
                 "leave the finger's path out, or play on sim:");
   }
   auto device = firmware_host::make_sim_device(uri, std::string_view(uri).substr(kSimScheme.size()));
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   const Script way(script);
   std::function<double(double)> force_n;
   if (!script.path.normal_force_n.empty()) force_n = [way](double time_s) { return way.force_n(time_s); };
@@ -109,7 +109,7 @@ Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript&
 Result<ScriptedDevice> open_with(const std::string& uri, const std::optional<FingerScript>& script) {
   if (script) return open_scripted(uri, *script);
   auto device = firmware_host::open_device(uri);
-  if (!device) return schema::forward_error(device);
+  TACTO_TRY(device);
   return ScriptedDevice{std::move(*device), {}};
 }
 
@@ -143,13 +143,13 @@ Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
 Result<std::optional<FingerScript>> read_finger_script(const std::string& file, bool repeated) {
   if (file.empty()) return std::optional<FingerScript>();
   auto path = read_finger_path(file);
-  if (!path) return schema::forward_error(path);
+  TACTO_TRY(path);
   return std::optional(FingerScript{std::move(*path), repeated});
 }
 
 Result<PlayerDevice> open_player_device(const std::string& uri, const std::optional<FingerScript>& script) {
   auto opened = open_with(uri, script);
-  if (!opened) return schema::forward_error(opened);
+  TACTO_TRY(opened);
   auto& device = opened->device;
   firmware_host::Client* const client = device->conversation();
   if (client == nullptr)
@@ -158,7 +158,7 @@ Result<PlayerDevice> open_player_device(const std::string& uri, const std::optio
   PlayerDevice player{std::move(device), client, about.uri, {}, std::move(opened->begin_path)};
   if (uri.starts_with(kSimScheme)) return player;  // an emulation of this process alone
   auto lock = DeviceLock::take(about.simulated.empty() ? about.serial : about.uri);
-  if (!lock) return schema::forward_error(lock);
+  TACTO_TRY(lock);
   player.lock = std::move(*lock);
   return player;
 }

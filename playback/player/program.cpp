@@ -49,9 +49,9 @@ Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& te
                                             PrepareOptions& options) {
   if (!budget.asked()) return std::nullopt;
   const auto table = schema::find_trade_table();
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   auto decision = decide(textures, transducer, options, budget, *table);
-  if (!decision) return schema::forward_error(decision);
+  TACTO_TRY(decision);
   options = decision->chosen.in(options);
   return std::move(*decision);
 }
@@ -112,7 +112,7 @@ TickBudget budget_of(const ProgramRequest& request, const schema::PlaybackChoice
 // of.
 Result<PrepareOptions> options_of(const ProgramRequest& request, const schema::PlaybackChoices& choices,
                                   const PrepareOptions& options) {
-  if (const auto meant = check_meant(request.choices, choices); !meant) return schema::forward_error(meant);
+  TACTO_TRY(check_meant(request.choices, choices));
   return with_choices(options, choices);
 }
 
@@ -123,7 +123,7 @@ Result<void> prepare_laid(Program& program, const LaidTextures& laid, const Tick
   options.ends = laid.ends();
   if (const auto soft = check_onset(options); !soft) return soft;
   auto decision = decided(laid.placed(), transducer, budget, options);
-  if (!decision) return schema::forward_error(decision);
+  TACTO_TRY(decision);
   program.decision = std::move(*decision);
   auto prepared = prepare(laid.placed(), transducer, options);
   if (!prepared) return tl::unexpected(naming_the_file(prepared.error(), laid, program.scene_path));
@@ -144,28 +144,26 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
                              PrepareOptions options) {
   Program program;
   const auto laid = lay_textures(request);
-  if (!laid) return schema::forward_error(laid);
+  TACTO_TRY(laid);
   program.kept_gain = laid->kept_gain();
   program.scene_path = laid->scene_path();
   const schema::PlaybackChoices choices = request.choices.over(laid->choices().over(request.defaults));
   const auto chosen = options_of(request, choices, options);
-  if (!chosen) return schema::forward_error(chosen);
+  TACTO_TRY(chosen);
   const auto transducer = schema::read_transducer(
       transducer_name, request.implausible ? schema::Numbers::computable : schema::Numbers::plausible);
-  if (!transducer) return schema::forward_error(transducer);
-  if (const auto usable = schema::check_usable(*transducer, request.unfit_transducer); !usable)
-    return schema::forward_error(usable);
+  TACTO_TRY(transducer);
+  TACTO_TRY(schema::check_usable(*transducer, request.unfit_transducer));
   program.session.transducer = *transducer;
   program.session.transducer_sha256 = transducer_sum(transducer_name);
   program.options = *chosen;
   const auto made = prepare_laid(program, *laid, budget_of(request, choices));
-  if (!made) return schema::forward_error(made);
+  TACTO_TRY(made);
   add_notes(program, *laid, transducer_name);
   if (request.any_displacement) program.tray_peak_m = 0;
   name_files(program, *laid);
   describe(program.session, program.prepared, program.options);
-  if (const auto fits = schema::session_program_text(program.session); !fits)
-    return schema::forward_error(fits);
+  TACTO_TRY(schema::session_program_text(program.session));
   return program;
 }
 

@@ -286,7 +286,7 @@ Result<void> check_prepare(std::span<const PlacedTexture> textures, const Prepar
 
 Result<Prepared> prepare(std::span<const PlacedTexture> textures, const schema::Transducer& transducer,
                          const PrepareOptions& options) {
-  if (auto sound = check_prepare(textures, options); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_prepare(textures, options));
   const UndoneChain undone = undone_chain(transducer, options);
   Prepared prepared = settled(transducer, undone, options);
   const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m, prepared.built);
@@ -297,9 +297,8 @@ Result<Prepared> prepare(std::span<const PlacedTexture> textures, const schema::
     if (!between.empty()) filled.error().remedy += "; " + between;
     return schema::forward_error(filled);
   }
-  if (auto laid = lay_on_counts(prepared, path.origin_m, options); !laid) return schema::forward_error(laid);
-  if (auto done = undo_chain(prepared, transducer, undone, options); !done)
-    return schema::forward_error(done);
+  TACTO_TRY(lay_on_counts(prepared, path.origin_m, options));
+  TACTO_TRY(undo_chain(prepared, transducer, undone, options));
   return prepared;
 }
 

@@ -17,7 +17,7 @@ Result<FeltPath> FeltPath::make(std::span<const PlacedTexture> textures, const F
   for (const PlacedTexture& placed : textures) {
     auto played =
         as_played(*placed.texture, placed.at_m, prepared_ends(*placed.texture, ends), low_m, high_m, "path");
-    if (!played) return schema::forward_error(played);
+    TACTO_TRY(played);
     const PlayedSignal& signal = felt.signals_.emplace_back(std::move(*played));
     felt.layers_.push_back({TextureLookup(signal.signal, signal.at_m), placed.weight});
     felt.start_m_ = std::min(felt.start_m_, placed.at_m);

@@ -179,7 +179,7 @@ Result<void> check_engine(Engine engine, const RenderOptions& o) {
 Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job) {
   auto drive = engine == Engine::kernel ? kernels_drive(rendering, job)
                                         : limited_drive(rendering, job.wanted, job.chain, job.options);
-  if (!drive) return schema::forward_error(drive);
+  TACTO_TRY(drive);
   const double start_s = job.path.time_s.front(), rate_hz = job.options.rate_hz;
   rendering.engine = engine;
   rendering.drive_v = {rate_hz, start_s, std::move(drive->drive_v)};
@@ -281,19 +281,18 @@ void warn_of_model(Rendering& rendering, const schema::Transducer& transducer, c
 Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPath& path,
                          const schema::Transducer& transducer, const RenderOptions& options,
                          const std::function<void(double)>& progress) {
-  if (auto sound = check_inputs(textures, path, options); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_inputs(textures, path, options));
   const auto report = [&](double fraction) {
     if (progress) progress(fraction);
   };
   std::vector<std::string> reasons;
   const Engine engine = engine_for(options, transducer, reasons);
-  if (auto knows = check_engine(engine, options); !knows) return schema::forward_error(knows);
-  if (engine == Engine::kernel)
-    if (auto near = check_counts(path, options); !near) return schema::forward_error(near);
+  TACTO_TRY(check_engine(engine, options));
+  if (engine == Engine::kernel) TACTO_TRY(check_counts(path, options));
   Rendering rendering = described(textures, path, options, engine);
   rendering.reasons = std::move(reasons);
   const auto felt = FeltPath::make(textures, path, options.ends);
-  if (!felt) return schema::forward_error(felt);
+  TACTO_TRY(felt);
   const double finest_hz = rendering.texture_highest_per_m * rendering.max_speed_mps;
   const auto grid = reading_grid(path.duration_s(), options.rate_hz, options.band, finest_hz);
   rendering.samples_outside = felt->count_outside(grid);
@@ -307,8 +306,8 @@ Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPa
   warn_of_model(rendering, transducer, options.band, engine);
   const RenderJob job{textures, path, wanted, chain_of(transducer, options), options};
   rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};
-  if (auto driven = drive_by(engine, rendering, job); !driven) return schema::forward_error(driven);
-  if (auto kept = keep_budget(rendering, job); !kept) return schema::forward_error(kept);
+  TACTO_TRY(drive_by(engine, rendering, job));
+  TACTO_TRY(keep_budget(rendering, job));
   report(1);
   return rendering;
 }

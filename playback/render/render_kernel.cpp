@@ -44,9 +44,9 @@ Result<void> decide_kernel(Rendering& rendering, const RenderJob& job, PrepareOp
   const TickBudget& budget = job.options.budget;
   if (!budget.asked()) return {};
   const auto table = schema::find_trade_table();
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   auto decision = decide(job.textures, job.chain.transducer, options, budget, *table);
-  if (!decision) return schema::forward_error(decision);
+  TACTO_TRY(decision);
   options = decision->chosen.in(options);
   rendering.decision = std::move(*decision);
   return {};
@@ -139,10 +139,10 @@ Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
 
 Result<ExactDrive> kernels_drive(Rendering& rendering, const RenderJob& job) {
   PrepareOptions options = kernel_options(job.options, rendering.onset_s);
-  if (auto chosen = decide_kernel(rendering, job, options); !chosen) return schema::forward_error(chosen);
+  TACTO_TRY(decide_kernel(rendering, job, options));
   const auto prepared = prepare(job.textures, job.chain.transducer, options);
-  if (!prepared) return schema::forward_error(prepared);
-  if (const auto near = check_read(*prepared, job.path, options); !near) return schema::forward_error(near);
+  TACTO_TRY(prepared);
+  TACTO_TRY(check_read(*prepared, job.path, options));
   const KernelDrive drive = kernel_drive(*prepared, job.path, options, job.wanted.samples);
   auto moved = within_limits(rendering, {*prepared, options, job}, drive);
   if (!moved) return moved;

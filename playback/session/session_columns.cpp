@@ -22,7 +22,7 @@ void add_row(SessionColumns& columns, const SessionRow& row) {
 
 Result<SessionColumns> read_session_columns(const std::string& name) {
   const auto overview = session_overview(name);
-  if (!overview) return schema::forward_error(overview);
+  TACTO_TRY(overview);
   if (overview->ticks > kMostColumnTicks)
     return fail(Fault::unsuitable, fmt::format("has over {} ticks", kMostColumnTicks), overview->path,
                 "`tactograph session` judges and exports it, whatever its length");
@@ -32,7 +32,7 @@ Result<SessionColumns> read_session_columns(const std::string& name) {
   columns.lost = overview->lost;
   RowMaker maker(*overview);
   const auto read = read_rows(maker, name, [&](const SessionRow& row) { add_row(columns, row); });
-  if (!read) return schema::forward_error(read);
+  TACTO_TRY(read);
   return columns;
 }
 

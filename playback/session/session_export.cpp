@@ -58,9 +58,9 @@ std::string line_of(const SessionTick& t, const SessionRow& row, std::optional<d
 Result<std::string> write_csv(const std::string& session, const std::string& temporary,
                               const Heard& progress) {
   const auto overview = session_overview(session, part_of(progress, 0, 0.3));
-  if (!overview) return schema::forward_error(overview);
+  TACTO_TRY(overview);
   auto reader = schema::SessionReader::open(session);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   std::ofstream out(temporary, std::ios::binary);
   out << kColumns << '\n';
   RowMaker maker(*overview);
@@ -147,18 +147,18 @@ class FrameWriter {
 Result<std::string> write_wav(const std::string& session, const std::string& temporary,
                               const Heard& progress) {
   const auto overview = session_overview(session, part_of(progress, 0, 0.3));
-  if (!overview) return schema::forward_error(overview);
-  if (const auto even = check_even(*overview); !even) return schema::forward_error(even);
+  TACTO_TRY(overview);
+  TACTO_TRY(check_even(*overview));
   const unsigned channels = overview->header.sensor ? 3 : 2;
   auto wav =
       schema::WavWriter::create(temporary, overview->header.rate_hz, channels, schema::SampleFormat::float64);
-  if (!wav) return schema::forward_error(wav);
+  TACTO_TRY(wav);
   FrameWriter frames(*wav, *overview);
   RowMaker maker(*overview, UINT64_MAX);
   const auto read = read_rows(
       maker, session, [&](const SessionRow& row) { frames.add(row); }, part_of(progress, 0.3, 1));
-  if (!read) return schema::forward_error(read);
-  if (const auto written = frames.close(); !written) return schema::forward_error(written);
+  TACTO_TRY(read);
+  TACTO_TRY(frames.close());
   return words_of_missing(*overview, frames.unmeasured());
 }
 
@@ -173,7 +173,7 @@ std::vector<schema::SessionTurn> named_turns(const RowMaker& maker, double rate_
 Result<std::string> write_netcdf(const std::string& session, const std::string& temporary,
                                  const Heard& progress) {
   const auto overview = session_overview(session, part_of(progress, 0, 0.3));
-  if (!overview) return schema::forward_error(overview);
+  TACTO_TRY(overview);
   std::vector<schema::SessionVariable> variables{
       {"tick", "1", "tick since arming"},
       {"encoder_count", "1", "encoder's count"},
@@ -199,8 +199,7 @@ Result<std::string> write_netcdf(const std::string& session, const std::string& 
                              sensor.at(row.device_time_s).value_or(NAN)};
     file.add(row.time_s, std::span(values).first(variables.size()));
   };
-  if (const auto read = read_rows(maker, session, add, part_of(progress, 0.3, 1)); !read)
-    return schema::forward_error(read);
+  TACTO_TRY(read_rows(maker, session, add, part_of(progress, 0.3, 1)));
   const auto written = file.close(named_turns(maker, overview->header.rate_hz));
   return written ? Result<std::string>() : schema::forward_error(written);
 }
@@ -242,10 +241,10 @@ Result<void> check_session_output(const std::string& file, schema::Existing exis
 
 Result<std::string> export_session(const std::string& session, const std::string& file,
                                    schema::Existing existing, const std::function<void(double)>& progress) {
-  if (auto free = check_session_output(file, existing); !free) return schema::forward_error(free);
+  TACTO_TRY(check_session_output(file, existing));
   PendingFiles pending;
   const auto temporary = pending.add(file);
-  if (!temporary) return schema::forward_error(temporary);
+  TACTO_TRY(temporary);
   auto said = (*format_of(file))->write(session, *temporary, progress);
   if (!said) return said;
   const auto kept = pending.commit(existing);

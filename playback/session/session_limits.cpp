@@ -27,7 +27,7 @@ struct FlagsSeen {
 
 Result<FlagsSeen> flags_in(const std::string& session) {
   auto reader = schema::SessionReader::open(session);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   FlagsSeen seen;
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) seen.take(*ticks);
@@ -43,7 +43,7 @@ using TickListener = std::function<void(const SessionTick& tick)>;
 Result<void> hear_ticks(const std::string& session, std::uint64_t from, const TickListener& listener,
                         const std::function<void(double)>& progress) {
   auto reader = schema::SessionReader::open(session);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   std::uint64_t heard = 0;
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
@@ -72,13 +72,13 @@ core::TickOutput limited_tick(float drive_v, float wished_v, std::uint32_t flags
 Result<void> hear_wishes(const std::string& session, const WishListener& listener,
                          const std::function<void(double)>& progress) {
   const auto seen = flags_in(session);
-  if (!seen) return schema::forward_error(seen);
+  TACTO_TRY(seen);
   if (!seen->whole) return not_known("ticks are missing", session);
   if (!seen->limited)
     return hear_ticks(
         session, 0, [&](const SessionTick& tick) { listener(tick, tick.drive_v); }, progress);
   const auto outcome = replay_session(session, progress, listener);
-  if (!outcome) return schema::forward_error(outcome);
+  TACTO_TRY(outcome);
   if (!outcome->first_difference) return {};
   return not_known(
       fmt::format("the replayed drive is another one from tick {} on", outcome->first_difference->tick),
@@ -95,7 +95,7 @@ Result<std::optional<schema::Error>> hear_every_wish(
   if (wishes) return std::optional<schema::Error>();
   const auto rest = hear_ticks(
       session, heard, [&](const SessionTick& tick) { listener(tick, std::nullopt); }, progress);
-  if (!rest) return schema::forward_error(rest);
+  TACTO_TRY(rest);
   return std::optional(wishes.error());
 }
 

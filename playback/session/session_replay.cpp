@@ -34,7 +34,7 @@ struct Overview {
 
 Result<Overview> overview_of(const std::string& name) {
   auto reader = schema::SessionReader::open(name);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   Overview seen;
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) {
@@ -124,7 +124,7 @@ class SessionPlayer {
 // its way. They are few: all are read first.
 Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) {
   auto reader = schema::SessionReader::open(name);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   while (const auto block = reader->next())
     if (const auto* command = std::get_if<SessionCommand>(&*block)) player.hand(*command);
   return {};
@@ -151,12 +151,12 @@ Result<void> check_replayable(const Overview& seen, const schema::SessionReader&
 Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
                                      const WishListener& wishes) {
   const auto seen = overview_of(name);
-  if (!seen) return schema::forward_error(seen);
+  TACTO_TRY(seen);
   auto reader = schema::SessionReader::open(name);
-  if (!reader) return schema::forward_error(reader);
-  if (const auto may = check_replayable(*seen, *reader); !may) return schema::forward_error(may);
+  TACTO_TRY(reader);
+  TACTO_TRY(check_replayable(*seen, *reader));
   SessionPlayer player(reader->header(), seen->beats, wishes);
-  if (const auto handed = hand_over_commands(name, player); !handed) return schema::forward_error(handed);
+  TACTO_TRY(hand_over_commands(name, player));
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block)) player.play(*ticks);
     if (player.is_over()) break;

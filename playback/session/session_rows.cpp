@@ -184,7 +184,7 @@ schema::Error no_ticks_in(const std::string& path, const std::optional<std::uint
 Result<SessionOverview> session_overview(const std::string& name,
                                          const std::function<void(double)>& progress) {
   auto reader = schema::SessionReader::open(name);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   SessionOverview overview;
   Surveyor surveyor(reader->header(), overview);
   while (const auto block = reader->next()) {
@@ -277,7 +277,7 @@ void RowMaker::take(const SessionTick& tick, const Sink& sink) {
 Result<void> read_rows(RowMaker& maker, const std::string& name, const RowMaker::Sink& sink,
                        const std::function<void(double)>& progress) {
   auto reader = schema::SessionReader::open(name);
-  if (!reader) return schema::forward_error(reader);
+  TACTO_TRY(reader);
   while (const auto block = reader->next()) {
     if (const auto* ticks = std::get_if<std::vector<SessionTick>>(&*block))
       for (const SessionTick& tick : *ticks) maker.take(tick, sink);

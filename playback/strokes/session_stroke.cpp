@@ -48,7 +48,7 @@ Result<Found> find_stroke(const std::string& name, const SessionOverview& overvi
         finder.add({index++, row, 0, 0, true, {}, {}});
       },
       progress);
-  if (!read) return schema::forward_error(read);
+  TACTO_TRY(read);
   finder.end();
   return found;
 }
@@ -82,7 +82,7 @@ Result<std::vector<JudgedRow>> rows_of(const std::string& name, const StrokeSums
         ++index;
       },
       progress);
-  if (!read) return schema::forward_error(read);
+  TACTO_TRY(read);
   of.turns = maker.turns();
   return rows;
 }
@@ -101,16 +101,16 @@ void keep_stroke(const std::vector<JudgedRow>& rows, std::uint64_t before, std::
 Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t stroke,
                                           const std::function<void(double)>& progress) {
   auto overview = session_overview(name, part_of(progress, 0, 1. / 3));
-  if (!overview) return schema::forward_error(overview);
+  TACTO_TRY(overview);
   if (overview->lost_at)
     return fail(Fault::unsuitable, fmt::format("{} ticks are missing", overview->lost), name,
                 "compare a session that is whole");
   const auto found = find_stroke(name, *overview, stroke, part_of(progress, 1. / 3, 2. / 3));
-  if (!found) return schema::forward_error(found);
-  if (const auto fits = check_found(*found, stroke, name); !fits) return schema::forward_error(fits);
+  TACTO_TRY(found);
+  TACTO_TRY(check_found(*found, stroke, name));
   SessionStroke of{std::move(*overview), {}, found->chosen, found->strokes, found->sums.first.index, {}, {}};
   const auto rows = rows_of(name, found->sums, of, part_of(progress, 2. / 3, 1));
-  if (!rows) return schema::forward_error(rows);
+  TACTO_TRY(rows);
   const auto before = std::min(of.first_row, rows_around(of.overview.header));
   keep_stroke(*rows, before, found->sums.rows, of);
   return of;

@@ -165,7 +165,7 @@ Result<const ReadAgain*> WantedReader::read_again(const SessionTexture& played) 
   auto at = kept_.find(key);
   if (at == kept_.end()) {
     auto texture = same_texture(played);
-    if (!texture) return schema::forward_error(texture);
+    TACTO_TRY(texture);
     const double finest_per_m = highest_spatial_frequency(texture->signal);
     at = kept_.emplace(key, ReadAgain{std::move(*texture), finest_per_m, true}).first;
   }

@@ -173,7 +173,7 @@ void keep_stroke(const PlayedStroke& stroke, const StrokeListener& listener, Str
 Result<StrokeReport> report_strokes(const std::string& name, const StrokeListener& listener,
                                     const JudgedBlocks& blocks) {
   const auto overview = session_overview(name, part_of(listener.progress, 0, 0.1));
-  if (!overview) return schema::forward_error(overview);
+  TACTO_TRY(overview);
   StrokeReport report = begun_report(*overview);
   const std::uint64_t end = overview->lost_at.value_or(UINT64_MAX);
   if (end == 0) return report;
@@ -189,7 +189,7 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
     if (tick.tick < end) judge.take(tick, wished_v);
   };
   const auto unknown = hear_every_wish(name, each, part_of(listener.progress, 0.1, 1));
-  if (!unknown) return schema::forward_error(unknown);
+  TACTO_TRY(unknown);
   judge.finish(overview->lost_at ? LastWay::cut : LastWay::whole);
   const auto notes = report.stroke_count > 0 ? judge.notes() : std::vector<std::string>();
   report.notes.insert(report.notes.end(), notes.begin(), notes.end());

@@ -173,7 +173,7 @@ Result<std::vector<StrokeLines>> lines_of(std::span<const TextureAtSpeed> textur
   std::vector<StrokeLines> strokes;
   for (const TextureAtSpeed& each : textures) {
     auto lines = stroke_lines(each.name, *each.texture);
-    if (!lines) return schema::forward_error(lines);
+    TACTO_TRY(lines);
     strokes.push_back(std::move(*lines));
   }
   return strokes;
@@ -206,12 +206,11 @@ Result<void> check_ratio(const std::vector<StrokeLines>& strokes, double ratio) 
 
 Result<std::vector<Certificate>> certify(std::span<const TextureAtSpeed> textures,
                                          const CertificateOptions& options) {
-  if (auto checked = check(textures, options); !checked) return schema::forward_error(checked);
+  TACTO_TRY(check(textures, options));
   auto strokes = lines_of(textures);
-  if (!strokes) return schema::forward_error(strokes);
+  TACTO_TRY(strokes);
   const Certificate header = header_of(*strokes, options);
-  if (auto checked = check_ratio(*strokes, header.speed_ratio); !checked)
-    return schema::forward_error(checked);
+  TACTO_TRY(check_ratio(*strokes, header.speed_ratio));
   SpeedHypotheses hypotheses(std::move(*strokes));
   std::vector<Call> calls = called(hypotheses, options.confidence);
   add_undecided(hypotheses, calls);

@@ -106,13 +106,11 @@ Report report_of(const std::vector<NamedTexture>& files, const std::vector<Certi
 
 Result<Report> run_certify(const CertifyOptions& options) {
   auto files = open_textures(options.names);
-  if (!files) return schema::forward_error(files);
-  if (!options.dry)
-    if (const auto can = check_storable(*files, options.existing); !can) return schema::forward_error(can);
+  TACTO_TRY(files);
+  if (!options.dry) TACTO_TRY(check_storable(*files, options.existing));
   const auto certificates = certificates_of(*files, options.certificate);
-  if (!certificates) return schema::forward_error(certificates);
-  if (!options.dry)
-    if (const auto stored = store(*files, *certificates); !stored) return schema::forward_error(stored);
+  TACTO_TRY(certificates);
+  if (!options.dry) TACTO_TRY(store(*files, *certificates));
   return report_of(*files, *certificates, !options.dry);
 }
 

@@ -89,17 +89,16 @@ Report report_of(const schema::DescriptionFile& file, const std::string& path) {
 
 Result<Report> run_describe(const DescribeOptions& options) {
   const TablePath where = table_path(options.output, "descriptions");
-  if (!options.output.empty())
-    if (const auto free = check_table(where, options.existing); !free) return schema::forward_error(free);
+  if (!options.output.empty()) TACTO_TRY(check_table(where, options.existing));
   const auto files = open_textures(options.names);
-  if (!files) return schema::forward_error(files);
+  TACTO_TRY(files);
   const auto all = described(*files, options.description);
-  if (!all) return schema::forward_error(all);
+  TACTO_TRY(all);
   if (options.output.empty()) return report_of(*all, {});
   const auto written = write_table(
       where, options.existing, [&] { return schema::descriptions_json(*all); },
       [&] { return schema::descriptions_csv(*all); });
-  if (!written) return schema::forward_error(written);
+  TACTO_TRY(written);
   return report_of(*all, where.path);
 }
 

@@ -45,7 +45,7 @@ Result<schema::FormantFile> found(const std::vector<NamedTexture>& files, const 
   cli::Progress progress("formants");
   for (const NamedTexture& file : files) {
     auto table = table_of(file, options);
-    if (!table) return schema::forward_error(table);
+    TACTO_TRY(table);
     all.tables.push_back(std::move(*table));
     progress.update(static_cast<double>(all.tables.size()) / static_cast<double>(files.size()));
   }
@@ -81,17 +81,16 @@ Report report_of(const schema::FormantFile& file, const std::string& path) {
 
 Result<Report> run_formants(const FormantsOptions& options) {
   const TablePath where = table_path(options.output, "formants");
-  if (!options.output.empty())
-    if (const auto free = check_table(where, options.existing); !free) return schema::forward_error(free);
+  if (!options.output.empty()) TACTO_TRY(check_table(where, options.existing));
   const auto files = open_textures(options.names);
-  if (!files) return schema::forward_error(files);
+  TACTO_TRY(files);
   const auto formants = found(*files, options);
-  if (!formants) return schema::forward_error(formants);
+  TACTO_TRY(formants);
   if (options.output.empty()) return report_of(*formants, {});
   const auto written = write_table(
       where, options.existing, [&] { return schema::formants_json(*formants); },
       [&] { return schema::formants_csv(*formants); });
-  if (!written) return schema::forward_error(written);
+  TACTO_TRY(written);
   return report_of(*formants, where.path);
 }
 

@@ -60,7 +60,7 @@ Result<std::vector<Drawn>> all_drawn(const std::vector<NamedTexture>& files, con
   cli::Progress progress("spectrograms");
   for (const NamedTexture& file : files) {
     auto made = drawn(file, options);
-    if (!made) return schema::forward_error(made);
+    TACTO_TRY(made);
     all.push_back(std::move(*made));
     progress.update(static_cast<double>(all.size()) / static_cast<double>(files.size()));
   }
@@ -93,9 +93,9 @@ Result<std::vector<std::string>> write_pages(const std::vector<SpectrogramPanel>
         pages == 1 ? options.title : fmt::format("{}, page {} of {}", options.title, page + 1, pages);
     paths.push_back(page_path(options.output, page, pages));
     const SheetFigure figure({from, to}, scales, title, options.columns);
-    if (auto added = add_figure(files, paths.back(), figure); !added) return schema::forward_error(added);
+    TACTO_TRY(add_figure(files, paths.back(), figure));
   }
-  if (auto committed = files.commit(options.existing); !committed) return schema::forward_error(committed);
+  TACTO_TRY(files.commit(options.existing));
   return paths;
 }
 
@@ -127,19 +127,19 @@ Result<void> check_options(const SheetOptions& options) {
 }
 
 Result<Report> run_sheet(const SheetOptions& options) {
-  if (auto checked = check_options(options); !checked) return schema::forward_error(checked);
+  TACTO_TRY(check_options(options));
   const auto files = open_textures(options.names);
-  if (!files) return schema::forward_error(files);
-  if (auto free = check_pages(options, files->size()); !free) return schema::forward_error(free);
+  TACTO_TRY(files);
+  TACTO_TRY(check_pages(options, files->size()));
   const auto all = all_drawn(*files, options);
-  if (!all) return schema::forward_error(all);
+  TACTO_TRY(all);
   std::vector<SpectrogramPanel> panels;
   for (std::size_t i = 0; i < files->size(); ++i)
     panels.push_back({&(*files)[i].texture, &(*all)[i].spectrogram, (*all)[i].formants});
   const auto scales = sheet_scales(panels, options.picture);
-  if (!scales) return schema::forward_error(scales);
+  TACTO_TRY(scales);
   const auto paths = write_pages(panels, *scales, options);
-  if (!paths) return schema::forward_error(paths);
+  TACTO_TRY(paths);
   return report_of(panels, *scales, *paths);
 }
 

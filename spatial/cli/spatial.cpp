@@ -20,7 +20,7 @@ using schema::Result;
 
 Result<Report> act_on_one(const SpatialOptions& options) {
   const auto stems = texture_stems(options.recordings, options.output);
-  if (!stems) return schema::forward_error(stems);
+  TACTO_TRY(stems);
   cli::Progress progress("textures");
   const auto outcome = spatial_recording(options, options.recordings.front(), stems->front(),
                                          [&](double fraction) { progress.update(fraction); });

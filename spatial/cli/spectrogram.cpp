@@ -46,7 +46,7 @@ Result<FormantLists> formants_of(const SpectrogramRun& run, bool wanted) {
   FormantLists lists(run.spectrograms().size());
   for (std::size_t i = 0; wanted && i < lists.size(); ++i) {
     auto found = find_formants(run.spectrograms()[i]);
-    if (!found) return schema::forward_error(found);
+    TACTO_TRY(found);
     lists[i] = std::move(*found);
   }
   return lists;
@@ -158,36 +158,34 @@ Result<std::optional<Report>> choose_resolution(SpectrogramVerbOptions& options)
                         "add --quality or --max-error");
   if (!budget.asked()) return std::nullopt;
   const auto found = schema::find_trade_table();
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   const auto all = resolutions_of(found->table);
-  if (!all) return schema::forward_error(all);
+  TACTO_TRY(all);
   const auto taken = choose_resolution(found->table, options.resolution, budget);
-  if (!taken) return schema::forward_error(taken);
+  TACTO_TRY(taken);
   options.spectrogram.resolution = taken->resolution;
   if (!options.chosen_by.explain) return std::nullopt;
   return explained(*taken, *all, *found);
 }
 
 Result<Report> run_spectrogram(SpectrogramVerbOptions options) {
-  if (auto checked = check_options(options); !checked) return schema::forward_error(checked);
+  TACTO_TRY(check_options(options));
   const auto chosen = choose_resolution(options);
-  if (!chosen) return schema::forward_error(chosen);
+  TACTO_TRY(chosen);
   auto inputs = TextureInputs::find(options.names, {});
-  if (!inputs) return schema::forward_error(inputs);
+  TACTO_TRY(inputs);
   SpectrogramFiles files;
-  if (auto opened = files.open(options.outputs, inputs->several(), options.compress); !opened)
-    return schema::forward_error(opened);
+  TACTO_TRY(files.open(options.outputs, inputs->several(), options.compress));
   if (options.formants && !files.has_pictures())
     return schema::fail(Fault::usage, "formants are drawn on a picture, and none is asked for", "--formants",
                         "add -o NAME.png, or list them with 'tactograph formants'");
   SpectrogramRun run(options.spectrogram, options.picture.min_frequency_per_m, files, files.has_pictures());
-  if (auto done = run.transform(*inputs); !done) return schema::forward_error(done);
+  TACTO_TRY(run.transform(*inputs));
   const auto formants = formants_of(run, options.formants);
-  if (!formants) return schema::forward_error(formants);
+  TACTO_TRY(formants);
   std::optional<SpectrogramFigure> figure;
   if (files.has_pictures()) figure = figure_of(run, *formants, options.picture);
-  if (auto written = files.finish(figure ? &*figure : nullptr, options.existing); !written)
-    return schema::forward_error(written);
+  TACTO_TRY(files.finish(figure ? &*figure : nullptr, options.existing));
   Report report = report_of(run, run.lowest_per_m(), options);
   if (options.formants) report.add("formants_drawn", count_of(*formants));
   if (*chosen) report.add("chosen", std::vector<Report>{**chosen});

@@ -15,10 +15,10 @@ Result<void> SpectrogramFiles::open(std::span<const std::string> paths, bool sev
       continue;
     }
     const auto temporary = pending_.add(path);
-    if (!temporary) return schema::forward_error(temporary);
+    TACTO_TRY(temporary);
     const auto open = form == OutputForm::netcdf ? schema::open_spectrogram_nc : schema::open_spectrogram_csv;
     auto writer = open(*temporary, {several, compress, path});
-    if (!writer) return schema::forward_error(writer);
+    TACTO_TRY(writer);
     writers_.push_back(std::move(*writer));
   }
   return {};

@@ -50,7 +50,7 @@ Result<void> SpectrogramRun::transform(TextureInputs& inputs) {
   expected_ = inputs.expected();
   for (;;) {
     auto texture = inputs.next();
-    if (!texture) return schema::forward_error(texture);
+    TACTO_TRY(texture);
     if (!*texture) break;
     if (auto taken = take(std::move(**texture)); !taken) return taken;
   }
@@ -80,10 +80,10 @@ Result<void> SpectrogramRun::take(NamedTexture texture) {
 Result<void> SpectrogramRun::prepare(const NamedTexture& first) {
   const auto& signal = first.texture.signal;
   const auto shape = frame_shape(options_, signal.pitch_m);
-  if (!shape) return schema::forward_error(shape);
+  TACTO_TRY(shape);
   auto maker = SpectrogramMaker::prepare(options_, signal.pitch_m,
                                          expected_ * (1 + signal.values.size() / shape->hop));
-  if (!maker) return schema::forward_error(maker);
+  TACTO_TRY(maker);
   maker_.emplace(std::move(*maker));
   first_path_ = first.path;
   warn_of_odd_options(options_, signal.pitch_m);

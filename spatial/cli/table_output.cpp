@@ -49,7 +49,7 @@ schema::Result<void> write_table(const TablePath& where, schema::Existing existi
                                  const std::function<std::string()>& csv) {
   if (const auto free = check_table(where, existing); !free) return free;
   const auto text = where.csv ? csv() : json();
-  if (!text) return schema::forward_error(text);
+  TACTO_TRY(text);
   schema::PendingFiles files;
   if (auto written = files.write(where.path, *text); !written) return written;
   return files.commit(existing);

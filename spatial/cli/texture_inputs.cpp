@@ -69,7 +69,7 @@ std::vector<StoredFile> of_kind(const std::vector<StoredFile>& files, FileKind k
 
 Result<NamedTexture> read_texture(const std::string& path) {
   auto texture = schema::read_texture(path);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   warn_of_version(path, texture->newer_version);
   return NamedTexture{path, name_of(path, ".texture"), std::move(*texture), true};
 }
@@ -79,12 +79,11 @@ Result<NamedTexture> read_texture(const std::string& path) {
 Result<TextureInputs> TextureInputs::find(const std::vector<std::string>& names,
                                           const TextureOptions& options) {
   TextureInputs inputs(options);
-  for (const std::string& name : names)
-    if (auto added = inputs.add(name, names.size() == 1); !added) return schema::forward_error(added);
+  for (const std::string& name : names) TACTO_TRY(inputs.add(name, names.size() == 1));
   if (inputs.inputs_.empty())
     return schema::fail(Fault::unsuitable, "there is no texture among the files named");
   // Opened now, so that it is known how many textures it makes.
-  if (auto opened = inputs.open_if_recording(); !opened) return schema::forward_error(opened);
+  TACTO_TRY(inputs.open_if_recording());
   return inputs;
 }
 
@@ -101,7 +100,7 @@ Result<void> TextureInputs::add(const std::string& name, bool alone) {
       for (const StoredFile& file : numbered) add(file);
       return {};
     }
-  if (!files) return schema::forward_error(files);
+  TACTO_TRY(files);
   if (const auto recordings = of_kind(*files, FileKind::recording); !recordings.empty()) {
     add(recordings.front());
     return {};
@@ -123,10 +122,10 @@ Result<void> TextureInputs::open_if_recording() {
   const std::string path = inputs_.front().path;
   inputs_.pop_front();
   const auto recording = schema::open_recording(path);
-  if (!recording) return schema::forward_error(recording);
+  TACTO_TRY(recording);
   warn_of_version(path, recording->header.newer_version);
   auto maker = TextureMaker::open(*recording, options_);
-  if (!maker) return schema::forward_error(maker);
+  TACTO_TRY(maker);
   maker_.reset();
   maker_.emplace(std::move(*maker));
   made_ = false;
@@ -168,7 +167,7 @@ Result<std::optional<NamedTexture>> TextureInputs::next_stroke() {
 }
 
 Result<std::optional<NamedTexture>> TextureInputs::next() {
-  if (auto opened = open_if_recording(); !opened) return schema::forward_error(opened);
+  TACTO_TRY(open_if_recording());
   if (!strokes_.empty()) {
     auto texture = next_stroke();
     if (!texture || *texture) return texture;
@@ -176,18 +175,18 @@ Result<std::optional<NamedTexture>> TextureInputs::next() {
   }
   if (inputs_.empty()) return std::nullopt;
   auto texture = read_texture(inputs_.front().path);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   inputs_.pop_front();
   return std::optional(std::move(*texture));
 }
 
 Result<std::vector<NamedTexture>> open_textures(const std::vector<std::string>& names) {
   auto inputs = TextureInputs::find(names, {});
-  if (!inputs) return schema::forward_error(inputs);
+  TACTO_TRY(inputs);
   std::vector<NamedTexture> all;
   for (;;) {
     auto next = inputs->next();
-    if (!next) return schema::forward_error(next);
+    TACTO_TRY(next);
     if (!*next) return all;
     const schema::Texture& first = all.empty() ? (*next)->texture : all.front().texture;
     if ((*next)->texture.quantity != first.quantity || (*next)->texture.unit != first.unit)

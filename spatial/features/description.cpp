@@ -120,7 +120,7 @@ Result<Description> describe(const Texture& texture, const DescriptionOptions& o
   const SteadyPart part = steady_part(texture);
   const BandPoint valid = valid_band_of(part.texture);
   const auto window = window_samples(part.texture, options, valid.low_per_m);
-  if (!window) return schema::forward_error(window);
+  TACTO_TRY(window);
   Description description = header_of(texture, part);
   description.window_m = static_cast<double>(*window) * texture.signal.pitch_m;
   description.low_per_m = std::max(valid.low_per_m, 1.5 / description.window_m);

@@ -124,7 +124,7 @@ bool long_enough(const Formant& formant, double shortest_m) {
 }  // namespace
 
 Result<std::vector<Formant>> find_formants(const Spectrogram& spectrogram, const FormantOptions& options) {
-  if (auto checked = check(spectrogram, options); !checked) return schema::forward_error(checked);
+  TACTO_TRY(check(spectrogram, options));
   const double whole_m = spectrogram.position_m.back() - spectrogram.position_m.front();
   const double shortest_m = std::min(options.shortest_m.value_or(spectrogram.window_m / 2), whole_m);
   const auto window_rows = static_cast<std::size_t>(std::lround(spectrogram.window_m / spectrogram.hop_m));
@@ -141,7 +141,7 @@ Result<std::vector<Formant>> find_formants(const Spectrogram& spectrogram, const
 
 Result<schema::FormantTable> formant_table(const Spectrogram& spectrogram, const FormantOptions& options) {
   auto formants = find_formants(spectrogram, options);
-  if (!formants) return schema::forward_error(formants);
+  TACTO_TRY(formants);
   return schema::FormantTable{spectrogram.name,
                               spectrogram.quantity,
                               spectrogram.unit,

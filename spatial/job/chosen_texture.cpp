@@ -85,9 +85,9 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
                                      const TouchRecord& record, const std::vector<StrokeJob>& jobs) {
   const schema::Budget& budget = options.chosen_by.budget;
   const auto need = need_of(options, wanted, record, jobs);
-  if (!need) return schema::forward_error(need);
+  TACTO_TRY(need);
   const auto found = schema::find_trade_table();
-  if (!found) return schema::forward_error(found);
+  TACTO_TRY(found);
   auto choices = choose_texture(found->table, *need, budget);
   if (!choices) {
     if (choices.error().where.empty()) choices.error().where = record.where();
@@ -102,7 +102,7 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
       .add("promise_is", "against the force behind the same band-pass; what that takes: --explain");
   if (!options.chosen_by.explain) return chosen;
   const auto share = share_of(wanted, record, jobs);
-  if (!share) return schema::forward_error(share);
+  TACTO_TRY(share);
   explain(chosen.report, *choices, *need, wanted.filter.passed(need->sample_rate_hz).low_hz, *share, *found);
   return chosen;
 }

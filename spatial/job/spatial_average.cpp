@@ -49,14 +49,14 @@ class Aligner {
 Result<void> add_named_stroke(TextureMaker& maker, const StrokeJob& job, const Aligner& aligner, bool named,
                               TextureAverager& averager) {
   auto made = maker.make(job.stroke, job.number);
-  if (!made) return schema::forward_error(made);
+  TACTO_TRY(made);
   schema::AveragedStroke stroke{job.number, made->source.from_s, made->source.to_s, job.stroke.direction, 0};
   if (named) {
     stroke.recording = made->source.recording;
     stroke.recording_sha256 = made->source.recording_sha256;
   }
   const auto texture = aligner.aligned(std::move(*made), job, averager, stroke);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   return averager.add(*texture, stroke);
 }
 
@@ -96,8 +96,7 @@ Result<schema::Texture> averaged(TextureMaker& maker, const AverageGroup& group,
                                  const SpatialOptions& options, std::vector<std::string>& warnings,
                                  const std::function<void(double)>& progress) {
   TextureAverager averager;
-  if (auto added = add_strokes(maker, group.jobs, {options, warnings, progress, false}, averager); !added)
-    return schema::forward_error(added);
+  TACTO_TRY(add_strokes(maker, group.jobs, {options, warnings, progress, false}, averager));
   auto texture = averager.finish(name_of(options.align));
   if (!texture) texture.error().where = maker.record().where();
   return texture;

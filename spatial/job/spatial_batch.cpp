@@ -112,7 +112,7 @@ Result<Report> spatial_batch(const SpatialOptions& options) {
     return schema::fail(Fault::unsuitable, "there is no recording among the files");
   if (asks_for_takes(options)) return spatial_takes(options, files.recordings);
   const auto stems = texture_stems(files.recordings, options.output);
-  if (!stems) return schema::forward_error(stems);
+  TACTO_TRY(stems);
   Batch batch(options, files.recordings, *stems);
   const auto& outcomes = batch.run();
   // Of all recordings together: a folder of them may have one warning of a kind each.

@@ -31,8 +31,8 @@ Result<Edge> parse_band(const std::string& text, Dimension dimension) {
     return value;
   };
   const auto low = end(text.substr(0, dots)), high = end(text.substr(dots + 2));
-  if (!low) return schema::forward_error(low);
-  if (!high) return schema::forward_error(high);
+  TACTO_TRY(low);
+  TACTO_TRY(high);
   if (*low < *high) return Edge{*low, *high};
   return schema::fail(Fault::usage, "does not rise", where_of_band(text), "write the lower end first");
 }
@@ -43,7 +43,7 @@ Result<SpaceFilter> space_filter(const SpatialOptions& options) {
     return schema::fail(Fault::usage, "--band-in space has no band of its own", {},
                         "say it with --band, like 0.5/mm..10/mm");
   const auto band = parse_band(options.band, Dimension::spatial_frequency);
-  if (!band) return schema::forward_error(band);
+  TACTO_TRY(band);
   return SpaceFilter{filter.method, band->low, band->high, filter.edges, filter.order};
 }
 
@@ -147,11 +147,11 @@ Result<TextureOptions> texture_options(const SpatialOptions& options) {
     texture.filter.method = FilterMethod::none;
   } else if (options.band_in == BandIn::space) {
     const auto space = space_filter(options);
-    if (!space) return schema::forward_error(space);
+    TACTO_TRY(space);
     texture.space = *space;
   } else if (!options.band.empty()) {
     const auto band = parse_band(options.band, Dimension::frequency);
-    if (!band) return schema::forward_error(band);
+    TACTO_TRY(band);
     texture.filter.band = {band->low, band->high};
   }
   texture.filter.band.low_hz = options.low_hz.value_or(texture.filter.band.low_hz);

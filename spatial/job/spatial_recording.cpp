@@ -70,7 +70,7 @@ Result<Report> Run::list(const TouchRecord& record) const {
 }
 
 Result<std::vector<StrokeJob>> Run::one_job(const Result<Stroke>& stroke, int number) const {
-  if (!stroke) return schema::forward_error(stroke);
+  TACTO_TRY(stroke);
   return std::vector<StrokeJob>{{*stroke, number, stem_}};
 }
 
@@ -153,7 +153,7 @@ void Run::warn_of(const std::string& what, const schema::Texture& texture) {
 Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs) {
   std::vector<std::string> stems;
   for (const StrokeJob& job : jobs) stems.push_back(job.stem);
-  if (auto free = check_names(stems); !free) return schema::forward_error(free);
+  TACTO_TRY(check_names(stems));
   schema::PendingFiles pending;
   std::vector<Report> rows;
   std::optional<Report> head;
@@ -168,8 +168,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
                            "makes no texture: " + schema::message(texture.error()), "no texture"});
       continue;
     }
-    if (auto added = schema::add_texture(pending, job.stem, *texture); !added)
-      return schema::forward_error(added);
+    TACTO_TRY(schema::add_texture(pending, job.stem, *texture));
     if (!head) head = head_of(maker.record(), *texture);
     warn_of(job.stem, *texture);
     rows.push_back(texture_row(maker.record(), job, *texture));
@@ -179,7 +178,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
     first->what = "none of the strokes found makes a texture; of the first, " + first->what;
     return tl::unexpected(*first);
   }
-  if (auto done = pending.commit(options_.existing); !done) return schema::forward_error(done);
+  TACTO_TRY(pending.commit(options_.existing));
   head->add("textures", std::move(rows));
   return std::move(*head);
 }
@@ -188,7 +187,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
   const auto groups = average_groups(jobs, options_.both_ways, stem_);
   std::vector<std::string> stems;
   for (const AverageGroup& group : groups) stems.push_back(group.stem);
-  if (auto free = check_names(stems); !free) return schema::forward_error(free);
+  TACTO_TRY(check_names(stems));
   schema::PendingFiles pending;
   std::vector<Report> rows;
   std::optional<Report> head;
@@ -202,8 +201,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
       warn(fmt::format("{}: no average: {}", group.stem, schema::message(texture.error())));
       continue;
     }
-    if (auto added = schema::add_texture(pending, group.stem, *texture); !added)
-      return schema::forward_error(added);
+    TACTO_TRY(schema::add_texture(pending, group.stem, *texture));
     if (!head) head = head_of(maker.record(), *texture);
     warn_of(group.stem, *texture);
     rows.push_back(average_row(group.stem, *texture));
@@ -211,7 +209,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
   if (!head)
     return schema::fail(Fault::unsuitable, "no two strokes can be averaged", maker.record().where(),
                         "the warnings say why");
-  if (auto done = pending.commit(options_.existing); !done) return schema::forward_error(done);
+  TACTO_TRY(pending.commit(options_.existing));
   head->add("averages", std::move(rows));
   return std::move(*head);
 }
@@ -228,11 +226,11 @@ Result<ChosenTexture> Run::texture_choice(const TextureOptions& wanted, const To
 
 Result<TouchRecord> Run::opened(const std::string& name, const TextureOptions& wanted) {
   const auto recording = schema::open_recording(name);
-  if (!recording) return schema::forward_error(recording);
+  TACTO_TRY(recording);
   if (const std::string& version = recording->header.newer_version; !version.empty())
     warn(fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", name, version));
   // A texture says of which samples it was made.
-  if (const auto sound = schema::check_samples_sum(*recording); !sound) return schema::forward_error(sound);
+  TACTO_TRY(schema::check_samples_sum(*recording));
   auto record = TouchRecord::open(*recording, wanted.channel);
   if (!record) return record;
   if (const std::string note = channel_note(wanted, *record); !note.empty()) warn(note);
@@ -251,27 +249,27 @@ Result<TextureMaker> Run::ready(TouchRecord record, const TextureOptions& wanted
 
 Result<Take> Run::take(const std::string& name) {
   const auto wanted = texture_options(options_);
-  if (!wanted) return schema::forward_error(wanted);
+  TACTO_TRY(wanted);
   auto record = opened(name, *wanted);
-  if (!record) return schema::forward_error(record);
+  TACTO_TRY(record);
   auto chosen = jobs(*record);
-  if (!chosen) return schema::forward_error(chosen);
+  TACTO_TRY(chosen);
   auto maker = ready(std::move(*record), *wanted);
-  if (!maker) return schema::forward_error(maker);
+  TACTO_TRY(maker);
   return Take{std::move(*maker), std::move(*chosen)};
 }
 
 Result<Report> Run::on(const std::string& name) {
   const auto wanted = texture_options(options_);
-  if (!wanted) return schema::forward_error(wanted);
+  TACTO_TRY(wanted);
   auto record = opened(name, *wanted);
-  if (!record) return schema::forward_error(record);
+  TACTO_TRY(record);
   if (options_.list) return list(*record);
   const std::size_t said = warnings_.size();
   const auto chosen = jobs(*record);
-  if (!chosen) return schema::forward_error(chosen);
+  TACTO_TRY(chosen);
   const auto choice = texture_choice(*wanted, *record, *chosen);
-  if (!choice) return schema::forward_error(choice);
+  TACTO_TRY(choice);
   auto maker = ready(std::move(*record), choice->options);
   if (!maker) {
     warnings_.resize(said);  // what was said of strokes that nothing comes of

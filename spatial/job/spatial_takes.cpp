@@ -84,17 +84,15 @@ Result<Report> Takes::finish() {
       cli::warn(fmt::format("{}: no average: {}", stem, schema::message(texture.error())));
       continue;
     }
-    if (auto free = schema::check_texture_free(stem, options_.existing); !free)
-      return schema::forward_error(free);
-    if (auto added = schema::add_texture(pending, stem, *texture); !added)
-      return schema::forward_error(added);
+    TACTO_TRY(schema::check_texture_free(stem, options_.existing));
+    TACTO_TRY(schema::add_texture(pending, stem, *texture));
     for (const TextureWarning& warning : texture_warnings(*texture)) cli::warn(stem + ": " + warning.text);
     rows.push_back(average_row(stem, *texture));
   }
   if (rows.empty())
     return schema::fail(Fault::unsuitable, "no two strokes of these recordings can be averaged", stem_,
                         "the warnings say why; --list shows where strokes lie");
-  if (auto done = pending.commit(options_.existing); !done) return schema::forward_error(done);
+  TACTO_TRY(pending.commit(options_.existing));
   return Report().add("takes", std::move(takes_)).add("averages", std::move(rows));
 }
 
@@ -111,18 +109,18 @@ bool asks_for_takes(const SpatialOptions& options) {
 }
 
 Result<Report> spatial_takes(const SpatialOptions& options, const std::vector<std::string>& recordings) {
-  if (auto sound = check_options(options); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_options(options));
   const auto each = texture_stems(recordings, "");  // that no recording is named twice
-  if (!each) return schema::forward_error(each);
+  TACTO_TRY(each);
   const auto stem = texture_stems({recordings.front()}, options.output);
-  if (!stem) return schema::forward_error(stem);
+  TACTO_TRY(stem);
   Takes takes(options, stem->front());
   cli::Progress progress("takes");
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const auto tell = [&](double part) {
       progress.update((static_cast<double>(i) + part) / static_cast<double>(recordings.size()));
     };
-    if (auto added = takes.add(recordings[i], tell); !added) return schema::forward_error(added);
+    TACTO_TRY(takes.add(recordings[i], tell));
   }
   return takes.finish();
 }

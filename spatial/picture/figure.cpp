@@ -24,7 +24,7 @@ Result<std::string> encoded(const Figure& figure, PictureFormat format) {
     return schema::fail(Fault::unsuitable, fmt::format("a page {:g} points high is too large", page.height),
                         "picture", "draw fewer things on one page");
   Canvas canvas(format, page);
-  if (auto drawn = figure.draw(canvas); !drawn) return schema::forward_error(drawn);
+  TACTO_TRY(figure.draw(canvas));
   return canvas.encode();
 }
 
@@ -54,7 +54,7 @@ Result<std::string> encode_as(const std::string& path, const Figure& figure) {
 
 Result<void> add_figure(schema::PendingFiles& files, const std::string& path, const Figure& figure) {
   const auto bytes = encode_as(path, figure);
-  if (!bytes) return schema::forward_error(bytes);
+  TACTO_TRY(bytes);
   return files.write(path, *bytes);
 }
 

@@ -210,7 +210,7 @@ Size LineFigure::page() const {
 
 Result<void> LineFigure::draw(Canvas& canvas) const {
   const auto extents = extents_of(*this);
-  if (!extents) return schema::forward_error(extents);
+  TACTO_TRY(extents);
   const PlotHead head = head_of(*this);
   const Box box = plot_box(*this, head);
   const int rows = std::max(2, static_cast<int>(box.height / 36));

@@ -65,7 +65,7 @@ std::string sheet_facts(const std::vector<SpectrogramPanel>& panels) {
 Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
                                  const SpectrogramPictureOptions& options) {
   const SpectrogramFigure together({panels.begin(), panels.end()}, options);
-  if (auto checked = together.check(); !checked) return schema::forward_error(checked);
+  TACTO_TRY(together.check());
   SheetScales scales;
   scales.length_mm = 0;
   double low = INFINITY, high = -INFINITY;
@@ -158,7 +158,7 @@ Result<void> SheetFigure::draw_heat(Canvas& canvas, std::size_t index) const {
   const auto pixels = heatmap(*spectrogram, 1e3 * frequency.low, 1e3 * frequency.high, scales_.levels,
                               static_cast<int>(std::lround(area.width * canvas.pixels_per_point())),
                               static_cast<int>(std::lround(area.height * canvas.pixels_per_point())));
-  if (!pixels) return schema::forward_error(pixels);
+  TACTO_TRY(pixels);
   const double end = position.place(1e3 * texture->signal.length_m());
   canvas.fill({cell.heat.x, cell.heat.y, end - cell.heat.x, cell.heat.height}, kSheetNoWindow);
   canvas.image(area, *pixels);

@@ -69,7 +69,7 @@ Result<void> check_outputs(std::span<const std::string> paths, schema::Existing 
   PendingFiles trial;  // never committed: its empty files prove that the folders take them, and vanish
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (auto checked = check_output(paths[i], paths.first(i), existing); !checked) return checked;
-    if (const auto added = trial.add(paths[i]); !added) return schema::forward_error(added);
+    TACTO_TRY(trial.add(paths[i]));
   }
   return {};
 }

@@ -92,7 +92,7 @@ schema::Result<void> PanelPainter::paint_heat() {
   const auto pixels = heatmap(spectrogram, 1e3 * frequency.low, 1e3 * frequency.high, levels,
                               static_cast<int>(std::lround(area.width * canvas.pixels_per_point())),
                               static_cast<int>(std::lround(area.height * canvas.pixels_per_point())));
-  if (!pixels) return schema::forward_error(pixels);
+  TACTO_TRY(pixels);
   const double start = position.place(1e3 * texture.signal.origin_m);
   const double end = position.place(1e3 * (texture.signal.origin_m + texture.signal.length_m()));
   canvas.fill({start, layout.heat.y, end - start, layout.heat.height}, kNoWindow);

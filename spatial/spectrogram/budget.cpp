@@ -52,11 +52,11 @@ TextureChoice choice_of(ResampleMethod method, double pitch_m, const TextureNeed
 
 Result<std::vector<TextureChoice>> tried_for(const schema::TradeTable& table, const TextureNeed& need) {
   const auto grid = measured(table, kGridStage, "hermite");
-  if (!grid) return schema::forward_error(grid);
+  TACTO_TRY(grid);
   std::vector<TextureChoice> tried;
   for (const ResampleMethod method : methods_for(need)) {
     const auto resampling = measured(table, kResamplingStage, name_of(method));
-    if (!resampling) return schema::forward_error(resampling);
+    TACTO_TRY(resampling);
     for (const double pitch_m : pitches_for(need))
       tried.push_back(choice_of(method, pitch_m, need, *resampling, *grid));
   }
@@ -72,7 +72,7 @@ Result<TextureChoices> choose_texture(const schema::TradeTable& table, const Tex
     return schema::fail(Fault::usage, fmt::format("an error of {:g} %", 100 * *budget.max_error),
                         "--max-error", "above 0 and at most 10%");
   auto tried = tried_for(table, need);
-  if (!tried) return schema::forward_error(tried);
+  TACTO_TRY(tried);
   const auto least = std::ranges::min_element(*tried, {}, &TextureChoice::error);
   const auto keeps = [&](const TextureChoice& choice) { return choice.error <= budget.most_error(); };
   const auto taken = budget.most_exact() ? least : std::ranges::find_if(*tried, keeps);
@@ -92,7 +92,7 @@ Result<std::vector<ResolutionChoice>> resolutions_of(const schema::TradeTable& t
   for (const auto& [name, resolution] :
        {std::pair{"auto", Resolution::automatic}, std::pair{"whole", Resolution::whole}}) {
     const auto found = measured(table, kSpectrogramStage, name);
-    if (!found) return schema::forward_error(found);
+    TACTO_TRY(found);
     constexpr double kAnyPoints = 1e9;
     choices.push_back({resolution, found->error_at(kAnyPoints), found->cost_ns});
   }
@@ -103,7 +103,7 @@ Result<std::vector<ResolutionChoice>> resolutions_of(const schema::TradeTable& t
 Result<ResolutionChoice> choose_resolution(const schema::TradeTable& table, std::optional<Resolution> named,
                                            const schema::Budget& budget) {
   auto choices = resolutions_of(table);
-  if (!choices) return schema::forward_error(choices);
+  TACTO_TRY(choices);
   if (named) std::erase_if(*choices, [&](const ResolutionChoice& each) { return each.resolution != *named; });
   const auto least = std::ranges::min_element(*choices, {}, &ResolutionChoice::error);
   const auto keeps = [&](const ResolutionChoice& choice) { return choice.error <= budget.most_error(); };

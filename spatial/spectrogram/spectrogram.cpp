@@ -13,12 +13,12 @@ using schema::Spectrogram;
 Result<Spectrogram> spatial_spectrogram(const schema::Texture& texture, const SpectrogramOptions& options,
                                         const std::function<void(double)>& progress) {
   const auto shape = frame_shape(options, texture.signal.pitch_m);
-  if (!shape) return schema::forward_error(shape);
+  TACTO_TRY(shape);
   auto maker = SpectrogramMaker::prepare(options, texture.signal.pitch_m,
                                          texture.signal.values.size() / shape->hop + 1);
-  if (!maker) return schema::forward_error(maker);
+  TACTO_TRY(maker);
   auto header = maker->describe(texture);
-  if (!header) return schema::forward_error(header);
+  TACTO_TRY(header);
   Spectrogram result{std::move(*header), {}};
   const std::size_t cells = result.position_m.size() * result.bins;
   result.cells.reserve(cells);
@@ -27,7 +27,7 @@ Result<Spectrogram> spatial_spectrogram(const schema::Texture& texture, const Sp
     if (progress) progress(static_cast<double>(result.cells.size()) / static_cast<double>(cells));
     return {};
   });
-  if (!made) return schema::forward_error(made);
+  TACTO_TRY(made);
   return result;
 }
 

@@ -116,17 +116,17 @@ SpectrogramMaker::SpectrogramMaker(const SpectrogramOptions& options, const Fram
 Result<SpectrogramMaker> SpectrogramMaker::prepare(const SpectrogramOptions& options, double pitch_m,
                                                    std::size_t rows) {
   const auto shape = frame_shape(options, pitch_m);
-  if (!shape) return schema::forward_error(shape);
+  TACTO_TRY(shape);
   const Decimation decimation =
       options.resolution == Resolution::whole ? Decimation{} : decimation_for(*shape);
   return SpectrogramMaker(options, *shape, decimation, pitch_m, rows);
 }
 
 Result<SpectrogramHeader> SpectrogramMaker::describe(const Texture& texture) const {
-  if (auto fits = check_pitch(texture, pitch_m_); !fits) return schema::forward_error(fits);
-  if (auto fits = check_length(texture, shape_.window); !fits) return schema::forward_error(fits);
-  if (auto fits = check_finite(texture); !fits) return schema::forward_error(fits);
-  if (auto fits = check_faintness(texture, options_.scaling); !fits) return schema::forward_error(fits);
+  TACTO_TRY(check_pitch(texture, pitch_m_));
+  TACTO_TRY(check_length(texture, shape_.window));
+  TACTO_TRY(check_finite(texture));
+  TACTO_TRY(check_faintness(texture, options_.scaling));
   SpectrogramHeader header;
   const std::size_t rows = transform_.rows_of(texture.signal.values.size());
   for (std::size_t row = 0; row < rows; ++row) {

@@ -52,16 +52,16 @@ Result<FrameShape> frame_shape(const SpectrogramOptions& options, double pitch_m
   FrameShape shape;
   const auto window =
       samples_of({"a window", "window", options.window_m, kShortestWindow, "8 samples"}, pitch_m);
-  if (!window) return schema::forward_error(window);
+  TACTO_TRY(window);
   shape.window = *window;
   const auto hop = samples_of({"a hop", "hop", options.hop_m, 1, "one sample"}, pitch_m);
-  if (!hop) return schema::forward_error(hop);
+  TACTO_TRY(hop);
   shape.hop = *hop;
   shape.padded = std::bit_ceil(shape.window);
   if (options.padded_m) {
     const auto padded =
         samples_of({"a padded length", "padding", *options.padded_m, shape.window, "the window"}, pitch_m);
-    if (!padded) return schema::forward_error(padded);
+    TACTO_TRY(padded);
     shape.padded = *padded;
   }
   if (!(options.max_frequency_per_m > 0))

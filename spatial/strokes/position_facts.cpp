@@ -61,9 +61,8 @@ schema::Result<PositionFacts> position_facts(const ReadFrames& read, std::span<c
       steps.add(positions, part.size());
       return {};
     };
-    if (auto done = chunk_by_chunk(piece, learn); !done) return schema::forward_error(done);
-    if (auto done = visit_speeds(read, piece, piece, sample_rate_hz, window, count_speed); !done)
-      return schema::forward_error(done);
+    TACTO_TRY(chunk_by_chunk(piece, learn));
+    TACTO_TRY(visit_speeds(read, piece, piece, sample_rate_hz, window, count_speed));
   }
   PositionFacts facts;
   facts.quantum_m = steps.quantum_m(furthest_m);

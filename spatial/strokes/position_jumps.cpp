@@ -30,8 +30,7 @@ schema::Result<void> visit_steps(const ReadFrames& read, FrameRange piece, const
 schema::Result<double> largest_step(const ReadFrames& read, std::span<const FrameRange> pieces) {
   double largest = 0;
   const auto visit = [&](std::size_t, double step) { largest = std::max(largest, std::abs(step)); };
-  for (const FrameRange& piece : pieces)
-    if (auto done = visit_steps(read, piece, visit); !done) return schema::forward_error(done);
+  for (const FrameRange& piece : pieces) TACTO_TRY(visit_steps(read, piece, visit));
   return largest;
 }
 
@@ -40,8 +39,7 @@ schema::Result<LogHistogram> moving_steps(const ReadFrames& read, std::span<cons
   const auto visit = [&](std::size_t, double step) {
     if (step != 0) steps.add(std::abs(step));
   };
-  for (const FrameRange& piece : pieces)
-    if (auto done = visit_steps(read, piece, visit); !done) return schema::forward_error(done);
+  for (const FrameRange& piece : pieces) TACTO_TRY(visit_steps(read, piece, visit));
   return steps;
 }
 
@@ -52,10 +50,10 @@ schema::Result<std::vector<PositionJump>> find_position_jumps(const ReadFrames& 
                                                               double sample_rate_hz) {
   std::vector<PositionJump> jumps;
   const auto largest = largest_step(read, pieces);
-  if (!largest) return schema::forward_error(largest);
+  TACTO_TRY(largest);
   if (*largest <= kFastestFinger_mps / sample_rate_hz) return jumps;
   const auto steps = moving_steps(read, pieces);
-  if (!steps) return schema::forward_error(steps);
+  TACTO_TRY(steps);
   const double least_m = kOfMedianStep * steps->median();
   const double hold = std::max(1.0, kLongestHold_s * sample_rate_hz);
   for (const FrameRange& piece : pieces) {
@@ -67,7 +65,7 @@ schema::Result<std::vector<PositionJump>> find_position_jumps(const ReadFrames& 
       if (std::abs(step) > std::max(least_m, kFastestFinger_mps * held / sample_rate_hz))
         jumps.push_back({frame, step});
     };
-    if (auto done = visit_steps(read, piece, visit); !done) return schema::forward_error(done);
+    TACTO_TRY(visit_steps(read, piece, visit));
   }
   const bool rare =
       static_cast<double>(jumps.size()) <= std::max(1.0, kRare * static_cast<double>(steps->count()));

@@ -13,10 +13,10 @@ constexpr std::size_t kShortFrames = 1000000;
 schema::Result<PositionTrack> PositionTrack::open(TouchSource& source, std::size_t frames,
                                                   std::span<const schema::Gap> gaps) {
   PositionTrack track(source);
-  if (auto done = track.survey(frames, gaps); !done) return schema::forward_error(done);
+  TACTO_TRY(track.survey(frames, gaps));
   if (frames > kShortFrames) return track;
   std::vector<double> all(frames);
-  if (auto done = track.read(0, all); !done) return schema::forward_error(done);
+  TACTO_TRY(track.read(0, all));
   track.kept_m_ = std::move(all);
   return track;
 }
@@ -53,7 +53,7 @@ schema::Result<void> PositionTrack::read(std::size_t first, std::span<double> ou
 
 schema::Result<std::vector<double>> PositionTrack::read(FrameRange frames) const {
   std::vector<double> positions(frames.size());
-  if (auto done = read(frames.begin, positions); !done) return schema::forward_error(done);
+  TACTO_TRY(read(frames.begin, positions));
   return positions;
 }
 

@@ -85,8 +85,7 @@ schema::Result<Strokes> Search::runs_above(FrameRange range, double threshold_mp
     runs.back().to_m = position_m;
     fastest.back() = std::max(fastest.back(), std::abs(speed_mps));
   };
-  if (auto done = visit_speeds(read_, stretch_, range, rate_hz_, window_, visit); !done)
-    return schema::forward_error(done);
+  TACTO_TRY(visit_speeds(read_, stretch_, range, rate_hz_, window_, visit));
   if (before != 0) end_run();
   if (fastest_mps != nullptr) *fastest_mps = std::move(fastest);
   return runs;
@@ -118,18 +117,17 @@ Strokes Search::joined(const Strokes& runs) const {
 schema::Result<double> Search::own_speed(FrameRange range) const {
   LogHistogram speeds;
   const auto count = [&](std::size_t, double speed_mps, double) { speeds.add(std::abs(speed_mps)); };
-  if (auto done = visit_speeds(read_, stretch_, range, rate_hz_, window_, count); !done)
-    return schema::forward_error(done);
+  TACTO_TRY(visit_speeds(read_, stretch_, range, rate_hz_, window_, count));
   return speeds.median_by_sum();
 }
 
 // The parts of a run that are strokes by the run's own speed.
 schema::Result<void> Search::append_strokes(const Stroke& run, Strokes& strokes) const {
   const auto own_mps = own_speed(run.frames);
-  if (!own_mps) return schema::forward_error(own_mps);
+  TACTO_TRY(own_mps);
   std::vector<double> fastest_mps;
   auto parts = runs_above(run.frames, kSlowest * *own_mps, facts_.resolution_m(), &fastest_mps);
-  if (!parts) return schema::forward_error(parts);
+  TACTO_TRY(parts);
   const Strokes all = joined(*parts);
   std::size_t p = 0;
   for (const Stroke& part : all) {
@@ -148,8 +146,7 @@ schema::Result<Strokes> Search::strokes() const {
   const double shortest = kShortestOfLongest * longest_of(strokes);
   std::erase_if(strokes, [&](const Stroke& run) { return run.advance_m() < shortest; });
   Strokes found;
-  for (const Stroke& run : strokes)
-    if (auto done = append_strokes(run, found); !done) return schema::forward_error(done);
+  for (const Stroke& run : strokes) TACTO_TRY(append_strokes(run, found));
   return found;
 }
 
@@ -205,7 +202,7 @@ schema::Result<FoundStrokes> find_strokes(const ReadFrames& read, std::span<cons
   for (const FrameRange& piece : pieces) {
     if (piece.size() < 2) continue;
     const auto found = strokes_in(read, piece, sample_rate_hz, facts);
-    if (!found) return schema::forward_error(found);
+    TACTO_TRY(found);
     strokes.insert(strokes.end(), found->begin(), found->end());
   }
   const auto drop_below = [&](double shortest_m) {

@@ -36,7 +36,7 @@ std::string seconds(double s) {
 schema::Result<TouchRecord> TouchRecord::open(const schema::Recording& recording,
                                               const std::string& channel) {
   auto source = open_touch_source(recording, channel);
-  if (!source) return schema::forward_error(source);
+  TACTO_TRY(source);
   return open(std::move(*source), recording.header, recording.stem);
 }
 
@@ -46,13 +46,13 @@ schema::Result<TouchRecord> TouchRecord::open(std::unique_ptr<TouchSource> sourc
   record.header_ = std::move(header);
   record.where_ = std::move(where);
   record.source_ = std::move(source);
-  if (const auto surveyed = record.survey(); !surveyed) return schema::forward_error(surveyed);
+  TACTO_TRY(record.survey());
   return record;
 }
 
 schema::Result<void> TouchRecord::survey() {
   auto track = PositionTrack::open(*source_, header_.frames, header_.gaps);
-  if (!track) return schema::forward_error(track);
+  TACTO_TRY(track);
   track_ = std::move(*track);
   if (!track_->moves())
     return schema::fail(Fault::unsuitable, "the position never moves", where_,
@@ -62,14 +62,14 @@ schema::Result<void> TouchRecord::survey() {
     return track_->read(first, out);
   };
   auto jumps = find_position_jumps(read, pieces_, header_.sample_rate_hz);
-  if (!jumps) return schema::forward_error(jumps);
+  TACTO_TRY(jumps);
   jumps_ = std::move(*jumps);
   const auto sound = pieces_between_jumps(pieces_, jumps_);
   auto facts = spatial::position_facts(read, sound, header_.sample_rate_hz, track_->furthest_m());
-  if (!facts) return schema::forward_error(facts);
+  TACTO_TRY(facts);
   facts_ = *facts;
   auto strokes = find_strokes(read, sound, header_.sample_rate_hz, facts_);
-  if (!strokes) return schema::forward_error(strokes);
+  TACTO_TRY(strokes);
   strokes_ = std::move(strokes->strokes);
   short_runs_ = strokes->short_runs;
   mark_cut_strokes();
@@ -180,7 +180,7 @@ schema::Result<void> TouchRecord::check_gapless(FrameRange frames) const {
 
 schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
   const auto read = position_m(frames);
-  if (!read) return schema::forward_error(read);
+  TACTO_TRY(read);
   const std::vector<double>& positions = *read;
   if (positions.size() < 2 || positions.front() == positions.back())
     return schema::fail(Fault::unsuitable, "the finger gets nowhere in the stretch", where_,
@@ -202,7 +202,7 @@ schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
                     schema::length_for_people(advance_m), schema::length_for_people(facts_.resolution_m())),
         where_, list_of_strokes());
   Stroke stroke{frames, direction, positions.front(), positions.back(), {}, false};
-  if (auto done = weigh(stroke); !done) return schema::forward_error(done);
+  TACTO_TRY(weigh(stroke));
   stroke.finger_up = up_below_n_ && stroke.force_n < *up_below_n_;
   return stroke;
 }
@@ -215,9 +215,9 @@ schema::Result<void> TouchRecord::check_jumpless(FrameRange frames) const {
 
 schema::Result<Stroke> TouchRecord::stretch(double from_s, double to_s) const {
   const auto frames = frames_between(from_s, to_s);
-  if (!frames) return schema::forward_error(frames);
-  if (const auto gapless = check_gapless(*frames); !gapless) return schema::forward_error(gapless);
-  if (const auto jumpless = check_jumpless(*frames); !jumpless) return schema::forward_error(jumpless);
+  TACTO_TRY(frames);
+  TACTO_TRY(check_gapless(*frames));
+  TACTO_TRY(check_jumpless(*frames));
   return directed(*frames);
 }
 

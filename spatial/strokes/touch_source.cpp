@@ -93,14 +93,14 @@ class RecordingSource : public TouchSource {
 schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Recording& recording,
                                                                const std::string& value) {
   const auto index = value_channel(recording, value);
-  if (!index) return schema::forward_error(index);
+  TACTO_TRY(index);
   const MaybeIndex position = channel_of(recording.header, "position");
   if (!position)
     return schema::fail(
         Fault::unsuitable, fmt::format("has no position channel, only {}", names_of(recording.header)),
         recording.stem, "import it with --channel position=COLUMN*SCALE, or with --speed for a nominal one");
   auto frames = schema::RecordingFrames::open(recording);
-  if (!frames) return schema::forward_error(frames);
+  TACTO_TRY(frames);
   return std::make_unique<RecordingSource>(
       std::move(*frames), recording.header.channels,
       std::array{position, MaybeIndex(*index), channel_of(recording.header, "normal_force")});

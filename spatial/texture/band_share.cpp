@@ -30,10 +30,9 @@ schema::Result<BandShare> share_of_stroke(const TouchRecord& record, FilteredTra
   if (piece == record.pieces().end())
     return schema::fail(schema::Fault::unsuitable, "frames are missing inside the stroke", record.where());
   const auto passed = filtered.values(*piece, frames);
-  if (!passed) return schema::forward_error(passed);
+  TACTO_TRY(passed);
   std::vector<double> taken(frames.size());
-  if (auto read = record.source().read(Track::value, frames.begin, taken); !read)
-    return schema::forward_error(read);
+  TACTO_TRY(record.source().read(Track::value, frames.begin, taken));
   for (std::size_t i = 0; i < taken.size(); ++i) taken[i] -= (*passed)[i];
   const std::size_t quarter = taken.size() / 4, half = taken.size() - 2 * quarter;
   return BandShare{share_of(taken, *passed),
@@ -48,7 +47,7 @@ schema::Result<BandShare> band_share(const TouchRecord& record, const TimeFilter
   BandShare worst;
   for (const Stroke& stroke : strokes) {
     const auto share = share_of_stroke(record, filtered, stroke.frames);
-    if (!share) return schema::forward_error(share);
+    TACTO_TRY(share);
     worst.whole = std::max(worst.whole, share->whole);
     worst.inside = std::max(worst.inside, share->inside);
   }

@@ -72,7 +72,7 @@ std::unique_ptr<Stage> fourier_stage(double sample_rate_hz, Band band, Edges edg
 schema::Result<std::unique_ptr<Stage>> butterworth_stage(double sample_rate_hz, const TimeFilter& filter,
                                                          std::size_t longest) {
   const auto sections = butterworth_band_pass(filter.order, filter.band, sample_rate_hz);
-  if (!sections) return schema::forward_error(sections);
+  TACTO_TRY(sections);
   const std::size_t padding =
       filter.edges == Edges::none
           ? default_padding(*sections)
@@ -90,7 +90,7 @@ BlockTimeFilter::~BlockTimeFilter() = default;
 
 schema::Result<BlockTimeFilter> BlockTimeFilter::open(double sample_rate_hz, const TimeFilter& filter,
                                                       const SpectralGain& equaliser, std::size_t longest) {
-  if (const auto fine = check(filter, sample_rate_hz); !fine) return schema::forward_error(fine);
+  TACTO_TRY(check(filter, sample_rate_hz));
   Stages stages;
   if (filter.method == FilterMethod::fourier) {
     stages.push_back(fourier_stage(sample_rate_hz, filter.band, filter.edges, equaliser, longest));
@@ -98,7 +98,7 @@ schema::Result<BlockTimeFilter> BlockTimeFilter::open(double sample_rate_hz, con
   }
   if (filter.method == FilterMethod::butterworth) {
     auto stage = butterworth_stage(sample_rate_hz, filter, longest);
-    if (!stage) return schema::forward_error(stage);
+    TACTO_TRY(stage);
     stages.push_back(std::move(*stage));
   }
   if (equaliser)

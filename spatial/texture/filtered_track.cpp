@@ -13,7 +13,7 @@ FilteredTrack::FilteredTrack(TouchSource& source, double sample_rate_hz, const T
 schema::Result<void> FilteredTrack::begin(FrameRange piece) {
   stream_.reset();
   auto stream = BlockTimeFilter::open(sample_rate_hz_, filter_, equaliser_, piece.size());
-  if (!stream) return schema::forward_error(stream);
+  TACTO_TRY(stream);
   stream_ = std::move(*stream);
   piece_ = piece;
   next_ = kept_from_ = piece.begin;
@@ -45,8 +45,7 @@ schema::Result<void> FilteredTrack::advance() {
 schema::Result<std::span<const double>> FilteredTrack::values(FrameRange piece, FrameRange frames) {
   assert(piece.contains(frames));
   const bool goes_on = stream_ && piece.begin == piece_.begin && frames.begin >= kept_from_;
-  if (!goes_on)
-    if (auto begun = begin(piece); !begun) return schema::forward_error(begun);
+  if (!goes_on) TACTO_TRY(begin(piece));
   forget_before(frames.begin);
   while (kept_from_ + kept_.size() < frames.end) {
     assert(next_ <= piece_.end);

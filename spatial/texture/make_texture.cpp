@@ -38,13 +38,13 @@ TextureMaker::TextureMaker(TouchRecord record, TextureOptions options)
 schema::Result<TextureMaker> TextureMaker::open(const schema::Recording& recording,
                                                 const TextureOptions& options) {
   auto record = TouchRecord::open(recording, options.channel);
-  if (!record) return schema::forward_error(record);
+  TACTO_TRY(record);
   return open(std::move(*record), options);
 }
 
 schema::Result<TextureMaker> TextureMaker::open(TouchRecord record, const TextureOptions& options) {
   TextureMaker maker(std::move(record), options);
-  if (const auto prepared = maker.prepare(); !prepared) return schema::forward_error(prepared);
+  TACTO_TRY(maker.prepare());
   return maker;
 }
 
@@ -95,7 +95,7 @@ schema::Result<void> TextureMaker::check_duration(const Stroke& stroke) const {
 
 schema::Result<MonotonePath> TextureMaker::path_of(const Stroke& stroke, double shift_m) const {
   const auto positions = record_.position_m(stroke.frames);
-  if (!positions) return schema::forward_error(positions);
+  TACTO_TRY(positions);
   MonotonePath path = monotone_path(*positions, stroke.direction, record_.position_error());
   if (path.way_m.empty())
     return schema::fail(Fault::unsuitable, "the finger gets nowhere in the stroke", record_.where());
@@ -115,7 +115,7 @@ schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke
   const std::size_t before = std::min(margin, stroke.frames.begin - piece->begin);
   const FrameRange frames{stroke.frames.begin - before, std::min(stroke.frames.end + margin, piece->end)};
   const auto seen = filtered_->values(*piece, frames);
-  if (!seen) return schema::forward_error(seen);
+  TACTO_TRY(seen);
   std::vector<double> values(grid.count);
   resampler_(path, stroke.direction, grid, *seen, before, values);
   return values;
@@ -172,18 +172,18 @@ schema::Result<void> TextureMaker::check_band(double usual_mps) const {
 
 schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int number, double shift_m) {
   if (stroke.jump) return tl::unexpected(record_.refusal(*stroke.jump));
-  if (const auto fine = check_duration(stroke); !fine) return schema::forward_error(fine);
+  TACTO_TRY(check_duration(stroke));
   const auto path = path_of(stroke, shift_m);
-  if (!path) return schema::forward_error(path);
+  TACTO_TRY(path);
   const auto grid = grid_along(*path, stroke.direction, options_.pitch_m);
-  if (!grid) return schema::forward_error(grid);
+  TACTO_TRY(grid);
   const SpeedProfile profile = profile_of(stroke, *path, *grid);
   const double usual_mps = median(profile.speed_mps);
-  if (const auto fine = check_band(usual_mps); !fine) return schema::forward_error(fine);
+  TACTO_TRY(check_band(usual_mps));
   const std::size_t finer = finer_grid(
       options_.pitch_m, options_.filter.passed(record_.header().sample_rate_hz).high_hz, usual_mps);
   auto values = on_grid(stroke, *path, *grid, finer);
-  if (!values) return schema::forward_error(values);
+  TACTO_TRY(values);
 
   schema::Texture texture;
   texture.signal = {grid->pitch_m, 0, std::move(*values)};

@@ -44,8 +44,7 @@ schema::KnownBand SpaceFilter::kept(double pitch_m) const {
 
 schema::Result<std::vector<double>> filter_in_space(std::span<const double> values, double pitch_m,
                                                     const SpaceFilter& filter) {
-  if (filter.method != FilterMethod::none)
-    if (const auto fine = check(filter, pitch_m, values.size()); !fine) return schema::forward_error(fine);
+  if (filter.method != FilterMethod::none) TACTO_TRY(check(filter, pitch_m, values.size()));
   return filter_in_time(values, 1 / pitch_m, in_samples(filter));
 }
 

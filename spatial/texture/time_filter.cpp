@@ -57,10 +57,10 @@ schema::Result<void> check(const TimeFilter& filter, double sample_rate_hz) {
 schema::Result<std::vector<double>> filter_in_time(std::span<const double> values, double sample_rate_hz,
                                                    const TimeFilter& filter, const SpectralGain& equaliser) {
   auto fed = BlockTimeFilter::open(sample_rate_hz, filter, equaliser, values.size());
-  if (!fed) return schema::forward_error(fed);
+  TACTO_TRY(fed);
   std::vector<double> filtered;
   filtered.reserve(values.size());
-  if (const auto taken = fed->push(values, filtered); !taken) return schema::forward_error(taken);
+  TACTO_TRY(fed->push(values, filtered));
   fed->finish(filtered);
   return filtered;
 }

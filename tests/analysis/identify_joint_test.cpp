@@ -175,14 +175,14 @@ struct Bench {
 schema::Result<JointFit> identified_bench(const Bench& bench, int seed) {
   const std::string uri = "sim:tray_sensor=on,finger=up,rate=4kHz,seed=" + std::to_string(seed) + bench.keys;
   const auto opened = playback::open_player_device(uri, std::nullopt);
-  if (!opened) return schema::forward_error(opened);
+  TACTO_TRY(opened);
   const auto going = [] { return false; };
   const auto silent = [](double) {};
   const auto sweep = driven_response(*opened->device, IdentifyMethod::sweep,
                                      {.rate_hz = 4e3, .amplitude_v = bench.sweep_v}, base(), going, silent);
-  if (!sweep) return schema::forward_error(sweep);
+  TACTO_TRY(sweep);
   const auto loops = drive_tray(*opened->device, slow_loops(4e3, kLoopsV, bench.sweep_v), going, silent);
-  if (!loops) return schema::forward_error(loops);
+  TACTO_TRY(loops);
   return fit_jointly(sweep->data, sweep->drive, *loops, {}, base());
 }
 

@@ -43,28 +43,28 @@ Result<schema::Recording> written(const std::string& stem, std::size_t seconds) 
     frames.push_back(position_m[i]);
   }
   auto writer = schema::RecordingWriter::create(stem, header);
-  if (!writer) return schema::forward_error(writer);
-  if (auto done = writer->write(std::span<const double>(frames)); !done) return schema::forward_error(done);
+  TACTO_TRY(writer);
+  TACTO_TRY(writer->write(std::span<const double>(frames)));
   return writer->close();
 }
 
 // What the verb does, without its report.
 Result<void> to_spectrogram(const std::string& stem, const std::string& path) {
   const auto recording = schema::open_recording(stem);
-  if (!recording) return schema::forward_error(recording);
+  TACTO_TRY(recording);
   auto textures = TextureMaker::open(*recording, {});
-  if (!textures) return schema::forward_error(textures);
+  TACTO_TRY(textures);
   auto maker = SpectrogramMaker::prepare({}, bench::kPitch_m, kRows);
-  if (!maker) return schema::forward_error(maker);
+  TACTO_TRY(maker);
   schema::PendingFiles files;
   const auto temporary = files.add(path);
   auto writer = schema::open_spectrogram_nc(*temporary, {.several = true, .named = path});
   int number = 0;
   for (const Stroke& stroke : textures->record().strokes()) {
     const auto texture = textures->make(stroke, ++number);
-    if (!texture) return schema::forward_error(texture);
+    TACTO_TRY(texture);
     const auto header = maker->describe(*texture);
-    if (!header) return schema::forward_error(header);
+    TACTO_TRY(header);
     if (auto begun = (*writer)->begin(*header); !begun) return begun;
     const auto made = maker->make(*texture, [&](std::size_t first, std::span<const float> cells) {
       return (*writer)->rows(first, cells);

@@ -23,15 +23,15 @@ struct ReadText {
 inline schema::Result<ReadText> read_text(std::string_view text, std::vector<std::size_t> columns = {},
                                           std::size_t piece = 1 << 20) {
   const auto layout = find_csv_layout(text, true, "t.csv");
-  if (!layout) return schema::forward_error(layout);
+  TACTO_TRY(layout);
   if (columns.empty()) {
     columns.resize(layout->columns.size());
     std::iota(columns.begin(), columns.end(), std::size_t{0});
   }
   CsvReader reader(*layout, columns, "t.csv");
   for (std::size_t at = layout->data_offset; at < text.size(); at += piece)
-    if (const auto fed = reader.feed(text.substr(at, piece)); !fed) return schema::forward_error(fed);
-  if (const auto ended = reader.finish(); !ended) return schema::forward_error(ended);
+    TACTO_TRY(reader.feed(text.substr(at, piece)));
+  TACTO_TRY(reader.finish());
   ReadText read{*layout, std::vector<std::vector<double>>(columns.size()), reader.landmarks()};
   for (std::size_t i = 0; i < reader.rows().size(); ++i)
     read.values[i % columns.size()].push_back(reader.rows()[i]);

@@ -15,11 +15,10 @@ schema::Result<UniformClock> clock_of(const std::vector<double>& times) {
   const std::size_t half = times.size() / 2;  // in two pieces, as a long file comes in many
   finder.survey(std::span(times).first(half));
   finder.survey(std::span(times).subspan(half));
-  if (const auto ended = finder.end_survey("t.csv"); !ended) return schema::forward_error(ended);
+  TACTO_TRY(finder.end_survey("t.csv"));
   if (finder.second_pass_needed())
     for (const auto part : {std::span(times).first(half), std::span(times).subspan(half)})
-      if (const auto located = finder.locate(part, place_of, "t.csv"); !located)
-        return schema::forward_error(located);
+      TACTO_TRY(finder.locate(part, place_of, "t.csv"));
   return finder.clock();
 }
 

@@ -30,9 +30,8 @@ RecordingHeader header_for(SampleFormat format) {
 template <class Sample>
 Result<Recording> write(const std::string& name, SampleFormat format, const std::vector<Sample>& samples) {
   auto writer = RecordingWriter::create(name, header_for(format));
-  if (!writer) return forward_error(writer);
-  if (const auto written = writer->write(std::span<const Sample>(samples)); !written)
-    return forward_error(written);
+  TACTO_TRY(writer);
+  TACTO_TRY(writer->write(std::span<const Sample>(samples)));
   return writer->close();
 }
 

@@ -72,7 +72,7 @@ class EvenPass {
     const playback::PlacedTexture placed{&texture, 0, 1};
     c.options.ends = playback::Ends::loop;
     auto prepared = playback::prepare(std::span(&placed, 1), c.model, c.options);
-    if (!prepared) return schema::forward_error(prepared);
+    TACTO_TRY(prepared);
     return EvenPass(c, std::move(*prepared),
                     playback::laid_out(std::span(&placed, 1), playback::Ends::loop, c.options.seam_m));
   }

@@ -73,7 +73,7 @@ inline schema::Result<Fidelity> fidelity_of(const schema::Texture& texture, Fide
   const playback::PlacedTexture placed{&texture, 0, 1};
   c.options.ends = playback::Ends::loop;
   const auto prepared = playback::prepare(std::span(&placed, 1), c.model, c.options);
-  if (!prepared) return schema::forward_error(prepared);
+  TACTO_TRY(prepared);
   const auto loop = playback::laid_out(std::span(&placed, 1), playback::Ends::loop, c.options.seam_m);
   const double most = *std::ranges::max_element(c.path.position_m);
   const schema::SpaceSignal unrolled = playback::unrolled_loop(loop, most + 0.01);

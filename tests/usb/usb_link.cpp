@@ -39,10 +39,9 @@ class DrivenDevice final : public firmware_host::Device {
   Result<void> start() override { return device_.start(); }
 
   Result<std::size_t> read(std::span<std::int32_t> interleaved) override {
-    if (!std::exchange(playing_, true))
-      if (const auto played = play(); !played) return schema::forward_error(played);
+    if (!std::exchange(playing_, true)) TACTO_TRY(play());
     for (const wire::Ticks& ticks : device_.client().take_ticks()) check_.take(ticks);
-    if (const auto filled = fill(); !filled) return schema::forward_error(filled);
+    TACTO_TRY(fill());
     return device_.read(interleaved);
   }
 
@@ -51,7 +50,7 @@ class DrivenDevice final : public firmware_host::Device {
     if (const auto off = device_.client().command(wire::Disarm{}); !off) return off;
     do {
       const auto pulse = device_.client().heartbeat();
-      if (!pulse) return schema::forward_error(pulse);
+      TACTO_TRY(pulse);
       pulse_ = *pulse;
     } while (pulse_.state != wire::DriveState::idle && pulse_.state != wire::DriveState::fault);
     const auto stopped = device_.stop();
@@ -96,7 +95,7 @@ class DrivenDevice final : public firmware_host::Device {
 
   Result<void> fill_as_told() {
     const auto pulse = device_.client().heartbeat();
-    if (!pulse) return schema::forward_error(pulse);
+    TACTO_TRY(pulse);
     if (pulse->drive_queued + kMessage > kQueueFull) return {};
     return send();
   }

@@ -253,7 +253,7 @@ void put_quality(const LoopTable& table, std::span<const double> v, std::span<co
 Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const double> displacement_m,
                           double rate_hz, double delay_s, double drive_limit_v,
                           std::vector<double> thresholds_v) {
-  if (const auto sound = check_loops(drive_v, displacement_m); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_loops(drive_v, displacement_m));
   const std::vector<double> v = delayed(drive_v, delay_s * rate_hz);
   LoopFit fit;
   fit.amplitude_v = std::abs(*std::ranges::max_element(v, {}, [](double value) { return std::abs(value); }));

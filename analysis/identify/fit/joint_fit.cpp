@@ -105,7 +105,7 @@ Result<JointFit> fit_jointly(const BodeData& sweep, const SweptDrive& drive, con
     const double pole_hz = schema::actuator_pole_hz(found);
     SweptOperator swept(drive, pole_hz);
     auto operator_found = loops_behind(found, loops, swept.largest_charge_v());
-    if (!operator_found) return schema::forward_error(operator_found);
+    TACTO_TRY(operator_found);
     joint.loops = std::move(*operator_found);
     joint.has_hysteresis = shows_hysteresis(joint.loops);
     linear = joint.has_hysteresis ? without_hysteresis(sweep, swept, joint.loops) : sweep;

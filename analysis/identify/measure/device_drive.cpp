@@ -49,7 +49,7 @@ class Run {
   }
   Result<void> feed(std::span<const float> drive_v) {
     const auto pulse = client_.heartbeat();
-    if (!pulse) return schema::forward_error(pulse);
+    TACTO_TRY(pulse);
     const std::size_t room = client_.description().welcome.drive_queue - pulse->drive_queued;
     empty_ = pulse->drive_queued == 0 && sent_ >= drive_v.size();
     const std::size_t left = drive_v.size() - sent_;
@@ -74,7 +74,7 @@ class Run {
     auto done = client_.command(wire::Disarm{});
     for (double waited_s = 0; done && waited_s < kIdleWaitS; waited_s += kWaitS) {
       const auto pulse = client_.heartbeat();
-      if (!pulse) return schema::forward_error(pulse);
+      TACTO_TRY(pulse);
       if (pulse->state == wire::DriveState::idle) break;
       done = client_.receive(kWaitS);
     }
@@ -196,14 +196,14 @@ Result<DrivenTray> drive_tray(firmware_host::Device& device, std::span<const flo
   if (client == nullptr)
     return fail(Fault::unsuitable, "nothing can be played on a replay", device.capabilities().uri);
   const auto channel = tray_channel(device.capabilities());
-  if (!channel) return schema::forward_error(channel);
+  TACTO_TRY(channel);
   Run run(*client, device.capabilities(), *channel);
   auto done = run.begin();
   if (done) done = played(run, drive_v, stop_asked, progress);
   const auto ended = run.end();
   if (done) done = ended;
   if (done) done = run.take();
-  if (!done) return schema::forward_error(done);
+  TACTO_TRY(done);
   return run.paired(drive_v);
 }
 

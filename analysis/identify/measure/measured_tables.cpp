@@ -151,24 +151,23 @@ std::string chosen(const std::string& asked, const std::string& found) {
 
 Result<bool> is_bode_table(const std::string& path) {
   const auto names = table_names(path);
-  if (!names) return schema::forward_error(names);
+  TACTO_TRY(names);
   return column({*names, {}, {}}, {"freq", "f_hz"}).has_value();
 }
 
 Result<BodeData> read_bode_table(const std::string& path, const TableUnits& units) {
   const auto table = read_numbers(path);
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   const auto frequency = column(*table, {"frequency", "freq", "f_hz"});
   const auto amplitude = column(*table, {"amplitude", "gain", "magnitude"}),
              phase = column(*table, {"phase"});
   if (!frequency || !amplitude || !phase)
     return no_column(path, !frequency ? "frequency" : !amplitude ? "amplitude" : "phase");
   const auto unit = amplitude_unit(chosen(units.amplitude, amplitude->unit), path);
-  if (!unit) return schema::forward_error(unit);
+  TACTO_TRY(unit);
   const auto radians = phase_unit(chosen(units.phase, phase->unit), path);
-  if (!radians) return schema::forward_error(radians);
-  if (const auto sound = *radians == 1 ? check_radians(*table, phase->index, path) : Result<void>(); !sound)
-    return schema::forward_error(sound);
+  TACTO_TRY(radians);
+  TACTO_TRY(*radians == 1 ? check_radians(*table, phase->index, path) : Result<void>());
   if (const auto sound =
           unit->decibels ? Result<void>() : check_sizes(*table, amplitude->index, unit->direction, path);
       !sound)
@@ -195,7 +194,7 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
 
 Result<DrivenTray> read_driven_table(const std::string& path) {
   const auto table = read_numbers(path);
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   const auto drive = column(*table, {"drive"}), displacement = column(*table, {"displacement"});
   if (!drive || !displacement) return no_column(path, !drive ? "drive" : "displacement");
   const auto volts = worth(kVoltUnits, drive->unit), metres = worth(kLengthUnits, displacement->unit);
@@ -235,7 +234,7 @@ Result<void> check_unclipped(const schema::Channel& channel, const std::vector<d
 Result<RecordedPair> read_recorded_pair(const std::string& stem, const std::string& input,
                                         const std::string& output) {
   const auto recording = schema::open_recording(stem);
-  if (!recording) return schema::forward_error(recording);
+  TACTO_TRY(recording);
   const schema::RecordingHeader& header = recording->header;
   if (!header.gaps.empty())
     return fail(Fault::unsuitable, "the recording has gaps", stem, "record it again without losses");
@@ -244,12 +243,11 @@ Result<RecordedPair> read_recorded_pair(const std::string& stem, const std::stri
   pair.simulated = header.simulated;
   for (const auto& [name, values] : {std::pair(&input, &pair.input), std::pair(&output, &pair.output)}) {
     const auto index = schema::find_channel(header, *name);
-    if (!index) return schema::forward_error(index);
+    TACTO_TRY(index);
     const auto signal = schema::read_channel(*recording, *index);
-    if (!signal) return schema::forward_error(signal);
+    TACTO_TRY(signal);
     *values = signal->values;
-    if (const auto whole = check_unclipped(header.channels[*index], *values, stem); !whole)
-      return schema::forward_error(whole);
+    TACTO_TRY(check_unclipped(header.channels[*index], *values, stem));
     if (header.channels[*index].quantity != "tangential_force" || !header.transducer) continue;
     const double newtons_per_volt = schema::nominal_newtons_per_volt(*header.transducer);
     for (double& value : *values) value /= newtons_per_volt;

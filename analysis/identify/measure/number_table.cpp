@@ -25,23 +25,23 @@ Result<capture::CsvLayout> layout_of(const std::string& text, const std::string&
 
 Result<std::vector<std::string>> table_names(const std::string& path) {
   const auto text = schema::read_file(path);
-  if (!text) return schema::forward_error(text);
+  TACTO_TRY(text);
   auto layout = layout_of(*text, path);
-  if (!layout) return schema::forward_error(layout);
+  TACTO_TRY(layout);
   return layout->columns;
 }
 
 Result<NumberTable> read_numbers(const std::string& path) {
   const auto text = schema::read_file(path);
-  if (!text) return schema::forward_error(text);
+  TACTO_TRY(text);
   const auto layout = layout_of(*text, path);
-  if (!layout) return schema::forward_error(layout);
+  TACTO_TRY(layout);
   std::vector<std::size_t> all(layout->columns.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   capture::CsvReader reader(*layout, all, path);
   auto read = reader.feed(std::string_view(*text).substr(layout->data_offset));
   if (read) read = reader.finish();
-  if (!read) return schema::forward_error(read);
+  TACTO_TRY(read);
   NumberTable table{layout->columns, {reader.rows().begin(), reader.rows().end()}, {}};
   for (std::size_t row = 0; row < table.rows(); ++row)
     table.lines.push_back(capture::line_of_row(reader.landmarks(), row));

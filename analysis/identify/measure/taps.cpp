@@ -214,7 +214,7 @@ Result<TapsFit> fit_taps(const Taps& taps) {
   std::vector<RingingTap> list;
   for (const Tap& tap : taps.taps) {
     const auto ringing = ringing_of(tap, taps.rate_hz);
-    if (!ringing) return schema::forward_error(ringing);
+    TACTO_TRY(ringing);
     Ringing found = modes_of(*ringing, taps.rate_hz / kDecimation);
     if (found.modes.empty()) return fail(Fault::unsuitable, "nothing rings in it", "tap " + tap.name);
     list.push_back({tap.name, std::move(found.modes), found.left});
@@ -232,9 +232,9 @@ Result<TapsFit> fit_taps(const Taps& taps) {
 Result<TapsPrediction> foretell_taps(const Taps& taps, std::size_t fitted) {
   const auto split = taps.taps.begin() + static_cast<std::ptrdiff_t>(fitted);
   const auto known = fit_taps({taps.rate_hz, {taps.taps.begin(), split}});
-  if (!known) return schema::forward_error(known);
+  TACTO_TRY(known);
   const auto others = fit_taps({taps.rate_hz, {split, taps.taps.end()}});
-  if (!others) return schema::forward_error(others);
+  TACTO_TRY(others);
   std::vector<VectorXd> ringings;
   for (auto tap = taps.taps.begin(); tap != split; ++tap) ringings.push_back(*ringing_of(*tap, taps.rate_hz));
   const auto same_length = [&](const VectorXd& y) { return y.size() == ringings.front().size(); };

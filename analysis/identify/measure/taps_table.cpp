@@ -8,7 +8,7 @@ namespace tacto::analysis {
 
 schema::Result<Taps> read_taps(const std::string& path, double rate_hz) {
   const auto table = read_numbers(path);
-  if (!table) return schema::forward_error(table);
+  TACTO_TRY(table);
   if (table->names.size() < 2)
     return schema::fail(schema::Fault::malformed, "it has one column: taps need their numbers and the values",
                         path);

@@ -115,20 +115,20 @@ Result<DrivenResponse> driven_response(firmware_host::Device& device, IdentifyMe
                                        const ExcitationPlan& plan, const schema::Transducer& base,
                                        const std::function<bool()>& stop_asked,
                                        const std::function<void(double)>& progress) {
-  if (const auto sound = check_amplitude(plan, base); !sound) return schema::forward_error(sound);
+  TACTO_TRY(check_amplitude(plan, base));
   DrivenResponse answer;
   BodeData& data = answer.data;
   if (method == IdentifyMethod::sweep) {
-    if (const auto ends = check_sweep(plan); !ends) return schema::forward_error(ends);
+    TACTO_TRY(check_sweep(plan));
     const SteppedSine stepped = stepped_sine(plan);
     auto tray = drive_tray(device, stepped.drive_v, stop_asked, progress);
-    if (!tray) return schema::forward_error(tray);
+    TACTO_TRY(tray);
     data = response_of_steps(*tray, stepped);
     answer.drive = {tray->rate_hz, std::move(tray->drive_v), lines_of(stepped, tray->rate_hz)};
   } else {
     const PeriodicDrive drive = method == IdentifyMethod::chirp ? periodic_chirp(plan) : multisine(plan);
     auto tray = drive_tray(device, drive.drive_v, stop_asked, progress);
-    if (!tray) return schema::forward_error(tray);
+    TACTO_TRY(tray);
     data = response_of_periods(*tray, drive);
     answer.drive = {tray->rate_hz, std::move(tray->drive_v), lines_of(drive)};
   }
@@ -146,7 +146,7 @@ Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMethod metho
                              const schema::Transducer& base, const std::function<bool()>& stop_asked,
                              const std::function<void(double)>& progress) {
   auto answer = driven_response(device, method, plan, base, stop_asked, progress);
-  if (!answer) return schema::forward_error(answer);
+  TACTO_TRY(answer);
   return std::move(answer->data);
 }
 

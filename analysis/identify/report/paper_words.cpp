@@ -138,9 +138,9 @@ std::vector<PaperFigure> transducer_figures(const schema::Transducer& paper,
 schema::Result<std::vector<PaperFigure>> paper_figures(const schema::Transducer& found,
                                                        const ResponseFit& fit) {
   const auto paper = schema::read_transducer("wiertlewski2011");
-  if (!paper) return schema::forward_error(paper);
+  TACTO_TRY(paper);
   const auto printed = schema::read_transducer("wiertlewski2011-as-printed");
-  if (!printed) return schema::forward_error(printed);
+  TACTO_TRY(printed);
   std::vector<PaperFigure> figures = transducer_figures(*paper, *printed, found, fit);
   std::ranges::move(fit_figures(*paper, fit), std::back_inserter(figures));
   std::ranges::move(other_figures(*paper, found, fit), std::back_inserter(figures));

@@ -67,7 +67,7 @@ Result<TradeRow> filtered(const StrokedTexture& stroked, const spatial::TimeFilt
     dirty[i] += amplitude * (std::cos(kDrift_hz * turn) + std::sin(kHum_hz * turn));
   }
   auto kept = spatial::filter_in_time(dirty, StrokedTexture::kRate_hz, filter);
-  if (!kept) return schema::forward_error(kept);
+  TACTO_TRY(kept);
   const auto work = [&] {
     static_cast<void>(spatial::filter_in_time(dirty, StrokedTexture::kRate_hz, filter));
   };
@@ -103,7 +103,7 @@ Result<std::vector<TradeRow>> filters(const StrokedTexture& stroked) {
     filter.order = each.order;
     filter.band = {StrokedTexture::kLow_hz, StrokedTexture::kHigh_hz};
     auto row = filtered(stroked, filter, each.name);
-    if (!row) return schema::forward_error(row);
+    TACTO_TRY(row);
     rows.push_back(std::move(*row));
   }
   return rows;
@@ -129,7 +129,7 @@ TradeRow stored_single(const StrokedTexture& stroked) {
 Result<std::vector<TradeRow>> measure_offline(const schema::Texture& texture,
                                               const std::function<void(double)>& progress) {
   const auto stroked = StrokedTexture::of(texture);
-  if (!stroked) return schema::forward_error(stroked);
+  TACTO_TRY(stroked);
   std::vector<TradeRow> rows;
   constexpr ResampleMethod kMethods[] = {ResampleMethod::linear, ResampleMethod::hermite,
                                          ResampleMethod::swapped, ResampleMethod::sinc};
@@ -141,12 +141,12 @@ Result<std::vector<TradeRow>> measure_offline(const schema::Texture& texture,
                  static_cast<double>(std::size(kMethods) * std::size(spatial::kGrids_m)));
     }
   auto more = filters(*stroked);
-  if (!more) return schema::forward_error(more);
+  TACTO_TRY(more);
   std::ranges::move(*more, std::back_inserter(rows));
   rows.push_back(stored_single(*stroked));
   if (progress) progress(0.75);
   more = measure_spectrogram_trade(stroked->banded);
-  if (!more) return schema::forward_error(more);
+  TACTO_TRY(more);
   std::ranges::move(*more, std::back_inserter(rows));
   return rows;
 }

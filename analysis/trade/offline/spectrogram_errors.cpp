@@ -113,7 +113,7 @@ Result<OctaveEnergy> OctaveEnergy::of(const Texture& texture) {
     band.low_per_m = kOctaves_per_m[i];
     band.high_per_m = kOctaves_per_m[i + 1];
     const auto values = spatial::filter_in_space(texture.signal.values, texture.signal.pitch_m, band);
-    if (!values) return schema::forward_error(values);
+    TACTO_TRY(values);
     made.truth_.push_back(power_between(*values, left_out));
   }
   return made;

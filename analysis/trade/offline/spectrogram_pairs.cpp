@@ -33,12 +33,12 @@ class WindowPairs {
 
   Result<void> add_hops(std::vector<TradeRow>& rows) const {
     const auto every = spatial::spatial_spectrogram(texture_, with_every_row(options_, texture_));
-    if (!every) return schema::forward_error(every);
+    TACTO_TRY(every);
     for (const double hop_m : kPairedHops_m) {
       SpectrogramOptions options = options_;
       options.hop_m = hop_m;
       const auto made = spatial::spatial_spectrogram(texture_, options);
-      if (!made) return schema::forward_error(made);
+      TACTO_TRY(made);
       rows.push_back(row(options, "hop", length_for_people(hop_m), *made, error_between_rows(*made, *every)));
     }
     return {};
@@ -46,10 +46,10 @@ class WindowPairs {
 
   Result<void> add_paddings(std::vector<TradeRow>& rows) const {
     const auto finest = spatial::spatial_spectrogram(texture_, padded(kFinestPadding));
-    if (!finest) return schema::forward_error(finest);
+    TACTO_TRY(finest);
     for (const double times : kPairedPaddings) {
       const auto made = spatial::spatial_spectrogram(texture_, padded(times));
-      if (!made) return schema::forward_error(made);
+      TACTO_TRY(made);
       rows.push_back(row(padded(times), "padding", fmt::format("{:g} windows", times), *made,
                          error_of_peaks(*made, *finest)));
     }
@@ -84,11 +84,9 @@ class WindowPairs {
 Result<std::vector<TradeRow>> measure_spectrogram_pairs(const Texture& texture, const OctaveEnergy& energy) {
   std::vector<TradeRow> rows;
   for (const double window_m : kPairedWindows_m)
-    if (const auto added = WindowPairs(texture, energy, window_m).add_hops(rows); !added)
-      return schema::forward_error(added);
+    TACTO_TRY(WindowPairs(texture, energy, window_m).add_hops(rows));
   for (const double window_m : kPairedWindows_m)
-    if (const auto added = WindowPairs(texture, energy, window_m).add_paddings(rows); !added)
-      return schema::forward_error(added);
+    TACTO_TRY(WindowPairs(texture, energy, window_m).add_paddings(rows));
   return rows;
 }
 

@@ -41,7 +41,7 @@ Result<TradeRow> with_resolution(const Texture& texture, spatial::Resolution res
   options.scaling = schema::Scaling::amplitude;
   options.resolution = resolution;
   const auto made = spatial::spatial_spectrogram(texture, options);
-  if (!made) return schema::forward_error(made);
+  TACTO_TRY(made);
   return spectrogram_row(texture, options, "resolution", name, *made, from_exact(texture, options, *made));
 }
 
@@ -49,7 +49,7 @@ Result<TradeRow> with_hop(const Texture& texture, double hop_m, const Spectrogra
   SpectrogramOptions options = standard_spectrogram(texture);
   options.hop_m = hop_m;
   const auto made = spatial::spatial_spectrogram(texture, options);
-  if (!made) return schema::forward_error(made);
+  TACTO_TRY(made);
   return spectrogram_row(texture, options, "hop", length_for_people(hop_m), *made,
                          error_between_rows(*made, every));
 }
@@ -63,11 +63,11 @@ Result<Spectrogram> padded(const Texture& texture, double times, SpectrogramOpti
 Result<std::vector<TradeRow>> paddings(const Texture& texture) {
   SpectrogramOptions options;
   const auto finest = padded(texture, 16, options);
-  if (!finest) return schema::forward_error(finest);
+  TACTO_TRY(finest);
   std::vector<TradeRow> rows;
   for (const double times : {1.0, 2.0, 4.0, 8.0}) {
     const auto made = padded(texture, times, options);
-    if (!made) return schema::forward_error(made);
+    TACTO_TRY(made);
     rows.push_back(spectrogram_row(texture, options, "padding", fmt::format("{:g} windows", times), *made,
                                    error_of_peaks(*made, *finest)));
     rows.back().note = "height of the highest peak";
@@ -79,7 +79,7 @@ Result<TradeRow> with_window(const Texture& texture, double window_m, const Octa
   SpectrogramOptions options = standard_spectrogram(texture);
   options.window_m = window_m;
   const auto made = spatial::spatial_spectrogram(texture, options);
-  if (!made) return schema::forward_error(made);
+  TACTO_TRY(made);
   TradeRow row =
       spectrogram_row(texture, options, "window", length_for_people(window_m), *made, energy.error(*made));
   row.note = "energy by octaves; tells lines apart from " +
@@ -102,13 +102,13 @@ Result<std::vector<TradeRow>> measure_spectrogram_trade(const Texture& texture) 
   take(with_resolution(texture, spatial::Resolution::whole, "whole"));
   const auto every =
       spatial::spatial_spectrogram(texture, with_every_row(standard_spectrogram(texture), texture));
-  if (!every) return schema::forward_error(every);
+  TACTO_TRY(every);
   for (const double hop_m : {100e-6, 200e-6, 500e-6, 1e-3}) take(with_hop(texture, hop_m, *every));
   const auto energy = OctaveEnergy::of(texture);
-  if (!energy) return schema::forward_error(energy);
+  TACTO_TRY(energy);
   for (const double window_m : {1.25e-3, 2.5e-3, 5e-3, 10e-3}) take(with_window(texture, window_m, *energy));
   for (auto more : {paddings(texture), measure_spectrogram_pairs(texture, *energy)}) {
-    if (!more) return schema::forward_error(more);
+    TACTO_TRY(more);
     std::ranges::move(*more, std::back_inserter(rows));
   }
   if (failed) return tl::unexpected(*failed);

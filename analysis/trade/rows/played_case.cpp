@@ -192,12 +192,11 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
   PrepareOptions options = played.options;
   options.ends = Ends::loop;
   options.onset_s = 0;
-  if (auto sound = playback::check_prepare(std::span(&placed, 1), options); !sound)
-    return schema::forward_error(sound);
+  TACTO_TRY(playback::check_prepare(std::span(&placed, 1), options));
   const auto loop = playback::laid_out(std::span(&placed, 1), Ends::loop, options.seam_m);
   options.gain_m_per_n = gain_for(loop, transducer);
   auto made = playback::prepare(texture, transducer, options);
-  if (!made) return schema::forward_error(made);
+  TACTO_TRY(made);
   const auto prepared = std::make_shared<const Prepared>(std::move(*made));
   FingerPath path = path_of(played.way);
   const auto counts = counts_along(path, options, static_cast<std::size_t>(kPlayedS * options.rate_hz) + 1);

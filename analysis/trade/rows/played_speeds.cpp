@@ -21,7 +21,7 @@ schema::Result<PlayedSpeeds> PlayedSpeeds::of(const schema::Texture& texture,
   for (const double speed_mps : speeds_mps) {
     played.way.speed_mps = speed_mps;
     auto outcome = play_case(texture, transducer, played);
-    if (!outcome) return schema::forward_error(outcome);
+    TACTO_TRY(outcome);
     all.speeds_mps_.push_back(speed_mps);
     all.outcomes_.push_back(std::move(*outcome));
   }

@@ -36,7 +36,7 @@ double way_at(double time_s) {
 }  // namespace
 
 schema::Result<StrokedTexture> StrokedTexture::of(const schema::Texture& texture) {
-  if (const auto fine = check_texture(texture); !fine) return schema::forward_error(fine);
+  TACTO_TRY(check_texture(texture));
   StrokedTexture made;
   made.banded = texture;
   schema::SpaceSignal& signal = made.banded.signal;
@@ -46,7 +46,7 @@ schema::Result<StrokedTexture> StrokedTexture::of(const schema::Texture& texture
   band.low_per_m = kContentLow_hz / (kSpeed_mps * (1 - kWander));
   band.high_per_m = std::min(kContentHigh_hz / (kSpeed_mps * (1 + kWander)), 0.2 / signal.pitch_m);
   auto values = spatial::filter_in_space(signal.values, signal.pitch_m, band);
-  if (!values) return schema::forward_error(values);
+  TACTO_TRY(values);
   signal.values = std::move(*values);
   for (std::size_t i = 0; way_at(static_cast<double>(i) / kRate_hz) < signal.length_m(); ++i) {
     made.path.sample.push_back(static_cast<double>(i));

@@ -16,7 +16,7 @@ Result<std::unique_ptr<SimDevice>> SimDevice::open(std::string uri, const SimPar
   auto board = std::make_unique<SimBoard>(parameters, transducer, std::move(surface));
   auto wire = WireDevice::open(
       std::move(uri), std::make_unique<SimTransport>(*board, parameters.paced, parameters.link_buffer_s));
-  if (!wire) return schema::forward_error(wire);
+  TACTO_TRY(wire);
   return std::unique_ptr<SimDevice>(new SimDevice(std::move(board), std::move(*wire), parameters.paced));
 }
 
@@ -37,13 +37,12 @@ Result<std::size_t> SimDevice::read(std::span<std::int32_t> interleaved) {
 
 Result<std::unique_ptr<SimDevice>> make_sim_device(const std::string& uri, std::string_view parameters) {
   const auto asked = parse_sim_parameters(parameters);
-  if (!asked) return schema::forward_error(asked);
+  TACTO_TRY(asked);
   auto surface = make_surface(asked->surface);
-  if (!surface) return schema::forward_error(surface);
+  TACTO_TRY(surface);
   const auto transducer = schema::read_transducer(asked->transducer);
-  if (!transducer) return schema::forward_error(transducer);
-  if (const auto fits = check_against(*asked, *transducer, surface->profile.length_m()); !fits)
-    return schema::forward_error(fits);
+  TACTO_TRY(transducer);
+  TACTO_TRY(check_against(*asked, *transducer, surface->profile.length_m()));
   return SimDevice::open(uri, *asked, *transducer, std::move(*surface));
 }
 

@@ -158,10 +158,10 @@ Result<SimParameters> parse_sim_parameters(std::string_view text) {
   std::set<std::string_view> seen;
   while (!text.empty()) {
     const std::string_view pair = text.substr(0, text.find(','));
-    if (const auto done = set_pair(parameters, pair, seen); !done) return schema::forward_error(done);
+    TACTO_TRY(set_pair(parameters, pair, seen));
     text.remove_prefix(std::min(text.size(), pair.size() + 1));
   }
-  if (const auto details = check_details(parameters, seen); !details) return schema::forward_error(details);
+  TACTO_TRY(check_details(parameters, seen));
   return parameters;
 }
 

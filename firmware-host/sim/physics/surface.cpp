@@ -96,7 +96,7 @@ tl::unexpected<schema::Error> no_profile(const std::string& name, std::string wh
 // A texture of heights is not softened or resampled: it is touched as it was measured.
 schema::Result<Surface> measured_surface(const std::string& name) {
   const auto texture = schema::read_texture(name);
-  if (!texture) return schema::forward_error(texture);
+  TACTO_TRY(texture);
   if (texture->quantity != "height")
     return no_profile(name, fmt::format("is a texture of {}, not of heights", texture->quantity),
                       "make one with 'tactograph import' of a height profile");
@@ -134,7 +134,7 @@ std::string surface_names() {
 }
 
 schema::Result<Surface> make_surface(const SurfaceChoice& choice) {
-  if (const auto sizes = check_sizes(choice); !sizes) return schema::forward_error(sizes);
+  TACTO_TRY(check_sizes(choice));
   for (const Grating& grating : kGratings)
     if (grating.name == choice.name) return make_grating(grating, choice);
   return make_fixed(choice);
