@@ -31,7 +31,7 @@ schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri) {
     if (uri.starts_with(scheme.name))
       return scheme.open(uri, std::string_view(uri).substr(scheme.name.size()));
   return schema::fail(
-      schema::Fault::usage, fmt::format("'{}' is not a device that can be opened", uri), "device",
+      schema::ErrorKind::usage, fmt::format("'{}' is not a device that can be opened", uri), "device",
       fmt::format("the transports are: {} (for example usb: or sim:surface=C,speed=50mm/s or replay:oak)",
                   schemes()));
 }

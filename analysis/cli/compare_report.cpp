@@ -159,7 +159,7 @@ Report compare_report(const ComparedNames& names, const Comparison& c) {
   report.add("a", names.a).add("b", names.b);
   if (!c.a_simulated.empty()) report.add("a_simulated", c.a_simulated);
   if (!c.b_simulated.empty()) report.add("b_simulated", c.b_simulated);
-  report.add("verdict", word_of(c.verdict.likeness)).add("because", c.verdict.because);
+  report.add("verdict", to_string(c.verdict.likeness)).add("because", c.verdict.because);
   report.add("tolerance_db", c.tolerance_db);
   add_detectable(report, c);
   add_pair(report, c);
@@ -176,7 +176,7 @@ Report compare_report(const ComparedNames& names, const Comparison& c) {
 Report brief_compare_report(const ComparedNames& names, const Comparison& c,
                             const std::vector<std::string>& written) {
   Report report;
-  report.add("verdict", word_of(c.verdict.likeness));
+  report.add("verdict", to_string(c.verdict.likeness));
   add_wrapped(report, "because", c.verdict.because);
   add_wrapped(report, "detectable", detectable_words(c.evidence, c.tolerance_db));
   add_wrapped(report, "written", fmt::format("{}", fmt::join(written, " ")));

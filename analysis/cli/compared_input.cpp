@@ -10,7 +10,7 @@
 namespace tacto::analysis {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 bool names_a_session(const std::string& name) {
@@ -32,15 +32,15 @@ Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, con
                                              std::size_t stroke) {
   const std::size_t there = inputs.expected();
   if (stroke == 0 && there > 1)
-    return schema::fail(Fault::usage, fmt::format("stands for {} textures", there), name,
+    return schema::fail(ErrorKind::usage, fmt::format("stands for {} textures", there), name,
                         "name one of them, or choose with --stroke (compare: --stroke-a, --stroke-b)");
   if (stroke > there)
-    return schema::fail(Fault::usage, fmt::format("stands for {}, and there is no stroke {}", there, stroke),
-                        name);
+    return schema::fail(ErrorKind::usage,
+                        fmt::format("stands for {}, and there is no stroke {}", there, stroke), name);
   for (std::size_t i = 1;; ++i) {
     auto next = inputs.next();
     TACTO_TRY(next);
-    if (!*next) return schema::fail(Fault::unsuitable, "makes no such texture", name);
+    if (!*next) return schema::fail(ErrorKind::unsuitable, "makes no such texture", name);
     if (i >= stroke) return std::move(**next);
   }
 }
@@ -62,12 +62,12 @@ Result<void> match_session(ComparedInput& a, ComparedInput& b) {
   ComparedInput& texture = a.played ? b : a;
   const ComparedInput& session = a.played ? a : b;
   if (texture.file.empty())
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         "is no stored texture: a session is compared with the one it played", texture.name);
   const std::string stem = schema::stem_of(texture.file, ".texture");
-  auto wanted = wanted_of(texture.texture, stem, *session.played);
-  TACTO_TRY(wanted);
-  texture.texture = std::move(*wanted);
+  auto target = target_of(texture.texture, stem, *session.played);
+  TACTO_TRY(target);
+  texture.texture = std::move(*target);
   texture.name += " as wanted";
   return {};
 }

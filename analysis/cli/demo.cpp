@@ -20,7 +20,7 @@ cli::Report row_of(const DemoSurface& surface) {
       .add("peak_frequency_per_m", surface.peak_frequency_per_m)
       .add("replay_speed_mps", surface.replay_speed_mps)
       .add("gain_m_per_n", surface.gain_m_per_n)
-      .add("wanted_rms_m", surface.wanted_rms_m)
+      .add("wanted_rms_m", surface.target_rms_m)
       .add("drive_peak_v", surface.drive_peak_v)
       .add("error_rms_m", surface.error_rms_m)
       .add("error_db", surface.error_db)

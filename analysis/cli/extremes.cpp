@@ -37,7 +37,7 @@ schema::Result<cli::Report> try_extremes(const ExtremesOptions& options) {
   }
   cli::Report report;
   report.add("extremes", std::move(rows)).add("conditions", extremes.size()).add("broken", broken);
-  if (broken > 0) report.ends_with(schema::Fault::unsuitable);
+  if (broken > 0) report.ends_with(schema::ErrorKind::unsuitable);
   return report;
 }
 

@@ -29,7 +29,7 @@ Report tray_row(const FidelitySpeed& speed, const FidelityRow& row, bool simulat
   report.add("tray", row.tray).add("error_db", row.error_db).add("error_in_place_db", row.error_in_place_db);
   if (row.rerecorded_db) report.add("rerecorded_db", *row.rerecorded_db);
   report.add("shift_m", row.shift_m).add("level_db", row.level_db);
-  report.add("wanted_rms_m", row.wanted_rms_m).add("felt_rms_m", row.felt_rms_m);
+  report.add("wanted_rms_m", row.target_rms_m).add("felt_rms_m", row.felt_rms_m);
   return report.add("displacement", simulated ? "simulated" : "modelled");
 }
 
@@ -89,11 +89,12 @@ Result<void> read_speeds(FidelityVerbOptions& o) {
   o.fidelity.speeds_mps.clear();
   for (const std::string& text : between_commas(o.speeds)) {
     if (text.empty())
-      return schema::fail(schema::Fault::usage, "a speed beside a comma is missing", "--speed",
+      return schema::fail(schema::ErrorKind::usage, "a speed beside a comma is missing", "--speed",
                           "name one, or several between commas: 25mm/s,100mm/s");
     const auto speed = schema::parse_quantity(text, Dimension::speed);
     if (!speed)
-      return schema::fail(schema::Fault::usage, speed.error().what, "--speed " + text, speed.error().remedy);
+      return schema::fail(schema::ErrorKind::usage, speed.error().what, "--speed " + text,
+                          speed.error().remedy);
     o.fidelity.speeds_mps.push_back(*speed);
   }
   return {};

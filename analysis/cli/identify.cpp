@@ -25,8 +25,8 @@ namespace {
 
 using cli::Report;
 using schema::Dimension;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr const char* kUsualBase = "wiertlewski2011";
@@ -106,23 +106,24 @@ Result<schema::Transducer> base_of(const IdentifyOptions& o, const firmware_host
 Result<void> check_band(const IdentifyOptions& o) {
   constexpr std::size_t kMostFrequencies = 1000;
   if (o.plan.frequencies < kLeastFrequencies || o.plan.frequencies > kMostFrequencies)
-    return fail(Fault::usage,
+    return fail(ErrorKind::usage,
                 fmt::format("{} to {} frequencies make a sweep", kLeastFrequencies, kMostFrequencies),
                 "--frequencies", "leave it to 60");
   if (!(o.plan.low_hz > 0 && o.plan.low_hz < o.plan.high_hz))
-    return fail(Fault::usage, "the lowest frequency has to be above 0 and below the highest",
+    return fail(ErrorKind::usage, "the lowest frequency has to be above 0 and below the highest",
                 "--low and --high", "leave them to 10Hz and 1kHz");
   if (o.amplitude_v && !(*o.amplitude_v > 0))
-    return fail(Fault::usage, "the drive has to be above 0 V", "--amplitude", "leave it to 0.5V");
+    return fail(ErrorKind::usage, "the drive has to be above 0 V", "--amplitude", "leave it to 0.5V");
   return {};
 }
 
 Result<IdentifySource> asked_of(const IdentifyOptions& o) {
   if (o.file.empty() == o.device_uri.empty())
-    return fail(Fault::usage, "name either a file or a device", "identify", "-d sim:tray_sensor=on, or FILE");
+    return fail(ErrorKind::usage, "name either a file or a device", "identify",
+                "-d sim:tray_sensor=on, or FILE");
   TACTO_TRY(check_band(o));
   if (o.model.finger && (o.model.second_mode || o.base.empty()))
-    return fail(Fault::usage, "a finger's load is found on a transducer that is known", "--finger",
+    return fail(ErrorKind::usage, "a finger's load is found on a transducer that is known", "--finger",
                 "name it with --start-from; its second mode is taken from there");
   IdentifySource asked;
   if (!o.device_uri.empty()) {
@@ -160,7 +161,7 @@ Result<BodeData> tabled_response(const IdentifyOptions& o) {
   TACTO_TRY(tray);
   const double rate_hz = tray->rate_hz > 0 ? tray->rate_hz : o.rate_hz.value_or(0);
   if (!(rate_hz > 0))
-    return fail(Fault::usage, "nobody says how fast it was sampled", o.file,
+    return fail(ErrorKind::usage, "nobody says how fast it was sampled", o.file,
                 "give --rate, or a column time_s");
   return response_of_record(tray->drive_v, tray->displacement_m, rate_hz, o.plan.low_hz, o.plan.high_hz,
                             o.file);
@@ -206,9 +207,10 @@ Result<Report> identify_response(const IdentifyOptions& o, IdentifySource& asked
 
 Result<Report> identify_taps(const IdentifyOptions& o, const IdentifySource& asked) {
   if (!o.picture.empty())
-    return fail(Fault::usage, "taps have no picture", "--picture", "leave it out; the table has each tap");
+    return fail(ErrorKind::usage, "taps have no picture", "--picture",
+                "leave it out; the table has each tap");
   if (o.file.empty() || !o.rate_hz)
-    return fail(Fault::usage, "taps come from a table and need its rate", "--method taps",
+    return fail(ErrorKind::usage, "taps come from a table and need its rate", "--method taps",
                 "identify taps.csv --rate 100kHz");
   const auto taps = read_taps(o.file, *o.rate_hz);
   TACTO_TRY(taps);
@@ -216,7 +218,7 @@ Result<Report> identify_taps(const IdentifyOptions& o, const IdentifySource& ask
   TACTO_TRY(fit);
   const std::size_t fitted = o.taps_fitted > 0 ? o.taps_fitted : taps->taps.size() / 2;
   if (fitted < 2 || fitted + 2 > taps->taps.size())
-    return fail(Fault::usage, "two taps at least on either side", "--fit-on", "leave it to half of them");
+    return fail(ErrorKind::usage, "two taps at least on either side", "--fit-on", "leave it to half of them");
   const auto foretold = foretell_taps(*taps, fitted);
   TACTO_TRY(foretold);
   schema::Identification about;
@@ -243,7 +245,7 @@ Result<void> check_names_free(const IdentifyOptions& o) {
     if (auto free = schema::check_output_free(path, o.existing); !free) return free;
   if (o.results.empty()) return {};
   if (o.results.ends_with(".json")) return schema::check_results_free(o.results, o.existing);
-  return fail(Fault::usage, "has an ending that this verb does not write", o.results,
+  return fail(ErrorKind::usage, "has an ending that this verb does not write", o.results,
               "name results (NAME.results.json)");
 }
 

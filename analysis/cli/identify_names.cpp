@@ -18,7 +18,7 @@ schema::Result<void> check_apart(const std::vector<std::string>& files) {
     if (!file->empty() && std::any_of(files.begin(), file, [&](const auto& other) {
           return !other.empty() && schema::same_file(*file, other);
         }))
-      return schema::fail(schema::Fault::usage, "is named twice", *file,
+      return schema::fail(schema::ErrorKind::usage, "is named twice", *file,
                           "give transducer, picture and results names of their own");
   return {};
 }
@@ -38,8 +38,9 @@ schema::Result<void> check_named(const std::string& stem, const std::string& res
     name = schema::stem_of(results, ".results");
     beside = fmt::format("; --results {} is written beside it", results);
   }
-  return schema::fail(schema::Fault::usage, "the transducer file, which identify always writes, has no name",
-                      "--output", fmt::format("add -o {} for {}.transducer.json{}", name, name, beside));
+  return schema::fail(schema::ErrorKind::usage,
+                      "the transducer file, which identify always writes, has no name", "--output",
+                      fmt::format("add -o {} for {}.transducer.json{}", name, name, beside));
 }
 
 }  // namespace tacto::analysis

@@ -25,7 +25,7 @@ void add_head(Report& report, const schema::Transducer& found, const std::string
   report.add("transducer", file).add("source", about.source);
   if (!about.simulated.empty()) report.add("simulated", about.simulated);
   report.add("conditions", about.conditions).add("verdict", verdict_word(about)).add("words", about.words);
-  if (!about.usable()) report.ends_with(schema::Fault::unsuitable);
+  if (!about.usable()) report.ends_with(schema::ErrorKind::unsuitable);
 }
 
 // The figures: tests/analysis/identify_bench_test.py.

@@ -65,7 +65,7 @@ Result<void> write_page(const Project& project, const ReportVerbOptions& o) {
 
 Result<Report> run_report(const ReportVerbOptions& o) {
   if (!o.output.ends_with(".html"))
-    return schema::fail(schema::Fault::usage, "doesn't end in .html", o.output, "a report is a page");
+    return schema::fail(schema::ErrorKind::usage, "doesn't end in .html", o.output, "a report is a page");
   TACTO_TRY(check_outputs({o.output}, o.existing));
   cli::Progress progress("reading");
   auto project = read_project(o.folder, o.output, [&](double part) { progress.update(part); });

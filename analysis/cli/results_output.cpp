@@ -10,7 +10,7 @@
 namespace tacto::analysis {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 bool is_page(const std::string& path) {
@@ -33,7 +33,7 @@ Result<void> check_output(const std::string& path, schema::Existing existing,
   if (path.ends_with(".json")) return schema::check_results_free(path, existing);
   std::string endings;
   for (const OutputKind& kind : more) endings += ", NAME" + kind.ending;
-  return schema::fail(Fault::usage, "has an ending that this verb does not write", path,
+  return schema::fail(ErrorKind::usage, "has an ending that this verb does not write", path,
                       "name a page (NAME.html) or results (NAME.results.json)" + endings);
 }
 
@@ -44,7 +44,7 @@ Result<void> check_outputs(const std::vector<std::string>& outputs, schema::Exis
   for (auto path = outputs.begin(); path != outputs.end(); ++path) {
     if (std::any_of(outputs.begin(), path,
                     [&](const auto& other) { return schema::same_file(*path, other); }))
-      return schema::fail(Fault::usage, "is named twice", *path, "give each output a name of its own");
+      return schema::fail(ErrorKind::usage, "is named twice", *path, "give each output a name of its own");
     if (const auto free = check_output(*path, existing, more); !free) return free;
   }
   return {};

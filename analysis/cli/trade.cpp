@@ -27,7 +27,7 @@ namespace tacto::analysis {
 namespace {
 
 using cli::Report;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 struct TradeVerbOptions {
@@ -267,21 +267,21 @@ Result<void> check_table_output(const TradeVerbOptions& o) {
   }
   const std::string& path = o.outputs.front();
   if (o.outputs.size() > 1 || !path.ends_with(kTradeTableEnding))
-    return schema::fail(Fault::usage, "is no name for a table of measured choices", path,
+    return schema::fail(ErrorKind::usage, "is no name for a table of measured choices", path,
                         "name one file NAME.trade.json, or none for this machine's own");
   const auto there =
       schema::is_file(path) ? schema::stored_files(path) : Result<std::vector<schema::StoredFile>>{};
   if (!schema::is_file(path) || (there && there->front().kind == schema::FileKind::trade))
     return schema::check_output_free(path, o.existing);
-  return schema::fail(Fault::usage, "is no table of measured choices, and would be lost", path,
+  return schema::fail(ErrorKind::usage, "is no table of measured choices, and would be lost", path,
                       "choose another name");
 }
 
 Result<Report> calibrate(const TradeVerbOptions& o) {
   if (!o.what.empty())
-    return schema::fail(Fault::usage, "a machine is measured without a texture", o.what, "leave it out");
+    return schema::fail(ErrorKind::usage, "a machine is measured without a texture", o.what, "leave it out");
   if (o.halves != TradeHalves::both)
-    return schema::fail(Fault::usage, "a machine's table is of both halves", "--half", "leave it out");
+    return schema::fail(ErrorKind::usage, "a machine's table is of both halves", "--half", "leave it out");
   TACTO_TRY(check_table_output(o));
   cli::Progress progress("calibrating");
   const schema::TradeTable table = measure_trade_table([&](double part) { progress.update(part); });
@@ -293,7 +293,7 @@ Result<Report> calibrate(const TradeVerbOptions& o) {
 Result<Report> run_trade(const TradeVerbOptions& o) {
   if (o.calibrate) return calibrate(o);
   if (o.what.empty())
-    return schema::fail(Fault::usage, "no texture is named", {},
+    return schema::fail(ErrorKind::usage, "no texture is named", {},
                         "name one, or --calibrate for this machine's table");
   return measure(o);
 }

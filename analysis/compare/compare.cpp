@@ -16,7 +16,7 @@ namespace tacto::analysis {
 namespace {
 
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::for_people;
 using schema::Result;
 
@@ -38,7 +38,7 @@ Result<std::size_t> compare_window(const TexturePair& pair, const CompareOptions
   if (std::isfinite(window) && window >= kShortestCompareWindow - 0.5 && window * 1.5 < shorter + 0.5)
     return static_cast<std::size_t>(std::llround(window));
   return schema::fail(
-      options.window_m ? Fault::usage : Fault::unsuitable,
+      options.window_m ? ErrorKind::usage : ErrorKind::unsuitable,
       fmt::format("a window of {} can't be used on {}", for_people(window * pair.pitch_m, Dimension::length),
                   for_people(shorter * pair.pitch_m, Dimension::length)),
       "window", "two windows, half overlapping, have to fit, of 16 samples or more");
@@ -48,7 +48,7 @@ Result<void> set_band(Comparison& comparison) {
   comparison.low_per_m = std::max(comparison.pair.low_per_m, kHannBandwidth / comparison.window_m);
   comparison.high_per_m = comparison.pair.high_per_m;
   if (comparison.low_per_m < comparison.high_per_m) return {};
-  return schema::fail(Fault::unsuitable,
+  return schema::fail(ErrorKind::unsuitable,
                       fmt::format("a window of {} sees nothing below {}, where what both know ends",
                                   for_people(comparison.window_m, Dimension::length),
                                   for_people(comparison.low_per_m, Dimension::spatial_frequency)),
@@ -126,7 +126,7 @@ Result<void> compare_spectra(Comparison& comparison, std::size_t window) {
   const BandSums whole = band_sums(comparison.spectra, comparison.low_per_m, comparison.high_per_m);
   if (!(whole.aa > 0 && whole.bb > 0))
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("is silent from {} to {}", for_people(comparison.low_per_m, Dimension::spatial_frequency),
                     for_people(comparison.high_per_m, Dimension::spatial_frequency)),
         whole.aa > 0 ? "B" : "A", "nothing can be compared with silence");
@@ -196,7 +196,7 @@ void note_units(Comparison& comparison) {
 Result<Comparison> compare(const schema::Texture& a, const schema::Texture& b, const CompareOptions& options,
                            const std::function<void(double)>& progress) {
   if (!(options.tolerance_db > 0 && std::isfinite(options.tolerance_db)))
-    return schema::fail(Fault::usage, "the tolerance has to be above 0 dB", "tolerance");
+    return schema::fail(ErrorKind::usage, "the tolerance has to be above 0 dB", "tolerance");
   auto pair = pair_textures(a, b, options.pair);
   TACTO_TRY(pair);
   const auto window = compare_window(*pair, options);

@@ -201,7 +201,7 @@ std::string rms_figure(const Comparison& c) {
 // The verdict and its first reason.
 std::string answer_words(const Comparison& c) {
   const std::string& because = c.verdict.because;
-  return fmt::format("{}: {}.", word_of(c.verdict.likeness), because.substr(0, because.find("; ")));
+  return fmt::format("{}: {}.", to_string(c.verdict.likeness), because.substr(0, because.find("; ")));
 }
 
 std::string simulated_of(const Comparison& c) {
@@ -224,7 +224,7 @@ std::vector<ResultPicture> comparison_pictures(const Comparison& c, const Compar
 
 std::vector<schema::ResultFigure> comparison_figures(const Comparison& c) {
   std::vector<schema::ResultFigure> figures = {
-      {"verdict", fmt::format("{}: {}", word_of(c.verdict.likeness), c.verdict.because)},
+      {"verdict", fmt::format("{}: {}", to_string(c.verdict.likeness), c.verdict.because)},
       {"compared",
        fmt::format("{} from {} on in A, {} to {}", for_people(c.pair.length_m(), Dimension::length),
                    for_people(c.pair.a_from_m, Dimension::length),
@@ -261,7 +261,8 @@ schema::Result<std::string> comparison_page(const Comparison& c, const ComparedN
   for (const std::string& note : c.notes) body += fmt::format("<p class=\"note\">{}</p>\n", escaped(note));
   body +=
       *pictures + folded("By one-third-octave band", bands_table(c)) + folded("Formants", formants_table(c));
-  return html_document(fmt::format("{} against {}: {}", names.b, names.a, word_of(c.verdict.likeness)), body);
+  return html_document(fmt::format("{} against {}: {}", names.b, names.a, to_string(c.verdict.likeness)),
+                       body);
 }
 
 }  // namespace tacto::analysis

@@ -15,13 +15,13 @@ namespace tacto::analysis {
 namespace {
 
 using playback::SessionStroke;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 Result<void> check_steady(const SessionStroke& stroke, const std::string& session) {
   const double gain = stroke.rows.front().gain;
   if (std::ranges::any_of(stroke.rows, [&](const playback::SessionRow& row) { return row.gain != gain; }))
-    return schema::fail(Fault::unsuitable, "the gain changes within the stroke", session,
+    return schema::fail(ErrorKind::unsuitable, "the gain changes within the stroke", session,
                         "name another stroke");
   const auto first = static_cast<double>(stroke.first_row);
   const std::uint64_t last = stroke.first_row + stroke.rows.size() - 1;
@@ -30,7 +30,7 @@ Result<void> check_steady(const SessionStroke& stroke, const std::string& sessio
     return turn.row <= last && felt_to >= first;
   });
   if (turns)
-    return schema::fail(Fault::unsuitable, "the texture changes within the stroke", session,
+    return schema::fail(ErrorKind::unsuitable, "the texture changes within the stroke", session,
                         "name another stroke");
   return {};
 }
@@ -39,7 +39,7 @@ Result<void> check_reach(const SessionStroke& stroke, const playback::ProfileRea
                          const std::string& session) {
   const auto held = [&](const playback::SessionRow& row) { return reach.holds(row.encoder); };
   if (std::ranges::all_of(stroke.rows, held)) return {};
-  return schema::fail(Fault::unsuitable,
+  return schema::fail(ErrorKind::unsuitable,
                       "the stroke goes to where the device reads no texture any more (`tactograph session` "
                       "says how far it does)",
                       session, "name another stroke");
@@ -56,7 +56,7 @@ Result<schema::SessionHeader> header_of(const SessionStroke& stroke, const std::
   if (later == stroke.turns.begin()) return header;
   const auto& brings = std::prev(later)->brings;
   if (!brings)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         "the texture changes before the stroke, the session does not say to what", session,
                         "name an earlier stroke");
   static_cast<schema::SessionProgram&>(header) = *brings;
@@ -94,22 +94,22 @@ Result<PlayedTexture> played_texture(const std::string& session, std::size_t str
   return played;
 }
 
-Result<schema::Texture> wanted_of(const schema::Texture& texture, const std::string& file,
+Result<schema::Texture> target_of(const schema::Texture& texture, const std::string& file,
                                   const PlayedTexture& played) {
   const auto wav = schema::texture_wav(file);
   TACTO_TRY(wav);
   const auto row = std::ranges::find(played.header.textures, wav->sha256, &schema::SessionTexture::sha256);
   if (row == played.header.textures.end())
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("is not what the session played, which is {}", played.header.textures.front().file), file,
         "compare the session with its own texture");
-  schema::Texture wanted = texture;
-  for (double& value : wanted.signal.values) value *= row->gain_m_per_n * played.gain;
-  wanted.quantity = "displacement";
-  wanted.unit = "m";
-  wanted.source_origin_m = row->at_m;
-  return wanted;
+  schema::Texture target = texture;
+  for (double& value : target.signal.values) value *= row->gain_m_per_n * played.gain;
+  target.quantity = "displacement";
+  target.unit = "m";
+  target.source_origin_m = row->at_m;
+  return target;
 }
 
 }  // namespace tacto::analysis

@@ -28,7 +28,7 @@ schema::Result<PlayedTexture> played_texture(const std::string& session, std::si
 
 /// A texture as the session's finger was to feel it: force times gain, where it lay. `file` names it, by stem
 /// or in full. Errors: unsuitable: not the samples that were played (by SHA-256); not_found.
-schema::Result<schema::Texture> wanted_of(const schema::Texture& texture, const std::string& file,
+schema::Result<schema::Texture> target_of(const schema::Texture& texture, const std::string& file,
                                           const PlayedTexture& played);
 
 }  // namespace tacto::analysis

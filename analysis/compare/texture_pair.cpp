@@ -20,7 +20,7 @@ namespace tacto::analysis {
 namespace {
 
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::for_people;
 using schema::Result;
 using schema::Texture;
@@ -181,7 +181,7 @@ void pair_places(Side& a, Side& b, const PairOptions& options, TexturePair& pair
 
 Result<void> check_alike(const Texture& a, const Texture& b) {
   if (a.quantity == b.quantity && a.unit == b.unit) return {};
-  return schema::fail(Fault::unsuitable,
+  return schema::fail(ErrorKind::unsuitable,
                       fmt::format("B holds {} in {}, A {} in {}", b.quantity, b.unit, a.quantity, a.unit),
                       "quantity", "compare textures of one quantity");
 }
@@ -189,12 +189,12 @@ Result<void> check_alike(const Texture& a, const Texture& b) {
 Result<void> check_pair(const TexturePair& pair) {
   const std::size_t samples = std::min(pair.a.size(), pair.b.size());
   if (samples < kFewestPairSamples)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         fmt::format("they have {} samples in common, {} are the fewest that a spectrum takes",
                                     samples, kFewestPairSamples),
                         "A and B", "take longer textures, or a finer grid");
   if (pair.low_per_m < pair.high_per_m) return {};
-  return schema::fail(Fault::unsuitable,
+  return schema::fail(ErrorKind::unsuitable,
                       fmt::format("they have no band in common: one is valid from {} on, the other up to {}",
                                   for_people(pair.low_per_m, Dimension::spatial_frequency),
                                   for_people(pair.high_per_m, Dimension::spatial_frequency)),
@@ -206,9 +206,9 @@ Result<void> check_pair(const TexturePair& pair) {
 Result<TexturePair> pair_textures(const Texture& a, const Texture& b, const PairOptions& options) {
   TACTO_TRY(check_alike(a, b));
   if (!(options.max_shift_m >= 0 && std::isfinite(options.max_shift_m)))
-    return schema::fail(Fault::usage, "the largest shift has to be a length", "max-shift");
+    return schema::fail(ErrorKind::usage, "the largest shift has to be a length", "max-shift");
   if (a.signal.values.empty() || b.signal.values.empty())
-    return schema::fail(Fault::unsuitable, "holds no samples", a.signal.values.empty() ? "A" : "B");
+    return schema::fail(ErrorKind::unsuitable, "holds no samples", a.signal.values.empty() ? "A" : "B");
   Side left = side_of(a), right = side_of(b);
   TexturePair pair;
   pair.quantity = a.quantity;

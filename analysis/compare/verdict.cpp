@@ -184,7 +184,7 @@ Verdict by_level(const Evidence& e, double tolerance_db) {
 
 }  // namespace
 
-std::string_view word_of(Likeness likeness) {
+std::string_view to_string(Likeness likeness) {
   constexpr std::array<std::string_view, 5> kWords = {"same", "louder", "quieter", "different", "undecided"};
   return kWords[static_cast<std::size_t>(likeness)];
 }

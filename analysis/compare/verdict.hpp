@@ -13,7 +13,7 @@
 namespace tacto::analysis {
 
 enum class Likeness { same, louder, quieter, different, undecided };
-std::string_view word_of(Likeness likeness);
+std::string_view to_string(Likeness likeness);
 
 /// Powers by segment and band, `bands` to a row. Rows of both belong together where `paired`.
 struct BandPowers {

@@ -89,7 +89,7 @@ Result<void> check_replaceable(const std::string& stem) {
   for (const char* ending :
        {".json", ".wav", ".events.jsonl", ".texture.json", ".texture.wav", ".nc", ".png"})
     if (fs::exists(stem + ending, ignored))
-      return schema::fail(schema::Fault::usage, "is there already, and no earlier demo made it",
+      return schema::fail(schema::ErrorKind::usage, "is there already, and no earlier demo made it",
                           stem + ending, "choose another folder with -o");
   return {};
 }
@@ -169,7 +169,7 @@ spatial::LineFigure replay_figure(const playback::Rendering& rendering, const sc
   figure.x_label = "time (ms)";
   figure.y_label = "displacement (µm)";
   figure.simulated = simulated;
-  figure.series = {series("target", rendering.wanted_m, 1.1, 1.3, 0),
+  figure.series = {series("target", rendering.target_m, 1.1, 1.3, 0),
                    series("emulated tray", came, 1.1, 1.3, 1)};
   return figure;
 }
@@ -197,10 +197,10 @@ Result<void> replayed(const Made& made, const schema::Transducer& transducer, De
   firmware_host::ActuatedTray tray(transducer, options.rate_hz);
   schema::TimeSignal came = rendering->drive_v;
   came.values = firmware_host::displacement_under(tray, rendering->drive_v.values);
-  const ReplayError error = replay_error(came, rendering->wanted_m, options.band, kSettleS);
+  const ReplayError error = replay_error(came, rendering->target_m, options.band, kSettleS);
   row.replay_speed_mps = mean_speed_mps(path);
   row.drive_peak_v = rendering->peaks.drive_v.value;
-  row.wanted_rms_m = error.wanted_rms;
+  row.target_rms_m = error.target_rms;
   row.error_rms_m = error.error_rms;
   row.error_db = error.error_db;
   row.delay_s = error.delay_s;
@@ -214,8 +214,8 @@ Result<void> make_folder(const std::string& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (!failure) return {};
-  return schema::fail(schema::Fault::cannot_write, "the folder can't be made: " + failure.message(), folder,
-                      "choose another with -o");
+  return schema::fail(schema::ErrorKind::cannot_write, "the folder can't be made: " + failure.message(),
+                      folder, "choose another with -o");
 }
 
 Result<void> check_folder(const std::string& folder, const std::string& page) {
@@ -224,7 +224,7 @@ Result<void> check_folder(const std::string& folder, const std::string& page) {
   std::error_code ignored;
   const bool again = is_of_a_demo(folder + "/" + kSamples.front().surface);
   if (again || !fs::exists(page, ignored)) return {};
-  return schema::fail(schema::Fault::usage, "is there already, and no earlier demo made it", page,
+  return schema::fail(schema::ErrorKind::usage, "is there already, and no earlier demo made it", page,
                       "choose another folder with -o");
 }
 

@@ -29,7 +29,7 @@ std::string figures(const std::vector<DemoSurface>& surfaces) {
         [](const S& s) { return for_people(s.peak_frequency_per_m, Dimension::spatial_frequency); }},
        {"replayed at", [](const S& s) { return for_people(s.replay_speed_mps, Dimension::speed); }},
        {"gain", [](const S& s) { return for_people(s.gain_m_per_n, Dimension::compliance); }},
-       {"target, RMS", [](const S& s) { return for_people(s.wanted_rms_m, Dimension::length); }},
+       {"target, RMS", [](const S& s) { return for_people(s.target_rms_m, Dimension::length); }},
        {"drive, peak", [](const S& s) { return for_people(s.drive_peak_v, Dimension::voltage); }},
        {"error, 15-500 Hz", replay_row_error}});
 }

@@ -19,7 +19,7 @@ struct DemoSurface {
   double peak_frequency_per_m = 0;
   double gain_m_per_n = 0;  ///< displacement for force
   double drive_peak_v = 0;
-  double wanted_rms_m = 0;
+  double target_rms_m = 0;
   double error_rms_m = 0;       ///< displacement that came less the wanted one, 15-500 Hz, delay taken out
   double error_db = 0;          ///< error_rms_m over wanted_rms_m
   double delay_s = 0;           ///< of the displacement behind the wanted one

@@ -16,14 +16,14 @@ using Spectrum = std::vector<std::complex<double>>;
 // Shifts and compares two signals through one planned transform.
 class ReplayComparison {
  public:
-  ReplayComparison(const schema::TimeSignal& came, const schema::TimeSignal& wanted,
+  ReplayComparison(const schema::TimeSignal& came, const schema::TimeSignal& target,
                    const spatial::Band& band, double settle_s)
       : rate_hz_(came.sample_rate_hz),
         settle_(static_cast<std::size_t>(settle_s * rate_hz_)),
         length_(came.values.size()),
         fft_(spatial::fast_length(2 * length_)),
         came_(in_band(came.values, band)),
-        wanted_(back(in_band(wanted.values, band))) {}
+        target_(back(in_band(target.values, band))) {}
 
   double error_rms(double delay_s) {
     Spectrum shifted = came_;
@@ -32,13 +32,13 @@ class ReplayComparison {
       shifted[k] *= std::polar(1.0, step * static_cast<double>(k) * delay_s);
     const std::vector<double> advanced = back(shifted);
     double sum = 0;
-    for (std::size_t i = settle_; i < length_ - settle_; ++i) sum += std::pow(advanced[i] - wanted_[i], 2);
+    for (std::size_t i = settle_; i < length_ - settle_; ++i) sum += std::pow(advanced[i] - target_[i], 2);
     return root_mean(sum);
   }
 
-  double wanted_rms() const {
+  double target_rms() const {
     double sum = 0;
-    for (std::size_t i = settle_; i < length_ - settle_; ++i) sum += wanted_[i] * wanted_[i];
+    for (std::size_t i = settle_; i < length_ - settle_; ++i) sum += target_[i] * target_[i];
     return root_mean(sum);
   }
 
@@ -65,7 +65,7 @@ class ReplayComparison {
   std::size_t settle_, length_;
   spatial::RealFft fft_;
   Spectrum came_;
-  std::vector<double> wanted_;
+  std::vector<double> target_;
 };
 
 // Coarse steps find the valley, golden section its bottom: the error has one minimum within half a period of
@@ -96,16 +96,16 @@ double best_delay(ReplayComparison& comparison, double max_delay_s) {
 
 }  // namespace
 
-ReplayError replay_error(const schema::TimeSignal& came, const schema::TimeSignal& wanted,
+ReplayError replay_error(const schema::TimeSignal& came, const schema::TimeSignal& target,
                          const spatial::Band& band, double settle_s, double max_delay_s) {
-  assert(came.values.size() == wanted.values.size() && came.duration_s() > 2 * settle_s);
-  ReplayComparison comparison(came, wanted, band, settle_s);
+  assert(came.values.size() == target.values.size() && came.duration_s() > 2 * settle_s);
+  ReplayComparison comparison(came, target, band, settle_s);
   ReplayError found;
   found.delay_s =
       std::round(best_delay(comparison, max_delay_s) / kResolutionS) * kResolutionS + 0.0;  // no -0
   found.error_rms = comparison.error_rms(found.delay_s);
-  found.wanted_rms = comparison.wanted_rms();
-  found.error_db = 20 * std::log10(found.error_rms / found.wanted_rms);
+  found.target_rms = comparison.target_rms();
+  found.error_db = 20 * std::log10(found.error_rms / found.target_rms);
   return found;
 }
 

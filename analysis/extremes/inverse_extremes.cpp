@@ -40,8 +40,8 @@ double left_by(const playback::InverseFilter& filter, const Transducer& t) {
     std::complex<double> gain = 0;
     for (std::size_t n = 0; n < filter.taps.size(); ++n)
       gain += double{filter.taps[n]} * std::polar(1.0, turn * static_cast<double>(n));
-    const auto wanted = std::polar(1.0, turn * kInverseRateHz * kInverseDelayS);
-    sum += std::norm(gain * playback::chain_response(chain_of(t), f) - wanted);
+    const auto target = std::polar(1.0, turn * kInverseRateHz * kInverseDelayS);
+    sum += std::norm(gain * playback::chain_response(chain_of(t), f) - target);
   }
   return std::sqrt(sum / kPlaces);
 }

@@ -129,7 +129,7 @@ struct SettledChain {
 };
 
 // A chain's state is finite: once it comes back to what it was, all later ticks are known (Brent 1980).
-SettledChain settled(core::SectionChain chain, float input, double wanted) {
+SettledChain settled(core::SectionChain chain, float input, double target) {
   constexpr std::uint64_t kMostTicks = 20'000'000;
   core::SectionChain saved = chain;
   SettledChain end;
@@ -143,7 +143,7 @@ SettledChain settled(core::SectionChain chain, float input, double wanted) {
     if (since == power) saved = chain, power *= 2, since = 0;
   }
   for (std::uint64_t i = 0; i < end.cycle; ++i)
-    end.largest = std::max(end.largest, std::abs(double{chain.filter(input)} - wanted));
+    end.largest = std::max(end.largest, std::abs(double{chain.filter(input)} - target));
   return end;
 }
 

@@ -13,7 +13,7 @@ namespace tacto::analysis {
 namespace {
 
 using playback::FingerPath;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kBesideS = 0.25;  // in which the drive rises before the texture begins
@@ -44,16 +44,16 @@ Result<void> check_counts(const EmulatedPass& pass) {
   const double step_m = pass.columns.header.metres_per_count;
   for (std::size_t i = 0; i < pass.position_m.size(); ++i)
     if (std::abs(pass.columns.position_m[i] - pass.position_m[i]) > 1.01 * step_m)
-      return schema::fail(Fault::internal, "the emulated finger was not where its path is",
+      return schema::fail(ErrorKind::internal, "the emulated finger was not where its path is",
                           fmt::format("tick {}", pass.columns.tick[i]));
   return {};
 }
 
 Result<void> check_played(const EmulatedPass& pass, const std::string& device) {
   if (pass.outcome.status.state == playback::PlayerState::fault)
-    return schema::fail(Fault::device, "playing ended in a fault: " + pass.outcome.status.fault, device);
+    return schema::fail(ErrorKind::device, "playing ended in a fault: " + pass.outcome.status.fault, device);
   if (pass.columns.lost_at)
-    return schema::fail(Fault::device, fmt::format("{} ticks were lost", pass.columns.lost), device);
+    return schema::fail(ErrorKind::device, fmt::format("{} ticks were lost", pass.columns.lost), device);
   return check_counts(pass);
 }
 
@@ -71,7 +71,7 @@ Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::Pla
   TACTO_TRY(write_path(options.finger_path, path));
   auto outcome = playback::play_once(options, stop_asked, progress);
   TACTO_TRY(outcome);
-  if (stop_asked()) return schema::fail(Fault::usage, "stopped before the end", "fidelity");
+  if (stop_asked()) return schema::fail(ErrorKind::usage, "stopped before the end", "fidelity");
   auto columns = playback::read_session_columns(options.session);
   TACTO_TRY(columns);
   EmulatedPass pass{std::move(*columns), std::move(*outcome), {}};

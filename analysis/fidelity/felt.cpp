@@ -7,7 +7,7 @@
 #include "firmware-host/sim/bench/actuated_tray.hpp"
 #include "firmware-host/sim/bench/lvdt.hpp"
 #include "playback/model/spatial_content.hpp"
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -44,7 +44,7 @@ std::vector<double> through_sensor(const std::vector<double>& displacement_m, do
   return seen_m;
 }
 
-std::vector<double> wanted_displacement_m(const EmulatedPass& pass, const schema::Texture& texture,
+std::vector<double> target_displacement_m(const EmulatedPass& pass, const schema::Texture& texture,
                                           double at_m, double gain_m_per_n, const spatial::Band& band) {
   const double rate_hz = pass.columns.header.rate_hz;
   const auto fine = static_cast<double>(samples_a_tick(rate_hz));
@@ -54,7 +54,7 @@ std::vector<double> wanted_displacement_m(const EmulatedPass& pass, const schema
   const auto grid = playback::reading_grid(path.duration_s(), rate_hz * fine, band, finest_hz);
   const playback::TextureLookup lookup(texture.signal, at_m);
   return playback::signal_of(
-      playback::exact_wanted(lookup, path, grid, band, gain_m_per_n, kReferenceOnsetS));
+      playback::exact_target(lookup, path, grid, band, gain_m_per_n, kReferenceOnsetS));
 }
 
 std::vector<double> in_band(const std::vector<double>& displacement_m, double rate_hz,

@@ -29,7 +29,7 @@ std::vector<double> through_sensor(const std::vector<double>& displacement_m, do
                                    const schema::Transducer& real);
 
 /// gain x force at the finger's true places, by the exact reference, in the band.
-std::vector<double> wanted_displacement_m(const EmulatedPass& pass, const schema::Texture& texture,
+std::vector<double> target_displacement_m(const EmulatedPass& pass, const schema::Texture& texture,
                                           double at_m, double gain_m_per_n, const spatial::Band& band);
 
 /// A displacement in that band, cut as the reference is (playback::keep_band), so that what lies beside the

@@ -21,7 +21,7 @@
 namespace tacto::analysis {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using schema::Texture;
 
@@ -58,7 +58,7 @@ Result<Stretch> judged_stretch(const EmulatedPass& pass, const Texture& texture,
   const auto first = std::ranges::lower_bound(all, at_m + margin_m);
   const auto last = std::ranges::upper_bound(all, at_m + texture.signal.length_m() - margin_m);
   if (last <= first)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         fmt::format("is {} long, too short for {}",
                                     schema::for_people(texture.signal.length_m(), schema::Dimension::length),
                                     schema::for_people(speed_mps, schema::Dimension::speed)),
@@ -88,14 +88,14 @@ void judge(FidelityRow& row) {
   row.shift_m = shifted.shift;
   row.error_in_place_db = *c.error_db;
   row.level_db = c.power_level_db;
-  row.wanted_rms_m = c.a_rms;
+  row.target_rms_m = c.a_rms;
   row.felt_rms_m = c.b_rms;
 }
 
-Result<FidelityRow> compared_row(const std::string& tray, const Texture& wanted, const Texture& felt) {
+Result<FidelityRow> compared_row(const std::string& tray, const Texture& target, const Texture& felt) {
   CompareOptions options;
   options.formants = false;
-  auto comparison = compare(wanted, felt, options);
+  auto comparison = compare(target, felt, options);
   TACTO_TRY(comparison);
   FidelityRow row;
   row.tray = tray;
@@ -111,13 +111,13 @@ struct Wanted {
 };
 
 // As it moved, and as a sensor saw it.
-Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& wanted,
+Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& target,
                                        const std::vector<double>& felt_m, const std::vector<double>& seen_m) {
   const auto row_of = [&](const std::vector<double>& moved_m) -> Result<FidelityRow> {
     const auto felt =
-        along_stretch(in_band(moved_m, wanted.stretch.rate_hz, wanted.band), wanted.stretch, wanted.band);
+        along_stretch(in_band(moved_m, target.stretch.rate_hz, target.band), target.stretch, target.band);
     TACTO_TRY(felt);
-    return compared_row(tray, wanted.texture, *felt);
+    return compared_row(tray, target.texture, *felt);
   };
   auto row = row_of(felt_m);
   if (!row) return row;
@@ -152,9 +152,9 @@ FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double 
 }
 
 // Thirty times the limit is no texture that is played too loud, but another unit.
-void note_wish(FidelitySpeed& speed, const std::vector<double>& wanted_m, double limit_m) {
+void note_wish(FidelitySpeed& speed, const std::vector<double>& target_m, double limit_m) {
   double peak_m = 0;
-  for (const double value : wanted_m) peak_m = std::max(peak_m, std::abs(value));
+  for (const double value : target_m) peak_m = std::max(peak_m, std::abs(value));
   if (peak_m < kOtherUnitWish * limit_m) return;
   speed.notes.push_back(
       fmt::format("at {:g} mm/s {} are wanted, {:.0f} dB over the transducer's limit of {}: check the "
@@ -165,7 +165,7 @@ void note_wish(FidelitySpeed& speed, const std::vector<double>& wanted_m, double
 }
 
 tl::unexpected<schema::Error> fidelity_stopped() {
-  return schema::fail(Fault::usage, "stopped before the end", "fidelity");
+  return schema::fail(ErrorKind::usage, "stopped before the end", "fidelity");
 }
 
 double share_done(std::size_t done, std::size_t all) {
@@ -184,16 +184,16 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
   const double at_m = options.play.program.at_m.value_or(0);
   const auto stretch = judged_stretch(*pass, texture, at_m, speed_mps);
   TACTO_TRY(stretch);
-  const auto wanted_m = wanted_displacement_m(*pass, texture, at_m, gain_of(options), band);
-  note_wish(speed, wanted_m, pass->columns.header.transducer.displacement_limit_m);
-  const auto wanted = along_stretch(wanted_m, *stretch, band);
-  TACTO_TRY(wanted);
+  const auto target_m = target_displacement_m(*pass, texture, at_m, gain_of(options), band);
+  note_wish(speed, target_m, pass->columns.header.transducer.displacement_limit_m);
+  const auto target = along_stretch(target_m, *stretch, band);
+  TACTO_TRY(target);
   for (const Tray& tray : trays.trays) {
     if (options.stop_asked()) return fidelity_stopped();
     progress(kPlayedShare + (1 - kPlayedShare) * share_done(speed.rows.size(), trays.trays.size()));
     const auto felt_m = felt_displacement_m(*pass, trays.transducer, tray.physics);
     const auto seen_m = through_sensor(felt_m, stretch->rate_hz, trays.transducer);
-    auto row = twice_compared_row(tray.name, {*wanted, *stretch, band}, felt_m, seen_m);
+    auto row = twice_compared_row(tray.name, {*target, *stretch, band}, felt_m, seen_m);
     TACTO_TRY(row);
     speed.rows.push_back(std::move(*row));
   }
@@ -230,9 +230,9 @@ Result<Fidelity> modelled_fidelity(const FidelityOptions& options, const Texture
   TACTO_TRY(outcome);
   const auto played = played_texture(play.session, 0);
   TACTO_TRY(played);
-  const auto wanted = wanted_of(texture, play.program.file, *played);
-  TACTO_TRY(wanted);
-  auto row = compared_row("the model: no load, no hysteresis", *wanted, played->texture);
+  const auto target = target_of(texture, play.program.file, *played);
+  TACTO_TRY(target);
+  auto row = compared_row("the model: no load, no hysteresis", *target, played->texture);
   TACTO_TRY(row);
   FidelitySpeed speed;
   speed.low_hz = played->header.low_hz;
@@ -256,11 +256,11 @@ Result<void> check_speeds(const FidelityOptions& options) {
   for (const double speed : options.speeds_mps)
     if (!(speed > 0 && speed <= kFastestMps))
       return schema::fail(
-          Fault::usage,
+          ErrorKind::usage,
           fmt::format("{:g} m/s is no finger's speed: it has to be above 0, and at most {:g} m/s", speed,
                       kFastestMps),
           "speed", "fingers slide with 10 to 500 mm/s");
-  if (options.speeds_mps.empty()) return schema::fail(Fault::usage, "there is no speed", "speed");
+  if (options.speeds_mps.empty()) return schema::fail(ErrorKind::usage, "there is no speed", "speed");
   return {};
 }
 
@@ -273,7 +273,7 @@ Result<void> check_duration(const FidelityOptions& options, const Texture& textu
   for (const double speed : options.speeds_mps)
     if (speed < slowest_mps)
       return schema::fail(
-          Fault::unsuitable,
+          ErrorKind::unsuitable,
           fmt::format("at {} the texture's {} take {:.3g} s; at {:g} Hz up to {:.3g} s are held in memory",
                       words(speed), schema::length_for_people(length_m), length_m / speed, rate_hz,
                       longest_s - kAroundS),

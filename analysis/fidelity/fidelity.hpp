@@ -28,7 +28,7 @@ struct FidelityRow {
   std::optional<double> rerecorded_db;
   double shift_m = 0;   ///< of what was felt, along the finger's way
   double level_db = 0;  ///< power of what was felt over what was wanted
-  double wanted_rms_m = 0, felt_rms_m = 0;
+  double target_rms_m = 0, felt_rms_m = 0;
   Comparison comparison;
 };
 

@@ -52,8 +52,8 @@ ResultPicture error_picture(const FidelitySpeed& speed) {
 
 ResultCurve stretch_curve(const std::string& name, const Comparison& c, const std::vector<double>& values,
                           bool dashed) {
-  const double wanted_m = kWavesShown / std::sqrt(c.low_per_m * c.high_per_m);
-  const auto shown = std::min(values.size(), static_cast<std::size_t>(wanted_m / c.pair.pitch_m) + 2);
+  const double target_m = kWavesShown / std::sqrt(c.low_per_m * c.high_per_m);
+  const auto shown = std::min(values.size(), static_cast<std::size_t>(target_m / c.pair.pitch_m) + 2);
   const std::size_t first = (values.size() - shown) / 2, step = shown / 2000 + 1;
   ResultCurve curve{name, {}, {}, dashed};
   for (std::size_t i = first; i < first + shown; i += step) {
@@ -91,7 +91,7 @@ std::string rows_table(const FidelitySpeed& speed, const std::string& simulated)
        {"re-recorded", [](const Row& row) { return row.rerecorded_db ? in_db(*row.rerecorded_db) : ""; }},
        {"shift", [](const Row& row) { return for_people(row.shift_m, Dimension::length); }},
        {"level", [](const Row& row) { return fmt::format("{:+.2f} dB", row.level_db); }},
-       {"target, RMS", [](const Row& row) { return for_people(row.wanted_rms_m, Dimension::length); }},
+       {"target, RMS", [](const Row& row) { return for_people(row.target_rms_m, Dimension::length); }},
        {"displacement, RMS", [](const Row& row) { return for_people(row.felt_rms_m, Dimension::length); }},
        {"from", [&](const Row&) { return simulated.empty() ? "modelled" : "simulated"; }}});
 }

@@ -15,7 +15,7 @@ schema::Result<ScratchFolder> ScratchFolder::make() {
   std::error_code failure;
   std::string path = (fs::temp_directory_path(failure) / "tactograph-XXXXXX").string();
   if (!failure && mkdtemp(path.data()) != nullptr) return ScratchFolder(path);
-  return schema::fail(schema::Fault::cannot_write, "no temporary folder can be made", path,
+  return schema::fail(schema::ErrorKind::cannot_write, "no temporary folder can be made", path,
                       "set TMPDIR to a folder that can be written");
 }
 

@@ -14,7 +14,7 @@ namespace tacto::analysis {
 namespace {
 
 namespace fs = std::filesystem;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 bool hidden(const fs::path& path) {
@@ -26,7 +26,7 @@ Result<std::vector<std::string>> files_below(const std::string& folder, const st
   std::error_code failure, ignored;
   fs::recursive_directory_iterator at(folder, failure);
   if (failure)
-    return schema::fail(Fault::not_found, "the folder can't be read: " + failure.message(), folder,
+    return schema::fail(ErrorKind::not_found, "the folder can't be read: " + failure.message(), folder,
                         "name the folder that holds the project's files");
   std::vector<std::string> files;
   for (; at != fs::recursive_directory_iterator(); at.increment(failure)) {
@@ -64,9 +64,9 @@ std::optional<schema::Error> irregular(const std::string& path) {
   std::error_code ignored;
   if (fs::is_regular_file(path, ignored)) return std::nullopt;
   if (!fs::exists(path, ignored))
-    return schema::Error{Fault::not_found, "is a link that leads nowhere", path,
+    return schema::Error{ErrorKind::not_found, "is a link that leads nowhere", path,
                          "put back what it led to, or remove it"};
-  return schema::Error{Fault::unsuitable, "is no file but a pipe, a socket or a device", path,
+  return schema::Error{ErrorKind::unsuitable, "is no file but a pipe, a socket or a device", path,
                        "remove it, or store what comes out of it"};
 }
 
@@ -77,7 +77,7 @@ void add_file(const std::string& path, Project& project, const std::function<voi
   }
   if (is_journal(path)) {
     project.broken.push_back({path,
-                              {Fault::malformed, "is of a recording that was never closed", path,
+                              {ErrorKind::malformed, "is of a recording that was never closed", path,
                                "'tactograph recover' makes it whole"}});
     return;
   }
@@ -108,7 +108,8 @@ Result<Project> read_project(const std::string& folder, const std::string& leave
     if (progress) progress(to);
   }
   if (project.files.empty() && project.broken.empty())
-    return schema::fail(Fault::unsuitable, "holds no file of tactograph", folder, "name a project's folder");
+    return schema::fail(ErrorKind::unsuitable, "holds no file of tactograph", folder,
+                        "name a project's folder");
   std::erase_if(project.foreign, [&](const std::string& path) { return is_sidecars_wav(path, project); });
   std::ranges::stable_sort(project.files, {}, &ProjectFile::kind);
   return project;

@@ -33,7 +33,7 @@ Result<void> check(const schema::StoredFile& file, const Progress& progress) {
   if (checked->findings.empty()) return {};
   const auto& [where, what] = checked->findings.front();
   const std::size_t more = checked->findings.size() - 1;
-  return schema::fail(schema::Fault::malformed,
+  return schema::fail(schema::ErrorKind::malformed,
                       more == 0 ? what : fmt::format("{}, and {} more faults", what, more), where,
                       "'tactograph validate' says more");
 }

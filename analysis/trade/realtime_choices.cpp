@@ -88,11 +88,11 @@ struct MovingFinger {
 };
 
 wire::Hysteresis sixteen_plays() {
-  wire::Hysteresis plays;
-  plays.count = wire::kMaxPlays;
+  wire::Hysteresis play_operators;
+  play_operators.count = wire::kMaxPlays;
   for (std::size_t i = 0; i < wire::kMaxPlays; ++i)
-    plays.plays[i] = {0.05F * static_cast<float>(i + 1), -0.01F};
-  return plays;
+    play_operators.play_operators[i] = {0.05F * static_cast<float>(i + 1), -0.01F};
+  return play_operators;
 }
 
 /// All that is timed, in one place that stays where it is.
@@ -108,7 +108,7 @@ struct TimedKernels {
     core::KernelSetup setup = texture.setup();
     setup.taps = taps.data();
     setup.tap_count = tap_count;
-    setup.hysteresis = undoes_hysteresis ? &plays : nullptr;
+    setup.hysteresis = undoes_hysteresis ? &play_operators : nullptr;
     setup.sections = &section;
     setup.section_count = undoes_hysteresis ? 1 : 0;
     kernels.emplace_back().kernel.set(setup);
@@ -121,7 +121,7 @@ struct TimedKernels {
 
   std::vector<playback::Prepared> textures;
   std::vector<float> taps = std::vector<float>(kManyTaps, 0.01F);
-  wire::Hysteresis plays = sixteen_plays();
+  wire::Hysteresis play_operators = sixteen_plays();
   wire::Section section{2, -1, 0, 0, 0};
   std::vector<MovingFinger> kernels;
 };
@@ -133,7 +133,7 @@ std::vector<schema::MeasuredChoice> measure_reading_choices() {
   const auto costs_ns = timed.costs_ns();
   std::vector<schema::MeasuredChoice> choices;
   for (std::size_t i = 0; i < std::size(kReadings); ++i)
-    choices.push_back({"reading", std::string(playback::word_of(kReadings[i])), "tick",
+    choices.push_back({"reading", std::string(playback::to_string(kReadings[i])), "tick",
                        median_cost(costs_ns[i]), 0, errors_of(kReadings[i])});
   const auto &hermite_ns = costs_ns[2], &few_ns = costs_ns[4], &many_ns = costs_ns[5],
              &undone_ns = costs_ns[6];

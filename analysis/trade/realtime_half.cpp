@@ -115,7 +115,7 @@ PlayedCase reading_case(PlayedCase played, wire::Interpolation kind, double dens
 
 void RealtimeTrade::add_readings() {
   for (const auto kind : kKinds)
-    add("interpolation", std::string(playback::word_of(kind)), reading_case(usual(), kind, 16)).note =
+    add("interpolation", std::string(playback::to_string(kind)), reading_case(usual(), kind, 16)).note =
         "16 samples a period; the read force alone";
   for (const double density : kDensities)
     add("samples per period", fmt::format("{:g}", density),
@@ -126,7 +126,7 @@ void RealtimeTrade::add_readings() {
 void RealtimeTrade::add_densities() {
   for (const auto kind : kKinds)
     for (const double density : kDensities)
-      add("interpolation x samples per period", fmt::format("{}, {:g}", playback::word_of(kind), density),
+      add("interpolation x samples per period", fmt::format("{}, {:g}", playback::to_string(kind), density),
           reading_case(usual(), kind, density))
           .note = "the read force alone";
 }
@@ -282,7 +282,7 @@ Result<void> RealtimeTrade::check_felt() const {
   const auto played = play(reading_case(usual(), wire::Interpolation::hermite, 16));
   TACTO_TRY(played);
   if (!std::isnan(worst_of(played->errors()))) return {};
-  return schema::fail(schema::Fault::unsuitable,
+  return schema::fail(schema::ErrorKind::unsuitable,
                       "has nothing within 15 to 500 Hz at " + speed_words(played->errors()), "the texture",
                       "measure the trade on one that such a finger feels");
 }

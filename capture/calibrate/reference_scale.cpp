@@ -13,7 +13,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using Complex = std::complex<double>;
 
@@ -110,16 +110,17 @@ bool clips(const Take& take, std::size_t channel) {
 Result<void> check(const Take& take, std::size_t channel, std::size_t reference) {
   const schema::Channel& told = take.header.channels[channel];
   if (!take.header.transducer || told.quantity != "tangential_force")
-    return schema::fail(Fault::unsuitable, "is not the transducer's own channel", told.name,
+    return schema::fail(ErrorKind::unsuitable, "is not the transducer's own channel", told.name,
                         "load cells are calibrated by weights: --mass 0g --mass 100g");
   if (take.header.channels[reference].unit != "N" || channel == reference)
-    return schema::fail(Fault::usage, "is no force to compare with", take.header.channels[reference].name,
+    return schema::fail(ErrorKind::usage, "is no force to compare with", take.header.channels[reference].name,
                         "as --reference net_force");
   if (static_cast<double>(take.frames()) < kShortestPush_s * take.header.sample_rate_hz)
-    return schema::fail(Fault::unsuitable, fmt::format("needs {:g} s at least", kShortestPush_s), told.name);
+    return schema::fail(ErrorKind::unsuitable, fmt::format("needs {:g} s at least", kShortestPush_s),
+                        told.name);
   for (const std::size_t each : {channel, reference})
     if (clips(take, each))
-      return schema::fail(Fault::unsuitable, "is clipped", take.header.channels[each].name, "pull less");
+      return schema::fail(ErrorKind::unsuitable, "is clipped", take.header.channels[each].name, "pull less");
   return {};
 }
 
@@ -138,19 +139,19 @@ std::vector<std::string> notes_on(const std::vector<Bin>& bins, const Fit& fit, 
 Result<ReferenceScale> scale_by_reference(const Take& take, const std::string& channel,
                                           const std::string& reference, const Uncertain& reference_scale) {
   const auto x = schema::find_channel(take.header, channel), y = schema::find_channel(take.header, reference);
-  if (!x) return schema::fail(Fault::usage, x.error().what, x.error().where, x.error().remedy);
-  if (!y) return schema::fail(Fault::usage, y.error().what, y.error().where, y.error().remedy);
+  if (!x) return schema::fail(ErrorKind::usage, x.error().what, x.error().where, x.error().remedy);
+  if (!y) return schema::fail(ErrorKind::usage, y.error().what, y.error().where, y.error().remedy);
   TACTO_TRY(check(take, *x, *y));
   const double own_scale = take.header.channels[*x].scale;
   const auto piezo = newtons(take, *x, own_scale), cell = newtons(take, *y, reference_scale.value);
   const auto bins = bins_of({piezo, cell, take.header.sample_rate_hz}, *take.header.transducer);
   if (bins.size() < kFewestBins)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         fmt::format("has too little in common with {} between {:g} and {:g} Hz", reference,
                                     kLowest_hz, kHighest_hz),
                         channel, "slide a finger to and fro on something coarse, for 10 s or more");
   if (signs_differ(bins))
-    return schema::fail(Fault::unsuitable, fmt::format("has the opposite sign of {}", reference), channel,
+    return schema::fail(ErrorKind::unsuitable, fmt::format("has the opposite sign of {}", reference), channel,
                         "see which way round the load cell is mounted, and its cable");
   const Fit fit = fitted(bins);
   ReferenceScale found;

@@ -14,7 +14,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kBefore_s = 0.1, kRinging_s = 0.5, kRingStandsOut = 20;
@@ -35,7 +35,7 @@ Result<Window> window_of(const Release& release, std::size_t channel) {
   const auto length = static_cast<std::ptrdiff_t>(kRinging_s * rate_hz);
   if (peak - codes.begin() < before || codes.end() - (peak - before) < length)
     return schema::fail(
-        Fault::unsuitable, "the release is too near an end", told.name,
+        ErrorKind::unsuitable, "the release is too near an end", told.name,
         fmt::format("{:g} s before it and {:g} s after it are needed", kBefore_s, kRinging_s - kBefore_s));
   Window window{{peak - before, peak - before + length}, rate_hz};
   const std::ptrdiff_t quiet = before * 9 / 10;
@@ -44,7 +44,7 @@ Result<Window> window_of(const Release& release, std::size_t channel) {
   for (double& value : window.newtons) value = (value - rest) * told.scale;
   const double physical = *peak * told.scale + told.offset;
   if ((told.range_max && physical >= *told.range_max) || (told.range_min && physical <= *told.range_min))
-    return schema::fail(Fault::unsuitable, "is clipped", told.name, "release less");
+    return schema::fail(ErrorKind::unsuitable, "is clipped", told.name, "release less");
   return window;
 }
 
@@ -57,7 +57,7 @@ Result<void> check_stands_out(const Window& window, const std::string& channel) 
     peak = std::max(peak, std::abs(*at));
   }
   if (peak > kRingStandsOut * std::sqrt(noise) && peak > 0) return {};
-  return schema::fail(Fault::unsuitable, "there is no release that stands out", channel,
+  return schema::fail(ErrorKind::unsuitable, "there is no release that stands out", channel,
                       "hang the weight still, then cut its thread once");
 }
 
@@ -90,12 +90,12 @@ Uncertain gain_of(const Window& window, const schema::Transducer& transducer, do
 Result<Uncertain> gain_of(const Release& release, const std::string& channel) {
   const auto index = schema::find_channel(release.take.header, channel);
   if (!index)
-    return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
+    return schema::fail(ErrorKind::usage, index.error().what, index.error().where, index.error().remedy);
   const auto& transducer = release.take.header.transducer;
   if (!transducer || release.take.header.channels[*index].quantity != "tangential_force")
-    return schema::fail(Fault::unsuitable, "is not the transducer's own channel", channel,
+    return schema::fail(ErrorKind::unsuitable, "is not the transducer's own channel", channel,
                         "load cells are calibrated by weights at rest: --mass 0g --mass 100g");
-  if (!(release.force_n > 0)) return schema::fail(Fault::usage, "a release needs a weight", "release");
+  if (!(release.force_n > 0)) return schema::fail(ErrorKind::usage, "a release needs a weight", "release");
   const auto window = window_of(release, *index);
   TACTO_TRY(window);
   TACTO_TRY(check_stands_out(*window, channel));
@@ -124,7 +124,8 @@ Result<ReleasedScale> scale_by_releases(std::span<const Release> releases, const
     TACTO_TRY(gain);
     gains.push_back(*gain);
   }
-  if (gains.empty()) return schema::fail(Fault::usage, "a release is needed", "release", "as --release 100g");
+  if (gains.empty())
+    return schema::fail(ErrorKind::usage, "a release is needed", "release", "as --release 100g");
   const Uncertain gain = mean_of_gains(gains);
   const schema::RecordingHeader& header = releases.front().take.header;
   const double own_scale = header.channels[*schema::find_channel(header, channel)].scale;

@@ -15,7 +15,7 @@ namespace tacto::capture {
 namespace {
 
 using schema::Channel;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kShortestTare_s = 1;
@@ -115,21 +115,21 @@ std::vector<std::string> notes_on(const ChannelTare& tare, const Channel& told) 
 
 Result<Tare> tare_of(const Take& take) {
   if (static_cast<double>(take.frames()) < kShortestTare_s * take.header.sample_rate_hz)
-    return schema::fail(Fault::unsuitable, fmt::format("a tare needs {:g} s at least", kShortestTare_s),
+    return schema::fail(ErrorKind::unsuitable, fmt::format("a tare needs {:g} s at least", kShortestTare_s),
                         "time");
   Tare tare;
   for (std::size_t i = 0; i < take.codes.size(); ++i) {
     const Channel& told = take.header.channels[i];
     if (told.unit != "N") continue;
     if (is_clipped(take, i))
-      return schema::fail(Fault::unsuitable, "is at an end of its converter's range", told.name,
+      return schema::fail(ErrorKind::unsuitable, "is at an end of its converter's range", told.name,
                           "take the load off, or see its wiring");
     tare.channels.push_back(tare_of_channel(take, i));
     judge(take, tare.channels.back(), tare);
   }
   judge_motion(take, tare);
   if (!tare.channels.empty()) return tare;
-  return schema::fail(Fault::unsuitable, "has no channel of force", take.header.device);
+  return schema::fail(ErrorKind::unsuitable, "has no channel of force", take.header.device);
 }
 
 std::vector<schema::CalibrationEntry> entries_of(const Tare& tare, const Take& take) {

@@ -13,7 +13,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kFewestCounts = 100, kMostApart = 0.05;
@@ -32,15 +32,15 @@ double scatter(std::span<const double> differences, double mean) {
 }
 
 Result<void> check(std::span<const double> differences, double travel_m, double step) {
-  if (!(travel_m > 0)) return schema::fail(Fault::usage, "a travel is longer than nothing", "travel");
-  if (differences.empty()) return schema::fail(Fault::unsuitable, "there is no travel in it", "travel");
+  if (!(travel_m > 0)) return schema::fail(ErrorKind::usage, "a travel is longer than nothing", "travel");
+  if (differences.empty()) return schema::fail(ErrorKind::unsuitable, "there is no travel in it", "travel");
   const double mean = mean_length(differences);
   for (const double difference : differences) {
     if (std::abs(difference) < kFewestCounts * step)
-      return schema::fail(Fault::unsuitable, fmt::format("{:.0f} counts are no travel", difference), "travel",
-                          "go from one mark to the other, and mark both");
+      return schema::fail(ErrorKind::unsuitable, fmt::format("{:.0f} counts are no travel", difference),
+                          "travel", "go from one mark to the other, and mark both");
     if (std::abs(std::abs(difference) - mean) > kMostApart * mean)
-      return schema::fail(Fault::unsuitable,
+      return schema::fail(ErrorKind::unsuitable,
                           fmt::format("the travels disagree: {:.0f} counts, and {:.0f} in the mean",
                                       std::abs(difference), mean),
                           "travel", "go the whole way each time");
@@ -54,7 +54,7 @@ Result<TravelScale> scale_by_travel(std::span<const double> differences, double 
                                     double travel_uncertainty_m, double step) {
   TACTO_TRY(check(differences, travel_m, step));
   if (!(travel_uncertainty_m >= 0))
-    return schema::fail(Fault::usage, "an uncertainty is zero or more", "--travel-uncertainty");
+    return schema::fail(ErrorKind::usage, "an uncertainty is zero or more", "--travel-uncertainty");
   const auto count = static_cast<double>(differences.size());
   const double mean = mean_length(differences), spread = scatter(differences, mean) / std::sqrt(count);
   const double ends = step * std::sqrt(2.0 / 12 / count);
@@ -80,13 +80,13 @@ double travelled_counts(double from, double to) {
 Result<std::vector<double>> count_differences(const Take& take, const std::string& channel) {
   const auto index = schema::find_channel(take.header, channel);
   if (!index)
-    return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
+    return schema::fail(ErrorKind::usage, index.error().what, index.error().where, index.error().remedy);
   const std::vector<double>& codes = take.codes[*index];
   const auto& marks = take.header.marks;
   if (marks.empty()) return std::vector{travelled_counts(codes.front(), codes.back())};
   if (marks.size() == 1)
-    return schema::fail(Fault::unsuitable, "has one mark, and a travel has two ends", take.header.wav_file,
-                        "mark both ends of each travel");
+    return schema::fail(ErrorKind::unsuitable, "has one mark, and a travel has two ends",
+                        take.header.wav_file, "mark both ends of each travel");
   std::vector<double> differences;
   const auto at = [&](const schema::Mark& mark) {
     return codes[std::min<std::size_t>(mark.frame, codes.size() - 1)];

@@ -11,7 +11,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr std::size_t kFewestSamples = 20;
@@ -55,14 +55,14 @@ double largest_residual_n(std::span<const Weighing> weighings, const Line& line)
 Result<void> check(std::span<const Weighing> weighings) {
   const auto different = [&](const Weighing& one) { return one.force_n != weighings.front().force_n; };
   if (std::ranges::none_of(weighings, different))
-    return schema::fail(Fault::unsuitable, "two different forces are needed", "mass",
+    return schema::fail(ErrorKind::unsuitable, "two different forces are needed", "mass",
                         "as --mass 0g --mass 100g");
   return {};
 }
 
 tl::unexpected<schema::Error> forgets_static_forces(const Take& take, const std::string& channel) {
   return schema::fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("a weight at rest cannot calibrate it: the piezo's high-pass at {:.2g} Hz forgets a "
                   "constant force within {:.0f} ms",
                   schema::sensor_pole_hz(*take.header.transducer),
@@ -78,7 +78,7 @@ Result<WeighedScale> scale_by_weights(std::span<const Weighing> weighings, doubl
   TACTO_TRY(check(weighings));
   const Line line = fitted(weighings);
   if (!std::isfinite(line.slope) || std::abs(line.slope) < 5 * line.u_slope)
-    return schema::fail(Fault::unsuitable, "the channel does not follow the forces", "mass",
+    return schema::fail(ErrorKind::unsuitable, "the channel does not follow the forces", "mass",
                         "is it the right channel, and did the weights hang on it?");
   const auto freedom = static_cast<double>(weighings.size()) - 2;
   const double birge = freedom > 0 ? std::max(1.0, std::sqrt(chi_square(weighings, line) / freedom)) : 1.0;
@@ -99,20 +99,21 @@ Result<WeighedScale> scale_by_weights(std::span<const Weighing> weighings, doubl
 Result<Weighing> weighing_of(const Take& take, const std::string& name, double force_n) {
   const auto index = schema::find_channel(take.header, name);
   if (!index)
-    return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
+    return schema::fail(ErrorKind::usage, index.error().what, index.error().where, index.error().remedy);
   const schema::Channel& told = take.header.channels[*index];
-  if (told.unit != "N") return schema::fail(Fault::unsuitable, "is no channel of force", name);
+  if (told.unit != "N") return schema::fail(ErrorKind::unsuitable, "is no channel of force", name);
   if (told.quantity == "tangential_force" && take.header.transducer) return forgets_static_forces(take, name);
   const std::vector<double>& codes = take.codes[*index];
-  if (codes.size() < kFewestSamples) return schema::fail(Fault::unsuitable, "is too short", name);
+  if (codes.size() < kFewestSamples) return schema::fail(ErrorKind::unsuitable, "is too short", name);
   if (drift_ratio(codes) > kMostDrift)
-    return schema::fail(Fault::unsuitable, fmt::format("does not rest under {:.4g} N", force_n), name,
+    return schema::fail(ErrorKind::unsuitable, fmt::format("does not rest under {:.4g} N", force_n), name,
                         "wait until the weight hangs still");
   const auto [least, most] = std::ranges::minmax(codes);
   const double low = least * told.scale + told.offset, high = most * told.scale + told.offset;
   if ((told.range_max && std::max(low, high) >= *told.range_max) ||
       (told.range_min && std::min(low, high) <= *told.range_min))
-    return schema::fail(Fault::unsuitable, "is at an end of its converter's range", name, "hang less on it");
+    return schema::fail(ErrorKind::unsuitable, "is at an end of its converter's range", name,
+                        "hang less on it");
   Weighing weighing{force_n, mean_of(codes)};
   weighing.code.uncertainty = std::max(weighing.code.uncertainty, 0.29);  // a number's own step
   return weighing;

@@ -30,7 +30,7 @@ cli::Action declare_calibrate(CLI::App& app) {
   return [actions]() -> schema::Result<cli::Report> {
     for (const auto& [one, action] : *actions)
       if (one->parsed()) return action();
-    return schema::fail(schema::Fault::usage, "calibrate what?", "calibrate", "tare, force or encoder");
+    return schema::fail(schema::ErrorKind::usage, "calibrate what?", "calibrate", "tare, force or encoder");
   };
 }
 

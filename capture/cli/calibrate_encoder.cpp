@@ -42,7 +42,7 @@ Result<Travels> of_recordings(const CalibrateEncoderOptions& options) {
     auto take = take_from(*part);
     TACTO_TRY(take);
     if (travels.last && travels.last->header.serial != take->header.serial)
-      return schema::fail(schema::Fault::unsuitable, "is of another device than the one before", text);
+      return schema::fail(schema::ErrorKind::unsuitable, "is of another device than the one before", text);
     const auto differences = count_differences(*take, options.channel);
     TACTO_TRY(differences);
     travels.differences.insert(travels.differences.end(), differences->begin(), differences->end());

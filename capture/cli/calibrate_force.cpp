@@ -17,7 +17,7 @@ namespace tacto::capture {
 namespace {
 
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 struct CalibrateForceOptions {
@@ -41,7 +41,7 @@ Result<Mass> parse_mass(const std::string& text, double gravity_mps2) {
     return Mass{*force_n, words, recording};
   const auto mass_kg = schema::parse_quantity(words, Dimension::mass);
   if (!mass_kg)
-    return schema::fail(Fault::usage, fmt::format("'{}' is no mass and no force", words), "mass",
+    return schema::fail(ErrorKind::usage, fmt::format("'{}' is no mass and no force", words), "mass",
                         "as 100g, 0.98N, or 100g=recording@1s..3s");
   return Mass{*mass_kg * gravity_mps2, words, recording};
 }
@@ -95,7 +95,7 @@ Result<Weighed> weigh(const CalibrateForceOptions& options, double gravity_mps2)
     auto take = take_for(*mass, options);
     TACTO_TRY(take);
     if (weighed.last && weighed.last->header.serial != take->header.serial)
-      return schema::fail(Fault::unsuitable, "is of another device than the one before", mass->recording);
+      return schema::fail(ErrorKind::unsuitable, "is of another device than the one before", mass->recording);
     const auto weighing = weighing_of(*take, options.channel, mass->force_n);
     TACTO_TRY(weighing);
     weighed.weighings.push_back(*weighing);
@@ -158,7 +158,7 @@ Result<Take> take_of_release(const Mass& mass, const CalibrateForceOptions& opti
 Result<Uncertain> scale_of_reference(const CalibrateForceOptions& options, const Take& take) {
   const auto index = schema::find_channel(take.header, options.reference);
   if (!index)
-    return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
+    return schema::fail(ErrorKind::usage, index.error().what, index.error().where, index.error().remedy);
   const double own_scale = take.header.channels[*index].scale;
   const auto file = calibration_of(take.header.serial, options.common.calibration);
   const auto* entry = file && *file ? schema::newest_scale(**file, options.reference) : nullptr;
@@ -212,7 +212,7 @@ Result<cli::Report> run_calibrate_force(CalibrateForceOptions options) {
   const int ways = (options.masses.empty() ? 0 : 1) + (options.releases.empty() ? 0 : 1) +
                    (options.reference.empty() ? 0 : 1);
   if (ways != 1)
-    return schema::fail(Fault::usage, "needs weights, or a reference, or releases", "force",
+    return schema::fail(ErrorKind::usage, "needs weights, or a reference, or releases", "force",
                         "as --mass 0g --mass 100g; for the piezo --reference net_force, or --release 10g");
   if (!options.masses.empty()) return by_weights(options);
   if (options.channel == "normal_force") options.channel = "tangential_force";

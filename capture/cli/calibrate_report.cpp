@@ -14,7 +14,7 @@ schema::Result<void> check_scales(const std::vector<schema::CalibrationEntry>& e
     const std::string doubt = doubt_of_scale(entry);
     if (doubt.empty()) continue;
     if (!only_warn)
-      return schema::fail(schema::Fault::unsuitable, doubt + ": not kept", entry.method,
+      return schema::fail(schema::ErrorKind::unsuitable, doubt + ": not kept", entry.method,
                           "look for a mistaken unit or two exchanged weights with --dry-run; keep it with "
                           "--anyway");
     cli::warn(doubt);

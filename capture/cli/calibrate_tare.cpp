@@ -50,7 +50,7 @@ Result<void> check_still(const Tare& tare, bool anyway) {
   if (tare.unstill.empty()) return {};
   const std::string what = fmt::format("it was not still: {}", fmt::join(tare.unstill, "; "));
   if (!anyway)
-    return schema::fail(schema::Fault::unsuitable, what, "tare",
+    return schema::fail(schema::ErrorKind::unsuitable, what, "tare",
                         "take the finger off and wait, or say --anyway");
   cli::warn(what);
   return {};

@@ -14,14 +14,14 @@ struct DoctorOptions {
   std::optional<double> stale_after_s;
 };
 
-const char* word_of(Health health) {
+const char* to_string(Health health) {
   constexpr const char* kWords[] = {"works", "warning", "FAILS", "skipped"};
   return kWords[static_cast<std::size_t>(health)];
 }
 
 cli::Report row_of(const Check& check) {
   cli::Report row;
-  row.add("check", check.name).add("state", word_of(check.health)).add("found", check.found);
+  row.add("check", check.name).add("state", to_string(check.health)).add("found", check.found);
   return row.add("what_to_do", check.remedy);
 }
 
@@ -35,7 +35,7 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
   cli::Report report;
   report.add("checks", std::move(rows)).add("can_record", obstacle == nullptr).add("next", diagnosis.next);
   if (obstacle != nullptr)
-    report.ends_with(obstacle->name == "disk" ? obstacle->fault : schema::Fault::device);
+    report.ends_with(obstacle->name == "disk" ? obstacle->fault : schema::ErrorKind::device);
   return report;
 }
 

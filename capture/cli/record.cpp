@@ -92,11 +92,11 @@ Result<void> check_end(const firmware_host::DeviceToRecord& opened, const Record
   const RecordRequest& request = options.request;
   if (opened.device->keeps_time() || opened.ends_by_itself || request.time_s) return {};
   if (request.strokes == 0)
-    return schema::fail(schema::Fault::usage,
+    return schema::fail(schema::ErrorKind::usage,
                         "this device runs faster than real time and would fill the disk: it needs an end",
                         options.device, fmt::format("add --time 2s or --strokes 2; {}", kRealTime));
   if (request.strokes <= opened.strokes.value_or(request.strokes)) return {};
-  return schema::fail(schema::Fault::usage,
+  return schema::fail(schema::ErrorKind::usage,
                       fmt::format("it makes {} strokes, and the recording would wait for {}", *opened.strokes,
                                   request.strokes),
                       options.device, "ask for fewer --strokes, give the device more, or add --time 2s");
@@ -128,7 +128,7 @@ cli::Report report_on(const Recorded& recorded, const firmware_host::Device& dev
 
 Result<std::string> chosen_name(const RecordOptions& options) {
   if (options.pattern.empty() && options.request.name.empty())
-    return schema::fail(schema::Fault::usage, "the recording has no name", {},
+    return schema::fail(schema::ErrorKind::usage, "the recording has no name", {},
                         "give -o NAME, or --template '{subject}_{surface}_{take}'");
   if (options.pattern.empty()) return options.request.name;
   const RecordRequest& request = options.request;
@@ -200,7 +200,7 @@ Result<cli::Report> run_record(const RecordOptions& options) {
   cli::warn_grouped(recorded->recording.header.warnings);
   cli::Report report = report_on(*recorded, *device);
   const bool gaps = !recorded->recording.header.gaps.empty() || recorded->counts.lost_frames > 0;
-  if (gaps && !options.allow_gaps) report.ends_with(schema::Fault::device);
+  if (gaps && !options.allow_gaps) report.ends_with(schema::ErrorKind::device);
   if (recorded->ended_by && recorded->recording.header.ended.empty())
     cli::warn("the recording is whole, but its device did not stop: " + schema::message(*recorded->ended_by));
   if (recorded->ended_by) report.ends_with(recorded->ended_by->fault);

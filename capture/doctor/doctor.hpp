@@ -28,8 +28,8 @@ struct Check {
                      ///< "temporary files", "calibration"
   Health health = Health::works;
   std::string found;
-  std::string remedy;                           ///< what to do; empty where all is well
-  schema::Fault fault = schema::Fault::device;  ///< of what fails
+  std::string remedy;                                   ///< what to do; empty where all is well
+  schema::ErrorKind fault = schema::ErrorKind::device;  ///< of what fails
 };
 
 struct Diagnosis {

@@ -125,7 +125,7 @@ Check check_permission(const schema::Error& why, const std::string& root) {
                          "--reload && sudo udevadm trigger, then plug the device in anew",
                          kUdevRule, kRule)
                    : "be of the group plugdev, or sit at the computer; then plug the device in anew";
-  if (is_denied(why)) return {"permission", Health::fails, found, remedy, schema::Fault::not_found};
+  if (is_denied(why)) return {"permission", Health::fails, found, remedy, schema::ErrorKind::not_found};
   return rule.empty() ? judged("permission", found, remedy) : judged("permission", found, {});
 }
 
@@ -133,7 +133,7 @@ Check check_round_trip(firmware_host::Device& device, std::size_t questions) {
   std::vector<double> times_s;
   for (std::size_t i = 0; i < questions; ++i) {
     const auto time_s = device.round_trip_s();
-    if (!time_s && time_s.error().fault == schema::Fault::unsuitable)
+    if (!time_s && time_s.error().fault == schema::ErrorKind::unsuitable)
       return {"round trip", Health::skipped, time_s.error().what, {}};
     if (!time_s) return {"round trip", Health::fails, time_s.error().what, time_s.error().remedy};
     times_s.push_back(*time_s);
@@ -160,7 +160,7 @@ Check check_disk(const std::string& folder, double bytes_per_s) {
             disk.error().remedy, disk.error().fault};
   const std::string found = words_of(*disk, bytes_per_s);
   if (disk->free_bytes < kLeastRoom_s * bytes_per_s || disk->write_bytes_per_s < bytes_per_s)
-    return {"disk", Health::fails, found, "record to another disk", schema::Fault::cannot_write};
+    return {"disk", Health::fails, found, "record to another disk", schema::ErrorKind::cannot_write};
   return judged("disk", found, advice_on(*disk, bytes_per_s));
 }
 
@@ -183,7 +183,7 @@ Check check_calibration(const firmware_host::Capabilities& said, const DoctorReq
   if (!*file) return judged("calibration", "there is none", tare);
   if ((**file).serial != said.serial)
     return {"calibration", Health::fails, "is that of the device " + (**file).serial, "name this device's",
-            schema::Fault::unsuitable};
+            schema::ErrorKind::unsuitable};
   std::vector<std::string> parts, stale, ahead;
   for (const schema::Channel& channel : said.channels)
     for (const auto* entry : newest_of(**file, channel.name)) {

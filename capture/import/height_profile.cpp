@@ -20,8 +20,8 @@
 namespace tacto::capture {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 bool is_xml(const std::string& file) {
@@ -48,14 +48,14 @@ Result<Columns> columns_of(const ImportRequest& request, const Source& source) {
     if (spec.quantity == "height") height = spec.source;
     if (spec.quantity == "position") position = spec.source;
     if (spec.quantity != "height" && spec.quantity != "position")
-      return fail(Fault::usage, fmt::format("a profile has no {}", spec.quantity), "--channel",
+      return fail(ErrorKind::usage, fmt::format("a profile has no {}", spec.quantity), "--channel",
                   "it is a height, and a position or --pitch");
   }
   if (!height)
-    return fail(Fault::usage, "which column is the height? They are: " + columns_in_words(source.columns),
+    return fail(ErrorKind::usage, "which column is the height? They are: " + columns_in_words(source.columns),
                 source.file, "name it, as in --channel 'height=2*1um'");
   if (position.has_value() == request.pitch_m.has_value())
-    return fail(Fault::usage,
+    return fail(ErrorKind::usage,
                 position ? "both --pitch and a position were given" : "a table doesn't say its pitch",
                 source.file, "give --pitch 0.25um, or --channel 'position=1*1mm'");
   return Columns{*height, position};
@@ -112,14 +112,14 @@ Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& 
   profile.origin_m = x.front();
   profile.pitch_m = (x.back() - x.front()) / last;
   if (profile.pitch_m == 0)
-    return fail(Fault::unsuitable, "the position does not move", file,
+    return fail(ErrorKind::unsuitable, "the position does not move", file,
                 "a profile is heights at growing positions; is this the right column?");
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double off_m = std::abs(x[i] - (x.front() + static_cast<double>(i) * profile.pitch_m));
     profile.unevenness_m = std::max(profile.unevenness_m, off_m);
     if (off_m <= kMostUnevenness * profile.pitch_m && profile.pitch_m > 0) continue;
     const std::size_t row = profile.direction > 0 ? i : x.size() - 1 - i;
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("the position of {:.6g} mm is {:.3g} um off an even grid of {:.6g} um",
                             x[i] * 1e3, off_m * 1e6, profile.pitch_m * 1e6),
                 table.place_of(file, row), "resample the profile evenly where it was made");
@@ -130,12 +130,12 @@ Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& 
 Result<HeightProfile> profile_of(const ImportRequest& request, Table table) {
   HeightProfile profile;
   if (table.height_m.size() < 2)
-    return fail(Fault::unsuitable, "a profile has two heights or more", request.file);
+    return fail(ErrorKind::unsuitable, "a profile has two heights or more", request.file);
   profile.height_m = std::move(table.height_m);
   profile.pitch_m = request.pitch_m.value_or(0);
   if (request.pitch_m) {
     if (*request.pitch_m > 0) return profile;
-    return fail(Fault::usage, "a pitch is above 0", "--pitch");
+    return fail(ErrorKind::usage, "a pitch is above 0", "--pitch");
   }
   const auto found = find_grid(profile, table, request.file);
   return found ? Result<HeightProfile>(std::move(profile)) : schema::forward_error(found);
@@ -146,7 +146,7 @@ Result<HeightProfile> read_profile_table(const ImportRequest& request,
   const auto source = open_source(request.file, request.skip_lines);
   TACTO_TRY(source);
   if (!source->csv)
-    return fail(Fault::unsuitable, "is no table", request.file, "a profile is a CSV table or XML");
+    return fail(ErrorKind::unsuitable, "is no table", request.file, "a profile is a CSV table or XML");
   const auto columns = columns_of(request, *source);
   TACTO_TRY(columns);
   auto table = read_table(*source, *columns, progress);
@@ -156,7 +156,7 @@ Result<HeightProfile> read_profile_table(const ImportRequest& request,
 Result<void> check_xml_options(const ImportRequest& request) {
   if (request.channels.empty() && !request.pitch_m && !request.rate_hz && request.time_column.empty())
     return {};
-  return fail(Fault::usage, "an XML profile names its heights and its spacing itself", request.file,
+  return fail(ErrorKind::usage, "an XML profile names its heights and its spacing itself", request.file,
               "leave --channel, --pitch, --rate and --time-column out");
 }
 
@@ -188,7 +188,7 @@ Result<void> check_free(const std::string& stem, bool replace) {
   std::error_code ignored;
   for (const char* ending : {".texture.json", ".texture.wav"})
     if (!replace && std::filesystem::exists(stem + ending, ignored))
-      return fail(Fault::usage, "is there already", stem + ending,
+      return fail(ErrorKind::usage, "is there already", stem + ending,
                   "choose another name, or --force to replace it");
   return {};
 }

@@ -17,8 +17,8 @@ namespace tacto::capture {
 namespace {
 
 namespace fs = std::filesystem;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 Result<void> check_output(const ImportRequest& request) {
@@ -26,10 +26,11 @@ Result<void> check_output(const ImportRequest& request) {
   std::error_code ignored;
   for (const std::string& path : {stem + ".wav", stem + ".json"}) {
     if (fs::equivalent(path, request.file, ignored))
-      return fail(Fault::usage, "is the file that is imported", path,
+      return fail(ErrorKind::usage, "is the file that is imported", path,
                   "choose another name for the recording");
     if (fs::exists(path, ignored) && !request.replace)
-      return fail(Fault::usage, "is there already", path, "choose another name, or --force to replace it");
+      return fail(ErrorKind::usage, "is there already", path,
+                  "choose another name, or --force to replace it");
     schema::PendingFiles probe;
     TACTO_TRY(probe.add(path));
   }
@@ -39,7 +40,7 @@ Result<void> check_output(const ImportRequest& request) {
 Result<void> check_rate(const std::optional<double>& rate_hz) {
   constexpr double kLargest = std::numeric_limits<int>::max();  // what a WAV's header holds
   if (!rate_hz || (std::round(*rate_hz) >= 1 && *rate_hz <= kLargest)) return {};
-  return fail(Fault::usage, fmt::format("a rate of {:g} Hz is none that a recording can have", *rate_hz),
+  return fail(ErrorKind::usage, fmt::format("a rate of {:g} Hz is none that a recording can have", *rate_hz),
               "--rate", "it is samples per second, as in --rate 10kHz");
 }
 
@@ -51,10 +52,10 @@ std::string typed(const Source& source, std::size_t column) {
 
 Result<void> check_clock(const ImportRequest& request, const Source& source) {
   if (request.rate_hz && !request.time_column.empty())
-    return fail(Fault::usage, "both --rate and --time-column were given", {}, "one of them is enough");
+    return fail(ErrorKind::usage, "both --rate and --time-column were given", {}, "one of them is enough");
   if (request.rate_hz || !request.time_column.empty() || source.rate_hz) return {};
   return fail(
-      Fault::usage, "a table doesn't say its rate", source.file,
+      ErrorKind::usage, "a table doesn't say its rate", source.file,
       "add --rate, as in --rate 10kHz, or --time-column, as in --time-column " + typed(source, 0) + "*1s");
 }
 
@@ -69,8 +70,9 @@ std::string force_example(const Source& source) {
 
 tl::unexpected<schema::Error> no_channels(const Source& source) {
   const std::string rate = source.rate_hz ? "" : "--rate 10kHz ";
-  return fail(Fault::usage, "which columns are which channels? They are: " + columns_in_words(source.columns),
-              source.file, fmt::format("name them, as in {}--channel '{}'", rate, force_example(source)));
+  return fail(ErrorKind::usage,
+              "which columns are which channels? They are: " + columns_in_words(source.columns), source.file,
+              fmt::format("name them, as in {}--channel '{}'", rate, force_example(source)));
 }
 
 // Integer codes are scaled to what an audio editor shows, -1 to 1.
@@ -92,12 +94,12 @@ bool has(const std::vector<ChannelSpec>& channels, std::string_view quantity) {
 Result<void> check_speed(const ImportRequest& request, const std::vector<ChannelSpec>& channels) {
   if (!request.speed_mps) return {};
   if (has(channels, "position"))
-    return fail(Fault::usage, "there is a position channel, so no nominal one is made", "--speed",
+    return fail(ErrorKind::usage, "there is a position channel, so no nominal one is made", "--speed",
                 "leave one out");
   if (has(channels, "speed"))
-    return fail(Fault::usage, "there is a speed channel, which is integrated to a position", "--speed",
+    return fail(ErrorKind::usage, "there is a speed channel, which is integrated to a position", "--speed",
                 "leave one out");
-  if (*request.speed_mps == 0) return fail(Fault::usage, "a speed of zero gives no position", "--speed");
+  if (*request.speed_mps == 0) return fail(ErrorKind::usage, "a speed of zero gives no position", "--speed");
   return {};
 }
 
@@ -115,13 +117,13 @@ bool is_date(const std::string& text) {
 
 Result<void> check_date(const std::string& text, const std::string& option) {
   if (text.empty() || is_date(text)) return {};
-  return fail(Fault::usage, fmt::format("'{}' is no date", text), option, "write it as 2026-03-14");
+  return fail(ErrorKind::usage, fmt::format("'{}' is no date", text), option, "write it as 2026-03-14");
 }
 
 Result<void> check_metadata(const ImportRequest& request) {
   const auto percent = request.humidity_percent.value_or(0);
   if (!(percent >= 0 && percent <= 100))
-    return fail(Fault::usage, fmt::format("{:g} % is no relative humidity", percent), "--humidity",
+    return fail(ErrorKind::usage, fmt::format("{:g} % is no relative humidity", percent), "--humidity",
                 "it is 0% to 100%");
   if (const auto recorded = check_date(request.recorded, "--date"); !recorded) return recorded;
   return check_date(request.calibrated, "--calibrated");

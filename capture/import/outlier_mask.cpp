@@ -28,7 +28,7 @@ schema::Result<OutlierMask> OutlierMask::of(std::vector<std::uint64_t> rows, std
   rows.erase(twice.begin(), twice.end());
   const bool many = static_cast<double>(rows.size()) > kMostShare * static_cast<double>(all);
   if (rows.size() > kFewRows && many)
-    return schema::fail(schema::Fault::unsuitable,
+    return schema::fail(schema::ErrorKind::unsuitable,
                         fmt::format("{} of {} rows hold outliers: too many to be left out", rows.size(), all),
                         file, "check unit and scale; import without --mask-outliers names the first of them");
   OutlierMask mask;

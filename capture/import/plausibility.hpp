@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "capture/import/lone_samples.hpp"
+#include "capture/import/outliers.hpp"
 #include "capture/import/place_of.hpp"
 #include "data-schema/recording/recording.hpp"
 
@@ -74,7 +74,7 @@ class Plausibility {
   std::uint64_t count_ = 0;
   Sightings beyond_, alone_;
   std::vector<std::uint64_t> outlier_samples_;
-  LoneSamples lone_;
+  Outliers lone_;
 };
 
 }  // namespace tacto::capture

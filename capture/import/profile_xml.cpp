@@ -17,8 +17,8 @@
 namespace tacto::capture {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -35,7 +35,7 @@ struct Reader {
   pugi::xml_document document;
 
   tl::unexpected<schema::Error> broken(std::string what, std::string_view element) const {
-    return fail(Fault::malformed, std::move(what), fmt::format("{}: {}", file, element));
+    return fail(ErrorKind::malformed, std::move(what), fmt::format("{}: {}", file, element));
   }
   std::string_view text(const char* path) const {
     return stripped(document.select_node(path).node().child_value());
@@ -86,7 +86,7 @@ std::string joined(std::initializer_list<std::string_view> texts) {
 
 Result<HeightProfile> profile_in(const Reader& reader) {
   if (const auto type = reader.text("/DATA/DATAFILE/DATA_TYPE"); !type.empty() && type != "2D")
-    return fail(Fault::unsuitable, fmt::format("holds {} data, not a profile", type), reader.file,
+    return fail(ErrorKind::unsuitable, fmt::format("holds {} data, not a profile", type), reader.file,
                 "take a profile from it, and import that");
   const auto unit_m = reader.unit();
   TACTO_TRY(unit_m);
@@ -118,13 +118,13 @@ Result<HeightProfile> read_profile_xml(const std::string& file) try {
   Reader reader{file, {}};
   const auto parsed = reader.document.load_buffer(bytes->data(), bytes->size());
   if (!parsed)
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("is no XML: {} at byte {}", parsed.description(), parsed.offset), file);
   if (!reader.document.child("DATA").child("DATAFILE"))
-    return fail(Fault::malformed, "holds no profile: there is no DATA/DATAFILE", file);
+    return fail(ErrorKind::malformed, "holds no profile: there is no DATA/DATAFILE", file);
   return profile_in(reader);
 } catch (const std::bad_alloc&) {
-  return fail(Fault::malformed, "is too large to be read", file);
+  return fail(ErrorKind::malformed, "is too large to be read", file);
 }
 
 }  // namespace tacto::capture

@@ -11,8 +11,8 @@
 namespace tacto::capture {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 // Leading bits of a step: the exponent and six bits of the mantissa, so a bin is 1/64 wide.
@@ -24,7 +24,7 @@ double whole_where_close(double rate_hz) {
 }
 
 tl::unexpected<schema::Error> uneven(double step, double period, const std::string& where) {
-  return fail(Fault::malformed,
+  return fail(ErrorKind::malformed,
               fmt::format("the time step of {:.6g} s is no whole number of periods of {:.6g} s (within {:g})",
                           step, period, kMostJitter),
               where, "resample it evenly where it was made, or give --rate instead of --time-column");
@@ -96,7 +96,7 @@ bool ClockFinder::is_one_tick(double step) const {
 }
 
 Result<void> ClockFinder::end_survey(const std::string& file) {
-  if (count_ < 3) return fail(Fault::malformed, "has too few rows to find a rate from their times", file);
+  if (count_ < 3) return fail(ErrorKind::malformed, "has too few rows to find a rate from their times", file);
   if (stands_or_falls_) return {};
   period_s_ = find_period();
   for (const auto& [key, bin] : bins_)
@@ -122,7 +122,8 @@ Result<void> ClockFinder::locate(std::span<const double> time_s, const PlaceOf& 
     const double before = std::exchange(previous_s_, time);
     if (row == 0) continue;
     if (!(time > before))
-      return fail(Fault::malformed, fmt::format("time goes from {} s to {} s: it must grow", before, time),
+      return fail(ErrorKind::malformed,
+                  fmt::format("time goes from {} s to {} s: it must grow", before, time),
                   fmt::format("{}: {}", file, place_of(row)));
     if (stands_or_falls_) continue;
     if (const auto fits = locate_step(time - before, row, place_of, file); !fits) return fits;

@@ -15,7 +15,7 @@ namespace {
 using schema::CalibrationEntry;
 using schema::CalibrationFile;
 using schema::Channel;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 // Scales are written with all their digits: these are the same, or they are not.
@@ -90,7 +90,7 @@ void calibrate(Channel& channel, const Found& found) {
 Result<void> check_serial(const CalibrationFile& file, const std::string& serial) {
   if (file.serial == serial) return {};
   return schema::fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("is the calibration of the device '{}', and this is '{}'", file.serial, serial),
       "calibration", "name the file of this device with --calibration FILE");
 }

@@ -14,7 +14,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr std::size_t kSyncs = 20, kTrialBytes = 1 << 20, kPieces = 16;
@@ -53,7 +53,7 @@ class ScratchFile {
 };
 
 tl::unexpected<schema::Error> refused(const std::string& folder) {
-  return schema::fail(Fault::cannot_write, std::string("can't be written to: ") + std::strerror(errno),
+  return schema::fail(ErrorKind::cannot_write, std::string("can't be written to: ") + std::strerror(errno),
                       folder, "record to another folder, or see who owns this one");
 }
 

@@ -21,7 +21,7 @@ namespace tacto::capture {
 namespace {
 
 using firmware_host::Device;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using Clock = std::chrono::steady_clock;
 
@@ -45,8 +45,8 @@ Result<std::uint64_t> frames_wanted(const RecordRequest& request, double rate_hz
   if (!request.time_s) return std::numeric_limits<std::uint64_t>::max();
   const double frames = std::floor(*request.time_s * rate_hz + 0.5);
   if (!(frames >= 1 && frames < 0x1p53))
-    return schema::fail(Fault::usage, fmt::format("{:g} s is no time to record for", *request.time_s), "time",
-                        "give a time above zero, as 2s");
+    return schema::fail(ErrorKind::usage, fmt::format("{:g} s is no time to record for", *request.time_s),
+                        "time", "give a time above zero, as 2s");
   return static_cast<std::uint64_t>(frames);
 }
 
@@ -54,7 +54,7 @@ Result<void> check_folder(const RecordRequest& request) {
   std::error_code unknown;
   const std::string folder = folder_of(request.name);
   if (std::filesystem::is_directory(folder, unknown)) return {};
-  return schema::fail(Fault::cannot_write, "there is no such folder", folder, "make it first");
+  return schema::fail(ErrorKind::cannot_write, "there is no such folder", folder, "make it first");
 }
 
 // A sidecar is UTF-8; from the bytes alone nobody can tell what a Latin-1 keyboard meant.
@@ -66,7 +66,7 @@ Result<void> check_words(const RecordRequest& request) {
                                                               {"-o", request.name}};
   for (const auto& [option, text] : words)
     if (!is_utf8(text))
-      return schema::fail(Fault::usage, "is not UTF-8", option,
+      return schema::fail(ErrorKind::usage, "is not UTF-8", option,
                           "use a terminal in a UTF-8 locale, or plain letters");
   return {};
 }
@@ -84,7 +84,8 @@ Result<void> check_room(const RecordRequest& request, const schema::RecordingHea
   const std::string what = request.time_s
                                ? fmt::format("{:g} s need {}", *request.time_s, megabytes(needed))
                                : fmt::format("a recording needs {} to begin with", megabytes(needed));
-  return schema::fail(Fault::cannot_write, fmt::format("{}, and the disk has {} left", what, megabytes(left)),
+  return schema::fail(ErrorKind::cannot_write,
+                      fmt::format("{}, and the disk has {} left", what, megabytes(left)),
                       folder_of(request.name),
                       request.time_s ? "record for less, or to another disk" : "record to another disk");
 }
@@ -108,7 +109,7 @@ class Capture {
   const RecordRequest& request_;
   const RecordHooks& hooks_;
   const std::size_t channels_, block_frames_;
-  const std::uint64_t wanted_;
+  const std::uint64_t target_;
   LiveFigures figures_;
   DiskWriter writer_;
   std::uint64_t frames_ = 0, lost_noted_ = 0;
@@ -128,12 +129,12 @@ Capture::Capture(Device& device, const RecordRequest& request, const RecordHooks
       hooks_(hooks),
       channels_(live.header().channels.size()),
       block_frames_(frames_of_block(live.header().sample_rate_hz)),
-      wanted_(frames),
+      target_(frames),
       figures_(live.header()),
       writer_(live, block_frames_ * channels_) {}
 
 bool Capture::goes_on() const {
-  if (stream_ended_ || failure_ || frames_ == wanted_ || writer_.failed()) return false;
+  if (stream_ended_ || failure_ || frames_ == target_ || writer_.failed()) return false;
   if (request_.strokes > 0 && figures_.strokes() >= request_.strokes) return false;
   return !hooks_.stop || !hooks_.stop();
 }
@@ -151,7 +152,7 @@ void Capture::take_events(FrameBlock& block) {
 
 void Capture::take_block() {
   FrameBlock& block = writer_.to_fill();
-  const std::size_t frames = std::min<std::uint64_t>(block_frames_, wanted_ - frames_);
+  const std::size_t frames = std::min<std::uint64_t>(block_frames_, target_ - frames_);
   const auto got = device_.read(std::span(block.codes).first(frames * channels_));
   if (!got) failure_ = got.error();
   stream_ended_ = got && *got == 0;
@@ -166,7 +167,7 @@ void Capture::take_block() {
 
 void Capture::tell() {
   if (hooks_.progress && request_.time_s)
-    hooks_.progress(static_cast<double>(frames_) / static_cast<double>(wanted_));
+    hooks_.progress(static_cast<double>(frames_) / static_cast<double>(target_));
   if (!hooks_.view || Clock::now() < next_view_) return;
   next_view_ = Clock::now() + kViewEvery;
   LiveView view = figures_.take_view();
@@ -199,13 +200,13 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
   if (nothing) {
     TACTO_TRY(live.discard());
     if (failure_) return tl::unexpected(*failure_);
-    return schema::fail(Fault::device, "the device gave no frames", device_.capabilities().uri);
+    return schema::fail(ErrorKind::device, "the device gave no frames", device_.capabilities().uri);
   }
   schema::RecordingHeader& header = live.header();
   figures_.finish();
   header.strokes = figures_.stroke_figures();
   if (failure_) header.ended = failure_->what;
-  const std::uint64_t due = stream_ended_ && request_.time_s ? wanted_ : 0;
+  const std::uint64_t due = stream_ended_ && request_.time_s ? target_ : 0;
   for (std::string& warning : stream_warnings(counts, due)) header.warnings.push_back(std::move(warning));
   if (failure_) header.warnings.push_back("it ended early: " + schema::message(*failure_));
   auto recording = live.close();

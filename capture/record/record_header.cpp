@@ -42,7 +42,7 @@ schema::Result<schema::RecordingHeader> header_for(const firmware_host::Capabili
   for (const schema::Channel& channel : capabilities.channels) {
     const bool volts = channel.quantity == "tangential_force" && channel.unit == "V";
     if (volts && !header.transducer)
-      return schema::fail(schema::Fault::device, "the device gives volts but names no transducer",
+      return schema::fail(schema::ErrorKind::device, "the device gives volts but names no transducer",
                           capabilities.uri);
     header.channels.push_back(volts ? sensor_in_newtons(channel, *header.transducer) : channel);
   }

@@ -13,7 +13,7 @@ namespace tacto::capture {
 namespace {
 
 namespace fs = std::filesystem;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr std::string_view kEvents = ".events.jsonl";
@@ -66,7 +66,7 @@ Result<std::vector<ListedRecording>> list_recordings(const std::string& folder) 
     else if (path.ends_with(".json"))
       add_sidecar(path, list);
   }
-  if (failed) return schema::fail(Fault::not_found, "can't be listed: " + failed.message(), folder);
+  if (failed) return schema::fail(ErrorKind::not_found, "can't be listed: " + failed.message(), folder);
   std::ranges::sort(list, {}, by_subject_and_surface);
   return list;
 }

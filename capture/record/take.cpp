@@ -11,7 +11,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kShortest_s = 0.1, kLongest_s = 600;  // 10 min of four channels at 10 kHz are 190 MB
@@ -26,26 +26,26 @@ void append(Take& take, std::span<const std::int32_t> codes) {
 Result<void> fill(Take& take, firmware_host::Device& device, std::size_t frames) {
   std::vector<std::int32_t> block(kBlockFrames * take.codes.size());
   while (take.frames() < frames) {
-    const std::size_t wanted = std::min(kBlockFrames, frames - take.frames());
-    const auto got = device.read(std::span(block).first(wanted * take.codes.size()));
+    const std::size_t target = std::min(kBlockFrames, frames - take.frames());
+    const auto got = device.read(std::span(block).first(target * take.codes.size()));
     TACTO_TRY(got);
-    if (*got == 0) return schema::fail(Fault::device, "the stream ended too early", take.header.device);
+    if (*got == 0) return schema::fail(ErrorKind::device, "the stream ended too early", take.header.device);
     append(take, std::span<const std::int32_t>(block).first(*got * take.codes.size()));
   }
   if (device.counts().lost_frames == 0) return {};
-  return schema::fail(Fault::device, fmt::format("{} frames were lost", device.counts().lost_frames),
+  return schema::fail(ErrorKind::device, fmt::format("{} frames were lost", device.counts().lost_frames),
                       take.header.device, "try again");
 }
 
 Result<double> time_in(const std::string& text, const std::string& whole) {
   auto time_s = schema::parse_quantity(text, schema::Dimension::time);
-  if (!time_s) return schema::fail(Fault::usage, time_s.error().what, whole, "as oak@1s..3s");
+  if (!time_s) return schema::fail(ErrorKind::usage, time_s.error().what, whole, "as oak@1s..3s");
   return time_s;
 }
 
 Result<void> check_source(const schema::Recording& recording) {
   if (recording.header.format != schema::SampleFormat::pcm32 || recording.header.serial.empty())
-    return schema::fail(Fault::unsuitable, "does not say which device it came from", recording.stem,
+    return schema::fail(ErrorKind::unsuitable, "does not say which device it came from", recording.stem,
                         "calibrate with recordings that 'tactograph record' made");
   return {};
 }
@@ -54,10 +54,10 @@ Result<void> check_part(const schema::RecordingHeader& header, const std::string
                         std::uint64_t last) {
   for (const schema::Gap& gap : header.gaps)
     if (gap.frame > first && gap.frame < last)
-      return schema::fail(Fault::unsuitable, "frames are missing in this part", name,
+      return schema::fail(ErrorKind::unsuitable, "frames are missing in this part", name,
                           "choose a part without");
   if (static_cast<double>(last - first) >= kShortest_s * header.sample_rate_hz) return {};
-  return schema::fail(Fault::unsuitable, fmt::format("has less than {:g} s there", kShortest_s), name,
+  return schema::fail(ErrorKind::unsuitable, fmt::format("has less than {:g} s there", kShortest_s), name,
                       "choose a longer part");
 }
 
@@ -66,7 +66,7 @@ Result<void> check_end(const schema::RecordingHeader& header, const RecordingPar
   const double end_s = schema::frame_time_s(header, header.frames);
   if (part.to_s == std::numeric_limits<double>::infinity() || part.to_s < end_s + 1 / header.sample_rate_hz)
     return {};
-  return schema::fail(Fault::unsuitable,
+  return schema::fail(ErrorKind::unsuitable,
                       fmt::format("has {:.4g} s, and the part ends at {:g} s", end_s, part.to_s), part.name,
                       "name a part that it has");
 }
@@ -91,7 +91,8 @@ Result<RecordingPart> parse_recording_part(const std::string& text) {
   const std::string span = text.substr(at + 1);
   const auto dots = span.find("..");
   if (dots == std::string::npos)
-    return schema::fail(Fault::usage, fmt::format("'{}' is no span of time", span), text, "as oak@1s..3s");
+    return schema::fail(ErrorKind::usage, fmt::format("'{}' is no span of time", span), text,
+                        "as oak@1s..3s");
   const auto from_s = time_in(span.substr(0, dots), text), to_s = time_in(span.substr(dots + 2), text);
   TACTO_TRY(from_s);
   TACTO_TRY(to_s);
@@ -114,7 +115,7 @@ schema::Channel nominal(const schema::Channel& channel) {
 
 Result<Take> take_from(firmware_host::Device& device, double time_s) {
   if (!(time_s >= kShortest_s && time_s <= kLongest_s))
-    return schema::fail(Fault::usage, fmt::format("{:g} s is no time to calibrate in", time_s), "time",
+    return schema::fail(ErrorKind::usage, fmt::format("{:g} s is no time to calibrate in", time_s), "time",
                         fmt::format("from {:g} s to {:g} s", kShortest_s, kLongest_s));
   auto header = header_for(device.capabilities(), {});
   TACTO_TRY(header);

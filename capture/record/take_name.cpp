@@ -15,8 +15,8 @@ namespace tacto::capture {
 namespace {
 
 namespace fs = std::filesystem;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr int kMostTakes = 9999;
@@ -69,10 +69,10 @@ Result<std::string> part_of(const std::string& name, const NameParts& parts, int
   if (name == "take") return fmt::format("{}", take);
   const auto found = std::ranges::find(parts, name, &std::pair<std::string, std::string>::first);
   if (found == parts.end())
-    return fail(Fault::usage, fmt::format("there is no {{{}}}", name), "--template",
+    return fail(ErrorKind::usage, fmt::format("there is no {{{}}}", name), "--template",
                 "there are " + known(parts));
   if (found->second.empty())
-    return fail(Fault::usage, fmt::format("{{{}}} is empty", name), "--template",
+    return fail(ErrorKind::usage, fmt::format("{{{}}} is empty", name), "--template",
                 fmt::format("say what it is, with --{}", name));
   return file_safe(found->second);
 }
@@ -86,7 +86,7 @@ Result<std::string> filled(const std::string& pattern, const NameParts& parts, i
     }
     const auto close = pattern.find('}', at);
     if (close == std::string::npos)
-      return fail(Fault::usage, "a brace is never closed", "--template", "there are " + known(parts));
+      return fail(ErrorKind::usage, "a brace is never closed", "--template", "there are " + known(parts));
     const auto part = part_of(pattern.substr(at + 1, close - at - 1), parts, take);
     if (!part) return part;
     name += *part;
@@ -104,7 +104,7 @@ Result<std::string> name_of_take(const std::string& pattern, const NameParts& pa
   if (!next) return next;
   if (taken.holds(*next))
     return fail(
-        Fault::usage,
+        ErrorKind::usage,
         counts ? fmt::format("there is a take {} already", kMostTakes) : "a recording of that name is there",
         pattern, counts ? "choose another template" : "put {take} into it, which counts up");
   for (int take = (counts ? kMostTakes : 1) - 1; take >= 1; --take) {

@@ -8,7 +8,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kWatch_s = 0.02;
@@ -23,7 +23,7 @@ struct Watch {
     const auto got = device.read(block);
     TACTO_TRY(got);
     if (*got == 0)
-      return schema::fail(Fault::device, "the stream ended before the travels did",
+      return schema::fail(ErrorKind::device, "the stream ended before the travels did",
                           device.capabilities().uri);
     return block[(*got - 1) * channels + channel];
   }
@@ -50,7 +50,7 @@ Result<WatchedCounts> watch_counts(firmware_host::Device& device, const std::str
   TACTO_TRY(header);
   const auto index = schema::find_channel(*header, channel);
   if (!index)
-    return schema::fail(Fault::usage, index.error().what, index.error().where, index.error().remedy);
+    return schema::fail(ErrorKind::usage, index.error().what, index.error().where, index.error().remedy);
   const std::size_t channels = header->channels.size();
   const auto frames = std::max<std::size_t>(1, static_cast<std::size_t>(header->sample_rate_hz * kWatch_s));
   TACTO_TRY(device.start());

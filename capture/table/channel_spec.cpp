@@ -18,8 +18,8 @@ namespace tacto::capture {
 namespace {
 
 using schema::Dimension;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 // A column's part of the text, and what comes after it.
@@ -63,13 +63,14 @@ Result<Cut> cut_column(std::string_view text, const std::vector<std::string>& co
   for (const auto& names : {columns, names_without_units(columns)}) {
     const auto named = cut_by_name(text, names);
     if (named && std::ranges::count(names, names[named->column]) > 1)
-      return fail(Fault::usage, fmt::format("several columns have the name '{}'", names[named->column]), {},
-                  "choose one by its number: " + columns_in_words(columns));
+      return fail(ErrorKind::usage, fmt::format("several columns have the name '{}'", names[named->column]),
+                  {}, "choose one by its number: " + columns_in_words(columns));
     if (named) return *named;
   }
   if (const auto numbered = cut_by_number(text, columns.size())) return *numbered;
-  return fail(Fault::usage, fmt::format("there is no column '{}'", trimmed(text.substr(0, text.find('*')))),
-              {}, "the columns are: " + columns_in_words(columns));
+  return fail(ErrorKind::usage,
+              fmt::format("there is no column '{}'", trimmed(text.substr(0, text.find('*')))), {},
+              "the columns are: " + columns_in_words(columns));
 }
 
 std::optional<double> take_number(std::string_view& text) {
@@ -114,10 +115,10 @@ std::string fitting(Dimension dimension) {
 
 Result<double> worth_of_columns_unit(const std::string& column_unit, Dimension dimension) {
   const std::string example = ", as in '*1" + std::string(schema::si_symbol(dimension)) + "'";
-  if (column_unit.empty()) return fail(Fault::usage, "has no unit", {}, fitting(dimension) + example);
+  if (column_unit.empty()) return fail(ErrorKind::usage, "has no unit", {}, fitting(dimension) + example);
   const auto known = known_unit(column_unit, dimension);
   if (known && known->dimension == dimension) return known->si;
-  return fail(Fault::usage,
+  return fail(ErrorKind::usage,
               fmt::format("has no unit, and the column's own, '{}', {}", column_unit,
                           known ? "is of another quantity" : "is not known"),
               {}, fitting(dimension) + example);
@@ -128,7 +129,7 @@ Result<double> si_worth(std::string_view unit, Dimension dimension, const std::s
   if (unit.empty()) return worth_of_columns_unit(column_unit, dimension);
   if (const auto worth = schema::parse_quantity("1 " + std::string(unit), dimension)) return *worth;
   const bool of_another = schema::parse_unit(unit).has_value();
-  return fail(Fault::usage,
+  return fail(ErrorKind::usage,
               fmt::format("'{}' is {}", unit, of_another ? "a unit of another quantity" : "no known unit"),
               {}, fitting(dimension));
 }
@@ -145,11 +146,11 @@ Result<ScaledColumn> scaled(std::string_view text, Dimension dimension, const Co
   TACTO_TRY(cut);
   const auto calibration = read_calibration(cut->rest);
   if (!calibration)
-    return fail(Fault::usage, fmt::format("'{}' is no scale and offset", cut->rest), {},
+    return fail(ErrorKind::usage, fmt::format("'{}' is no scale and offset", cut->rest), {},
                 fmt::format("write COLUMN*SCALE+OFFSET and a unit of {}", schema::units_of(dimension)));
   const auto si = si_worth(calibration->unit, dimension, columns.units[cut->column]);
   TACTO_TRY(si);
-  if (calibration->scale == 0) return fail(Fault::usage, "has a scale of zero: the column would be lost");
+  if (calibration->scale == 0) return fail(ErrorKind::usage, "has a scale of zero: the column would be lost");
   return ScaledColumn{cut->column, calibration->scale * *si, calibration->offset * *si};
 }
 
@@ -159,7 +160,7 @@ Result<ChannelSpec> channel_without_column(std::string_view name) {
   const auto known = schema::quantity_named(quantity);
   TACTO_TRY(known);
   const std::string label(name.substr(0, colon));
-  if (label.empty()) return fail(Fault::usage, "has an empty label before ':'");
+  if (label.empty()) return fail(ErrorKind::usage, "has an empty label before ':'");
   return ChannelSpec{label, quantity, known->dimension, {}};
 }
 
@@ -174,7 +175,8 @@ Result<ScaledColumn> parse_scaled_column(std::string_view text, Dimension dimens
 Result<ChannelSpec> parse_channel(std::string_view text, const ColumnNames& columns) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos)
-    return in_option({Fault::usage, "names no column", {}, "write QUANTITY=COLUMN*SCALE and a unit"}, text);
+    return in_option({ErrorKind::usage, "names no column", {}, "write QUANTITY=COLUMN*SCALE and a unit"},
+                     text);
   auto spec = channel_without_column(trimmed(text.substr(0, equals)));
   if (!spec) return in_option(spec.error(), text);
   const auto column = scaled(text.substr(equals + 1), spec->dimension, columns);
@@ -190,7 +192,7 @@ Result<std::vector<ChannelSpec>> parse_channels(const std::vector<std::string>& 
     auto spec = parse_channel(text, columns);
     TACTO_TRY(spec);
     if (std::ranges::find(specs, spec->name, &ChannelSpec::name) != specs.end())
-      return in_option({Fault::usage,
+      return in_option({ErrorKind::usage,
                         fmt::format("there are two channels '{}'", spec->name),
                         {},
                         fmt::format("label one of them: LABEL:{}=COLUMN...", spec->quantity)},

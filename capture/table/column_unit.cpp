@@ -59,11 +59,11 @@ NameWithUnit split_unit(std::string_view name) {
   return {std::string(name), ""};
 }
 
-std::optional<schema::Unit> known_unit(std::string_view text, Dimension wanted) {
+std::optional<schema::Unit> known_unit(std::string_view text, Dimension target) {
   const std::string_view symbol = symbol_of(text);
   if (symbol.empty()) return std::nullopt;
-  if (const auto worth = schema::parse_quantity("1 " + std::string(symbol), wanted))
-    return schema::Unit{symbol, wanted, *worth};
+  if (const auto worth = schema::parse_quantity("1 " + std::string(symbol), target))
+    return schema::Unit{symbol, target, *worth};
   const auto unit = schema::parse_unit(symbol);
   return unit ? std::optional(*unit) : std::nullopt;
 }

@@ -19,7 +19,7 @@ NameWithUnit split_unit(std::string_view name);
 
 /// What a unit is worth, in brackets or not, spelt as in "sec", "Volts", "m/s2". `wanted` decides where two
 /// dimensions have one symbol ("g"). nullopt for one that is not known.
-std::optional<schema::Unit> known_unit(std::string_view text, schema::Dimension wanted);
+std::optional<schema::Unit> known_unit(std::string_view text, schema::Dimension target);
 bool is_known_unit(std::string_view text);
 
 /// Whether a field may be part of a row of units: empty, a dash, in brackets, or known.

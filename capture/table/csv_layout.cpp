@@ -16,8 +16,8 @@
 namespace tacto::capture {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -81,23 +81,23 @@ FirstLine kind_of(const std::vector<std::string>& first, const std::vector<std::
 
 Result<void> check_text(std::string_view head, const std::string& file) {
   const bool utf16 = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
-  if (utf16) return fail(Fault::malformed, "is UTF-16 text", file, "save it as UTF-8");
+  if (utf16) return fail(ErrorKind::malformed, "is UTF-16 text", file, "save it as UTF-8");
   if (const auto zero = head.find('\0'); zero != std::string_view::npos)
-    return fail(Fault::malformed, fmt::format("has a zero byte at {}: it is no text", zero), file);
+    return fail(ErrorKind::malformed, fmt::format("has a zero byte at {}: it is no text", zero), file);
   return {};
 }
 
 tl::unexpected<schema::Error> no_lines(std::string_view head, bool whole, const std::string& file) {
-  if (head.empty()) return fail(Fault::malformed, "is empty", file);
+  if (head.empty()) return fail(ErrorKind::malformed, "is empty", file);
   if (!whole)
-    return fail(Fault::malformed, fmt::format("has no data in its first {} bytes", head.size()), file);
-  return fail(Fault::malformed, "holds no data, only blank lines and comments", file);
+    return fail(ErrorKind::malformed, fmt::format("has no data in its first {} bytes", head.size()), file);
+  return fail(ErrorKind::malformed, "holds no data, only blank lines and comments", file);
 }
 
 tl::unexpected<schema::Error> mixed_first_line(const TableLine& line, const std::vector<std::string>& fields,
                                                const std::string& file) {
   const auto at = std::ranges::find_if(fields, is_name) - fields.begin();
-  return fail(Fault::malformed,
+  return fail(ErrorKind::malformed,
               fmt::format("'{}' stands among numbers", fields[static_cast<std::size_t>(at)]),
               fmt::format("{}: line {}, column {}", file, line.number, at + 1),
               "name every column in the first line, or none");
@@ -171,9 +171,9 @@ Result<void> check_rows_follow(std::span<const TableLine> lines, char delimiter,
   const std::string where =
       fmt::format("{}: lines {} to {}", file, lines.front().number, lines.back().number);
   if (are_numbers_between_blanks(lines.back()))
-    return fail(Fault::malformed, "has blanks between its columns", where,
+    return fail(ErrorKind::malformed, "has blanks between its columns", where,
                 "save it with commas, semicolons or tabs between them");
-  return fail(Fault::malformed, "holds no numbers there", where,
+  return fail(ErrorKind::malformed, "holds no numbers there", where,
               "a table has rows of numbers; --skip N passes over N lines before it");
 }
 
@@ -188,7 +188,7 @@ Result<CsvLayout> layout_at_once(CsvLayout layout, std::span<const TableLine> li
   if (kind == FirstLine::header) take_header(layout, lines[0], first);
   take_units(layout, {});
   if (layout.header && lines.size() == 1 && whole)
-    return fail(Fault::malformed, "has a header but no data",
+    return fail(ErrorKind::malformed, "has a header but no data",
                 fmt::format("{}: line {}", file, lines[0].number));
   return layout;
 }
@@ -198,7 +198,7 @@ Result<Beginning> after_lines(std::string_view head, Beginning at, std::size_t s
   for (std::size_t skipped = 0; skipped < skip; ++skipped, ++at.line) {
     const auto end = head.find(line_end, at.offset);
     if (end == std::string_view::npos)
-      return fail(Fault::usage, fmt::format("no table can follow {} lines: there are {}", skip, skipped),
+      return fail(ErrorKind::usage, fmt::format("no table can follow {} lines: there are {}", skip, skipped),
                   fmt::format("--skip, {}", file), "give the number of lines before the table");
     at.offset = end + 1;
   }

@@ -16,7 +16,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 // What a message shows of a field: a mistaken file can have a page of text in it.
@@ -91,7 +91,7 @@ Result<void> CsvReader::feed(std::string_view piece) {
 Result<void> CsvReader::finish() {
   if (!carried_.empty() && !take_line(carried_)) return tl::unexpected(*error_);
   carried_.clear();
-  if (rows_ == 0) return schema::fail(Fault::malformed, "holds no row of numbers", file_);
+  if (rows_ == 0) return schema::fail(ErrorKind::malformed, "holds no row of numbers", file_);
   return {};
 }
 
@@ -213,7 +213,7 @@ bool CsvReader::refuse_blank() {
 bool CsvReader::refuse(std::string what, std::string remedy, std::optional<std::size_t> column) {
   std::string where = fmt::format("{}: line {}", file_, line_);
   if (column) where += ", " + column_in_words(layout_.columns, *column);
-  error_ = schema::Error{Fault::malformed, std::move(what), std::move(where), std::move(remedy)};
+  error_ = schema::Error{ErrorKind::malformed, std::move(what), std::move(where), std::move(remedy)};
   return false;
 }
 

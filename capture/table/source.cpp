@@ -11,8 +11,8 @@
 namespace tacto::capture {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 17;  // with its numbers it stays in the cache
@@ -37,13 +37,14 @@ Result<Source> open_table(const std::string& file, std::string_view head, bool w
 
 Result<Source> open_sound(const std::string& file, std::size_t skip) {
   if (skip == 0) return open_audio(file);
-  return fail(Fault::usage, "has no lines that could be skipped", file, "leave --skip out: this is no table");
+  return fail(ErrorKind::usage, "has no lines that could be skipped", file,
+              "leave --skip out: this is no table");
 }
 
 // Of MATLAB's files libsndfile takes any numbers for sound: only its own name their rate so.
 Result<Source> open_foreign(const std::string& file, const ForeignFormat& format, std::string_view head) {
   if (format.may_be_sound && head.find("samplerate") != std::string_view::npos) return open_audio(file);
-  return fail(Fault::unsuitable, fmt::format("is {}, which import does not read", format.what), file,
+  return fail(ErrorKind::unsuitable, fmt::format("is {}, which import does not read", format.what), file,
               std::string(format.remedy));
 }
 
@@ -61,12 +62,12 @@ bool is_json(const std::string& file, std::string_view head) {
 
 Result<void> refuse_own(const std::string& file, std::string_view head) {
   if (is_json(file, head))
-    return fail(Fault::unsuitable, "is JSON, not a table or a sound file", file,
+    return fail(ErrorKind::unsuitable, "is JSON, not a table or a sound file", file,
                 "a recording needs no import: see 'tactograph info'");
   if (file.ends_with(".texture.wav"))
-    return fail(Fault::unsuitable, "is a texture already", file, "see 'tactograph info'");
+    return fail(ErrorKind::unsuitable, "is a texture already", file, "see 'tactograph info'");
   if (file.ends_with(".wav") && schema::open_recording(file))
-    return fail(Fault::unsuitable, "is a recording already", file, "see 'tactograph info'");
+    return fail(ErrorKind::unsuitable, "is a recording already", file, "see 'tactograph info'");
   return {};
 }
 

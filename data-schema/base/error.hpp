@@ -9,7 +9,7 @@
 namespace tacto::schema {
 
 /// The kind of a failure; each has an exit code of its own (see exit_code).
-enum class Fault {
+enum class ErrorKind {
   internal,             ///< a bug of ours
   usage,                ///< the command line or an option's value
   not_found,            ///< a file or device that is not there, or may not be read
@@ -22,7 +22,7 @@ enum class Fault {
 
 /// One failure. `where` is a file, with line, field or sample; `remedy` says what to do, and may be empty.
 struct Error {
-  Fault fault = Fault::internal;
+  ErrorKind fault = ErrorKind::internal;
   std::string what;
   std::string where;
   std::string remedy;
@@ -32,7 +32,7 @@ template <class T>
 using Result = tl::expected<T, Error>;
 
 /// An Error, ready to be returned from any function that gives a Result.
-inline tl::unexpected<Error> fail(Fault fault, std::string what, std::string where = {},
+inline tl::unexpected<Error> fail(ErrorKind fault, std::string what, std::string where = {},
                                   std::string remedy = {}) {
   return tl::unexpected(Error{fault, std::move(what), std::move(where), std::move(remedy)});
 }
@@ -52,8 +52,8 @@ tl::unexpected<Error> forward_error(const Result<T>& failed) {
       return ::tacto::schema::forward_error(tried_result);       \
   } while (false)
 
-/// The process's exit code for a fault: 1 internal, 2 usage, 3 not found, ... in the order of Fault.
-constexpr int exit_code(Fault fault) {
+/// The process's exit code for a fault: 1 internal, 2 usage, 3 not found, ... in the order of ErrorKind.
+constexpr int exit_code(ErrorKind fault) {
   return static_cast<int>(fault) + 1;
 }
 

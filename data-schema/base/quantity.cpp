@@ -92,11 +92,11 @@ std::string canonical(std::string_view symbol) {
 }
 
 // "g" is a mass and an acceleration: the dimension that is wanted decides, else the first that has it.
-std::optional<Unit> unit_named(std::string_view symbol, Dimension wanted = Dimension::mass) {
+std::optional<Unit> unit_named(std::string_view symbol, Dimension target = Dimension::mass) {
   std::optional<Unit> any;
   for (const Unit& unit : kUnits) {
     if (unit.symbol != symbol) continue;
-    if (unit.dimension == wanted) return unit;
+    if (unit.dimension == target) return unit;
     if (!any) any = unit;
   }
   return any;
@@ -118,7 +118,7 @@ std::optional<NumberAndUnit> split(std::string_view text) {
 }
 
 tl::unexpected<Error> wrong(std::string_view text, std::string_view why, Dimension dimension) {
-  return fail(Fault::usage, fmt::format("'{}' {}", text, why), {},
+  return fail(ErrorKind::usage, fmt::format("'{}' {}", text, why), {},
               fmt::format("write a number with one of: {}", units_of(dimension)));
 }
 
@@ -152,7 +152,7 @@ Result<Unit> parse_unit(std::string_view symbol) {
   for (const Unit& unit : kUnits)
     if (unit_named(unit.symbol)->dimension == unit.dimension)  // once each
       known += (known.empty() ? "" : ", ") + std::string(unit.symbol);
-  return fail(Fault::usage, fmt::format("'{}' is no known unit", symbol), {}, "the units are: " + known);
+  return fail(ErrorKind::usage, fmt::format("'{}' is no known unit", symbol), {}, "the units are: " + known);
 }
 
 std::string_view si_symbol(Dimension dimension) {

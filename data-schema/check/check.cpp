@@ -15,8 +15,8 @@ Checked one_finding(const std::string& where, const std::string& what) {
 
 // What only a missing or a newer file can't be judged by.
 bool ends_the_check(const Error& error) {
-  return error.fault == Fault::not_found || error.fault == Fault::unsupported_version ||
-         error.fault == Fault::internal;
+  return error.fault == ErrorKind::not_found || error.fault == ErrorKind::unsupported_version ||
+         error.fault == ErrorKind::internal;
 }
 
 Result<Checked> judged(const Error& error) {

@@ -9,7 +9,7 @@ namespace {
 cli::Report row_of(const TextureLayer& layer) {
   cli::Report row;
   row.add("type", "texture").add("texture", layer.texture).add("at_m", layer.at_m);
-  row.add("gain_m_per_n", layer.gain_m_per_n).add("ends", word_of(layer.ends));
+  row.add("gain_m_per_n", layer.gain_m_per_n).add("ends", to_string(layer.ends));
   add_text(row, "gain_set_by", layer.gain_set_by);
   add_text(row, "gain_set_on", layer.gain_set_on);
   return row;

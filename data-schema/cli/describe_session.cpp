@@ -16,7 +16,7 @@ cli::Report& add_texture(cli::Report& row, const SessionTexture& texture) {
   row.add("texture", texture.file)
       .add("at_m", texture.at_m)
       .add("gain_m_per_n", texture.gain_m_per_n)
-      .add("ends", word_of(texture.ends));
+      .add("ends", to_string(texture.ends));
   if (texture.ends == TextureEnds::loop) row.add("loop_seam_m", texture.seam_m);
   return row;
 }

@@ -14,7 +14,8 @@ struct ValidateOptions {
 // Every file of every name, checked.
 struct Outcome {
   std::vector<cli::Report> files, faults;
-  Fault worst = Fault::malformed;  // a file that can't be read at all counts for more than one that is faulty
+  ErrorKind worst =
+      ErrorKind::malformed;  // a file that can't be read at all counts for more than one that is faulty
 };
 
 Result<void> check(const StoredFile& file, Outcome& outcome) {
@@ -35,7 +36,7 @@ Result<void> check(const StoredFile& file, Outcome& outcome) {
 void put_unreadable(const std::string& name, const Error& error, Outcome& outcome) {
   outcome.files.push_back(cli::Report().add("file", name).add("kind", "unknown").add("valid", false));
   outcome.faults.push_back(cli::Report().add("where", error.where).add("what", error.what));
-  if (error.fault != Fault::malformed) outcome.worst = error.fault;
+  if (error.fault != ErrorKind::malformed) outcome.worst = error.fault;
 }
 
 void check_name(const std::string& name, Outcome& outcome) {

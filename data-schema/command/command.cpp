@@ -75,7 +75,7 @@ int print_report(const Report& report, const Entry& entry) {
   const bool written =
       std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!written)
-    return print_error({schema::Fault::cannot_write, "the result could not be written", "stdout", ""},
+    return print_error({schema::ErrorKind::cannot_write, "the result could not be written", "stdout", ""},
                        entry.json);
   return report.exit_code();
 }
@@ -110,7 +110,7 @@ int print_parse_error(const CLI::App& app, const CLI::ParseError& error, bool js
   const auto parsed = app.get_subcommands();
   const CLI::App& verb = parsed.empty() ? app : *parsed.front();
   const std::string name = parsed.empty() ? "" : verb.get_name() + " ";
-  return print_error({schema::Fault::usage, error.what() + nearest_option(app, verb), "",
+  return print_error({schema::ErrorKind::usage, error.what() + nearest_option(app, verb), "",
                       fmt::format("see 'tactograph {}--help'", name)},
                      json);
 }
@@ -138,14 +138,14 @@ bool is_unknown_verb(Verbs verbs, std::string_view word) {
 
 int refuse_verb(Verbs verbs, const std::string& word, bool json) {
   const auto names = verb_names(verbs);
-  return print_error(
-      {schema::Fault::usage, fmt::format("there is no verb '{}'{}", word, schema::did_you_mean(word, names)),
-       "", fmt::format("the verbs are: {}", fmt::join(names, ", "))},
-      json);
+  return print_error({schema::ErrorKind::usage,
+                      fmt::format("there is no verb '{}'{}", word, schema::did_you_mean(word, names)), "",
+                      fmt::format("the verbs are: {}", fmt::join(names, ", "))},
+                     json);
 }
 
 int print_text(const std::string& text) {
-  return std::fputs(text.c_str(), stdout) < 0 ? schema::exit_code(schema::Fault::cannot_write) : 0;
+  return std::fputs(text.c_str(), stdout) < 0 ? schema::exit_code(schema::ErrorKind::cannot_write) : 0;
 }
 
 // Of a verb, of a topic, or, without a word, of everything.
@@ -158,7 +158,7 @@ int print_help(const CLI::App& app, const std::string& word, Topics topics, bool
   const std::string listed = fmt::format("the topics are: {}, and each verb", fmt::join(known, ", "));
   for (const CLI::App* verb : app.get_subcommands({})) known.push_back(verb->get_name());
   return print_error(
-      {schema::Fault::usage,
+      {schema::ErrorKind::usage,
        fmt::format("there is no help on '{}'{}", word, schema::did_you_mean(word, known)), "", listed},
       json);
 }
@@ -212,7 +212,8 @@ int run_command(Verbs verbs, int argc, const char* const* argv, Topics topics) {
   } catch (const CLI::ParseError& error) {
     return print_parse_error(app, error, json);
   } catch (const std::exception& error) {
-    return print_error({schema::Fault::internal, error.what(), "internal error", "please report it"}, json);
+    return print_error({schema::ErrorKind::internal, error.what(), "internal error", "please report it"},
+                       json);
   }
   return 0;
 }

@@ -113,7 +113,7 @@ schema::Result<void> write_man_pages(const std::string& folder, std::span<const 
     std::ofstream file(folder + "/" + page.file, std::ios::binary);
     file << page.text;
     if (!file.flush())
-      return schema::fail(schema::Fault::cannot_write, "the manual page could not be written",
+      return schema::fail(schema::ErrorKind::cannot_write, "the manual page could not be written",
                           folder + "/" + page.file, "give a folder that exists and may be written to");
   }
   return {};

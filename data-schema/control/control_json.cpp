@@ -24,7 +24,7 @@ constexpr std::string_view kRequestWhere = "request";
 Result<Json> request_json(std::string_view line) {
   auto body = parse_json(line, std::string(kRequestWhere), kDeepestRequest);
   if (body || !body.error().remedy.empty()) return body;
-  return fail(Fault::malformed, "the line is not one JSON object", std::string(kRequestWhere),
+  return fail(ErrorKind::malformed, "the line is not one JSON object", std::string(kRequestWhere),
               R"(send lines such as {"request":"status"})");
 }
 
@@ -37,7 +37,7 @@ std::string id_in(const Json& body) try {
 }
 
 tl::unexpected<Error> bad_member(const char* member, std::string what, std::string remedy) {
-  return fail(Fault::malformed, std::move(what), fmt::format("{}#/{}", kRequestWhere, member),
+  return fail(ErrorKind::malformed, std::move(what), fmt::format("{}#/{}", kRequestWhere, member),
               std::move(remedy));
 }
 
@@ -51,7 +51,7 @@ std::string remedy_for(const std::string& pointer, const Json& rules) {
 Result<void> check_version_of(const std::string& version) {
   const auto major = [](std::string_view text) { return text.substr(0, text.find('.')); };
   if (major(version) == major(kControlVersion)) return {};
-  return fail(Fault::unsupported_version,
+  return fail(ErrorKind::unsupported_version,
               fmt::format("the client speaks version {} of the control protocol, this daemon {}", version,
                           kControlVersion),
               std::string(kRequestWhere), "use the tactograph that came with the daemon");
@@ -112,7 +112,7 @@ ControlRequest request_of(const Json& body) {
   request.gain = asked_number(body, "gain");
   request.save = body.value("save", false);
   for (const TextureEnds ends : {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop})
-    if (text_or(body, "ends") == word_of(ends)) request.ends = ends;
+    if (text_or(body, "ends") == to_string(ends)) request.ends = ends;
   return request;
 }
 
@@ -161,8 +161,8 @@ ControlReply reply_from(const Json& body) {
     if (auto plain = value_from(value)) reply.fields.emplace_back(name, std::move(*plain));
   if (!body.contains("error")) return reply;
   const Json& error = body["error"];
-  reply.error = {static_cast<Fault>(error.value("fault", 0)), text_or(error, "what"), text_or(error, "where"),
-                 text_or(error, "remedy")};
+  reply.error = {static_cast<ErrorKind>(error.value("fault", 0)), text_or(error, "what"),
+                 text_or(error, "where"), text_or(error, "remedy")};
   return reply;
 }
 
@@ -175,7 +175,7 @@ Result<ControlRequest> parse_control_request(std::string_view line, std::string*
   static const auto& kRules = schema_of("control");
   const auto faults = breaches(*body, *kRules);
   if (!faults.empty())
-    return fail(Fault::malformed, faults.front().what,
+    return fail(ErrorKind::malformed, faults.front().what,
                 fmt::format("{}#{}", kRequestWhere, faults.front().pointer),
                 remedy_for(faults.front().pointer, *kRules));
   if (body->contains("playback")) {
@@ -197,7 +197,7 @@ std::string control_request_line(const ControlRequest& request) {
   put_text(body, "file", request.file);
   if (request.at_m) body["at_m"] = *request.at_m;
   if (request.gain_m_per_n) body["gain_m_per_n"] = *request.gain_m_per_n;
-  if (request.ends) body["ends"] = word_of(*request.ends);
+  if (request.ends) body["ends"] = to_string(*request.ends);
   if (request.fade_s) body["fade_s"] = *request.fade_s;
   if (Json playback = playback_choices_body(request.playback); !playback.empty()) body["playback"] = playback;
   if (request.while_connected) body["while_connected"] = true;
@@ -233,10 +233,10 @@ std::string control_event_line(std::string_view name, const ControlFields& field
 Result<ControlReply> parse_control_reply(std::string_view line) try {
   const auto body = parse_json(line, "reply");
   if (body && body->is_object()) return reply_from(*body);
-  return fail(Fault::malformed, body ? "the daemon's reply is no JSON object" : body.error().what, "reply",
-              "is it tactographd that listens there?");
+  return fail(ErrorKind::malformed, body ? "the daemon's reply is no JSON object" : body.error().what,
+              "reply", "is it tactographd that listens there?");
 } catch (const std::exception&) {  // a member of another type than ours has
-  return fail(Fault::malformed, "the daemon's reply is none of tactographd's", "reply",
+  return fail(ErrorKind::malformed, "the daemon's reply is none of tactographd's", "reply",
               "is it tactographd that listens there?");
 }
 

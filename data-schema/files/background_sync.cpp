@@ -13,7 +13,7 @@ namespace tacto::schema {
 namespace {
 
 tl::unexpected<Error> not_synced(const std::string& path, int error_number) {
-  return fail(Fault::cannot_write,
+  return fail(ErrorKind::cannot_write,
               "can't be brought to the disk: " + std::generic_category().message(error_number), path);
 }
 

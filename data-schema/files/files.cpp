@@ -36,17 +36,18 @@ std::string reason(int error_number) {
 
 tl::unexpected<Error> unreadable(const std::string& path, int error_number) {
   if (error_number == ENOENT)
-    return fail(Fault::not_found, "there is no such file", path, "see how it is spelt, and in which folder");
-  return fail(Fault::not_found, "can't be read: " + reason(error_number), path);
+    return fail(ErrorKind::not_found, "there is no such file", path,
+                "see how it is spelt, and in which folder");
+  return fail(ErrorKind::not_found, "can't be read: " + reason(error_number), path);
 }
 
 // A pipe, a terminal or a device may never end, or be silent for ever: it is not even opened.
 Result<void> check_regular(const std::string& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  if (fs::is_directory(status)) return fail(Fault::not_found, "is a folder, not a file", path);
+  if (fs::is_directory(status)) return fail(ErrorKind::not_found, "is a folder, not a file", path);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    return fail(Fault::not_found, "is no regular file", path, "write it to a file first");
+    return fail(ErrorKind::not_found, "is no regular file", path, "write it to a file first");
   return {};
 }
 
@@ -77,16 +78,16 @@ Result<void> for_each_piece(const std::string& path, Take take) {
 }
 
 tl::unexpected<Error> unwritable(const std::string& path, int error_number) {
-  return fail(Fault::cannot_write, "can't be written: " + reason(error_number), path);
+  return fail(ErrorKind::cannot_write, "can't be written: " + reason(error_number), path);
 }
 
 Result<void> check_target(const fs::path& path) {
   std::error_code ignored;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!fs::is_directory(folder, ignored))
-    return fail(Fault::cannot_write, "there is no such folder", folder.string(), "make it first");
+    return fail(ErrorKind::cannot_write, "there is no such folder", folder.string(), "make it first");
   if (path.filename().empty() || fs::is_directory(path, ignored))
-    return fail(Fault::cannot_write, "is a folder, not a file", path.string());
+    return fail(ErrorKind::cannot_write, "is a folder, not a file", path.string());
   return {};
 }
 
@@ -108,7 +109,7 @@ Result<void> sync(const std::string& temporary, const std::string& path) {
 }
 
 tl::unexpected<Error> taken(const std::string& path) {
-  return fail(Fault::usage, "is there already, and is not overwritten", path,
+  return fail(ErrorKind::usage, "is there already, and is not overwritten", path,
               "choose another name, or replace it with --force");
 }
 
@@ -187,7 +188,8 @@ Result<void> check_wav_free(const std::string& path, Existing existing) {
   std::error_code ignored;
   for (const char* ending : {".json", ".events.jsonl"})
     if (fs::exists(fs::path(path).replace_extension(ending), ignored))
-      return fail(Fault::usage, "this name belongs to a recording or texture", path, "choose another name");
+      return fail(ErrorKind::usage, "this name belongs to a recording or texture", path,
+                  "choose another name");
   return check_output_free(path, existing);
 }
 
@@ -200,7 +202,7 @@ Result<void> check_table_free(const std::string& path, Existing existing,
   std::string line(kLongestBeginning, '\0');
   line.resize(std::fread(line.data(), 1, line.size(), file->get()));
   if (line.empty() || ours(line.substr(0, line.find('\n')))) return check_output_free(path, existing);
-  return fail(Fault::usage, "holds something else, and would be lost", path,
+  return fail(ErrorKind::usage, "holds something else, and would be lost", path,
               "choose another name, or remove it first");
 }
 
@@ -212,7 +214,7 @@ Result<void> check_sum(const std::string& path, const std::string& sha256) {
   const auto is = sha256_of_file(path);
   TACTO_TRY(is);
   if (*is == sha256) return {};
-  return fail(Fault::malformed, "is not what its sidecar was written for: its SHA-256 is another", path,
+  return fail(ErrorKind::malformed, "is not what its sidecar was written for: its SHA-256 is another", path,
               "bring the right one back, or make it anew; 'tactograph validate' says more");
 }
 
@@ -274,7 +276,7 @@ Result<void> check_changeable(const std::string& path) {
   const auto status = fs::status(path, failed);
   const bool read_only = !failed && (status.permissions() & kAnyWrite) == fs::perms::none;
   if (!read_only && access(path.c_str(), W_OK) == 0) return {};
-  return fail(Fault::cannot_write, read_only ? "is read-only" : "may not be written", path,
+  return fail(ErrorKind::cannot_write, read_only ? "is read-only" : "may not be written", path,
               "permit it (chmod u+w), or work on a copy");
 }
 
@@ -282,10 +284,11 @@ Result<void> check_stem(const std::string& stem) {
   const std::string name = fs::path(stem).filename().string();
   std::error_code ignored;
   if (name.empty() || name == "." || name == ".." || fs::is_directory(stem, ignored))
-    return fail(Fault::usage, fmt::format("'{}' is no name for a file", stem), {},
+    return fail(ErrorKind::usage, fmt::format("'{}' is no name for a file", stem), {},
                 "give one, as in FOLDER/NAME");
   if (std::ranges::any_of(name, [](char c) { return c >= 0 && c < ' '; }))
-    return fail(Fault::usage, "the name of the output holds control characters", {}, "choose another name");
+    return fail(ErrorKind::usage, "the name of the output holds control characters", {},
+                "choose another name");
   return {};
 }
 

@@ -20,7 +20,7 @@ std::string place(const std::string& where, const std::string& pointer) {
 
 Result<std::string> kind_in(const Json& body, const std::string& where) {
   const bool named = body.is_object() && body.contains("kind") && body["kind"].is_string();
-  if (!named) return fail(Fault::malformed, "JSON without a `kind`: not a file of tactograph's", where);
+  if (!named) return fail(ErrorKind::malformed, "JSON without a `kind`: not a file of tactograph's", where);
   return body["kind"].get<std::string>();
 }
 
@@ -48,10 +48,11 @@ Result<std::string> newer_version(const Json& body, std::string_view kind, const
   const std::string text =
       body.contains("version") && body["version"].is_string() ? body["version"].get<std::string>() : "";
   const auto version = version_from(text);
-  if (!version) return fail(Fault::malformed, "`version` is not \"major.minor\"", place(where, "/version"));
+  if (!version)
+    return fail(ErrorKind::malformed, "`version` is not \"major.minor\"", place(where, "/version"));
   const Version ours = *version_from(version_of_kind(kind));
   if (version->major != ours.major)
-    return fail(Fault::unsupported_version,
+    return fail(ErrorKind::unsupported_version,
                 fmt::format("its format has version {}, this program reads {}.x", text, ours.major), where,
                 version->major > ours.major ? "a newer tactograph reads it" : "");
   return version->minor > ours.minor ? text : "";
@@ -61,15 +62,16 @@ Result<Document> checked(Json body, const std::string& where, std::string_view k
   const auto found = kind_in(body, where);
   TACTO_TRY(found);
   if (*found != kind)
-    return fail(Fault::malformed, fmt::format("its kind is '{}', not '{}'", *found, kind),
+    return fail(ErrorKind::malformed, fmt::format("its kind is '{}', not '{}'", *found, kind),
                 place(where, "/kind"));
   auto newer = newer_version(body, kind, where);
   TACTO_TRY(newer);
   const auto& rules = schema_of(kind);
-  if (!rules) return fail(Fault::internal, fmt::format("there is no usable schema for '{}'", kind), where);
+  if (!rules)
+    return fail(ErrorKind::internal, fmt::format("there is no usable schema for '{}'", kind), where);
   const auto list = breaches(body, *rules);
   if (!list.empty())
-    return fail(Fault::malformed, list.front().what, place(where, list.front().pointer),
+    return fail(ErrorKind::malformed, list.front().what, place(where, list.front().pointer),
                 remedy_at(list.front().pointer, *rules));
   return Document{std::move(body), std::move(*newer)};
 }
@@ -100,11 +102,11 @@ Json merged(std::string_view kind, const Json& body, const std::string& extra_js
 
 Result<std::string> written(const Json& document, std::string_view kind) {
   if (const auto pointer = first_not_finite(document))
-    return fail(Fault::unsuitable, "a number that is not finite can't be stored", *pointer);
+    return fail(ErrorKind::unsuitable, "a number that is not finite can't be stored", *pointer);
   const auto& rules = schema_of(kind);
-  if (!rules) return fail(Fault::internal, fmt::format("there is no usable schema for '{}'", kind));
+  if (!rules) return fail(ErrorKind::internal, fmt::format("there is no usable schema for '{}'", kind));
   const auto list = breaches(document, *rules);
-  if (!list.empty()) return fail(Fault::unsuitable, list.front().what, list.front().pointer);
+  if (!list.empty()) return fail(ErrorKind::unsuitable, list.front().what, list.front().pointer);
   return document.dump(2) + "\n";
 }
 
@@ -138,7 +140,7 @@ Result<std::vector<Violation>> violations_of(const std::string& path) {
   TACTO_TRY(kind);
   const auto& rules = schema_of(*kind);
   if (!rules)
-    return fail(Fault::malformed, fmt::format("'{}' is no kind of tactograph's", *kind), path + "#/kind");
+    return fail(ErrorKind::malformed, fmt::format("'{}' is no kind of tactograph's", *kind), path + "#/kind");
   TACTO_TRY(newer_version(*body, *kind, path));
   return breaches(*body, *rules);
 }
@@ -147,7 +149,7 @@ Result<std::string> document_text(std::string_view kind, const Json& body,
                                   const std::string& extra_json) try {
   return written(merged(kind, body, extra_json), kind);
 } catch (const std::exception& thrown) {  // text that is not UTF-8
-  return fail(Fault::unsuitable, fmt::format("can't be written as JSON: {}", json_reason(thrown.what())));
+  return fail(ErrorKind::unsuitable, fmt::format("can't be written as JSON: {}", json_reason(thrown.what())));
 }
 
 std::string unknown_members(const Json& body, std::string_view kind) {

@@ -87,12 +87,12 @@ Result<Json> parse_json(std::string_view text, const std::string& where, int dee
   });
 } catch (const Refusal& refusal) {
   const std::string place = refusal.pointer.empty() ? where : where + "#" + refusal.pointer;
-  return fail(Fault::malformed, refusal.what, place, refusal.remedy);
+  return fail(ErrorKind::malformed, refusal.what, place, refusal.remedy);
 } catch (const Json::parse_error& thrown) {
-  return fail(Fault::malformed, "not JSON: " + json_reason(thrown.what()),
+  return fail(ErrorKind::malformed, "not JSON: " + json_reason(thrown.what()),
               fmt::format("{}, {}", where, line_and_column(text, thrown.byte)));
 } catch (const std::exception& thrown) {
-  return fail(Fault::malformed, "not JSON: " + json_reason(thrown.what()), where);
+  return fail(ErrorKind::malformed, "not JSON: " + json_reason(thrown.what()), where);
 }
 
 }  // namespace tacto::schema

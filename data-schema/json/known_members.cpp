@@ -60,8 +60,9 @@ std::vector<std::string> members_not_in(const Json& rule, const Json& body) {
 Result<void> check_members_known(const Json& rule, const Json& body, const std::string& where) {
   const auto unknown = members_not_in(rule, body);
   if (unknown.empty()) return {};
-  return fail(Fault::malformed, fmt::format("the member {} is not known here", quoted_name(unknown.front())),
-              where, remedy_for(unknown.front(), rule));
+  return fail(ErrorKind::malformed,
+              fmt::format("the member {} is not known here", quoted_name(unknown.front())), where,
+              remedy_for(unknown.front(), rule));
 }
 
 }  // namespace tacto::schema

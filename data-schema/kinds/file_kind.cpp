@@ -42,8 +42,9 @@ Result<StoredFile> by_content(const std::string& path) {
   TACTO_TRY(name);
   const auto found = std::ranges::find(kNames, *name);
   if (found == kNames.end())
-    return fail(Fault::malformed, fmt::format("is of the kind '{}', which this program doesn't know", *name),
-                path, fmt::format("the kinds are {}", fmt::join(kNames, ", ")));
+    return fail(ErrorKind::malformed,
+                fmt::format("is of the kind '{}', which this program doesn't know", *name), path,
+                fmt::format("the kinds are {}", fmt::join(kNames, ", ")));
   return StoredFile{static_cast<FileKind>(found - kNames.begin()), path};
 }
 
@@ -56,7 +57,7 @@ FileKind netcdf_kind(const std::string& path) {
 Result<StoredFile> by_wav(const std::string& path) {
   const std::string sidecar = path.substr(0, path.size() - 4) + ".json";
   if (is_file(sidecar)) return by_content(sidecar);
-  return fail(Fault::not_found, fmt::format("has no sidecar {}", sidecar), path,
+  return fail(ErrorKind::not_found, fmt::format("has no sidecar {}", sidecar), path,
               "a sound file of another program becomes a recording with 'tactograph import'");
 }
 
@@ -65,7 +66,7 @@ Result<StoredFile> named_in_full(const std::string& path) {
   if (path.ends_with(".session")) return StoredFile{FileKind::session, path};
   if (path.ends_with(".wav")) return by_wav(path);
   if (path.ends_with(".json")) return by_content(path);
-  return fail(Fault::malformed, "is no file of tactograph", path,
+  return fail(ErrorKind::malformed, "is no file of tactograph", path,
               "its files end in .json, .wav, .nc or .session");
 }
 
@@ -95,9 +96,9 @@ Result<std::vector<StoredFile>> stored_files(const std::string& name) {
   if (std::ranges::find(presets, name) != presets.end())
     return std::vector{StoredFile{FileKind::transducer, name}};
   if (is_file(name + ".events.jsonl"))
-    return fail(Fault::unsuitable, "was never closed, or is still being recorded", name,
+    return fail(ErrorKind::unsuitable, "was never closed, or is still being recorded", name,
                 fmt::format("'tactograph recover {}' makes a recording of what is there", name));
-  return fail(Fault::not_found, "there is no such file", name, "name a file in full, or by its stem");
+  return fail(ErrorKind::not_found, "there is no such file", name, "name a file in full, or by its stem");
 }
 
 }  // namespace tacto::schema

@@ -105,14 +105,14 @@ Result<void> LiveRecording::State::check_place() const {
   if (at_its_path && is_file(wav_name)) return {};
   const std::string now = recording_stem_of(place);
   if (events.is_deleted() || at_its_path || (!place.empty() && !is_file(now + ".wav")))
-    return fail(Fault::cannot_write, "was deleted while it was recorded: its frames are lost", wav_name,
+    return fail(ErrorKind::cannot_write, "was deleted while it was recorded: its frames are lost", wav_name,
                 "record again");
   const char* const renamed = "was renamed, or its folder was, while it was recorded";
   if (place.empty())
-    return fail(Fault::cannot_write, renamed, wav_name,
+    return fail(ErrorKind::cannot_write, renamed, wav_name,
                 "find its .events.jsonl: 'tactograph recover' makes a recording of it and its WAV");
   return fail(
-      Fault::cannot_write, renamed, wav_name,
+      ErrorKind::cannot_write, renamed, wav_name,
       fmt::format("its frames are in {0}.wav: 'tactograph recover {0}' makes a recording of them", now));
 }
 
@@ -130,7 +130,7 @@ Result<void> LiveRecording::discard() {
   std::error_code failed;
   std::filesystem::remove(state_->stem + ".wav", failed);
   if (failed)
-    return fail(Fault::cannot_write, "can't be removed: " + failed.message(), state_->stem + ".wav");
+    return fail(ErrorKind::cannot_write, "can't be removed: " + failed.message(), state_->stem + ".wav");
   return state_->events.remove();
 }
 

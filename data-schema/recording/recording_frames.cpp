@@ -28,7 +28,7 @@ Result<RecordingFrames> RecordingFrames::open(const Recording& recording) {
 
 tl::unexpected<Error> RecordingFrames::not_finite(std::size_t channel, std::uint64_t frame,
                                                   double value) const {
-  return fail(Fault::malformed,
+  return fail(ErrorKind::malformed,
               fmt::format("channel '{}', sample {}: {} is not a finite number", channels_[channel].name,
                           frame, value),
               path_);
@@ -39,7 +39,8 @@ Result<void> RecordingFrames::read_piece(std::size_t channel, std::uint64_t firs
   const auto piece = std::span(interleaved_).first(out.size() * channels);
   const auto got = reader_.read(piece);
   TACTO_TRY(got);
-  if (*got < out.size()) return fail(Fault::malformed, fmt::format("ends at frame {}", first + *got), path_);
+  if (*got < out.size())
+    return fail(ErrorKind::malformed, fmt::format("ends at frame {}", first + *got), path_);
   next_ = first + out.size();
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = piece[i * channels + channel];
   const auto broken = std::ranges::find_if(out, [](double value) { return !std::isfinite(value); });

@@ -272,7 +272,7 @@ std::vector<Violation> recording_breaches(const RecordingHeader& header) {
 
 Result<std::string> recording_text(const RecordingHeader& header) {
   if (const auto breaches = recording_breaches(header); !breaches.empty())
-    return fail(Fault::unsuitable, breaches.front().what, breaches.front().pointer);
+    return fail(ErrorKind::unsuitable, breaches.front().what, breaches.front().pointer);
   return document_text("recording", recording_body(header), header.extra_json);
 }
 
@@ -286,7 +286,7 @@ RecordingHeader recording_header_unchecked(const Document& document) {
 Result<RecordingHeader> recording_header_from(const Document& document, const std::string& path) {
   RecordingHeader header = recording_header_unchecked(document);
   if (const auto breaches = recording_breaches(header); !breaches.empty())
-    return fail(Fault::malformed, breaches.front().what, path + "#" + breaches.front().pointer);
+    return fail(ErrorKind::malformed, breaches.front().what, path + "#" + breaches.front().pointer);
   return header;
 }
 

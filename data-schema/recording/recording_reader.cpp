@@ -17,37 +17,37 @@ namespace fs = std::filesystem;
 // There is no sidecar: perhaps there are samples that could become a recording.
 tl::unexpected<Error> absent_recording(const std::string& name, const std::string& stem) {
   if (is_file(stem + ".events.jsonl"))
-    return fail(Fault::unsuitable, "was never closed, or is still being recorded", name,
+    return fail(ErrorKind::unsuitable, "was never closed, or is still being recorded", name,
                 fmt::format("'tactograph recover {}' makes a recording of what is there", stem));
   const std::string samples = is_file(name) ? name : stem + ".wav";
   if (!is_file(samples))
-    return fail(Fault::not_found, "there is no such recording", name,
+    return fail(ErrorKind::not_found, "there is no such recording", name,
                 "a recording is NAME.json and NAME.wav");
-  return fail(Fault::unsuitable, fmt::format("is not a recording: there is no {}.json", stem), samples,
+  return fail(ErrorKind::unsuitable, fmt::format("is not a recording: there is no {}.json", stem), samples,
               fmt::format("'tactograph import {} -o NAME' makes one of it", samples));
 }
 
 Result<void> check_frames(const RecordingHeader& header, const WavInfo& info, const std::string& wav) {
   if (info.frames < header.frames)
     return fail(
-        Fault::malformed,
+        ErrorKind::malformed,
         fmt::format("truncated: its sidecar promises {} frames, {} are left", header.frames, info.frames),
         wav);
   if (info.frames > header.frames)
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("has {} frames, its sidecar says {}", info.frames, header.frames), wav);
   return {};
 }
 
 Result<void> check_samples(const RecordingHeader& header, const WavInfo& info, const std::string& wav) {
   if (info.channels != header.channels.size())
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("has {} channels, its sidecar names {}", info.channels, header.channels.size()),
                 wav);
   if (info.integer != (header.format == SampleFormat::pcm32))
-    return fail(Fault::malformed, fmt::format("holds {}, its sidecar says otherwise", info.format), wav);
+    return fail(ErrorKind::malformed, fmt::format("holds {}, its sidecar says otherwise", info.format), wav);
   if (info.sample_rate_hz != std::round(header.sample_rate_hz))
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("has a rate of {} Hz, its sidecar says {} Hz", info.sample_rate_hz,
                             header.sample_rate_hz),
                 wav);
@@ -95,7 +95,7 @@ std::string wav_path(const Recording& recording) {
 Result<std::size_t> find_channel(const RecordingHeader& header, std::string_view name) {
   const auto found = std::ranges::find(header.channels, name, &Channel::name);
   if (found != header.channels.end()) return static_cast<std::size_t>(found - header.channels.begin());
-  return fail(Fault::unsuitable, fmt::format("there is no channel '{}'", name), header.wav_file,
+  return fail(ErrorKind::unsuitable, fmt::format("there is no channel '{}'", name), header.wav_file,
               "its channels are: " + channel_names(header));
 }
 
@@ -111,7 +111,7 @@ Result<TimeSignal> read_channel(const Recording& recording, std::size_t channel)
   for (double& value : signal.values) value = value * told.scale + told.offset;
   const auto broken = std::ranges::find_if(signal.values, [](double value) { return !std::isfinite(value); });
   if (broken == signal.values.end()) return signal;
-  return fail(Fault::malformed,
+  return fail(ErrorKind::malformed,
               fmt::format("channel '{}', sample {}: {} is not a finite number", told.name,
                           broken - signal.values.begin(), *broken),
               wav_path(recording));

@@ -19,9 +19,9 @@ namespace {
 Result<void> check_recoverable(const std::string& stem) {
   if (is_file(events_path(stem))) return {};
   if (is_file(stem + ".json"))
-    return fail(Fault::unsuitable, "was closed: there is nothing to recover", stem + ".json",
+    return fail(ErrorKind::unsuitable, "was closed: there is nothing to recover", stem + ".json",
                 "'tactograph validate' says whether it is sound");
-  return fail(Fault::not_found, "there is no recording under way or broken off", stem,
+  return fail(ErrorKind::not_found, "there is no recording under way or broken off", stem,
               "name it by its stem: it has left NAME.wav and NAME.events.jsonl");
 }
 

@@ -63,7 +63,7 @@ Result<std::vector<Statistics>> channel_statistics(const std::string& wav, std::
   TACTO_TRY(reader);
   const WavInfo info = reader->info();
   if (info.channels != channels.size())
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("has {} channels, its sidecar {}", info.channels, channels.size()), wav);
   std::vector<Statistics> statistics(channels.size());
   std::vector<double> block(kBlockFrames * channels.size());

@@ -43,7 +43,7 @@ Result<EmptyWav> empty_wav(const std::string& wav, const RecordingHeader& header
   auto bytes = read_file(*path);
   TACTO_TRY(bytes);
   if (!layout || layout->format_at < 8 || layout->data_at < layout->format_at + kFormatBytes - 8)
-    return fail(Fault::internal, "an empty WAV has another header than is known", *path);
+    return fail(ErrorKind::internal, "an empty WAV has another header than is known", *path);
   return EmptyWav{std::move(*bytes), *layout};
 }
 
@@ -74,7 +74,7 @@ bool is_remnant(const std::string& wav, const EmptyWav& empty) {
 
 tl::unexpected<Error> unknown_content(const std::string& wav, const EmptyWav& empty) {
   const auto bytes = empty.layout.data_at;
-  return fail(Fault::malformed,
+  return fail(ErrorKind::malformed,
               fmt::format("is not the WAV of this recording: its first {} bytes are neither its header nor "
                           "zeros; nothing was changed",
                           bytes),
@@ -88,13 +88,14 @@ Result<void> write_header(const std::string& wav, const EmptyWav& empty) {
   std::fstream file(wav, std::ios::binary | std::ios::in | std::ios::out);
   file.write(empty.bytes.data(), static_cast<std::streamsize>(empty.layout.data_at));
   file.close();
-  return file ? Result<void>{} : fail(Fault::cannot_write, "its header can't be written", wav);
+  return file ? Result<void>{} : fail(ErrorKind::cannot_write, "its header can't be written", wav);
 }
 
 Result<void> cut_off_at(const std::string& wav, std::uint64_t bytes) {
   std::error_code failed;
   fs::resize_file(wav, bytes, failed);
-  return failed ? fail(Fault::cannot_write, "can't be shortened: " + failed.message(), wav) : Result<void>{};
+  return failed ? fail(ErrorKind::cannot_write, "can't be shortened: " + failed.message(), wav)
+                : Result<void>{};
 }
 
 std::uint64_t size_of(const std::string& path) {
@@ -112,7 +113,7 @@ Result<void> check_holds_something(const std::string& wav, const EmptyWav& empty
   const std::uint64_t block = empty.layout.block_bytes;
   const bool early = static_cast<double>(known_frames) <= kOnItsWay_s * header.sample_rate_hz;
   if (early || size_of(wav) >= empty.layout.data_at + block) return {};
-  return fail(Fault::malformed,
+  return fail(ErrorKind::malformed,
               fmt::format("holds no frames, though the journal beside it knows of {}; nothing was changed",
                           known_frames),
               wav, "look for the WAV elsewhere (lost+found, a backup) and put it here");
@@ -163,7 +164,7 @@ Result<void> make_header_sound(const std::string& wav, const EmptyWav& empty, Wa
 Result<WavRemains> salvage_wav(const std::string& wav, const RecordingHeader& header,
                                std::uint64_t known_frames) {
   if (!is_file(wav))
-    return fail(Fault::not_found, "is missing: only its journal is there", wav,
+    return fail(ErrorKind::not_found, "is missing: only its journal is there", wav,
                 "put it beside the journal; where nothing was recorded, delete the journal");
   const auto empty = empty_wav(wav, header);
   TACTO_TRY(empty);
@@ -174,7 +175,7 @@ Result<WavRemains> salvage_wav(const std::string& wav, const RecordingHeader& he
   // A header that was lost promises nothing.
   TACTO_TRY(sound ? cut_unwritten(wav, header, remains) : Result<void>{});
   const auto layout = riff_layout(wav);
-  if (!layout) return fail(Fault::malformed, "is no WAV", wav);
+  if (!layout) return fail(ErrorKind::malformed, "is no WAV", wav);
   remains.frames = layout->present_bytes / layout->block_bytes;
   note_zeros(wav, *layout, header, remains);
   if (const auto left = layout->present_bytes % layout->block_bytes; left != 0)

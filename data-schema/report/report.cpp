@@ -49,7 +49,7 @@ Report& Report::add(std::string key, std::vector<std::string> lines) {
   return put(std::move(key), std::move(lines));
 }
 
-Report& Report::ends_with(schema::Fault fault) {
+Report& Report::ends_with(schema::ErrorKind fault) {
   exit_code_ = schema::exit_code(fault);
   return *this;
 }

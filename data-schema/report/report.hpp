@@ -34,7 +34,7 @@ class Report {
 
   /// Makes the process end with this fault's exit code although the report was made (`validate` found
   /// faults).
-  Report& ends_with(schema::Fault fault);
+  Report& ends_with(schema::ErrorKind fault);
   int exit_code() const { return exit_code_; }
   bool empty() const { return entries_.empty(); }
 

@@ -216,8 +216,8 @@ class ShortText {
         std::ranges::find_if(blocks_, [](const Block& block) { return block.table.has_value(); });
     if (table == blocks_.end()) return;
     constexpr std::size_t kFewRows = 4, kHeader = 2;
-    const std::size_t wanted = std::min(kFewRows, table->table->rows()) + kHeader;
-    while (room() < wanted && drop_last(false)) {
+    const std::size_t target = std::min(kFewRows, table->table->rows()) + kHeader;
+    while (room() < target && drop_last(false)) {
     }
   }
 

@@ -55,7 +55,7 @@ Result<void> check_curves(const Json& body, const std::string& path) {
     const Json& curves = body["pictures"][p]["curves"];
     for (std::size_t c = 0; c < curves.size(); ++c)
       if (const std::size_t x = curves[c]["x"].size(), y = curves[c]["y"].size(); x != y)
-        return fail(Fault::malformed, fmt::format("x has {} values, y has {}", x, y),
+        return fail(ErrorKind::malformed, fmt::format("x has {} values, y has {}", x, y),
                     fmt::format("{}#/pictures/{}/curves/{}", path, p, c));
   }
   return {};
@@ -70,7 +70,7 @@ Result<Json> details_of(const std::string& text) {
   if (text.empty()) return Json::object();
   Json details = Json::parse(text, nullptr, false);
   if (details.is_object()) return details;
-  return fail(Fault::unsuitable, "are no JSON object", "details");
+  return fail(ErrorKind::unsuitable, "are no JSON object", "details");
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ Result<void> check_results_free(const std::string& path, Existing existing) {
   if (!is_file(path)) return check_output_free(path, existing);
   const auto there = stored_files(path);
   if (there && there->front().kind == FileKind::results) return check_output_free(path, existing);
-  return fail(Fault::usage,
+  return fail(ErrorKind::usage,
               there ? fmt::format("is a {}, and would be lost", kind_name(there->front().kind))
                     : "is there, is no file of results, and would be lost",
               path, "choose another name");

@@ -51,7 +51,7 @@ Result<TradeTable> table_of(const Result<Document>& document, const std::string&
   table.machine = text_or(body, "machine");
   for (const Json& each : body["choices"]) table.choices.push_back(choice_from(each));
   if (const auto bad = std::ranges::find_if_not(table.choices, rises); bad != table.choices.end())
-    return fail(Fault::malformed, "points per period do not rise",
+    return fail(ErrorKind::malformed, "points per period do not rise",
                 fmt::format("{}#/choices/{}/errors", where, bad - table.choices.begin()),
                 "measure again with 'tactograph trade --calibrate'");
   table.created = text_or(body, "created");
@@ -93,7 +93,8 @@ Result<std::string> trade_table_json(const TradeTable& table) {
 Result<TradeTable> shipped_trade_table() {
   const auto files = embedded_files();
   const auto found = std::ranges::find(files, kShippedTable, &EmbeddedFile::name);
-  if (found == files.end()) return fail(Fault::internal, "is not in the program", std::string(kShippedTable));
+  if (found == files.end())
+    return fail(ErrorKind::internal, "is not in the program", std::string(kShippedTable));
   return table_of(parse_document(found->text, std::string(found->name), kTradeKind),
                   std::string(found->name));
 }

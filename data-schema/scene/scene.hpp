@@ -38,7 +38,7 @@ struct Scene {
 };
 
 /// "stop", "mirror", "loop".
-std::string_view word_of(TextureEnds ends);
+std::string_view to_string(TextureEnds ends);
 
 /// By stem or NAME.scene.json. Errors: not_found; malformed, by JSON pointer, also a member that is not known
 /// here (of a newer minor version it is kept); unsuitable, by JSON pointer,

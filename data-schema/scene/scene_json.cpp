@@ -47,7 +47,7 @@ Json texture_layer_body(const TextureLayer& layer) {
   body["gain_m_per_n"] = layer.gain_m_per_n;
   put_text(body, "gain_set_by", layer.gain_set_by);
   put_text(body, "gain_set_on", layer.gain_set_on);
-  body["ends"] = word_of(layer.ends);
+  body["ends"] = to_string(layer.ends);
   if (!layer.extra_json.empty()) body.update(Json::parse(layer.extra_json));
   return body;
 }
@@ -58,7 +58,7 @@ Json layer_body(const Layer& layer) {
 
 Result<Layer> layer_from(const Json& body, const std::string& place) {
   if (const std::string type = text_or(body, "type"); type != "texture")
-    return fail(Fault::unsuitable, fmt::format("'{}' is no type of layer that this program knows", type),
+    return fail(ErrorKind::unsuitable, fmt::format("'{}' is no type of layer that this program knows", type),
                 place + "/type", "the types are: texture");
   return texture_layer_from(body);
 }
@@ -88,7 +88,7 @@ Result<void> check_ends(const Scene& scene, const std::string& where) {
   if (scene.layers.size() == 1) return {};
   const auto layer = std::ranges::find_if(scene.layers, goes_on);
   if (layer == scene.layers.end()) return {};
-  return fail(Fault::unsuitable, "one of several textures can't go on beyond its ends",
+  return fail(ErrorKind::unsuitable, "one of several textures can't go on beyond its ends",
               fmt::format("{}#/layers/{}/ends", where, layer - scene.layers.begin()), R"(make it "stop")");
 }
 
@@ -126,7 +126,7 @@ Json scene_body(const Scene& scene) {
 
 }  // namespace
 
-std::string_view word_of(TextureEnds ends) {
+std::string_view to_string(TextureEnds ends) {
   return kEndsWords[static_cast<std::size_t>(ends)];
 }
 

@@ -59,14 +59,14 @@ Json texture_row(const SessionTexture& texture) {
               {"sha256", texture.sha256},
               {"at_m", texture.at_m},
               {"gain_m_per_n", texture.gain_m_per_n},
-              {"ends", word_of(texture.ends)}};
+              {"ends", to_string(texture.ends)}};
   if (texture.ends == TextureEnds::loop) row["seam_m"] = texture.seam_m;
   return row;
 }
 
 TextureEnds ends_from(const std::string& word) {
   constexpr std::array kAll = {TextureEnds::stop, TextureEnds::mirror, TextureEnds::loop};
-  const auto found = std::ranges::find(kAll, word, [](TextureEnds ends) { return word_of(ends); });
+  const auto found = std::ranges::find(kAll, word, [](TextureEnds ends) { return to_string(ends); });
   return found == kAll.end() ? TextureEnds::stop : *found;
 }
 
@@ -151,7 +151,7 @@ void read_program(const Json& body, SessionProgram& program) {
 constexpr std::size_t kMostProgramText = kMostPayload - 16;  // beside a change's moment
 
 Result<std::string> too_long(std::size_t bytes) {
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("what is played takes {} bytes to name, a session has room for {}", bytes,
                           kMostProgramText),
               "session", "play a scene of fewer layers");
@@ -165,7 +165,7 @@ Result<void> check_transducer_in(const Json& body, const std::string& where) {
   static const auto kRules = schema_of("transducer");
   const auto faults = breaches(transducer, *kRules);
   if (faults.empty()) return {};
-  return fail(Fault::malformed, faults.front().what,
+  return fail(ErrorKind::malformed, faults.front().what,
               fmt::format("{}#/transducer{}", where, faults.front().pointer), "bring the right file back");
 }
 

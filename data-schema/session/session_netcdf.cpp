@@ -107,10 +107,10 @@ Result<SessionTable> read_session_table(const std::string& path) {
   const bool ours = file.text("kind") == kSessionKind;
   const std::vector<double> time_s = file.axis("time");
   TACTO_TRY(file.status(path));
-  if (!ours) return fail(Fault::malformed, "is netCDF, but no session of tactograph", path);
+  if (!ours) return fail(ErrorKind::malformed, "is netCDF, but no session of tactograph", path);
   const auto stuck = std::ranges::adjacent_find(time_s, [](double a, double b) { return !(a < b); });
   if (time_s.empty() || stuck != time_s.end())
-    return fail(Fault::malformed, time_s.empty() ? "has no times" : "its times must grow", path);
+    return fail(ErrorKind::malformed, time_s.empty() ? "has no times" : "its times must grow", path);
   table.times = time_s.size();
   table.duration_s = time_s.back() - time_s.front();
   return table;

@@ -88,7 +88,7 @@ Result<SessionReader> SessionReader::open(const std::string& name) {
   state->file.open(state->path, std::ios::binary);
   const auto first = state->take();
   if (!first || *first != BlockType::header)
-    return fail(Fault::malformed, "does not begin with a session's header", state->path);
+    return fail(ErrorKind::malformed, "does not begin with a session's header", state->path);
   auto header = parse_session_header(state->payload, state->path);
   TACTO_TRY(header);
   state->header = std::move(*header);

@@ -134,7 +134,7 @@ Result<void> NetcdfWriter::close(const std::string& path) {
     file_ = -1;
   }
   if (sound()) return {};
-  return fail(Fault::cannot_write, fmt::format("netCDF: {}", nc_strerror(status_)), path,
+  return fail(ErrorKind::cannot_write, fmt::format("netCDF: {}", nc_strerror(status_)), path,
               "is the disk full?");
 }
 
@@ -222,7 +222,7 @@ std::vector<double> NetcdfReader::values(const char* name, const Part& part) {
 
 Result<void> NetcdfReader::status(const std::string& path) const {
   if (status_ == NC_NOERR) return {};
-  return fail(Fault::malformed, fmt::format("netCDF: {}", nc_strerror(status_)), path);
+  return fail(ErrorKind::malformed, fmt::format("netCDF: {}", nc_strerror(status_)), path);
 }
 
 }  // namespace tacto::schema

@@ -45,10 +45,10 @@ float cell_factor(Scaling scaling) {
 
 Result<void> check_axes(const std::optional<SpectrogramHeader>& first, const SpectrogramHeader& header) {
   if (header.position_m.empty() || header.bins == 0)
-    return fail(Fault::unsuitable, "the spectrogram has no cells", header.name);
+    return fail(ErrorKind::unsuitable, "the spectrogram has no cells", header.name);
   if (!first) return {};
   if (const char* what = difference(*first, header); what != nullptr)
-    return fail(Fault::unsuitable, fmt::format("its {} differ from those of '{}'", what, first->name),
+    return fail(ErrorKind::unsuitable, fmt::format("its {} differ from those of '{}'", what, first->name),
                 header.name, "write it to a file of its own");
   return {};
 }

@@ -49,7 +49,7 @@ class CsvWriter : public SpectrogramWriter {
   }
 
   Result<void> close() override {
-    if (strokes_ == 0) return fail(Fault::unsuitable, "there is no spectrogram to write", path_);
+    if (strokes_ == 0) return fail(ErrorKind::unsuitable, "there is no spectrogram to write", path_);
     return std::fclose(file_.release()) == 0 ? Result<void>{} : stopped();
   }
 
@@ -97,7 +97,7 @@ class CsvWriter : public SpectrogramWriter {
   }
 
   Result<void> stopped() const {
-    return fail(Fault::cannot_write, "writing stopped half-way", path_, "is the disk full?");
+    return fail(ErrorKind::cannot_write, "writing stopped half-way", path_, "is the disk full?");
   }
 
   File file_;
@@ -115,7 +115,7 @@ Result<std::unique_ptr<SpectrogramWriter>> open_spectrogram_csv(const std::strin
                                                                 const SpectrogramFileOptions& options) {
   File file(std::fopen(path.c_str(), "wbe"));
   const std::string& named = options.named.empty() ? path : options.named;
-  if (!file) return fail(Fault::cannot_write, "the file can't be made", named);
+  if (!file) return fail(ErrorKind::cannot_write, "the file can't be made", named);
   return std::make_unique<CsvWriter>(std::move(file), named, options.several);
 }
 

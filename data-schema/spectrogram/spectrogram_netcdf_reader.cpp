@@ -31,9 +31,9 @@ Result<Version> check_kind(NetcdfReader& file, const std::string& path) {
   const std::string text = file.text("version");
   const Version version = version_of(text);
   if (file.text("kind") != "spectrogram" || version.major == 0)
-    return fail(Fault::malformed, "is netCDF, but no spectrogram of tactograph", path);
+    return fail(ErrorKind::malformed, "is netCDF, but no spectrogram of tactograph", path);
   if (version.major > kMajor)
-    return fail(Fault::unsupported_version,
+    return fail(ErrorKind::unsupported_version,
                 fmt::format("is of version {}; this program reads {}.x", text, kMajor), path,
                 "use a newer tactograph");
   return version;
@@ -117,7 +117,7 @@ Result<Spectrogram> read_stroke(NetcdfReader& file, std::size_t stroke, const st
   Spectrogram spectrogram;
   spectrogram.strokes = std::max(file.length("stroke"), std::size_t{1});
   if (stroke >= spectrogram.strokes)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("holds {} spectrograms, not {}", spectrogram.strokes, stroke + 1), path);
   read_attributes(file, stroke, spectrogram);
   read_axes(file, spectrogram);
@@ -132,7 +132,7 @@ Result<Spectrogram> read_stroke(NetcdfReader& file, std::size_t stroke, const st
 Result<Spectrogram> read_spectrogram_nc(const std::string& path, std::size_t stroke) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored))
-    return fail(Fault::not_found, "there is no such file", path);
+    return fail(ErrorKind::not_found, "there is no such file", path);
   NetcdfReader file(path);
   const auto version = check_kind(file, path);
   TACTO_TRY(version);

@@ -82,7 +82,7 @@ class NcWriter : public SpectrogramWriter {
   }
 
   Result<void> close() override {
-    if (!first_) return fail(Fault::unsuitable, "there is no spectrogram to write", named_);
+    if (!first_) return fail(ErrorKind::unsuitable, "there is no spectrogram to write", named_);
     end_sum();
     flag_absent_rows();
     if (options_.several) {

@@ -12,7 +12,7 @@ using Open = Result<std::unique_ptr<SpectrogramWriter>> (*)(const std::string&,
 Result<void> write_each(SpectrogramWriter& writer, std::span<const Spectrogram> spectrograms) {
   for (const Spectrogram& each : spectrograms) {
     if (each.cells.size() != each.position_m.size() * each.bins)
-      return fail(Fault::unsuitable, "the spectrogram's cells do not fit its axes", each.name);
+      return fail(ErrorKind::unsuitable, "the spectrogram's cells do not fit its axes", each.name);
     if (auto begun = writer.begin(each); !begun) return begun;
     if (auto written = writer.rows(0, each.cells); !written) return written;
   }

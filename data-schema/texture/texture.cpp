@@ -27,11 +27,11 @@ constexpr std::string_view kTextureSuffix = ".texture";
 tl::unexpected<Error> absent(const std::string& name) {
   const auto others = stored_files(name);
   if (others && others->front().kind == FileKind::recording)
-    return fail(Fault::unsuitable, "is a recording", name, "make a texture with 'tactograph spatial'");
+    return fail(ErrorKind::unsuitable, "is a recording", name, "make a texture with 'tactograph spatial'");
   if (others && others->front().kind != FileKind::texture)
-    return fail(Fault::unsuitable, fmt::format("is a {}, not a texture", kind_name(others->front().kind)),
+    return fail(ErrorKind::unsuitable, fmt::format("is a {}, not a texture", kind_name(others->front().kind)),
                 name);
-  return fail(Fault::not_found, "there is no such texture", name,
+  return fail(ErrorKind::not_found, "there is no such texture", name,
               "a texture is NAME.texture.json and NAME.texture.wav");
 }
 
@@ -40,20 +40,20 @@ Result<void> check_layout(const std::string& wav, const TextureData& data, doubl
   TACTO_TRY(reader);
   const WavInfo& info = reader->info();
   if (info.frames != data.samples)
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("holds {} samples, its sidecar says {}", info.frames, data.samples), wav);
   if (info.channels != data.channels)
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("has {} channels, its sidecar describes {}", info.channels, data.channels), wav);
   if (info.sample_rate_hz != header_rate_of(pitch_m))
     return fail(
-        Fault::malformed,
+        ErrorKind::malformed,
         fmt::format("has {} samples a metre, its sidecar a pitch of {} m", info.sample_rate_hz, pitch_m),
         wav);
   return {};
 }
 
-Result<void> check_finite(const std::vector<double>& samples, const std::string& where, Fault fault) {
+Result<void> check_finite(const std::vector<double>& samples, const std::string& where, ErrorKind fault) {
   const auto broken = std::ranges::find_if(samples, [](double each) { return !std::isfinite(each); });
   if (broken == samples.end()) return {};
   return fail(fault, fmt::format("sample {} is not a finite number", broken - samples.begin()), where);
@@ -65,7 +65,7 @@ Result<void> check_single(const std::vector<double>& samples, const std::string&
   const auto beyond = [](double each) { return !std::isfinite(static_cast<float>(each)); };
   const auto found = std::ranges::find_if(samples, beyond);
   if (found == samples.end()) return {};
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("sample {} is {:.4g} {}, beyond the 3.4e38 that a texture's file holds",
                           found - samples.begin(), *found, unit),
               where, "look at the channel's scale: 'tactograph info' of the recording shows it");
@@ -77,7 +77,7 @@ Result<void> check_not_lost(const std::vector<double>& samples, const std::strin
   for (const double each : samples) largest = std::max(largest, std::abs(each));
   if (largest == 0 || largest >= static_cast<double>(std::numeric_limits<float>::min())) return {};
   return fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("its largest value is {:.4g} {}, below the 1.2e-38 that a texture's file holds: all "
                   "would be stored as zeros, or nearly",
                   largest, unit),
@@ -87,7 +87,7 @@ Result<void> check_not_lost(const std::vector<double>& samples, const std::strin
 Result<std::vector<double>> read_samples(const std::string& wav, std::size_t channel) {
   auto samples = read_wav_channel(wav, channel);
   if (!samples) return samples;
-  const auto finite = check_finite(*samples, wav, Fault::malformed);
+  const auto finite = check_finite(*samples, wav, ErrorKind::malformed);
   return finite ? samples : forward_error(finite);
 }
 
@@ -111,14 +111,15 @@ Result<void> write_samples(const std::string& path, const Texture& texture) {
 
 Result<void> check_writable(const std::string& stem, const Texture& texture) {
   const SpaceSignal& signal = texture.signal;
-  if (signal.values.empty()) return fail(Fault::unsuitable, "the texture has no samples", stem);
-  if (!(signal.pitch_m > 0)) return fail(Fault::unsuitable, "the texture's pitch is not above 0", stem);
-  if (auto finite = check_finite(signal.values, stem, Fault::unsuitable); !finite) return finite;
+  if (signal.values.empty()) return fail(ErrorKind::unsuitable, "the texture has no samples", stem);
+  if (!(signal.pitch_m > 0)) return fail(ErrorKind::unsuitable, "the texture's pitch is not above 0", stem);
+  if (auto finite = check_finite(signal.values, stem, ErrorKind::unsuitable); !finite) return finite;
   if (auto held = check_single(signal.values, texture.unit, stem); !held) return held;
   if (auto kept = check_not_lost(signal.values, texture.unit, stem); !kept || !texture.average) return kept;
   if (texture.average->spread.size() != signal.values.size())
-    return fail(Fault::unsuitable, "the texture's spread has another length than its mean", stem);
-  if (auto finite = check_finite(texture.average->spread, stem, Fault::unsuitable); !finite) return finite;
+    return fail(ErrorKind::unsuitable, "the texture's spread has another length than its mean", stem);
+  if (auto finite = check_finite(texture.average->spread, stem, ErrorKind::unsuitable); !finite)
+    return finite;
   return check_single(texture.average->spread, texture.unit, stem);
 }
 

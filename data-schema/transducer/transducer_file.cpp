@@ -70,7 +70,7 @@ Result<Transducer> read_transducer(const std::string& name, Numbers numbers) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     return fail(
-        Fault::not_found, "there is no such transducer", name,
+        ErrorKind::not_found, "there is no such transducer", name,
         fmt::format("the presets are {}; a file is NAME.transducer.json", fmt::join(preset_names(), ", ")));
   return transducer_of(open_document(path, kTransducerKind), path, numbers);
 }

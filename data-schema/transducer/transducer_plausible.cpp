@@ -113,7 +113,7 @@ std::string member_of(const std::string& where, const std::string& name) {
 Result<void> check_plausible(const Transducer& transducer, const std::string& where) {
   for (const NamedNumber& number : numbers_of(transducer))
     if (!holds(number.plausible, number.value))
-      return fail(Fault::unsuitable,
+      return fail(ErrorKind::unsuitable,
                   fmt::format("{} is {:g}: no transducer has less than {:g} or more than {:g}", number.name,
                               number.value, number.plausible.lowest, number.plausible.highest),
                   member_of(where, number.name),
@@ -124,14 +124,14 @@ Result<void> check_plausible(const Transducer& transducer, const std::string& wh
 Result<void> check_computable(const Transducer& transducer, const std::string& where) {
   for (const NamedNumber& number : numbers_of(transducer))
     if (!holds(kComputable, number.value))
-      return fail(Fault::unsuitable,
+      return fail(ErrorKind::unsuitable,
                   fmt::format("{} is {:g}: nothing can be computed with less than {:g} or more than {:g}",
                               number.name, number.value, kComputable.lowest, kComputable.highest),
                   member_of(where, number.name), "correct it");
   for (const double hz : kProbedHz)
     if (const double size = std::abs(actuator_response(transducer, hz)); !holds(kComputableResponse, size))
       return fail(
-          Fault::unsuitable,
+          ErrorKind::unsuitable,
           fmt::format("its members together give {:g} m/V at {:g} Hz: nothing can be computed with that",
                       size, hz),
           where, "correct them");

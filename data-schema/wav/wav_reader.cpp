@@ -69,7 +69,7 @@ WavInfo described(const SF_INFO& header) {
 }
 
 tl::unexpected<Error> truncated(const std::string& path, std::uint64_t promised, std::uint64_t present) {
-  return fail(Fault::malformed,
+  return fail(ErrorKind::malformed,
               fmt::format("truncated: its header promises {} frames, {} are left", promised, present), path);
 }
 
@@ -116,7 +116,8 @@ Result<WavReader> WavReader::open(const std::string& path) {
   TACTO_TRY(check_length(path));
   SF_INFO header{};
   OpenSound file(sf_open(path.c_str(), SFM_READ, &header));
-  if (!file) return fail(Fault::malformed, fmt::format("not a sound file: {}", sf_strerror(nullptr)), path);
+  if (!file)
+    return fail(ErrorKind::malformed, fmt::format("not a sound file: {}", sf_strerror(nullptr)), path);
   // Plain codes, not fractions of full scale.
   if (holds_codes(header.format)) sf_command(file.get(), SFC_SET_NORM_DOUBLE, nullptr, SF_FALSE);
   State state{std::move(file), described(header), path, 0};
@@ -129,7 +130,8 @@ Result<std::size_t> WavReader::read(std::span<double> interleaved) {
 }
 
 Result<std::size_t> WavReader::read(std::span<std::int32_t> interleaved) {
-  if (!state_->info.integer) return fail(Fault::unsuitable, "its samples are no integer codes", state_->path);
+  if (!state_->info.integer)
+    return fail(ErrorKind::unsuitable, "its samples are no integer codes", state_->path);
   const sf_count_t wanted = state_->room(interleaved.size());
   return state_->advanced(sf_readf_int(state_->file.get(), interleaved.data(), wanted), wanted);
 }
@@ -137,8 +139,8 @@ Result<std::size_t> WavReader::read(std::span<std::int32_t> interleaved) {
 Result<void> WavReader::seek(std::uint64_t frame) {
   const auto target = static_cast<sf_count_t>(frame);
   if (frame > state_->info.frames || sf_seek(state_->file.get(), target, SEEK_SET) != target)
-    return fail(Fault::malformed, fmt::format("has no frame {}: it ends at {}", frame, state_->info.frames),
-                state_->path);
+    return fail(ErrorKind::malformed,
+                fmt::format("has no frame {}: it ends at {}", frame, state_->info.frames), state_->path);
   state_->next_frame = frame;
   return {};
 }
@@ -148,11 +150,11 @@ Result<std::vector<double>> read_wav_channel(const std::string& path, std::size_
   TACTO_TRY(reader);
   const std::size_t channels = reader->info().channels;
   if (channel >= channels)
-    return fail(Fault::unsuitable, fmt::format("has {} channels, no channel {}", channels, channel + 1),
+    return fail(ErrorKind::unsuitable, fmt::format("has {} channels, no channel {}", channels, channel + 1),
                 path);
   if (!reader->info().plain)
-    return fail(Fault::unsuitable, fmt::format("holds {}, not plain samples", reader->info().format), path,
-                "import it");
+    return fail(ErrorKind::unsuitable, fmt::format("holds {}, not plain samples", reader->info().format),
+                path, "import it");
   std::vector<double> piece(std::max<std::size_t>(kPageSamples / channels, 1) * channels);
   std::vector<double> values;
   for (;;) {

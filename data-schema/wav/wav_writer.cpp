@@ -26,17 +26,17 @@ int subformat(SampleFormat format) {
 
 Result<void> check_rate(double sample_rate_hz, const std::string& path) {
   if (std::round(sample_rate_hz) >= 1 && std::round(sample_rate_hz) <= kLargestRate) return {};
-  return fail(Fault::usage, fmt::format("a WAV can't hold the rate {} per second", sample_rate_hz), path);
+  return fail(ErrorKind::usage, fmt::format("a WAV can't hold the rate {} per second", sample_rate_hz), path);
 }
 
 tl::unexpected<Error> unwritten(const std::string& path, SNDFILE* file) {
-  return fail(Fault::cannot_write, fmt::format("can't be written: {}", sf_strerror(file)), path);
+  return fail(ErrorKind::cannot_write, fmt::format("can't be written: {}", sf_strerror(file)), path);
 }
 
 tl::unexpected<Error> not_opened(const std::string& path, int error_number) {
   if (error_number == EEXIST)
-    return fail(Fault::usage, "is there already, and is not overwritten", path, "choose another name");
-  return fail(Fault::cannot_write, "can't be written: " + std::generic_category().message(error_number),
+    return fail(ErrorKind::usage, "is there already, and is not overwritten", path, "choose another name");
+  return fail(ErrorKind::cannot_write, "can't be written: " + std::generic_category().message(error_number),
               path);
 }
 
@@ -60,8 +60,8 @@ struct WavWriter::State {
     assert(samples % channels == 0);
     return static_cast<sf_count_t>(samples / channels);
   }
-  Result<void> written(sf_count_t done, sf_count_t wanted) const {
-    return done == wanted ? Result<void>{} : unwritten(path, file);
+  Result<void> written(sf_count_t done, sf_count_t target) const {
+    return done == target ? Result<void>{} : unwritten(path, file);
   }
 };
 
@@ -110,20 +110,20 @@ Result<WavWriter> WavWriter::create(const std::string& path, int flags, double s
 
 Result<void> WavWriter::write(std::span<const double> interleaved) {
   assert(state_->format != SampleFormat::pcm32);
-  const sf_count_t wanted = state_->frames(interleaved.size());
-  return state_->written(sf_writef_double(state_->file, interleaved.data(), wanted), wanted);
+  const sf_count_t target = state_->frames(interleaved.size());
+  return state_->written(sf_writef_double(state_->file, interleaved.data(), target), target);
 }
 
 Result<void> WavWriter::write(std::span<const std::int32_t> interleaved) {
   assert(state_->format == SampleFormat::pcm32);
-  const sf_count_t wanted = state_->frames(interleaved.size());
-  return state_->written(sf_writef_int(state_->file, interleaved.data(), wanted), wanted);
+  const sf_count_t target = state_->frames(interleaved.size());
+  return state_->written(sf_writef_int(state_->file, interleaved.data(), target), target);
 }
 
 Result<void> WavWriter::close() {
   const int failed = sf_close(std::exchange(state_->file, nullptr));
   if (failed == 0) return {};
-  return fail(Fault::cannot_write, fmt::format("can't be completed: {}", sf_error_number(failed)),
+  return fail(ErrorKind::cannot_write, fmt::format("can't be completed: {}", sf_error_number(failed)),
               state_->path);
 }
 

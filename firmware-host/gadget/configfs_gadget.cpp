@@ -16,7 +16,7 @@ namespace tacto::firmware_host {
 namespace {
 
 namespace fs = std::filesystem;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 const fs::path kGadgets = "/sys/kernel/config/usb_gadget", kPorts = "/sys/class/udc";
@@ -32,8 +32,9 @@ int write_value(const fs::path& path, const std::string& value) {
 Result<void> put(const fs::path& path, const std::string& value) {
   const int error = write_value(path, value);
   if (error == 0) return {};
-  return schema::fail(Fault::device, fmt::format("cannot be set to '{}': {}", value, std::strerror(error)),
-                      path.string(), error == EACCES ? "run as root" : "");
+  return schema::fail(ErrorKind::device,
+                      fmt::format("cannot be set to '{}': {}", value, std::strerror(error)), path.string(),
+                      error == EACCES ? "run as root" : "");
 }
 
 std::string text_of(const fs::path& path) {
@@ -48,14 +49,14 @@ Result<void> make_folders(const fs::path& folder) {
   fs::create_directories(folder, error);
   if (!error) return {};
   const bool may_not = error == std::errc::permission_denied;
-  return schema::fail(Fault::device, fmt::format("cannot be made: {}", error.message()), folder.string(),
+  return schema::fail(ErrorKind::device, fmt::format("cannot be made: {}", error.message()), folder.string(),
                       may_not ? "run as root" : "modprobe libcomposite usb_f_fs, and see the kernel's log");
 }
 
 Result<void> require_configfs() {
   std::error_code none;
   if (fs::is_directory(kGadgets, none)) return {};
-  return schema::fail(Fault::device, "this kernel has no USB gadgets, or they are not loaded",
+  return schema::fail(ErrorKind::device, "this kernel has no USB gadgets, or they are not loaded",
                       kGadgets.string(),
                       "as root: modprobe libcomposite; mount -t configfs none /sys/kernel/config");
 }
@@ -71,15 +72,15 @@ std::vector<std::string> device_ports() {
   return ports;
 }
 
-Result<std::string> choose_port(const std::string& wanted) {
+Result<std::string> choose_port(const std::string& target) {
   const std::vector<std::string> ports = device_ports();
   if (ports.empty())
-    return schema::fail(Fault::device, "this machine has no USB device port", kPorts.string(),
+    return schema::fail(ErrorKind::device, "this machine has no USB device port", kPorts.string(),
                         "take a board with a device or OTG port, in device mode; to try it out here, as "
                         "root: modprobe dummy_hcd");
-  if (wanted.empty()) return ports.front();
-  if (std::find(ports.begin(), ports.end(), wanted) != ports.end()) return wanted;
-  return schema::fail(Fault::device, fmt::format("there is no device port '{}'", wanted), "--udc",
+  if (target.empty()) return ports.front();
+  if (std::find(ports.begin(), ports.end(), target) != ports.end()) return target;
+  return schema::fail(ErrorKind::device, fmt::format("there is no device port '{}'", target), "--udc",
                       fmt::format("there are: {}", fmt::join(ports, ", ")));
 }
 
@@ -107,8 +108,8 @@ Result<ConfigfsGadget> ConfigfsGadget::create(const std::string& port, const Usb
   TACTO_TRY(require_configfs());
   const fs::path folder = kGadgets / ("tactograph-" + port);
   if (const std::string bound = text_of(folder / "UDC"); !bound.empty())
-    return schema::fail(Fault::device, fmt::format("a tactograph runs on {} already", bound), folder.string(),
-                        "end that one, or take another port with --udc");
+    return schema::fail(ErrorKind::device, fmt::format("a tactograph runs on {} already", bound),
+                        folder.string(), "end that one, or take another port with --udc");
   ConfigfsGadget gadget(folder, port);
   gadget.remove();
   TACTO_TRY(gadget.make(identity));
@@ -132,16 +133,16 @@ Result<void> ConfigfsGadget::make(const UsbIdentity& identity) {
   std::error_code error;
   fs::create_directory_symlink(function, folder_ / kConfiguration / "function", error);
   if (!error) return {};
-  return schema::fail(Fault::device, error.message(), (folder_ / kConfiguration).string());
+  return schema::fail(ErrorKind::device, error.message(), (folder_ / kConfiguration).string());
 }
 
 Result<void> ConfigfsGadget::bind() {
   const int error = write_value(folder_ / "UDC", port_);
   if (error == 0) return {};
   if (error != EBUSY)
-    return schema::fail(Fault::device, fmt::format("does not take the device: {}", std::strerror(error)),
+    return schema::fail(ErrorKind::device, fmt::format("does not take the device: {}", std::strerror(error)),
                         port_, "see the kernel's log");
-  return schema::fail(Fault::device, fmt::format("the device port {} is taken by another gadget", port_),
+  return schema::fail(ErrorKind::device, fmt::format("the device port {} is taken by another gadget", port_),
                       "--udc", fmt::format("grep . {}/*/UDC says by which", kGadgets.string()));
 }
 

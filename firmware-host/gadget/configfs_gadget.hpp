@@ -20,7 +20,7 @@ struct UsbIdentity {
 std::vector<std::string> device_ports();
 /// `wanted`, or the first where that is empty. Errors: device: there is none, or none of that name (with
 /// those there are).
-schema::Result<std::string> choose_port(const std::string& wanted);
+schema::Result<std::string> choose_port(const std::string& target);
 
 /// One gadget with one FunctionFS function, named after its port; taken down and removed with the object.
 class ConfigfsGadget {

@@ -8,7 +8,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 struct Key {
@@ -34,8 +34,8 @@ bool read_number(std::string_view text, std::uint64_t& value) {
 }
 
 tl::unexpected<schema::Error> bad_value(std::string_view key, std::string_view value,
-                                        std::string_view wanted) {
-  return schema::fail(Fault::usage, fmt::format("'{}' is no {} for {}", value, wanted, key), "--fault");
+                                        std::string_view target) {
+  return schema::fail(ErrorKind::usage, fmt::format("'{}' is no {} for {}", value, target, key), "--fault");
 }
 
 Result<void> read_version(std::string_view text, FaultPlan& plan) {
@@ -65,7 +65,7 @@ Result<void> read_pair(std::string_view pair, FaultPlan& plan) {
   if (name == kVersion) return read_version(value, plan);
   for (const Key& key : kKeys)
     if (key.name == name) return read_count(key, value, plan);
-  return schema::fail(Fault::usage, fmt::format("there is no fault '{}'", name), "--fault",
+  return schema::fail(ErrorKind::usage, fmt::format("there is no fault '{}'", name), "--fault",
                       "tactograph-gadget --help lists them");
 }
 

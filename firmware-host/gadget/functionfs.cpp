@@ -16,12 +16,12 @@
 namespace tacto::firmware_host {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 tl::unexpected<schema::Error> failed(std::string_view what, const std::string& where,
                                      std::string remedy = {}) {
-  return schema::fail(Fault::device, fmt::format("{}: {}", what, std::strerror(errno)), where,
+  return schema::fail(ErrorKind::device, fmt::format("{}: {}", what, std::strerror(errno)), where,
                       std::move(remedy));
 }
 

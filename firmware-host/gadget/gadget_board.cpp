@@ -12,7 +12,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr std::string_view kSim = "sim:", kReplay = "replay:", kLoop = ",loop=1";
@@ -63,7 +63,7 @@ Result<std::unique_ptr<GadgetBoard>> make_gadget_board(const std::string& uri, c
   const std::string_view words = uri;
   if (words.starts_with(kSim)) return make_sim(words.substr(kSim.size()), serial);
   if (words.starts_with(kReplay)) return make_replay(words.substr(kReplay.size()), serial);
-  return schema::fail(Fault::usage, fmt::format("'{}' is no board", uri), "--board",
+  return schema::fail(ErrorKind::usage, fmt::format("'{}' is no board", uri), "--board",
                       "there are sim:surface=C and so on, replay:FILE, and replay:FILE,loop=1");
 }
 

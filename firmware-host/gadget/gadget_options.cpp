@@ -8,7 +8,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 bool read_hexadecimal(std::string_view text, std::uint16_t& value) {
@@ -22,7 +22,7 @@ Result<void> read_id(const std::string& text, GadgetOptions& options) {
   const bool good = colon < text.size() && read_hexadecimal(words.substr(0, colon), options.vendor) &&
                     read_hexadecimal(words.substr(colon + 1), options.product);
   if (good) return {};
-  return schema::fail(Fault::usage, fmt::format("'{}' is no pair of numbers", text), "--id",
+  return schema::fail(ErrorKind::usage, fmt::format("'{}' is no pair of numbers", text), "--id",
                       "VENDOR:PRODUCT in hexadecimal, as 1209:0001");
 }
 
@@ -54,9 +54,9 @@ Result<void> read_option(std::string_view name, const char* value, GadgetOptions
   for (const Option& option : kOptions) {
     if (option.name != name) continue;
     if (value != nullptr) return option.read(value, options);
-    return schema::fail(Fault::usage, "needs a value", std::string(name), "tactograph-gadget --help");
+    return schema::fail(ErrorKind::usage, "needs a value", std::string(name), "tactograph-gadget --help");
   }
-  return schema::fail(Fault::usage, fmt::format("there is no option '{}'", name), {},
+  return schema::fail(ErrorKind::usage, fmt::format("there is no option '{}'", name), {},
                       "tactograph-gadget --help");
 }
 

@@ -10,7 +10,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr std::uint32_t kClockHz = 1'000'000'000;
@@ -18,7 +18,7 @@ constexpr std::uint32_t kClockHz = 1'000'000'000;
 Result<void> check(const schema::Recording& recording) {
   const schema::RecordingHeader& header = recording.header;
   const auto unsuitable = [&](const char* what, const char* remedy) {
-    return schema::fail(Fault::unsuitable, what, recording.stem, remedy);
+    return schema::fail(ErrorKind::unsuitable, what, recording.stem, remedy);
   };
   if (header.format != schema::SampleFormat::pcm32)
     return unsuitable("holds numbers of another program, not a converter's codes",

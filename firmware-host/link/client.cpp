@@ -11,8 +11,8 @@
 namespace tacto::firmware_host {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 using wire::MessageType;
 using wire::Parse;
@@ -100,7 +100,7 @@ Result<void> Client::check_version() const {
   const bool newer = device.major > wire::kProtocolMajor;
   if (!newer && device.major >= wire::kOldestMajor) return {};
   return fail(
-      Fault::unsupported_version,
+      ErrorKind::unsupported_version,
       fmt::format("'{}' (serial {}, firmware {}) speaks version {}.{} of the protocol; {} speaks {}.{}",
                   device.name, device.serial, device.firmware, device.major, device.minor, kCreator,
                   wire::kProtocolMajor, wire::kProtocolMinor),
@@ -149,13 +149,13 @@ Result<void> Client::exchange(const Encoder& encode, MessageType type) {
 
 tl::unexpected<schema::Error> Client::refused(MessageType type, const wire::Answer& answer) const {
   FaultWords words = words_of(answer.code, answer.detail);
-  return fail(Fault::device, fmt::format("{} was refused: {}", word_of(type), words.what), where_,
+  return fail(ErrorKind::device, fmt::format("{} was refused: {}", to_string(type), words.what), where_,
               std::move(words.remedy));
 }
 
 tl::unexpected<schema::Error> Client::silent(MessageType type, const Asking& asking) const {
-  return fail(Fault::device,
-              fmt::format("the device did not answer {}, asked {} times in {:g} s", word_of(type),
+  return fail(ErrorKind::device,
+              fmt::format("the device did not answer {}, asked {} times in {:g} s", to_string(type),
                           asking.times, asking.times * kAnswerTimeoutS),
               where_, "unplug it and plug it in again");
 }
@@ -200,14 +200,14 @@ Result<void> Client::await_samples(std::size_t frames) {
   const auto enough = [&] { return samples_.frames() >= frames || samples_.has_gap(); };
   while (!enough()) {
     if (converter_failed_)
-      return fail(Fault::device, words_of(wire::FaultCode::converter, 0).what, where_,
+      return fail(ErrorKind::device, words_of(wire::FaultCode::converter, 0).what, where_,
                   words_of(wire::FaultCode::converter, 0).remedy);
     const std::uint64_t before = samples_.pushed();
     const auto came =
         await(kStallS, [&] { return samples_.pushed() > before || enough() || converter_failed_; });
     TACTO_TRY(came);
     if (!*came)
-      return fail(Fault::device, fmt::format("no frames have come for {:g} s", kStallS), where_,
+      return fail(ErrorKind::device, fmt::format("no frames have come for {:g} s", kStallS), where_,
                   "the device has stopped or restarted: see its supply and its cable");
   }
   return {};
@@ -242,7 +242,7 @@ void Client::accept(const wire::Frame& frame) {
     if (note.index == description_.notes.size()) description_.notes.push_back(note);
   if (wire::Ticks ticks; type == MessageType::ticks && understood(frame, ticks))
     if (ticks_.size() < kMostTicksKept) ticks_.push_back(ticks);
-  if (wire::Fault fault; type == MessageType::fault && understood(frame, fault)) {
+  if (wire::ErrorKind fault; type == MessageType::fault && understood(frame, fault)) {
     faults_.push_back(fault);
     converter_failed_ = converter_failed_ || fault.code == wire::FaultCode::converter;
   }

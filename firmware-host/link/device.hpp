@@ -89,7 +89,7 @@ class Device {
   /// One question and its answer, by the clock on the wall; not while streaming. Errors: device: no answer;
   /// unsuitable: nobody is there to answer, as in a replay.
   virtual schema::Result<double> round_trip_s() {
-    return schema::fail(schema::Fault::unsuitable, "answers no questions", capabilities().uri);
+    return schema::fail(schema::ErrorKind::unsuitable, "answers no questions", capabilities().uri);
   }
   /// The conversation itself, for what is no stream: drive. Null where nobody is there to answer.
   virtual Client* conversation() { return nullptr; }

@@ -10,8 +10,8 @@
 namespace tacto::firmware_host {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 std::optional<double> if_number(double value) {
@@ -21,11 +21,11 @@ std::optional<double> if_number(double value) {
 Result<schema::Channel> channel_of(const wire::Channel& said, const std::string& where) {
   const auto quantity = schema::quantity_named(said.quantity);
   if (!quantity)
-    return fail(Fault::device,
+    return fail(ErrorKind::device,
                 fmt::format("its channel {} is of no known quantity: '{}'", said.index, said.quantity), where,
                 quantity.error().remedy);
   if (!std::isfinite(said.scale) || said.scale == 0 || !std::isfinite(said.offset))
-    return fail(Fault::device, fmt::format("its channel '{}' has no usable scale or offset", said.name),
+    return fail(ErrorKind::device, fmt::format("its channel '{}' has no usable scale or offset", said.name),
                 where);
   schema::Channel channel;
   channel.name = said.name;
@@ -66,7 +66,8 @@ Result<Capabilities> capabilities_of(const Description& description, std::string
   Capabilities capabilities;
   capabilities.sample_rate_hz = 1e-3 * description.welcome.default_rate_millihertz;
   if (capabilities.sample_rate_hz <= 0 || description.channels.empty())
-    return fail(Fault::device, "the device names no sampling rate or no channel", uri, "see its firmware");
+    return fail(ErrorKind::device, "the device names no sampling rate or no channel", uri,
+                "see its firmware");
   for (const wire::Channel& said : description.channels) {
     auto channel = channel_of(said, uri);
     TACTO_TRY(channel);

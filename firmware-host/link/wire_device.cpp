@@ -10,7 +10,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kBlockS = 5e-3;  // of frames in a message: small against what people see
@@ -72,17 +72,17 @@ void WireDevice::note_clock() {
 
 // Frames that came before an error are given before the error is.
 Result<std::size_t> WireDevice::read(std::span<std::int32_t> interleaved) {
-  if (!started_) return schema::fail(Fault::device, "the device is not started", capabilities_.uri);
-  const std::size_t channels = capabilities_.channels.size(), wanted = interleaved.size() / channels;
+  if (!started_) return schema::fail(ErrorKind::device, "the device is not started", capabilities_.uri);
+  const std::size_t channels = capabilities_.channels.size(), target = interleaved.size() / channels;
   for (;;) {
     take_gaps();
     if (!ended_)
-      if (const auto here = client_->await_samples(wanted); !here) ended_ = here.error();
+      if (const auto here = client_->await_samples(target); !here) ended_ = here.error();
     take_gaps();
     const std::size_t taken = client_->samples().take(interleaved);
     count(interleaved.first(taken * channels));
     note_clock();
-    if (taken > 0 || wanted == 0) return taken;
+    if (taken > 0 || target == 0) return taken;
     if (ended_) return tl::unexpected(*ended_);
   }
 }
@@ -102,7 +102,7 @@ StreamCounts WireDevice::counts() const {
 
 StreamEvents WireDevice::take_events() {
   StreamEvents events = std::exchange(events_, {});
-  for (const wire::Fault& fault : client_->take_faults())
+  for (const wire::ErrorKind& fault : client_->take_faults())
     events.faults.push_back({counts_.frames, fault.code, fault.detail});
   return events;
 }

@@ -53,7 +53,7 @@ FaultWords words_of(AnswerCode code, std::uint32_t detail) {
       return {fmt::format("value {} is out of the device's range", detail + 1),
               "the limits are in its description"};
     case AnswerCode::wrong_state:
-      return {fmt::format("the device is {}", word_of(static_cast<DriveState>(detail))), "disarm first"};
+      return {fmt::format("the device is {}", to_string(static_cast<DriveState>(detail))), "disarm first"};
     case AnswerCode::too_large:
       return {fmt::format("the device can hold {}", detail), ""};
     case AnswerCode::check_failed:
@@ -70,13 +70,13 @@ FaultWords words_of(AnswerCode code, std::uint32_t detail) {
   return {fmt::format("the device refuses, for reason {}", static_cast<int>(code)), "update tactograph"};
 }
 
-std::string_view word_of(DriveState state) {
+std::string_view to_string(DriveState state) {
   constexpr std::string_view kWords[] = {"idle", "armed", "playing", "in fault"};
   const auto index = static_cast<std::size_t>(state);
   return index < std::size(kWords) ? kWords[index] : "not greeted yet";
 }
 
-std::string_view word_of(MessageType type) {
+std::string_view to_string(MessageType type) {
   constexpr std::pair<MessageType, std::string_view> kWords[] = {
       {MessageType::hello, "hello"},
       {MessageType::stream_start, "stream_start"},

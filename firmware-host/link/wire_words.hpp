@@ -18,7 +18,7 @@ struct FaultWords {
 FaultWords words_of(wire::FaultCode code, std::uint32_t detail);
 /// Why a command was refused.
 FaultWords words_of(wire::AnswerCode code, std::uint32_t detail);
-std::string_view word_of(wire::DriveState state);
-std::string_view word_of(wire::MessageType type);
+std::string_view to_string(wire::DriveState state);
+std::string_view to_string(wire::MessageType type);
 
 }  // namespace tacto::firmware_host

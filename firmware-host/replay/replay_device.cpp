@@ -10,7 +10,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr std::string_view kPaced = ",paced=1";
@@ -66,7 +66,7 @@ void ReplayDevice::count(std::span<const std::int32_t> codes) {
 }
 
 Result<std::size_t> ReplayDevice::read(std::span<std::int32_t> interleaved) {
-  if (!reader_) return schema::fail(Fault::device, "the device is not started", capabilities_.uri);
+  if (!reader_) return schema::fail(ErrorKind::device, "the device is not started", capabilities_.uri);
   const std::size_t channels = capabilities_.channels.size();
   const auto got = reader_->read(interleaved.first(until_gap(interleaved.size() / channels) * channels));
   if (!got) return got;
@@ -88,12 +88,12 @@ Result<std::unique_ptr<Device>> open_replay_device(const std::string& uri, std::
   const bool paced = parameters.ends_with(kPaced);
   if (paced) parameters.remove_suffix(kPaced.size());
   if (parameters.empty())
-    return schema::fail(Fault::usage, "names no recording", uri, "as replay:oak, or replay:oak,paced=1");
+    return schema::fail(ErrorKind::usage, "names no recording", uri, "as replay:oak, or replay:oak,paced=1");
   auto recording = schema::open_recording(std::string(parameters));
   TACTO_TRY(recording);
   if (recording->header.format != schema::SampleFormat::pcm32)
-    return schema::fail(Fault::unsuitable, "holds numbers of another program, not a converter's codes", uri,
-                        "only what a device recorded can be replayed as one");
+    return schema::fail(ErrorKind::unsuitable, "holds numbers of another program, not a converter's codes",
+                        uri, "only what a device recorded can be replayed as one");
   return std::make_unique<ReplayDevice>(uri, std::move(*recording), paced);
 }
 

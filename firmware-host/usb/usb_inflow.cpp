@@ -20,7 +20,7 @@ constexpr auto kLongestDrain = std::chrono::seconds(2);
 constexpr double kDrainStepS = 0.01;
 constexpr auto kFirstPause = std::chrono::milliseconds(10);  // each is twice the one before: 0.3 s in all
 
-std::string_view word_of(libusb_transfer_status status) {
+std::string_view to_string(libusb_transfer_status status) {
   if (status == LIBUSB_TRANSFER_STALL) return "stalls";
   if (status == LIBUSB_TRANSFER_NO_DEVICE) return "comes and goes";
   return status == LIBUSB_TRANSFER_OVERFLOW ? "sends longer packets than it announced" : "is not understood";
@@ -91,7 +91,6 @@ Result<void> UsbInflow::keep_going() {
 void UsbInflow::recover() {
   const auto trouble = *std::exchange(trouble_, std::nullopt);
   cancelled_ = false;
-  ++troubles_;
   if (++troubles_in_a_row_ > kMostTroubles) return give_up(trouble);
   if (trouble != LIBUSB_TRANSFER_STALL)
     std::this_thread::sleep_for(kFirstPause * (1 << (troubles_in_a_row_ - 1)));
@@ -100,8 +99,8 @@ void UsbInflow::recover() {
 }
 
 void UsbInflow::give_up(libusb_transfer_status trouble) {
-  end(schema::fail(schema::Fault::device,
-                   fmt::format("the device {}, {} times in a row", word_of(trouble), troubles_in_a_row_),
+  end(schema::fail(schema::ErrorKind::device,
+                   fmt::format("the device {}, {} times in a row", to_string(trouble), troubles_in_a_row_),
                    connection_.uri(),
                    "unplug it and plug it in again; if that does not help, try another cable"));
 }

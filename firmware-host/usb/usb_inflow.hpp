@@ -39,9 +39,6 @@ class UsbInflow {
   /// Waits until a transfer has completed, or the time is over. Errors: device.
   schema::Result<void> wait(double timeout_s);
 
-  /// Stalls, overflows and errors so far, each of them recovered from.
-  unsigned troubles() const { return troubles_; }
-
  private:
   struct Slot {
     UsbPointer<libusb_transfer> transfer;
@@ -64,7 +61,6 @@ class UsbInflow {
   std::size_t under_way_ = 0;
   std::optional<libusb_transfer_status> trouble_;
   bool cancelled_ = false;
-  unsigned troubles_ = 0;
   int troubles_in_a_row_ = 0;
   std::optional<schema::Error> ended_;
   int woken_ = 0;

@@ -11,8 +11,8 @@
 namespace tacto::firmware_host {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr int kSendAttempts = 3;
@@ -42,12 +42,12 @@ Result<void> UsbOutflow::write(std::span<const std::uint8_t> bytes, double timeo
     if (const auto sent = send(timeout_s); !sent) return sent;
     if (sent_whole()) return {};
     if (transfer_->status == LIBUSB_TRANSFER_TIMED_OUT)
-      return fail(Fault::device,
+      return fail(ErrorKind::device,
                   fmt::format("the device took nothing from this computer for {:g} s", timeout_s),
                   connection_.uri(), "unplug it and plug it in again");
     if (const auto cleared = clear(); !cleared) return cleared;
   }
-  return fail(Fault::device, fmt::format("the device refused what it was sent, {} times", kSendAttempts),
+  return fail(ErrorKind::device, fmt::format("the device refused what it was sent, {} times", kSendAttempts),
               connection_.uri(), "unplug it and plug it in again");
 }
 

@@ -14,8 +14,8 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
@@ -28,10 +28,10 @@ using Choices = std::vector<TickChoice>;
 
 Result<void> check_budget(const TickBudget& budget) {
   if (!budget.by_error() && !(budget.error.most_error() > 0 && budget.error.most_error() <= kMostAsked))
-    return fail(Fault::usage, fmt::format("an error of {}", percent(budget.error.most_error())),
+    return fail(ErrorKind::usage, fmt::format("an error of {}", percent(budget.error.most_error())),
                 "error budget", "above 0 and at most 10%");
   if (budget.max_tick_ns && !(*budget.max_tick_ns > 0))
-    return fail(Fault::usage, "a tick that takes no time", "time budget", "a tick takes some 100ns");
+    return fail(ErrorKind::usage, "a tick that takes no time", "time budget", "a tick takes some 100ns");
   return {};
 }
 
@@ -39,15 +39,17 @@ Result<void> check_budget(const TickBudget& budget) {
 Result<void> check_hysteresis(const schema::Transducer& transducer, const PrepareOptions& options) {
   if (!transducer.hysteresis) return {};
   const auto refused = [](const char* what, const char* remedy) {
-    return fail(Fault::unsuitable, fmt::format("no error can be promised: {}", what), "transducer", remedy);
+    return fail(ErrorKind::unsuitable, fmt::format("no error can be promised: {}", what), "transducer",
+                remedy);
   };
   if (!options.undo_hysteresis)
     return refused("the bender's hysteresis is not undone", "play without --keep-hysteresis");
   if (options.reconstruction != Reconstruction::none)
     return refused("a filter behind the converter loses the corners that undo the hysteresis",
                    "play without it, or without a budget");
-  const auto plays = std::ranges::count_if(transducer.hysteresis->weights, [](double w) { return w > 0; });
-  if (plays > static_cast<std::ptrdiff_t>(wire::kMaxPlays) + 1)
+  const auto play_operators =
+      std::ranges::count_if(transducer.hysteresis->weights, [](double w) { return w > 0; });
+  if (play_operators > static_cast<std::ptrdiff_t>(wire::kMaxPlays) + 1)
     return refused("its hysteresis has more plays than the kernel undoes", "identify it with fewer");
   return {};
 }
@@ -118,9 +120,9 @@ Choices kept_by(const Choices& all, const TickBudget& budget, bool in_time) {
 
 tl::unexpected<schema::Error> no_room(const Readings& readings, const PrepareOptions& options) {
   if (readings.least_samples == 0)
-    return fail(Fault::unsuitable, "knows no interpolation of this program", "table of measured choices",
+    return fail(ErrorKind::unsuitable, "knows no interpolation of this program", "table of measured choices",
                 "'tactograph trade --calibrate' measures them");
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("the texture takes {} samples at least, there is room for {}",
                           readings.least_samples, options.most_samples),
               "texture", ways_to_fit(options.interpolation));
@@ -129,13 +131,13 @@ tl::unexpected<schema::Error> no_room(const Readings& readings, const PrepareOpt
 tl::unexpected<schema::Error> not_kept(const Choices& all, const TickBudget& budget) {
   if (const Choices slow = kept_by(all, budget, false); !slow.empty()) {
     const TickChoice best = best_of(slow, false);
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("no tick of {:.3g} ns or less keeps it: {:.3g} ns is the least ({})",
                             *budget.max_tick_ns, best.tick_ns, words_of(best)),
                 "time budget", "allow that, more error, or a lower rate");
   }
   const TickChoice best = best_of(all, true);
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("nothing keeps {}: {} is the least ({}), as {}", percent(budget.error.most_error()),
                           percent(best.error), words_of(best), limited_by(best)),
               "error budget", fmt::format("ask for --max-error {} or more", percent_or_more(best.error)));
@@ -194,7 +196,7 @@ Result<double> tick_cost_ns(const schema::TradeTable& table, wire::Interpolation
     if (interpolation_of(measured.name) == interpolation)
       return measured.cost_ns + cost_of(table, "inverse") * static_cast<double>(taps) +
              (undoes_hysteresis ? cost_of(table, "hysteresis") : 0);
-  return fail(Fault::unsuitable, fmt::format("does not know what {} costs", word_of(interpolation)),
+  return fail(ErrorKind::unsuitable, fmt::format("does not know what {} costs", to_string(interpolation)),
               "table of measured choices", "'tactograph trade --calibrate' measures it");
 }
 

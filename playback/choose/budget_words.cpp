@@ -84,7 +84,7 @@ std::string asked_for(const TickBudget& budget) {
 
 }  // namespace
 
-std::string_view word_of(wire::Interpolation interpolation) {
+std::string_view to_string(wire::Interpolation interpolation) {
   return std::ranges::find(kInterpolations, interpolation,
                            &std::pair<std::string_view, wire::Interpolation>::second)
       ->first;
@@ -114,7 +114,7 @@ std::string percent_or_more(double part) {
 }
 
 std::string words_of(const TickChoice& choice) {
-  return fmt::format("{}, {:.3g} samples a period, {}", word_of(choice.interpolation),
+  return fmt::format("{}, {:.3g} samples a period, {}", to_string(choice.interpolation),
                      choice.samples_per_period, words_of_inverse(choice.inverse));
 }
 

@@ -20,7 +20,7 @@ inline constexpr double kKernelsOwnError = 1.6e-5;
 inline constexpr double kAlikeNs = 1;
 
 /// "nearest", "linear", "hermite", "sinc": the names in a table of measured choices.
-std::string_view word_of(wire::Interpolation interpolation);
+std::string_view to_string(wire::Interpolation interpolation);
 std::optional<wire::Interpolation> interpolation_of(std::string_view word);
 
 /// "0.052 %"

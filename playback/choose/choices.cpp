@@ -51,7 +51,7 @@ void take_numbers(PrepareOptions& options, const schema::PlaybackChoices& choice
 
 }  // namespace
 
-std::string_view word_of(Inverse inverse) {
+std::string_view to_string(Inverse inverse) {
   return std::ranges::find(kInverses, inverse, &std::pair<std::string_view, Inverse>::second)->first;
 }
 
@@ -67,13 +67,13 @@ schema::Result<PrepareOptions> with_choices(PrepareOptions options, const schema
   take_word(kHolds, choices.hold, options.hold, wrong);
   take_numbers(options, choices);
   if (wrong.empty()) return options;
-  return schema::fail(schema::Fault::usage, fmt::format("'{}' is no choice of playback", wrong), "playback",
-                      "playback.schema.json says what there is");
+  return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is no choice of playback", wrong),
+                      "playback", "playback.schema.json says what there is");
 }
 
 schema::Result<void> check_meant(const schema::PlaybackChoices& said, const schema::PlaybackChoices& all) {
   const auto nothing = [](const char* what, const char* where, const char* remedy) {
-    return schema::fail(schema::Fault::usage, what, where, remedy);
+    return schema::fail(schema::ErrorKind::usage, what, where, remedy);
   };
   if (said.cutoff_hz && all.reconstruction.value_or("none") == "none")
     return nothing(
@@ -92,7 +92,7 @@ schema::Result<void> check_meant(const schema::PlaybackChoices& said, const sche
 
 schema::PlaybackChoices choices_in(const PrepareOptions& options) {
   schema::PlaybackChoices choices;
-  choices.interpolation = std::string(word_of(options.interpolation));
+  choices.interpolation = std::string(to_string(options.interpolation));
   choices.inverse = word_in(kInverses, options.inverse);
   choices.reconstruction = word_in(kReconstructions, options.reconstruction);
   choices.hold = word_in(kHolds, options.hold);

@@ -10,7 +10,7 @@
 namespace tacto::playback {
 
 /// "full", "magnitude", "gain", "none".
-std::string_view word_of(Inverse inverse);
+std::string_view to_string(Inverse inverse);
 
 /// The options with what was chosen; what was not stays. A contact without its lower threshold lets go at
 /// four fifths of the upper one: a finger's tremor at the threshold does not chatter. Errors: usage, for a

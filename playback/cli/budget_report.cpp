@@ -13,8 +13,8 @@ schema::Result<TickBudget> AskedBudget::budget() const {
                     {}};
   if (max_tick_s) budget.max_tick_ns = 1e9 * *max_tick_s;
   if (options.explain && !budget.asked())
-    return schema::fail(schema::Fault::usage, "nothing was asked for that could be explained", "--explain",
-                        "add --quality, --max-error or --max-tick");
+    return schema::fail(schema::ErrorKind::usage, "nothing was asked for that could be explained",
+                        "--explain", "add --quality, --max-error or --max-tick");
   return budget;
 }
 

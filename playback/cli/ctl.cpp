@@ -70,13 +70,13 @@ std::string full_name(const std::string& file) {
 Result<double> gain_in(const std::string& text) {
   const auto gain = schema::parse_quantity(text, Dimension::none);
   if (gain) return *gain;
-  return schema::fail(schema::Fault::usage, fmt::format("'{}' is no gain", text), "gain",
+  return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is no gain", text), "gain",
                       "a factor, as in 0.5");
 }
 
 Result<void> check_taken(const CtlOptions& o) {
   const auto refuse = [&](const std::string& what, const std::string& who) {
-    return schema::fail(schema::Fault::usage, fmt::format("'{}' takes no '{}'", o.action, what),
+    return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' takes no '{}'", o.action, what),
                         "command line", who);
   };
   const bool load = o.action == "load", gain = o.action == "gain";

@@ -12,7 +12,7 @@
 #include "playback/cli/ends_option.hpp"
 #include "playback/cli/gain_report.hpp"
 #include "playback/cli/loop_report.hpp"
-#include "playback/cli/room_report.hpp"
+#include "playback/cli/memory_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/player/program.hpp"
 
@@ -38,7 +38,7 @@ std::vector<Report> rows_of_textures(const Program& program) {
     Report row;
     row.add("texture", texture.file).add("at_m", texture.at_m);
     add_gain(row, texture.gain_m_per_n);
-    rows.push_back(std::move(row.add("ends", std::string(schema::word_of(texture.ends)))));
+    rows.push_back(std::move(row.add("ends", std::string(schema::to_string(texture.ends)))));
   }
   return rows;
 }
@@ -69,7 +69,7 @@ std::vector<Report> rows_of_left_out(const Prepared& made) {
 void add_chain(Report& report, const Prepared& made) {
   report.add("filter_taps", made.built.taps).add("filter_delay_s", made.delay_s);
   report.add("inverse_error_db", made.inverse_error_db).add("passes_to_hz", made.passes_to_hz);
-  report.add("hysteresis_plays", made.built.plays).add("sections", made.built.sections);
+  report.add("hysteresis_plays", made.built.play_operators).add("sections", made.built.sections);
 }
 
 void add_guards(Report& report, const Prepared& made) {
@@ -90,7 +90,7 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   const auto table = schema::find_trade_table();
   TACTO_TRY(table);
   const auto tick_ns =
-      tick_cost_ns(table->table, made.scale.interpolation, made.built.taps, made.plays.count > 0);
+      tick_cost_ns(table->table, made.scale.interpolation, made.built.taps, made.play_operators.count > 0);
   TACTO_TRY(tick_ns);
   Report report;
   report.add("what", program.name()).add("transducer", program.session.transducer.name);

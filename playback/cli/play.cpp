@@ -103,11 +103,11 @@ Report play_report(const PlayOptions& o, const PlayOutcome& outcome, bool explai
   if (!outcome.recorder.failure.empty()) {
     cli::warn(fmt::format("the session is incomplete, {} ticks are not in it: {}", outcome.recorder.lost(),
                           outcome.recorder.failure));
-    report.ends_with(schema::Fault::cannot_write);
+    report.ends_with(schema::ErrorKind::cannot_write);
   }
   if (outcome.status.state != PlayerState::fault) return report;
   cli::warn("playing ended in a fault: " + outcome.status.fault);
-  report.add("fault", outcome.status.fault).ends_with(schema::Fault::device);
+  report.add("fault", outcome.status.fault).ends_with(schema::ErrorKind::device);
   return report;
 }
 

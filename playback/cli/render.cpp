@@ -15,7 +15,7 @@
 #include "playback/cli/loop_report.hpp"
 #include "playback/cli/verbs.hpp"
 #include "playback/model/drive_files.hpp"
-#include "playback/player/laid_textures.hpp"
+#include "playback/player/placed_textures.hpp"
 #include "playback/render/kept_error.hpp"
 #include "playback/render/render.hpp"
 
@@ -35,7 +35,7 @@ struct NamedChoices {
 
 struct RenderVerbOptions {
   ProgramRequest what;
-  std::string path, transducer, drive, displacement, wanted;
+  std::string path, transducer, drive, displacement, target;
   schema::Existing existing = schema::Existing::keep;
   RenderOptions render;
   AskedBudget budget;
@@ -60,7 +60,7 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
   cli::declare_force(app, o.existing);
   app.add_option("--displacement", o.displacement,
                  "Also write what the modelled tray does with that drive: float WAV in metres");
-  app.add_option("--wanted", o.wanted, "Also write the displacement that was wanted: float WAV in metres");
+  app.add_option("--wanted", o.target, "Also write the displacement that was wanted: float WAV in metres");
 }
 
 void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
@@ -137,7 +137,7 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
 std::vector<SignalFile> files_of(const RenderVerbOptions& o, const Rendering& rendering) {
   std::vector<SignalFile> files{{o.drive, &rendering.drive_v}};
   if (!o.displacement.empty()) files.push_back({o.displacement, &rendering.modelled_m});
-  if (!o.wanted.empty()) files.push_back({o.wanted, &rendering.wanted_m});
+  if (!o.target.empty()) files.push_back({o.target, &rendering.target_m});
   return files;
 }
 
@@ -183,7 +183,7 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
   add_gain(report, o.signed_gain);
   add_kept_gain(report, o.kept_gain);
   report.add("drive_rms_v", schema::statistics_of(r.drive_v.values).rms())
-      .add("wanted_rms_m", schema::statistics_of(r.wanted_m.values).rms());
+      .add("wanted_rms_m", schema::statistics_of(r.target_m.values).rms());
   add_errors(report, r);
   report.add("delay_s", r.delay_s);
   if (o.render.budget.asked()) report.add("engine", r.engine == Engine::kernel ? "kernel" : "reference");
@@ -215,7 +215,7 @@ Result<void> check_kernels(const RenderVerbOptions& o) {
   for (const CLI::Option* named : {o.named.encoder_step, o.named.interpolation, o.named.energy})
     if (named->count() > 0)
       return schema::fail(
-          schema::Fault::usage, named->get_name() + " requires --engine kernel", {},
+          schema::ErrorKind::usage, named->get_name() + " requires --engine kernel", {},
           "the reference reads the texture exactly where the finger is, and has no energy limit");
   return {};
 }

@@ -43,20 +43,20 @@ Result<Report> run_replay(const ReplayVerbOptions& o) {
         fmt::format("the session is damaged from byte {} on: what stands before it was compared, and may "
                     "lack a command that stood behind",
                     *outcome->damaged_at));
-    report.add("damaged_at_byte", *outcome->damaged_at).ends_with(schema::Fault::malformed);
+    report.add("damaged_at_byte", *outcome->damaged_at).ends_with(schema::ErrorKind::malformed);
   }
   if (outcome->lost > 0) report.add("lost_ticks", outcome->lost);
   if (outcome->lost_at) {
     cli::warn(fmt::format("ticks are missing from {} on: the drive after them can't be replayed",
                           *outcome->lost_at));
     report.add("lost_at_tick", *outcome->lost_at);
-    if (!outcome->damaged_at) report.ends_with(schema::Fault::unsuitable);
+    if (!outcome->damaged_at) report.ends_with(schema::ErrorKind::unsuitable);
   }
   if (!outcome->first_difference) return report;
   const Difference& first = *outcome->first_difference;
   report.add("first_difference_tick", first.tick).add("recorded_v", double{first.recorded_v});
   report.add("replayed_v", double{first.replayed_v});
-  if (!outcome->damaged_at) report.ends_with(schema::Fault::unsuitable);
+  if (!outcome->damaged_at) report.ends_with(schema::ErrorKind::unsuitable);
   return report;
 }
 

@@ -42,10 +42,10 @@ constexpr std::string_view kReceivedColumns =
 // What is not known is left empty.
 std::string stroke_line(std::uint64_t number, const PlayedStroke& s) {
   const auto cell = [](bool known, double value) { return known ? fmt::format("{:.9g}", value) : ""; };
-  const bool judged = s.wanted_rms_m > 0, sensed = s.measured.has_value();
+  const bool judged = s.target_rms_m > 0, sensed = s.measured.has_value();
   const MeasuredDisplacement measured = s.measured.value_or(MeasuredDisplacement{});
   return fmt::format("{},{:.9f},{:.9f},{:.12g},{:.12g},{:.9g},{},{},{},{},{},{},{},{},{},{},{}\n", number,
-                     s.from_s, s.to_s, s.from_m, s.to_m, s.predicted.rms_m, cell(judged, s.wanted_rms_m),
+                     s.from_s, s.to_s, s.from_m, s.to_m, s.predicted.rms_m, cell(judged, s.target_rms_m),
                      cell(judged, s.predicted.error_db), cell(judged, s.predicted.level_db),
                      cell(s.limits && s.limits->removed_any(), s.limits ? s.limits->removed_db() : 0),
                      s.limited_ticks, s.energy_limited_ticks, s.gated_ticks, cell(sensed, measured.rms_m),
@@ -75,7 +75,7 @@ class StrokeTable {
     if (!out_.is_open()) return {};
     out_.flush();
     if (!out_)
-      return schema::fail(schema::Fault::cannot_write, "can't be written", file_, "is the disk full?");
+      return schema::fail(schema::ErrorKind::cannot_write, "can't be written", file_, "is the disk full?");
     return pending_.commit(existing);
   }
 
@@ -88,12 +88,12 @@ class StrokeTable {
 
 Report stroke_row(const PlayedStroke& stroke) {
   Report row;
-  const bool judged = stroke.wanted_rms_m > 0;
+  const bool judged = stroke.target_rms_m > 0;
   row.add("from_s", stroke.from_s).add("to_s", stroke.to_s);
   row.add("from_m", stroke.from_m).add("to_m", stroke.to_m);
   row.add("predicted_rms_m", stroke.predicted.rms_m);
   if (judged)
-    row.add("wanted_rms_m", stroke.wanted_rms_m)
+    row.add("wanted_rms_m", stroke.target_rms_m)
         .add("predicted_error_db", stroke.predicted.error_db)
         .add("predicted_over_wanted_db", stroke.predicted.level_db);
   if (const auto& measured = stroke.measured) {
@@ -115,7 +115,7 @@ Result<void> check_outputs(const SessionVerbOptions& o) {
   if (!o.strokes.empty()) all.push_back(o.strokes);
   for (auto file = all.begin(); file != all.end(); ++file)
     if (std::any_of(all.begin(), file, [&](const auto& other) { return schema::same_file(*file, other); }))
-      return schema::fail(schema::Fault::usage, fmt::format("'{}' is named twice", *file), "output",
+      return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is named twice", *file), "output",
                           "give each table a file of its own");
   for (const std::string& output : o.outputs)
     if (auto free = check_session_output(output, o.existing); !free) return free;
@@ -185,7 +185,7 @@ Result<Report> run_session(const SessionVerbOptions& o) {
   for (const PlayedStroke& stroke : strokes->strokes) rows.push_back(stroke_row(stroke));
   report.add("strokes", std::move(rows));
   TACTO_TRY(add_events(report, o.session));
-  if (strokes->damaged) report.ends_with(schema::Fault::malformed);
+  if (strokes->damaged) report.ends_with(schema::ErrorKind::malformed);
   return report;
 }
 

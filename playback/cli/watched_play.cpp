@@ -43,7 +43,7 @@ Result<void> arm_while_connected(ControlConnection& connection) {
   if (says_while_connected(*armed)) return {};
   (void)asked(connection, ControlVerb::disarm);
   return schema::fail(
-      schema::Fault::unsupported_version,
+      schema::ErrorKind::unsupported_version,
       "the daemon is older than version 1.2 of its protocol: it would play on without this command",
       connection.socket(), "update it, or use 'ctl arm' and 'ctl play'");
 }
@@ -66,7 +66,7 @@ Result<Report> report_of_end(ControlConnection& connection) {
     if (const auto* count = std::get_if<std::int64_t>(&value)) report.add(name, *count);
   }
   const std::string state = schema::control_text(*status, "state");
-  if (state == "fault" || state == "lost") report.ends_with(schema::Fault::device);
+  if (state == "fault" || state == "lost") report.ends_with(schema::ErrorKind::device);
   return report;
 }
 

@@ -14,8 +14,8 @@ namespace tacto::playback {
 using schema::ControlFields;
 using schema::ControlReply;
 using schema::ControlRequest;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
@@ -81,7 +81,7 @@ Result<std::optional<std::string>> ControlConnection::line(int timeout_ms) {
     if (poll(&waiting, 1, timeout_ms) <= 0) return std::optional<std::string>();
     char bytes[4096];
     const ssize_t got = recv(descriptor_, bytes, sizeof bytes, 0);
-    if (got <= 0) return fail(Fault::device, "the daemon hung up", socket_, "see its journal");
+    if (got <= 0) return fail(ErrorKind::device, "the daemon hung up", socket_, "see its journal");
     received_.append(bytes, static_cast<std::size_t>(got));
   }
 }
@@ -94,7 +94,7 @@ void ControlConnection::say(const std::string& text) const {
 Result<ControlFields> ControlConnection::answer(int timeout_ms) {
   const auto text = line(timeout_ms);
   TACTO_TRY(text);
-  if (!*text) return fail(Fault::device, "the daemon says nothing", socket_, "see its journal");
+  if (!*text) return fail(ErrorKind::device, "the daemon says nothing", socket_, "see its journal");
   auto reply = schema::parse_control_reply(**text);
   TACTO_TRY(reply);
   if (!reply->ok) return tl::unexpected(reply->error);

@@ -13,7 +13,7 @@ namespace {
 
 using schema::ControlRequest;
 using schema::ControlVerb;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr int kLinesAtOnce = 2, kAcceptAtOnce = 128;  // few: between two serve() the device is looked after
@@ -23,17 +23,19 @@ constexpr std::ptrdiff_t kStopPlaces = 8;  // of each socket, and what came sinc
 constexpr std::size_t kListening = 2;      // descriptors before the clients'
 constexpr std::size_t kMostEvents = 1000;  // between two serve(): ten a second are usual
 
-const schema::Error kTooLong{Fault::malformed,
+const schema::Error kTooLong{ErrorKind::malformed,
                              fmt::format("a line has more than {} bytes", schema::kMostControlLine),
                              "request", "end each request with a newline"};
-const schema::Error kNotGreeted{Fault::usage, "the first request must be hello", "request",
+const schema::Error kNotGreeted{ErrorKind::usage, "the first request must be hello", "request",
                                 R"(send {"request":"hello","version":"1.0"} first)"};
-const schema::Error kSilent{Fault::usage, "no hello came within 5 s of connecting", "request",
+const schema::Error kSilent{ErrorKind::usage, "no hello came within 5 s of connecting", "request",
                             R"(send {"request":"hello","version":"1.0"} first)"};
-const schema::Error kUnknown{Fault::usage, "by TCP the first request must be hello with the token", "request",
+const schema::Error kUnknown{ErrorKind::usage, "by TCP the first request must be hello with the token",
+                             "request",
                              R"(send {"request":"hello","version":"1.0","token":"..."}: the token is the )"
                              "first line of the file that tcp_token_file names"};
-const schema::Error kOnlyWatches{Fault::usage, "who watches can't ask", "request", "open another connection"};
+const schema::Error kOnlyWatches{ErrorKind::usage, "who watches can't ask", "request",
+                                 "open another connection"};
 
 // Of who waits for an answer more is looked at, for a `stop` may be in it.
 bool wants_more(const ControlClient& client) {
@@ -74,12 +76,8 @@ ControlServer::~ControlServer() {
   unlink(place_.path.c_str());
 }
 
-std::size_t ControlServer::watchers() const {
-  return static_cast<std::size_t>(std::ranges::count_if(clients_, &ControlClient::watching));
-}
-
 schema::Error ControlServer::full() const {
-  return {Fault::unsuitable, fmt::format("{} clients are connected already", place_.most_clients),
+  return {ErrorKind::unsuitable, fmt::format("{} clients are connected already", place_.most_clients),
           place_.path,
           "close one, or raise most_clients in the configuration; stop and disarm are taken all the same"};
 }
@@ -171,7 +169,7 @@ std::optional<schema::Error> ControlServer::refusal_of(const ControlClient& clie
                                                        const Result<ControlRequest>& request) const {
   const bool greets = request && request->verb == ControlVerb::hello;
   if (is_stranger(client)) {
-    if (!request && request.error().fault == Fault::unsupported_version) return request.error();
+    if (!request && request.error().fault == ErrorKind::unsupported_version) return request.error();
     if (!greets || !is_token(request->token, place_.loopback->token)) return kUnknown;
   }
   if (!request) return request.error();

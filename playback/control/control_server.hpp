@@ -66,7 +66,6 @@ class ControlServer {
   /// 0 where nobody may come by TCP.
   int tcp_port() const { return tcp_.port; }
   std::size_t clients() const { return clients_.size(); }
-  std::size_t watchers() const;
 
  private:
   using Time = ControlClient::Time;

@@ -19,8 +19,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr int kBacklog = 128;
@@ -34,8 +34,8 @@ Result<sockaddr_un> address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof address.sun_path)
-    return fail(Fault::usage, fmt::format("a socket's path has 1 to {} bytes", sizeof address.sun_path - 1),
-                path);
+    return fail(ErrorKind::usage,
+                fmt::format("a socket's path has 1 to {} bytes", sizeof address.sun_path - 1), path);
   std::memcpy(address.sun_path, path.data(), path.size());
   return address;
 }
@@ -64,7 +64,7 @@ void remove_stale(const std::string& path) {
 Result<gid_t> group_of(const std::string& name) {
   const group* const found = getgrnam(name.c_str());
   if (found != nullptr) return found->gr_gid;
-  return fail(Fault::usage, fmt::format("there is no group '{}'", name), "socket_group",
+  return fail(ErrorKind::usage, fmt::format("there is no group '{}'", name), "socket_group",
               fmt::format("addgroup --system {}", name));
 }
 
@@ -72,13 +72,13 @@ Result<gid_t> group_of(const std::string& name) {
 Result<void> permit(const std::string& path, const std::string& group) {
   if (group.empty())
     return chmod(path.c_str(), kOwnerOnly) == 0 ? Result<void>()
-                                                : fail(Fault::cannot_write, system_words(errno), path);
+                                                : fail(ErrorKind::cannot_write, system_words(errno), path);
   const auto id = group_of(group);
   TACTO_TRY(id);
   const bool done =
       chown(path.c_str(), static_cast<uid_t>(-1), *id) == 0 && chmod(path.c_str(), kOwnerAndGroup) == 0;
   if (done) return {};
-  return fail(Fault::cannot_write, "can't be given to the group: " + system_words(errno), path,
+  return fail(ErrorKind::cannot_write, "can't be given to the group: " + system_words(errno), path,
               "let the daemon's user be a member of the group");
 }
 
@@ -87,7 +87,7 @@ Result<void> bind_and_listen(int descriptor, const sockaddr_un& address, const s
   const bool bound = bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   const int why = errno;
   if (!bound)
-    return fail(Fault::cannot_write, "the socket can't be made: " + system_words(why), path,
+    return fail(ErrorKind::cannot_write, "the socket can't be made: " + system_words(why), path,
                 why == EADDRINUSE ? "something else has that name: remove it, or name another socket"
                                   : "name a folder that the daemon's user may write in");
   if (const auto permitted = permit(path, group); !permitted) {
@@ -95,7 +95,7 @@ Result<void> bind_and_listen(int descriptor, const sockaddr_un& address, const s
     return permitted;
   }
   if (::listen(descriptor, kBacklog) == 0) return {};
-  return fail(Fault::cannot_write, "can't listen: " + system_words(errno), path);
+  return fail(ErrorKind::cannot_write, "can't listen: " + system_words(errno), path);
 }
 
 }  // namespace
@@ -104,10 +104,11 @@ Result<int> open_control_socket(const std::string& path, const std::string& grou
   const auto address = address_of(path);
   TACTO_TRY(address);
   if (somebody_listens(*address))
-    return fail(Fault::unsuitable, "another daemon listens there", path, "stop it, or name another socket");
+    return fail(ErrorKind::unsuitable, "another daemon listens there", path,
+                "stop it, or name another socket");
   remove_stale(path);
   const int descriptor = fresh_socket();
-  if (descriptor < 0) return fail(Fault::internal, "no socket: " + system_words(errno), path);
+  if (descriptor < 0) return fail(ErrorKind::internal, "no socket: " + system_words(errno), path);
   const auto done = bind_and_listen(descriptor, *address, path, group);
   if (done) return descriptor;
   ::close(descriptor);
@@ -145,8 +146,8 @@ Result<LoopbackSocket> open_loopback_socket(int port) {
     return LoopbackSocket{descriptor, ntohs(address.sin_port)};
   const int why = errno;
   if (descriptor >= 0) ::close(descriptor);
-  return fail(Fault::unsuitable, "can't listen there: " + system_words(why), fmt::format("tcp_port {}", port),
-              "name another port, or 0 for a free one");
+  return fail(ErrorKind::unsuitable, "can't listen there: " + system_words(why),
+              fmt::format("tcp_port {}", port), "name another port, or 0 for a free one");
 }
 
 Result<int> connect_control_socket(const std::string& path) {
@@ -157,9 +158,9 @@ Result<int> connect_control_socket(const std::string& path) {
   const int why = errno;
   if (descriptor >= 0) ::close(descriptor);
   if (why == EACCES || why == EPERM)
-    return fail(Fault::not_found, "this user may not connect", path,
+    return fail(ErrorKind::not_found, "this user may not connect", path,
                 "become a member of the socket's group: `ls -l` names it");
-  return fail(Fault::not_found, "no daemon listens there: " + system_words(why), path,
+  return fail(ErrorKind::not_found, "no daemon listens there: " + system_words(why), path,
               "start one: tactographd --config FILE, or systemctl start tactographd");
 }
 

@@ -9,8 +9,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr std::size_t kLeastToken = 16, kMostToken = 200;
@@ -29,11 +29,11 @@ Result<std::string> read_control_token(const std::string& path) {
   if (!text) return fail(text.error().fault, text.error().what, path, how_to_make(path));
   struct stat status {};
   if (stat(path.c_str(), &status) != 0 || (status.st_mode & kOfOthers) != 0)
-    return fail(Fault::unsuitable, "others than its owner may read the token", path, "chmod 600 " + path);
+    return fail(ErrorKind::unsuitable, "others than its owner may read the token", path, "chmod 600 " + path);
   std::string token = text->substr(0, text->find_first_of("\r\n"));
   const bool plain = token.find_first_of(" \t\"\\") == std::string::npos;
   if (plain && token.size() >= kLeastToken && token.size() <= kMostToken) return token;
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("a token has {} to {} characters and no blanks", kLeastToken, kMostToken), path,
               how_to_make(path));
 }

@@ -143,7 +143,8 @@ int main(int argc, char** argv) {
   if (first == "--help" || first == "-h") return std::fputs(kHelp, stdout) < 0 ? 1 : 0;
   if (first == "--version") return std::puts(kCreator.data()) < 0 ? 1 : 0;
   if (argc != 3 || first != "--config")
-    return failed({schema::Fault::usage, "wants --config FILE", "command line", "see tactographd --help"});
+    return failed(
+        {schema::ErrorKind::usage, "wants --config FILE", "command line", "see tactographd --help"});
   struct sigaction action {};
   action.sa_handler = ask_to_stop;
   sigaction(SIGTERM, &action, nullptr);

@@ -23,8 +23,8 @@ namespace tacto::playback {
 using schema::ControlFields;
 using schema::ControlRequest;
 using schema::ControlVerb;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 namespace fs = std::filesystem;
 
@@ -96,9 +96,9 @@ Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& confi
   std::unique_ptr<Service> service(new Service(config, std::move(publish)));
   std::error_code failed;
   fs::create_directories(config.sessions, failed);
-  if (failed) return fail(Fault::cannot_write, "can't be made: " + failed.message(), config.sessions);
+  if (failed) return fail(ErrorKind::cannot_write, "can't be made: " + failed.message(), config.sessions);
   if (!config.files.empty() && !fs::is_directory(config.files, failed))
-    return fail(Fault::not_found, "there is no such folder", config.files, "name one in files, or none");
+    return fail(ErrorKind::not_found, "there is no such folder", config.files, "name one in files, or none");
   TACTO_TRY(schema::read_transducer(config.transducer));
   TACTO_TRY(service->connect());
   return service;
@@ -130,7 +130,7 @@ Result<void> Service::connect() {
   player_ = std::move(*player);
   player_->listen([this](PlayerState state, const std::string& why, double device_s) {
     why_ = why;
-    publish_("state", {{"state", std::string(word_of(state))}, {"why", why}, {"device_s", device_s}});
+    publish_("state", {{"state", std::string(to_string(state))}, {"why", why}, {"device_s", device_s}});
   });
   return {};
 }
@@ -161,8 +161,8 @@ std::string Service::resolved(const std::string& file) const {
 }
 
 Result<void> Service::may_begin(const char* what) const {
-  if (!loader_.wanted()) return {};
-  return fail(Fault::usage, fmt::format("can't {} while a texture is being prepared", what),
+  if (!loader_.target()) return {};
+  return fail(ErrorKind::usage, fmt::format("can't {} while a texture is being prepared", what),
               load_request_.file, "wait for the answer to that load");
 }
 
@@ -173,15 +173,15 @@ Result<void> Service::begin_load(const ControlRequest& request) {
     if (const auto connected = connect(); !connected) return connected;
   if (const auto may = player_->may_load(); !may) return may;
   load_request_ = request;
-  ProgramRequest wanted{resolved(request.file), request.at_m, request.gain_m_per_n, request.ends};
-  wanted.only_in = request.by_tcp ? std::optional(config_.files) : std::nullopt;
-  if (request.by_tcp) wanted.file = request.file;
-  wanted.budget = budget();
-  wanted.choices = request.playback;
-  wanted.defaults = config_.playback;
+  ProgramRequest target{resolved(request.file), request.at_m, request.gain_m_per_n, request.ends};
+  target.only_in = request.by_tcp ? std::optional(config_.files) : std::nullopt;
+  if (request.by_tcp) target.file = request.file;
+  target.budget = budget();
+  target.choices = request.playback;
+  target.defaults = config_.playback;
   const bool idle = player_->state() == PlayerState::idle;
-  loader_.begin([wanted, transducer = config_.transducer,
-                 options = options()] { return make_program(wanted, transducer, options); },
+  loader_.begin([target, transducer = config_.transducer,
+                 options = options()] { return make_program(target, transducer, options); },
                 idle ? ProgramLoader::Beside::nothing : ProgramLoader::Beside::playing);
   return {};
 }
@@ -230,7 +230,7 @@ Result<ControlFields> Service::arm(const ControlRequest& request) {
   if (here_) missed_before_ = here_.loop->status().missed_ticks;
   lock_memory();  // also what came since the daemon began
   stay_.begin(playback::stay_rules(request, config_.dead_man_s));
-  ControlFields fields{{"state", std::string(word_of(player_->state()))}, {"session", path}};
+  ControlFields fields{{"state", std::string(to_string(player_->state()))}, {"session", path}};
   add_stay(fields, stay_.rules());
   return fields;
 }
@@ -267,10 +267,10 @@ Result<ControlFields> Service::disarm(const std::string& why) {
 // often it is saved.
 Result<void> Service::save_gain(double factor, const std::string& who) {
   if (loaded_.empty())
-    return fail(Fault::usage, "nothing is loaded that could keep a gain", {}, "load first");
+    return fail(ErrorKind::usage, "nothing is loaded that could keep a gain", {}, "load first");
   if (!(std::abs(factor) >= kLeastSaved && std::abs(factor) <= 1 / kLeastSaved))
-    return fail(Fault::usage, fmt::format("a gain of {:g} would lose the layers' own gains", factor), loaded_,
-                fmt::format("save one from {:g} to {:g}", kLeastSaved, 1 / kLeastSaved));
+    return fail(ErrorKind::usage, fmt::format("a gain of {:g} would lose the layers' own gains", factor),
+                loaded_, fmt::format("save one from {:g} to {:g}", kLeastSaved, 1 / kLeastSaved));
   if (!scene_path_.empty()) return save_scene_gain(factor, who);
   return schema::write_playback_gain(alone_.file,
                                      {alone_.gain_m_per_n * factor, who, schema::creation_time()});
@@ -303,15 +303,15 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
 }
 
 // The answer tells the state that the command led to, once the device's ticks show it.
-Result<ControlFields> Service::done(const Result<void>& result, PlayerState wanted) {
+Result<ControlFields> Service::done(const Result<void>& result, PlayerState target) {
   TACTO_TRY(result);
   const double until_s = client().transport().now_s() + kObeyedS;
   const auto waits = [&] {
     const PlayerState state = player_->state();
-    return state != wanted && state != PlayerState::lost && client().transport().now_s() < until_s;
+    return state != target && state != PlayerState::lost && client().transport().now_s() < until_s;
   };
   while (waits()) TACTO_TRY(player_->step(kLookS));
-  return ControlFields{{"state", std::string(word_of(player_->state()))}};
+  return ControlFields{{"state", std::string(to_string(player_->state()))}};
 }
 
 ControlFields Service::hello() const {
@@ -328,7 +328,7 @@ ControlFields Service::hello() const {
 
 ControlFields Service::status() const {
   const PlayerStatus status = player_->status();
-  ControlFields fields{{"state", std::string(word_of(status.state))}, {"gain", status.gain}};
+  ControlFields fields{{"state", std::string(to_string(status.state))}, {"gain", status.gain}};
   add_inversion(fields, status.gain * loaded_gain_m_per_n_);
   if (!status.fault.empty()) fields.emplace_back("fault", status.fault);
   if (!why_.empty()) fields.emplace_back("why", why_);
@@ -371,7 +371,7 @@ std::optional<Result<ControlFields>> Service::handle(const ControlRequest& reque
     case ControlVerb::watch:
       return status();
   }
-  return fail(Fault::internal, "a request that nobody answers", "request");
+  return fail(ErrorKind::internal, "a request that nobody answers", "request");
 }
 
 bool Service::step(double timeout_s) {

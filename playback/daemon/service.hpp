@@ -8,7 +8,7 @@
 
 #include "data-schema/control/control.hpp"
 #include "data-schema/control/daemon_config.hpp"
-#include "playback/player/loop_here.hpp"
+#include "playback/player/host_loop_client.hpp"
 #include "playback/player/player.hpp"
 #include "playback/player/player_device.hpp"
 #include "playback/player/program_loader.hpp"
@@ -58,7 +58,7 @@ class Service {
   schema::Result<void> save_scene_gain(double factor, const std::string& who);
   void tell_losses(const RecorderCounts& counts, bool last);
   schema::Result<schema::ControlFields> disarm(const std::string& why = {});
-  schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState wanted);
+  schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState target);
   schema::ControlFields hello() const;
   schema::ControlFields status() const;
   std::string resolved(const std::string& file) const;

@@ -90,8 +90,6 @@ void HostBoard::tick(std::int64_t now_ns, std::int64_t late_ns) noexcept {
   if (TimedDrive* place = drives_.place(); place != nullptr) {
     *place = {now_ns, drive_v_, reading_ns_};
     drives_.push();
-  } else {
-    drives_lost_.store(drives_lost_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
   firmware_->poll();
   wants_drive_.store(ticking_, std::memory_order_release);

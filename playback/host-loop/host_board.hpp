@@ -72,7 +72,6 @@ class HostBoard {
   std::int64_t due_ns(std::uint64_t tick) const noexcept {
     return dues_[tick % kLatenesses].load(std::memory_order_relaxed);
   }
-  std::uint64_t drives_lost() const noexcept { return drives_lost_.load(std::memory_order_relaxed); }
 
  private:
   static constexpr std::size_t kLatenesses = 16384;
@@ -92,7 +91,6 @@ class HostBoard {
   core::Ring<TimedDrive, 1024> drives_;
   std::array<std::atomic<std::int32_t>, kLatenesses> lateness_{};
   std::array<std::atomic<std::int64_t>, kLatenesses> dues_{};
-  std::atomic<std::uint64_t> drives_lost_{0};
   std::array<std::atomic<std::int32_t>, wire::kMaxChannels> codes_{};
   std::int64_t period_ns_;
   std::uint32_t age_ = 0, unseen_ = 0;  // in periods

@@ -16,8 +16,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr double kCarryS = 0.5e-3;
@@ -42,7 +42,7 @@ class LoopTransport final : public firmware_host::Transport {
     for (const double end_s = now_s() + timeout_s; !bytes.empty();) {
       bytes = bytes.subspan(board_.from_player().put(bytes));
       if (!bytes.empty() && now_s() >= end_s)
-        return fail(Fault::device, "the real-time thread takes nothing", "host loop");
+        return fail(ErrorKind::device, "the real-time thread takes nothing", "host loop");
       if (!bytes.empty()) std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     return {};
@@ -62,7 +62,7 @@ std::int64_t median_of(std::vector<std::int64_t>& values) {
 Result<std::size_t> position_channel(const firmware_host::Description& about) {
   for (std::size_t i = 0; i < about.channels.size(); ++i)
     if (std::strcmp(about.channels[i].quantity, "position") == 0) return i;
-  return fail(Fault::device, "the device streams no position", "host loop");
+  return fail(ErrorKind::device, "the device streams no position", "host loop");
 }
 
 }  // namespace
@@ -201,7 +201,7 @@ void HostLoop::take_counts() {
 void HostLoop::take_faults() {
   for (const wire::Ticks& message : device_.take_ticks())
     if (message.count > 0) enabled_ = (message.ticks[message.count - 1].flags & wire::kTickEnabled) != 0;
-  for (const wire::Fault& fault : device_.take_faults())
+  for (const wire::ErrorKind& fault : device_.take_faults())
     if (fault.code != wire::FaultCode::ring_full)
       give_up(firmware_host::words_of(fault.code, fault.detail).what);
 }

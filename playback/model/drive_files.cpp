@@ -12,15 +12,15 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
 
 Result<void> check_name(const std::string& path, schema::Existing existing) {
   if (std::filesystem::path(path).extension() != ".wav")
-    return fail(Fault::usage, "the name doesn't end in .wav", path, "only WAV is written");
+    return fail(ErrorKind::usage, "the name doesn't end in .wav", path, "only WAV is written");
   return schema::check_wav_free(path, existing);
 }
 
@@ -30,7 +30,7 @@ Result<void> check_storable(const SignalFile& file) {
   const auto broken = std::ranges::find_if(
       values, [](double each) { return !(std::abs(each) <= std::numeric_limits<float>::max()); });
   if (broken == values.end()) return {};
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("sample {} would be {:g}, which is no finite number of 32 bits",
                           broken - values.begin(), *broken),
               file.path, "correct the transducer's numbers, or take a smaller --gain");
@@ -54,7 +54,8 @@ Result<void> check_signal_files(std::span<const SignalFile> files, schema::Exist
     if (auto sound = check_name(file->path, existing); !sound) return sound;
     const auto same = [&](const SignalFile& other) { return schema::same_file(file->path, other.path); };
     if (std::any_of(files.begin(), file, same))
-      return fail(Fault::usage, "the name is given to two outputs", file->path, "name each file differently");
+      return fail(ErrorKind::usage, "the name is given to two outputs", file->path,
+                  "name each file differently");
   }
   return {};
 }

@@ -10,8 +10,8 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 
 namespace {
 
@@ -37,14 +37,14 @@ FingerPath finger_path_of(const schema::TimeSignal& position) {
 
 schema::Result<void> check_finger_path(const FingerPath& path) {
   if (path.time_s.size() != path.position_m.size() || path.time_s.size() < 2)
-    return fail(Fault::unsuitable, "a finger path needs at least 2 knots, each with a time and a position",
-                "path");
+    return fail(ErrorKind::unsuitable,
+                "a finger path needs at least 2 knots, each with a time and a position", "path");
   for (std::size_t i = 0; i < path.time_s.size(); ++i) {
     if (!std::isfinite(path.time_s[i]) || !std::isfinite(path.position_m[i]))
-      return fail(Fault::unsuitable, "time or position is not a finite number",
+      return fail(ErrorKind::unsuitable, "time or position is not a finite number",
                   fmt::format("path, knot {}", i));
     if (i > 0 && path.time_s[i] <= path.time_s[i - 1])
-      return fail(Fault::unsuitable, "time does not grow", fmt::format("path, knot {}", i));
+      return fail(ErrorKind::unsuitable, "time does not grow", fmt::format("path, knot {}", i));
   }
   return {};
 }

@@ -14,8 +14,8 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
@@ -79,7 +79,7 @@ struct Table {
 
 Result<Table> read_header(std::string_view line, const std::string& name) {
   if (std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
-    return fail(Fault::malformed, "this is no table: its first line holds binary data", name,
+    return fail(ErrorKind::malformed, "this is no table: its first line holds binary data", name,
                 "a path is a CSV with the columns time_s,position_m");
   const char separator = separator_of(line);
   Table table{name, separator, split(line, separator), {}, false};
@@ -88,7 +88,7 @@ Result<Table> read_header(std::string_view line, const std::string& name) {
     if (which == kForce) table.tells_force = found != table.header.end();
     if (which < kNeeded && found == table.header.end())
       return fail(
-          Fault::malformed,
+          ErrorKind::malformed,
           fmt::format("there is no column '{}', only {}", kColumns[which], fmt::join(table.header, ", ")),
           name + ", line 1", std::string(kRemedy));
     table.column[which] = static_cast<std::size_t>(found - table.header.begin());
@@ -100,16 +100,17 @@ Result<double> cell(const Table& table, const std::vector<std::string_view>& fie
                     std::size_t which) {
   const std::string_view text = fields[table.column[which]];
   const auto value = number_in(text, table.separator);
-  if (!value) return fail(Fault::malformed, fmt::format("'{}' is no number", text), table.place(line, which));
+  if (!value)
+    return fail(ErrorKind::malformed, fmt::format("'{}' is no number", text), table.place(line, which));
   if (!std::isfinite(*value))
-    return fail(Fault::malformed, fmt::format("'{}' is not finite", text), table.place(line, which));
+    return fail(ErrorKind::malformed, fmt::format("'{}' is not finite", text), table.place(line, which));
   return *value;
 }
 
 Result<void> add_row(FingerPath& path, const Table& table, std::string_view text, std::size_t line) {
   const auto fields = split(text, table.separator);
   if (fields.size() != table.header.size())
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("the row has {} fields, the header {}", fields.size(), table.header.size()),
                 fmt::format("{}, line {}", table.name, line));
   const auto time_s = cell(table, fields, line, 0);
@@ -117,7 +118,7 @@ Result<void> add_row(FingerPath& path, const Table& table, std::string_view text
   const auto position_m = cell(table, fields, line, 1);
   TACTO_TRY(position_m);
   if (!path.time_s.empty() && *time_s <= path.time_s.back())
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("time does not grow: {} s after {} s", *time_s, path.time_s.back()),
                 table.place(line, 0), "each row must be later than the one before");
   path.time_s.push_back(*time_s);
@@ -133,13 +134,13 @@ Result<void> add_row(FingerPath& path, const Table& table, std::string_view text
 
 Result<FingerPath> parse_finger_path(std::string_view text, const std::string& name) {
   const auto lines = lines_of(text);
-  if (lines.empty()) return fail(Fault::malformed, "the file is empty", name, std::string(kRemedy));
+  if (lines.empty()) return fail(ErrorKind::malformed, "the file is empty", name, std::string(kRemedy));
   const auto table = read_header(lines.front(), name);
   TACTO_TRY(table);
   FingerPath path;
   for (std::size_t i = 1; i < lines.size(); ++i) TACTO_TRY(add_row(path, *table, lines[i], i + 1));
   if (path.time_s.size() < 2)
-    return fail(Fault::malformed,
+    return fail(ErrorKind::malformed,
                 fmt::format("a path needs at least 2 rows, here are {}", path.time_s.size()), name,
                 std::string(kRemedy));
   return path;

@@ -27,21 +27,23 @@ Play merged(const Play& a, const Play& b) {
   return {(a.weight * a.threshold_v + b.weight * b.threshold_v) / sum, sum};
 }
 
-void merge_nearest(std::vector<Play>& plays) {
+void merge_nearest(std::vector<Play>& play_operators) {
   std::size_t best = 0;
-  for (std::size_t i = 1; i + 1 < plays.size(); ++i)
-    if (merging_loss(plays[i], plays[i + 1]) < merging_loss(plays[best], plays[best + 1])) best = i;
-  plays[best] = merged(plays[best], plays[best + 1]);
-  plays.erase(plays.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+  for (std::size_t i = 1; i + 1 < play_operators.size(); ++i)
+    if (merging_loss(play_operators[i], play_operators[i + 1]) <
+        merging_loss(play_operators[best], play_operators[best + 1]))
+      best = i;
+  play_operators[best] = merged(play_operators[best], play_operators[best + 1]);
+  play_operators.erase(play_operators.begin() + static_cast<std::ptrdiff_t>(best) + 1);
 }
 
 // The operator's sum once its input has gone to v.
-double moved_plays(const schema::Hysteresis& hysteresis, double v, std::span<double> plays) {
+double moved_plays(const schema::Hysteresis& hysteresis, double v, std::span<double> play_operators) {
   double sum = 0;
-  for (std::size_t i = 0; i < plays.size(); ++i) {
+  for (std::size_t i = 0; i < play_operators.size(); ++i) {
     const double r = hysteresis.thresholds_v[i];
-    plays[i] = std::max(v - r, std::min(v + r, plays[i]));
-    sum += hysteresis.weights[i] * plays[i];
+    play_operators[i] = std::max(v - r, std::min(v + r, play_operators[i]));
+    sum += hysteresis.weights[i] * play_operators[i];
   }
   return sum;
 }
@@ -49,20 +51,21 @@ double moved_plays(const schema::Hysteresis& hysteresis, double v, std::span<dou
 }  // namespace
 
 wire::Hysteresis inverse_of(const schema::Hysteresis& hysteresis) {
-  std::vector<Play> plays;
+  std::vector<Play> play_operators;
   for (std::size_t i = 1; i < hysteresis.weights.size(); ++i)
-    if (hysteresis.weights[i] > 0) plays.push_back({hysteresis.thresholds_v[i], hysteresis.weights[i]});
-  while (plays.size() > wire::kMaxPlays) merge_nearest(plays);
+    if (hysteresis.weights[i] > 0)
+      play_operators.push_back({hysteresis.thresholds_v[i], hysteresis.weights[i]});
+  while (play_operators.size() > wire::kMaxPlays) merge_nearest(play_operators);
   wire::Hysteresis inverse;
   double sum = hysteresis.weights.at(0);
   double moved_v = 0, last_v = 0;  // r' so far
   inverse.straight = static_cast<float>(1 / sum);
-  for (const Play& play : plays) {
+  for (const Play& play : play_operators) {
     moved_v += sum * (play.threshold_v - last_v);
     last_v = play.threshold_v;
     const double next = sum + play.weight;
-    inverse.plays[inverse.count++] = {static_cast<float>(moved_v),
-                                      static_cast<float>(-play.weight / (sum * next))};
+    inverse.play_operators[inverse.count++] = {static_cast<float>(moved_v),
+                                               static_cast<float>(-play.weight / (sum * next))};
     sum = next;
   }
   return inverse;
@@ -74,9 +77,9 @@ wire::Section pole_lead(double pole_hz, double rate_hz) {
 }
 
 std::vector<double> played_through(const schema::Hysteresis& hysteresis, std::span<const double> drive_v) {
-  std::vector<double> plays(hysteresis.weights.size()), out;
+  std::vector<double> play_operators(hysteresis.weights.size()), out;
   out.reserve(drive_v.size());
-  for (const double v : drive_v) out.push_back(moved_plays(hysteresis, v, plays));
+  for (const double v : drive_v) out.push_back(moved_plays(hysteresis, v, play_operators));
   return out;
 }
 

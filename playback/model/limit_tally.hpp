@@ -19,8 +19,8 @@ class LimitTally {
     slew_ += (output.flags & wire::kTickSlewLimited) != 0;
     energy_ += (output.flags & wire::kTickEnergyLimited) != 0;
     gated_ += (output.flags & wire::kTickGated) != 0;
-    const double wished_v = output.wished_v, removed_v = wished_v - output.drive_v;
-    wished_v2_ += wished_v * wished_v;
+    const double unlimited_v = output.unlimited_v, removed_v = unlimited_v - output.drive_v;
+    wished_v2_ += unlimited_v * unlimited_v;
     removed_v2_ += removed_v * removed_v;
   }
   /// Of other ticks.

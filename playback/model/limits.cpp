@@ -56,7 +56,7 @@ tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_pe
   const std::string fits =
       fitting_m_per_n > 0 ? fmt::format("the largest gain that fits is {:.4g}mm/N", 1e3 * fitting_m_per_n)
                           : "take a smaller --gain";
-  return schema::fail(schema::Fault::unsuitable,
+  return schema::fail(schema::ErrorKind::unsuitable,
                       fmt::format("the {} reaches {:.4g} {}, its limit is {:.4g} {}", peak.name, peak.value,
                                   peak.unit, peak.limit, peak.unit),
                       fmt::format("drive, {:.4f} s after its start", peak.time_s),

@@ -45,7 +45,7 @@ void LiveLimits::obey(const SessionCommand& command) {
   if (!board_) return;
   const auto answer = board_->say_frame(command.frame);
   if (answer && answer->code == wire::AnswerCode::ok) return;
-  give_up(fmt::format("{} is refused here", firmware_host::word_of(type_of(command))));
+  give_up(fmt::format("{} is refused here", firmware_host::to_string(type_of(command))));
 }
 
 void LiveLimits::take(std::span<const SessionTick> ticks) {
@@ -76,16 +76,16 @@ void LiveLimits::play(const SessionTick& tick) {
   commands_.before(tick, [this](const SessionCommand& due) { obey(due); });
   if (!board_) return;
   if (beats_.beats_before(tick.tick)) board_->say(wire::Heartbeat{});
-  const float wished_v = board_->tick(tick);
+  const float unlimited_v = board_->tick(tick);
   limited_ = limited_ || (tick.flags & kEveryLimit) != 0;
-  if (!limited_ && wished_v != tick.drive_v) return give_up("the device computes another drive");
-  count(tick, wished_v);
+  if (!limited_ && unlimited_v != tick.drive_v) return give_up("the device computes another drive");
+  count(tick, unlimited_v);
 }
 
-void LiveLimits::count(const SessionTick& tick, float wished_v) {
+void LiveLimits::count(const SessionTick& tick, float unlimited_v) {
   const auto part = static_cast<std::uint64_t>(static_cast<double>(tick.tick) * kParts / rate_hz_);
   if (part != std::exchange(part_, part)) parts_[part % kParts] = {};
-  const core::TickOutput output = limited_tick(tick.drive_v, wished_v, tick.flags);
+  const core::TickOutput output = limited_tick(tick.drive_v, unlimited_v, tick.flags);
   whole_.add(output);
   parts_[part % kParts].add(output);
 }

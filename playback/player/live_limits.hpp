@@ -52,7 +52,7 @@ class LiveLimits {
   void play(const schema::SessionTick& tick);
   void obey(const schema::SessionCommand& command);
   void give_up(std::string why);
-  void count(const schema::SessionTick& tick, float wished_v);
+  void count(const schema::SessionTick& tick, float unlimited_v);
   void tell();
 
   double rate_hz_;

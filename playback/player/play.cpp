@@ -9,7 +9,7 @@
 #include "data-schema/files/files.hpp"
 #include "firmware-host/link/wire_device.hpp"
 #include "playback/host-loop/locked_memory.hpp"
-#include "playback/player/loop_here.hpp"
+#include "playback/player/host_loop_client.hpp"
 #include "playback/player/player_device.hpp"
 #include "playback/player/silent_play.hpp"
 #include "playback/session/session_limits.hpp"
@@ -17,8 +17,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr int kUsualPriority = 50;  // as the daemon's
@@ -31,14 +31,14 @@ double time_of(const PlayOptions& options, const std::optional<FingerScript>& sc
 
 Result<void> check_play_options(const PlayOptions& options) {
   if (options.time_s && !(*options.time_s > 0))
-    return fail(Fault::usage, fmt::format("a time of {:g} s", *options.time_s), {}, "a time above 0 s");
+    return fail(ErrorKind::usage, fmt::format("a time of {:g} s", *options.time_s), {}, "a time above 0 s");
   return schema::check_stem(schema::stem_of("/" + options.session, ".session").substr(1));
 }
 
 Result<std::string> transducer_for(const PlayOptions& options, const firmware_host::Capabilities& about) {
   if (!options.transducer.empty()) return options.transducer;
   if (about.transducer) return about.transducer->name;
-  return fail(Fault::usage, "the device does not say which transducer it has", about.uri,
+  return fail(ErrorKind::usage, "the device does not say which transducer it has", about.uri,
               "name it with --transducer");
 }
 
@@ -135,7 +135,7 @@ void tell_limits(const std::string& session, PlayOutcome& outcome) {
 Result<LoopHere> loop_of(const PlayOptions& options, PlayerDevice& device, PlayerOptions& player_options) {
   if (!options.loop_here) return LoopHere{};
   if (!device.device->keeps_time())
-    return fail(Fault::usage, "this computer closes no loop on a device that keeps no time", device.uri,
+    return fail(ErrorKind::usage, "this computer closes no loop on a device that keeps no time", device.uri,
                 "add paced=1 (-d sim:paced=1)");
   const HostLoopOptions loop{options.prepare.rate_hz, kUsualPriority, options.prepare.watchdog_ms};
   return close_loop_here(*device.client, device.uri, loop, player_options);

@@ -18,8 +18,8 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
@@ -46,7 +46,7 @@ Result<double> encoder_step(const firmware_host::Description& about, const std::
   for (const wire::Channel& channel : about.channels)
     if (std::strcmp(channel.quantity, "position") == 0 && std::isfinite(channel.scale) && channel.scale != 0)
       return channel.scale;
-  return fail(Fault::device, "the device does not say what its encoder counts", uri,
+  return fail(ErrorKind::device, "the device does not say what its encoder counts", uri,
               "it lacks a channel of the quantity position");
 }
 
@@ -66,7 +66,7 @@ Result<void> within_reach(const Program& program, double peak_m, double factor) 
 
 }  // namespace
 
-std::string_view word_of(PlayerState state) {
+std::string_view to_string(PlayerState state) {
   constexpr std::string_view kWords[] = {"idle", "armed", "playing", "fault", "lost"};
   return kWords[static_cast<std::size_t>(state)];
 }
@@ -83,7 +83,7 @@ Player::~Player() {
 Result<std::unique_ptr<Player>> Player::make(firmware_host::Client& client, std::string uri,
                                              const PlayerOptions& options) {
   if ((client.description().welcome.features & wire::kFeatureDrive) == 0)
-    return fail(Fault::device, "the device has no output", uri);
+    return fail(ErrorKind::device, "the device has no output", uri);
   const auto step = encoder_step(client.description(), uri);
   TACTO_TRY(step);
   return std::unique_ptr<Player>(new Player(client, std::move(uri), options, *step));
@@ -91,7 +91,8 @@ Result<std::unique_ptr<Player>> Player::make(firmware_host::Client& client, std:
 
 Result<void> Player::require(bool allowed, const char* what, const char* remedy) const {
   if (allowed) return {};
-  return fail(Fault::usage, fmt::format("can't {} in the state {}", what, word_of(state_)), uri_, remedy);
+  return fail(ErrorKind::usage, fmt::format("can't {} in the state {}", what, to_string(state_)), uri_,
+              remedy);
 }
 
 // Every command that the device obeys is part of the session, but for those of the samples' stream.
@@ -130,9 +131,11 @@ Result<void> Player::load(Program program, double fade_s) {
 
 Result<void> Player::may_change(const Program& program, double fade_s) const {
   if (!(fade_s >= 0 && fade_s <= kLongestFadeS))
-    return fail(Fault::usage, fmt::format("a fade of {:g} s", fade_s), uri_, "0 s to 10 s; 50 ms is usual");
+    return fail(ErrorKind::usage, fmt::format("a fade of {:g} s", fade_s), uri_,
+                "0 s to 10 s; 50 ms is usual");
   if (view_.expected() < faded_at_)
-    return fail(Fault::usage, "the last change of texture is not through yet", uri_, "load again once it is");
+    return fail(ErrorKind::usage, "the last change of texture is not through yet", uri_,
+                "load again once it is");
   return check_texture_change(program_->prepared, program.prepared,
                               client_.description().welcome.profile_samples);
 }
@@ -229,7 +232,7 @@ Result<void> Player::stop(const std::string& why) {
 }
 
 Result<void> Player::may_gain(double gain) const {
-  if (!std::isfinite(gain)) return fail(Fault::usage, "the gain is no finite number", uri_);
+  if (!std::isfinite(gain)) return fail(ErrorKind::usage, "the gain is no finite number", uri_);
   if (!program_) return {};
   const bool fades = recorder_ != nullptr && view_.expected() < faded_at_;
   const double peak_m = std::max(program_->tray_peak_m, fades ? leaving_peak_m_ : 0);
@@ -257,7 +260,7 @@ Result<void> Player::wait_for_idle() {
     if (pulse->state == wire::DriveState::idle) return {};
     TACTO_TRY(client_.receive(kIdleStepS));
   }
-  return fail(Fault::device, "the device did not come to rest", uri_, "switch off the amplifier");
+  return fail(ErrorKind::device, "the device did not come to rest", uri_, "switch off the amplifier");
 }
 
 Result<void> Player::disarm(const std::string& why) {
@@ -355,7 +358,7 @@ void Player::take_ticks() {
 }
 
 void Player::take_faults() {
-  for (const wire::Fault& fault : client_.take_faults()) {
+  for (const wire::ErrorKind& fault : client_.take_faults()) {
     const firmware_host::FaultWords words = firmware_host::words_of(fault.code, fault.detail);
     if (!recorder_) continue;
     // A converter that fails ends the stream of samples; the drive goes on.
@@ -382,7 +385,7 @@ void Player::enter(PlayerState state, const std::string& why) {
   if (state == state_) return;
   state_ = state;
   if (state == PlayerState::lost) fault_ = why;
-  const std::string words = fmt::format("{}{}{}", word_of(state), why.empty() ? "" : ": ", why);
+  const std::string words = fmt::format("{}{}{}", to_string(state), why.empty() ? "" : ": ", why);
   if (recorder_) recorder_->event({view_.expected(), steady_ns(), words});
   // Before the first tick has come the heartbeat's answer knows the time.
   const double device_s = view_.ticks() > 0 ? 1e-9 * static_cast<double>(view_.last().time_ns) : pulse_s_;

@@ -22,7 +22,7 @@ namespace tacto::playback {
 ///   by disarm; armed, playing -> fault by the device (its words in PlayerStatus::fault) or by too many late
 ///   ticks; any -> lost by a device that does not answer.
 enum class PlayerState { idle, armed, playing, fault, lost };
-std::string_view word_of(PlayerState state);
+std::string_view to_string(PlayerState state);
 
 struct PlayerOptions {
   FullQueue full_queue = FullQueue::lose;

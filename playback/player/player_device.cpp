@@ -21,8 +21,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr std::string_view kSimScheme = "sim:";
@@ -90,7 +90,7 @@ struct ScriptedDevice {
 Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript& script) {
   if (!uri.starts_with(kSimScheme)) {
     TACTO_TRY(firmware_host::open_device(uri));
-    return fail(Fault::unsuitable, "only an emulated finger goes where it is told", uri,
+    return fail(ErrorKind::unsuitable, "only an emulated finger goes where it is told", uri,
                 "leave the finger's path out, or play on sim:");
   }
   auto device = firmware_host::make_sim_device(uri, std::string_view(uri).substr(kSimScheme.size()));
@@ -131,12 +131,12 @@ Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
   int opened = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
   if (opened < 0) opened = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kForAll);
   if (opened < 0)
-    return fail(Fault::cannot_write, fmt::format("the lock can't be made: {}", std::strerror(errno)), path,
-                "see who owns it and its folder");
+    return fail(ErrorKind::cannot_write, fmt::format("the lock can't be made: {}", std::strerror(errno)),
+                path, "see who owns it and its folder");
   [[maybe_unused]] const int shared = fchmod(opened, kForAll);
   if (flock(opened, LOCK_EX | LOCK_NB) == 0) return DeviceLock(opened);
   ::close(opened);
-  return fail(Fault::unsuitable, "another program plays on the device", device_name,
+  return fail(ErrorKind::unsuitable, "another program plays on the device", device_name,
               "stop it: tactographd, or tactograph play");
 }
 
@@ -153,7 +153,7 @@ Result<PlayerDevice> open_player_device(const std::string& uri, const std::optio
   auto& device = opened->device;
   firmware_host::Client* const client = device->conversation();
   if (client == nullptr)
-    return fail(Fault::unsuitable, "nothing can be played on a replay", uri, "play on sim: or usb:");
+    return fail(ErrorKind::unsuitable, "nothing can be played on a replay", uri, "play on sim: or usb:");
   const firmware_host::Capabilities& about = device->capabilities();
   PlayerDevice player{std::move(device), client, about.uri, {}, std::move(opened->begin_path)};
   if (uri.starts_with(kSimScheme)) return player;  // an emulation of this process alone

@@ -11,14 +11,14 @@
 #include "data-schema/scene/newer_version.hpp"
 #include "data-schema/version.hpp"
 #include "firmware-host/core/kernel/profile.hpp"
-#include "playback/player/laid_textures.hpp"
+#include "playback/player/placed_textures.hpp"
 #include "playback/prepare/displacement_limit.hpp"
 
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr double kLongestOnsetS = 10;  // the wire's
@@ -35,7 +35,7 @@ void describe(schema::SessionHeader& session, const Prepared& prepared, const Pr
   session.build = __VERSION__;
   session.rate_hz = options.rate_hz;
   session.metres_per_count = options.metres_per_count;
-  session.inverse = word_of(options.inverse);
+  session.inverse = to_string(options.inverse);
   session.choices = choices_in(options);
   session.delay_s = prepared.delay_left_s;
   session.loop_delay_s = options.loop_delay_s;
@@ -57,7 +57,7 @@ Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& te
 }
 
 // Before what prepare() notes.
-void add_notes(Program& program, const LaidTextures& laid, const std::string& transducer) {
+void add_notes(Program& program, const PlacedTextures& laid, const std::string& transducer) {
   const schema::Transducer& read = program.session.transducer;
   std::vector<std::string> first = laid.notes();
   first.push_back(
@@ -67,7 +67,7 @@ void add_notes(Program& program, const LaidTextures& laid, const std::string& tr
   notes.insert(notes.begin(), first.begin(), first.end());
 }
 
-void name_files(Program& program, const LaidTextures& laid) {
+void name_files(Program& program, const PlacedTextures& laid) {
   program.session.textures = laid.rows();
   program.session.textures.front().seam_m = program.prepared.loop_seam_m;
   if (program.scene_path.empty()) return;
@@ -79,21 +79,22 @@ void name_files(Program& program, const LaidTextures& laid) {
 Result<void> check_onset(const PrepareOptions& options) {
   if (options.onset_s <= kLongestOnsetS) return {};
   return fail(
-      Fault::usage, fmt::format("an onset of {:g} s", options.onset_s), {},
+      ErrorKind::usage, fmt::format("an onset of {:g} s", options.onset_s), {},
       fmt::format("0 s to {:g} s (--onset, or onset_s in the daemon's configuration)", kLongestOnsetS));
 }
 
 // Farther away the kernel reads zero.
-Result<void> check_place(const LaidTextures& laid, double farthest_m) {
+Result<void> check_place(const PlacedTextures& laid, double farthest_m) {
   const double at_m = std::max(std::abs(laid.start_m()), std::abs(laid.end_m()));
   if (at_m < farthest_m) return {};
-  return fail(Fault::usage, fmt::format("lies as far as {:g} m from the encoder's zero", at_m),
+  return fail(ErrorKind::usage, fmt::format("lies as far as {:g} m from the encoder's zero", at_m),
               laid.rows().front().file,
               fmt::format("lay it within {:.4g} m (--at, or at_m in the scene)", farthest_m));
 }
 
 // Of a texture by itself the file is known; of several, the scene.
-schema::Error naming_the_file(schema::Error error, const LaidTextures& laid, const std::string& scene_path) {
+schema::Error naming_the_file(schema::Error error, const PlacedTextures& laid,
+                              const std::string& scene_path) {
   if (laid.rows().size() == 1 && error.where.starts_with("texture"))
     error.where = laid.rows().front().file + error.where.substr(std::string_view("texture").size());
   if (error.where == "texture") error.where = scene_path;
@@ -116,7 +117,7 @@ Result<PrepareOptions> options_of(const ProgramRequest& request, const schema::P
   return with_choices(options, choices);
 }
 
-Result<void> prepare_laid(Program& program, const LaidTextures& laid, const TickBudget& budget) {
+Result<void> prepare_placed(Program& program, const PlacedTextures& laid, const TickBudget& budget) {
   PrepareOptions& options = program.options;
   const schema::Transducer& transducer = program.session.transducer;
   options.gain_m_per_n = laid.gain();
@@ -157,7 +158,7 @@ Result<Program> make_program(const ProgramRequest& request, const std::string& t
   program.session.transducer = *transducer;
   program.session.transducer_sha256 = transducer_sum(transducer_name);
   program.options = *chosen;
-  const auto made = prepare_laid(program, *laid, budget_of(request, choices));
+  const auto made = prepare_placed(program, *laid, budget_of(request, choices));
   TACTO_TRY(made);
   add_notes(program, *laid, transducer_name);
   if (request.any_displacement) program.tray_peak_m = 0;

@@ -10,14 +10,14 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 Result<Program> made_within_memory(const ProgramLoader::Make& make) try {
   return make();
 } catch (const std::bad_alloc&) {
-  return fail(Fault::unsuitable, "takes more memory than there is", "load", "play a shorter part");
+  return fail(ErrorKind::unsuitable, "takes more memory than there is", "load", "play a shorter part");
 }
 
 // Some three to one, so that it is made in the end on a busy machine too.
@@ -37,7 +37,7 @@ ProgramLoader::~ProgramLoader() {
 
 void ProgramLoader::begin(Make make, Beside beside) {
   next_ = {std::move(make), beside};
-  wanted_ = true;
+  target_ = true;
   given_up_ = false;
   start_next();
 }
@@ -69,16 +69,17 @@ bool ProgramLoader::works() const {
 }
 
 void ProgramLoader::give_up() {
-  given_up_ = wanted_;
+  given_up_ = target_;
   if (given_up_ && works() && work_->thread.load() != 0) step_back(work_->thread.load());
 }
 
 std::optional<Result<Program>> ProgramLoader::take() {
   start_next();
-  if (!wanted_ || (busy() && !given_up_)) return std::nullopt;
-  wanted_ = false;
+  if (!target_ || (busy() && !given_up_)) return std::nullopt;
+  target_ = false;
   next_.reset();
-  if (given_up_) return fail(Fault::usage, "the load was given up, for a stop came", "load", "load again");
+  if (given_up_)
+    return fail(ErrorKind::usage, "the load was given up, for a stop came", "load", "load again");
   std::optional<Result<Program>> result = std::move(work_->result);
   forget();
   return result;

@@ -35,7 +35,7 @@ class ProgramLoader {
   /// Something is being made, be it for nobody any more.
   bool busy() const;
   /// Somebody waits for what take() is to give.
-  bool wanted() const { return wanted_; }
+  bool target() const { return target_; }
   /// What is being made is nobody's any more: take() gives an error at once, and its thread steps back behind
   /// what may play from now on.
   void give_up();
@@ -60,7 +60,7 @@ class ProgramLoader {
   std::shared_ptr<Work> work_;
   std::optional<Next> next_;
   std::thread thread_;
-  bool wanted_ = false, given_up_ = false;
+  bool target_ = false, given_up_ = false;
 };
 
 }  // namespace tacto::playback

@@ -8,14 +8,14 @@
 #include "data-schema/files/files.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture_wav.hpp"
-#include "playback/player/laid_textures.hpp"
+#include "playback/player/placed_textures.hpp"
 
 namespace tacto::playback {
 namespace {
 
 namespace fs = std::filesystem;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 bool stays_below(const fs::path& name) {
@@ -54,14 +54,14 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
 
 Result<std::string> served_file(const std::string& folder, const std::string& file) {
   if (folder.empty())
-    return fail(Fault::unsuitable, "clients over TCP may load nothing here", "load",
+    return fail(ErrorKind::unsuitable, "clients over TCP may load nothing here", "load",
                 "name the folder that they may load from: files, in the daemon's configuration");
   const std::string path = (fs::path(folder) / file).string();
   const bool served =
       stays_below(file) && (names_a_scene(path) ? serves_scene(folder, path) : serves_texture(folder, path));
   if (served) return path;
-  return fail(Fault::not_found, "there is no such texture or scene in the folder for clients over TCP", file,
-              "name one by its path within that folder: files, in the daemon's configuration");
+  return fail(ErrorKind::not_found, "there is no such texture or scene in the folder for clients over TCP",
+              file, "name one by its path within that folder: files, in the daemon's configuration");
 }
 
 }  // namespace tacto::playback

@@ -85,7 +85,7 @@ schema::Result<void> check_displacement(double peak_m, double factor, double gai
   const double limit_m = transducer.displacement_limit_m, reached_m = std::abs(factor) * peak_m;
   if (!(reached_m > kSinglePrecision * limit_m)) return {};
   const double most = fitting(limit_m / peak_m);
-  return schema::fail(schema::Fault::unsuitable,
+  return schema::fail(schema::ErrorKind::unsuitable,
                       fmt::format("the tray could go as far as {}, at worst; its limit is {}",
                                   schema::for_people(reached_m, schema::Dimension::length),
                                   schema::for_people(limit_m, schema::Dimension::length)),

@@ -19,8 +19,8 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
@@ -35,7 +35,7 @@ constexpr double kMostEnergyV = 1000, kLongestWindowS = 3600, kMostContactN = 10
 // The device asks the same, by numbers of its own.
 Result<void> check_guards(const PrepareOptions& o) {
   const auto wrong = [](const char* what, const char* remedy) {
-    return fail(Fault::usage, what, {}, remedy);
+    return fail(ErrorKind::usage, what, {}, remedy);
   };
   if (!(o.energy_rms_v >= 0 && o.energy_rms_v <= kMostEnergyV))
     return wrong("an energy limit beyond 0 to 1000 V", "an RMS of the drive; 0V turns it off");
@@ -53,7 +53,7 @@ Result<void> check_guards(const PrepareOptions& o) {
 
 Result<void> check_prepare_options(const PrepareOptions& o) {
   const auto wrong = [](std::string what, std::string remedy) {
-    return fail(Fault::usage, std::move(what), {}, std::move(remedy));
+    return fail(ErrorKind::usage, std::move(what), {}, std::move(remedy));
   };
   if (!(o.rate_hz >= kLeastRateHz && o.rate_hz <= kMostRateHz))
     return wrong(fmt::format("ticks at {:g} Hz", o.rate_hz), "100Hz to 100kHz; the paper's is 2kHz");
@@ -80,14 +80,14 @@ Result<void> check_prepare_options(const PrepareOptions& o) {
 }
 
 Result<void> check_placed(std::span<const PlacedTexture> textures, const PrepareOptions& options) {
-  if (textures.empty()) return fail(Fault::unsuitable, "there is no texture to play", "scene");
+  if (textures.empty()) return fail(ErrorKind::unsuitable, "there is no texture to play", "scene");
   for (const PlacedTexture& placed : textures) {
     if (auto sound = check_playable(*placed.texture); !sound) return sound;
     if (!std::isfinite(placed.at_m) || !std::isfinite(placed.weight))
-      return fail(Fault::usage, "a texture's place or weight is not finite", "scene");
+      return fail(ErrorKind::usage, "a texture's place or weight is not finite", "scene");
   }
   if (textures.size() > 1 && options.ends != Ends::stop)
-    return fail(Fault::usage, "several textures can't be looped or mirrored", "scene", "let them stop");
+    return fail(ErrorKind::usage, "several textures can't be looped or mirrored", "scene", "let them stop");
   return {};
 }
 
@@ -95,7 +95,7 @@ Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, co
   const PyramidShape shape = pyramid_shape(highest_spatial_frequency(path), prepared.passes_to_hz, o);
   const std::size_t size = pyramid_size(path, shape);
   if (size > o.most_samples)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("the texture takes {} samples in {} levels, there is room for {}", size,
                             shape.levels, o.most_samples),
                 "texture", ways_to_fit(o.interpolation));
@@ -133,8 +133,9 @@ Result<void> lay_on_counts(Prepared& prepared, double first_m, const PrepareOpti
   core::ProfileScale& scale = prepared.scale;
   const double per_count = o.metres_per_count / prepared.pitch_m;
   if (per_count > kMostSamplesPerCount)
-    return fail(Fault::unsuitable, fmt::format("one count of the encoder spans {:.0f} samples", per_count),
-                "encoder", "a texture this fine needs a finer encoder");
+    return fail(ErrorKind::unsuitable,
+                fmt::format("one count of the encoder spans {:.0f} samples", per_count), "encoder",
+                "a texture this fine needs a finer encoder");
   scale.samples_per_count_q32 = static_cast<std::uint64_t>(std::llround(per_count * kQ32));
   scale.origin_count = o.origin_count;
   // Without timing of the edges, the middle of the count is the best guess.
@@ -162,7 +163,7 @@ std::optional<double> rate_that_works(const schema::Transducer& transducer, Prep
 }
 
 Result<void> fail_by_rate(const InverseFilter& filter, const PrepareOptions& o, double works_hz) {
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("{} taps at {:g} Hz last {:.2g} ms: too short for the transducer's inverse, which "
                           "leaves {:.1f} dB of what is wanted",
                           filter.taps.size(), o.rate_hz,
@@ -177,7 +178,7 @@ Result<void> check_inverse(const InverseFilter& filter, const schema::Transducer
   if (!shapes_chain(o.inverse) || filter.error_db <= kMostInverseErrorDb) return {};
   if (const auto works_hz = rate_that_works(transducer, o)) return fail_by_rate(filter, o, *works_hz);
   return fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("over {:g} to {:.4g} Hz its inverse, within 20 dB of gain, leaves {:.1f} dB of what is "
                   "wanted",
                   band.low_hz, band.high_hz, filter.error_db),
@@ -187,10 +188,10 @@ Result<void> check_inverse(const InverseFilter& filter, const schema::Transducer
 Result<void> undo_chain(Prepared& prepared, const schema::Transducer& transducer, const UndoneChain& undone,
                         const PrepareOptions& o) {
   if (undoes_hysteresis(transducer, o)) {
-    prepared.plays = inverse_of(*transducer.hysteresis);
+    prepared.play_operators = inverse_of(*transducer.hysteresis);
     prepared.sections = {pole_lead(undone.chain.led_pole_hz, o.rate_hz)};
     ++prepared.built.hysteresis;
-    prepared.built.plays = prepared.plays.count;
+    prepared.built.play_operators = prepared.play_operators.count;
     prepared.built.sections = prepared.sections.size();
   }
   InverseFilter filter = inverse_of(undone, o);
@@ -258,7 +259,7 @@ core::KernelSetup Prepared::setup() const {
   setup.texture = {{samples.data(), scale}, tracker, core::per_full_detail(full_detail_counts_per_tick)};
   setup.taps = taps.data();
   setup.tap_count = static_cast<std::uint16_t>(taps.size());
-  setup.hysteresis = &plays;
+  setup.hysteresis = &play_operators;
   setup.sections = sections.data();
   setup.section_count = static_cast<std::uint8_t>(sections.size());
   setup.limits = limits;

@@ -69,8 +69,8 @@ struct PrepareOptions {
 struct Prepared {
   std::vector<float> samples;  ///< of all levels, N
   core::ProfileScale scale;
-  std::vector<float> taps;  ///< V for m
-  wire::Hysteresis plays;   ///< that undo the bender's; none: straight 1
+  std::vector<float> taps;          ///< V for m
+  wire::Hysteresis play_operators;  ///< that undo the bender's; none: straight 1
   std::vector<wire::Section> sections;
   core::TrackerSetup tracker;
   wire::Limits limits;

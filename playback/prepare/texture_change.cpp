@@ -5,8 +5,8 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kDisarmFirst = "disarm first, then load";
 
 tl::unexpected<schema::Error> can_not_change(std::string what) {
-  return fail(Fault::unsuitable, std::move(what), "change of texture", kDisarmFirst);
+  return fail(ErrorKind::unsuitable, std::move(what), "change of texture", kDisarmFirst);
 }
 
 bool same_tracker(const core::TrackerSetup& a, const core::TrackerSetup& b) {
@@ -26,7 +26,8 @@ bool same_plays(const wire::Hysteresis& a, const wire::Hysteresis& b) {
   const auto same = [](const wire::HysteresisPlay& x, const wire::HysteresisPlay& y) {
     return x.threshold == y.threshold && x.weight == y.weight;
   };
-  return a.straight == b.straight && std::equal(a.plays, a.plays + a.count, b.plays, b.plays + b.count, same);
+  return a.straight == b.straight && std::equal(a.play_operators, a.play_operators + a.count,
+                                                b.play_operators, b.play_operators + b.count, same);
 }
 
 bool same_limits(const Prepared& a, const Prepared& b) {
@@ -42,7 +43,7 @@ Result<void> check_texture_change(const Prepared& playing, const Prepared& next,
   if (playing.rate_millihertz() != next.rate_millihertz())
     return can_not_change(
         fmt::format("the texture is for {:g} ticks a second, {:g} run", next.rate_hz, playing.rate_hz));
-  if (playing.taps != next.taps || !same_plays(playing.plays, next.plays) ||
+  if (playing.taps != next.taps || !same_plays(playing.play_operators, next.play_operators) ||
       !same_tracker(playing.tracker, next.tracker))
     return can_not_change("the texture is for another transducer, filter or encoder than the one that plays");
   if (!same_limits(playing, next)) return can_not_change("the texture's limits are not those that hold");

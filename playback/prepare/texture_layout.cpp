@@ -69,7 +69,7 @@ schema::SpaceSignal beside_each_other(std::span<const PlacedTexture> textures, C
   path.values.resize(static_cast<std::size_t>(std::ceil((to_m - from_m + 2 * kMarginM) / pitch_m)) + 1);
   for (const PlacedTexture& placed : textures) {
     const TextureLookup lookup(placed.texture->signal, placed.at_m);
-    ++built.textures_laid;
+    ++built.textures_placed;
     for (std::size_t i = 0; i < path.values.size(); ++i)
       path.values[i] += placed.weight * lookup(path.position_m(i));
   }
@@ -100,7 +100,7 @@ schema::SpaceSignal looped(schema::SpaceSignal signal, double seam_m) {
 schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m,
                              ConstructionTally& built) {
   if (ends == Ends::stop) return beside_each_other(textures, built);
-  ++built.textures_laid;
+  ++built.textures_placed;
   const PlacedTexture& placed = textures.front();
   if (ends == Ends::mirror) return scaled_texture(placed);
   const double cut_m = seam_of_loop(placed.texture->signal, seam_m);

@@ -37,7 +37,7 @@ tl::unexpected<schema::Error> FeltPath::never_met() const {
   const auto [low, high] = std::ranges::minmax(path_->position_m);
   const bool several = layers_.size() > 1;
   return schema::fail(
-      schema::Fault::unsuitable,
+      schema::ErrorKind::unsuitable,
       fmt::format("the finger moves between {:.4g} mm and {:.4g} mm and never meets the texture{}, which "
                   "{} from {:.4g} mm to {:.4g} mm",
                   low * 1e3, high * 1e3, several ? "s" : "", several ? "lie" : "lies", start_m_ * 1e3,
@@ -51,7 +51,7 @@ double FeltPath::fade_m() const {
   return widest_m;
 }
 
-PaddedSpectrum FeltPath::wanted(const ReadingGrid& grid, const spatial::Band& band, double gain_m_per_n,
+PaddedSpectrum FeltPath::target(const ReadingGrid& grid, const spatial::Band& band, double gain_m_per_n,
                                 double onset_s) const {
   std::vector<double> readings = reading_places(*path_, grid);
   for (double& value : readings) {
@@ -59,7 +59,7 @@ PaddedSpectrum FeltPath::wanted(const ReadingGrid& grid, const spatial::Band& ba
     for (const Layer& layer : layers_) force_n += layer.weight * layer.lookup(value);
     value = gain_m_per_n * force_n;
   }
-  return wanted_of_readings(std::move(readings), grid, band, onset_s);
+  return target_of_readings(std::move(readings), grid, band, onset_s);
 }
 
 }  // namespace tacto::playback

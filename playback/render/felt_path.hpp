@@ -11,7 +11,7 @@
 #include "playback/model/texture_lookup.hpp"
 #include "playback/prepare/prepare.hpp"
 #include "playback/render/played_ends.hpp"
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 
 namespace tacto::playback {
 
@@ -29,7 +29,7 @@ class FeltPath {
   /// The widest of their ends' fades.
   double fade_m() const;
   /// As exact_wanted, of gain_m_per_n times all of them, each times its weight.
-  PaddedSpectrum wanted(const ReadingGrid& grid, const spatial::Band& band, double gain_m_per_n,
+  PaddedSpectrum target(const ReadingGrid& grid, const spatial::Band& band, double gain_m_per_n,
                         double onset_s) const;
 
  private:

@@ -20,33 +20,33 @@ std::vector<double> without(std::vector<double> values, const std::vector<double
   return values;
 }
 
-std::vector<double> in_band(const std::vector<double>& values, const PaddedSpectrum& wanted,
+std::vector<double> in_band(const std::vector<double>& values, const PaddedSpectrum& target,
                             const spatial::Band& band) {
-  auto spectrum = spectrum_of(values, wanted.rate_hz, wanted.period);
+  auto spectrum = spectrum_of(values, target.rate_hz, target.period);
   keep_band(spectrum, band);
   return signal_of(spectrum);
 }
 
 // What is wanted has been through the band's skirts, and so has what the reference plays of it; the kernel
 // plays all that there is.
-std::vector<double> error_of(const Rendering& rendering, const PaddedSpectrum& wanted,
+std::vector<double> error_of(const Rendering& rendering, const PaddedSpectrum& target,
                              const spatial::Band& band) {
-  const auto &modelled_m = rendering.modelled_m.values, &wanted_m = rendering.wanted_m.values;
-  if (rendering.engine == Engine::kernel) return without(in_band(modelled_m, wanted, band), wanted_m);
-  return in_band(without(modelled_m, wanted_m), wanted, band);
+  const auto &modelled_m = rendering.modelled_m.values, &target_m = rendering.target_m.values;
+  if (rendering.engine == Engine::kernel) return without(in_band(modelled_m, target, band), target_m);
+  return in_band(without(modelled_m, target_m), target, band);
 }
 
 }  // namespace
 
 double left_out_at_ends_s(const Rendering& rendering) {
-  return std::min(std::max(kLeftOutAtEnds_s, rendering.onset_s), rendering.wanted_m.duration_s() / 4);
+  return std::min(std::max(kLeftOutAtEnds_s, rendering.onset_s), rendering.target_m.duration_s() / 4);
 }
 
-double error_between_ends(const Rendering& rendering, const PaddedSpectrum& wanted,
+double error_between_ends(const Rendering& rendering, const PaddedSpectrum& target,
                           const spatial::Band& band) {
-  const auto left_out = static_cast<std::size_t>(left_out_at_ends_s(rendering) * wanted.rate_hz);
-  return rms_between_ends(error_of(rendering, wanted, band), left_out) /
-         rms_between_ends(rendering.wanted_m.values, left_out);
+  const auto left_out = static_cast<std::size_t>(left_out_at_ends_s(rendering) * target.rate_hz);
+  return rms_between_ends(error_of(rendering, target, band), left_out) /
+         rms_between_ends(rendering.target_m.values, left_out);
 }
 
 }  // namespace tacto::playback

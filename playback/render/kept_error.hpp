@@ -15,7 +15,7 @@ double left_out_at_ends_s(const Rendering& rendering);
 
 /// RMS over the band of modelled - wanted, re that of wanted, 1; without left_out_at_ends_s() at either end.
 /// Not a number where nothing is wanted in between.
-double error_between_ends(const Rendering& rendering, const PaddedSpectrum& wanted,
+double error_between_ends(const Rendering& rendering, const PaddedSpectrum& target,
                           const spatial::Band& band);
 
 }  // namespace tacto::playback

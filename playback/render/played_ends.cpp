@@ -39,7 +39,7 @@ schema::Result<PlayedSignal> as_played(const schema::Texture& texture, double at
   const auto first = static_cast<std::int64_t>(std::floor((from_m - kFarther_m - at_m) / pitch_m));
   const auto last = static_cast<std::int64_t>(std::ceil((to_m + kFarther_m - at_m) / pitch_m));
   if (last - first > kMostPlayedSamples)
-    return schema::fail(schema::Fault::unsuitable, "was played over too long a way to be judged", where);
+    return schema::fail(schema::ErrorKind::unsuitable, "was played over too long a way to be judged", where);
   PlayedSignal endless{{pitch_m, 0, {}}, at_m + static_cast<double>(first) * pitch_m};
   const auto size = static_cast<std::int64_t>(one.values.size());
   for (std::int64_t i = first; i <= last; ++i)

@@ -15,14 +15,14 @@
 #include "playback/render/felt_path.hpp"
 #include "playback/render/kept_error.hpp"
 #include "playback/render/reference/exact_drive.hpp"
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 #include "playback/render/render_job.hpp"
 #include "playback/render/render_kernel.hpp"
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
@@ -38,7 +38,7 @@ double level_db(double ratio) {
 
 Result<void> check_options(const RenderOptions& o) {
   const auto wrong = [](std::string what, std::string remedy) {
-    return fail(Fault::usage, std::move(what), {}, std::move(remedy));
+    return fail(ErrorKind::usage, std::move(what), {}, std::move(remedy));
   };
   if (!(o.band.low_hz > 0 && o.band.low_hz < o.band.high_hz && std::isfinite(o.band.high_hz)))
     return wrong("the band is empty or reaches 0 Hz", "0 < --low < --high");
@@ -59,12 +59,12 @@ Result<void> check_options(const RenderOptions& o) {
 
 Result<void> check_length(const FingerPath& path, const RenderOptions& options) {
   if (path.duration_s() < 1 / options.band.low_hz)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("the path takes {:.4g} s, one period of {:g} Hz is longer", path.duration_s(),
                             options.band.low_hz),
                 "path", "take a longer path, or a higher --low");
   if (path.duration_s() * options.rate_hz > kMostSamples)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("the path of {:.4g} s is too long to render at once", path.duration_s()), "path",
                 fmt::format("cut it into parts of at most {:.0f} s", kMostSamples / options.rate_hz));
   return {};
@@ -74,7 +74,7 @@ Result<void> check_textures(std::span<const PlacedTexture> textures, Ends ends) 
   for (const PlacedTexture& placed : textures)
     if (auto sound = check_playable(*placed.texture); !sound) return sound;
   if (textures.size() > 1 && ends != Ends::stop)
-    return fail(Fault::unsuitable, "one of several textures can't go on beyond its ends", "ends",
+    return fail(ErrorKind::unsuitable, "one of several textures can't go on beyond its ends", "ends",
                 "let them stop");
   return {};
 }
@@ -102,23 +102,23 @@ Clipping clipping_of(const std::vector<double>& wished, const std::vector<double
   return clipping;
 }
 
-Result<ExactDrive> limited_drive(Rendering& rendering, const PaddedSpectrum& wanted, const Chain& chain,
+Result<ExactDrive> limited_drive(Rendering& rendering, const PaddedSpectrum& target, const Chain& chain,
                                  const RenderOptions& options) {
-  auto drive = exact_drive(wanted, options.band, chain, options.inverse);
+  auto drive = exact_drive(target, options.band, chain, options.inverse);
   const auto within = check_limits(drive.peaks, options.gain_m_per_n);
   if (within) return drive;
   if (options.over_limit == OverLimit::refuse) return schema::forward_error(within);
-  auto held = clipped_drive(wanted, options.band, chain, options.inverse);
+  auto held = clipped_drive(target, options.band, chain, options.inverse);
   if (held) rendering.clipping = clipping_of(drive.drive_v, held->drive_v);
   return held;
 }
 
-double error_db(const Rendering& rendering, const PaddedSpectrum& wanted, const spatial::Band& band) {
-  std::vector<double> difference(rendering.wanted_m.values.size());
-  std::ranges::transform(rendering.modelled_m.values, rendering.wanted_m.values, difference.begin(),
+double error_db(const Rendering& rendering, const PaddedSpectrum& target, const spatial::Band& band) {
+  std::vector<double> difference(rendering.target_m.values.size());
+  std::ranges::transform(rendering.modelled_m.values, rendering.target_m.values, difference.begin(),
                          std::minus<>());
-  const auto error = spectrum_of(difference, wanted.rate_hz, wanted.period);
-  const auto whole = spectrum_of(rendering.wanted_m.values, wanted.rate_hz, wanted.period);
+  const auto error = spectrum_of(difference, target.rate_hz, target.period);
+  const auto whole = spectrum_of(rendering.target_m.values, target.rate_hz, target.period);
   return level_db(std::sqrt(energy_in(error, band) / energy_in(whole, band)));
 }
 
@@ -172,21 +172,21 @@ Engine engine_for(const RenderOptions& o, const schema::Transducer& transducer,
 
 Result<void> check_engine(Engine engine, const RenderOptions& o) {
   if (engine == Engine::kernel || !(o.budget.keep_reading || o.energy_rms_v > 0)) return {};
-  return fail(Fault::usage, "the reference reads the texture exactly, and has no energy limit",
+  return fail(ErrorKind::usage, "the reference reads the texture exactly, and has no energy limit",
               o.budget.keep_reading ? "--interpolation" : "--energy-limit", "add --engine kernel");
 }
 
 Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job) {
   auto drive = engine == Engine::kernel ? kernels_drive(rendering, job)
-                                        : limited_drive(rendering, job.wanted, job.chain, job.options);
+                                        : limited_drive(rendering, job.target, job.chain, job.options);
   TACTO_TRY(drive);
   const double start_s = job.path.time_s.front(), rate_hz = job.options.rate_hz;
   rendering.engine = engine;
   rendering.drive_v = {rate_hz, start_s, std::move(drive->drive_v)};
   rendering.modelled_m = {rate_hz, start_s, std::move(drive->modelled_m)};
   rendering.peaks = drive->peaks;
-  rendering.error_db = error_db(rendering, job.wanted, job.options.band);
-  const double interior_db = level_db(error_between_ends(rendering, job.wanted, job.options.band));
+  rendering.error_db = error_db(rendering, job.target, job.options.band);
+  const double interior_db = level_db(error_between_ends(rendering, job.target, job.options.band));
   if (std::isfinite(interior_db)) rendering.interior_error_db = interior_db;
   return {};
 }
@@ -194,7 +194,7 @@ Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job)
 // The error, where it is more than what was asked.
 std::optional<double> missed_error(const Rendering& rendering, const RenderJob& job) {
   if (job.options.budget.by_error()) return std::nullopt;
-  const double error = error_between_ends(rendering, job.wanted, job.options.band);
+  const double error = error_between_ends(rendering, job.target, job.options.band);
   return error <= job.options.budget.error.most_error() ? std::nullopt : std::optional(error);
 }
 
@@ -213,7 +213,7 @@ std::string ways_for_kernel(const Rendering& missed, RenderJob job) {
     return fmt::format("--encoder-step {:.4g}um keeps it; or allow more", 1e6 * job.options.encoder_step_m);
   return fmt::format(
       "allow more, or leave --engine and --max-tick away: with a tenth of --encoder-step it is {:.3g} %",
-      100 * error_between_ends(finer, job.wanted, job.options.band));
+      100 * error_between_ends(finer, job.target, job.options.band));
 }
 
 std::string ways_for_reference(const RenderJob& job) {
@@ -225,9 +225,9 @@ std::string ways_for_reference(const RenderJob& job) {
 
 Result<void> refuse_miss(double error, const Rendering& rendering, const RenderJob& job) {
   if (std::isnan(error))
-    return fail(Fault::unsuitable, "nothing is wanted in the band: no error can be told", "error budget",
+    return fail(ErrorKind::unsuitable, "nothing is wanted in the band: no error can be told", "error budget",
                 "render without a budget");
-  return fail(Fault::unsuitable, "the rendering's " + words_of_miss(error, job.options), "error budget",
+  return fail(ErrorKind::unsuitable, "the rendering's " + words_of_miss(error, job.options), "error budget",
               rendering.engine == Engine::kernel ? ways_for_kernel(rendering, job) : ways_for_reference(job));
 }
 
@@ -235,7 +235,7 @@ Result<void> refuse_miss(double error, const Rendering& rendering, const RenderJ
 // more than all of it.
 void warn_beyond_promise(Rendering& rendering, const RenderJob& job) {
   if (!rendering.decision) return;
-  const double error = error_between_ends(rendering, job.wanted, job.options.band);
+  const double error = error_between_ends(rendering, job.target, job.options.band);
   const double promised = rendering.decision->chosen.error;
   if (!(error > promised)) return;
   rendering.warnings.push_back(
@@ -301,11 +301,11 @@ Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPa
   rendering.reading_rate_hz = grid.reading_rate_hz();
   rendering.fade_m = felt->fade_m();
   report(0.1);
-  const auto wanted = felt->wanted(grid, options.band, options.gain_m_per_n, rendering.onset_s);
+  const auto target = felt->target(grid, options.band, options.gain_m_per_n, rendering.onset_s);
   report(0.8);
   warn_of_model(rendering, transducer, options.band, engine);
-  const RenderJob job{textures, path, wanted, chain_of(transducer, options), options};
-  rendering.wanted_m = {options.rate_hz, path.time_s.front(), signal_of(wanted)};
+  const RenderJob job{textures, path, target, chain_of(transducer, options), options};
+  rendering.target_m = {options.rate_hz, path.time_s.front(), signal_of(target)};
   TACTO_TRY(drive_by(engine, rendering, job));
   TACTO_TRY(keep_budget(rendering, job));
   report(1);

@@ -66,7 +66,7 @@ struct Clipping {
 
 struct Rendering {
   schema::TimeSignal drive_v;     ///< rounded to 32-bit float, as it is stored and played
-  schema::TimeSignal wanted_m;    ///< gain x force along the path, in the band (keep_band)
+  schema::TimeSignal target_m;    ///< gain x force along the path, in the band (keep_band)
   schema::TimeSignal modelled_m;  ///< drive_v through the transducer's model and hysteresis, all frequencies
   double error_db = 0;  ///< RMS of modelled - wanted in the band, re RMS of wanted; from drive_v as it is
   /// The same without the path's ends (error_between_ends), left_out_at_ends_s of each; none where nothing is

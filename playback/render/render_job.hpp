@@ -16,7 +16,7 @@ namespace tacto::playback {
 struct RenderJob {
   std::span<const PlacedTexture> textures;
   const FingerPath& path;
-  const PaddedSpectrum& wanted;
+  const PaddedSpectrum& target;
   Chain chain;
   RenderOptions options;
 };

@@ -12,8 +12,8 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 namespace {
@@ -60,8 +60,8 @@ struct KernelRun {
 
   // Of what the limits were asked to hold.
   Peaks asked_at(double gain_m_per_n) const {
-    const auto drive_v = unlimited_drive(prepared, gain_m_per_n, job.path, options, job.wanted.samples);
-    Peaks peaks = moved_by(drive_v, job.wanted, job.chain).peaks;
+    const auto drive_v = unlimited_drive(prepared, gain_m_per_n, job.path, options, job.target.samples);
+    Peaks peaks = moved_by(drive_v, job.target, job.chain).peaks;
     peaks.slew_v_per_s =
         peaks_of(drive_v, {}, options.rate_hz, job.chain.transducer, AfterDrive::more).slew_v_per_s;
     return peaks;
@@ -94,7 +94,7 @@ tl::unexpected<schema::Error> refuse_displacement(const KernelRun& run, const Pe
 Result<ExactDrive> within_limits(Rendering& rendering, const KernelRun& run, const KernelDrive& drive) {
   const auto clipped =
       static_cast<std::size_t>(std::max(drive.tally.amplitude_limited(), drive.tally.slew_limited()));
-  ExactDrive moved = moved_by(drive.drive_v, run.job.wanted, run.job.chain);
+  ExactDrive moved = moved_by(drive.drive_v, run.job.target, run.job.chain);
   const bool too_far = moved.peaks.displacement_m.used() > 1;
   if (clipped > 0 && run.job.options.over_limit == OverLimit::refuse) return refuse_cut(run, !too_far);
   if (too_far) return refuse_displacement(run, moved.peaks.displacement_m);
@@ -116,7 +116,7 @@ Result<void> check_read(const Prepared& prepared, const FingerPath& path, const 
   const double reach_m = options.metres_per_count * core::reach_counts(prepared.scale);
   if (farthest_m <= reach_m) return {};
   return fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("the path goes to {:.4g} m, and the kernel reads the texture as far as {:.4g} m from "
                   "the encoder's zero",
                   farthest_m, reach_m),
@@ -131,7 +131,7 @@ Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
   const double farthest_m = farthest_of(path);
   if (farthest_m / o.encoder_step_m < kFarthestCount) return {};
   return fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("the path goes to {:.4g} m, which is over 2^29 of the encoder's counts", farthest_m),
       "--encoder-step",
       fmt::format("{:.3g} nm and more reach as far", std::ceil(1e9 * farthest_m / kFarthestCount * 1.01)));
@@ -143,7 +143,7 @@ Result<ExactDrive> kernels_drive(Rendering& rendering, const RenderJob& job) {
   const auto prepared = prepare(job.textures, job.chain.transducer, options);
   TACTO_TRY(prepared);
   TACTO_TRY(check_read(*prepared, job.path, options));
-  const KernelDrive drive = kernel_drive(*prepared, job.path, options, job.wanted.samples);
+  const KernelDrive drive = kernel_drive(*prepared, job.path, options, job.target.samples);
   auto moved = within_limits(rendering, {*prepared, options, job}, drive);
   if (!moved) return moved;
   rendering.warnings.insert(rendering.warnings.end(), prepared->notes.begin(), prepared->notes.end());

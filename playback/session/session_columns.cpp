@@ -6,8 +6,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr std::uint64_t kMostColumnTicks = std::uint64_t{1} << 24;
@@ -24,7 +24,7 @@ Result<SessionColumns> read_session_columns(const std::string& name) {
   const auto overview = session_overview(name);
   TACTO_TRY(overview);
   if (overview->ticks > kMostColumnTicks)
-    return fail(Fault::unsuitable, fmt::format("has over {} ticks", kMostColumnTicks), overview->path,
+    return fail(ErrorKind::unsuitable, fmt::format("has over {} ticks", kMostColumnTicks), overview->path,
                 "`tactograph session` judges and exports it, whatever its length");
   SessionColumns columns;
   columns.header = overview->header;

@@ -29,8 +29,8 @@ constexpr std::string_view kColumns =
 constexpr std::string_view kOldestColumns =
     "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s";
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::PendingFiles;
 using schema::Result;
 using schema::SessionTick;
@@ -75,18 +75,18 @@ Result<std::string> write_csv(const std::string& session, const std::string& tem
   }
   out.flush();
   return out ? Result<std::string>()
-             : fail(Fault::cannot_write, "can't be written", temporary, "is the disk full?");
+             : fail(ErrorKind::cannot_write, "can't be written", temporary, "is the disk full?");
 }
 
 // What a WAV would hold of periods without a tick: at most as much as of the others, or half an hour.
 Result<void> check_even(const SessionOverview& overview) {
   const auto most = std::max(overview.ticks, static_cast<std::uint64_t>(1800 * overview.header.rate_hz));
   if (overview.lost_at)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("ticks are missing from {} on, which a WAV can't show", *overview.lost_at),
                 overview.path, "export CSV or netCDF, which carry the time");
   if (overview.missing_periods > most)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("{} periods passed without a tick, beside {} ticks: most of the WAV would be "
                             "made up",
                             overview.missing_periods, overview.ticks),
@@ -211,7 +211,7 @@ Result<void> check_table(const std::string& file, schema::Existing existing) {
 Result<void> check_netcdf(const std::string& file, schema::Existing existing) {
   if (!schema::is_file(file) || schema::is_session_netcdf(file))
     return schema::check_output_free(file, existing);
-  return fail(Fault::usage, "holds something else, and would be lost", file,
+  return fail(ErrorKind::usage, "holds something else, and would be lost", file,
               "choose another name, or remove it first");
 }
 
@@ -228,7 +228,7 @@ constexpr Format kFormats[] = {{".csv", check_table, write_csv},
 Result<const Format*> format_of(const std::string& file) {
   for (const Format& format : kFormats)
     if (file.ends_with(format.ending)) return &format;
-  return fail(Fault::usage, fmt::format("'{}' is no format that a session can be exported to", file),
+  return fail(ErrorKind::usage, fmt::format("'{}' is no format that a session can be exported to", file),
               "output", "name a file that ends in .csv, .wav or .nc");
 }
 

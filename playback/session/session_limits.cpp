@@ -9,8 +9,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 using schema::SessionTick;
 
@@ -55,16 +55,16 @@ Result<void> hear_ticks(const std::string& session, std::uint64_t from, const Ti
 }
 
 tl::unexpected<schema::Error> not_known(const std::string& why, const std::string& session) {
-  return fail(Fault::unsuitable, "what the limits took is not known: " + why, schema::session_path(session),
-              "`tactograph replay` says more");
+  return fail(ErrorKind::unsuitable, "what the limits took is not known: " + why,
+              schema::session_path(session), "`tactograph replay` says more");
 }
 
 }  // namespace
 
-core::TickOutput limited_tick(float drive_v, float wished_v, std::uint32_t flags) {
+core::TickOutput limited_tick(float drive_v, float unlimited_v, std::uint32_t flags) {
   core::TickOutput output;
   output.drive_v = drive_v;
-  output.wished_v = wished_v;
+  output.unlimited_v = unlimited_v;
   output.flags = flags;
   return output;
 }
@@ -87,11 +87,12 @@ Result<void> hear_wishes(const std::string& session, const WishListener& listene
 
 Result<std::optional<schema::Error>> hear_every_wish(
     const std::string& session,
-    const std::function<void(const SessionTick& tick, std::optional<float> wished_v)>& listener,
+    const std::function<void(const SessionTick& tick, std::optional<float> unlimited_v)>& listener,
     const std::function<void(double)>& progress) {
   std::uint64_t heard = 0;
   const auto wishes = hear_wishes(
-      session, [&](const SessionTick& tick, float wished_v) { ++heard, listener(tick, wished_v); }, progress);
+      session, [&](const SessionTick& tick, float unlimited_v) { ++heard, listener(tick, unlimited_v); },
+      progress);
   if (wishes) return std::optional<schema::Error>();
   const auto rest = hear_ticks(
       session, heard, [&](const SessionTick& tick) { listener(tick, std::nullopt); }, progress);
@@ -101,8 +102,8 @@ Result<std::optional<schema::Error>> hear_every_wish(
 
 Result<LimitTally> tally_session(const std::string& session) {
   LimitTally tally;
-  const auto heard = hear_wishes(session, [&](const SessionTick& tick, float wished_v) {
-    tally.add(limited_tick(tick.drive_v, wished_v, tick.flags));
+  const auto heard = hear_wishes(session, [&](const SessionTick& tick, float unlimited_v) {
+    tally.add(limited_tick(tick.drive_v, unlimited_v, tick.flags));
   });
   return heard ? Result<LimitTally>(tally) : schema::forward_error(heard);
 }

@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kEveryLimit =
     wire::kTickAmplitudeLimited | wire::kTickSlewLimited | wire::kTickEnergyLimited;
 
 /// A tick as LimitTally takes it: the recorded drive and its flags, and what was wished, V.
-core::TickOutput limited_tick(float drive_v, float wished_v, std::uint32_t flags);
+core::TickOutput limited_tick(float drive_v, float unlimited_v, std::uint32_t flags);
 
 /// Hears of every tick in its order what the kernel wished before the limits. Where no tick is flagged as
 /// limited that is the drive; else the session is replayed (replay_session). Errors: as replay_session;
@@ -25,7 +25,7 @@ core::TickOutput limited_tick(float drive_v, float wished_v, std::uint32_t flags
 /// not known.
 schema::Result<void> hear_wishes(
     const std::string& session,
-    const std::function<void(const schema::SessionTick& tick, float wished_v)>& listener,
+    const std::function<void(const schema::SessionTick& tick, float unlimited_v)>& listener,
     const std::function<void(double)>& progress = {});
 
 /// The same of every tick: none where it is not known. Gives why it is not known of all, where it is not:
@@ -33,7 +33,7 @@ schema::Result<void> hear_wishes(
 /// `progress` hears fractions.
 schema::Result<std::optional<schema::Error>> hear_every_wish(
     const std::string& session,
-    const std::function<void(const schema::SessionTick& tick, std::optional<float> wished_v)>& listener,
+    const std::function<void(const schema::SessionTick& tick, std::optional<float> unlimited_v)>& listener,
     const std::function<void(double)>& progress = {});
 
 /// Of the whole session. Errors: as hear_wishes().

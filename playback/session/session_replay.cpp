@@ -15,8 +15,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 using schema::SessionCommand;
 using schema::SessionTick;
@@ -47,7 +47,7 @@ Result<Overview> overview_of(const std::string& name) {
     if (command == nullptr) continue;
     seen.upload.see(*command);
     if (!is_frame(command->frame))
-      return fail(Fault::malformed, "a command in it is no frame of the wire", reader->path());
+      return fail(ErrorKind::malformed, "a command in it is no frame of the wire", reader->path());
     seen.beats.see(*command, reader->header().rate_hz);
     if (const auto contact = message_in_frame<wire::Contact>(command->frame)) seen.gated = contact->on_n > 0;
   }
@@ -82,7 +82,7 @@ class SessionPlayer {
     if (unlimited_) unlimited_->say_frame(command.frame);
     if (answer && answer->code == wire::AnswerCode::ok) return;
     const auto words = answer ? firmware_host::words_of(answer->code, answer->detail).what : "no answer";
-    refused_ = fmt::format("{} is refused: {}", firmware_host::word_of(type_of(command)), words);
+    refused_ = fmt::format("{} is refused: {}", firmware_host::to_string(type_of(command)), words);
   }
   void take(const SessionTick& tick) {
     if (tick.tick != outcome_.ticks) {
@@ -101,8 +101,8 @@ class SessionPlayer {
   }
   void tell_wish(const SessionTick& tick, bool beats) {
     if (beats) unlimited_->say(wire::Heartbeat{});
-    const float wished_v = unlimited_->tick(tick);
-    if (!outcome_.first_difference) wishes_(tick, wished_v);
+    const float unlimited_v = unlimited_->tick(tick);
+    if (!outcome_.first_difference) wishes_(tick, unlimited_v);
   }
   void compare(const SessionTick& tick, float replayed_v) {
     ++outcome_.ticks;
@@ -134,13 +134,13 @@ Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) 
 Result<void> check_replayable(const Overview& seen, const schema::SessionReader& reader) {
   const std::string missing = seen.upload.missing();
   if (!missing.empty() && seen.ticks && !seen.damaged_at)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("lacks {}: the disk did not take it (was it full?), and without it the drive "
                             "can't be computed again",
                             missing),
                 reader.path(), "the ticks that are in it can be exported: tactograph session");
   if (!seen.gated || tells_touch(reader.header())) return {};
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
               "computed again",
               reader.path(), "play anew, on firmware of protocol 1.2 or newer");
@@ -163,7 +163,7 @@ Result<ReplayOutcome> replay_session(const std::string& name, const std::functio
     if (progress) progress(part_read(*reader));
   }
   if (player.refused() && !seen->damaged_at)
-    return fail(Fault::unsuitable, *player.refused(), reader->path(), "was it made by a newer version?");
+    return fail(ErrorKind::unsuitable, *player.refused(), reader->path(), "was it made by a newer version?");
   ReplayOutcome outcome = player.outcome();
   if (outcome.ticks == 0 && !outcome.lost_at)
     return tl::unexpected(no_ticks_in(reader->path(), seen->damaged_at));

@@ -33,7 +33,7 @@ struct ReplayOutcome {
 
 /// Hears of each tick that was replayed alike what the kernel wished before amplitude, slew and energy were
 /// held, V.
-using WishListener = std::function<void(const schema::SessionTick& tick, float wished_v)>;
+using WishListener = std::function<void(const schema::SessionTick& tick, float unlimited_v)>;
 
 /// The recorded commands go to a device of this program's core in the ticks that took them, the recorded
 /// counts to its encoder (a texture that it changes to, in the tick of the change); its drive has to be the

@@ -19,7 +19,7 @@
 namespace tacto::playback {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using schema::SessionTick;
 
@@ -176,8 +176,8 @@ std::function<void(double)> part_of(const std::function<void(double)>& whole, do
 }
 
 schema::Error no_ticks_in(const std::string& path, const std::optional<std::uint64_t>& damaged_at) {
-  if (!damaged_at) return {Fault::unsuitable, "holds no ticks", path, ""};
-  return {Fault::malformed, fmt::format("is damaged from byte {} on, before its first tick", *damaged_at),
+  if (!damaged_at) return {ErrorKind::unsuitable, "holds no ticks", path, ""};
+  return {ErrorKind::malformed, fmt::format("is damaged from byte {} on, before its first tick", *damaged_at),
           path, "bring the right file back"};
 }
 

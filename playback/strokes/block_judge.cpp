@@ -23,14 +23,14 @@ BlockJudge::BlockJudge(const SessionOverview& overview, const JudgedBlocks& bloc
       around_rows_(rows_in(blocks.around_s, overview.header.rate_hz)),
       maker_(overview, 2 * around_rows_),
       follower_(overview),
-      wanted_(overview),
+      target_(overview),
       measured_(MeasuredReader::open(overview)),
       strokes_(std::move(found)) {}
 
-void BlockJudge::take(const schema::SessionTick& tick, std::optional<float> wished_v) {
+void BlockJudge::take(const schema::SessionTick& tick, std::optional<float> unlimited_v) {
   maker_.take(tick, [&](const SessionRow& row) {
     rows_.push_back(follower_.next(row, maker_.turns()));
-    wished_v_.push_back(wished_v);
+    wished_v_.push_back(unlimited_v);
     if (rows_.size() == judged_ + block_rows_ + around_rows_) judge(block_rows_);
   });
 }
@@ -41,11 +41,11 @@ void BlockJudge::finish(LastWay last) {
 }
 
 void BlockJudge::judge(std::size_t rows) {
-  const SessionWanted wanted = wanted_.wanted_in(rows_);
+  const SessionWanted target = target_.target_in(rows_);
   const auto predicted_m = predicted_displacement_m(overview_.header, rows_);
   const auto measured = measured_ ? std::optional(measured_->in(rows_)) : std::nullopt;
   for (std::size_t i = judged_; i < judged_ + rows; ++i)
-    strokes_.add({first_row_ + i, rows_[i].row, wanted.displacement_m[i], predicted_m[i], !wanted.unknown[i],
+    strokes_.add({first_row_ + i, rows_[i].row, target.displacement_m[i], predicted_m[i], !target.unknown[i],
                   measured ? measured->at(i) : std::nullopt, wished_v_[i]});
   judged_ += rows;
   const std::size_t done = judged_ - std::min(judged_, around_rows_);

@@ -9,7 +9,7 @@
 
 #include "playback/strokes/judged_rows.hpp"
 #include "playback/strokes/measured_rows.hpp"
-#include "playback/strokes/session_wanted.hpp"
+#include "playback/strokes/session_target.hpp"
 #include "playback/strokes/stroke_finder.hpp"
 #include "playback/strokes/stroke_report.hpp"
 
@@ -25,10 +25,10 @@ class BlockJudge {
              std::function<void(const StrokeSums&)> found);
 
   /// Ticks in their order; `wished_v` before the limits, where it is known.
-  void take(const schema::SessionTick& tick, std::optional<float> wished_v);
+  void take(const schema::SessionTick& tick, std::optional<float> unlimited_v);
   /// After the last one. Precondition: there was one.
   void finish(LastWay last);
-  std::vector<std::string> notes() const { return wanted_.notes(maker_.turns()); }
+  std::vector<std::string> notes() const { return target_.notes(maker_.turns()); }
   const StrokeFinder& strokes() const { return strokes_; }
 
  private:
@@ -38,7 +38,7 @@ class BlockJudge {
   std::size_t block_rows_, around_rows_;
   RowMaker maker_;
   RowFollower follower_;
-  WantedReader wanted_;
+  WantedReader target_;
   std::optional<MeasuredReader> measured_;  // of a session that holds samples
   StrokeFinder strokes_;
   std::vector<JudgedRow> rows_;

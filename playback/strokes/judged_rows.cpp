@@ -8,7 +8,7 @@
 #include "firmware-host/core/wire/message_types.hpp"
 #include "playback/choose/choices.hpp"
 #include "playback/model/chain.hpp"
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 
 namespace tacto::playback {
 namespace {

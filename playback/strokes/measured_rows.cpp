@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -111,7 +111,7 @@ MeasuredStretch MeasuredReader::in(std::span<const JudgedRow> rows) {
   ReadingGrid grid = reading_grid(static_cast<double>(frames.time_s.size() - 1) / rate_hz, rate_hz, band, 0);
   grid.samples = frames.time_s.size();
   const auto between = static_cast<std::size_t>(std::ceil(kReadingsAPeriod * band.high_hz / rate_hz));
-  stretch.fine_m_ = signal_of(wanted_of_readings(frames.displacement_m, grid, band, 0, rests), between);
+  stretch.fine_m_ = signal_of(target_of_readings(frames.displacement_m, grid, band, 0, rests), between);
   stretch.fine_rate_hz_ = rate_hz * static_cast<double>(between);
   stretch.at_fine_ = frames_at(rows, frames.time_s);
   for (double& at : stretch.at_fine_) at *= static_cast<double>(between);

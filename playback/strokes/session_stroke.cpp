@@ -12,8 +12,8 @@
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr double kAroundS = 5;  // as JudgedBlocks
@@ -54,12 +54,14 @@ Result<Found> find_stroke(const std::string& name, const SessionOverview& overvi
 }
 
 Result<void> check_found(const Found& found, std::uint64_t asked, const std::string& session) {
-  if (found.strokes == 0) return fail(Fault::unsuitable, "holds no stroke of 5 mm while it plays", session);
+  if (found.strokes == 0)
+    return fail(ErrorKind::unsuitable, "holds no stroke of 5 mm while it plays", session);
   if (found.chosen == 0)
-    return fail(Fault::usage, fmt::format("has {} strokes, and no stroke {}", found.strokes, asked), session);
+    return fail(ErrorKind::usage, fmt::format("has {} strokes, and no stroke {}", found.strokes, asked),
+                session);
   if (found.sums.rows > kMostStrokeRows)
     return fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("its stroke {} goes on for {} ticks without a turn", found.chosen, found.sums.rows),
         session, fmt::format("name one of at most {} ticks", kMostStrokeRows));
   return {};
@@ -103,7 +105,7 @@ Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t
   auto overview = session_overview(name, part_of(progress, 0, 1. / 3));
   TACTO_TRY(overview);
   if (overview->lost_at)
-    return fail(Fault::unsuitable, fmt::format("{} ticks are missing", overview->lost), name,
+    return fail(ErrorKind::unsuitable, fmt::format("{} ticks are missing", overview->lost), name,
                 "compare a session that is whole");
   const auto found = find_stroke(name, *overview, stroke, part_of(progress, 1. / 3, 2. / 3));
   TACTO_TRY(found);

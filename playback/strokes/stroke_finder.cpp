@@ -25,18 +25,18 @@ double way_m(const StrokeRow& from, const StrokeRow& to) {
 void StrokeSums::add(const StrokeRow& r) {
   if (rows++ == 0) first = r;
   last = r;
-  wanted_m2 += square(r.wanted_m);
+  wanted_m2 += square(r.target_m);
   predicted_m2 += square(r.predicted_m);
-  difference_m2 += square(r.predicted_m - r.wanted_m);
+  difference_m2 += square(r.predicted_m - r.target_m);
   const std::uint32_t flags = r.row.flags;
   limited_ticks += (flags & (wire::kTickAmplitudeLimited | wire::kTickSlewLimited)) != 0;
   energy_limited_ticks += (flags & wire::kTickEnergyLimited) != 0;
   gated_ticks += (flags & wire::kTickGated) != 0;
   known = known && r.known;
-  wishes_known = wishes_known && r.wished_v;
+  wishes_known = wishes_known && r.unlimited_v;
   add_measured(r);
-  if (r.wished_v && !r.row.put_in)
-    limits.add(limited_tick(static_cast<float>(r.row.drive_v), *r.wished_v, flags));
+  if (r.unlimited_v && !r.row.put_in)
+    limits.add(limited_tick(static_cast<float>(r.row.drive_v), *r.unlimited_v, flags));
 }
 
 void StrokeSums::add_measured(const StrokeRow& r) {
@@ -44,7 +44,7 @@ void StrokeSums::add_measured(const StrokeRow& r) {
   if (!r.measured) return;
   measured_m2 += square(double{(*r.measured)[kUnshifted]});
   for (std::size_t i = 0; i < kMeasuredShifts; ++i)
-    measured_difference_m2[i] += square(double{(*r.measured)[i]} - r.wanted_m);
+    measured_difference_m2[i] += square(double{(*r.measured)[i]} - r.target_m);
 }
 
 void StrokeSums::add(const StrokeSums& later) {

@@ -18,10 +18,10 @@ namespace tacto::playback {
 struct StrokeRow {
   std::uint64_t index = 0;  ///< in the session
   SessionRow row;
-  double wanted_m = 0, predicted_m = 0;
+  double target_m = 0, predicted_m = 0;
   bool known = true;  ///< what was wanted
   std::optional<MeasuredRow> measured;
-  std::optional<float> wished_v;  ///< before the limits; none: not known
+  std::optional<float> unlimited_v;  ///< before the limits; none: not known
 };
 
 /// Over consecutive rows.

@@ -60,15 +60,15 @@ LeastError least_error(const std::array<double, kMeasuredShifts>& difference_m2)
   return {found.shift, std::max(found.difference_m2, 0.0)};
 }
 
-std::optional<MeasuredDisplacement> measured_of(const StrokeSums& sums, double wanted_rms_m) {
+std::optional<MeasuredDisplacement> measured_of(const StrokeSums& sums, double target_rms_m) {
   if (!sums.measured_known) return std::nullopt;
   const auto rms = [&](double sum) { return std::sqrt(sum / static_cast<double>(sums.rows)); };
   MeasuredDisplacement measured;
   measured.rms_m = rms(sums.measured_m2);
-  if (wanted_rms_m == 0) return measured;
+  if (target_rms_m == 0) return measured;
   const LeastError least = least_error(sums.measured_difference_m2);
-  measured.error_db = over_db(rms(least.difference_m2), wanted_rms_m);
-  measured.level_db = over_db(measured.rms_m, wanted_rms_m);
+  measured.error_db = over_db(rms(least.difference_m2), target_rms_m);
+  measured.level_db = over_db(measured.rms_m, target_rms_m);
   measured.shift_s = measured_shift_s(least.shift);
   return measured;
 }
@@ -83,11 +83,11 @@ PlayedStroke stroke_of(const StrokeSums& sums) {
   stroke.energy_limited_ticks = sums.energy_limited_ticks;
   stroke.gated_ticks = sums.gated_ticks;
   if (sums.wishes_known) stroke.limits = sums.limits;
-  if (sums.known && !nothing_was_wanted(sums)) stroke.wanted_rms_m = rms(sums.wanted_m2);
-  stroke.measured = measured_of(sums, stroke.wanted_rms_m);
-  if (stroke.wanted_rms_m == 0) return stroke;
-  stroke.predicted.error_db = over_db(rms(sums.difference_m2), stroke.wanted_rms_m);
-  stroke.predicted.level_db = over_db(stroke.predicted.rms_m, stroke.wanted_rms_m);
+  if (sums.known && !nothing_was_wanted(sums)) stroke.target_rms_m = rms(sums.wanted_m2);
+  stroke.measured = measured_of(sums, stroke.target_rms_m);
+  if (stroke.target_rms_m == 0) return stroke;
+  stroke.predicted.error_db = over_db(rms(sums.difference_m2), stroke.target_rms_m);
+  stroke.predicted.level_db = over_db(stroke.predicted.rms_m, stroke.target_rms_m);
   return stroke;
 }
 
@@ -184,9 +184,9 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
     unmeasured += !sums.measured_known;
     keep_stroke(stroke_of(sums), listener, report);
   });
-  const auto each = [&](const schema::SessionTick& tick, std::optional<float> wished_v) {
-    if (wished_v) whole.add(limited_tick(tick.drive_v, *wished_v, tick.flags));
-    if (tick.tick < end) judge.take(tick, wished_v);
+  const auto each = [&](const schema::SessionTick& tick, std::optional<float> unlimited_v) {
+    if (unlimited_v) whole.add(limited_tick(tick.drive_v, *unlimited_v, tick.flags));
+    if (tick.tick < end) judge.take(tick, unlimited_v);
   };
   const auto unknown = hear_every_wish(name, each, part_of(listener.progress, 0.1, 1));
   TACTO_TRY(unknown);

@@ -30,7 +30,7 @@ struct MeasuredDisplacement : StrokeDisplacement {
 struct PlayedStroke {
   double from_s = 0, to_s = 0;  ///< since the first tick
   double from_m = 0, to_m = 0;
-  double wanted_rms_m = 0;                       ///< 0 where it is not known, or under 1 pm
+  double target_rms_m = 0;                       ///< 0 where it is not known, or under 1 pm
   StrokeDisplacement predicted;                  ///< error and level: where wanted is known
   std::optional<MeasuredDisplacement> measured;  ///< none: no sensor, or its samples are not all there
   std::uint64_t limited_ticks = 0;               ///< in amplitude or slew

@@ -14,7 +14,7 @@ namespace {
 
 using schema::Certificate;
 using schema::CertifiedPeak;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::PeakVerdict;
 using schema::Result;
 
@@ -157,15 +157,15 @@ Certificate seen_from(std::size_t stroke, const SpeedHypotheses& hypotheses, con
 
 Result<void> check(std::span<const TextureAtSpeed> textures, const CertificateOptions& options) {
   if (textures.size() < 2)
-    return schema::fail(Fault::usage, "a certificate takes two textures or more, made at different speeds",
-                        "textures");
+    return schema::fail(ErrorKind::usage,
+                        "a certificate takes two textures or more, made at different speeds", "textures");
   if (!(options.confidence > 0.5 && options.confidence < 1))
-    return schema::fail(Fault::usage, "the confidence must lie above 0.5 and below 1", "confidence",
+    return schema::fail(ErrorKind::usage, "the confidence must lie above 0.5 and below 1", "confidence",
                         "0.95 is usual");
   for (const TextureAtSpeed& each : textures)
     if (each.texture->unit != textures.front().texture->unit)
-      return schema::fail(Fault::unsuitable, fmt::format("its unit is not that of {}", textures.front().name),
-                          each.name);
+      return schema::fail(ErrorKind::unsuitable,
+                          fmt::format("its unit is not that of {}", textures.front().name), each.name);
   return {};
 }
 
@@ -184,7 +184,7 @@ Result<void> check_ratio(const std::vector<StrokeLines>& strokes, double ratio) 
   double least = INFINITY, highest_per_m = 0, resolution_per_m = 0;
   for (const StrokeLines& stroke : strokes) {
     if (!(stroke.space.high() > stroke.space.low()))
-      return schema::fail(Fault::unsuitable, "its valid band is too narrow for a spectrum", stroke.name,
+      return schema::fail(ErrorKind::unsuitable, "its valid band is too narrow for a spectrum", stroke.name,
                           "make it from a stretch of steadier speed");
     const double needed = 1 / (1 - stroke.space.resolution() / stroke.space.high());
     if (needed < least) {
@@ -195,7 +195,7 @@ Result<void> check_ratio(const std::vector<StrokeLines>& strokes, double ratio) 
   }
   if (ratio >= least) return {};
   const double at_middle = 1 / (1 - std::min(0.9, resolution_per_m / (highest_per_m / 4)));
-  return schema::fail(Fault::unsuitable,
+  return schema::fail(ErrorKind::unsuitable,
                       fmt::format("the speeds differ only by a factor of {:.4g}; a peak at {:.3g} /mm needs "
                                   "{:.4g}, one at {:.3g} /mm {:.4g}",
                                   ratio, 1e-3 * highest_per_m, least, 0.25e-3 * highest_per_m, at_middle),

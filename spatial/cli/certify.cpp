@@ -46,7 +46,7 @@ Result<std::vector<Certificate>> certificates_of(const std::vector<NamedTexture>
 Result<void> check_stored(const std::vector<NamedTexture>& files) {
   const auto made = std::ranges::find(files, false, &NamedTexture::stored);
   if (made == files.end()) return {};
-  return schema::fail(schema::Fault::unsuitable,
+  return schema::fail(schema::ErrorKind::unsuitable,
                       "is a stroke of a recording: there is no texture to store in", made->path,
                       "make textures with 'tactograph spatial' first, or only look with --dry-run");
 }
@@ -55,7 +55,7 @@ Result<void> check_uncertified(const std::vector<NamedTexture>& files, schema::E
   const auto certified = [](const NamedTexture& file) { return file.texture.certificate.has_value(); };
   const auto found = std::ranges::find_if(files, certified);
   if (found == files.end() || existing == schema::Existing::replace) return {};
-  return schema::fail(schema::Fault::usage, "holds a certificate already, and it is not overwritten",
+  return schema::fail(schema::ErrorKind::usage, "holds a certificate already, and it is not overwritten",
                       found->path, "replace it with --force, or only look with --dry-run");
 }
 

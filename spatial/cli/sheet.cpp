@@ -24,7 +24,7 @@ namespace {
 
 using cli::Report;
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using schema::Spectrogram;
 
@@ -122,7 +122,7 @@ Result<void> check_pages(const SheetOptions& options, std::size_t textures) {
 
 Result<void> check_options(const SheetOptions& options) {
   if (options.output.ends_with(".png") || options.output.ends_with(".svg")) return {};
-  return schema::fail(Fault::usage, "pictures are not written in this format", options.output,
+  return schema::fail(ErrorKind::usage, "pictures are not written in this format", options.output,
                       "take .png or .svg");
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 using cli::Report;
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using schema::SpectrogramHeader;
 
@@ -42,9 +42,9 @@ struct SpectrogramVerbOptions {
 using FormantLists = std::vector<std::vector<schema::Formant>>;
 
 // Empty lists where they are not asked for.
-Result<FormantLists> formants_of(const SpectrogramRun& run, bool wanted) {
+Result<FormantLists> formants_of(const SpectrogramRun& run, bool target) {
   FormantLists lists(run.spectrograms().size());
-  for (std::size_t i = 0; wanted && i < lists.size(); ++i) {
+  for (std::size_t i = 0; target && i < lists.size(); ++i) {
     auto found = find_formants(run.spectrograms()[i]);
     TACTO_TRY(found);
     lists[i] = std::move(*found);
@@ -120,13 +120,13 @@ Report report_of(const SpectrogramRun& run, double lowest_per_m, const Spectrogr
 Result<void> check_options(const SpectrogramVerbOptions& options) {
   const auto& lowest = options.picture.min_frequency_per_m;
   if (lowest && !(*lowest > 0 && *lowest < options.spectrogram.max_frequency_per_m))
-    return schema::fail(Fault::usage, "the minimum frequency must lie between 0 and the maximum",
+    return schema::fail(ErrorKind::usage, "the minimum frequency must lie between 0 and the maximum",
                         "--min-frequency");
   if (!(options.picture.dynamic_range_db > 0))
-    return schema::fail(Fault::usage, "the dynamic range must be above 0 dB", "--dynamic-range",
+    return schema::fail(ErrorKind::usage, "the dynamic range must be above 0 dB", "--dynamic-range",
                         "60dB is usual");
   if (options.formants && options.spectrogram.scaling != schema::Scaling::density)
-    return schema::fail(Fault::usage, "formants are found in densities", "--formants",
+    return schema::fail(ErrorKind::usage, "formants are found in densities", "--formants",
                         "leave --scaling amplitude away, or --formants");
   return check_outputs(options.outputs, options.existing);
 }
@@ -154,7 +154,7 @@ Result<std::optional<Report>> choose_resolution(SpectrogramVerbOptions& options)
   if (options.resolution) options.spectrogram.resolution = *options.resolution;
   const schema::Budget& budget = options.chosen_by.budget;
   if (!budget.asked() && options.chosen_by.explain)
-    return schema::fail(Fault::usage, "there is nothing to explain: nothing was chosen", "--explain",
+    return schema::fail(ErrorKind::usage, "there is nothing to explain: nothing was chosen", "--explain",
                         "add --quality or --max-error");
   if (!budget.asked()) return std::nullopt;
   const auto found = schema::find_trade_table();
@@ -177,8 +177,8 @@ Result<Report> run_spectrogram(SpectrogramVerbOptions options) {
   SpectrogramFiles files;
   TACTO_TRY(files.open(options.outputs, inputs->several(), options.compress));
   if (options.formants && !files.has_pictures())
-    return schema::fail(Fault::usage, "formants are drawn on a picture, and none is asked for", "--formants",
-                        "add -o NAME.png, or list them with 'tactograph formants'");
+    return schema::fail(ErrorKind::usage, "formants are drawn on a picture, and none is asked for",
+                        "--formants", "add -o NAME.png, or list them with 'tactograph formants'");
   SpectrogramRun run(options.spectrogram, options.picture.min_frequency_per_m, files, files.has_pictures());
   TACTO_TRY(run.transform(*inputs));
   const auto formants = formants_of(run, options.formants);

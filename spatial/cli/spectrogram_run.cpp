@@ -13,7 +13,7 @@ namespace tacto::spatial {
 namespace {
 
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using schema::SpectrogramHeader;
 
@@ -40,7 +40,7 @@ void warn_if_little_is_seen(const NamedTexture& texture, const SpectrogramHeader
 template <class T>
 tl::unexpected<schema::Error> naming(const NamedTexture& texture, const Result<T>& failed) {
   schema::Error error = failed.error();
-  if (error.fault == Fault::unsuitable) error.where = texture.path + ": " + error.where;
+  if (error.fault == ErrorKind::unsuitable) error.where = texture.path + ": " + error.where;
   return tl::unexpected(error);
 }
 
@@ -54,7 +54,7 @@ Result<void> SpectrogramRun::transform(TextureInputs& inputs) {
     if (!*texture) break;
     if (auto taken = take(std::move(**texture)); !taken) return taken;
   }
-  if (lines_.empty()) return schema::fail(Fault::unsuitable, "there is no texture among the files named");
+  if (lines_.empty()) return schema::fail(ErrorKind::unsuitable, "there is no texture among the files named");
   return {};
 }
 
@@ -95,13 +95,13 @@ Result<void> SpectrogramRun::check_alike(const NamedTexture& other) const {
   const auto& texture = other.texture;
   if (std::abs(texture.signal.pitch_m - pitch_m) > 1e-9 * pitch_m)
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("has a grid of {}, but {} has {}", schema::length_for_people(texture.signal.pitch_m),
                     first_path_, schema::length_for_people(pitch_m)),
         other.path, "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
   if (texture.quantity != first_->quantity || texture.unit != first_->unit)
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("holds {}, but {} holds {}", texture.quantity, first_path_, first_->quantity), other.path,
         "make a spectrogram of each alone");
   return {};

@@ -24,7 +24,7 @@ schema::Result<void> check_kind(const std::string& path) {
   const auto there = schema::stored_files(path);
   const auto kind = there ? std::optional(there->front().kind) : std::nullopt;
   if (kind == FileKind::formants || kind == FileKind::descriptions) return {};
-  return schema::fail(schema::Fault::usage,
+  return schema::fail(schema::ErrorKind::usage,
                       kind ? fmt::format("is a {}, and would be lost", schema::kind_name(*kind))
                            : "holds something else, and would be lost",
                       path, "choose another name");

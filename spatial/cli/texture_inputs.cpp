@@ -17,7 +17,7 @@ namespace tacto::spatial {
 namespace {
 
 namespace fs = std::filesystem;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::FileKind;
 using schema::Result;
 using schema::StoredFile;
@@ -81,7 +81,7 @@ Result<TextureInputs> TextureInputs::find(const std::vector<std::string>& names,
   TextureInputs inputs(options);
   for (const std::string& name : names) TACTO_TRY(inputs.add(name, names.size() == 1));
   if (inputs.inputs_.empty())
-    return schema::fail(Fault::unsuitable, "there is no texture among the files named");
+    return schema::fail(ErrorKind::unsuitable, "there is no texture among the files named");
   // Opened now, so that it is known how many textures it makes.
   TACTO_TRY(inputs.open_if_recording());
   return inputs;
@@ -107,7 +107,8 @@ Result<void> TextureInputs::add(const std::string& name, bool alone) {
   }
   const std::string what = fmt::format("is a {}, not a texture", schema::kind_name(files->front().kind));
   if (alone)
-    return schema::fail(Fault::unsuitable, what, name, "'tactograph spatial' makes textures from recordings");
+    return schema::fail(ErrorKind::unsuitable, what, name,
+                        "'tactograph spatial' makes textures from recordings");
   cli::warn(fmt::format("{}: {}; skipped", name, what));
   return {};
 }
@@ -132,7 +133,7 @@ Result<void> TextureInputs::open_if_recording() {
   if (const std::string note = channel_note(options_, maker_->record()); !note.empty()) cli::warn(note);
   const auto& strokes = maker_->record().strokes();
   if (strokes.empty())
-    return schema::fail(Fault::unsuitable, "no stroke was found", path,
+    return schema::fail(ErrorKind::unsuitable, "no stroke was found", path,
                         "make a texture of a stretch with 'tactograph spatial --from --to'");
   const std::string name = name_of(path, "");
   int number = 0;
@@ -143,7 +144,7 @@ Result<void> TextureInputs::open_if_recording() {
   }
   const std::size_t up = strokes.size() - strokes_.size();
   if (strokes_.empty())
-    return schema::fail(Fault::unsuitable, "the finger is up in every stroke", path,
+    return schema::fail(ErrorKind::unsuitable, "the finger is up in every stroke", path,
                         "'tactograph spatial --finger-up' makes textures of them all the same");
   if (up > 0)
     cli::warn(fmt::format("{}: in {} of {} strokes the finger is up; left out", path, up, strokes.size()));
@@ -160,7 +161,7 @@ Result<std::optional<NamedTexture>> TextureInputs::next_stroke() {
       return NamedTexture{stroke.name, stroke.name, std::move(*texture)};
     }
     const bool last_hope = strokes_.empty() && !made_;
-    if (texture.error().fault != Fault::unsuitable || last_hope) return schema::forward_error(texture);
+    if (texture.error().fault != ErrorKind::unsuitable || last_hope) return schema::forward_error(texture);
     cli::warn(fmt::format("{} makes no texture: {}", stroke.name, schema::message(texture.error())));
   }
   return std::nullopt;
@@ -190,7 +191,7 @@ Result<std::vector<NamedTexture>> open_textures(const std::vector<std::string>& 
     if (!*next) return all;
     const schema::Texture& first = all.empty() ? (*next)->texture : all.front().texture;
     if ((*next)->texture.quantity != first.quantity || (*next)->texture.unit != first.unit)
-      return schema::fail(Fault::unsuitable,
+      return schema::fail(ErrorKind::unsuitable,
                           fmt::format("holds {}, but {} holds {}", (*next)->texture.quantity,
                                       all.front().path, first.quantity),
                           (*next)->path, "take textures of one quantity at a time");

@@ -20,7 +20,7 @@ namespace {
 using schema::BandPoint;
 using schema::Description;
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using schema::Texture;
 using schema::ThirdOctaveBand;
@@ -34,23 +34,23 @@ BandPoint valid_band_of(const Texture& texture) {
 double usual_window_m(const Texture& texture, double low_per_m) {
   constexpr double kWavelengths = 8;
   const double length_m = static_cast<double>(texture.signal.values.size()) * texture.signal.pitch_m;
-  const double wanted_m = low_per_m > 0 ? std::max(kWavelengths / low_per_m, length_m / 4) : length_m / 4;
-  return std::min(wanted_m, length_m);
+  const double target_m = low_per_m > 0 ? std::max(kWavelengths / low_per_m, length_m / 4) : length_m / 4;
+  return std::min(target_m, length_m);
 }
 
 Result<std::size_t> window_samples(const Texture& texture, const DescriptionOptions& options,
                                    double low_per_m) {
   const double pitch_m = texture.signal.pitch_m;
   const std::size_t have = texture.signal.values.size();
-  const double wanted = options.window_m.value_or(usual_window_m(texture, low_per_m)) / pitch_m;
+  const double target = options.window_m.value_or(usual_window_m(texture, low_per_m)) / pitch_m;
   const double samples =
-      options.window_m ? wanted : std::max(wanted, static_cast<double>(kShortestWelchWindow));
+      options.window_m ? target : std::max(target, static_cast<double>(kShortestWelchWindow));
   if (std::isfinite(samples) && samples >= kShortestWelchWindow - 0.5 &&
       samples < static_cast<double>(have) + 0.5)
     return static_cast<std::size_t>(std::llround(samples));
   return schema::fail(
-      Fault::usage,
-      fmt::format("a window of {} can't be used", schema::for_people(wanted * pitch_m, Dimension::length)),
+      ErrorKind::usage,
+      fmt::format("a window of {} can't be used", schema::for_people(target * pitch_m, Dimension::length)),
       "window",
       fmt::format("take {} to {} (the texture)",
                   schema::for_people(kShortestWelchWindow * pitch_m, Dimension::length),
@@ -114,7 +114,7 @@ void add_spectrum(Description& description, const WelchSpectrum& spectrum) {
 
 Result<Description> describe(const Texture& texture, const DescriptionOptions& options) {
   if (texture.signal.values.size() < kShortestWelchWindow)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         fmt::format("has {} samples, too few for a spectrum", texture.signal.values.size()),
                         "texture");
   const SteadyPart part = steady_part(texture);
@@ -126,8 +126,8 @@ Result<Description> describe(const Texture& texture, const DescriptionOptions& o
   description.low_per_m = std::max(valid.low_per_m, 1.5 / description.window_m);
   description.high_per_m = std::min(valid.high_per_m, 0.5 / texture.signal.pitch_m);
   if (!(description.low_per_m < description.high_per_m))
-    return schema::fail(Fault::unsuitable, "no band is valid along the steady part of the texture", "texture",
-                        "make it from a stretch of steadier speed, or take a longer --window");
+    return schema::fail(ErrorKind::unsuitable, "no band is valid along the steady part of the texture",
+                        "texture", "make it from a stretch of steadier speed, or take a longer --window");
   add_spectrum(description, WelchSpectrum(part.texture.signal.values, texture.signal.pitch_m, *window));
   return description;
 }

@@ -64,12 +64,12 @@ class RowPeaks {
   }
 
   // Bins from the peak's bin to where the level crosses; to the spectrum's end where it doesn't.
-  double half_power(std::size_t bin, int way, double wanted_db) const {
+  double half_power(std::size_t bin, int way, double target_db) const {
     double inner = level(density(bin));
     for (std::size_t steps = 1; bin + steps < spectrogram_.bins && (way > 0 || steps <= bin); ++steps) {
       const double outer = level(density(way > 0 ? bin + steps : bin - steps));
-      if (outer <= wanted_db)
-        return static_cast<double>(steps) - (wanted_db - outer) / std::max(inner - outer, 1e-12);
+      if (outer <= target_db)
+        return static_cast<double>(steps) - (target_db - outer) / std::max(inner - outer, 1e-12);
       inner = outer;
     }
     return static_cast<double>(way > 0 ? spectrogram_.bins - 1 - bin : bin);

@@ -13,7 +13,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Formant;
 using schema::Result;
 using schema::Spectrogram;
@@ -24,16 +24,17 @@ constexpr double kEnd_db = 6.0206;
 Result<void> check(const Spectrogram& spectrogram, const FormantOptions& options) {
   if (!std::isfinite(options.start_db) || !std::isfinite(options.go_on_db) ||
       options.go_on_db > options.start_db)
-    return schema::fail(Fault::usage, "a ridge starts at a prominence no lower than that at which it goes on",
-                        "formants", "13 and 8 dB are usual");
+    return schema::fail(ErrorKind::usage,
+                        "a ridge starts at a prominence no lower than that at which it goes on", "formants",
+                        "13 and 8 dB are usual");
   for (const auto& length_m : {options.shortest_m, options.bridge_m})
     if (length_m && !(std::isfinite(*length_m) && *length_m >= 0))
-      return schema::fail(Fault::usage, "a length must be 0 or more", "formants");
+      return schema::fail(ErrorKind::usage, "a length must be 0 or more", "formants");
   if (spectrogram.scaling != schema::Scaling::density)
-    return schema::fail(Fault::unsuitable, "formants are found in densities, not in amplitudes",
+    return schema::fail(ErrorKind::unsuitable, "formants are found in densities, not in amplitudes",
                         spectrogram.name);
   if (spectrogram.position_m.empty() || spectrogram.bins < 3)
-    return schema::fail(Fault::unsuitable, "the spectrogram has nothing to find formants in",
+    return schema::fail(ErrorKind::unsuitable, "the spectrogram has nothing to find formants in",
                         spectrogram.name);
   return {};
 }

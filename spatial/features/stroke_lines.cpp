@@ -12,7 +12,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using schema::Texture;
 
@@ -172,7 +172,7 @@ schema::BandPoint band_per_m(const Texture& texture) {
 Result<TimeCourse> time_course(const Texture& texture) {
   const Slowness slowness = slowness_of(texture);
   if (slowness.s_per_m.empty())
-    return schema::fail(Fault::unsuitable, "nothing says how fast it was recorded", "texture",
+    return schema::fail(ErrorKind::unsuitable, "nothing says how fast it was recorded", "texture",
                         "make it from a recording with 'tactograph spatial'");
   const auto times = times_of(texture, slowness);
   TimeCourse course;
@@ -185,11 +185,11 @@ Result<TimeCourse> time_course(const Texture& texture) {
 }
 
 Result<StrokeLines> stroke_lines(const std::string& name, const Texture& whole) {
-  if (whole.signal.values.empty()) return schema::fail(Fault::unsuitable, "has no samples", name);
+  if (whole.signal.values.empty()) return schema::fail(ErrorKind::unsuitable, "has no samples", name);
   const Texture texture = steady_part(whole).texture;
   const auto& values = texture.signal.values;
   if (values.size() < 4 * LineSpectrum::kFewestValues)
-    return schema::fail(Fault::unsuitable, "is too short for a spectrum", name);
+    return schema::fail(ErrorKind::unsuitable, "is too short for a spectrum", name);
   const auto course = time_course(texture);
   if (!course) {
     schema::Error error = course.error();
@@ -197,7 +197,7 @@ Result<StrokeLines> stroke_lines(const std::string& name, const Texture& whole) 
     return tl::unexpected(error);
   }
   if (course->values.size() < LineSpectrum::kFewestValues)
-    return schema::fail(Fault::unsuitable, "lasts too short for a spectrum", name);
+    return schema::fail(ErrorKind::unsuitable, "lasts too short for a spectrum", name);
   const auto in_space = band_per_m(texture), in_time = band_hz(texture, course->mean_speed_mps);
   StrokeLines stroke{name,
                      LineSpectrum(values, texture.signal.pitch_m, in_space.low_per_m, in_space.high_per_m),

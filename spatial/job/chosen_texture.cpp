@@ -12,17 +12,17 @@ namespace tacto::spatial {
 namespace {
 
 using cli::Report;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
-Result<TextureNeed> need_of(const SpatialOptions& options, const TextureOptions& wanted,
+Result<TextureNeed> need_of(const SpatialOptions& options, const TextureOptions& target,
                             const TouchRecord& record, const std::vector<StrokeJob>& jobs) {
-  if (wanted.filter.method != FilterMethod::fourier || wanted.space)
-    return schema::fail(Fault::usage, "an error can only be promised of a band that ends",
+  if (target.filter.method != FilterMethod::fourier || target.space)
+    return schema::fail(ErrorKind::usage, "an error can only be promised of a band that ends",
                         options.chosen_by.budget.max_error ? "--max-error" : "--quality",
                         "leave --filter and --band-in away, or name --method and --grid yourself");
   const double rate_hz = record.header().sample_rate_hz;
-  TextureNeed need{rate_hz, wanted.filter.passed(rate_hz).high_hz, 1e300, options.method, options.pitch_m};
+  TextureNeed need{rate_hz, target.filter.passed(rate_hz).high_hz, 1e300, options.method, options.pitch_m};
   for (const StrokeJob& job : jobs)
     need.slowest_mps = std::min(need.slowest_mps, record.mean_speed_mps(job.stroke));
   return need;
@@ -56,11 +56,11 @@ std::string counts_not(double lowest_hz, const BandShare& share) {
       100 * share.whole, 100 * share.inside, kBandKernelPeriods / lowest_hz, kSteadyFrames);
 }
 
-Result<BandShare> share_of(const TextureOptions& wanted, const TouchRecord& record,
+Result<BandShare> share_of(const TextureOptions& target, const TouchRecord& record,
                            const std::vector<StrokeJob>& jobs) {
   std::vector<Stroke> strokes;
   for (const StrokeJob& job : jobs) strokes.push_back(job.stroke);
-  return band_share(record, wanted.filter, strokes);
+  return band_share(record, target.filter, strokes);
 }
 
 void explain(Report& report, const TextureChoices& choices, const TextureNeed& need, double lowest_hz,
@@ -81,10 +81,10 @@ void explain(Report& report, const TextureChoices& choices, const TextureNeed& n
 
 }  // namespace
 
-Result<ChosenTexture> choose_texture(const SpatialOptions& options, const TextureOptions& wanted,
+Result<ChosenTexture> choose_texture(const SpatialOptions& options, const TextureOptions& target,
                                      const TouchRecord& record, const std::vector<StrokeJob>& jobs) {
   const schema::Budget& budget = options.chosen_by.budget;
-  const auto need = need_of(options, wanted, record, jobs);
+  const auto need = need_of(options, target, record, jobs);
   TACTO_TRY(need);
   const auto found = schema::find_trade_table();
   TACTO_TRY(found);
@@ -93,7 +93,7 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
     if (choices.error().where.empty()) choices.error().where = record.where();
     return schema::forward_error(choices);
   }
-  ChosenTexture chosen{wanted, {}};
+  ChosenTexture chosen{target, {}};
   chosen.options.method = choices->taken.method;
   chosen.options.pitch_m = choices->taken.pitch_m;
   chosen.report.add("method", std::string(name_of(choices->taken.method)))
@@ -101,9 +101,9 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
       .add("asked_error", asked(budget))
       .add("promise_is", "against the force behind the same band-pass; what that takes: --explain");
   if (!options.chosen_by.explain) return chosen;
-  const auto share = share_of(wanted, record, jobs);
+  const auto share = share_of(target, record, jobs);
   TACTO_TRY(share);
-  explain(chosen.report, *choices, *need, wanted.filter.passed(need->sample_rate_hz).low_hz, *share, *found);
+  explain(chosen.report, *choices, *need, target.filter.passed(need->sample_rate_hz).low_hz, *share, *found);
   return chosen;
 }
 

@@ -19,7 +19,7 @@ struct ChosenTexture {
 
 /// Errors: usage, for a band that does not end; unsuitable, where no choice keeps the promise; of reading the
 /// table of measured choices.
-schema::Result<ChosenTexture> choose_texture(const SpatialOptions& options, const TextureOptions& wanted,
+schema::Result<ChosenTexture> choose_texture(const SpatialOptions& options, const TextureOptions& target,
                                              const TouchRecord& record, const std::vector<StrokeJob>& jobs);
 
 }  // namespace tacto::spatial

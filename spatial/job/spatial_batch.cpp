@@ -21,7 +21,7 @@ namespace tacto::spatial {
 namespace {
 
 using cli::Report;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 struct Sorted {
@@ -85,7 +85,7 @@ class Batch {
 Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<std::string>& skipped) {
   std::vector<Report> made;
   std::vector<std::string> failed;
-  std::optional<Fault> fault;
+  std::optional<ErrorKind> fault;
   for (const SpatialOutcome& outcome : outcomes) {
     if (outcome.report) {
       made.push_back(*outcome.report);
@@ -109,7 +109,7 @@ Result<Report> spatial_batch(const SpatialOptions& options) {
   if (!files.skipped.empty())
     cli::warn(fmt::format("skipped, no recordings: {}", fmt::join(files.skipped, ", ")));
   if (files.recordings.empty())
-    return schema::fail(Fault::unsuitable, "there is no recording among the files");
+    return schema::fail(ErrorKind::unsuitable, "there is no recording among the files");
   if (asks_for_takes(options)) return spatial_takes(options, files.recordings);
   const auto stems = texture_stems(files.recordings, options.output);
   TACTO_TRY(stems);

@@ -7,7 +7,7 @@ namespace tacto::spatial {
 namespace {
 
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 std::string where_of_band(const std::string& text) {
@@ -23,7 +23,7 @@ Result<Edge> parse_band(const std::string& text, Dimension dimension) {
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos)
     return schema::fail(
-        Fault::usage, "is neither 'off' nor two frequencies", where_of_band(text),
+        ErrorKind::usage, "is neither 'off' nor two frequencies", where_of_band(text),
         dimension == Dimension::frequency ? "write it like 15Hz..500Hz" : "write it like 0.5/mm..10/mm");
   const auto end = [&](const std::string& words) -> Result<double> {
     auto value = schema::parse_quantity(words, dimension);
@@ -34,13 +34,13 @@ Result<Edge> parse_band(const std::string& text, Dimension dimension) {
   TACTO_TRY(low);
   TACTO_TRY(high);
   if (*low < *high) return Edge{*low, *high};
-  return schema::fail(Fault::usage, "does not rise", where_of_band(text), "write the lower end first");
+  return schema::fail(ErrorKind::usage, "does not rise", where_of_band(text), "write the lower end first");
 }
 
 Result<SpaceFilter> space_filter(const SpatialOptions& options) {
   const TimeFilter& filter = options.texture.filter;
   if (options.band.empty())
-    return schema::fail(Fault::usage, "--band-in space has no band of its own", {},
+    return schema::fail(ErrorKind::usage, "--band-in space has no band of its own", {},
                         "say it with --band, like 0.5/mm..10/mm");
   const auto band = parse_band(options.band, Dimension::spatial_frequency);
   TACTO_TRY(band);

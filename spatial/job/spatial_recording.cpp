@@ -18,7 +18,7 @@ namespace tacto::spatial {
 namespace {
 
 using cli::Report;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 // One recording on its way.
@@ -32,14 +32,14 @@ class Run {
   Result<Take> take(const std::string& name);
 
  private:
-  Result<TouchRecord> opened(const std::string& name, const TextureOptions& wanted);
-  Result<TextureMaker> ready(TouchRecord record, const TextureOptions& wanted);
+  Result<TouchRecord> opened(const std::string& name, const TextureOptions& target);
+  Result<TextureMaker> ready(TouchRecord record, const TextureOptions& target);
   Result<Report> list(const TouchRecord& record) const;
   Result<std::vector<StrokeJob>> jobs(const TouchRecord& record);
   Result<std::vector<StrokeJob>> one_job(const Result<Stroke>& stroke, int number) const;
   Result<std::vector<StrokeJob>> found_strokes(const TouchRecord& record);
   std::vector<StrokeJob> down_only(const TouchRecord& record, std::vector<StrokeJob> jobs);
-  Result<ChosenTexture> texture_choice(const TextureOptions& wanted, const TouchRecord& record,
+  Result<ChosenTexture> texture_choice(const TextureOptions& target, const TouchRecord& record,
                                        const std::vector<StrokeJob>& jobs);
   Result<Report> textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
   Result<Report> averages(TextureMaker& maker, const std::vector<StrokeJob>& jobs);
@@ -113,13 +113,13 @@ Result<std::vector<StrokeJob>> Run::found_strokes(const TouchRecord& record) {
   for (const Stroke& stroke : record.strokes())
     all.push_back({stroke, static_cast<int>(all.size()) + 1, stem_});
   if (all.empty())
-    return schema::fail(Fault::unsuitable, "no stroke was found", record.where(),
+    return schema::fail(ErrorKind::unsuitable, "no stroke was found", record.where(),
                         "ask for a stretch with --from and --to");
   warn_of_short_runs(record);
   warn_of_jumps(record);
   std::vector<StrokeJob> jobs = down_only(record, std::move(all));
   if (jobs.empty())
-    return schema::fail(Fault::unsuitable, "in all strokes the finger was up", record.where(),
+    return schema::fail(ErrorKind::unsuitable, "in all strokes the finger was up", record.where(),
                         "--finger-up makes textures all the same");
   if (jobs.size() > 1)
     for (StrokeJob& job : jobs) job.stem = fmt::format("{}-{:02}", stem_, job.number);
@@ -160,7 +160,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
   std::optional<schema::Error> first;  // why a stroke makes no texture
   for (const StrokeJob& job : jobs) {
     const auto texture = maker.make(job.stroke, job.number);
-    if (!texture && (jobs.size() == 1 || texture.error().fault != Fault::unsuitable))
+    if (!texture && (jobs.size() == 1 || texture.error().fault != ErrorKind::unsuitable))
       return schema::forward_error(texture);
     if (!texture) {
       first = first.value_or(texture.error());
@@ -195,7 +195,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
     std::vector<std::string> left_out;
     const auto texture = averaged(maker, group, options_, left_out, progress_);
     for (const std::string& warning : left_out) warn(warning);
-    if (!texture && (groups.size() == 1 || texture.error().fault != Fault::unsuitable))
+    if (!texture && (groups.size() == 1 || texture.error().fault != ErrorKind::unsuitable))
       return schema::forward_error(texture);
     if (!texture) {
       warn(fmt::format("{}: no average: {}", group.stem, schema::message(texture.error())));
@@ -207,7 +207,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
     rows.push_back(average_row(group.stem, *texture));
   }
   if (!head)
-    return schema::fail(Fault::unsuitable, "no two strokes can be averaged", maker.record().where(),
+    return schema::fail(ErrorKind::unsuitable, "no two strokes can be averaged", maker.record().where(),
                         "the warnings say why");
   TACTO_TRY(pending.commit(options_.existing));
   head->add("averages", std::move(rows));
@@ -215,60 +215,60 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
 }
 
 // By the budget, where there is one.
-Result<ChosenTexture> Run::texture_choice(const TextureOptions& wanted, const TouchRecord& record,
+Result<ChosenTexture> Run::texture_choice(const TextureOptions& target, const TouchRecord& record,
                                           const std::vector<StrokeJob>& jobs) {
-  if (options_.chosen_by.budget.asked()) return choose_texture(options_, wanted, record, jobs);
+  if (options_.chosen_by.budget.asked()) return choose_texture(options_, target, record, jobs);
   if (options_.chosen_by.explain)
-    return schema::fail(Fault::usage, "there is nothing to explain: nothing was chosen", "--explain",
+    return schema::fail(ErrorKind::usage, "there is nothing to explain: nothing was chosen", "--explain",
                         "add --quality or --max-error");
-  return ChosenTexture{wanted, {}};
+  return ChosenTexture{target, {}};
 }
 
-Result<TouchRecord> Run::opened(const std::string& name, const TextureOptions& wanted) {
+Result<TouchRecord> Run::opened(const std::string& name, const TextureOptions& target) {
   const auto recording = schema::open_recording(name);
   TACTO_TRY(recording);
   if (const std::string& version = recording->header.newer_version; !version.empty())
     warn(fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", name, version));
   // A texture says of which samples it was made.
   TACTO_TRY(schema::check_samples_sum(*recording));
-  auto record = TouchRecord::open(*recording, wanted.channel);
+  auto record = TouchRecord::open(*recording, target.channel);
   if (!record) return record;
-  if (const std::string note = channel_note(wanted, *record); !note.empty()) warn(note);
+  if (const std::string note = channel_note(target, *record); !note.empty()) warn(note);
   return record;
 }
 
-Result<TextureMaker> Run::ready(TouchRecord record, const TextureOptions& wanted) {
+Result<TextureMaker> Run::ready(TouchRecord record, const TextureOptions& target) {
   const std::string name = record.where();
   const double rate_hz = record.header().sample_rate_hz;
-  auto maker = TextureMaker::open(std::move(record), wanted);
+  auto maker = TextureMaker::open(std::move(record), target);
   if (!maker) return maker;
-  if (const std::string lost = rate_warning(wanted, rate_hz); !lost.empty())
+  if (const std::string lost = rate_warning(target, rate_hz); !lost.empty())
     warn(fmt::format("{}: {}", name, lost));
   return maker;
 }
 
 Result<Take> Run::take(const std::string& name) {
-  const auto wanted = texture_options(options_);
-  TACTO_TRY(wanted);
-  auto record = opened(name, *wanted);
+  const auto target = texture_options(options_);
+  TACTO_TRY(target);
+  auto record = opened(name, *target);
   TACTO_TRY(record);
   auto chosen = jobs(*record);
   TACTO_TRY(chosen);
-  auto maker = ready(std::move(*record), *wanted);
+  auto maker = ready(std::move(*record), *target);
   TACTO_TRY(maker);
   return Take{std::move(*maker), std::move(*chosen)};
 }
 
 Result<Report> Run::on(const std::string& name) {
-  const auto wanted = texture_options(options_);
-  TACTO_TRY(wanted);
-  auto record = opened(name, *wanted);
+  const auto target = texture_options(options_);
+  TACTO_TRY(target);
+  auto record = opened(name, *target);
   TACTO_TRY(record);
   if (options_.list) return list(*record);
   const std::size_t said = warnings_.size();
   const auto chosen = jobs(*record);
   TACTO_TRY(chosen);
-  const auto choice = texture_choice(*wanted, *record, *chosen);
+  const auto choice = texture_choice(*target, *record, *chosen);
   TACTO_TRY(choice);
   auto maker = ready(std::move(*record), choice->options);
   if (!maker) {

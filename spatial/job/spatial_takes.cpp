@@ -18,7 +18,7 @@ namespace tacto::spatial {
 namespace {
 
 using cli::Report;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 // The mean of one direction, or of both.
@@ -49,7 +49,7 @@ class Takes {
 Result<void> Takes::add(const std::string& recording, const std::function<void(double)>& progress) {
   warnings_.clear();
   auto take = open_take(options_, recording, warnings_);
-  if (!take && take.error().fault != Fault::unsuitable) return schema::forward_error(take);
+  if (!take && take.error().fault != ErrorKind::unsuitable) return schema::forward_error(take);
   std::size_t strokes = 0;
   if (!take) warnings_.push_back("left out: " + schema::message(take.error()));
   if (take)
@@ -90,7 +90,7 @@ Result<Report> Takes::finish() {
     rows.push_back(average_row(stem, *texture));
   }
   if (rows.empty())
-    return schema::fail(Fault::unsuitable, "no two strokes of these recordings can be averaged", stem_,
+    return schema::fail(ErrorKind::unsuitable, "no two strokes of these recordings can be averaged", stem_,
                         "the warnings say why; --list shows where strokes lie");
   TACTO_TRY(pending.commit(options_.existing));
   return Report().add("takes", std::move(takes_)).add("averages", std::move(rows));
@@ -98,7 +98,7 @@ Result<Report> Takes::finish() {
 
 Result<void> check_options(const SpatialOptions& options) {
   if (!options.chosen_by.budget.asked() && !options.chosen_by.explain) return {};
-  return schema::fail(Fault::usage, "nothing is chosen for the mean of several recordings", "--quality",
+  return schema::fail(ErrorKind::usage, "nothing is chosen for the mean of several recordings", "--quality",
                       "name --method and --grid");
 }
 

@@ -53,11 +53,11 @@ schema::Result<std::vector<std::string>> texture_stems(const std::vector<std::st
     const auto [same, fresh] =
         named.emplace(schema::canonical_path(schema::stem_of(recording, "")), recording);
     if (!fresh)
-      return schema::fail(schema::Fault::usage, fmt::format("is the same recording as {}", same->second),
+      return schema::fail(schema::ErrorKind::usage, fmt::format("is the same recording as {}", same->second),
                           recording, "name it once");
     stems.push_back(texture_stem(recording, output));
     if (!taken.emplace(schema::canonical_path(stems.back()), recording).second)
-      return schema::fail(schema::Fault::usage,
+      return schema::fail(schema::ErrorKind::usage,
                           fmt::format("the textures of several recordings would be named {}", stems.back()),
                           {}, "give -o a folder, or a name with {} in it, which stands for the recording's");
   }

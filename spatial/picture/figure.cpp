@@ -10,7 +10,7 @@
 
 namespace tacto::spatial {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 namespace {
@@ -21,8 +21,9 @@ constexpr double kMostPixels = 32767;
 Result<std::string> encoded(const Figure& figure, PictureFormat format) {
   const Size page = figure.page();
   if (std::max(page.width, page.height) * kPixelsPerPoint > kMostPixels)
-    return schema::fail(Fault::unsuitable, fmt::format("a page {:g} points high is too large", page.height),
-                        "picture", "draw fewer things on one page");
+    return schema::fail(ErrorKind::unsuitable,
+                        fmt::format("a page {:g} points high is too large", page.height), "picture",
+                        "draw fewer things on one page");
   Canvas canvas(format, page);
   TACTO_TRY(figure.draw(canvas));
   return canvas.encode();
@@ -49,7 +50,7 @@ Result<std::string> to_page_svg(const Figure& figure) {
 Result<std::string> encode_as(const std::string& path, const Figure& figure) {
   if (ends_in(path, ".png")) return to_png(figure);
   if (ends_in(path, ".svg")) return to_svg(figure);
-  return schema::fail(Fault::usage, "pictures are not written in this format", path, "take .png or .svg");
+  return schema::fail(ErrorKind::usage, "pictures are not written in this format", path, "take .png or .svg");
 }
 
 Result<void> add_figure(schema::PendingFiles& files, const std::string& path, const Figure& figure) {

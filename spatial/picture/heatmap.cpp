@@ -104,7 +104,7 @@ schema::Result<Pixels> heatmap(const Spectrogram& spectrogram, double low_per_m,
   power = on_log_axis(power, bin(low_per_m), bin(high_per_m), height);
   return coloured(shades(power, level_reference(spectrogram), levels));
 } catch (const cv::Exception& fault) {
-  return schema::fail(schema::Fault::internal, fault.what(), "picture");
+  return schema::fail(schema::ErrorKind::internal, fault.what(), "picture");
 }
 
 }  // namespace tacto::spatial

@@ -14,7 +14,7 @@
 
 namespace tacto::spatial {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 namespace {
@@ -40,7 +40,7 @@ Result<Extents> extents_of(const LineFigure& figure) {
   Extents extents;
   for (const Series& series : figure.series) {
     if (series.x.size() != series.y.size())
-      return schema::fail(Fault::unsuitable, "x and y differ in length", "series '" + series.name + "'");
+      return schema::fail(ErrorKind::unsuitable, "x and y differ in length", "series '" + series.name + "'");
     for (std::size_t i = 0; i < series.x.size(); ++i) {
       const bool shown = figure.x_scale == AxisScale::linear || series.x[i] > 0;
       if (!shown || !std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
@@ -49,7 +49,7 @@ Result<Extents> extents_of(const LineFigure& figure) {
     }
   }
   if (!(extents.x.low <= extents.x.high))
-    return schema::fail(Fault::unsuitable, "there is no finite point to draw",
+    return schema::fail(ErrorKind::unsuitable, "there is no finite point to draw",
                         "figure '" + figure.title + "'");
   return extents;
 }

@@ -38,8 +38,8 @@ std::vector<Tick> unlabelled(std::vector<Tick> ticks) {
   return ticks;
 }
 
-std::vector<Tick> ticks_for(const Axis& axis, int wanted, bool labelled) {
-  return labelled ? ticks_of(axis, wanted) : unlabelled(ticks_of(axis, wanted));
+std::vector<Tick> ticks_for(const Axis& axis, int target, bool labelled) {
+  return labelled ? ticks_of(axis, target) : unlabelled(ticks_of(axis, target));
 }
 
 std::string facts_of(const schema::Texture& texture) {

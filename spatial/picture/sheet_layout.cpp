@@ -27,9 +27,9 @@ std::size_t usual_columns(std::size_t cells) {
 
 }  // namespace
 
-SheetLayout::SheetLayout(std::size_t cell_count, std::size_t wanted_columns)
+SheetLayout::SheetLayout(std::size_t cell_count, std::size_t target_columns)
     : cells(cell_count),
-      columns(std::min(wanted_columns == 0 ? usual_columns(cell_count) : wanted_columns, cell_count)),
+      columns(std::min(target_columns == 0 ? usual_columns(cell_count) : target_columns, cell_count)),
       heading_height(kHeadingHeight) {
   rows = (cells + columns - 1) / columns;
 }

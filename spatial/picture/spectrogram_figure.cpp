@@ -10,7 +10,7 @@
 
 namespace tacto::spatial {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 SpectrogramFigure::SpectrogramFigure(std::vector<SpectrogramPanel> panels, SpectrogramPictureOptions options)
@@ -41,18 +41,18 @@ double SpectrogramFigure::lowest_per_m() const {
 
 Result<void> SpectrogramFigure::check() const {
   if (!(std::isfinite(options_.dynamic_range_db) && options_.dynamic_range_db > 0))
-    return schema::fail(Fault::usage, "the dynamic range must be above 0 dB", "dynamic range",
+    return schema::fail(ErrorKind::usage, "the dynamic range must be above 0 dB", "dynamic range",
                         "60dB is usual");
   for (const auto& panel : panels_)
     if (panel.spectrogram->unit != panels_.front().spectrogram->unit)
-      return schema::fail(Fault::unsuitable, "its unit differs from the first texture's",
+      return schema::fail(ErrorKind::unsuitable, "its unit differs from the first texture's",
                           panel.spectrogram->name, "draw textures of one quantity on a page");
   if (!(lowest_per_m() > 0))
-    return schema::fail(Fault::usage, "the minimum frequency must be above 0", "minimum frequency",
+    return schema::fail(ErrorKind::usage, "the minimum frequency must be above 0", "minimum frequency",
                         "the axis is logarithmic");
   if (!(lowest_per_m() * 1.5 < highest_per_m()))
-    return schema::fail(Fault::unsuitable, "the frequency axis is too short for a picture", "frequency axis",
-                        "raise the maximum frequency or lower the minimum");
+    return schema::fail(ErrorKind::unsuitable, "the frequency axis is too short for a picture",
+                        "frequency axis", "raise the maximum frequency or lower the minimum");
   return {};
 }
 

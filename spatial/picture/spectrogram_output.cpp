@@ -11,7 +11,7 @@
 
 namespace tacto::spatial {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::PendingFiles;
 using schema::Result;
 
@@ -37,7 +37,7 @@ Result<void> check_netcdf_kind(const std::string& path) {
   std::error_code ignored;
   const auto size = std::filesystem::file_size(path, ignored);
   if (ignored || size == 0 || schema::is_spectrogram_nc(path)) return {};
-  return schema::fail(Fault::usage, "holds something else, and would be lost", path,
+  return schema::fail(ErrorKind::usage, "holds something else, and would be lost", path,
                       "choose another name, or remove it first");
 }
 
@@ -45,12 +45,12 @@ Result<void> check_output(const std::string& path, std::span<const std::string> 
                           schema::Existing existing) {
   const std::string extension = extension_of(path);
   if (std::ranges::find(kExtensions, extension) == kExtensions.end())
-    return schema::fail(Fault::usage,
+    return schema::fail(ErrorKind::usage,
                         extension.empty() ? "the name has no extension to say what to write"
                                           : "'" + extension + "' is not a form of a spectrogram",
                         path, "take .png, .svg, .nc or .csv");
   if (std::ranges::any_of(earlier, [&](const std::string& other) { return schema::same_file(path, other); }))
-    return schema::fail(Fault::usage, "is named twice", path, "give each output a name of its own");
+    return schema::fail(ErrorKind::usage, "is named twice", path, "give each output a name of its own");
   if (extension == ".csv") return schema::check_table_free(path, existing, is_spectrogram_table);
   if (extension == ".nc")
     if (auto ours = check_netcdf_kind(path); !ours) return ours;

@@ -11,7 +11,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kBytesPerSample = 4;
@@ -26,7 +26,7 @@ Result<schema::MeasuredChoice> measured(const schema::TradeTable& table, const c
                                         std::string_view name) {
   for (const schema::MeasuredChoice& choice : table.choices)
     if (choice.stage == stage && choice.name == name && !choice.errors.empty()) return choice;
-  return schema::fail(Fault::unsuitable, fmt::format("says nothing of {} by {}", stage, name),
+  return schema::fail(ErrorKind::unsuitable, fmt::format("says nothing of {} by {}", stage, name),
                       "the table of measured choices", "measure again with 'tactograph trade --calibrate'");
 }
 
@@ -69,7 +69,7 @@ Result<std::vector<TextureChoice>> tried_for(const schema::TradeTable& table, co
 Result<TextureChoices> choose_texture(const schema::TradeTable& table, const TextureNeed& need,
                                       const schema::Budget& budget) {
   if (budget.max_error && !(*budget.max_error > 0 && *budget.max_error <= kMostAskedOfTexture))
-    return schema::fail(Fault::usage, fmt::format("an error of {:g} %", 100 * *budget.max_error),
+    return schema::fail(ErrorKind::usage, fmt::format("an error of {:g} %", 100 * *budget.max_error),
                         "--max-error", "above 0 and at most 10%");
   auto tried = tried_for(table, need);
   TACTO_TRY(tried);
@@ -78,7 +78,7 @@ Result<TextureChoices> choose_texture(const schema::TradeTable& table, const Tex
   const auto taken = budget.most_exact() ? least : std::ranges::find_if(*tried, keeps);
   if (taken == tried->end())
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("no {} keeps the error under {:.3g} %: the least is {:.3g} %, by {} on a grid of {}",
                     need.method || need.pitch_m ? "choice beside what was named" : "choice",
                     100 * budget.most_error(), 100 * least->error, name_of(least->method),
@@ -110,7 +110,7 @@ Result<ResolutionChoice> choose_resolution(const schema::TradeTable& table, std:
   const auto taken = budget.most_exact() ? least : std::ranges::find_if(*choices, keeps);
   if (taken != choices->end()) return *taken;
   return schema::fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("no way of computing it keeps the error under {:.3g} %: single precision leaves {:.2g} %",
                   100 * budget.most_error(), 100 * least->error),
       {}, "ask for less");

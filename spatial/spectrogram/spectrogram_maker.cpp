@@ -15,7 +15,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 using schema::Scaling;
 using schema::SpectrogramHeader;
@@ -52,7 +52,7 @@ Result<void> check_length(const Texture& texture, std::size_t window) {
   if (signal.values.size() >= window) return {};
   const double have_m = static_cast<double>(signal.values.size()) * signal.pitch_m;
   return schema::fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("the texture of {} is shorter than the window of {}", schema::length_for_people(have_m),
                   schema::length_for_people(static_cast<double>(window) * signal.pitch_m)),
       "texture",
@@ -65,7 +65,7 @@ Result<void> check_finite(const Texture& texture) {
   const auto& values = texture.signal.values;
   const auto bad = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
   if (bad == values.end()) return {};
-  return schema::fail(Fault::unsuitable, "a value is not finite",
+  return schema::fail(ErrorKind::unsuitable, "a value is not finite",
                       fmt::format("sample {}", bad - values.begin()),
                       "make the texture again from a recording without gaps");
 }
@@ -73,7 +73,7 @@ Result<void> check_finite(const Texture& texture) {
 Result<void> check_pitch(const Texture& texture, double pitch_m) {
   if (std::abs(texture.signal.pitch_m - pitch_m) <= 1e-9 * pitch_m) return {};
   return schema::fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("has a grid of {}, not {}", schema::length_for_people(texture.signal.pitch_m),
                   schema::length_for_people(pitch_m)),
       "texture", "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
@@ -85,7 +85,7 @@ constexpr const char* kTakeAmplitudes =
 
 Result<void> check_cells(std::span<const float> cells) {
   if (std::ranges::all_of(cells, [](float cell) { return cell <= kLargestCell; })) return {};
-  return schema::fail(Fault::unsuitable, "its densities do not fit single precision", "texture",
+  return schema::fail(ErrorKind::unsuitable, "its densities do not fit single precision", "texture",
                       kTakeAmplitudes);
 }
 
@@ -96,7 +96,7 @@ Result<void> check_faintness(const Texture& texture, Scaling scaling) {
   for (const double value : texture.signal.values) largest = std::max(largest, std::abs(value));
   if (largest == 0 || largest >= kFaintest) return {};
   return schema::fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("its largest value is {:.3g} {}, whose densities do not fit single precision", largest,
                   texture.unit),
       "texture", kTakeAmplitudes);

@@ -13,7 +13,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 // A length in samples, and the range that it must lie in; `least` names its lower end for people.
@@ -32,7 +32,7 @@ Result<std::size_t> samples_of(const Asked& asked, double pitch_m) {
   if (samples > least - 0.5 && samples < most + 0.5)
     return std::clamp(static_cast<std::size_t>(std::llround(samples)), asked.least, kLongestTransform);
   return schema::fail(
-      Fault::usage,
+      ErrorKind::usage,
       fmt::format("{} of {} can't be used", asked.what, schema::length_for_people(asked.length_m)),
       asked.where,
       fmt::format("take {} ({}) to {} (2^24 samples)", schema::length_for_people(least * pitch_m),
@@ -65,7 +65,7 @@ Result<FrameShape> frame_shape(const SpectrogramOptions& options, double pitch_m
     shape.padded = *padded;
   }
   if (!(options.max_frequency_per_m > 0))
-    return schema::fail(Fault::usage, "the maximum frequency must be above 0", "maximum frequency",
+    return schema::fail(ErrorKind::usage, "the maximum frequency must be above 0", "maximum frequency",
                         "15/mm is usual");
   shape.bins = bins_to(options.max_frequency_per_m, shape.padded, pitch_m);
   return shape;

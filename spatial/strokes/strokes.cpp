@@ -10,7 +10,7 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kPause_s = 0.1;             // a finger that sticks lets go sooner
+constexpr double kPauseS = 0.1;              // a finger that sticks lets go sooner
 constexpr double kSlowest = 0.1;             // of the stroke's own travelling speed: it starts and ends there
 constexpr double kUnderWay = 0.5;            // what a stroke reaches somewhere
 constexpr double kRest = 1e-4;               // of the record's travelling speed: creep of a resting stage
@@ -38,7 +38,7 @@ class Search {
   schema::Result<Strokes> strokes() const;
 
  private:
-  std::size_t pause() const { return static_cast<std::size_t>(std::ceil(kPause_s * rate_hz_)); }
+  std::size_t pause() const { return static_cast<std::size_t>(std::ceil(kPauseS * rate_hz_)); }
   double shortest_run_m() const { return kShortestRun * facts_.resolution_m(); }
   schema::Result<Strokes> runs_above(FrameRange range, double threshold_mps, double shortest_m,
                                      std::vector<double>* fastest_mps) const;
@@ -172,7 +172,7 @@ schema::Result<Strokes> strokes_in(const ReadFrames& read, FrameRange piece, dou
   const Search search(read, piece, sample_rate_hz, facts, window);
   auto strokes = search.strokes();
   if (!strokes || search.rest_mps() < kSlowestFinger_mps / 2 || longer <= window) return strokes;
-  const auto pause = static_cast<std::size_t>(std::ceil(kPause_s * sample_rate_hz));
+  const auto pause = static_cast<std::size_t>(std::ceil(kPauseS * sample_rate_hz));
   for (const FrameRange& rest : between(piece, *strokes, pause)) {
     const auto more = Search(read, rest, sample_rate_hz, facts, longer).strokes();
     if (!more) return more;

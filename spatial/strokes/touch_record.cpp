@@ -14,7 +14,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 // What a finger may go back within a stretch and still be said to go one way: a few counts, or its elastic
 // rebound.
@@ -55,7 +55,7 @@ schema::Result<void> TouchRecord::survey() {
   TACTO_TRY(track);
   track_ = std::move(*track);
   if (!track_->moves())
-    return schema::fail(Fault::unsuitable, "the position never moves", where_,
+    return schema::fail(ErrorKind::unsuitable, "the position never moves", where_,
                         "a texture needs a finger that strokes; is this the right position channel?");
   pieces_ = pieces_between_gaps(header_.frames, header_.gaps);
   const ReadFrames read = [this](std::size_t first, std::span<double> out) {
@@ -91,7 +91,7 @@ void TouchRecord::mark_cut_strokes() {
 }
 
 schema::Error TouchRecord::refusal(const PositionJump& jump) const {
-  return {Fault::unsuitable,
+  return {ErrorKind::unsuitable,
           fmt::format("the position jumps by {} from sample {} to sample {}, at {}, as no finger does",
                       schema::length_for_people(jump.step_m), jump.frame - 1, jump.frame,
                       seconds(schema::frame_time_s(header_, jump.frame))),
@@ -142,7 +142,7 @@ std::string TouchRecord::list_of_strokes() const {
 schema::Result<Stroke> TouchRecord::stroke(int number) const {
   if (number >= 1 && static_cast<std::size_t>(number) <= strokes_.size())
     return strokes_[static_cast<std::size_t>(number) - 1];
-  return schema::fail(Fault::unsuitable, fmt::format("there is no stroke {}", number), where_,
+  return schema::fail(ErrorKind::unsuitable, fmt::format("there is no stroke {}", number), where_,
                       list_of_strokes());
 }
 
@@ -152,12 +152,12 @@ schema::Result<FrameRange> TouchRecord::frames_between(double from_s, double to_
   const double first_s = schema::frame_time_s(header_, 0), last_s = schema::frame_time_s(header_, frames - 1);
   if (!(from_s < to_s))
     return schema::fail(
-        Fault::usage,
+        ErrorKind::usage,
         fmt::format("the stretch ends at {}, not after its start at {}", seconds(to_s), seconds(from_s)),
         where_);
   if (from_s < first_s - slack_s || to_s > last_s + 3 * slack_s)
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("the stretch {} to {} reaches out of the recording", seconds(from_s), seconds(to_s)),
         where_, fmt::format("it lasts from {} to {}", seconds(first_s), seconds(last_s)));
   const auto first_from = [&](double time_s) {
@@ -171,7 +171,7 @@ schema::Result<FrameRange> TouchRecord::frames_between(double from_s, double to_
 schema::Result<void> TouchRecord::check_gapless(FrameRange frames) const {
   for (const schema::Gap& gap : header_.gaps)
     if (gap.frame > frames.begin && gap.frame < frames.end)
-      return schema::fail(Fault::unsuitable,
+      return schema::fail(ErrorKind::unsuitable,
                           fmt::format("{} frames are missing at {}, inside the stretch", gap.count,
                                       seconds(schema::frame_time_s(header_, gap.frame))),
                           where_, "ask for a stretch before or after them");
@@ -183,7 +183,7 @@ schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
   TACTO_TRY(read);
   const std::vector<double>& positions = *read;
   if (positions.size() < 2 || positions.front() == positions.back())
-    return schema::fail(Fault::unsuitable, "the finger gets nowhere in the stretch", where_,
+    return schema::fail(ErrorKind::unsuitable, "the finger gets nowhere in the stretch", where_,
                         list_of_strokes());
   const double advance_m = std::abs(positions.back() - positions.front());
   const int direction = positions.back() > positions.front() ? 1 : -1;
@@ -191,12 +191,12 @@ schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
   const double unseen_m = std::max(kBackwardQuanta * facts_.quantum_m, kBackwardSigmas * facts_.noise_m);
   if (backward_m > std::max(unseen_m, kBackwardOfWay * advance_m))
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("the finger turns round in the stretch, by {}", schema::length_for_people(backward_m)),
         where_, list_of_strokes());
   if (advance_m < kShortestTravelResolutions * facts_.resolution_m())
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("the finger all but rests in the stretch: it gets {} far, and its "
                     "position is known to {}",
                     schema::length_for_people(advance_m), schema::length_for_people(facts_.resolution_m())),

@@ -15,7 +15,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using MaybeIndex = std::optional<std::size_t>;
 
 MaybeIndex channel_of(const schema::RecordingHeader& header, std::string_view quantity) {
@@ -58,10 +58,10 @@ schema::Result<std::size_t> value_channel(const schema::Recording& recording, co
   const auto found = texture_channels(header);
   if (found.size() == 1) return found.front();
   if (found.empty())
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         fmt::format("has no channel that can be a texture, only {}", names_of(header)),
                         recording.stem, "import it with --channel tangential_force=COLUMN*SCALE");
-  return schema::fail(Fault::unsuitable,
+  return schema::fail(ErrorKind::unsuitable,
                       fmt::format("has no tangential_force, and {} channels that can be a texture: {}",
                                   found.size(), list_of(header, found)),
                       recording.stem,
@@ -97,7 +97,7 @@ schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Rec
   const MaybeIndex position = channel_of(recording.header, "position");
   if (!position)
     return schema::fail(
-        Fault::unsuitable, fmt::format("has no position channel, only {}", names_of(recording.header)),
+        ErrorKind::unsuitable, fmt::format("has no position channel, only {}", names_of(recording.header)),
         recording.stem, "import it with --channel position=COLUMN*SCALE, or with --speed for a nominal one");
   auto frames = schema::RecordingFrames::open(recording);
   TACTO_TRY(frames);

@@ -13,7 +13,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 constexpr double kBandSpacing_m = 1e-4;
 constexpr double kFurthestAway = 10;  // lengths of the first: another place, or a broken position
@@ -28,11 +28,11 @@ schema::Result<void> TextureAverager::check(const schema::Texture& texture, std:
   if (strokes_.empty()) return {};
   if (texture.signal.pitch_m != model_.signal.pitch_m || texture.quantity != model_.quantity ||
       texture.unit != model_.unit)
-    return schema::fail(Fault::unsuitable, "strokes of different grids or quantities have no mean");
+    return schema::fail(ErrorKind::unsuitable, "strokes of different grids or quantities have no mean");
   const auto reach = static_cast<std::int64_t>(kFurthestAway * static_cast<double>(cells_.size()));
   if (first < first_ - reach || first > first_ + static_cast<std::int64_t>(cells_.size()) + reach)
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("stroke {} lies {} from the others", texture.source.stroke,
                     schema::for_people(static_cast<double>(std::abs(first - first_)) * model_.signal.pitch_m,
                                        schema::Dimension::length)),
@@ -168,10 +168,10 @@ schema::Texture TextureAverager::described() const {
 
 schema::Result<schema::Texture> TextureAverager::finish(const std::string& align) const {
   if (strokes_.size() < 2)
-    return schema::fail(Fault::unsuitable, fmt::format("{} stroke makes no mean", strokes_.size()));
+    return schema::fail(ErrorKind::unsuitable, fmt::format("{} stroke makes no mean", strokes_.size()));
   const Stretch stretch = well_covered();
   if (stretch.end - stretch.begin < 2)
-    return schema::fail(Fault::unsuitable, "the strokes do not lie over one place", {},
+    return schema::fail(ErrorKind::unsuitable, "the strokes do not lie over one place", {},
                         "half of them must overlap; --list shows where they lie");
   schema::Texture texture = described();
   texture.average = schema::TextureAverage{align, {}, strokes_, counts(stretch)};

@@ -28,7 +28,8 @@ schema::Result<BandShare> share_of_stroke(const TouchRecord& record, FilteredTra
   const auto holds = [&](const FrameRange& piece) { return piece.contains(frames); };
   const auto piece = std::ranges::find_if(record.pieces(), holds);
   if (piece == record.pieces().end())
-    return schema::fail(schema::Fault::unsuitable, "frames are missing inside the stroke", record.where());
+    return schema::fail(schema::ErrorKind::unsuitable, "frames are missing inside the stroke",
+                        record.where());
   const auto passed = filtered.values(*piece, frames);
   TACTO_TRY(passed);
   std::vector<double> taken(frames.size());

@@ -117,7 +117,7 @@ schema::Result<void> BlockTimeFilter::push(std::span<const double> values, std::
   if (odd != values.end()) {
     const auto index = taken_ + static_cast<std::size_t>(odd - values.begin());
     reset();
-    return schema::fail(schema::Fault::unsuitable,
+    return schema::fail(schema::ErrorKind::unsuitable,
                         fmt::format("value {} of the stretch is not a finite number", index), {},
                         "repair the recording, or cut the stretch there");
   }

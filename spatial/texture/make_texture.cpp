@@ -19,7 +19,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 constexpr double kSlowPart = 0.25;   // of the median speed
 constexpr double kMostFiner = 4096;  // 1 um of a grid of 4 mm
@@ -49,7 +49,7 @@ schema::Result<TextureMaker> TextureMaker::open(TouchRecord record, const Textur
 }
 
 schema::Result<void> TextureMaker::prepare() {
-  if (!(options_.pitch_m > 0)) return schema::fail(Fault::usage, "the grid's pitch must be above 0");
+  if (!(options_.pitch_m > 0)) return schema::fail(ErrorKind::usage, "the grid's pitch must be above 0");
   const schema::RecordingHeader& header = record_.header();
   if (auto fits = check(options_.filter, header.sample_rate_hz); !fits) {
     fits.error().where = record_.where();
@@ -65,11 +65,11 @@ schema::Result<void> TextureMaker::choose_equaliser() {
   const schema::RecordingHeader& header = record_.header();
   if (options_.equalise == Equalise::off) return {};
   if (options_.equalise == Equalise::on && !header.transducer)
-    return schema::fail(Fault::unsuitable, "names no transducer, so there is no response to divide by",
+    return schema::fail(ErrorKind::unsuitable, "names no transducer, so there is no response to divide by",
                         record_.where(), "leave --equalise away");
   const bool of_transducer = record_.channel().quantity == "tangential_force";
   if (options_.equalise == Equalise::on && !of_transducer)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         record_.channel().name +
                             " did not pass through the transducer, whose response says "
                             "nothing of it",
@@ -77,7 +77,7 @@ schema::Result<void> TextureMaker::choose_equaliser() {
   if (!header.transducer || !of_transducer) return {};
   const auto plausible = schema::check_plausible(*header.transducer, record_.where() + "#/transducer");
   if (!plausible)
-    return schema::fail(Fault::unsuitable, plausible.error().what, plausible.error().where,
+    return schema::fail(ErrorKind::unsuitable, plausible.error().what, plausible.error().where,
                         "correct it, or leave the response in with --equalise off");
   equaliser_ = equaliser(*header.transducer);
   return {};
@@ -87,7 +87,7 @@ schema::Result<void> TextureMaker::check_duration(const Stroke& stroke) const {
   const double low_hz = options_.filter.passed(record_.header().sample_rate_hz).low_hz;
   const double duration_s = record_.to_s(stroke) - record_.from_s(stroke);
   if (duration_s * low_hz >= 1 || low_hz == 0) return {};
-  return schema::fail(Fault::unsuitable,
+  return schema::fail(ErrorKind::unsuitable,
                       fmt::format("the stroke at {:.4g} s lasts {:.3g} s, less than one period of {:g} Hz",
                                   record_.from_s(stroke), duration_s, low_hz),
                       record_.where(), "raise --low, or turn the band off with --band off");
@@ -98,7 +98,7 @@ schema::Result<MonotonePath> TextureMaker::path_of(const Stroke& stroke, double 
   TACTO_TRY(positions);
   MonotonePath path = monotone_path(*positions, stroke.direction, record_.position_error());
   if (path.way_m.empty())
-    return schema::fail(Fault::unsuitable, "the finger gets nowhere in the stroke", record_.where());
+    return schema::fail(ErrorKind::unsuitable, "the finger gets nowhere in the stroke", record_.where());
   if (shift_m != 0)
     for (double& way_m : path.way_m) way_m += stroke.direction * shift_m;
   return path;
@@ -109,7 +109,7 @@ schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke
   const auto holds = [&](const FrameRange& piece) { return piece.contains(stroke.frames); };
   const auto piece = std::ranges::find_if(record_.pieces(), holds);
   if (piece == record_.pieces().end())
-    return schema::fail(Fault::unsuitable, "frames are missing inside the stroke", record_.where());
+    return schema::fail(ErrorKind::unsuitable, "frames are missing inside the stroke", record_.where());
   // Beyond the stroke's ends, so that S_f is there what it is in the whole signal.
   const std::size_t margin = margin_of(options_.method);
   const std::size_t before = std::min(margin, stroke.frames.begin - piece->begin);
@@ -160,7 +160,7 @@ schema::Result<void> TextureMaker::check_band(double usual_mps) const {
     return schema::for_people(value, dimension);
   };
   return schema::fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("the finger all but rests: at {} the band from {:g} Hz on lies above {}, and a grid of {} "
                   "ends at {}",
                   text(usual_mps, schema::Dimension::speed), band.low_hz,

@@ -117,18 +117,18 @@ std::size_t margin_of(ResampleMethod method) {
 }
 
 schema::Result<SpaceGrid> grid_along(const MonotonePath& path, int direction, double pitch_m) {
-  using schema::Fault;
+  using schema::ErrorKind;
   const auto [low_m, high_m] = std::minmax({direction * path.way_m.front(), direction * path.way_m.back()});
   const double first = std::ceil(low_m / pitch_m - kOnGrid), last = std::floor(high_m / pitch_m + kOnGrid);
   if (last - first < 1)
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("the stroke's {} lie between two points of the grid of {}",
                     schema::length_for_people(high_m - low_m), schema::length_for_people(pitch_m)),
         {}, "choose a finer --grid");
   if (last - first >= kMostSamples)
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("a grid of {} on {} is more than 1e9 samples", schema::length_for_people(pitch_m),
                     schema::length_for_people(high_m - low_m)),
         {}, "choose a coarser --grid");

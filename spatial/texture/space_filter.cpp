@@ -6,7 +6,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 std::string per_mm(double per_m) {
   return fmt::format("{:g}/mm", per_m * 1e-3);
@@ -15,15 +15,15 @@ std::string per_mm(double per_m) {
 schema::Result<void> check(const SpaceFilter& filter, double pitch_m, std::size_t count) {
   const auto [method, low_per_m, high_per_m, edges, order] = filter;
   if (!(low_per_m >= 0 && low_per_m < high_per_m))
-    return schema::fail(Fault::unsuitable, fmt::format("the band {} to {} does not rise", per_mm(low_per_m),
-                                                       per_mm(high_per_m)));
+    return schema::fail(ErrorKind::unsuitable, fmt::format("the band {} to {} does not rise",
+                                                           per_mm(low_per_m), per_mm(high_per_m)));
   if (high_per_m > 0.5 / pitch_m)
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("the band reaches to {}, the grid only to {}", per_mm(high_per_m), per_mm(0.5 / pitch_m)),
         {}, "choose a lower band, or a finer --grid");
   if (static_cast<double>(count) * pitch_m * low_per_m < 1 && low_per_m > 0)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         fmt::format("{:.4g} mm of texture are less than one period of {}",
                                     static_cast<double>(count) * pitch_m * 1e3, per_mm(low_per_m)),
                         {}, "raise the band's lower end");

@@ -9,7 +9,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 }  // namespace
 
@@ -42,10 +42,10 @@ schema::Result<void> check(const TimeFilter& filter, double sample_rate_hz) {
   const auto [low_hz, high_hz] = filter.band;
   if (filter.method == FilterMethod::none) return {};
   if (!(low_hz >= 0 && low_hz < high_hz))
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         fmt::format("the band {:g} Hz to {:g} Hz does not rise", low_hz, high_hz));
   if (high_hz > sample_rate_hz / 2)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         fmt::format("the band reaches to {:g} Hz, the recording only to {:g} Hz", high_hz,
                                     sample_rate_hz / 2),
                         {}, "choose a band under half the sample rate, or --band off");

@@ -11,7 +11,7 @@
 namespace tacto::analysis {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 CompareOptions no_formants() {
   CompareOptions options;
@@ -204,27 +204,27 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   const auto fault_of = [&](const schema::Texture& b, const CompareOptions& options = no_formants()) {
     const auto found = compare(a, b, options);
     EXPECT_FALSE(found);
-    return found ? Fault::internal : found.error().fault;
+    return found ? ErrorKind::internal : found.error().fault;
   };
   auto heights = a;
   heights.quantity = "height";
   heights.unit = "m";
-  EXPECT_EQ(fault_of(heights), Fault::unsuitable);
-  EXPECT_EQ(fault_of(scaled(a, 0)), Fault::unsuitable) << "silence";
-  EXPECT_EQ(fault_of(white_texture(2, 40)), Fault::unsuitable) << "too short";
+  EXPECT_EQ(fault_of(heights), ErrorKind::unsuitable);
+  EXPECT_EQ(fault_of(scaled(a, 0)), ErrorKind::unsuitable) << "silence";
+  EXPECT_EQ(fault_of(white_texture(2, 40)), ErrorKind::unsuitable) << "too short";
   auto slow = a, fast = a;
   slow.valid_band = {{0, 100, 900}};
   fast.valid_band = {{0, 1000, 9000}};
-  EXPECT_EQ(compare(slow, fast, no_formants()).error().fault, Fault::unsuitable) << "nothing in common";
+  EXPECT_EQ(compare(slow, fast, no_formants()).error().fault, ErrorKind::unsuitable) << "nothing in common";
   CompareOptions options = no_formants();
   options.window_m = 10;
-  EXPECT_EQ(fault_of(a, options), Fault::usage);
+  EXPECT_EQ(fault_of(a, options), ErrorKind::usage);
   options = no_formants();
   options.tolerance_db = 0;
-  EXPECT_EQ(fault_of(a, options), Fault::usage);
+  EXPECT_EQ(fault_of(a, options), ErrorKind::usage);
   options = no_formants();
   options.pair.max_shift_m = NAN;
-  EXPECT_EQ(fault_of(a, options), Fault::usage);
+  EXPECT_EQ(fault_of(a, options), ErrorKind::usage);
 }
 
 TEST(ComparePage, NeedsNothingBesideItAndEscapesNames) {

@@ -162,28 +162,28 @@ TEST_F(FidelityOfATexture, RefusesWhatCannotBePlayed) {
   const auto fault = [&] {
     const auto found = fidelity(options_);
     EXPECT_FALSE(found);
-    return found ? schema::Fault::internal : found.error().fault;
+    return found ? schema::ErrorKind::internal : found.error().fault;
   };
   options_.speeds_mps = {-0.05};
-  EXPECT_EQ(fault(), schema::Fault::usage);
+  EXPECT_EQ(fault(), schema::ErrorKind::usage);
   options_.speeds_mps = {};
-  EXPECT_EQ(fault(), schema::Fault::usage);
+  EXPECT_EQ(fault(), schema::ErrorKind::usage);
   options_.speeds_mps = {0.45};
-  EXPECT_EQ(fault(), schema::Fault::unsuitable) << "40 mm pass before the tray has settled";
+  EXPECT_EQ(fault(), schema::ErrorKind::unsuitable) << "40 mm pass before the tray has settled";
   options_.speeds_mps = {0.05, 1e-6};
   const auto endless = fidelity(options_);
   ASSERT_FALSE(endless);
-  EXPECT_EQ(endless.error().fault, schema::Fault::unsuitable);
+  EXPECT_EQ(endless.error().fault, schema::ErrorKind::unsuitable);
   EXPECT_NE(endless.error().what.find("4e+04 s"), std::string::npos) << endless.error().what;
   // 39.995 mm in the 500 s that 1e7 samples at 20 kHz are, less 2 s around them; a thousandth more for
   // rounding.
   EXPECT_NE(endless.error().remedy.find("80.39 um/s or more"), std::string::npos) << endless.error().remedy;
   options_.speeds_mps = {0.05};
   options_.play.device_uri = "sim:nonsense=1";
-  EXPECT_EQ(fault(), schema::Fault::usage);
+  EXPECT_EQ(fault(), schema::ErrorKind::usage);
   options_.play.device_uri = "sim:";
   options_.play.program.file = folder_ / "absent";
-  EXPECT_EQ(fault(), schema::Fault::not_found);
+  EXPECT_EQ(fault(), schema::ErrorKind::not_found);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ TEST(DemoPage, EachValueHasItsHeader) {
   DemoSurface surface;
   surface.surface = "A";
   surface.gain_m_per_n = 0.7e-3;
-  surface.wanted_rms_m = 9e-6;
+  surface.target_rms_m = 9e-6;
   surface.drive_peak_v = 3;
   const std::string page = demo_page({surface}, "by a test");
   EXPECT_EQ(count_of("<th>", page), count_of("<td", page));

@@ -42,10 +42,10 @@ std::vector<double> tray_under(const std::vector<double>& drive_v, double openin
   return x;
 }
 
-double part_left(const std::vector<double>& wanted, const std::vector<double>& is) {
+double part_left(const std::vector<double>& target, const std::vector<double>& is) {
   double left = 0, whole = 0;
   for (std::size_t i = 0; i < is.size(); ++i)
-    left += std::pow(wanted[i] - is[i], 2), whole += std::pow(wanted[i], 2);
+    left += std::pow(target[i] - is[i], 2), whole += std::pow(target[i], 2);
   return std::sqrt(left / whole);
 }
 

@@ -33,7 +33,7 @@ TEST(ReplayError, FindsTheDelayToATenthOfAMicrosecond) {
 TEST(ReplayError, IsTheRelativeErrorOfAGain) {
   const auto error = replay_error(tones(1e-3, 1.01), tones(0, 1), {}, 0.2);
   EXPECT_NEAR(error.error_db, -40, 0.1);  // 1 %; the tones end within the padding, whose ringing is left out
-  EXPECT_NEAR(error.wanted_rms, std::sqrt(2.0), 0.01);
+  EXPECT_NEAR(error.target_rms, std::sqrt(2.0), 0.01);
 }
 
 TEST(ReplayError, LeavesOutWhatLiesOutsideTheBand) {

@@ -161,9 +161,9 @@ TEST(SpectrogramPairs, PaddingErrsAsTheWindowsLobeSays) {
       };
       const TradeRow& row =
           row_named(*rows, "window x padding", fmt::format("{:g} mm, {} windows", 1e3 * window_m, times));
-      const std::string wanted = playback::percent(std::abs(height(times) / height(16) - 1));
-      EXPECT_TRUE(row.note.ends_with("padding " + wanted))
-          << row.choice << ": " << row.note << ", " << wanted;
+      const std::string target = playback::percent(std::abs(height(times) / height(16) - 1));
+      EXPECT_TRUE(row.note.ends_with("padding " + target))
+          << row.choice << ": " << row.note << ", " << target;
     }
 }
 

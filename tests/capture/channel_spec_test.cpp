@@ -21,14 +21,14 @@ struct SpecCase {
 class ChannelSpecs : public testing::TestWithParam<SpecCase> {};
 
 TEST_P(ChannelSpecs, AreRead) {
-  const SpecCase& wanted = GetParam();
-  const auto spec = parse_channel(wanted.text, kColumns);
+  const SpecCase& target = GetParam();
+  const auto spec = parse_channel(target.text, kColumns);
   ASSERT_TRUE(spec) << schema::message(spec.error());
-  EXPECT_EQ(spec->name, wanted.name);
-  EXPECT_EQ(spec->quantity, wanted.quantity);
-  EXPECT_EQ(spec->source.column, wanted.column);
-  EXPECT_EQ(spec->source.scale, wanted.scale);
-  EXPECT_EQ(spec->source.offset, wanted.offset);
+  EXPECT_EQ(spec->name, target.name);
+  EXPECT_EQ(spec->quantity, target.quantity);
+  EXPECT_EQ(spec->source.column, target.column);
+  EXPECT_EQ(spec->source.scale, target.scale);
+  EXPECT_EQ(spec->source.offset, target.offset);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -71,7 +71,7 @@ class RefusedSpecs : public testing::TestWithParam<RefusedSpec> {};
 TEST_P(RefusedSpecs, SayWhatWouldFit) {
   const auto spec = parse_channel(GetParam().text, kColumns);
   ASSERT_FALSE(spec);
-  EXPECT_EQ(spec.error().fault, schema::Fault::usage);
+  EXPECT_EQ(spec.error().fault, schema::ErrorKind::usage);
   const std::string message = schema::message(spec.error());
   EXPECT_NE(message.find(GetParam().says), std::string::npos) << message;
   EXPECT_NE(message.find(GetParam().names), std::string::npos) << message;

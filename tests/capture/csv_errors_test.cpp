@@ -16,11 +16,11 @@ struct ErrorCase {
 
 class CsvErrors : public testing::TestWithParam<ErrorCase> {};
 
-void expect_error(const schema::Result<ReadText>& table, const ErrorCase& wanted) {
+void expect_error(const schema::Result<ReadText>& table, const ErrorCase& target) {
   ASSERT_FALSE(table);
-  EXPECT_EQ(table.error().fault, schema::Fault::malformed);
-  EXPECT_NE(table.error().what.find(wanted.what), std::string::npos) << table.error().what;
-  EXPECT_EQ(table.error().where, wanted.where);
+  EXPECT_EQ(table.error().fault, schema::ErrorKind::malformed);
+  EXPECT_NE(table.error().what.find(target.what), std::string::npos) << table.error().what;
+  EXPECT_EQ(table.error().where, target.where);
   EXPECT_EQ(schema::message(table.error()).find('\n'), std::string::npos);
 }
 

@@ -29,12 +29,12 @@ struct LayoutCase {
 class CsvLayouts : public testing::TestWithParam<LayoutCase> {};
 
 TEST_P(CsvLayouts, IsFound) {
-  const LayoutCase& wanted = GetParam();
-  const CsvLayout found = layout_of(wanted.text);
-  EXPECT_EQ(found.delimiter, wanted.delimiter);
-  EXPECT_EQ(found.header, wanted.header);
-  EXPECT_EQ(found.columns, wanted.columns);
-  EXPECT_EQ(found.data_line, wanted.data_line);
+  const LayoutCase& target = GetParam();
+  const CsvLayout found = layout_of(target.text);
+  EXPECT_EQ(found.delimiter, target.delimiter);
+  EXPECT_EQ(found.header, target.header);
+  EXPECT_EQ(found.columns, target.columns);
+  EXPECT_EQ(found.data_line, target.data_line);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -106,13 +106,13 @@ struct LateCase {
 class LateTables : public testing::TestWithParam<LateCase> {};
 
 TEST_P(LateTables, BeginAfterOtherLines) {
-  const LateCase& wanted = GetParam();
-  const CsvLayout found = layout_of(wanted.text);
-  EXPECT_EQ(found.delimiter, wanted.delimiter);
-  EXPECT_EQ(found.columns, wanted.columns);
-  EXPECT_EQ(found.units, wanted.units);
-  EXPECT_EQ(found.header_line, wanted.header_line);
-  EXPECT_EQ(found.data_line, wanted.data_line);
+  const LateCase& target = GetParam();
+  const CsvLayout found = layout_of(target.text);
+  EXPECT_EQ(found.delimiter, target.delimiter);
+  EXPECT_EQ(found.columns, target.columns);
+  EXPECT_EQ(found.units, target.units);
+  EXPECT_EQ(found.header_line, target.header_line);
+  EXPECT_EQ(found.data_line, target.data_line);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -214,7 +214,7 @@ TEST(CsvLayout, LinesAreSkippedWhereThatIsAskedFor) {
   EXPECT_EQ(layout->columns, (Names{"f", "x"}));
   EXPECT_EQ(layout->units, (Names{"N", "mm"}));
   EXPECT_EQ(layout->data_line, 5U);
-  EXPECT_EQ(find_csv_layout("f\n1\n", true, "t.csv", 3).error().fault, schema::Fault::usage);
+  EXPECT_EQ(find_csv_layout("f\n1\n", true, "t.csv", 3).error().fault, schema::ErrorKind::usage);
 }
 
 TEST(CsvLayout, ALineThatIsCutOffIsNotLookedAt) {

@@ -83,15 +83,15 @@ TEST(CsvReader, KnowsTheLineOfEachRow) {
 TEST(CsvReader, NumbersAreExact) {
   std::mt19937_64 random(7);
   std::string text = "a,b,c\n";
-  Columns wanted(3);
+  Columns target(3);
   for (int row = 0; row < 5000; ++row) {
     const double x = std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 160) - 120);
     const std::string fields[] = {fmt::format("{}", x), fmt::format("{:.6f}", x / 1e9),
                                   fmt::format("{:.9g}", -x)};
-    for (std::size_t k = 0; k < 3; ++k) wanted[k].push_back(std::strtod(fields[k].c_str(), nullptr));
+    for (std::size_t k = 0; k < 3; ++k) target[k].push_back(std::strtod(fields[k].c_str(), nullptr));
     text += fields[0] + "," + fields[1] + "," + fields[2] + "\n";
   }
-  EXPECT_EQ(read(text, {}, 4093).values, wanted);
+  EXPECT_EQ(read(text, {}, 4093).values, target);
 }
 
 // Plain rows of every length and sign, between others that only the slower way can read.
@@ -99,9 +99,9 @@ TEST(CsvReader, TheQuickWayAndTheSlowOneAgree) {
   std::mt19937_64 random(11);
   for (const char* mark : {".", ","}) {
     std::string text = "a;b;c\n";
-    Columns wanted(3);
+    Columns target(3);
     for (int row = 0; row < 3000; ++row) {
-      for (auto& column : wanted) {
+      for (auto& column : target) {
         std::string digits = std::to_string(random() >> random() % 64);
         if (random() % 4 != 0) digits.insert(random() % (digits.size() + 1), ".");
         if (random() % 3 == 0) digits.insert(0, "-");
@@ -109,14 +109,14 @@ TEST(CsvReader, TheQuickWayAndTheSlowOneAgree) {
         column.push_back(std::strtod(digits.c_str(), nullptr));
         if (const auto point = digits.find('.'); point != std::string::npos) digits.replace(point, 1, mark);
         const char* const quote = random() % 40 == 0 ? "\"" : "";
-        text += quote + digits + quote + (&column == &wanted[2] ? "" : ";");
+        text += quote + digits + quote + (&column == &target[2] ? "" : ";");
       }
       text += random() % 2 == 0 ? "\r\n" : "\n";
       if (random() % 100 == 0) text += "# a comment\n";
     }
     for (const std::size_t piece : {1 << 20, 4093, 100})
-      EXPECT_EQ(read(text, {}, piece).values, wanted) << mark;
-    EXPECT_EQ(read(text, {2}, 777).values, Columns{wanted[2]}) << mark;
+      EXPECT_EQ(read(text, {}, piece).values, target) << mark;
+    EXPECT_EQ(read(text, {2}, 777).values, Columns{target[2]}) << mark;
   }
 }
 

@@ -25,8 +25,8 @@ TEST(DerivedPosition, NominalIsSpeedTimesTimeWithGapsCounted) {
   made.gaps = {{2, 2, 5}};
   const auto derived = DerivedPosition::nominal(-0.04);
   const auto values = positions(derived, made, std::vector<double>(4));
-  const double wanted[] = {0, -0.004, -0.028, -0.032};
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(values[i], wanted[i], 1e-17) << i;
+  const double target[] = {0, -0.004, -0.028, -0.032};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(values[i], target[i], 1e-17) << i;
   EXPECT_EQ(derived.channel().derivation, "nominal: -40 mm/s");
   EXPECT_EQ(derived.channel().unit, "m");
 }

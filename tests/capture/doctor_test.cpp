@@ -17,7 +17,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using tests::TemporaryFolder;
 namespace fs = std::filesystem;
 
@@ -93,7 +93,7 @@ TEST(Doctor, ADeviceThatDoesNotAnswerFails) {
     schema::Result<void> stop() override { return {}; }
     firmware_host::StreamCounts counts() const override { return {}; }
     schema::Result<double> round_trip_s() override {
-      return schema::fail(Fault::device, "the device did not answer heartbeat");
+      return schema::fail(ErrorKind::device, "the device did not answer heartbeat");
     }
     firmware_host::Capabilities can;
   } broken;
@@ -107,7 +107,7 @@ TEST(Doctor, AFolderThatIsNotThereFails) {
   const Diagnosis diagnosis = examine(asked);
   ASSERT_NE(diagnosis.obstacle(), nullptr);
   EXPECT_EQ(diagnosis.obstacle()->name, "disk");
-  EXPECT_EQ(diagnosis.obstacle()->fault, Fault::cannot_write);
+  EXPECT_EQ(diagnosis.obstacle()->fault, ErrorKind::cannot_write);
 }
 
 TEST(Doctor, AReadOnlyFolderFails) {
@@ -117,7 +117,7 @@ TEST(Doctor, AReadOnlyFolderFails) {
   const std::string place = geteuid() == 0 ? "/proc" : folder / "locked";  // root may write anywhere else
   const Check check = check_disk(place, 160e3);
   EXPECT_EQ(check.health, Health::fails);
-  EXPECT_EQ(check.fault, Fault::cannot_write);
+  EXPECT_EQ(check.fault, ErrorKind::cannot_write);
 }
 
 TEST(Doctor, ADiskTooSlowForTheStreamFails) {
@@ -139,7 +139,7 @@ TEST(DiskSpeed, LeavesNothingBehind) {
 
 TEST(Doctor, TheRuleForPermissionIsLookedForWhereUdevDoes) {
   const TemporaryFolder folder;
-  const schema::Error denied{Fault::not_found, "this user may not open the device", "usb:", ""};
+  const schema::Error denied{ErrorKind::not_found, "this user may not open the device", "usb:", ""};
   const Check without = check_permission(denied, folder / "");
   EXPECT_EQ(without.health, Health::fails);
   EXPECT_NE(without.remedy.find("/etc/udev/rules.d/60-tactograph.rules"), std::string::npos);
@@ -150,7 +150,7 @@ TEST(Doctor, TheRuleForPermissionIsLookedForWhereUdevDoes) {
   EXPECT_EQ(with.health, Health::fails);
   EXPECT_NE(with.remedy.find("plugdev"), std::string::npos);
   EXPECT_TRUE(is_denied(denied));
-  const schema::Error absent{Fault::not_found, "there is no device of ours on USB", "usb:", ""};
+  const schema::Error absent{ErrorKind::not_found, "there is no device of ours on USB", "usb:", ""};
   EXPECT_EQ(check_permission(absent, folder / "").health, Health::works);
 }
 

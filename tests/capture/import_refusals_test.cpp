@@ -7,7 +7,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 class ImportRefusals : public ImportTest {
  protected:
@@ -17,7 +17,7 @@ class ImportRefusals : public ImportTest {
     return made;
   }
 
-  void refused(const ImportRequest& asked, Fault fault, const std::string& says) const {
+  void refused(const ImportRequest& asked, ErrorKind fault, const std::string& says) const {
     const std::size_t before = folder_.files();
     const auto done = import(asked);
     ASSERT_FALSE(done);
@@ -26,7 +26,8 @@ class ImportRefusals : public ImportTest {
     EXPECT_EQ(folder_.files(), before);
   }
 
-  void refused(const std::function<void(ImportRequest&)>& spoil, Fault fault, const std::string& says) const {
+  void refused(const std::function<void(ImportRequest&)>& spoil, ErrorKind fault,
+               const std::string& says) const {
     ImportRequest asked = good();
     spoil(asked);
     refused(asked, fault, says);
@@ -40,31 +41,31 @@ TEST_F(ImportRefusals, TheGoodRequestIsGood) {
 }
 
 TEST_F(ImportRefusals, Files) {
-  refused([&](auto& r) { r.file = folder_ / "absent.csv"; }, Fault::not_found,
+  refused([&](auto& r) { r.file = folder_ / "absent.csv"; }, ErrorKind::not_found,
           "absent.csv: there is no such file");
-  refused([&](auto& r) { r.file = folder_ / "."; }, Fault::not_found, "folder");
-  refused([&](auto& r) { r.file = "/dev/zero"; }, Fault::not_found, "no regular file");
+  refused([&](auto& r) { r.file = folder_ / "."; }, ErrorKind::not_found, "folder");
+  refused([&](auto& r) { r.file = "/dev/zero"; }, ErrorKind::not_found, "no regular file");
   refused([&](auto& r) { r.file = write("binary.csv", std::string("PK\3\4\0\0\0\0 zip", 12)); },
-          Fault::unsuitable, "is a ZIP archive, which import does not read; unpack it");
+          ErrorKind::unsuitable, "is a ZIP archive, which import does not read; unpack it");
   refused([&](auto& r) { r.file = write("binary.dat", std::string("\1\2\3\0\0\0\0\0 any", 12)); },
-          Fault::malformed, "not a sound file");
-  refused([&](auto& r) { r.file = write("oak.json", "{}"); }, Fault::unsuitable, "is JSON");
-  refused([&](auto& r) { r.file = write("oak.csv", " {\"kind\": \"recording\"}"); }, Fault::unsuitable,
+          ErrorKind::malformed, "not a sound file");
+  refused([&](auto& r) { r.file = write("oak.json", "{}"); }, ErrorKind::unsuitable, "is JSON");
+  refused([&](auto& r) { r.file = write("oak.csv", " {\"kind\": \"recording\"}"); }, ErrorKind::unsuitable,
           "is JSON");
-  refused([&](auto& r) { r.file = write("oak.texture.wav", "RIFF"); }, Fault::unsuitable,
+  refused([&](auto& r) { r.file = write("oak.texture.wav", "RIFF"); }, ErrorKind::unsuitable,
           "is a texture already");
   refused(
       [&](auto& r) {
         r.file = write("bad.csv", "f,x\n1,2\n3,4\n5,\n");
         r.channels = {"signal=x"};
       },
-      Fault::malformed, "bad.csv: line 4, column 2 ('x'): has no value");
+      ErrorKind::malformed, "bad.csv: line 4, column 2 ('x'): has no value");
 }
 
 // The first bytes of such files.
 TEST_F(ImportRefusals, FilesOfOtherKindsByName) {
   const auto named = [&](const std::string& name, const std::string& bytes, const std::string& what) {
-    refused([&](auto& r) { r.file = write(name, bytes); }, Fault::unsuitable,
+    refused([&](auto& r) { r.file = write(name, bytes); }, ErrorKind::unsuitable,
             "is " + what + ", which import");
   };
   const std::string zeros(200, '\0');
@@ -85,33 +86,33 @@ TEST_F(ImportRefusals, FilesOfOtherKindsByName) {
 }
 
 TEST_F(ImportRefusals, Options) {
-  refused([](auto& r) { r.rate_hz = 0; }, Fault::usage, "a rate of 0 Hz");
-  refused([](auto& r) { r.rate_hz = -5; }, Fault::usage, "a rate of -5 Hz");
-  refused([](auto& r) { r.rate_hz = 3e9; }, Fault::usage, "a rate of 3e+09 Hz");
-  refused([](auto& r) { r.rate_hz.reset(); }, Fault::usage,
+  refused([](auto& r) { r.rate_hz = 0; }, ErrorKind::usage, "a rate of 0 Hz");
+  refused([](auto& r) { r.rate_hz = -5; }, ErrorKind::usage, "a rate of -5 Hz");
+  refused([](auto& r) { r.rate_hz = 3e9; }, ErrorKind::usage, "a rate of 3e+09 Hz");
+  refused([](auto& r) { r.rate_hz.reset(); }, ErrorKind::usage,
           "add --rate, as in --rate 10kHz, or --time-column");
-  refused([](auto& r) { r.skip_lines = 9; }, Fault::usage, "no table can follow 9 lines: there are 4");
-  refused([](auto& r) { r.time_column = "t*1s"; }, Fault::usage, "both --rate and --time-column");
-  refused([](auto& r) { r.channels.clear(); }, Fault::usage, "1 'f', 2 'x', 3 'v', 4 't'");
-  refused([](auto& r) { r.channels.clear(); }, Fault::usage,
+  refused([](auto& r) { r.skip_lines = 9; }, ErrorKind::usage, "no table can follow 9 lines: there are 4");
+  refused([](auto& r) { r.time_column = "t*1s"; }, ErrorKind::usage, "both --rate and --time-column");
+  refused([](auto& r) { r.channels.clear(); }, ErrorKind::usage, "1 'f', 2 'x', 3 'v', 4 't'");
+  refused([](auto& r) { r.channels.clear(); }, ErrorKind::usage,
           "--rate 10kHz --channel 'tangential_force=f*1N'");
-  refused([](auto& r) { r.channels = {"position=y*1mm"}; }, Fault::usage, "there is no column 'y'");
-  refused([](auto& r) { r.speed_mps = 0; }, Fault::usage, "a speed of zero");
+  refused([](auto& r) { r.channels = {"position=y*1mm"}; }, ErrorKind::usage, "there is no column 'y'");
+  refused([](auto& r) { r.speed_mps = 0; }, ErrorKind::usage, "a speed of zero");
   refused(
       [](auto& r) {
         r.speed_mps = 1;
         r.channels = {"position=x*1mm"};
       },
-      Fault::usage, "there is a position channel");
+      ErrorKind::usage, "there is a position channel");
   refused(
       [](auto& r) {
         r.speed_mps = 1;
         r.channels = {"speed=v*1mm/s"};
       },
-      Fault::usage, "there is a speed channel");
-  refused([](auto& r) { r.recorded = "14.3.2026"; }, Fault::usage, "--date: '14.3.2026' is no date");
-  refused([](auto& r) { r.calibrated = "2026-13-01"; }, Fault::usage, "--calibrated");
-  refused([](auto& r) { r.humidity_percent = 101; }, Fault::usage, "101 % is no relative humidity");
+      ErrorKind::usage, "there is a speed channel");
+  refused([](auto& r) { r.recorded = "14.3.2026"; }, ErrorKind::usage, "--date: '14.3.2026' is no date");
+  refused([](auto& r) { r.calibrated = "2026-13-01"; }, ErrorKind::usage, "--calibrated");
+  refused([](auto& r) { r.humidity_percent = 101; }, ErrorKind::usage, "101 % is no relative humidity");
 }
 
 TEST_F(ImportRefusals, ClocksThatAreNone) {
@@ -123,16 +124,18 @@ TEST_F(ImportRefusals, ClocksThatAreNone) {
     };
   };
   write("timed.csv", "");
-  refused(timed("f,t\n1,0\n1,1\n1,1\n"), Fault::malformed, "timed.csv: line 4: time goes from 1 s to 1 s");
-  refused(timed("f,t\n1,0\n1,1\n1,2\n1,3\n1,4.4\n1,5\n"), Fault::malformed,
+  refused(timed("f,t\n1,0\n1,1\n1,1\n"), ErrorKind::malformed,
+          "timed.csv: line 4: time goes from 1 s to 1 s");
+  refused(timed("f,t\n1,0\n1,1\n1,2\n1,3\n1,4.4\n1,5\n"), ErrorKind::malformed,
           "timed.csv: line 6: the time step of 1.4 s");
 }
 
 TEST_F(ImportRefusals, Outputs) {
-  refused([&](auto& r) { r.name = folder_ / "absent/out"; }, Fault::cannot_write, "there is no such folder");
-  refused([](auto& r) { r.name = "/proc/out"; }, Fault::cannot_write, "/proc/out");
+  refused([&](auto& r) { r.name = folder_ / "absent/out"; }, ErrorKind::cannot_write,
+          "there is no such folder");
+  refused([](auto& r) { r.name = "/proc/out"; }, ErrorKind::cannot_write, "/proc/out");
   ASSERT_TRUE(import(good()));
-  refused([](auto&) {}, Fault::usage, "is there already; choose another name, or --force");
+  refused([](auto&) {}, ErrorKind::usage, "is there already; choose another name, or --force");
 }
 
 TEST_F(ImportRefusals, TheOutputIsCheckedBeforeTheDataAreRead) {
@@ -142,7 +145,7 @@ TEST_F(ImportRefusals, TheOutputIsCheckedBeforeTheDataAreRead) {
         r.file = folder_ / "broken.csv";
         r.name = folder_ / "absent/out";
       },
-      Fault::cannot_write, "there is no such folder");
+      ErrorKind::cannot_write, "there is no such folder");
 }
 
 TEST_F(ImportRefusals, TheSourceIsNeverTheTarget) {
@@ -153,7 +156,7 @@ TEST_F(ImportRefusals, TheSourceIsNeverTheTarget) {
   auto asked = request(wav);
   asked.name = folder_ / "a";
   asked.replace = true;
-  refused(asked, Fault::usage, "is the file that is imported");
+  refused(asked, ErrorKind::usage, "is the file that is imported");
 }
 
 TEST_F(ImportRefusals, AFailedImportLeavesTheOldRecording) {
@@ -163,7 +166,7 @@ TEST_F(ImportRefusals, AFailedImportLeavesTheOldRecording) {
         r.file = write("broken.csv", "f\n1\nbroken\n");
         r.replace = true;
       },
-      Fault::malformed, "broken");
+      ErrorKind::malformed, "broken");
   EXPECT_TRUE(schema::open_recording(folder_ / "out"));
 }
 

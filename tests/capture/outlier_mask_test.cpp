@@ -16,12 +16,12 @@ namespace {
 
 using schema::Gap;
 
-void expect_gaps(const std::vector<Gap>& found, const std::vector<Gap>& wanted) {
-  ASSERT_EQ(found.size(), wanted.size());
+void expect_gaps(const std::vector<Gap>& found, const std::vector<Gap>& target) {
+  ASSERT_EQ(found.size(), target.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_EQ(found[i].frame, wanted[i].frame) << i;
-    EXPECT_EQ(found[i].device_sequence, wanted[i].device_sequence) << i;
-    EXPECT_EQ(found[i].count, wanted[i].count) << i;
+    EXPECT_EQ(found[i].frame, target[i].frame) << i;
+    EXPECT_EQ(found[i].device_sequence, target[i].device_sequence) << i;
+    EXPECT_EQ(found[i].count, target[i].count) << i;
   }
 }
 
@@ -57,7 +57,7 @@ TEST(OutlierMask, ManyRowsAreNoOutliers) {
   EXPECT_TRUE(OutlierMask::of(rows, 1100, "t.csv"));
   const auto refused = OutlierMask::of(rows, 1000, "t.csv");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, schema::Fault::unsuitable);
+  EXPECT_EQ(refused.error().fault, schema::ErrorKind::unsuitable);
   EXPECT_NE(refused.error().what.find("11 of 1000 rows"), std::string::npos);
 }
 
@@ -144,7 +144,7 @@ TEST_F(MaskedImport, AWrongUnitIsNoOutlier) {
   asked.channels[0] = "tangential_force=f*1kN";
   const auto refused = import(asked);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, schema::Fault::unsuitable);
+  EXPECT_EQ(refused.error().fault, schema::ErrorKind::unsuitable);
   EXPECT_NE(refused.error().remedy.find("check unit and scale"), std::string::npos);
   EXPECT_EQ(folder_.files(), 1U);
 }

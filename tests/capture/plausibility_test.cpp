@@ -26,13 +26,13 @@ void in_pieces(const std::vector<double>& values, std::size_t piece, Take take) 
     take(std::span(values).subspan(at, std::min(piece, values.size() - at)), at);
 }
 
-std::vector<std::uint64_t> lone_samples(const std::vector<double>& values, std::size_t piece = 1000) {
+std::vector<std::uint64_t> outliers(const std::vector<double>& values, std::size_t piece = 1000) {
   std::vector<std::uint64_t> found;
   const auto note = [&](std::uint64_t sample, double value) {
     EXPECT_EQ(value, values[sample]);
     found.push_back(sample);
   };
-  LoneSamples lone;
+  Outliers lone;
   in_pieces(values, piece, [&](auto part, std::size_t) { lone.survey(part); });
   lone.end_survey();
   in_pieces(values, piece, [&](auto part, std::size_t) { lone.find(part, note); });
@@ -61,51 +61,51 @@ TEST(Plausibility, LostExponentsAreFound) {
   auto values = noisy(5000, 100);
   values[1000] = 4581.47818;
   values[3000] = 6.99807232;
-  EXPECT_EQ(lone_samples(values), (std::vector<std::uint64_t>{1000, 3000}));
+  EXPECT_EQ(outliers(values), (std::vector<std::uint64_t>{1000, 3000}));
 }
 
 // Wherever the pieces are cut, down to single samples.
 TEST(Plausibility, ThePiecesDoNotMatter) {
   auto values = noisy(3000, 100);
   for (const std::size_t i : {0, 1, 5, 150, 2996, 2999}) values[i] = 9999;
-  const auto whole = lone_samples(values, values.size());
+  const auto whole = outliers(values, values.size());
   EXPECT_EQ(whole, (std::vector<std::uint64_t>{5, 150, 2996, 2999}));  // 0 and 1 stand side by side
-  for (std::size_t piece = 1; piece < 12; ++piece) EXPECT_EQ(lone_samples(values, piece), whole) << piece;
+  for (std::size_t piece = 1; piece < 12; ++piece) EXPECT_EQ(outliers(values, piece), whole) << piece;
 }
 
 TEST(Plausibility, ASineThatBeginsAtZeroPasses) {
   std::vector<double> values(5000);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(0.05 * static_cast<double>(i));
-  EXPECT_TRUE(lone_samples(values).empty());
+  EXPECT_TRUE(outliers(values).empty());
 }
 
 TEST(Plausibility, TheFirstAndLastSampleCount) {
   auto values = noisy(5000, 100);
   values.front() = 1e5;
   values.back() = 1e-5;
-  EXPECT_EQ(lone_samples(values), (std::vector<std::uint64_t>{0, 4999}));
+  EXPECT_EQ(outliers(values), (std::vector<std::uint64_t>{0, 4999}));
 }
 
 TEST(Plausibility, NoiseStepsAndTransientsPass) {
   auto values = noisy(5000, 0);
-  EXPECT_TRUE(lone_samples(values).empty());
+  EXPECT_TRUE(outliers(values).empty());
   for (std::size_t i = 2000; i < 3000; ++i) values[i] += 1000;
-  EXPECT_TRUE(lone_samples(values).empty());
+  EXPECT_TRUE(outliers(values).empty());
   for (std::size_t i = 0; i < 60; ++i)  // a tap: up in some samples, then ringing
     values[4000 + i] += 500 * std::exp(-static_cast<double>(i) / 20) * std::sin(0.3 * static_cast<double>(i));
-  EXPECT_TRUE(lone_samples(values).empty());
+  EXPECT_TRUE(outliers(values).empty());
 }
 
 TEST(Plausibility, OneFlickeringCountOfAnEncoderPasses) {
   std::vector<double> counts(1000, 0);
   for (const std::size_t i : {100, 300, 310, 900}) counts[i] = 1;
-  EXPECT_TRUE(lone_samples(counts).empty());
+  EXPECT_TRUE(outliers(counts).empty());
   counts[500] = 65536;
-  EXPECT_EQ(lone_samples(counts), (std::vector<std::uint64_t>{500}));
+  EXPECT_EQ(outliers(counts), (std::vector<std::uint64_t>{500}));
 }
 
 TEST(Plausibility, ShortChannelsAreNotJudged) {
-  EXPECT_TRUE(lone_samples(std::vector<double>{0, 0, 1e9, 0}).empty());
+  EXPECT_TRUE(outliers(std::vector<double>{0, 0, 1e9, 0}).empty());
 }
 
 TEST(Plausibility, AWarningNamesTheFirstSamplesAndCountsAll) {

@@ -14,7 +14,7 @@ namespace {
 
 using firmware_host::Capabilities;
 using firmware_host::StreamCounts;
-using schema::Fault;
+using schema::ErrorKind;
 using tests::TemporaryFolder;
 
 schema::Channel channel(const std::string& quantity, const std::string& unit, double scale) {
@@ -48,7 +48,7 @@ class CountingDevice final : public firmware_host::Device {
   }
   schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) override {
     if (fails_ && counts_.frames == length_)
-      return schema::fail(Fault::device, "unplugged", capabilities_.uri);
+      return schema::fail(ErrorKind::device, "unplugged", capabilities_.uri);
     const std::size_t frames = std::min<std::size_t>({interleaved.size() / 2, length_ - counts_.frames, 300});
     if (counts_.frames == lose_at_) counts_.lost_frames = lose_;
     for (std::size_t i = 0; i < frames; ++i, ++counts_.frames) {
@@ -151,7 +151,7 @@ TEST(Record, NeverOverwrites) {
   ASSERT_TRUE(kept);
   const auto refused = record(second, request(folder / "oak", 1));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, Fault::usage);
+  EXPECT_EQ(refused.error().fault, ErrorKind::usage);
   EXPECT_EQ(schema::open_recording(folder / "oak")->header.sha256, kept->recording.header.sha256);
 }
 
@@ -161,7 +161,7 @@ TEST(Record, RefusesATimeThatIsNone) {
   for (const double time_s : {0.0, -1.0, 1e-9, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
     const auto refused = record(device, request(folder / "oak", time_s));
     ASSERT_FALSE(refused) << time_s;
-    EXPECT_EQ(refused.error().fault, Fault::usage);
+    EXPECT_EQ(refused.error().fault, ErrorKind::usage);
   }
   EXPECT_EQ(folder.files(), 0U);
 }
@@ -242,7 +242,7 @@ TEST(Record, ATimeThatTheDiskHasNoRoomForIsRefused) {
   CountingDevice device(1000);
   const auto refused = record(device, request(folder / "oak", 1e11));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, Fault::cannot_write);
+  EXPECT_EQ(refused.error().fault, ErrorKind::cannot_write);
   EXPECT_NE(refused.error().what.find("the disk has"), std::string::npos);
   EXPECT_EQ(folder.files(), 0U);
 }
@@ -284,7 +284,7 @@ TEST(Record, VoltsWithoutATransducerAreRefused) {
   const TemporaryFolder folder;
   CountingDevice device(500);
   device.can().transducer.reset();
-  EXPECT_EQ(record(device, request(folder / "oak", 1)).error().fault, Fault::device);
+  EXPECT_EQ(record(device, request(folder / "oak", 1)).error().fault, ErrorKind::device);
 }
 
 TEST(Record, AFolderThatIsNotThereIsSaidBeforeTheDeviceStarts) {
@@ -292,7 +292,7 @@ TEST(Record, AFolderThatIsNotThereIsSaidBeforeTheDeviceStarts) {
   CountingDevice device(500);
   const auto refused = record(device, request(folder / "none/oak", 1));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, Fault::cannot_write);
+  EXPECT_EQ(refused.error().fault, ErrorKind::cannot_write);
   EXPECT_EQ(device.counts().frames, 0U);
 }
 

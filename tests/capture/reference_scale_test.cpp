@@ -10,7 +10,7 @@
 namespace tacto::capture {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 schema::Result<ReferenceScale> against_net(const Take& take, double relative_uncertainty = 0) {
   const double scale = take.header.channels[3].scale;
@@ -47,9 +47,10 @@ TEST(ReferenceScale, TheReferencesOwnUncertaintyIsInIt) {
 
 TEST(ReferenceScale, WrongInputsAreNamed) {
   const Take take = sim_take("surface=C,strokes=20", 5.5);
-  EXPECT_EQ(scale_by_reference(take, "tangential_force", "no_force", {1, 0}).error().fault, Fault::usage);
-  EXPECT_EQ(scale_by_reference(take, "tangential_force", "position", {1, 0}).error().fault, Fault::usage);
-  EXPECT_EQ(scale_by_reference(take, "net_force", "normal_force", {1, 0}).error().fault, Fault::unsuitable);
+  EXPECT_EQ(scale_by_reference(take, "tangential_force", "no_force", {1, 0}).error().fault, ErrorKind::usage);
+  EXPECT_EQ(scale_by_reference(take, "tangential_force", "position", {1, 0}).error().fault, ErrorKind::usage);
+  EXPECT_EQ(scale_by_reference(take, "net_force", "normal_force", {1, 0}).error().fault,
+            ErrorKind::unsuitable);
   EXPECT_NE(against_net(sim_take("surface=C,strokes=20", 3)).error().what.find("5 s at least"),
             std::string::npos);
   const auto quiet = against_net(sim_take("finger=up", 6));

@@ -139,7 +139,7 @@ TEST_F(InfoValidate, DescribesSeveral) {
 
 TEST_F(InfoValidate, SaysWhatIsNotThere) {
   const Outcome outcome = run({"info", folder_ / "ash"});
-  EXPECT_EQ(outcome.exit_code, exit_code(Fault::not_found));
+  EXPECT_EQ(outcome.exit_code, exit_code(ErrorKind::not_found));
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
 }
@@ -171,7 +171,7 @@ TEST_F(InfoValidate, ListsFaultsAndEndsAsMalformed) {
       pending.write(oak_ + ".json", R"({"kind": "recording", "version": "1.0", "sample_rate_hz": -1})"));
   ASSERT_TRUE(pending.commit());
   const Outcome outcome = run({"validate", "--json", oak_});
-  EXPECT_EQ(outcome.exit_code, exit_code(Fault::malformed));
+  EXPECT_EQ(outcome.exit_code, exit_code(ErrorKind::malformed));
   const Json report = Json::parse(outcome.out);
   EXPECT_EQ(report["valid"], false);
   std::string places;
@@ -186,7 +186,7 @@ TEST_F(InfoValidate, FilesOfOthersAreFaults) {
   ASSERT_TRUE(pending.write(folder_ / "notes.txt", "text"));
   ASSERT_TRUE(pending.commit());
   for (const char* name : {"list.json", "notes.txt"})
-    EXPECT_EQ(run({"validate", folder_ / name}).exit_code, exit_code(Fault::malformed)) << name;
+    EXPECT_EQ(run({"validate", folder_ / name}).exit_code, exit_code(ErrorKind::malformed)) << name;
 }
 
 }  // namespace

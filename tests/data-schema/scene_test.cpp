@@ -21,7 +21,7 @@ std::string scene_text(const std::string& layer, const std::string& version = "1
 
 constexpr const char* kOak = R"({"type":"texture","texture":"oak","at_m":0.01,"gain_m_per_n":0.001})";
 
-void expect_refused(const std::string& text, Fault fault, const std::string& where) {
+void expect_refused(const std::string& text, ErrorKind fault, const std::string& where) {
   const auto scene = parse_scene(text, "s.scene.json");
   ASSERT_FALSE(scene) << text;
   EXPECT_EQ(scene.error().fault, fault) << message(scene.error());
@@ -69,22 +69,22 @@ TEST(Scene, OneOfSeveralTexturesMayNotGoOnBeyondItsEnds) {
   const std::string loops = R"({"type":"texture","texture":"o","at_m":0.1,"gain_m_per_n":1,"ends":"loop"})";
   const std::string mirrors =
       R"({"type":"texture","texture":"o","at_m":0.1,"gain_m_per_n":1,"ends":"mirror"})";
-  expect_refused(scene_text(stops + "," + loops), Fault::unsuitable, "s.scene.json#/layers/1/ends");
-  expect_refused(scene_text(mirrors + "," + stops), Fault::unsuitable, "s.scene.json#/layers/0/ends");
+  expect_refused(scene_text(stops + "," + loops), ErrorKind::unsuitable, "s.scene.json#/layers/1/ends");
+  expect_refused(scene_text(mirrors + "," + stops), ErrorKind::unsuitable, "s.scene.json#/layers/0/ends");
 }
 
 TEST(Scene, FaultsAreNamedByJsonPointer) {
-  expect_refused(scene_text(R"({"type":"texture","texture":"oak","at_m":0.01})"), Fault::malformed,
+  expect_refused(scene_text(R"({"type":"texture","texture":"oak","at_m":0.01})"), ErrorKind::malformed,
                  "s.scene.json#/layers/0");
   expect_refused(
       scene_text(std::string(kOak) + "," + R"({"type":"texture","texture":"","at_m":0,"gain_m_per_n":1e-3})"),
-      Fault::malformed, "s.scene.json#/layers/1/texture");
+      ErrorKind::malformed, "s.scene.json#/layers/1/texture");
   expect_refused(scene_text(R"({"type":"texture","texture":"oak","at_m":"here","gain_m_per_n":1e-3})"),
-                 Fault::malformed, "s.scene.json#/layers/0/at_m");
+                 ErrorKind::malformed, "s.scene.json#/layers/0/at_m");
   expect_refused(scene_text(R"({"type":"texture","texture":"o","at_m":0,"gain_m_per_n":1,"ends":"round"})"),
-                 Fault::malformed, "s.scene.json#/layers/0/ends");
-  expect_refused(scene_text(""), Fault::malformed, "s.scene.json#/layers");
-  expect_refused(scene_text(kOak, "2.0"), Fault::unsupported_version, "s.scene.json");
+                 ErrorKind::malformed, "s.scene.json#/layers/0/ends");
+  expect_refused(scene_text(""), ErrorKind::malformed, "s.scene.json#/layers");
+  expect_refused(scene_text(kOak, "2.0"), ErrorKind::unsupported_version, "s.scene.json");
 }
 
 TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
@@ -98,7 +98,7 @@ TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
                    "its members are kind, version, name, notes, created, creator, playback, layers"}}) {
     const auto scene = parse_scene(text, "s");
     ASSERT_FALSE(scene) << text;
-    EXPECT_EQ(scene.error().fault, Fault::malformed);
+    EXPECT_EQ(scene.error().fault, ErrorKind::malformed);
     EXPECT_EQ(scene.error().where, where) << message(scene.error());
     EXPECT_EQ(scene.error().remedy, remedy) << message(scene.error());
   }
@@ -106,7 +106,7 @@ TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
 
 TEST(Scene, ALayerOfAnotherTypeIsRefusedByItsName) {
   const std::string wall = R"({"type":"wall","at_m":0.05,"stiffness_n_per_m":1000})";
-  expect_refused(scene_text(std::string(kOak) + "," + wall, "1.1"), Fault::unsuitable,
+  expect_refused(scene_text(std::string(kOak) + "," + wall, "1.1"), ErrorKind::unsuitable,
                  "s.scene.json#/layers/1/type");
 }
 

@@ -60,12 +60,12 @@ TEST_F(Hysteresis, TheFullLoopEndsOnTheLineAndOpensAsStated) {
 // n.
 TEST_F(Hysteresis, LoopAreasAreTheSumOfTheParallelograms) {
   for (const double a : {100.0, 70.0, 25.0, 3.0}) {
-    double wanted = 0;
+    double target = 0;
     for (int i = 0; i < kPlays; ++i) {
       const double r = (i + 0.5) * kAmplitude / kPlays;
-      if (r < a) wanted += 4 * kOpening / kPlays * 4 * r * (a - r);
+      if (r < a) target += 4 * kOpening / kPlays * 4 * r * (a - r);
     }
-    EXPECT_NEAR(area(a), wanted, 1e-6 * std::max(wanted, 1.0)) << a;
+    EXPECT_NEAR(area(a), target, 1e-6 * std::max(target, 1.0)) << a;
   }
 }
 

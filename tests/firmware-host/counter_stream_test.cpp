@@ -13,8 +13,8 @@ namespace {
 
 void expect_counted(const std::vector<std::int32_t>& codes, std::size_t channels, std::uint64_t first) {
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    const auto wanted = static_cast<std::uint32_t>(16 * (first + i / channels) + i % channels);
-    ASSERT_EQ(static_cast<std::uint32_t>(codes[i]), wanted) << i;
+    const auto target = static_cast<std::uint32_t>(16 * (first + i / channels) + i % channels);
+    ASSERT_EQ(static_cast<std::uint32_t>(codes[i]), target) << i;
   }
 }
 

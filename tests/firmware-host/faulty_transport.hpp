@@ -30,14 +30,14 @@ class FaultyTransport final : public firmware_host::Transport {
       take_in(fresh, *got);
     }
     if (out_.empty() && unplugged_)
-      return schema::fail(schema::Fault::device, "the device was unplugged", "test");
+      return schema::fail(schema::ErrorKind::device, "the device was unplugged", "test");
     const std::size_t size = std::min(bytes.size(), out_.size());
     std::copy_n(out_.begin(), size, bytes.begin());
     out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(size));
     return size;
   }
   schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override {
-    if (unplugged_) return schema::fail(schema::Fault::device, "the device was unplugged", "test");
+    if (unplugged_) return schema::fail(schema::ErrorKind::device, "the device was unplugged", "test");
     return inner_->write(bytes, timeout_s);
   }
   double now_s() override { return inner_->now_s(); }

@@ -61,24 +61,24 @@ class FirmwareBench {
 
   void upload_constant(float value) { upload(std::vector<float>(64, value)); }
   /// A loop, one sample a count, sample 0 at count 0.
-  void upload(const std::vector<float>& wanted) {
-    expect_ok(code(begin_of(wanted.size())));
-    upload_samples(wanted);
+  void upload(const std::vector<float>& target) {
+    expect_ok(code(begin_of(target.size())));
+    upload_samples(target);
   }
   static wire::ProfileBegin begin_of(std::size_t samples) {
     return {static_cast<std::uint32_t>(samples), 0, 0, UINT64_C(1) << 32, wire::ProfileEnds::loop};
   }
   /// What comes after profile_begin.
-  void upload_samples(const std::vector<float>& wanted) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(wanted.data());
+  void upload_samples(const std::vector<float>& target) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(target.data());
     wire::ProfileChunk chunk{};
-    for (; chunk.first < wanted.size(); chunk.first += chunk.count) {
-      const std::size_t left = wanted.size() - chunk.first;
+    for (; chunk.first < target.size(); chunk.first += chunk.count) {
+      const std::size_t left = target.size() - chunk.first;
       chunk.count = static_cast<std::uint16_t>(std::min(left, wire::kMaxChunk));
-      std::copy_n(wanted.begin() + chunk.first, chunk.count, chunk.values);
+      std::copy_n(target.begin() + chunk.first, chunk.count, chunk.values);
       expect_ok(code(chunk));
     }
-    expect_ok(code(wire::ProfileEnd{wire::crc32c(bytes, wanted.size() * 4)}));
+    expect_ok(code(wire::ProfileEnd{wire::crc32c(bytes, target.size() * 4)}));
   }
   void arm_profile(float value) {
     expect_ok(code(kTestLimits));
@@ -106,7 +106,7 @@ class FirmwareBench {
   std::vector<wire::Tick> ticks;
   std::vector<std::uint64_t> first_ticks;
   std::vector<wire::Pulse> pulses;
-  std::vector<wire::Fault> faults;
+  std::vector<wire::ErrorKind> faults;
   std::vector<float> drives;
   std::vector<wire::MessageType> order;
   std::uint32_t sequence_ = 0;
@@ -140,7 +140,7 @@ class FirmwareBench {
     if (type == MessageType::note) notes.push_back(parsed<wire::Note>(frame));
     if (type == MessageType::samples) samples.push_back(parsed<wire::Samples>(frame));
     if (type == MessageType::pulse) pulses.push_back(parsed<wire::Pulse>(frame));
-    if (type == MessageType::fault) faults.push_back(parsed<wire::Fault>(frame));
+    if (type == MessageType::fault) faults.push_back(parsed<wire::ErrorKind>(frame));
     if (type != MessageType::ticks) return;
     const auto block = parsed<wire::Ticks>(frame);
     first_ticks.push_back(block.first_tick);

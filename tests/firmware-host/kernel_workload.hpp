@@ -51,7 +51,7 @@ class KernelWorkload {
     if (draw % 500 == 0) way_ = -way_;
     count_ += way_ * (draw & 3);
     bool sound = true;
-    return kernel_.tick(kernel_.wanted(count_, 40.0F), ++ticks_ < kWorkloadTicks - 400, flags_, sound);
+    return kernel_.tick(kernel_.target(count_, 40.0F), ++ticks_ < kWorkloadTicks - 400, flags_, sound);
   }
   uint32_t flags() const noexcept { return flags_; }
 

@@ -30,8 +30,8 @@ TEST_P(LvdtSine, GainAndPhaseAreTheClosedForm) {
         metres(lvdt, lvdt.step(4e-3 * std::cos(2 * std::numbers::pi * frequency_hz * i / kRateHz))));
   const auto measured = tests::sine_fit(std::span(seen_m).subspan(1000), 1001, kRateHz, frequency_hz) / 4e-3;
   const double turn = std::numbers::pi * frequency_hz / kRateHz;
-  const auto wanted = std::pow(std::sin(turn) / turn, 2) / std::complex<double>(1, frequency_hz / 200);
-  EXPECT_NEAR(std::abs(measured / wanted - 1.0), 0, 3e-5);
+  const auto target = std::pow(std::sin(turn) / turn, 2) / std::complex<double>(1, frequency_hz / 200);
+  EXPECT_NEAR(std::abs(measured / target - 1.0), 0, 3e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Band, LvdtSine, testing::Values(5, 50, 200, 300));

@@ -148,7 +148,7 @@ double error_db_of(TickSetup setup, double gain) {
     std::uint32_t flags = 0;
     bool sound = true;
     const double drive_v =
-        kernel.tick(kernel.wanted(count, static_cast<float>(gain)), tick < 39000, flags, sound);
+        kernel.tick(kernel.target(count, static_cast<float>(gain)), tick < 39000, flags, sound);
     const double exact_v = exact.tick(count, tick < 39000);
     error += (drive_v - exact_v) * (drive_v - exact_v);
     size += exact_v * exact_v;
@@ -264,10 +264,10 @@ TEST(DriveLimiter, NeverPassesItsLimits) {
   float before_v = 0;
   for (int i = 0; i < 10000; ++i) {
     std::uint32_t flags = 0;
-    const float wanted_v = normal(random), drive_v = limiter.limit(wanted_v, flags);
+    const float kernel_input = normal(random), drive_v = limiter.limit(kernel_input, flags);
     ASSERT_LE(std::abs(drive_v), 5);
     ASSERT_LE(std::abs(drive_v - before_v), 0.7F * 1.000001F);
-    ASSERT_EQ(flags == 0, drive_v == wanted_v);
+    ASSERT_EQ(flags == 0, drive_v == kernel_input);
     before_v = drive_v;
   }
 }

@@ -88,15 +88,15 @@ class PhysicsSine : public testing::TestWithParam<double> {};
 // ringing after 0.6 s nothing.
 TEST_P(PhysicsSine, TheSecondModeInTheActuatorIsTheClosedForm) {
   const SecondMode mode;
-  const auto wanted = folded(GetParam(), [&](double f) { return two_mass_ratio(mode, f); });
-  EXPECT_NEAR(std::abs(measured(GetParam(), {.second_mode = mode, .finger_load = {}}) / wanted - 1.0), 0,
+  const auto target = folded(GetParam(), [&](double f) { return two_mass_ratio(mode, f); });
+  EXPECT_NEAR(std::abs(measured(GetParam(), {.second_mode = mode, .finger_load = {}}) / target - 1.0), 0,
               1e-5);
 }
 
 TEST_P(PhysicsSine, AFingersLoadIsTheClosedForm) {
   const FingerLoad load;
-  const auto wanted = folded(GetParam(), [&](double f) { return loaded_ratio(load, f); });
-  EXPECT_NEAR(std::abs(measured(GetParam(), {.second_mode = {}, .finger_load = load}) / wanted - 1.0), 0,
+  const auto target = folded(GetParam(), [&](double f) { return loaded_ratio(load, f); });
+  EXPECT_NEAR(std::abs(measured(GetParam(), {.second_mode = {}, .finger_load = load}) / target - 1.0), 0,
               1e-5);
 }
 
@@ -111,8 +111,8 @@ TEST_P(PhysicsSine, TheSecondModeInTheSensorIsTheClosedForm) {
     output_v.push_back(bench.reading().sensor_v);
   }
   const auto seen = tests::sine_fit(std::span(output_v).subspan(12000), 12001, kTickHz, GetParam());
-  const auto wanted = schema::sensor_response(preset(), GetParam()) * two_mass_ratio(mode, GetParam());
-  EXPECT_NEAR(std::abs(seen / (Complex(0, -0.1) * wanted) - 1.0), 0, 1e-5);
+  const auto target = schema::sensor_response(preset(), GetParam()) * two_mass_ratio(mode, GetParam());
+  EXPECT_NEAR(std::abs(seen / (Complex(0, -0.1) * target) - 1.0), 0, 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Band, PhysicsSine, testing::Values(10, 100, 300, 500, 650, 800, 1000));

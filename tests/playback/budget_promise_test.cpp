@@ -96,7 +96,7 @@ std::vector<double> through_response(const std::vector<double>& values, double r
 
 /// What the kernel drives, and what it was to read where it took the finger to be.
 struct Played {
-  std::vector<double> drive_v, wanted_m;
+  std::vector<double> drive_v, target_m;
   std::vector<double> true_m;  ///< the same where the finger then was
 };
 
@@ -121,12 +121,12 @@ Played played(const Prepared& prepared, const PrepareOptions& o, const LineTextu
     const double ahead_m = path.wander > 0 ? guess_m : true_m + path.mean_mps * prepared.delay_s;
     const double then_m = path.place_m(i / o.rate_hz + prepared.delay_s);
     const double ratio = std::abs(place.counts_per_tick) / prepared.full_detail_counts_per_tick;
-    const auto wanted_at = [&](double place_m) {
+    const auto target_at = [&](double place_m) {
       return o.gain_m_per_n *
              texture.read(place_m * scale_of(prepared), ratio, prepared.finest_per_m, prepared.scale.levels);
     };
-    played.wanted_m.push_back(wanted_at(ahead_m));
-    played.true_m.push_back(wanted_at(then_m));
+    played.target_m.push_back(target_at(ahead_m));
+    played.true_m.push_back(target_at(then_m));
   }
   return played;
 }
@@ -139,17 +139,17 @@ Outcome outcome_of(const Machine& machine, const PrepareOptions& o, const LineTe
   const Played all = played(*prepared, o, texture, path);
   const Chain chain = undone_chain(machine.transducer, o).chain;
   auto error_m = through_response(all.drive_v, o.rate_hz, [&](double f) { return chain_response(chain, f); });
-  const auto wanted_m = through_response(
-      all.wanted_m, o.rate_hz, [&](double f) { return std::polar(1.0, -kTwoPi * f * prepared->delay_s); });
+  const auto target_m = through_response(
+      all.target_m, o.rate_hz, [&](double f) { return std::polar(1.0, -kTwoPi * f * prepared->delay_s); });
   const auto true_m = through_response(
       all.true_m, o.rate_hz, [&](double f) { return std::polar(1.0, -kTwoPi * f * prepared->delay_s); });
   std::vector<double> felt_m = error_m;
-  for (std::size_t i = 0; i < error_m.size(); ++i) error_m[i] -= wanted_m[i], felt_m[i] -= true_m[i];
+  for (std::size_t i = 0; i < error_m.size(); ++i) error_m[i] -= target_m[i], felt_m[i] -= true_m[i];
   const spatial::Band band{o.band.low_hz + kWindowHz, prepared->passes_to_hz - kWindowHz};
-  const double wanted = windowed_energy(wanted_m, o.rate_hz, band);
-  const double whole = windowed_energy(wanted_m, o.rate_hz, {0, 0.5 * o.rate_hz});
-  return {std::sqrt(windowed_energy(error_m, o.rate_hz, band) / wanted), std::sqrt(whole / wanted - 1),
-          std::sqrt(windowed_energy(felt_m, o.rate_hz, band) / wanted)};
+  const double target = windowed_energy(target_m, o.rate_hz, band);
+  const double whole = windowed_energy(target_m, o.rate_hz, {0, 0.5 * o.rate_hz});
+  return {std::sqrt(windowed_energy(error_m, o.rate_hz, band) / target), std::sqrt(whole / target - 1),
+          std::sqrt(windowed_energy(felt_m, o.rate_hz, band) / target)};
 }
 
 struct Case {

@@ -96,7 +96,7 @@ class StrokesOverChanges : public PlayerOnSim {
   }
   std::vector<bool> judged_of(const std::string& session) {
     std::vector<bool> judged;
-    for (const PlayedStroke& stroke : strokes_of(session)) judged.push_back(stroke.wanted_rms_m > 0);
+    for (const PlayedStroke& stroke : strokes_of(session)) judged.push_back(stroke.target_rms_m > 0);
     return judged;
   }
   std::vector<std::string> notes_;
@@ -248,7 +248,7 @@ TEST_F(ManyStrokes, AreTheSameInSmallBlocks) {
     const PlayedStroke &a = small->strokes[i], &b = whole->strokes[i];
     EXPECT_EQ(a.from_s, b.from_s);
     EXPECT_EQ(a.to_m, b.to_m);
-    EXPECT_NEAR(a.wanted_rms_m, b.wanted_rms_m, kFarAway * b.wanted_rms_m) << i;
+    EXPECT_NEAR(a.target_rms_m, b.target_rms_m, kFarAway * b.target_rms_m) << i;
     EXPECT_NEAR(a.predicted.rms_m, b.predicted.rms_m, kFarAway * b.predicted.rms_m) << i;
     EXPECT_NEAR(a.predicted.error_db, b.predicted.error_db, kFarAwayDb) << i;
     EXPECT_EQ(a.limits->ticks(), b.limits->ticks());

@@ -80,7 +80,7 @@ TEST(PlaybackChoices, MoreOfWhatIsNotThereIsRefused) {
     EXPECT_FALSE(check_meant(said.off, said.off.over(below))) << said.words[0];
     const auto alone = check_meant(said.more, said.more);
     ASSERT_FALSE(alone) << said.words[0];
-    EXPECT_EQ(alone.error().fault, schema::Fault::usage);
+    EXPECT_EQ(alone.error().fault, schema::ErrorKind::usage);
     for (const char* words : said.words)
       EXPECT_NE(schema::message(alone.error()).find(words), std::string::npos) << words;
   }
@@ -110,11 +110,11 @@ TEST(PlaybackChoices, EachInverseGivesTheDriveOfItsResponse) {
   PrepareOptions options;
   const schema::Texture texture = grating(8000, 0.004);  // 400 Hz at 50 mm/s: near the resonance
   const UndoneChain undone = undone_chain(*schema::read_transducer("wiertlewski2011"), options);
-  const double wanted_rms_m = 0.004 * options.gain_m_per_n / std::sqrt(2);
+  const double target_rms_m = 0.004 * options.gain_m_per_n / std::sqrt(2);
   for (const char* word : {"full", "magnitude", "gain", "none"}) {
     const auto chosen = with_choices(options, choices_with([&](auto& c) { c.inverse = word; }));
     const double per_metre = std::abs(inverse_response(undone.chain, chosen->inverse, 400));
-    EXPECT_NEAR(drive_rms_v(*chosen, texture) / (per_metre * wanted_rms_m), 1, 0.02) << word;
+    EXPECT_NEAR(drive_rms_v(*chosen, texture) / (per_metre * target_rms_m), 1, 0.02) << word;
   }
 }
 
@@ -271,7 +271,7 @@ TEST_F(ChosenPlay, AGatedSessionOfAnOlderDeviceIsRefusedByReplay) {
   }
   const auto replayed = replay_session(older);
   ASSERT_FALSE(replayed);
-  EXPECT_EQ(replayed.error().fault, schema::Fault::unsuitable);
+  EXPECT_EQ(replayed.error().fault, schema::ErrorKind::unsuitable);
   EXPECT_NE(schema::message(replayed.error()).find("gated by contact"), std::string::npos);
 }
 
@@ -309,7 +309,7 @@ TEST(CheckUpload, ADeviceWithoutANormalForceHasNoGate) {
   ASSERT_TRUE(prepared);
   const auto fits = check_upload((*device)->client(), *prepared);
   ASSERT_FALSE(fits);
-  EXPECT_EQ(fits.error().fault, schema::Fault::unsuitable);
+  EXPECT_EQ(fits.error().fault, schema::ErrorKind::unsuitable);
   for (const char* words : {"reports no normal force", "--contact 0N"})
     EXPECT_NE(schema::message(fits.error()).find(words), std::string::npos) << words;
 }

@@ -37,7 +37,7 @@ TEST(Construction, WhatNobodyNamesIsNotBuilt) {
   const ConstructionTally& built = plain.built;
   EXPECT_EQ(built.seams, 0U);
   EXPECT_EQ(built.hysteresis, 0U);
-  EXPECT_EQ(built.plays, 0U);
+  EXPECT_EQ(built.play_operators, 0U);
   EXPECT_EQ(built.sections, 0U);
   EXPECT_EQ(built.energy_limits, 0U);
   EXPECT_EQ(built.touch_gates, 0U);
@@ -49,7 +49,7 @@ TEST(Construction, WhatNobodyNamesIsNotBuilt) {
 // The counts are of what is there: each thing is as large as its counter says.
 TEST(Construction, WhatIsThereIsCounted) {
   const Prepared plain = built_with([](PrepareOptions&) {});
-  EXPECT_EQ(plain.built.textures_laid, 1U);
+  EXPECT_EQ(plain.built.textures_placed, 1U);
   EXPECT_EQ(plain.built.levels, plain.scale.levels);
   EXPECT_EQ(plain.built.sample_bytes, sizeof(float) * core::pyramid_samples(plain.scale));
   EXPECT_EQ(plain.built.sample_bytes, sizeof(float) * plain.samples.size());
@@ -65,14 +65,14 @@ TEST(Construction, EachThingThatIsNamedHasItsCount) {
   EXPECT_EQ(built_with([](PrepareOptions& o) { o.ends = Ends::loop, o.seam_m = 0; }).built.seams, 0U);
   const Prepared undone = built_with([](PrepareOptions&) {}, true);
   EXPECT_EQ(undone.built.hysteresis, 1U);
-  EXPECT_EQ(undone.built.plays, 16U);
+  EXPECT_EQ(undone.built.play_operators, 16U);
   EXPECT_EQ(undone.built.sections, 1U);
   EXPECT_FALSE(leaves_out(undone, "plays that undo"));
 }
 
 TEST(Construction, WhatIsTurnedOffIsNotBuilt) {
   const Prepared kept = built_with([](PrepareOptions& o) { o.undo_hysteresis = false; }, true);
-  EXPECT_EQ(kept.built.hysteresis + kept.built.plays + kept.built.sections, 0U);
+  EXPECT_EQ(kept.built.hysteresis + kept.built.play_operators + kept.built.sections, 0U);
   const Prepared gain = built_with([](PrepareOptions& o) { o.inverse = Inverse::gain; });
   EXPECT_EQ(gain.built.filters, 0U);
   EXPECT_EQ(gain.built.taps, 1U);
@@ -112,11 +112,11 @@ class BuiltScenes : public testing::Test {
 TEST_F(BuiltScenes, AFileIsReadOnceHoweverOftenItLies) {
   const ConstructionTally twice = built({layer("oak", 0), layer("oak", 0.03)});
   EXPECT_EQ(twice.texture_files, 1U);
-  EXPECT_EQ(twice.textures_laid, 2U);
+  EXPECT_EQ(twice.textures_placed, 2U);
   const ConstructionTally both =
       built({layer("oak", 0), layer("cork", 0.03), layer("oak.texture.json", 0.06)});
   EXPECT_EQ(both.texture_files, 2U);
-  EXPECT_EQ(both.textures_laid, 3U);
+  EXPECT_EQ(both.textures_placed, 3U);
 }
 
 }  // namespace

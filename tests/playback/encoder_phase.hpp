@@ -85,7 +85,7 @@ class EvenPass {
     const auto grid =
         playback::reading_grid(kDurationS, fine_rate_hz(), reference, finest_per_m_ * speed_mps);
     const playback::TextureLookup lookup(unrolled, 0);
-    wanted_ = playback::exact_wanted(lookup, path, grid, reference, case_.options.gain_m_per_n, 0.005);
+    target_ = playback::exact_target(lookup, path, grid, reference, case_.options.gain_m_per_n, 0.005);
     speed_mps_ = speed_mps;
   }
 
@@ -97,10 +97,10 @@ class EvenPass {
   PhaseError error_at(double phase) {
     const double ahead_m = phase * case_.options.metres_per_count;
     case_.path = {{0, kDurationS}, {kStartM + ahead_m, kStartM + ahead_m + speed_mps_ * kDurationS}};
-    auto wanted = playback::signal_of(earlier(ahead_m / speed_mps_));
-    const auto felt = felt_displacement(case_, prepared_, wanted.size() / fine_, fine_);
-    wanted.resize(felt.size());
-    return compared(wanted, felt);
+    auto target = playback::signal_of(earlier(ahead_m / speed_mps_));
+    const auto felt = felt_displacement(case_, prepared_, target.size() / fine_, fine_);
+    target.resize(felt.size());
+    return compared(target, felt);
   }
 
  private:
@@ -115,15 +115,15 @@ class EvenPass {
 
   playback::PaddedSpectrum earlier(double time_s) const {
     return playback::through(
-        wanted_, [time_s](double hz) { return std::polar(1.0, 2 * std::numbers::pi * hz * time_s); });
+        target_, [time_s](double hz) { return std::polar(1.0, 2 * std::numbers::pi * hz * time_s); });
   }
 
-  PhaseError compared(const std::vector<double>& wanted, const std::vector<double>& felt) const {
+  PhaseError compared(const std::vector<double>& target, const std::vector<double>& felt) const {
     const auto skipped = static_cast<std::size_t>(kLeftOutS * fine_rate_hz());
-    const std::size_t judged = wanted.size() - 2 * skipped;
+    const std::size_t judged = target.size() - 2 * skipped;
     const auto& band = case_.options.band;
     const auto mean = analysis::mean_of(analysis::segment_spectra(
-        std::span(wanted).subspan(skipped, judged), std::span(felt).subspan(skipped, judged), true,
+        std::span(target).subspan(skipped, judged), std::span(felt).subspan(skipped, judged), true,
         1 / fine_rate_hz(), judged, band.low_hz, band.high_hz));
     const auto sums = analysis::band_sums(mean, band.low_hz, band.high_hz);
     const double two_counts_s = 2 * case_.options.metres_per_count / speed_mps_;
@@ -137,7 +137,7 @@ class EvenPass {
   schema::SpaceSignal loop_;
   double finest_per_m_;
   std::size_t fine_;
-  playback::PaddedSpectrum wanted_;
+  playback::PaddedSpectrum target_;
   double speed_mps_ = 0;
 };
 

@@ -14,8 +14,8 @@
 #include "playback/model/spatial_content.hpp"
 #include "playback/prepare/prepare.hpp"
 #include "playback/prepare/texture_layout.hpp"
+#include "playback/render/reference/exact_target.hpp"
 #include "playback/render/reference/padded_spectrum.hpp"
-#include "playback/render/reference/wanted.hpp"
 
 namespace tacto::tests {
 
@@ -33,7 +33,7 @@ struct FidelityCase {
 struct Fidelity {
   double error_db = 0;  ///< over the band, RMS re wanted
   double error_um = 0;
-  double wanted_um = 0;
+  double target_um = 0;
   double delay_s = 0;  ///< of the filter
 };
 
@@ -84,14 +84,14 @@ inline schema::Result<Fidelity> fidelity_of(const schema::Texture& texture, Fide
   const spatial::Band reference{10, c.options.band.high_hz * 1.01};
   const auto grid = playback::reading_grid(c.path.duration_s(), rate_hz, reference, finest_hz);
   const playback::TextureLookup lookup(unrolled, 0);
-  const auto wanted = playback::signal_of(
-      playback::exact_wanted(lookup, c.path, grid, reference, c.options.gain_m_per_n, 0.005));
-  const auto felt = felt_displacement(c, *prepared, wanted.size() / fine, fine);
+  const auto target = playback::signal_of(
+      playback::exact_target(lookup, c.path, grid, reference, c.options.gain_m_per_n, 0.005));
+  const auto felt = felt_displacement(c, *prepared, target.size() / fine, fine);
   std::vector<double> error(felt.size());
-  for (std::size_t i = 0; i < error.size(); ++i) error[i] = felt[i] - wanted[i];
-  const double wanted_m = rms_in_band(std::span(wanted).first(felt.size()), rate_hz, c.options.band);
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] = felt[i] - target[i];
+  const double target_m = rms_in_band(std::span(target).first(felt.size()), rate_hz, c.options.band);
   const double error_m = rms_in_band(error, rate_hz, c.options.band);
-  return Fidelity{20 * std::log10(error_m / wanted_m), error_m * 1e6, wanted_m * 1e6, prepared->delay_s};
+  return Fidelity{20 * std::log10(error_m / target_m), error_m * 1e6, target_m * 1e6, prepared->delay_s};
 }
 
 }  // namespace tacto::tests

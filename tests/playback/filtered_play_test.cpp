@@ -7,7 +7,7 @@
 
 #include "data-schema/transducer/transducer.hpp"
 #include "playback/render/reference/padded_spectrum.hpp"
-#include "playback/strokes/session_wanted.hpp"
+#include "playback/strokes/session_target.hpp"
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {
@@ -75,10 +75,10 @@ class FilteredPlay : public testing::Test {
     auto spectrum = spectrum_of(std::span(moved_m_).subspan(1), kFastHz, 4 * rows);
     keep_band(spectrum, band);
     const auto moved = signal_of(spectrum);  // without the last row
-    const auto wanted = WantedReader(*overview).wanted_in(judged).displacement_m;
+    const auto target = WantedReader(*overview).target_in(judged).displacement_m;
     double error = 0, whole = 0;
     for (std::size_t row = 8000; row < 14500; ++row)  // 0.8 to 1.45 s
-      error += std::pow(moved[row] - wanted[row], 2), whole += std::pow(wanted[row], 2);
+      error += std::pow(moved[row] - target[row], 2), whole += std::pow(target[row], 2);
     return 10 * std::log10(error / whole);
   }
   static schema::PlaybackChoices filter(double cutoff_hz) {

@@ -69,7 +69,7 @@ SlowFinger felt_by_slow_finger(double rate_hz, double jitter, bool between_count
   const double half_m = between_counts ? 0 : 0.5 * kCoarseCountM;
   for (int i = 0; i < static_cast<int>(5 * rate_hz); ++i) {
     const double position_m = 0.005 + 0.001 * i / rate_hz;
-    const double value = kernel.wanted(encoder.count(position_m), 1);
+    const double value = kernel.target(encoder.count(position_m), 1);
     if (i < rate_hz) continue;
     const double place_m = (kernel.place().count + double{kernel.place().offset}) * kCoarseCountM + half_m;
     slow.lag_counts += (position_m - place_m) / kCoarseCountM;
@@ -197,7 +197,7 @@ Miss miss_on_a_grating(bool between_counts) {
   Miss miss;
   for (int i = 0; i < 8000; ++i) {
     const double x = 0.01 + 1e-3 * std::sin(kTwoPi * 1.3 * i / 2e3);
-    const double value = kernel.wanted(static_cast<std::int32_t>(std::floor(x / kCoarseCountM)), 1);
+    const double value = kernel.target(static_cast<std::int32_t>(std::floor(x / kCoarseCountM)), 1);
     if (i < 1000) continue;
     const double error = std::abs(value - std::sin(kTwoPi * 1e4 * x));
     miss.most = std::max(miss.most, error);

@@ -133,7 +133,7 @@ std::vector<double> kernel_along(const Tones& tones, const Acceleration& path, d
   kernel.set(prepared.setup());
   std::vector<double> values;
   for (int i = 0; i < static_cast<int>(path.duration_s() * rate_hz); ++i)
-    values.push_back(kernel.wanted(count_of(path(i / rate_hz)), 1));
+    values.push_back(kernel.target(count_of(path(i / rate_hz)), 1));
   return BandFilter(rate_hz)(values);
 }
 

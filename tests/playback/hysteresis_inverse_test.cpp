@@ -32,17 +32,18 @@ TEST(HysteresisInverse, UndoesTheOperatorFromRest) {
   const schema::Hysteresis law = rayleigh(0.16, 5, wire::kMaxPlays);
   core::PlayOperators inverse;
   inverse.set(inverse_of(law));
-  std::vector<double> plays(law.weights.size());
+  std::vector<double> play_operators(law.weights.size());
   double largest = 0, moved = 0;
-  for (const double wanted : walk(20000)) {
-    const double v = inverse.follow(static_cast<float>(wanted));
+  for (const double target : walk(20000)) {
+    const double v = inverse.follow(static_cast<float>(target));
     double u = 0;
-    for (std::size_t i = 0; i < plays.size(); ++i) {
-      plays[i] = std::max(v - law.thresholds_v[i], std::min(v + law.thresholds_v[i], plays[i]));
-      u += law.weights[i] * plays[i];
+    for (std::size_t i = 0; i < play_operators.size(); ++i) {
+      play_operators[i] =
+          std::max(v - law.thresholds_v[i], std::min(v + law.thresholds_v[i], play_operators[i]));
+      u += law.weights[i] * play_operators[i];
     }
-    largest = std::max(largest, std::abs(u - wanted));
-    moved = std::max(moved, std::abs(v - wanted));
+    largest = std::max(largest, std::abs(u - target));
+    moved = std::max(moved, std::abs(v - target));
   }
   EXPECT_LT(largest, 4e-6);
   EXPECT_GT(moved, 0.5) << "an inverse that does nothing proves nothing";
@@ -56,11 +57,11 @@ TEST(HysteresisInverse, MergesPlaysThatAreTooMany) {
   inverse.set(few);
   firmware_host::BenderHysteresis bender(0.16, 5);
   double error = 0, hysteresis = 0;
-  for (const double wanted : walk(20000)) {
-    const double v = inverse.follow(static_cast<float>(wanted));
+  for (const double target : walk(20000)) {
+    const double v = inverse.follow(static_cast<float>(target));
     bender.settle(v);
-    error += std::pow(bender.at(v) - wanted, 2);
-    hysteresis += std::pow(v - wanted, 2);
+    error += std::pow(bender.at(v) - target, 2);
+    hysteresis += std::pow(v - target, 2);
   }
   EXPECT_LT(std::sqrt(error / hysteresis), 0.03);
 }
@@ -76,11 +77,11 @@ TEST(HysteresisInverse, TheLeadUndoesTheAmplifiersLowPass) {
   const wire::Section lead = pole_lead(143, 2000);
   const double a = std::exp(-kTwoPi * 143 / 2000);
   double charge = 0, before = 0;
-  for (const double wanted : walk(200)) {
-    const double drive = lead.b0 * wanted + lead.b1 * before;
-    before = wanted;
+  for (const double target : walk(200)) {
+    const double drive = lead.b0 * target + lead.b1 * before;
+    before = target;
     charge = a * charge + (1 - a) * drive;
-    EXPECT_NEAR(charge, wanted, 1e-5);
+    EXPECT_NEAR(charge, target, 1e-5);
   }
 }
 
@@ -89,10 +90,10 @@ TEST(HysteresisInverse, WhatADriveDoesIsWhatItUndoes) {
   core::PlayOperators inverse;
   inverse.set(inverse_of(law));
   const wire::Section lead = pole_lead(143, 2000);
-  const std::vector<double> wanted = walk(5000);
+  const std::vector<double> target = walk(5000);
   std::vector<double> drive;
   double before = 0;
-  for (const double charge : wanted) {
+  for (const double charge : target) {
     const double v = inverse.follow(static_cast<float>(charge));
     drive.push_back(lead.b0 * v + lead.b1 * before);
     before = v;
@@ -100,9 +101,9 @@ TEST(HysteresisInverse, WhatADriveDoesIsWhatItUndoes) {
   const std::vector<double> linear = linear_drive_of(drive, law, 143, 2000);
   const double a = std::exp(-kTwoPi * 143 / 2000);
   double charge = 0;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
+  for (std::size_t i = 0; i < target.size(); ++i) {
     charge = a * charge + (1 - a) * linear[i];
-    ASSERT_NEAR(charge, wanted[i], 3e-5);
+    ASSERT_NEAR(charge, target[i], 3e-5);
   }
 }
 

@@ -52,8 +52,8 @@ class LiveLimitsTest : public LimitedPlay {
   // Of ticks from..to-1 of the session.
   std::optional<double> part_db(std::uint64_t from, std::uint64_t to) {
     LimitTally part;
-    EXPECT_TRUE(hear_wishes(session_, [&](const schema::SessionTick& tick, float wished_v) {
-      if (tick.tick >= from && tick.tick < to) part.add(limited_tick(tick.drive_v, wished_v, tick.flags));
+    EXPECT_TRUE(hear_wishes(session_, [&](const schema::SessionTick& tick, float unlimited_v) {
+      if (tick.tick >= from && tick.tick < to) part.add(limited_tick(tick.drive_v, unlimited_v, tick.flags));
     }));
     return part.removed_any() ? std::optional(part.removed_db()) : std::nullopt;
   }

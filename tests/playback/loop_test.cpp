@@ -82,9 +82,9 @@ TEST(Loop, ASineOfWholePeriodsIsTheEndlessOneToBothEngines) {
     EXPECT_EQ(rendering->loop_seam_m, 0);
     double worst_m = 0;
     for (std::size_t i = 15000; i <= 25000; ++i) {
-      const double x = 0.004 + 0.1 * rendering->wanted_m.time_s(i);
+      const double x = 0.004 + 0.1 * rendering->target_m.time_s(i);
       const double endless_m = 10e-6 * std::sin(kTwoPi * x / 3e-3 + 0.3);
-      worst_m = std::max(worst_m, std::abs(rendering->wanted_m.values[i] - endless_m));
+      worst_m = std::max(worst_m, std::abs(rendering->target_m.values[i] - endless_m));
       worst_m = std::max(worst_m, std::abs(rendering->modelled_m.values[i] - endless_m));
     }
     // The kernel: half a count of 0.1 um is 1e-4 of a period's 3 mm / 2 pi, and its inverse leaves -60 dB.

@@ -58,7 +58,7 @@ bool print_row(const schema::Texture& texture, const std::string& name, const Fi
     return false;
   }
   fmt::print("| {} | {:.1f} | {:.4f} | {:.3f} |\n", name, fidelity->error_db, fidelity->error_um,
-             fidelity->wanted_um);
+             fidelity->target_um);
   return fidelity->error_db <= bar_db;
 }
 

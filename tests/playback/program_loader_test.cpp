@@ -12,18 +12,18 @@
 namespace tacto::playback {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 // What is made is an error with a name: a program takes a texture.
 ProgramLoader::Make fails_with(const std::string& name) {
-  return [name]() -> Result<Program> { return schema::fail(Fault::not_found, name, "here"); };
+  return [name]() -> Result<Program> { return schema::fail(ErrorKind::not_found, name, "here"); };
 }
 
 ProgramLoader::Make waits_for(std::shared_future<void> end) {
   return [end]() -> Result<Program> {
     end.wait();
-    return schema::fail(Fault::not_found, "first", "here");
+    return schema::fail(ErrorKind::not_found, "first", "here");
   };
 }
 
@@ -39,15 +39,15 @@ TEST(ProgramLoading, WhatIsBegunAfterOneThatWasGivenUpIsMade) {
   ProgramLoader loader;
   loader.begin(waits_for(end.get_future().share()), ProgramLoader::Beside::nothing);
   EXPECT_FALSE(loader.take());
-  EXPECT_TRUE(loader.wanted());
+  EXPECT_TRUE(loader.target());
   loader.give_up();
   const auto given_up = loader.take();
   ASSERT_TRUE(given_up);
   EXPECT_NE(given_up->error().what.find("given up"), std::string::npos);
-  EXPECT_FALSE(loader.wanted());
+  EXPECT_FALSE(loader.target());
   EXPECT_TRUE(loader.busy()) << "its thread can't be interrupted";
   loader.begin(fails_with("second"), ProgramLoader::Beside::nothing);
-  EXPECT_TRUE(loader.wanted());
+  EXPECT_TRUE(loader.target());
   EXPECT_FALSE(loader.take()) << "the first one's thread still holds its memory";
   end.set_value();
   EXPECT_EQ(taken_in_the_end(loader), "second");
@@ -64,7 +64,7 @@ TEST(ProgramLoading, AThreadThatWasGivenUpStepsBack) {
         begun.set_value();
         end.get_future().wait();
         nice.set_value(getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())));
-        return schema::fail(Fault::not_found, "first", "here");
+        return schema::fail(ErrorKind::not_found, "first", "here");
       },
       ProgramLoader::Beside::nothing);
   begun.get_future().wait();

@@ -9,11 +9,11 @@
 namespace tacto::playback {
 
 /// Rayleigh's law between +-limit: plays of equal weight, evenly spread, that open the loop by `opening`.
-inline schema::Hysteresis rayleigh(double opening, double limit_v, int plays) {
+inline schema::Hysteresis rayleigh(double opening, double limit_v, int play_operators) {
   schema::Hysteresis law{{0}, {0}};
   double ends = 0, apart = 0;
-  for (int i = 0; i < plays; ++i) {
-    const double threshold_v = limit_v * (i + 0.5) / plays;
+  for (int i = 0; i < play_operators; ++i) {
+    const double threshold_v = limit_v * (i + 0.5) / play_operators;
     law.thresholds_v.push_back(threshold_v);
     ends += limit_v - threshold_v;
     apart += std::min(threshold_v, limit_v - threshold_v);

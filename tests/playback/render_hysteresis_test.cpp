@@ -18,17 +18,17 @@ std::vector<double> integrated(const schema::TimeSignal& drive_v, const schema::
   const double dt = 1 / (kRateHz * kSteps), pole = kTwoPi * schema::actuator_pole_hz(t);
   const double k = t.bender_stiffness_n_per_m + t.flexure_stiffness_n_per_m;
   const double rest_m_per_v = std::abs(schema::actuator_response(t, 0));
-  std::vector<double> plays(t.hysteresis->weights.size()), all;
+  std::vector<double> play_operators(t.hysteresis->weights.size()), all;
   double charge_v = 0, x = 0, v = 0;
   for (const double held_v : drive_v.values) {
     all.push_back(x);
     for (int step = 0; step < kSteps; ++step) {
       charge_v += dt * pole * (held_v - charge_v);
       double bent_v = 0;
-      for (std::size_t i = 0; i < plays.size(); ++i) {
+      for (std::size_t i = 0; i < play_operators.size(); ++i) {
         const double r = t.hysteresis->thresholds_v[i];
-        plays[i] = std::clamp(plays[i], charge_v - r, charge_v + r);
-        bent_v += t.hysteresis->weights[i] * plays[i];
+        play_operators[i] = std::clamp(play_operators[i], charge_v - r, charge_v + r);
+        bent_v += t.hysteresis->weights[i] * play_operators[i];
       }
       v += dt * (k * (rest_m_per_v * bent_v - x) - t.damping_n_s_per_m * v) / t.mass_kg;
       x += dt * v;

@@ -44,10 +44,10 @@ TEST(Render, ASineAtOneSpeedHasItsClosedForm) {
   const auto rendering = render(texture, steady_path(0.005, 0.05, 2), paper(), {});
   ASSERT_TRUE(rendering) << message(rendering.error());
   // sin(2 pi 5e3 (0.005 + 0.05 t)) starts with phase zero: 25 whole periods.
-  const std::complex<double> wanted = 10e-6;
-  EXPECT_LT(std::abs(tone(rendering->wanted_m, 250, 0.6, 1.4) - wanted), 1e-4 * 10e-6);
-  EXPECT_LT(std::abs(tone(rendering->modelled_m, 250, 0.6, 1.4) - wanted), 1e-4 * 10e-6);
-  const auto drive = wanted / schema::actuator_response(paper(), 250);
+  const std::complex<double> target = 10e-6;
+  EXPECT_LT(std::abs(tone(rendering->target_m, 250, 0.6, 1.4) - target), 1e-4 * 10e-6);
+  EXPECT_LT(std::abs(tone(rendering->modelled_m, 250, 0.6, 1.4) - target), 1e-4 * 10e-6);
+  const auto drive = target / schema::actuator_response(paper(), 250);
   EXPECT_LT(std::abs(tone(rendering->drive_v, 250, 0.6, 1.4) - drive), 1e-4 * std::abs(drive));
   EXPECT_EQ(rendering->delay_s, 0);
   EXPECT_NEAR(rendering->max_speed_mps, 0.05, 1e-12);
@@ -99,7 +99,7 @@ TEST(Render, SignalsShareThePathsAxis) {
   for (double& t : path.time_s) t += 3;
   const auto rendering = render(texture, path, paper(), {});
   ASSERT_TRUE(rendering);
-  for (const auto* signal : {&rendering->drive_v, &rendering->wanted_m, &rendering->modelled_m}) {
+  for (const auto* signal : {&rendering->drive_v, &rendering->target_m, &rendering->modelled_m}) {
     EXPECT_EQ(signal->values.size(), 20001U);
     EXPECT_EQ(signal->start_s, 3);
     EXPECT_EQ(signal->sample_rate_hz, 10e3);
@@ -132,9 +132,9 @@ TEST(Render, AReversalMirrorsTheDisplacement) {
   const auto texture = sine_texture(0.06, 3e3, 0.01);
   const auto rendering = render(texture, there_and_back(0.01, 0.04, 2), paper(), {});
   ASSERT_TRUE(rendering);
-  const auto& wanted = rendering->wanted_m.values;
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    ASSERT_NEAR(wanted[i], wanted[wanted.size() - 1 - i], 1e-4 * 10e-6);
+  const auto& target = rendering->target_m.values;
+  for (std::size_t i = 0; i < target.size(); ++i)
+    ASSERT_NEAR(target[i], target[target.size() - 1 - i], 1e-4 * 10e-6);
 }
 
 // 20 /mm under 100 mm/s is 2 kHz, above the band; 97 /mm is 9.7 kHz, which would fold to 300 Hz if the
@@ -145,7 +145,7 @@ TEST(Render, NothingFoldsIntoTheBand) {
     const auto rendering = render(texture, steady_path(0.005, 0.1, 1), paper(), {});
     ASSERT_TRUE(rendering) << message(rendering.error());
     EXPECT_GT(rendering->reading_rate_hz, 2 * per_m * 0.1);
-    EXPECT_LT(rms_between(rendering->wanted_m, 0.2, 0.8), 1e-3 * 10e-6 / std::sqrt(2)) << per_m;
+    EXPECT_LT(rms_between(rendering->target_m, 0.2, 0.8), 1e-3 * 10e-6 / std::sqrt(2)) << per_m;
     EXPECT_LT(rms_between(rendering->modelled_m, 0.2, 0.8), 1e-3 * 10e-6 / std::sqrt(2)) << per_m;
   }
 }
@@ -158,14 +158,14 @@ TEST(Render, BesideTheTextureThereIsSilenceAndNoClickAtItsEnds) {
   ASSERT_TRUE(rendering) << message(rendering.error());
   // 0.03 m is reached at 0.75 s and 0.05 m passed at 1.25 s; both instants are samples, and inside.
   EXPECT_NEAR(static_cast<double>(rendering->samples_outside), 20001 - 5001, 2);
-  const double inside = rms_between(rendering->wanted_m, 0.8, 1.2);
-  EXPECT_LT(rms_between(rendering->wanted_m, 0, 0.5), 0.01 * inside);
+  const double inside = rms_between(rendering->target_m, 0.8, 1.2);
+  EXPECT_LT(rms_between(rendering->target_m, 0, 0.5), 0.01 * inside);
   // 80 Hz of 20 um changes by at most 2 pi 80 20e-6 / rate from sample to sample; the fade adds pi / (2 x 25
   // ms).
   const double steepest = 20e-6 * (kTwoPi * 80 + std::numbers::pi / 0.05) / 10e3;
-  const auto& wanted = rendering->wanted_m.values;
-  for (std::size_t i = 1; i < wanted.size(); ++i)
-    ASSERT_LT(std::abs(wanted[i] - wanted[i - 1]), 1.1 * steepest);
+  const auto& target = rendering->target_m.values;
+  for (std::size_t i = 1; i < target.size(); ++i)
+    ASSERT_LT(std::abs(target[i] - target[i - 1]), 1.1 * steepest);
 }
 
 // Without the onset the drive begins with a jump of its own size; 15 % and -54 dB: the band's edges ring a

@@ -52,13 +52,13 @@ std::int32_t count_at(double position_m, const PrepareOptions& o) {
 }
 
 /// What the texture gives along a path; the first tenth of a second left out.
-std::vector<double> wanted_along(const Prepared& prepared, const PrepareOptions& o, double duration_s,
+std::vector<double> target_along(const Prepared& prepared, const PrepareOptions& o, double duration_s,
                                  const std::function<double(double)>& position_m) {
   core::TickKernel kernel;
   kernel.set(prepared.setup());
   std::vector<double> values;
   for (int i = 0; i < static_cast<int>(duration_s * o.rate_hz); ++i) {
-    const double value = kernel.wanted(count_at(position_m(i / o.rate_hz), o), 1);
+    const double value = kernel.target(count_at(position_m(i / o.rate_hz), o), 1);
     if (i >= 0.1 * o.rate_hz) values.push_back(value);
   }
   return values;
@@ -84,7 +84,7 @@ TEST_P(AtRate, NothingFoldsIntoTheBandAtAnySpeed) {
         const auto prepared = prepare(tone_loop(per_m), kernel_transducer(), options);
         ASSERT_TRUE(prepared) << message(prepared.error());
         const auto values =
-            wanted_along(*prepared, options, 0.4, [&](double t) { return 0.01 + speed_mps * t; });
+            target_along(*prepared, options, 0.4, [&](double t) { return 0.01 + speed_mps * t; });
         worst = std::max(worst, rms_of(values) * std::numbers::sqrt2);
       }
   std::printf("%g Hz: folded at most %.1f dB\n", GetParam(), level_of(worst));
@@ -110,7 +110,7 @@ TEST_P(AtRate, TheWholeBandComesAsTheReferenceHasIt) {
   const double size = std::sqrt(static_cast<double>(tones.size()) / 2);
   for (const double speed_mps : {0.013, 0.05, 0.11, 0.27, 0.5}) {
     const auto path = [&](double t) { return 0.01 + speed_mps * t; };
-    const auto values = wanted_along(*prepared, options, 1.1, path);
+    const auto values = target_along(*prepared, options, 1.1, path);
     std::vector<double> error;
     const auto skipped = static_cast<std::size_t>(0.1 * options.rate_hz);
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -150,7 +150,7 @@ TEST(TextureKernel, LevelsChangeWithoutAStep) {
   ASSERT_TRUE(prepared);
   EXPECT_GT(prepared->scale.levels, 10);
   const auto path = [](double t) { return 0.01 + 0.25 * (t - std::sin(kTwoPi * t / 2) * 2 / kTwoPi); };
-  const auto values = wanted_along(*prepared, options, 2, path);
+  const auto values = target_along(*prepared, options, 2, path);
   for (std::size_t i = 0; i < values.size(); ++i)
     ASSERT_NEAR(values[i], std::sin(kTwoPi * 200 * path(static_cast<double>(i + 200) / 2e3)), 1e-3) << i;
 }
@@ -158,7 +158,7 @@ TEST(TextureKernel, LevelsChangeWithoutAStep) {
 TEST(TextureKernel, BeyondItsGreatestSpeedItFallsSilentInsteadOfFolding) {
   const PrepareOptions options = plain_options(2e3);
   const auto prepared = prepare(tone_loop(3000), kernel_transducer(), options);
-  const auto values = wanted_along(*prepared, options, 0.3, [](double t) { return 0.01 + 1.5 * t; });
+  const auto values = target_along(*prepared, options, 0.3, [](double t) { return 0.01 + 1.5 * t; });
   EXPECT_LT(rms_of(values), 1e-3);
 }
 
@@ -201,7 +201,7 @@ TEST(TextureKernel, ALoopHasNoSeam) {
   const auto ramp = texture_of(0.02, [](double x) { return x / 0.02; });
   const auto prepared = prepare(ramp, kernel_transducer(), options);
   ASSERT_TRUE(prepared);
-  const auto values = wanted_along(*prepared, options, 1.1, [](double t) { return 0.05 * t; });
+  const auto values = target_along(*prepared, options, 1.1, [](double t) { return 0.05 * t; });
   double steepest = 0;
   for (std::size_t i = 1; i < values.size(); ++i)
     steepest = std::max(steepest, std::abs(values[i] - values[i - 1]));
@@ -241,7 +241,7 @@ TEST(TextureKernel, TwoTexturesLieWhereTheyArePlaced) {
   for (const auto& [at_m, value] :
        {std::pair{0.005, 1.0}, {0.02, 0.0}, {0.035, -0.5}, {-0.01, 0.0}, {0.06, 0.0}}) {
     kernel.set(prepared->setup());
-    EXPECT_NEAR(kernel.wanted(count_at(at_m, options), 1), value, 1e-3) << at_m;
+    EXPECT_NEAR(kernel.target(count_at(at_m, options), 1), value, 1e-3) << at_m;
   }
 }
 
@@ -297,8 +297,8 @@ TEST(TextureKernel, EnergyIsHeldAndCounted) {
   LimitTally tally;
   double late_v2 = 0;
   for (int i = 0; i < 20000; ++i) {
-    const auto wished_v = static_cast<float>(std::sin(kTwoPi * 200 * i / 1e4));
-    const auto output = kernel.drive(wished_v, true, core::kNoForce);
+    const auto unlimited_v = static_cast<float>(std::sin(kTwoPi * 200 * i / 1e4));
+    const auto output = kernel.drive(unlimited_v, true, core::kNoForce);
     tally.add(output);
     if (i >= 10000) late_v2 += output.drive_v * output.drive_v;
   }

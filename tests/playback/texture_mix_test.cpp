@@ -46,13 +46,13 @@ std::vector<double> played(const Rows& columns) {
   };
   core::TexturePlayer player;
   player.set(setup(0), 20);
-  std::vector<double> wanted;
+  std::vector<double> target;
   for (std::size_t row = 0, next = 0; row < kRows; ++row) {
     for (; next < columns.turns.size() && columns.turns[next].row == row; ++next)
       player.change(setup(next + 1), static_cast<float>(columns.turns[next].fade_ticks));
-    wanted.push_back(player.wanted(0, static_cast<float>(columns.rows[row].gain)));
+    target.push_back(player.target(0, static_cast<float>(columns.rows[row].gain)));
   }
-  return wanted;
+  return target;
 }
 
 TextureMix mix_of(const Rows& all, const std::vector<bool>& known) {
@@ -79,10 +79,10 @@ std::vector<double> mixed(const Rows& all) {
 // Single precision: four operations' rounding, 2^-24 each of the largest texture, times the gain.
 void expect_as_played(const std::vector<TextureTurn>& turns) {
   const Rows columns = rows_with(turns);
-  const auto wanted = played(columns), here = mixed(columns);
+  const auto target = played(columns), here = mixed(columns);
   const double rounding = 4 * 0x1p-24 * 3 * std::pow(10.0, static_cast<double>(turns.size()));
   for (std::size_t row = 0; row < kRows; ++row)
-    ASSERT_NEAR(here[row], wanted[row], rounding) << "row " << row;
+    ASSERT_NEAR(here[row], target[row], rounding) << "row " << row;
 }
 
 TEST(TextureMix, IsWhatTheKernelPlays) {

@@ -68,7 +68,7 @@ TEST_P(Uploaded, TheDevicesDriveIsTheKernelsToTheBit) {
   const auto prepared = prepare(two_sines(), bender, device_options(GetParam()));
   ASSERT_TRUE(prepared) << message(prepared.error());
   EXPECT_GT(prepared->scale.levels, 4);
-  EXPECT_EQ(prepared->plays.count, wire::kMaxPlays);
+  EXPECT_EQ(prepared->play_operators.count, wire::kMaxPlays);
   const auto device = sim_device();
   ASSERT_TRUE(device);
   const auto sent = upload(device->client(), *prepared);

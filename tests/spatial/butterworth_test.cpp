@@ -100,16 +100,16 @@ TEST(Butterworth, ZeroPhaseHoldsToTwelveDigitsInLongDouble) {
 }
 
 TEST(Butterworth, RefusesWhatCannotBe) {
-  const auto refused = [](int order, Band band, schema::Fault fault) {
+  const auto refused = [](int order, Band band, schema::ErrorKind fault) {
     const auto sections = butterworth_band_pass(order, band, 1000);
     return !sections && sections.error().fault == fault;
   };
-  EXPECT_TRUE(refused(0, {15, 400}, schema::Fault::usage));
-  EXPECT_TRUE(refused(21, {15, 400}, schema::Fault::usage));
-  EXPECT_TRUE(refused(4, {0, 400}, schema::Fault::unsuitable));
-  EXPECT_TRUE(refused(4, {15, 500}, schema::Fault::unsuitable));
-  EXPECT_TRUE(refused(4, {400, 15}, schema::Fault::unsuitable));
-  EXPECT_TRUE(refused(4, {std::nan(""), 15}, schema::Fault::unsuitable));
+  EXPECT_TRUE(refused(0, {15, 400}, schema::ErrorKind::usage));
+  EXPECT_TRUE(refused(21, {15, 400}, schema::ErrorKind::usage));
+  EXPECT_TRUE(refused(4, {0, 400}, schema::ErrorKind::unsuitable));
+  EXPECT_TRUE(refused(4, {15, 500}, schema::ErrorKind::unsuitable));
+  EXPECT_TRUE(refused(4, {400, 15}, schema::ErrorKind::unsuitable));
+  EXPECT_TRUE(refused(4, {std::nan(""), 15}, schema::ErrorKind::unsuitable));
 }
 
 TEST(Butterworth, TakesTheShortest) {

@@ -22,7 +22,7 @@ using samples::Stroke;
 using samples::World;
 using schema::Certificate;
 using schema::CertifiedPeak;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::PeakVerdict;
 
 schema::Result<std::vector<Certificate>> certificates_of(const World& world,
@@ -124,10 +124,10 @@ TEST(Certificate, RefusesWhatTellsNothing) {
   World world;
   world.noise = 0.02;
   const auto one = certificates_of(world, {{0.04, 0.06}}, 1);
-  EXPECT_EQ(one.error().fault, Fault::usage);
+  EXPECT_EQ(one.error().fault, ErrorKind::usage);
   const auto alike = certificates_of(world, {{0.0400, 0.06}, {0.0401, 0.06}}, 1);
   ASSERT_FALSE(alike);
-  EXPECT_EQ(alike.error().fault, Fault::unsuitable);
+  EXPECT_EQ(alike.error().fault, ErrorKind::unsuitable);
   EXPECT_NE(alike.error().what.find("differ only by a factor of 1.00"), std::string::npos)
       << alike.error().what;
 }

@@ -148,7 +148,7 @@ TEST(ShortTimeTransform, StopsWhereItsSinkFails) {
   ShortTimeTransform transform(kUsual, {}, blackman(kUsual.window), 1, true, 1);
   int calls = 0;
   const auto done = transform.transform(touch(20000, 0, 0), [&](const PackedRows&) -> schema::Result<void> {
-    return ++calls < 3 ? schema::Result<void>{} : schema::fail(schema::Fault::cannot_write, "full");
+    return ++calls < 3 ? schema::Result<void>{} : schema::fail(schema::ErrorKind::cannot_write, "full");
   });
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().what, "full");

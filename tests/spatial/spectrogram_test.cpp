@@ -15,7 +15,7 @@
 namespace tacto::spatial {
 namespace {
 
-using schema::Fault;
+using schema::ErrorKind;
 
 // Cells are stored as float: 2^-24 of each; sums of thousands of them stay under this.
 constexpr double kFloat = 1e-6;
@@ -169,7 +169,7 @@ TEST(Spectrogram, DensitiesAndAmplitudesAgree) {
 TEST(Spectrogram, DensitiesBeyondSinglePrecisionAreRefused) {
   const auto refused = spatial_spectrogram(samples::sine(1e30, 2000, 12000), {});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, Fault::unsuitable);
+  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
   EXPECT_NE(refused.error().remedy.find("--scaling amplitude"), std::string::npos);
 }
 
@@ -177,7 +177,7 @@ TEST(Spectrogram, DensitiesBeyondSinglePrecisionAreRefused) {
 TEST(Spectrogram, DensitiesBelowSinglePrecisionAreRefusedToo) {
   const auto refused = spatial_spectrogram(samples::sine(1e-30, 2000, 12000), {});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, Fault::unsuitable);
+  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
   SpectrogramOptions amplitudes;
   amplitudes.scaling = schema::Scaling::amplitude;
   const auto shown = spatial_spectrogram(samples::sine(1e-30, 2000, 12000), amplitudes);
@@ -295,7 +295,7 @@ TEST(Spectrogram, TakesTheShortestTextureThatHoldsAWindow) {
   EXPECT_EQ(result->position_m.size(), 1U);
   const auto refused = spatial_spectrogram(samples::noise(9999), {});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, Fault::unsuitable);
+  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
   EXPECT_EQ(refused.error().remedy, "a window of 9.99 mm would fit");
   SpectrogramOptions options;
   options.window_m = 9.99e-3;
@@ -308,21 +308,21 @@ TEST(Spectrogram, RefusesImpossibleOptions) {
     SpectrogramOptions options;
     change(options);
     const auto result = spatial_spectrogram(texture, options);
-    return result ? Fault::internal : result.error().fault;
+    return result ? ErrorKind::internal : result.error().fault;
   };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -1e-3, 7e-6, 1e300, kNan})
-    EXPECT_EQ(fault_of([&](auto& o) { o.window_m = bad; }), Fault::usage) << bad;
+    EXPECT_EQ(fault_of([&](auto& o) { o.window_m = bad; }), ErrorKind::usage) << bad;
   for (const double bad : {0.0, -1e-3, 0.4e-6, 1e300, kNan})
-    EXPECT_EQ(fault_of([&](auto& o) { o.hop_m = bad; }), Fault::usage) << bad;
+    EXPECT_EQ(fault_of([&](auto& o) { o.hop_m = bad; }), ErrorKind::usage) << bad;
   for (const double bad : {0.0, 9e-3, 1e300, kNan})
-    EXPECT_EQ(fault_of([&](auto& o) { o.padded_m = bad; }), Fault::usage) << bad;
+    EXPECT_EQ(fault_of([&](auto& o) { o.padded_m = bad; }), ErrorKind::usage) << bad;
   SpectrogramOptions far;
   far.padded_m = 100;
   EXPECT_EQ(spatial_spectrogram(texture, far).error().remedy,
             "take 10 mm (the window) to 16.78 m (2^24 samples)");
   for (const double bad : {0.0, -1.0, kNan})
-    EXPECT_EQ(fault_of([&](auto& o) { o.max_frequency_per_m = bad; }), Fault::usage) << bad;
+    EXPECT_EQ(fault_of([&](auto& o) { o.max_frequency_per_m = bad; }), ErrorKind::usage) << bad;
 }
 
 TEST(Spectrogram, NamesTheSampleThatIsNotFinite) {

@@ -177,7 +177,7 @@ TEST(Streaming, AFaultOfTheSourceIsPassedOn) {
     Broken() : EndlessSource(ten_seconds()) {}
     schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) override {
       if (track == Track::value && first + out.size() > 60000)
-        return schema::fail(schema::Fault::malformed, "the tape is torn");
+        return schema::fail(schema::ErrorKind::malformed, "the tape is torn");
       return EndlessSource::read_stored(track, first, out);
     }
   };

@@ -148,11 +148,11 @@ double worst_db(double max_frequency_per_m) {
     for (const auto& [row, cells] : rows_of(*texture, shape, {1, last - 1})) {
       const double first = std::round(texture->source_origin_m / bench::kPitch_m);
       const auto values = exact.values(first + static_cast<double>(row * shape.hop), shape.window);
-      const auto wanted = reference::exact_short_time_row(values, shape, 0, true);
+      const auto target = reference::exact_short_time_row(values, shape, 0, true);
       for (std::size_t k = 0; k < cells.size(); ++k) {
         const std::complex<long double> got(cells[k].real(), cells[k].imag());
-        largest = std::max(largest, static_cast<double>(std::abs(got - wanted[k])));
-        largest_exact = std::max(largest_exact, static_cast<double>(std::abs(wanted[k])));
+        largest = std::max(largest, static_cast<double>(std::abs(got - target[k])));
+        largest_exact = std::max(largest_exact, static_cast<double>(std::abs(target[k])));
       }
     }
   }

@@ -148,7 +148,7 @@ int run(const std::string& uri, const std::string& name, double time_s) {
   auto opened = firmware_host::open_device(uri);
   if (!opened) return tell(opened.error());
   auto* const wire = dynamic_cast<WireDevice*>(opened->get());
-  if (wire == nullptr) return tell({schema::Fault::usage, "speaks no wire", uri, {}});
+  if (wire == nullptr) return tell({schema::ErrorKind::usage, "speaks no wire", uri, {}});
   DrivenDevice device(*wire);
   capture::RecordRequest request;
   request.name = name;

@@ -16,8 +16,8 @@
 namespace tacto::analysis {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr std::size_t kFewestLoopSamples = 100;
@@ -113,10 +113,10 @@ void put_operator(const std::vector<double>& thresholds_v, std::vector<double> w
 
 Result<void> check_loops(std::span<const double> v, std::span<const double> x) {
   if (v.size() < kFewestLoopSamples || v.size() != x.size())
-    return fail(Fault::unsuitable, fmt::format("{} samples are too few for a loop", v.size()), "loop");
+    return fail(ErrorKind::unsuitable, fmt::format("{} samples are too few for a loop", v.size()), "loop");
   for (std::size_t i = 0; i < v.size(); ++i)
     if (!std::isfinite(v[i]) || !std::isfinite(x[i]))
-      return fail(Fault::unsuitable, "a value is not a number", fmt::format("loop, sample {}", i + 1));
+      return fail(ErrorKind::unsuitable, "a value is not a number", fmt::format("loop, sample {}", i + 1));
   return {};
 }
 
@@ -242,9 +242,10 @@ void put_quality(const LoopTable& table, std::span<const double> v, std::span<co
   fit.linear_residual_part = rms(left_by_line) / size;
   fit.r_squared = 1 - fit.residual_part * fit.residual_part;
   put_errors(table, v, weights, left, limit_v, fit);
-  const auto plays = static_cast<double>(table.thresholds_v.size() - 1);
-  fit.explains_more = squares_of(left_by_line) - squares_of(left) >
-                      std::pow(fit.errors.noise * size, 2) * plays * highest_chi_squared(plays);
+  const auto play_operators = static_cast<double>(table.thresholds_v.size() - 1);
+  fit.explains_more =
+      squares_of(left_by_line) - squares_of(left) >
+      std::pow(fit.errors.noise * size, 2) * play_operators * highest_chi_squared(play_operators);
   fit.usable = fit.residual_part < std::max(kSmallResidual, fit.linear_residual_part / 3);
 }
 
@@ -259,7 +260,7 @@ Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const doubl
   fit.amplitude_v = std::abs(*std::ranges::max_element(v, {}, [](double value) { return std::abs(value); }));
   const LoopStretch loop = largest_loop(v, fit.amplitude_v);
   if (loop.end <= loop.first)
-    return fail(Fault::unsuitable, "the drive makes no whole loop between its largest values, both ways",
+    return fail(ErrorKind::unsuitable, "the drive makes no whole loop between its largest values, both ways",
                 "loop",
                 "drive it slowly with a sine or a triangle about 0, two periods at the largest swing first");
   if (thresholds_v.empty()) thresholds_v = even_thresholds(kThresholds, fit.amplitude_v);
@@ -272,7 +273,7 @@ Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const doubl
   fit.gain_m_per_v *= table.sign;
   put_loop(v, displacement_m, loop, fit);
   if (!std::isfinite(fit.opening))
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 "the drive passes zero too fast: fewer than three samples of a branch there", "loop",
                 "drive it slowly: 1 Hz");
   fit.loop_hz = rate_hz / static_cast<double>(loop.end - loop.first);

@@ -171,11 +171,11 @@ VectorXd solved(const MatrixXd& a, const VectorXd& b, const std::vector<bool>& u
 
 // From x towards a solution that is negative somewhere: as far as nothing is negative, and what got there
 // leaves.
-void go_back(VectorXd& x, const VectorXd& wanted, std::vector<bool>& used, Index bounded) {
+void go_back(VectorXd& x, const VectorXd& target, std::vector<bool>& used, Index bounded) {
   double part = 1;
   for (Index i = 0; i < bounded; ++i)
-    if (used[static_cast<std::size_t>(i)] && wanted[i] <= 0) part = std::min(part, x[i] / (x[i] - wanted[i]));
-  x += part * (wanted - x);
+    if (used[static_cast<std::size_t>(i)] && target[i] <= 0) part = std::min(part, x[i] / (x[i] - target[i]));
+  x += part * (target - x);
   for (Index i = 0; i < bounded; ++i)
     if (used[static_cast<std::size_t>(i)] && x[i] <= 1e-15 * x.cwiseAbs().maxCoeff())
       used[static_cast<std::size_t>(i)] = false, x[i] = 0;
@@ -231,10 +231,10 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
     const Index best = triangle.most_wanted(x, used, bounded);
     if (best < 0) break;
     used[static_cast<std::size_t>(best)] = true;
-    VectorXd wanted = solved(triangle.r, triangle.y, used);
-    for (; is_negative(wanted, used, bounded); wanted = solved(triangle.r, triangle.y, used))
-      go_back(x, wanted, used, bounded);
-    x = wanted;
+    VectorXd target = solved(triangle.r, triangle.y, used);
+    for (; is_negative(target, used, bounded); target = solved(triangle.r, triangle.y, used))
+      go_back(x, target, used, bounded);
+    x = target;
   }
   return {x.data(), x.data() + x.size()};
 }

@@ -56,25 +56,25 @@ struct Plays {
   }
 };
 
-ColumnErrors errors_of(const FittedOperator& fitted, const Plays& plays) {
+ColumnErrors errors_of(const FittedOperator& fitted, const Plays& play_operators) {
   std::vector<std::vector<double>> own, between;
-  for (std::size_t i = 0; i < plays.thresholds_v.size(); ++i)
-    (i < plays.own ? own : between).push_back(column_of(fitted, plays.thresholds_v[i]));
+  for (std::size_t i = 0; i < play_operators.thresholds_v.size(); ++i)
+    (i < play_operators.own ? own : between).push_back(column_of(fitted, play_operators.thresholds_v[i]));
   own.emplace_back(fitted.left.size(), 1.0);  // the offset
   return column_errors(own, between);
 }
 
-void add_misfit(const ColumnErrors& found, const Plays& plays, double misfit_squares,
+void add_misfit(const ColumnErrors& found, const Plays& play_operators, double misfit_squares,
                 OperatorErrors& errors) {
   double explained = 0;
   for (std::size_t i = 0; i < found.left.size(); ++i)
-    explained += plays.usual_weights[i] * plays.usual_weights[i] * found.left[i];
+    explained += play_operators.usual_weights[i] * play_operators.usual_weights[i] * found.left[i];
   if (!(explained > 0)) return;
   const double times = kCoherent * std::sqrt(misfit_squares / explained);
   for (std::size_t i = 0; i < found.left.size(); ++i) {
-    const double weight = times * plays.usual_weights[i];
-    schema::Hysteresis change = plays.change(found.taken[i], -weight);
-    change.weights[plays.own + i] = weight;
+    const double weight = times * play_operators.usual_weights[i];
+    schema::Hysteresis change = play_operators.change(found.taken[i], -weight);
+    change.weights[play_operators.own + i] = weight;
     errors.by_misfit.push_back(std::move(change));
   }
 }
@@ -88,10 +88,11 @@ OperatorErrors operator_errors(const FittedOperator& fitted) {
   const bool misfit = all - noise > kMisfitQuantile * noise / std::sqrt(samples);
   errors.noise = std::sqrt(misfit ? noise : all);
   errors.misfit = misfit ? std::sqrt(all - noise) : 0;
-  const Plays plays(fitted.found);
-  const ColumnErrors found = errors_of(fitted, plays);
-  for (const auto& direction : found.noise) errors.by_noise.push_back(plays.change(direction, errors.noise));
-  if (misfit) add_misfit(found, plays, samples * (all - noise), errors);
+  const Plays play_operators(fitted.found);
+  const ColumnErrors found = errors_of(fitted, play_operators);
+  for (const auto& direction : found.noise)
+    errors.by_noise.push_back(play_operators.change(direction, errors.noise));
+  if (misfit) add_misfit(found, play_operators, samples * (all - noise), errors);
   return errors;
 }
 

@@ -13,8 +13,8 @@
 namespace tacto::analysis {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr double kClearly = 0.25;
@@ -68,7 +68,7 @@ std::string unit_words(double times) {
 Result<void> check_times(double times, const schema::Transducer& base, const std::string& source,
                          const char* remedy) {
   if (times < kOtherUnit && times > 1 / kOtherUnit) return {};
-  return fail(Fault::unsuitable, "the gain is " + fmt::format(fmt::runtime(unit_words(times)), base.name),
+  return fail(ErrorKind::unsuitable, "the gain is " + fmt::format(fmt::runtime(unit_words(times)), base.name),
               source, remedy);
 }
 
@@ -122,7 +122,7 @@ Result<void> check_phases(const BodeData& measured, const ModelChoice& choice, c
   const double unturned = left_by_grid(model, without_half_turns(data, step));
   if (step > 0 && unturned < kClearly * left)
     return fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format(
             "the phase steps by half a turn from {:.4g} to {:.4g} Hz where the amplitude does not fall: it "
             "was unwrapped wrongly",
@@ -130,7 +130,7 @@ Result<void> check_phases(const BodeData& measured, const ModelChoice& choice, c
         data.source, "take the phase of the complex ratio (atan2), not of a quotient");
   const Turned needed = turns_needed(model, data, left);
   if (needed.conjugated || needed.inverted)
-    return fail(Fault::unsuitable, turns_words(needed, data.direction), data.source,
+    return fail(ErrorKind::unsuitable, turns_words(needed, data.direction), data.source,
                 turns_remedy(needed, turned));
   return {};
 }
@@ -156,7 +156,7 @@ Result<void> check_units(const BodeData& data, const ModelChoice& choice, const 
   const BodeData radians =
       changed(data, [](auto h) { return std::polar(std::abs(h), kDegrees * std::arg(h)); });
   if (left_by_grid(model, radians) >= kClearly * left_by_grid(model, data)) return {};
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("no phase is beyond {:.3g} degrees: these will be radians", largest_angle(data)),
               data.source, "give --phase-unit rad, or write phase_rad into the header");
 }
@@ -178,8 +178,8 @@ Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice, con
   levels.noise_from_residuals = false;
   const ResponseFit other = fit_response(levels, choice, base);
   if (!other.claims_intervals() || other.r_squared < kExplained) return {};
-  return fail(Fault::unsuitable, "the amplitudes fit as levels only: these will be decibels", fit.data.source,
-              "give --amplitude-unit with \"dB \" before the unit, as \"dB um/V\"");
+  return fail(ErrorKind::unsuitable, "the amplitudes fit as levels only: these will be decibels",
+              fit.data.source, "give --amplitude-unit with \"dB \" before the unit, as \"dB um/V\"");
 }
 
 Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base) {
@@ -197,7 +197,7 @@ Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer&
   if (times < kOtherFrequency && times > 1 / kOtherFrequency) return {};
   const bool in_khz = times < 1;
   return fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("the resonance is {:.4g} Hz, {:.3g} times what '{}' has; if the frequencies are in {} "
                   "it is {:.4g} Hz",
                   resonance->value, times, base.name, in_khz ? "kHz" : "rad/s",
@@ -215,7 +215,7 @@ Result<void> check_size(const LoopFit& fit, const schema::Transducer& base, cons
 
 Result<void> check_upright(const LoopFit& fit, const std::string& source, bool inverted) {
   if (fit.gain_m_per_v > 0) return {};
-  return fail(Fault::unsuitable, "the loops are upside down: a positive drive gives a negative answer",
+  return fail(ErrorKind::unsuitable, "the loops are upside down: a positive drive gives a negative answer",
               source, invert_remedy(inverted));
 }
 

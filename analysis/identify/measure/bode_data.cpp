@@ -9,8 +9,8 @@
 namespace tacto::analysis {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr double kLeastSignalToNoise = 2;
@@ -48,13 +48,14 @@ Result<void> check_values(const BodeData& data) {
     const auto value = data.response[i];
     const bool finite = std::isfinite(value.real()) && std::isfinite(value.imag());
     if (!finite || !std::isfinite(data.frequency_hz[i]))
-      return fail(Fault::unsuitable, "a value is not a number", where, remedy);
+      return fail(ErrorKind::unsuitable, "a value is not a number", where, remedy);
     if (!(data.frequency_hz[i] > 0) || (i > 0 && !(data.frequency_hz[i] > data.frequency_hz[i - 1])))
-      return fail(Fault::unsuitable, fmt::format("{:g} Hz does not grow from above 0", data.frequency_hz[i]),
-                  where, "sort the lines by frequency, one line for each");
+      return fail(ErrorKind::unsuitable,
+                  fmt::format("{:g} Hz does not grow from above 0", data.frequency_hz[i]), where,
+                  "sort the lines by frequency, one line for each");
     if (data.has_noise() && !(data.noise[i] > 0))
-      return fail(Fault::unsuitable, "the noise is not above 0", where);
-    if (value == 0.0) return fail(Fault::unsuitable, "the amplitude is 0", where, remedy);
+      return fail(ErrorKind::unsuitable, "the noise is not above 0", where);
+    if (value == 0.0) return fail(ErrorKind::unsuitable, "the amplitude is 0", where, remedy);
   }
   return {};
 }
@@ -63,14 +64,14 @@ Result<void> check_values(const BodeData& data) {
 
 Result<void> check_bode(const BodeData& data) {
   if (data.size() < kLeastFrequencies)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("{} frequencies are too few to fit four parameters", data.size()), data.source,
                 fmt::format("measure {} or more, on both sides of the resonance", kLeastFrequencies));
   if (const auto sound = check_values(data); !sound) return sound;
   const bool loud = !data.has_noise() || signal_to_noise(data) >= kLeastSignalToNoise;
   if (loud && smoothness(data) >= kLeastSmoothness) return {};
   return fail(
-      Fault::unsuitable, "this is noise: there is no response in it", data.source,
+      ErrorKind::unsuitable, "this is noise: there is no response in it", data.source,
       data.direction == Direction::sensor
           ? "push it with more force, measure longer, and see that the reference cell is in the force's way"
           : "drive it with more, measure longer, and see that the sensor looks at the tray; slow loops "

@@ -13,8 +13,8 @@ namespace tacto::analysis {
 namespace {
 
 using firmware_host::Client;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr std::uint8_t kFramesOfMessage = 32;
@@ -27,8 +27,9 @@ constexpr std::uint32_t kLimited =
 Result<std::size_t> tray_channel(const firmware_host::Capabilities& about) {
   const auto found = std::ranges::find(about.channels, "displacement", &schema::Channel::quantity);
   if (found != about.channels.end()) return static_cast<std::size_t>(found - about.channels.begin());
-  return fail(Fault::unsuitable, "the device does not see its tray move: it has no channel of displacement",
-              about.uri, "of an emulated device add tray_sensor=on; else give a file of measured values");
+  return fail(ErrorKind::unsuitable,
+              "the device does not see its tray move: it has no channel of displacement", about.uri,
+              "of an emulated device add tray_sensor=on; else give a file of measured values");
 }
 
 // One run: what has come so far, as the device numbered it.
@@ -59,13 +60,13 @@ class Run {
   }
   Result<void> take() {
     if (client_.samples().has_gap() && client_.samples().at_gap())
-      return fail(Fault::device, "frames were lost on the way", about_.uri,
+      return fail(ErrorKind::device, "frames were lost on the way", about_.uri,
                   "identify again, on a quieter machine");
     take_frames();
     for (const wire::Ticks& block : client_.take_ticks())
       if (const auto kept = keep(block); !kept) return kept;
     if (const auto faults = client_.take_faults(); !faults.empty())
-      return fail(Fault::device,
+      return fail(ErrorKind::device,
                   fmt::format("the device stopped with fault {}", static_cast<int>(faults[0].code)),
                   about_.uri, "see that its enable input is closed and the machine not too busy");
     return {};
@@ -86,7 +87,8 @@ class Run {
 
   // Frames and ticks on one axis, from the first sample of the plan on.
   Result<DrivenTray> paired(std::span<const float> plan) const {
-    if (!first_frame_s_ || drive_.empty()) return fail(Fault::device, "the device gave nothing", about_.uri);
+    if (!first_frame_s_ || drive_.empty())
+      return fail(ErrorKind::device, "the device gave nothing", about_.uri);
     const auto shift =
         static_cast<std::ptrdiff_t>(std::llround((first_tick_s_ - *first_frame_s_) * about_.sample_rate_hz));
     const auto loud = [](float v) { return v != 0; };
@@ -96,7 +98,7 @@ class Run {
     const auto count = static_cast<std::ptrdiff_t>(plan.size());
     if (first < 0 || first + count > static_cast<std::ptrdiff_t>(drive_.size()) || first + shift < 0 ||
         first + shift + count > static_cast<std::ptrdiff_t>(displacement_m_.size()))
-      return fail(Fault::device, "the device gave fewer samples than it played", about_.uri);
+      return fail(ErrorKind::device, "the device gave fewer samples than it played", about_.uri);
     DrivenTray tray{about_.sample_rate_hz, {}, {}, limited_};
     tray.drive_v.assign(drive_.begin() + first, drive_.begin() + first + count);
     tray.displacement_m.assign(displacement_m_.begin() + first + shift,
@@ -139,7 +141,7 @@ class Run {
       first_tick_s_ = static_cast<double>(block.device_ticks) / client_.description().welcome.clock_hz -
                       static_cast<double>(block.first_tick) / about_.sample_rate_hz;
     if (block.first_tick != drive_.size())
-      return fail(Fault::device, "ticks were lost on the way", about_.uri,
+      return fail(ErrorKind::device, "ticks were lost on the way", about_.uri,
                   "identify again, on a quieter machine");
     for (std::size_t i = 0; i < block.count; ++i) {
       drive_.push_back(block.ticks[i].drive_v);
@@ -155,7 +157,7 @@ class Run {
     return other > 2 * limited_;
   }
   Result<DrivenTray> late_words() const {
-    return fail(Fault::device, "the device did not put out what it was sent: the drive came too late",
+    return fail(ErrorKind::device, "the device did not put out what it was sent: the drive came too late",
                 about_.uri, "identify again, on a quieter machine");
   }
 
@@ -174,7 +176,7 @@ class Run {
 Result<void> played(Run& run, std::span<const float> drive_v, const std::function<bool()>& stop_asked,
                     const std::function<void(double)>& progress) {
   while (!run.all_played()) {
-    if (stop_asked()) return fail(Fault::usage, "stopped before the end", "identify");
+    if (stop_asked()) return fail(ErrorKind::usage, "stopped before the end", "identify");
     auto done = run.feed(drive_v);
     if (done) done = run.take();
     if (!done) return done;
@@ -194,7 +196,7 @@ Result<DrivenTray> drive_tray(firmware_host::Device& device, std::span<const flo
                               const std::function<void(double)>& progress) {
   Client* const client = device.conversation();
   if (client == nullptr)
-    return fail(Fault::unsuitable, "nothing can be played on a replay", device.capabilities().uri);
+    return fail(ErrorKind::unsuitable, "nothing can be played on a replay", device.capabilities().uri);
   const auto channel = tray_channel(device.capabilities());
   TACTO_TRY(channel);
   Run run(*client, device.capabilities(), *channel);

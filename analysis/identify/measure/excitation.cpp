@@ -75,12 +75,12 @@ double stepped_sine_s(const ExcitationPlan& plan) {
 SteppedSine stepped_sine(const ExcitationPlan& plan) {
   SteppedSine stepped;
   for (std::size_t i = 0; i < plan.frequencies; ++i) {
-    const double wanted_hz = octave(plan, i);
-    const double samples = std::round(std::max(kMeasureS, kMeasuredPeriods / wanted_hz) * plan.rate_hz);
-    const double periods = std::round(wanted_hz * samples / plan.rate_hz);
+    const double target_hz = octave(plan, i);
+    const double samples = std::round(std::max(kMeasureS, kMeasuredPeriods / target_hz) * plan.rate_hz);
+    const double periods = std::round(target_hz * samples / plan.rate_hz);
     SineStep step{periods * plan.rate_hz / samples, stepped.drive_v.size(), 0, 0};
     if (!stepped.steps.empty() && step.frequency_hz <= stepped.steps.back().frequency_hz) continue;
-    const double settle = std::ceil((kDriveSettleS + 1 / wanted_hz) * plan.rate_hz);
+    const double settle = std::ceil((kDriveSettleS + 1 / target_hz) * plan.rate_hz);
     add_sine(stepped.drive_v, plan.amplitude_v, step.frequency_hz, plan.rate_hz,
              (settle + samples) * step.frequency_hz / plan.rate_hz);
     step.end = stepped.drive_v.size();

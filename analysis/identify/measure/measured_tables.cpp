@@ -14,8 +14,8 @@
 namespace tacto::analysis {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -65,15 +65,15 @@ std::optional<Found> column(const NumberTable& table, std::initializer_list<std:
     std::string name = table.names[i];
     std::ranges::transform(name, name.begin(),
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const std::string_view wanted : names)
-      if (name.starts_with(wanted))
-        return Found{i, unit_in(std::string_view(table.names[i]).substr(wanted.size()))};
+    for (const std::string_view target : names)
+      if (name.starts_with(target))
+        return Found{i, unit_in(std::string_view(table.names[i]).substr(target.size()))};
   }
   return std::nullopt;
 }
 
 tl::unexpected<schema::Error> no_column(const std::string& path, std::string_view what) {
-  return fail(Fault::malformed, fmt::format("it has no column of {}", what), path,
+  return fail(ErrorKind::malformed, fmt::format("it has no column of {}", what), path,
               "name the columns in the first line: frequency_hz,amplitude_um_per_v,phase_deg, or "
               "drive_v,displacement_um");
 }
@@ -94,7 +94,7 @@ Result<AmplitudeUnit> amplitude_unit(std::string unit, const std::string& path) 
     found = {Direction::sensor, *volts, found.decibels};
   else
     return fail(
-        Fault::usage,
+        ErrorKind::usage,
         unit.empty() ? "the amplitude has no unit" : fmt::format("'{}' is no unit of amplitude", unit), path,
         "write amplitude_um_per_v (or m, mm, nm) or amplitude_v_per_n into the header, or give "
         "--amplitude-unit um/V, V/N or \"dB m/V\"");
@@ -104,7 +104,7 @@ Result<AmplitudeUnit> amplitude_unit(std::string unit, const std::string& path) 
 Result<double> phase_unit(const std::string& unit, const std::string& path) {
   if (unit == "deg" || unit == "degrees" || unit == "\xC2\xB0") return kDegree;
   if (unit == "rad" || unit == "radians") return 1.0;
-  return fail(Fault::usage,
+  return fail(ErrorKind::usage,
               unit.empty() ? "the phase has no unit" : fmt::format("'{}' is no unit of phase", unit), path,
               "write phase_deg or phase_rad into the header, or give --phase-unit deg");
 }
@@ -112,7 +112,7 @@ Result<double> phase_unit(const std::string& unit, const std::string& path) {
 Result<void> check_radians(const NumberTable& table, std::size_t phase, const std::string& path) {
   for (std::size_t row = 0; row < table.rows(); ++row)
     if (std::abs(table.at(row, phase)) > kNoRadians)
-      return fail(Fault::unsuitable,
+      return fail(ErrorKind::unsuitable,
                   fmt::format("a phase of {:g} rad: these will be degrees", table.at(row, phase)), path,
                   "write phase_deg, or give --phase-unit deg");
   return {};
@@ -134,9 +134,9 @@ Result<void> check_sizes(const NumberTable& table, std::size_t amplitude, Direct
   const std::string what = fmt::format("an amplitude of {:g}, below 0", table.at(first, amplitude)),
                     where = fmt::format("{}, line {}", path, table.lines[first]);
   if (below == 1)
-    return fail(Fault::unsuitable, what, where,
+    return fail(ErrorKind::unsuitable, what, where,
                 "measure it again, or leave its line out; a half turn belongs in the phase");
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("{}, as in {} of {} lines: these will be decibels", what, below, table.rows()),
               where,
               fmt::format("give --amplitude-unit \"{}\"; a half turn belongs in the phase",
@@ -174,7 +174,7 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
     return schema::forward_error(sound);
   const auto hertz = worth(kFrequencyUnits, frequency->unit);
   if (!hertz)
-    return fail(Fault::usage, fmt::format("'{}' is no unit of frequency", frequency->unit), path,
+    return fail(ErrorKind::usage, fmt::format("'{}' is no unit of frequency", frequency->unit), path,
                 "write frequency_hz, frequency_khz or frequency_rad_per_s into the header");
   const auto noise = column(*table, {"noise", "sigma"});
   BodeData data;
@@ -199,7 +199,7 @@ Result<DrivenTray> read_driven_table(const std::string& path) {
   if (!drive || !displacement) return no_column(path, !drive ? "drive" : "displacement");
   const auto volts = worth(kVoltUnits, drive->unit), metres = worth(kLengthUnits, displacement->unit);
   if (!volts || !metres)
-    return fail(Fault::usage, fmt::format("the {} has no unit", volts ? "displacement" : "drive"), path,
+    return fail(ErrorKind::usage, fmt::format("the {} has no unit", volts ? "displacement" : "drive"), path,
                 "write drive_v,displacement_um (or m, mm, nm) into the first line");
   DrivenTray tray;
   for (std::size_t row = 0; row < table->rows(); ++row) {
@@ -212,7 +212,7 @@ Result<DrivenTray> read_driven_table(const std::string& path) {
                         static_cast<double>(table->rows() - 1);
   for (std::size_t row = 1; row < table->rows(); ++row)
     if (!(std::abs(table->at(row, time->index) - table->at(row - 1, time->index) - step_s) <= 0.01 * step_s))
-      return fail(Fault::unsuitable, "the times are not even", fmt::format("{}, row {}", path, row + 1),
+      return fail(ErrorKind::unsuitable, "the times are not even", fmt::format("{}, row {}", path, row + 1),
                   "sample it anew at one rate");
   tray.rate_hz = 1 / step_s;
   return tray;
@@ -226,7 +226,7 @@ Result<void> check_unclipped(const schema::Channel& channel, const std::vector<d
            (channel.range_min && value <= *channel.range_min);
   });
   if (clipped == 0) return {};
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("{} samples of {} lie at an end of the converter's range", clipped, channel.name),
               stem, "drive less, and record again");
 }
@@ -237,7 +237,7 @@ Result<RecordedPair> read_recorded_pair(const std::string& stem, const std::stri
   TACTO_TRY(recording);
   const schema::RecordingHeader& header = recording->header;
   if (!header.gaps.empty())
-    return fail(Fault::unsuitable, "the recording has gaps", stem, "record it again without losses");
+    return fail(ErrorKind::unsuitable, "the recording has gaps", stem, "record it again without losses");
   RecordedPair pair;
   pair.rate_hz = header.sample_rate_hz;
   pair.simulated = header.simulated;

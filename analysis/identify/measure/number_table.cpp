@@ -9,15 +9,15 @@
 namespace tacto::analysis {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 Result<capture::CsvLayout> layout_of(const std::string& text, const std::string& path) {
   const auto head = std::string_view(text).substr(0, capture::kLayoutBytes);
   auto layout = capture::find_csv_layout(head, head.size() == text.size(), path);
   if (!layout || layout->header) return layout;
-  return fail(Fault::malformed, "the first line does not name the columns", path,
+  return fail(ErrorKind::malformed, "the first line does not name the columns", path,
               "write for example frequency_hz,amplitude_um_per_v,phase_deg above the numbers");
 }
 

@@ -12,8 +12,8 @@
 namespace tacto::analysis {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 using RecordSpectrum = std::vector<std::complex<double>>;
 
@@ -117,7 +117,7 @@ Result<BodeData> response_of_record(std::span<const double> input, std::span<con
                                     double rate_hz, double low_hz, double high_hz,
                                     const std::string& source) {
   if (input.size() < kFewestSamples)
-    return fail(Fault::unsuitable, "the recording is too short for a frequency response", source);
+    return fail(ErrorKind::unsuitable, "the recording is too short for a frequency response", source);
   const RecordSpectra spectra = spectra_of(input, output, rate_hz);
   const std::vector<std::size_t> places = places_in(spectra, low_hz, high_hz);
   std::vector<LocalResponse> list = responses_at(spectra, places, true);
@@ -134,7 +134,7 @@ Result<BodeData> response_of_record(std::span<const double> input, std::span<con
     data.noise.push_back(noise);
   }
   if (!data.frequency_hz.empty()) return data;
-  return fail(Fault::unsuitable, "output and input have nothing to do with each other", source,
+  return fail(ErrorKind::unsuitable, "output and input have nothing to do with each other", source,
               "name the channels with --input and --output-channel; slow loops take --method loop");
 }
 

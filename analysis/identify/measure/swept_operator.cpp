@@ -66,12 +66,12 @@ const std::vector<Complex>& SweptOperator::play(double threshold_v) {
   return left;
 }
 
-std::vector<Complex> SweptOperator::left_by(const schema::Hysteresis& plays) {
+std::vector<Complex> SweptOperator::left_by(const schema::Hysteresis& play_operators) {
   std::vector<Complex> sum(lines_.size());
-  for (std::size_t i = 0; i < plays.weights.size(); ++i) {
-    if (plays.weights[i] == 0) continue;
-    const auto& one = play(plays.thresholds_v[i]);
-    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += plays.weights[i] * one[n];
+  for (std::size_t i = 0; i < play_operators.weights.size(); ++i) {
+    if (play_operators.weights[i] == 0) continue;
+    const auto& one = play(play_operators.thresholds_v[i]);
+    for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += play_operators.weights[i] * one[n];
   }
   return sum;
 }

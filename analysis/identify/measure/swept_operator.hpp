@@ -31,7 +31,7 @@ std::vector<double> charge_of(std::span<const double> drive_v, double pole_hz, d
 class SweptOperator {
  public:
   SweptOperator(const SweptDrive& drive, double pole_hz);
-  std::vector<std::complex<double>> left_by(const schema::Hysteresis& plays);
+  std::vector<std::complex<double>> left_by(const schema::Hysteresis& play_operators);
   double largest_charge_v() const { return largest_charge_v_; }
 
   static constexpr double kFinePerPeriod = 128;  ///< a kink's harmonics fall by n^2: what folds is below 1e-5

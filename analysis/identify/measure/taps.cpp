@@ -17,8 +17,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 using Complex = std::complex<double>;
 
@@ -59,7 +59,7 @@ Result<VectorXd> ringing_of(const Tap& tap, double rate_hz) {
   const auto& y = tap.value;
   for (std::size_t i = 0; i < y.size(); ++i)
     if (!std::isfinite(y[i]))
-      return fail(Fault::unsuitable, "a value is not a number",
+      return fail(ErrorKind::unsuitable, "a value is not a number",
                   fmt::format("tap {}, sample {}", tap.name, i + 1));
   const auto peak = static_cast<std::size_t>(
       std::ranges::max_element(y, {}, [](double v) { return std::abs(v); }) - y.begin());
@@ -68,7 +68,7 @@ Result<VectorXd> ringing_of(const Tap& tap, double rate_hz) {
       std::min(y.size() - std::min(first, y.size()), static_cast<std::size_t>(kRingingS * rate_hz)) /
       kDecimation;
   if (count < kLeastRinging || peak < kLeastRinging)
-    return fail(Fault::unsuitable, "too short: it needs some quiet before and some ringing after",
+    return fail(ErrorKind::unsuitable, "too short: it needs some quiet before and some ringing after",
                 "tap " + tap.name, "record 2 ms before and 13 ms after each tap, at 35 kHz or more");
   const Eigen::Map<const VectorXd> before(y.data(), static_cast<Index>(peak * 4 / 5));
   const double baseline = before.mean();
@@ -79,7 +79,7 @@ Result<VectorXd> ringing_of(const Tap& tap, double rate_hz) {
     ringing[static_cast<Index>(i)] = sum / kDecimation;
   }
   if (rms_of(ringing) > kLoudRinging * rms_of(before.array() - baseline)) return ringing;
-  return fail(Fault::unsuitable, "there is no ringing in it: this is noise", "tap " + tap.name,
+  return fail(ErrorKind::unsuitable, "there is no ringing in it: this is noise", "tap " + tap.name,
               "leave it out");
 }
 
@@ -210,13 +210,13 @@ double first_resonance_hz(const std::vector<RingingTap>& taps) {
 // Which mode rings loudest depends on how the tap was made: the one that is looked for is the same in all.
 Result<TapsFit> fit_taps(const Taps& taps) {
   if (taps.taps.size() < 2)
-    return fail(Fault::unsuitable, "one tap has no spread", "taps", "tap ten times or more");
+    return fail(ErrorKind::unsuitable, "one tap has no spread", "taps", "tap ten times or more");
   std::vector<RingingTap> list;
   for (const Tap& tap : taps.taps) {
     const auto ringing = ringing_of(tap, taps.rate_hz);
     TACTO_TRY(ringing);
     Ringing found = modes_of(*ringing, taps.rate_hz / kDecimation);
-    if (found.modes.empty()) return fail(Fault::unsuitable, "nothing rings in it", "tap " + tap.name);
+    if (found.modes.empty()) return fail(ErrorKind::unsuitable, "nothing rings in it", "tap " + tap.name);
     list.push_back({tap.name, std::move(found.modes), found.left});
   }
   const double usual_hz = first_resonance_hz(list);
@@ -239,7 +239,7 @@ Result<TapsPrediction> foretell_taps(const Taps& taps, std::size_t fitted) {
   for (auto tap = taps.taps.begin(); tap != split; ++tap) ringings.push_back(*ringing_of(*tap, taps.rate_hz));
   const auto same_length = [&](const VectorXd& y) { return y.size() == ringings.front().size(); };
   if (!std::ranges::all_of(ringings, same_length))
-    return fail(Fault::unsuitable, "the taps are not equally long", "taps", "cut them alike");
+    return fail(ErrorKind::unsuitable, "the taps are not equally long", "taps", "cut them alike");
   const VectorXcd poles = pencil_poles(ringings, kSharedPoles);
   std::vector<double> foretold, shaped;
   for (auto tap = split; tap != taps.taps.end(); ++tap) {

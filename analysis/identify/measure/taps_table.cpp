@@ -10,8 +10,8 @@ schema::Result<Taps> read_taps(const std::string& path, double rate_hz) {
   const auto table = read_numbers(path);
   TACTO_TRY(table);
   if (table->names.size() < 2)
-    return schema::fail(schema::Fault::malformed, "it has one column: taps need their numbers and the values",
-                        path);
+    return schema::fail(schema::ErrorKind::malformed,
+                        "it has one column: taps need their numbers and the values", path);
   Taps taps{rate_hz, {}};
   for (std::size_t row = 0; row < table->rows(); ++row) {
     const std::string name = fmt::format("{:g}", table->at(row, 0));

@@ -14,8 +14,8 @@
 namespace tacto::analysis {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 
 constexpr double kMostOfRate = 0.45;
@@ -33,22 +33,22 @@ double largest_gain(const ExcitationPlan& plan, const schema::Transducer& base) 
 Result<void> check_amplitude(const ExcitationPlan& plan, const schema::Transducer& base) {
   if (plan.high_hz > kMostOfRate * plan.rate_hz)
     return fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("{:g} Hz are too near half the device's rate of {:g} Hz", plan.high_hz, plan.rate_hz),
         "--high", fmt::format("at most {:g} Hz", kMostOfRate * plan.rate_hz));
   const double most_m = plan.amplitude_v * largest_gain(plan, base);
   const char* const remedy = "give a smaller --amplitude";
   if (plan.amplitude_v > base.drive_limit_v)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("{:g} V pass the drive's limit of {:g} V", plan.amplitude_v, base.drive_limit_v),
                 "--amplitude", remedy);
   if (most_m > base.displacement_limit_m)
-    return fail(Fault::unsuitable,
+    return fail(ErrorKind::unsuitable,
                 fmt::format("the tray would go {} far, its limit is {}", schema::length_for_people(most_m),
                             schema::length_for_people(base.displacement_limit_m)),
                 "--amplitude", remedy);
   if (kTurn * plan.high_hz * plan.amplitude_v > base.slew_limit_v_per_s)
-    return fail(Fault::unsuitable, "the drive would be faster than its limit", "--amplitude", remedy);
+    return fail(ErrorKind::unsuitable, "the drive would be faster than its limit", "--amplitude", remedy);
   return {};
 }
 
@@ -58,7 +58,7 @@ Result<void> check_sweep(const ExcitationPlan& plan) {
   ExcitationPlan higher = plan;
   while (higher.low_hz < plan.high_hz && stepped_sine_s(higher) > kLongestSweepS) higher.low_hz *= 1.05;
   return fail(
-      Fault::unsuitable,
+      ErrorKind::unsuitable,
       fmt::format("a sine at each of {} frequencies from {:g} Hz on takes {:.3g} s, an hour is the most",
                   plan.frequencies, plan.low_hz, takes_s),
       "--low",

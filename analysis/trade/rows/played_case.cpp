@@ -13,7 +13,7 @@
 #include "playback/prepare/texture_layout.hpp"
 #include "playback/prepare/undone_chain.hpp"
 #include "playback/render/reference/exact_kernel.hpp"
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 #include "spatial/dsp/fourier/fft.hpp"
 
 namespace tacto::analysis {
@@ -57,14 +57,14 @@ double reaches_to_hz(const FingerPath& path) {
   return std::clamp(kReachesToPerM * playback::greatest_speed_mps(path), kReachesToHz, kReachesFromHz);
 }
 
-PaddedSpectrum wanted_along(const FingerPath& path, const schema::SpaceSignal& loop,
+PaddedSpectrum target_along(const FingerPath& path, const schema::SpaceSignal& loop,
                             const PrepareOptions& o) {
   const spatial::Band beyond{reaches_to_hz(path), 1.01 * o.band.high_hz};
   const double most_m = *std::ranges::max_element(path.position_m);
   const schema::SpaceSignal unrolled = playback::unrolled_loop(loop, most_m + 10e-3);
   const double finest_hz = playback::highest_spatial_frequency(loop) * playback::greatest_speed_mps(path);
   const auto grid = playback::reading_grid(path.duration_s(), o.rate_hz, beyond, finest_hz);
-  return playback::exact_wanted(playback::TextureLookup(unrolled, 0), path, grid, beyond, o.gain_m_per_n,
+  return playback::exact_target(playback::TextureLookup(unrolled, 0), path, grid, beyond, o.gain_m_per_n,
                                 0.005);
 }
 
@@ -83,7 +83,7 @@ std::vector<float> kernel_run(const Prepared& prepared, const std::vector<std::i
   values.reserve(counts.size());
   const float gain = prepared.gain_m_per_n;
   for (const std::int32_t count : counts)
-    values.push_back(part == PlayedPart::reading ? kernel.wanted(count, gain)
+    values.push_back(part == PlayedPart::reading ? kernel.target(count, gain)
                                                  : kernel.tick({count, gain, true, core::kNoForce}).drive_v);
   return values;
 }
@@ -125,10 +125,10 @@ PaddedSpectrum spectrum_between(const std::vector<double>& values, const Prepare
   return playback::spectrum_of(inner, o.rate_hz, inner.size());
 }
 
-double amplitude_error_re(const std::vector<double>& values, const std::vector<double>& wanted,
+double amplitude_error_re(const std::vector<double>& values, const std::vector<double>& target,
                           const PrepareOptions& o) {
   PaddedSpectrum off = spectrum_between(values, o);
-  const PaddedSpectrum whole = spectrum_between(wanted, o);
+  const PaddedSpectrum whole = spectrum_between(target, o);
   for (std::size_t k = 0; k < off.bins.size(); ++k)
     off.bins[k] = std::abs(off.bins[k]) - std::abs(whole.bins[k]);
   return std::sqrt(playback::energy_in(off, o.band) / playback::energy_in(whole, o.band));
@@ -138,11 +138,11 @@ double band_rms(const std::vector<double>& values, const PrepareOptions& o) {
   return std::sqrt(playback::energy_in(spectrum_between(values, o), o.band));
 }
 
-double error_re(const std::vector<double>& values, const std::vector<double>& wanted,
+double error_re(const std::vector<double>& values, const std::vector<double>& target,
                 const PrepareOptions& o) {
   std::vector<double> error = values;
-  for (std::size_t i = 0; i < error.size(); ++i) error[i] -= wanted[i];
-  return band_rms(error, o) / band_rms(wanted, o);
+  for (std::size_t i = 0; i < error.size(); ++i) error[i] -= target[i];
+  return band_rms(error, o) / band_rms(target, o);
 }
 
 double gain_for(const schema::SpaceSignal& loop, const schema::Transducer& transducer) {
@@ -167,21 +167,21 @@ double part_wanted(const std::vector<double>& exact, const schema::SpaceSignal& 
 }
 
 // Without a delay the wanted is not later.
-double later_error_of(const PaddedSpectrum& wanted, const std::vector<double>& felt, const PrepareOptions& o,
+double later_error_of(const PaddedSpectrum& target, const std::vector<double>& felt, const PrepareOptions& o,
                       const PlayedOutcome& outcome) {
   if (outcome.delay_left_s == 0) return outcome.error;
   const auto later = playback::through(
-      wanted, [&](double f) { return std::polar(1.0, -2 * std::numbers::pi * f * outcome.delay_left_s); });
+      target, [&](double f) { return std::polar(1.0, -2 * std::numbers::pi * f * outcome.delay_left_s); });
   return error_re(felt, playback::signal_of(later), o);
 }
 
-void compare_with(const PaddedSpectrum& wanted, const std::vector<double>& felt,
+void compare_with(const PaddedSpectrum& target, const std::vector<double>& felt,
                   const schema::SpaceSignal& loop, const PrepareOptions& o, PlayedOutcome& outcome) {
-  const auto exact = playback::signal_of(wanted);
-  outcome.wanted_part = part_wanted(exact, loop, o);
+  const auto exact = playback::signal_of(target);
+  outcome.target_part = part_wanted(exact, loop, o);
   outcome.error = error_re(felt, exact, o);
   outcome.amplitude_error = amplitude_error_re(felt, exact, o);
-  outcome.later_error = later_error_of(wanted, felt, o, outcome);
+  outcome.later_error = later_error_of(target, felt, o, outcome);
 }
 
 }  // namespace
@@ -201,7 +201,7 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
   FingerPath path = path_of(played.way);
   const auto counts = counts_along(path, options, static_cast<std::size_t>(kPlayedS * options.rate_hz) + 1);
   take_scale_of(path, *prepared, options.metres_per_count);
-  const PaddedSpectrum wanted = wanted_along(path, loop, options);
+  const PaddedSpectrum target = target_along(path, loop, options);
   PlayedOutcome outcome;
   outcome.ticks = static_cast<double>(counts.size());
   outcome.ticking = [prepared, counts, in_double = played.in_double] {
@@ -214,7 +214,7 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
   const auto felt = played.part == PlayedPart::reading
                         ? std::vector<double>(outcome.drive_v.begin(), outcome.drive_v.end())
                         : moved_by(outcome.drive_v, transducer, options);
-  compare_with(wanted, felt, loop, options, outcome);
+  compare_with(target, felt, loop, options, outcome);
   return outcome;
 }
 

@@ -30,7 +30,7 @@ struct PlayedOutcome {
   double error = 0;            ///< RMS over the band of tray (or force) off, re the wanted one's RMS
   double later_error = 0;      ///< the same re what was wanted delay_left_s before
   double amplitude_error = 0;  ///< of the spectrum's magnitudes alone, whatever their phases
-  double wanted_part = 0;      ///< RMS of the wanted displacement over the band, re the texture's times gain
+  double target_part = 0;      ///< RMS of the wanted displacement over the band, re the texture's times gain
   std::function<void()> ticking;  ///< the ticks again, for a clock
   double ticks = 0;
   double memory_bytes = 0;

@@ -31,7 +31,7 @@ schema::Result<PlayedSpeeds> PlayedSpeeds::of(const schema::Texture& texture,
 std::vector<ErrorAtSpeed> PlayedSpeeds::errors(double PlayedOutcome::*kind) const {
   std::vector<ErrorAtSpeed> errors;
   for (std::size_t i = 0; i < outcomes_.size(); ++i) {
-    const bool felt = outcomes_[i].wanted_part >= kLeastWantedPart;
+    const bool felt = outcomes_[i].target_part >= kLeastWantedPart;
     errors.push_back({speeds_mps_[i], felt ? outcomes_[i].*kind : kNotMeasured});
   }
   return errors;

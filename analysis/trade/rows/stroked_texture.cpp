@@ -14,14 +14,14 @@ constexpr double kShortest_m = 12e-3, kLongest_m = 40e-3, kCoarsest_m = 50e-6;
 constexpr double kWanderPeriod_s = 0.0937;
 
 schema::Result<void> check_texture(const schema::Texture& texture) {
-  using schema::Fault;
+  using schema::ErrorKind;
   if (texture.signal.length_m() < kShortest_m)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         "is " + schema::length_for_people(texture.signal.length_m()) + " long, and " +
                             schema::length_for_people(kShortest_m) + " are needed",
                         "the texture", "measure the trade on a longer one");
   if (texture.signal.pitch_m > kCoarsest_m)
-    return schema::fail(Fault::unsuitable,
+    return schema::fail(ErrorKind::unsuitable,
                         "has samples " + schema::length_for_people(texture.signal.pitch_m) +
                             " apart, and finer than " + schema::length_for_people(kCoarsest_m) + " is needed",
                         "the texture", "measure the trade on a finer one");

@@ -40,11 +40,11 @@ bool DriveSupervisor::observe(const TickSights& sights) noexcept {
   watch_host();
   if (!sights.enabled) fail(FaultCode::enable_open, 0);
   if (sights.encoder_jump > 0) fail(FaultCode::encoder_jump, sights.encoder_jump);
-  const bool wanted = aim_.load() == Aim::play;
-  watch_drive(sights.drive_lacks && wanted);
+  const bool target = aim_.load() == Aim::play;
+  watch_drive(sights.drive_lacks && target);
   if (state_.load() == DriveState::fault) return false;
-  state_.store(wanted ? DriveState::playing : DriveState::armed);
-  return wanted && !sights.drive_lacks && !sights.blind;
+  state_.store(target ? DriveState::playing : DriveState::armed);
+  return target && !sights.drive_lacks && !sights.blind;
 }
 
 void DriveSupervisor::settle(bool sound, bool at_rest) noexcept {

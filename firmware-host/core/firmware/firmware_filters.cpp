@@ -25,8 +25,8 @@ Reply Firmware::taps(const wire::Taps& message) noexcept {
 Reply Firmware::hysteresis(const wire::Hysteresis& message) noexcept {
   if (!is_finite(message.straight)) return bad_value(2);
   for (uint8_t i = 0; i < message.count; ++i) {
-    if (!within(message.plays[i].threshold, 0, kLargestFloat)) return bad_value(3 + 2U * i);
-    if (!is_finite(message.plays[i].weight)) return bad_value(4 + 2U * i);
+    if (!within(message.play_operators[i].threshold, 0, kLargestFloat)) return bad_value(3 + 2U * i);
+    if (!is_finite(message.play_operators[i].weight)) return bad_value(4 + 2U * i);
   }
   hysteresis_ = message;
   return {};

@@ -94,11 +94,11 @@ void Ticker::end_change() noexcept {
 }
 
 // The host's drive is for this tick or for none: what was not played in its time is not played later.
-float Ticker::wanted(int32_t count, bool& lacks) noexcept {
+float Ticker::target(int32_t count, bool& lacks) noexcept {
   if (source_ == DriveSource::profile) {
-    const float wanted = kernel_.wanted(count, gain_taken_);
+    const float target = kernel_.target(count, gain_taken_);
     end_change();
-    return wanted;
+    return target;
   }
   if (source_ == DriveSource::sweep) return supervisor_.state() == DriveState::playing ? sweep_.next() : 0;
   const float* next = drive_queue_.front();
@@ -133,9 +133,9 @@ void Ticker::drive(Record& record) noexcept {
   const FaultCode before = supervisor_.fault();
   const int32_t count = follow(record);
   TickSights sights{watch_.jump(), (record.flags & wire::kTickEnabled) != 0, false, watch_.blind()};
-  const float wanted_v = wanted(count, sights.drive_lacks);
+  const float kernel_input = target(count, sights.drive_lacks);
   const bool raise = supervisor_.observe(sights);
-  const TickOutput output = kernel_.drive(wanted_v, raise, normal_force(record));
+  const TickOutput output = kernel_.drive(kernel_input, raise, normal_force(record));
   record.drive_v = output.drive_v;
   record.flags |= output.flags;
   hal_.write_drive(hal_.board, record.drive_v);

@@ -70,7 +70,7 @@ class Ticker {
   void take_change() noexcept;
   void end_change() noexcept;
   int32_t follow(Record& record) noexcept;
-  float wanted(int32_t count, bool& lacks) noexcept;
+  float target(int32_t count, bool& lacks) noexcept;
   float normal_force(Record& record) noexcept;
   void count(uint32_t flags) noexcept;
   void keep(bool there, const Record& record) noexcept;

@@ -17,15 +17,15 @@ class EnergyLimiter {
     rest();
   }
   void rest() noexcept { mean_square_ = 0, root_v_ = limit_v_; }
-  float limit(float wished_v, uint32_t& flags) noexcept {
-    if (!(limit_v_ > 0)) return wished_v;
-    mean_square_ += share_ * (wished_v * wished_v - mean_square_);
+  float limit(float unlimited_v, uint32_t& flags) noexcept {
+    if (!(limit_v_ > 0)) return unlimited_v;
+    mean_square_ += share_ * (unlimited_v * unlimited_v - mean_square_);
     if (mean_square_ < kSilence) mean_square_ = 0;  // no denormals: see SectionChain
     const float least = limit_v_ * limit_v_;
-    if (mean_square_ <= least && root_v_ <= limit_v_ * kAtLimit) return root_v_ = limit_v_, wished_v;
+    if (mean_square_ <= least && root_v_ <= limit_v_ * kAtLimit) return root_v_ = limit_v_, unlimited_v;
     root_v_ = 0.5F * (root_v_ + (mean_square_ > least ? mean_square_ : least) / root_v_);
     if (mean_square_ > least) flags |= wire::kTickEnergyLimited;
-    return wished_v * (limit_v_ / root_v_);
+    return unlimited_v * (limit_v_ / root_v_);
   }
 
  private:

@@ -2,7 +2,7 @@
 // A filter of finite length.
 #pragma once
 
-#include "firmware-host/core/kernel/four.hpp"
+#include "firmware-host/core/kernel/float4.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 
 namespace tacto::core {
@@ -27,11 +27,11 @@ class FirFilter {
     past_[at_] = past_[at_ + count_] = x;
     at_ = static_cast<uint16_t>(at_ + 1U == count_ ? 0U : at_ + 1U);
     const float* x_oldest = past_ + at_;
-    Four sums[4] = {};
+    Float4 sums[4] = {};
     for (unsigned i = 0; i < count_; i += 16)
       for (unsigned j = 0; j < 4; ++j) {
         const unsigned at = i + 4 * j;
-        sums[j] += load_four(reversed_ + at) * load_four(x_oldest + at);
+        sums[j] += load_float4(reversed_ + at) * load_float4(x_oldest + at);
       }
     return sum_of((sums[0] + sums[2]) + (sums[1] + sums[3]));
   }

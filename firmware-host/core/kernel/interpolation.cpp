@@ -13,9 +13,9 @@ constexpr double kPi = 3.14159265358979323846;
 // The cubic's coefficients, 1, u, u^2 and u^3, of each sample.
 Weights hermite(float u) noexcept {
   constexpr float k = kTwelfth;
-  constexpr Four one{0, 0, 0, 1};
-  constexpr Four low1{0, k, -8 * k, 0}, low2{0, -2 * k, 15 * k, -28 * k}, low3{0, k, -7 * k, 16 * k};
-  constexpr Four high1{8 * k, -k, 0, 0}, high2{20 * k, -6 * k, k, 0}, high3{-16 * k, 7 * k, -k, 0};
+  constexpr Float4 one{0, 0, 0, 1};
+  constexpr Float4 low1{0, k, -8 * k, 0}, low2{0, -2 * k, 15 * k, -28 * k}, low3{0, k, -7 * k, 16 * k};
+  constexpr Float4 high1{8 * k, -k, 0, 0}, high2{20 * k, -6 * k, k, 0}, high3{-16 * k, 7 * k, -k, 0};
   const float u2 = u * u;
   return {(one + u * low1) + u2 * (low2 + u * low3), u * high1 + u2 * (high2 + u * high3)};
 }
@@ -61,8 +61,8 @@ constexpr SincTable make_sinc() {
 }
 constexpr SincTable kSinc = make_sinc();
 
-Four between(const float* low, const float* high, float rest) noexcept {
-  return load_four(low) + rest * (load_four(high) - load_four(low));
+Float4 between(const float* low, const float* high, float rest) noexcept {
+  return load_float4(low) + rest * (load_float4(high) - load_float4(low));
 }
 
 Weights sinc(float u) noexcept {
@@ -74,7 +74,7 @@ Weights sinc(float u) noexcept {
 }
 
 Weights of_two(float next) noexcept {
-  return {Four{0, 0, 0, 1 - next}, Four{next, 0, 0, 0}};
+  return {Float4{0, 0, 0, 1 - next}, Float4{next, 0, 0, 0}};
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // Between samples.
 #pragma once
 
-#include "firmware-host/core/kernel/four.hpp"
+#include "firmware-host/core/kernel/float4.hpp"
 #include "firmware-host/core/wire/message_types.hpp"
 
 namespace tacto::core {
@@ -12,7 +12,7 @@ inline constexpr int32_t kReach = 8, kBefore = 3;
 
 /// What each of kReach samples counts for.
 struct Weights {
-  Four low, high;
+  Float4 low, high;
 };
 
 /// Of samples y at y[kBefore] + u, 0 <= u < 1. w = 2 pi k pitch for a sinusoid of spatial frequency k; errors
@@ -27,9 +27,9 @@ struct Weights {
 Weights weights_at(wire::Interpolation kind, float u) noexcept;
 
 /// The weighted samples, not yet summed: levels are blended first.
-inline Four weighted(wire::Interpolation kind, const float* y, float u) noexcept {
+inline Float4 weighted(wire::Interpolation kind, const float* y, float u) noexcept {
   const Weights weights = weights_at(kind, u);
-  return weights.low * load_four(y) + weights.high * load_four(y + 4);
+  return weights.low * load_float4(y) + weights.high * load_float4(y + 4);
 }
 
 /// The value between kReach samples.

@@ -2,7 +2,7 @@
 // Plays in parallel: hysteresis, or what undoes it.
 #pragma once
 
-#include "firmware-host/core/kernel/four.hpp"
+#include "firmware-host/core/kernel/float4.hpp"
 #include "firmware-host/core/wire/host_messages.hpp"
 
 namespace tacto::core {
@@ -15,13 +15,13 @@ namespace tacto::core {
 class PlayOperators {
  public:
   /// At most kMaxPlays; comes to rest.
-  void set(const wire::Hysteresis& plays) noexcept {
+  void set(const wire::Hysteresis& play_operators) noexcept {
     follows_ = true;
-    straight_ = plays.straight;
-    count_ = static_cast<uint8_t>((plays.count + 3U) & ~3U);
+    straight_ = play_operators.straight;
+    count_ = static_cast<uint8_t>((play_operators.count + 3U) & ~3U);
     for (uint8_t i = 0; i < count_; ++i) {
-      thresholds_[i] = i < plays.count ? plays.plays[i].threshold : 0;
-      weights_[i] = i < plays.count ? plays.plays[i].weight : 0;
+      thresholds_[i] = i < play_operators.count ? play_operators.play_operators[i].threshold : 0;
+      weights_[i] = i < play_operators.count ? play_operators.play_operators[i].weight : 0;
     }
     rest();
   }
@@ -33,18 +33,18 @@ class PlayOperators {
   }
   float follow(float x) noexcept {
     if (!follows_) return x;
-    Four sum{};
+    Float4 sum{};
     for (uint8_t i = 0; i < count_; i = static_cast<uint8_t>(i + 4))
-      sum += load_four(weights_ + i) * step(x, i);
+      sum += load_float4(weights_ + i) * step(x, i);
     return straight_ * x + sum_of(sum);
   }
 
  private:
-  Four step(float x, uint8_t i) noexcept {
-    const Four threshold = load_four(thresholds_ + i), play = load_four(plays_ + i);
-    const Four above = x + threshold, below = x - threshold;
-    const Four most = play < above ? play : above;
-    const Four next = most > below ? most : below;
+  Float4 step(float x, uint8_t i) noexcept {
+    const Float4 threshold = load_float4(thresholds_ + i), play = load_float4(plays_ + i);
+    const Float4 above = x + threshold, below = x - threshold;
+    const Float4 most = play < above ? play : above;
+    const Float4 next = most > below ? most : below;
     store_four(plays_ + i, next);
     return next;
   }

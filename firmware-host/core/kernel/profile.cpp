@@ -86,13 +86,13 @@ void Profile::gather(const Level& level, int32_t first, float* y) const noexcept
   }
 }
 
-Four Profile::read_near_end(const Level& level, int32_t first, float u) const noexcept {
+Float4 Profile::read_near_end(const Level& level, int32_t first, float u) const noexcept {
   float y[kReach];
   gather(level, first, y);
   return weighted(scale_.interpolation, y, u);
 }
 
-Four Profile::read(uint32_t which, int64_t place) const noexcept {
+Float4 Profile::read(uint32_t which, int64_t place) const noexcept {
   const Level& level = levels_[which];
   place >>= which / 2;
   const int32_t first = static_cast<int32_t>(place >> 32) - kBefore;
@@ -120,8 +120,8 @@ float Profile::at(int32_t count, float offset, Detail detail) const noexcept {
   if (!place_of(count, offset, place)) return 0;
   if (scale_.levels == 1 || detail.coarser == 0) return sum_of(read(0, place));
   if (detail.coarser > scale_.levels) return 0;
-  const Four fine = read(detail.coarser - 1, place);
-  const Four coarse = detail.coarser < scale_.levels ? read(detail.coarser, place) : Four{};
+  const Float4 fine = read(detail.coarser - 1, place);
+  const Float4 coarse = detail.coarser < scale_.levels ? read(detail.coarser, place) : Float4{};
   return sum_of(fine + detail.fade * (coarse - fine));
 }
 

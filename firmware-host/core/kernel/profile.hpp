@@ -3,8 +3,8 @@
 // samples.
 #pragma once
 
-#include "firmware-host/core/kernel/detail.hpp"
 #include "firmware-host/core/kernel/interpolation.hpp"
+#include "firmware-host/core/kernel/level_of_detail.hpp"
 
 namespace tacto::core {
 
@@ -52,8 +52,8 @@ class Profile {
     int32_t size = 0;
   };
   bool place_of(int32_t count, float offset, int64_t& place) const noexcept;
-  Four read(uint32_t level, int64_t place) const noexcept;
-  [[gnu::noinline]] Four read_near_end(const Level& level, int32_t first, float u) const noexcept;
+  Float4 read(uint32_t level, int64_t place) const noexcept;
+  [[gnu::noinline]] Float4 read_near_end(const Level& level, int32_t first, float u) const noexcept;
   void gather(const Level& level, int32_t first, float* y) const noexcept;
 
   ProfileScale scale_;

@@ -2,7 +2,7 @@
 // Recursive filters as a chain of second-order sections.
 #pragma once
 
-#include "firmware-host/core/kernel/four.hpp"
+#include "firmware-host/core/kernel/float4.hpp"
 #include "firmware-host/core/wire/host_messages.hpp"
 
 namespace tacto::core {
@@ -64,10 +64,10 @@ class SectionChain {
   float four_steps(uint8_t i, float first) noexcept {
     const float c0 = s1_[i], c1 = b0_[i + 1] * c0 + s1_[i + 1];
     const float c2 = b0_[i + 2] * c1 + s1_[i + 2], c3 = b0_[i + 3] * c2 + s1_[i + 3];
-    const Four y = load_four(through_ + i) * first + Four{c0, c1, c2, c3};
-    const Four x = {first, y[0], y[1], y[2]};
-    store_four(s1_ + i, load_four(b1_ + i) * x - load_four(a1_ + i) * y + load_four(s2_ + i));
-    store_four(s2_ + i, load_four(b2_ + i) * x - load_four(a2_ + i) * y);
+    const Float4 y = load_float4(through_ + i) * first + Float4{c0, c1, c2, c3};
+    const Float4 x = {first, y[0], y[1], y[2]};
+    store_four(s1_ + i, load_float4(b1_ + i) * x - load_float4(a1_ + i) * y + load_float4(s2_ + i));
+    store_four(s2_ + i, load_float4(b2_ + i) * x - load_float4(a2_ + i) * y);
     return y[3];
   }
 

@@ -50,7 +50,7 @@ float TexturePlayer::faded(float value) noexcept {
 }
 
 // In one piece: what a tick waits for begins as early as it may.
-[[gnu::flatten]] float TexturePlayer::wanted(int32_t count, float gain) noexcept {
+[[gnu::flatten]] float TexturePlayer::target(int32_t count, float gain) noexcept {
   place_ = tracker_.track(count);
   float value = read(playing());
   if (fade_ > 0) value = faded(value);

@@ -32,7 +32,7 @@ class TexturePlayer {
   /// The finger is somewhere else, at a speed that nobody knows.
   void forget_finger() noexcept { tracker_.set(playing().tracker); }
   bool changing() const noexcept { return fade_ > 0; }
-  float wanted(int32_t count, float gain) noexcept;
+  float target(int32_t count, float gain) noexcept;
   FingerPlace place() const noexcept { return place_; }
 
  private:

@@ -33,12 +33,12 @@ void TickKernel::set(const KernelSetup& setup) noexcept {
 }
 
 TickOutput TickKernel::tick(const TickInput& input) noexcept {
-  return drive(player_.wanted(input.count, input.gain), input.raise, input.normal_force_n);
+  return drive(player_.target(input.count, input.gain), input.raise, input.normal_force_n);
 }
 
-[[gnu::flatten]] TickOutput TickKernel::drive(float wanted, bool raise, float normal_force_n) noexcept {
+[[gnu::flatten]] TickOutput TickKernel::drive(float target, bool raise, float normal_force_n) noexcept {
   TickOutput output;
-  const float filtered = sections_.filter(plays_.follow(fir_.filter(wanted)));
+  const float filtered = sections_.filter(plays_.follow(fir_.filter(target)));
   output.sound = is_finite(filtered);
   if (!output.sound) {
     fir_.rest();
@@ -49,8 +49,8 @@ TickOutput TickKernel::tick(const TickInput& input) noexcept {
   if (touch < 1) output.flags |= wire::kTickGated;
   if (gate_.touching()) output.flags |= wire::kTickTouching;
   const float weight = envelope_.step(raise && output.sound) * touch;
-  output.wished_v = output.sound ? filtered * weight : 0;
-  output.drive_v = limiter_.limit(energy_.limit(output.wished_v, output.flags), output.flags);
+  output.unlimited_v = output.sound ? filtered * weight : 0;
+  output.drive_v = limiter_.limit(energy_.limit(output.unlimited_v, output.flags), output.flags);
   return output;
 }
 

@@ -42,12 +42,12 @@ struct TickInput {
 /// What a tick did.
 struct TickOutput {
   float drive_v = 0;
-  float wished_v = 0;  ///< before the limits: their difference is what was taken away
-  uint32_t flags = 0;  ///< wire::TickFlag: amplitude, slew, energy, gated, touching
-  bool sound = true;   ///< false where what was wished is no finite number; then the drive falls
+  float unlimited_v = 0;  ///< before the limits; its difference to drive_v is what they removed
+  uint32_t flags = 0;     ///< wire::TickFlag: amplitude, slew, energy, gated, touching
+  bool sound = true;      ///< false where the target is no finite number; then the drive falls
 };
 
-/// drive = limits(energy(envelope x gate x sections(plays(taps(wanted))))), where wanted = gain x
+/// drive = limits(energy(envelope x gate x sections(play_operators(taps(target))))), where target = gain x
 /// texture(place of the finger), or comes from elsewhere. Single precision, no contraction, no libm: the same
 /// bits on host and device (a test holds the two against each other). Against double precision: a texture
 /// with levels, taps, following and limits, 2 kHz to 20 kHz: -105 dB of the drive; eight sections, 20 kHz:
@@ -62,7 +62,6 @@ class TickKernel {
   void set(const wire::Limits& limits, float rate_hz) noexcept;
   void set_profile(const Profile& profile) noexcept { player_.set({profile, {}, 0}, 1); }
   SectionChain& sections() noexcept { return sections_; }
-  FirFilter& fir() noexcept { return fir_; }
 
   /// Another texture: the old one fades into it over `fade_s`; until then both must be there. Between ticks.
   void change(const TextureSetup& texture, float fade_s) noexcept {
@@ -75,13 +74,13 @@ class TickKernel {
   /// One tick of the texture.
   TickOutput tick(const TickInput& input) noexcept;
 
-  /// What the texture wants at a count; once a tick.
-  float wanted(int32_t count, float gain) noexcept { return player_.wanted(count, gain); }
-  /// One tick of what is wanted, by the texture or by somebody else.
-  TickOutput drive(float wanted, bool raise, float normal_force_n) noexcept;
+  /// The texture's target at a count; once a tick.
+  float target(int32_t count, float gain) noexcept { return player_.target(count, gain); }
+  /// One tick of a target, from the texture or from elsewhere.
+  TickOutput drive(float target, bool raise, float normal_force_n) noexcept;
   /// The same where nobody reports a force. What is no finite number drives zero, and `sound` is false.
-  float tick(float wanted, bool raise, uint32_t& flags, bool& sound) noexcept {
-    const TickOutput output = drive(wanted, raise, kNoForce);
+  float tick(float target, bool raise, uint32_t& flags, bool& sound) noexcept {
+    const TickOutput output = drive(target, raise, kNoForce);
     flags |= output.flags;
     sound = output.sound;
     return output.drive_v;

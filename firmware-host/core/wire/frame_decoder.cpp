@@ -5,14 +5,14 @@
 
 namespace tacto::wire {
 
-bool FrameDecoder::fill(size_t wanted, const uint8_t* bytes, size_t size, size_t& used) noexcept {
-  if (filled_ >= wanted) return true;
-  const size_t lacking = wanted - filled_, there = size - used;
+bool FrameDecoder::fill(size_t target, const uint8_t* bytes, size_t size, size_t& used) noexcept {
+  if (filled_ >= target) return true;
+  const size_t lacking = target - filled_, there = size - used;
   const size_t taken = lacking < there ? lacking : there;
   if (taken > 0) __builtin_memcpy(buffer_ + filled_, bytes + used, taken);
   filled_ += taken;
   used += taken;
-  return filled_ >= wanted;
+  return filled_ >= target;
 }
 
 void FrameDecoder::drop(size_t count) noexcept {

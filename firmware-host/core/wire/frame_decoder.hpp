@@ -34,7 +34,7 @@ class FrameDecoder {
   const DecoderCounts& counts() const noexcept { return counts_; }
 
  private:
-  bool fill(size_t wanted, const uint8_t* bytes, size_t size, size_t& used) noexcept;
+  bool fill(size_t target, const uint8_t* bytes, size_t size, size_t& used) noexcept;
   void drop(size_t count) noexcept;
   void seek_header() noexcept;
   Arrival refuse_oversize() noexcept;

@@ -206,13 +206,13 @@ struct Hysteresis {
   uint8_t count = 0;
   uint8_t reserved[3] = {};
   float straight = 1;  ///< without a threshold
-  HysteresisPlay plays[kMaxPlays];
+  HysteresisPlay play_operators[kMaxPlays];
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     const size_t n = codec.count(self.count, kMaxPlays);
     codec.array(self.reserved, sizeof self.reserved);
     codec(self.straight);
-    for (size_t i = 0; i < n; ++i) codec(self.plays[i].threshold, self.plays[i].weight);
+    for (size_t i = 0; i < n; ++i) codec(self.play_operators[i].threshold, self.play_operators[i].weight);
   }
 };
 

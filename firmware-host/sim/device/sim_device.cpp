@@ -8,7 +8,7 @@
 
 namespace tacto::firmware_host {
 
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 Result<std::unique_ptr<SimDevice>> SimDevice::open(std::string uri, const SimParameters& parameters,
@@ -25,12 +25,12 @@ Result<std::size_t> SimDevice::read(std::span<std::int32_t> interleaved) {
   const auto frames = wire_->read(interleaved);
   if (frames || board_->diverged_s() < 0) return frames;
   if (board_->diverged_s() < StrokePlan{}.rest_s)
-    return schema::fail(Fault::device,
+    return schema::fail(ErrorKind::device,
                         fmt::format("the motion of the transducer '{}' diverges before the finger has moved",
                                     capabilities().transducer ? capabilities().transducer->name : ""),
                         capabilities().uri,
                         "its parameters can't be those of a tray that works: take another transducer");
-  return schema::fail(Fault::device,
+  return schema::fail(ErrorKind::device,
                       fmt::format("the simulated finger's motion diverged at {:.4f} s", board_->diverged_s()),
                       capabilities().uri, "ask for less friction, load or depth");
 }

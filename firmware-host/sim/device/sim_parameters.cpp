@@ -17,7 +17,7 @@ namespace tacto::firmware_host {
 namespace {
 
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::Result;
 
 std::vector<std::string> key_names() {
@@ -50,15 +50,16 @@ double within_rounding(double value, const NumberKey& number) {
 
 Result<void> set(SimParameters& parameters, const NumberKey& number, std::string_view text) {
   const auto value = schema::parse_quantity(text, number.dimension);
-  if (!value) return schema::fail(Fault::usage, value.error().what, where(number.key), value.error().remedy);
-  const double wanted = within_rounding(*value, number);
-  const bool fits = wanted >= number.least && wanted <= number.most;
-  if (!fits || (number.whole && wanted != std::floor(wanted)))
+  if (!value)
+    return schema::fail(ErrorKind::usage, value.error().what, where(number.key), value.error().remedy);
+  const double target = within_rounding(*value, number);
+  const bool fits = target >= number.least && target <= number.most;
+  if (!fits || (number.whole && target != std::floor(target)))
     return schema::fail(
-        Fault::usage, fmt::format("'{}' is out of range", text), where(number.key),
+        ErrorKind::usage, fmt::format("'{}' is out of range", text), where(number.key),
         fmt::format("from {} to {}{}", shown(number.least, number.dimension),
                     shown(number.most, number.dimension), number.whole ? ", whole numbers" : ""));
-  number.store(parameters, wanted);
+  number.store(parameters, target);
   return {};
 }
 
@@ -66,7 +67,7 @@ Result<void> set(SimParameters& parameters, const WordKey& word, std::string_vie
   bool fits = word.choices.empty() && !text.empty();
   for (const std::string_view choice : word.choices) fits = fits || choice == text;
   if (!fits)
-    return schema::fail(Fault::usage, fmt::format("'{}' is no value for it", text), where(word.key),
+    return schema::fail(ErrorKind::usage, fmt::format("'{}' is no value for it", text), where(word.key),
                         fmt::format("it is: {}", word.meaning));
   word.store(parameters, text);
   return {};
@@ -75,15 +76,15 @@ Result<void> set(SimParameters& parameters, const WordKey& word, std::string_vie
 Result<void> set_pair(SimParameters& parameters, std::string_view pair, std::set<std::string_view>& seen) {
   const auto equals = pair.find('=');
   if (equals == std::string_view::npos)
-    return schema::fail(Fault::usage, fmt::format("'{}' is not key=value", pair),
+    return schema::fail(ErrorKind::usage, fmt::format("'{}' is not key=value", pair),
                         "sim:", "the keys are: " + keys());
   const std::string_view key = pair.substr(0, equals), value = pair.substr(equals + 1);
-  if (!seen.insert(key).second) return schema::fail(Fault::usage, "the key comes twice", where(key));
+  if (!seen.insert(key).second) return schema::fail(ErrorKind::usage, "the key comes twice", where(key));
   for (const NumberKey& number : sim_number_keys())
     if (number.key == key) return set(parameters, number, value);
   for (const WordKey& word : sim_word_keys())
     if (word.key == key) return set(parameters, word, value);
-  return schema::fail(Fault::usage,
+  return schema::fail(ErrorKind::usage,
                       fmt::format("there is no key '{}'{}", key, schema::did_you_mean(key, key_names())),
                       "sim:", "the keys are: " + keys());
 }
@@ -111,7 +112,7 @@ Result<void> check_details(const SimParameters& parameters, const std::set<std::
   for (const std::string_view key : seen)
     for (const Detail& detail : kDetails)
       if (key.starts_with(detail.prefix) && !detail.asked(parameters))
-        return schema::fail(Fault::usage, "the key means nothing here", where(key),
+        return schema::fail(ErrorKind::usage, "the key means nothing here", where(key),
                             std::string(detail.remedy));
   return {};
 }
@@ -120,10 +121,10 @@ Result<void> check_force(const SimParameters& p) {
   if (!p.known_force || p.force.shape == ForceShape::release) return {};
   const bool sine = p.force.shape == ForceShape::sine;
   if (!sine && p.force.low_hz > p.force.high_hz)
-    return schema::fail(Fault::usage, "the force's band is upside down", where("force_low"),
+    return schema::fail(ErrorKind::usage, "the force's band is upside down", where("force_low"),
                         "give a force_high that is not below it");
   if ((sine ? p.force.low_hz : p.force.high_hz) < p.sample_rate_hz / 2) return {};
-  return schema::fail(Fault::usage, "the force goes beyond half the rate",
+  return schema::fail(ErrorKind::usage, "the force goes beyond half the rate",
                       where(sine ? "force_low" : "force_high"),
                       fmt::format("below {}", shown(p.sample_rate_hz / 2, Dimension::frequency)));
 }
@@ -144,11 +145,11 @@ Result<void> check_against(const SimParameters& p, const schema::Transducer& tra
   if (const auto force = check_force(p); !force) return force;
   const double least_hz = least_second_mode_hz(transducer, p.second_mode);
   if (p.has_second_mode && p.second_mode.frequency_hz < least_hz)
-    return schema::fail(Fault::usage, "the second mode is not above the tray's resonance",
+    return schema::fail(ErrorKind::usage, "the second mode is not above the tray's resonance",
                         where("second_mode"),
                         fmt::format("from {} on", shown(least_hz, Dimension::frequency)));
   if (p.has_lvdt && surface_length_m > p.lvdt.range_m)
-    return schema::fail(Fault::usage, "the LVDT does not reach over the surface", where("lvdt_range"),
+    return schema::fail(ErrorKind::usage, "the LVDT does not reach over the surface", where("lvdt_range"),
                         fmt::format("from {} on", shown(surface_length_m, Dimension::length)));
   return {};
 }

@@ -24,7 +24,7 @@ FingerPath::FingerPath(const StrokePlan& plan, double step_s, Random random)
       place_{plan.from_m, 0, plan.resting_press} {}
 
 // The brake's square root is what lets the finger stop where the stroke ends.
-double FingerPath::wanted_speed_mps(double remaining_m) {
+double FingerPath::target_speed_mps(double remaining_m) {
   const double factor = std::max(kSlowestFactor, 1 + plan_.wander * wander_.at(time_s_));
   return std::min(plan_.speed_mps * factor, std::sqrt(2 * acceleration_mps2_ * remaining_m));
 }
@@ -43,7 +43,7 @@ void FingerPath::arrive(double target_m) {
 
 void FingerPath::go(double target_m) {
   const double remaining_m = std::abs(target_m - place_.position_m);
-  speed_mps_ = std::min(wanted_speed_mps(remaining_m), speed_mps_ + acceleration_mps2_ * step_s_);
+  speed_mps_ = std::min(target_speed_mps(remaining_m), speed_mps_ + acceleration_mps2_ * step_s_);
   if (remaining_m <= std::max(kArrivedM, speed_mps_ * step_s_)) return arrive(target_m);
   place_.speed_mps = target_m < place_.position_m ? -speed_mps_ : speed_mps_;
   place_.position_m += place_.speed_mps * step_s_;

@@ -37,7 +37,7 @@ class FingerPath {
   bool finished() const { return strokes_done_ == plan_.strokes; }
 
  private:
-  double wanted_speed_mps(double remaining_m);
+  double target_speed_mps(double remaining_m);
   void arrive(double target_m);
   void go(double target_m);
   double press() const;

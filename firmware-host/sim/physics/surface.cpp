@@ -15,7 +15,7 @@ namespace tacto::firmware_host {
 namespace {
 
 using schema::Dimension;
-using schema::Fault;
+using schema::ErrorKind;
 using schema::for_people;
 
 constexpr double kPitchM = 2e-6;
@@ -60,11 +60,11 @@ constexpr Grating kGratings[] = {{"sine", sine}, {"triangle", triangle}, {"squar
 
 schema::Result<void> check_sizes(const SurfaceChoice& choice) {
   if (!(choice.length_m >= kShortestM && choice.length_m <= kLongestM))
-    return schema::fail(Fault::usage, "the surface is not between 10 mm and 1 m long", "length");
+    return schema::fail(ErrorKind::usage, "the surface is not between 10 mm and 1 m long", "length");
   if (choice.period_m && !(*choice.period_m >= kShortestPeriodM))
-    return schema::fail(Fault::usage, "the grating's period is under 50 um", "period");
+    return schema::fail(ErrorKind::usage, "the grating's period is under 50 um", "period");
   if (choice.depth_m && !(*choice.depth_m >= 0 && *choice.depth_m <= 1e-3))
-    return schema::fail(Fault::usage, "the grating's depth is not between 0 and 1 mm", "depth");
+    return schema::fail(ErrorKind::usage, "the grating's depth is not between 0 and 1 mm", "depth");
   return {};
 }
 
@@ -90,7 +90,7 @@ constexpr double kCoarsestM = 0.1e-3;  // the width of a skin ridge's contact: F
 constexpr double kTallestM = 1e-3;     // as of the gratings
 
 tl::unexpected<schema::Error> no_profile(const std::string& name, std::string what, std::string remedy) {
-  return schema::fail(Fault::unsuitable, std::move(what), name, std::move(remedy));
+  return schema::fail(ErrorKind::unsuitable, std::move(what), name, std::move(remedy));
 }
 
 // A texture of heights is not softened or resampled: it is touched as it was measured.
@@ -114,7 +114,7 @@ schema::Result<Surface> measured_surface(const std::string& name) {
 
 schema::Result<Surface> make_fixed(const SurfaceChoice& choice) {
   if (choice.period_m || choice.depth_m)
-    return schema::fail(Fault::usage, fmt::format("surface {} has its own shape", choice.name),
+    return schema::fail(ErrorKind::usage, fmt::format("surface {} has its own shape", choice.name),
                         "period, depth", "give period and depth with sine, triangle or square");
   for (const Sample& sample : kSamples)
     if (sample.name == choice.name)
@@ -123,7 +123,7 @@ schema::Result<Surface> make_fixed(const SurfaceChoice& choice) {
   if (choice.name.starts_with(kProfilePrefix))
     return measured_surface(choice.name.substr(kProfilePrefix.size()));
   if (choice.name == "flat") return Surface{HeightProfile(kPitchM, Heights(grid_points(choice))), "flat"};
-  return schema::fail(Fault::usage, fmt::format("there is no surface '{}'", choice.name), "surface",
+  return schema::fail(ErrorKind::usage, fmt::format("there is no surface '{}'", choice.name), "surface",
                       "the surfaces are: " + surface_names() + ", profile:FILE");
 }
 

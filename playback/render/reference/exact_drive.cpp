@@ -30,53 +30,53 @@ PaddedSpectrum felt_by_bender(const PaddedSpectrum& drive, const std::vector<dou
   return spectrum_of(linear_v, drive.rate_hz, drive.period);
 }
 
-std::vector<double> inverted(const PaddedSpectrum& wanted, const Chain& chain, Inverse inverse) {
-  return signal_of(through(wanted, [&](double f) { return inverse_response(chain, inverse, f); }));
+std::vector<double> inverted(const PaddedSpectrum& target, const Chain& chain, Inverse inverse) {
+  return signal_of(through(target, [&](double f) { return inverse_response(chain, inverse, f); }));
 }
 
-ExactDrive played(std::vector<double> drive_v, const PaddedSpectrum& wanted, const Chain& chain,
+ExactDrive played(std::vector<double> drive_v, const PaddedSpectrum& target, const Chain& chain,
                   std::size_t oversampling) {
   round_to_float(drive_v);
-  const auto drive = spectrum_of(drive_v, wanted.rate_hz, wanted.period);
+  const auto drive = spectrum_of(drive_v, target.rate_hz, target.period);
   const auto displacement = modelled(felt_by_bender(drive, drive_v, chain), chain);
   const auto fine_m = signal_of(displacement, oversampling);
   const auto fine_v = oversampling > 1 ? signal_of(drive, oversampling) : drive_v;
-  const double fine_rate_hz = wanted.rate_hz * static_cast<double>(oversampling);
+  const double fine_rate_hz = target.rate_hz * static_cast<double>(oversampling);
   return {std::move(drive_v), signal_of(displacement),
           peaks_of(fine_v, fine_m, fine_rate_hz, chain.transducer)};
 }
 
-PaddedSpectrum clipped(const PaddedSpectrum& wanted, const spatial::Band& band, double ceiling_m) {
-  auto values = signal_of(wanted);
+PaddedSpectrum clipped(const PaddedSpectrum& target, const spatial::Band& band, double ceiling_m) {
+  auto values = signal_of(target);
   for (double& value : values) value = std::clamp(value, -ceiling_m, ceiling_m);
-  auto spectrum = spectrum_of(values, wanted.rate_hz, wanted.period);
+  auto spectrum = spectrum_of(values, target.rate_hz, target.period);
   keep_band(spectrum, band);
   return spectrum;
 }
 
 }  // namespace
 
-ExactDrive exact_drive(const PaddedSpectrum& wanted, const spatial::Band& band, const Chain& chain,
+ExactDrive exact_drive(const PaddedSpectrum& target, const spatial::Band& band, const Chain& chain,
                        Inverse inverse) {
-  const double oversampling = std::max(1.0, std::ceil(kPointsPerPeriod * band.high_hz / wanted.rate_hz));
-  return played(inverted(wanted, chain, inverse), wanted, chain, static_cast<std::size_t>(oversampling));
+  const double oversampling = std::max(1.0, std::ceil(kPointsPerPeriod * band.high_hz / target.rate_hz));
+  return played(inverted(target, chain, inverse), target, chain, static_cast<std::size_t>(oversampling));
 }
 
-ExactDrive moved_by(std::vector<double> drive_v, const PaddedSpectrum& wanted, const Chain& chain) {
-  return played(std::move(drive_v), wanted, chain, 1);
+ExactDrive moved_by(std::vector<double> drive_v, const PaddedSpectrum& target, const Chain& chain) {
+  return played(std::move(drive_v), target, chain, 1);
 }
 
-schema::Result<ExactDrive> clipped_drive(const PaddedSpectrum& wanted, const spatial::Band& band,
+schema::Result<ExactDrive> clipped_drive(const PaddedSpectrum& target, const spatial::Band& band,
                                          const Chain& chain, Inverse inverse) {
   double ceiling_m = chain.transducer.displacement_limit_m;
   for (int round = 0; round < kMostRounds; ++round) {
-    auto drive_v = inverted(clipped(wanted, band, ceiling_m), chain, inverse);
-    clip_drive(drive_v, wanted.rate_hz, chain.transducer);
-    auto drive = played(std::move(drive_v), wanted, chain, 1);
+    auto drive_v = inverted(clipped(target, band, ceiling_m), chain, inverse);
+    clip_drive(drive_v, target.rate_hz, chain.transducer);
+    auto drive = played(std::move(drive_v), target, chain, 1);
     if (drive.peaks.displacement_m.used() <= 1) return drive;
     ceiling_m *= 0.99 / drive.peaks.displacement_m.used();
   }
-  return schema::fail(schema::Fault::unsuitable,
+  return schema::fail(schema::ErrorKind::unsuitable,
                       "the displacement stays above its limit even where it is clipped", {},
                       "take a smaller --gain");
 }

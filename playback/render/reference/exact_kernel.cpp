@@ -30,7 +30,7 @@ ExactKernel::ExactKernel(const Prepared& prepared)
     : prepared_(prepared),
       rate_hz_(prepared.rate_hz),
       past_(prepared.taps.size()),
-      plays_(prepared.plays.count),
+      plays_(prepared.play_operators.count),
       sections_(prepared.sections.size()),
       root_v_(prepared.energy_rms_v) {
   std::size_t first = 0;
@@ -141,12 +141,12 @@ double ExactKernel::filtered(double value) {
 }
 
 double ExactKernel::played(double value) {
-  const wire::Hysteresis& plays = prepared_.plays;
-  double sum = plays.straight * value;
+  const wire::Hysteresis& play_operators = prepared_.play_operators;
+  double sum = play_operators.straight * value;
   for (std::size_t i = 0; i < plays_.size(); ++i) {
-    const double threshold = plays.plays[i].threshold;
+    const double threshold = play_operators.play_operators[i].threshold;
     plays_[i] = std::max(value - threshold, std::min(value + threshold, plays_[i]));
-    sum += plays.plays[i].weight * plays_[i];
+    sum += play_operators.play_operators[i].weight * plays_[i];
   }
   return sum;
 }

@@ -26,8 +26,6 @@ class ExactKernel {
     double normal_force_n = 0;  ///< looked at where the setup is gated
   };
   double tick(const Input& input);
-  /// Place and speed in counts, as of the last tick.
-  double place_counts() const { return place_; }
 
  private:
   double level_at(int level, double place) const;

@@ -78,20 +78,20 @@ struct KernelDesign {
 };
 
 // A folder of recordings asks for one band at one rate again and again: the last kernels are kept.
-KernelSpectrum band_spectrum(const KernelDesign& wanted) {
+KernelSpectrum band_spectrum(const KernelDesign& target) {
   constexpr std::size_t kMost = 4, kLongest = std::size_t{1} << 17;  // 1 MB each
   static std::mutex mutex;
   static std::deque<std::pair<KernelDesign, KernelSpectrum>> recent;
   {
     const std::lock_guard lock(mutex);
     for (const auto& [design, kernel] : recent)
-      if (design == wanted) return kernel;
+      if (design == target) return kernel;
   }
   KernelSpectrum made = kernel_spectrum(
-      band_kernel({wanted.low_hz, wanted.high_hz}, wanted.rate_hz, wanted.reach), wanted.length);
-  if (wanted.length > kLongest) return made;
+      band_kernel({target.low_hz, target.high_hz}, target.rate_hz, target.reach), target.length);
+  if (target.length > kLongest) return made;
   const std::lock_guard lock(mutex);
-  recent.emplace_front(wanted, made);
+  recent.emplace_front(target, made);
   if (recent.size() > kMost) recent.pop_back();
   return made;
 }
@@ -186,10 +186,10 @@ class BlockFourierFilter::State {
     passed_ = end;
     const std::size_t from = std::clamp(late(), begin, end), to = std::clamp(late() + taken_, begin, end);
     const double level = level_gain_ * extended_.start_level();
-    const auto wanted = values.subspan(from - begin, to - from);
-    out.insert(out.end(), wanted.begin(), wanted.end());
+    const auto target = values.subspan(from - begin, to - from);
+    out.insert(out.end(), target.begin(), target.end());
     if (level != 0)
-      for (double& value : std::span(out).last(wanted.size())) value += level;
+      for (double& value : std::span(out).last(target.size())) value += level;
   }
 
   // After its end the record stays level: once the chain knows nothing else, the lower rate has that level.

@@ -70,13 +70,14 @@ std::vector<Section> design(int order, AnalogBand band) {
 }  // namespace
 
 schema::Result<std::vector<Section>> butterworth_band_pass(int order, Band band, double sample_rate_hz) {
-  using schema::Fault;
+  using schema::ErrorKind;
   if (order < 1 || order > kHighestOrder)
-    return schema::fail(Fault::usage, fmt::format("a Butterworth filter of order {} is not possible", order),
-                        {}, fmt::format("choose 1 to {}", kHighestOrder));
+    return schema::fail(ErrorKind::usage,
+                        fmt::format("a Butterworth filter of order {} is not possible", order), {},
+                        fmt::format("choose 1 to {}", kHighestOrder));
   if (!(band.low_hz > 0 && band.low_hz < band.high_hz && band.high_hz < sample_rate_hz / 2))
     return schema::fail(
-        Fault::unsuitable,
+        ErrorKind::unsuitable,
         fmt::format("a Butterworth band-pass from {:g} Hz to {:g} Hz is not possible", band.low_hz,
                     band.high_hz),
         {},

@@ -33,12 +33,12 @@ void OverlapSave::reset() {
   given_ = 0;
 }
 
-void OverlapSave::run_block(std::size_t wanted, const Sink& sink) {
+void OverlapSave::run_block(std::size_t target, const Sink& sink) {
   fft_.forward(block_, spectrum_);
   for (std::size_t k = 0; k < spectrum_.size(); ++k) spectrum_[k] *= kernel_.bins[k];
   fft_.inverse(spectrum_, result_);
-  given_ += wanted;
-  sink(std::span(result_).subspan(kernel_.reach, wanted));
+  given_ += target;
+  sink(std::span(result_).subspan(kernel_.reach, target));
   std::copy(block_.begin() + static_cast<std::ptrdiff_t>(hop()), block_.end(), block_.begin());
   filled_ = 2 * kernel_.reach;
 }

@@ -36,7 +36,7 @@ class OverlapSave {
 
  private:
   std::size_t hop() const { return kernel_.length - 2 * kernel_.reach; }
-  void run_block(std::size_t wanted, const Sink& sink);
+  void run_block(std::size_t target, const Sink& sink);
 
   KernelSpectrum kernel_;
   RealFft fft_;

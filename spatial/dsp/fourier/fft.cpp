@@ -29,10 +29,10 @@ enum class Direction { to_spectrum, to_time };
 class RecentPlans {
  public:
   Plan find(Direction direction, std::size_t length) {
-    const auto wanted = [&](const Kept& kept) {
+    const auto target = [&](const Kept& kept) {
       return kept.direction == direction && kept.length == length;
     };
-    const auto found = std::ranges::find_if(kept_, wanted);
+    const auto found = std::ranges::find_if(kept_, target);
     return found == kept_.end() ? nullptr : found->plan;
   }
   // Gives back the plan that had to go: it may only be destroyed without the planner's lock.

@@ -10,8 +10,8 @@ namespace tacto::spatial {
 namespace {
 
 // The smallest of 1, 2, 5 times a power of ten that is not under the span's part for one tick.
-double step_of(double span, int wanted) {
-  const double raw = span / wanted;
+double step_of(double span, int target) {
+  const double raw = span / target;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
   for (const double factor : {1.0, 2.0, 5.0})
     if (factor * power >= raw * (1 - 1e-9)) return factor * power;
@@ -28,8 +28,8 @@ std::string label_of(double value, double largest, double step) {
   return text;
 }
 
-std::vector<Tick> linear_ticks(const Axis& axis, int wanted) {
-  const double step = step_of(axis.high - axis.low, wanted);
+std::vector<Tick> linear_ticks(const Axis& axis, int target) {
+  const double step = step_of(axis.high - axis.low, target);
   const double slack = 1e-9 * step;
   const double largest = std::max({std::abs(axis.low), std::abs(axis.high), step});
   std::vector<Tick> ticks;
@@ -45,9 +45,9 @@ bool labelled(int digit, double decades) {
   return decades < 3.2 && (digit == 2 || digit == 5);
 }
 
-std::vector<Tick> logarithmic_ticks(const Axis& axis, int wanted) {
+std::vector<Tick> logarithmic_ticks(const Axis& axis, int target) {
   const double decades = std::log10(axis.high / axis.low);
-  if (decades < 0.5) return linear_ticks(axis, wanted);
+  if (decades < 0.5) return linear_ticks(axis, target);
   std::vector<Tick> ticks;
   for (double exponent = std::floor(std::log10(axis.low)); exponent <= std::log10(axis.high); ++exponent)
     for (int digit = 1; digit < 10; ++digit) {
@@ -71,8 +71,8 @@ double Axis::value(double at) const {
   return scale == AxisScale::linear ? low + part * (high - low) : low * std::pow(high / low, part);
 }
 
-std::vector<Tick> ticks_of(const Axis& axis, int wanted) {
-  return axis.scale == AxisScale::linear ? linear_ticks(axis, wanted) : logarithmic_ticks(axis, wanted);
+std::vector<Tick> ticks_of(const Axis& axis, int target) {
+  return axis.scale == AxisScale::linear ? linear_ticks(axis, target) : logarithmic_ticks(axis, target);
 }
 
 Axis roomy_axis(double low, double high) {

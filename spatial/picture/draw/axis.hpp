@@ -28,7 +28,7 @@ struct Tick {
 /// Ticks at 1, 2 or 5 times a power of ten, about `wanted` of them, labelled with as many decimals as they
 /// need; on a logarithmic axis a tick at each multiple of a power of ten, of which the powers of ten are
 /// labelled, and where there are few of them 2 and 5 too.
-std::vector<Tick> ticks_of(const Axis& axis, int wanted);
+std::vector<Tick> ticks_of(const Axis& axis, int target);
 
 /// An axis a little longer than the data, so that no curve touches its frame. Values that are all alike get
 /// room on both sides.

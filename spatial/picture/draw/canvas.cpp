@@ -70,8 +70,8 @@ void attach_png(cairo_surface_t* surface, std::string png) {
 }  // namespace
 
 struct Canvas::State {
-  State(PictureFormat wanted, Size size)
-      : format(wanted), page(size), surface(make_surface(wanted, size, bytes)) {
+  State(PictureFormat target, Size size)
+      : format(target), page(size), surface(make_surface(target, size, bytes)) {
     cairo.reset(cairo_create(surface.get()));
     if (format == PictureFormat::png) cairo_scale(cairo.get(), kPixelsPerPoint, kPixelsPerPoint);
     cairo_set_line_join(cairo.get(), CAIRO_LINE_JOIN_ROUND);
@@ -233,7 +233,7 @@ schema::Result<std::string> Canvas::encode() {
   for (const cairo_status_t status :
        {cairo_status(state.cairo.get()), cairo_surface_status(state.surface.get())})
     if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_SURFACE_FINISHED)
-      return schema::fail(schema::Fault::internal, cairo_status_to_string(status), "picture");
+      return schema::fail(schema::ErrorKind::internal, cairo_status_to_string(status), "picture");
   if (state.format == PictureFormat::png) return state.bytes;
   return with_text_layer(with_rounded_paths(state.bytes), state.text_layer,
                          state.format == PictureFormat::page_svg);

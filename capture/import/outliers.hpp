@@ -18,11 +18,11 @@ namespace tacto::capture {
 ///
 /// Twice through the samples, in pieces of any size: survey() all of them, then end(); where any() says so,
 /// find() all of them again, and end(). Memory: 256 KB and one piece, whatever the length.
-class LoneSamples {
+class Outliers {
  public:
   using Found = std::function<void(std::uint64_t sample, double value)>;
 
-  LoneSamples();
+  Outliers();
   void survey(std::span<const double> values);
   void end_survey();
   /// After the survey: some sample stands alone.

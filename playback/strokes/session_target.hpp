@@ -10,7 +10,7 @@
 
 #include "data-schema/texture/texture.hpp"
 #include "playback/model/finger_path.hpp"
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 #include "playback/strokes/judged_rows.hpp"
 
 namespace tacto::playback {
@@ -39,7 +39,7 @@ class WantedReader {
   explicit WantedReader(const SessionOverview& overview);
 
   /// In consecutive rows of one rate, at least one. Holds the textures of this stretch in memory.
-  SessionWanted wanted_in(std::span<const JudgedRow> rows);
+  SessionWanted target_in(std::span<const JudgedRow> rows);
   /// Of textures that are not known, and why; `turns` are the changes of all rows.
   std::vector<std::string> notes(std::span<const TextureTurn> turns) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -82,23 +82,23 @@ std::vector<double> reading_places(const FingerPath& path, const ReadingGrid& gr
   return positions_along(path, grid.reading_rate_hz(), (grid.samples - 1) * grid.oversampling + 1);
 }
 
-PaddedSpectrum wanted_of_readings(std::vector<double> readings, const ReadingGrid& grid,
+PaddedSpectrum target_of_readings(std::vector<double> readings, const ReadingGrid& grid,
                                   const spatial::Band& band, double onset_s, const Rests& rests) {
   const double rate_hz = grid.reading_rate_hz();
   const std::size_t count = readings.size();
   readings.resize(grid.period * grid.oversampling);
   settle_ends(readings, count, static_cast<std::size_t>(onset_s * rate_hz),
               static_cast<std::size_t>(rate_hz / band.low_hz), rests);
-  auto wanted = decimated(spectrum_of(readings, rate_hz, readings.size()), grid);
-  keep_band(wanted, band);
-  return wanted;
+  auto target = decimated(spectrum_of(readings, rate_hz, readings.size()), grid);
+  keep_band(target, band);
+  return target;
 }
 
-PaddedSpectrum exact_wanted(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid,
+PaddedSpectrum exact_target(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid,
                             const spatial::Band& band, double gain_m_per_n, double onset_s) {
   std::vector<double> readings = reading_places(path, grid);
   for (double& value : readings) value = gain_m_per_n * texture(value);
-  return wanted_of_readings(std::move(readings), grid, band, onset_s);
+  return target_of_readings(std::move(readings), grid, band, onset_s);
 }
 
 schema::SpaceSignal unrolled_loop(const schema::SpaceSignal& loop, double length_m) {

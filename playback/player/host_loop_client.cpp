@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/player/loop_here.hpp"
+#include "playback/player/host_loop_client.hpp"
 
 #include <fmt/format.h>
 

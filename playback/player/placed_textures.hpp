@@ -12,7 +12,7 @@
 
 namespace tacto::playback {
 
-class LaidTextures {
+class PlacedTextures {
  public:
   /// For prepare(): weights are the layers' parts of gain_m_per_n(), with their signs. They point into this.
   std::vector<PlacedTexture> placed() const;
@@ -59,6 +59,6 @@ bool names_a_scene(const std::string& file);
 
 /// Errors: as read_texture, read_scene, served_file; usage: a place, gain or ends for a scene; unsuitable: a
 /// scene of several textures whose ends are not `stop`, that reach over 2^24 samples, or without any gain.
-schema::Result<LaidTextures> lay_textures(const ProgramRequest& request);
+schema::Result<PlacedTextures> lay_textures(const ProgramRequest& request);
 
 }  // namespace tacto::playback

@@ -42,7 +42,7 @@ struct Rests {
 };
 
 /// What was read there, m, kept to the band, at the result's samples; before and after the path it rests.
-PaddedSpectrum wanted_of_readings(std::vector<double> readings, const ReadingGrid& grid,
+PaddedSpectrum target_of_readings(std::vector<double> readings, const ReadingGrid& grid,
                                   const spatial::Band& band, double onset_s, const Rests& rests = {});
 
 /// Reads the texture along the path, keeps the band (keep_band) and gives the result's samples:
@@ -50,7 +50,7 @@ PaddedSpectrum wanted_of_readings(std::vector<double> readings, const ReadingGri
 /// period of band.low_hz; over onset_s at either end it leaves and reaches that rest by a raised cosine, so
 /// that neither end is a step although the finger may move there. Precondition: a checked path, 0 <
 /// band.low_hz.
-PaddedSpectrum exact_wanted(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid,
+PaddedSpectrum exact_target(const TextureLookup& texture, const FingerPath& path, const ReadingGrid& grid,
                             const spatial::Band& band, double gain_m_per_n, double onset_s);
 
 /// A seamless loop laid end to end until length_m is covered, as a texture without ends to read along a path.

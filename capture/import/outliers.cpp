@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "capture/import/lone_samples.hpp"
+#include "capture/import/outliers.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -44,12 +44,12 @@ bool has_other_size(double value, double median) {
 
 }  // namespace
 
-LoneSamples::LoneSamples() : histogram_(kBins) {}
+Outliers::Outliers() : histogram_(kBins) {}
 
 // Further from each neighbour than half its distance from the median, and on the same side of both. The first
 // and the last sample have one neighbour: there the signal beside them must be calm, for a sine that begins
 // at zero is no fault.
-bool LoneSamples::stands_alone(std::size_t i, double distance) const {
+bool Outliers::stands_alone(std::size_t i, double distance) const {
   const std::vector<double>& v = window_;
   if (!has_other_size(v[i], v[i] - distance)) return false;
   const double half = distance / 2;
@@ -65,7 +65,7 @@ bool LoneSamples::stands_alone(std::size_t i, double distance) const {
 }
 
 // Distances of the samples [begin, end) of the window from the medians around them.
-void LoneSamples::prepare(std::size_t begin, std::size_t end) {
+void Outliers::prepare(std::size_t begin, std::size_t end) {
   distances_.resize(window_.size());
   const std::size_t last_middle = window_.size() - 3;
   const double* const v = window_.data();
@@ -77,7 +77,7 @@ void LoneSamples::prepare(std::size_t begin, std::size_t end) {
   for (std::size_t i = outer; i < end; ++i) distance[i] = v[i] - median_of_five(v + last_middle - 2);
 }
 
-void LoneSamples::survey_range(std::size_t begin, std::size_t end) {
+void Outliers::survey_range(std::size_t begin, std::size_t end) {
   prepare(begin, end);
   for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) {
     const double step = std::abs(window_[i] - window_[i - 1]);
@@ -91,7 +91,7 @@ void LoneSamples::survey_range(std::size_t begin, std::size_t end) {
   }
 }
 
-void LoneSamples::find_range(std::size_t begin, std::size_t end, const Found& found) {
+void Outliers::find_range(std::size_t begin, std::size_t end, const Found& found) {
   prepare(begin, end);
   for (std::size_t i = begin; i < end; ++i)
     if (std::abs(distances_[i]) > far_ && stands_alone(i, distances_[i])) found(first_ + i, window_[i]);
@@ -99,7 +99,7 @@ void LoneSamples::find_range(std::size_t begin, std::size_t end, const Found& fo
 
 // All samples whose two followers are known; the first two wait for the first five.
 template <class Visit>
-void LoneSamples::visit(std::span<const double> values, Visit visit) {
+void Outliers::visit(std::span<const double> values, Visit visit) {
   window_.insert(window_.end(), values.begin(), values.end());
   if (window_.size() < 5) return;
   visit(next_, window_.size() - 2);
@@ -111,7 +111,7 @@ void LoneSamples::visit(std::span<const double> values, Visit visit) {
 
 // The last two, whose medians are of the last five; then all is ready for another time through.
 template <class Visit>
-void LoneSamples::visit_rest(Visit visit) {
+void Outliers::visit_rest(Visit visit) {
   ended_ = true;
   if (window_.size() >= 5) visit(next_, window_.size());
   ended_ = false;
@@ -119,24 +119,24 @@ void LoneSamples::visit_rest(Visit visit) {
   first_ = next_ = 0;
 }
 
-void LoneSamples::survey(std::span<const double> values) {
+void Outliers::survey(std::span<const double> values) {
   visit(values, [this](std::size_t begin, std::size_t end) { survey_range(begin, end); });
 }
 
-void LoneSamples::end_survey() {
+void Outliers::end_survey() {
   visit_rest([this](std::size_t begin, std::size_t end) { survey_range(begin, end); });
   far_ = kFar * std::max(usual_distance(), std::isfinite(finest_) ? finest_ : 0);
 }
 
-void LoneSamples::find(std::span<const double> values, const Found& found) {
+void Outliers::find(std::span<const double> values, const Found& found) {
   visit(values, [&](std::size_t begin, std::size_t end) { find_range(begin, end, found); });
 }
 
-void LoneSamples::end_find(const Found& found) {
+void Outliers::end_find(const Found& found) {
   visit_rest([&](std::size_t begin, std::size_t end) { find_range(begin, end, found); });
 }
 
-double LoneSamples::usual_distance() const {
+double Outliers::usual_distance() const {
   if (count_ == 0) return std::numeric_limits<double>::infinity();
   const auto rank = static_cast<std::uint64_t>(kUsual * static_cast<double>(count_ - 1));
   std::uint64_t below = 0;

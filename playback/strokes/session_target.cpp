@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/strokes/session_wanted.hpp"
+#include "playback/strokes/session_target.hpp"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,13 @@
 #include "data-schema/texture/texture_wav.hpp"
 #include "playback/model/spatial_content.hpp"
 #include "playback/render/played_ends.hpp"
-#include "playback/render/reference/wanted.hpp"
+#include "playback/render/reference/exact_target.hpp"
 
 namespace tacto::playback {
 namespace {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 using schema::SessionTexture;
 
@@ -40,7 +40,7 @@ Result<schema::Texture> same_texture(const SessionTexture& played) {
   if (!texture) return texture;
   const auto wav = schema::texture_wav(played.file);
   if (wav && wav->sha256 == played.sha256) return texture;
-  return fail(Fault::unsuitable, "is not what was played any more", played.file);
+  return fail(ErrorKind::unsuitable, "is not what was played any more", played.file);
 }
 
 TextureMix mix_of(std::span<const JudgedRow> rows, const std::vector<bool>& known) {
@@ -247,7 +247,7 @@ void WantedReader::note_reach(const ProfileReach& reach) {
       reach_m));
 }
 
-SessionWanted WantedReader::wanted_in(std::span<const JudgedRow> rows) {
+SessionWanted WantedReader::target_in(std::span<const JudgedRow> rows) {
   const schema::SessionHeader& header = overview_.header;
   const TextureMix mix = mix_of(rows, known_);
   const FingerPath path = path_of(rows, header.rate_hz);
@@ -260,11 +260,11 @@ SessionWanted WantedReader::wanted_in(std::span<const JudgedRow> rows) {
   if (begins_at_rest(rows)) rests.start = 0;
   if (ends_at_rest(rows)) rests.end = 0;
   forget_unused();
-  SessionWanted wanted{signal_of(wanted_of_readings(std::move(readings), grid, band, 0, rests)),
+  SessionWanted target{signal_of(target_of_readings(std::move(readings), grid, band, 0, rests)),
                        felt(driven_by_unknown(rows, mix), overview_.look_ahead_ticks)};
-  wanted.displacement_m.resize(rows.size());
-  if (!sound) wanted.unknown.assign(rows.size(), true);
-  return wanted;
+  target.displacement_m.resize(rows.size());
+  if (!sound) target.unknown.assign(rows.size(), true);
+  return target;
 }
 
 }  // namespace tacto::playback

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/cli/room_report.hpp"
+#include "playback/cli/memory_report.hpp"
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ void add_way(std::vector<Way>& ways, std::string way, const AskedProgram& asked)
 
 void add_sinc(std::vector<Way>& ways, AskedProgram asked, const Program& program) {
   if (program.prepared.scale.interpolation == wire::Interpolation::sinc) return;
-  asked.request.choices.interpolation = std::string(word_of(wire::Interpolation::sinc));
+  asked.request.choices.interpolation = std::string(to_string(wire::Interpolation::sinc));
   add_way(ways, "interpolate by sinc (--interpolation sinc)", asked);
 }
 
@@ -154,7 +154,7 @@ void add_room(Report& report, const Prepared& made, std::size_t device_samples) 
   items.push_back(item("samples of all levels", needed, device_samples, sizeof(float)));
   items.push_back(item("filter's taps", made.built.taps, wire::kMaxTaps, sizeof(float)));
   items.push_back(
-      item("hysteresis's plays", made.built.plays, wire::kMaxPlays, sizeof(wire::HysteresisPlay)));
+      item("hysteresis's plays", made.built.play_operators, wire::kMaxPlays, sizeof(wire::HysteresisPlay)));
   items.push_back(item("sections", made.built.sections, wire::kMaxSections, sizeof(wire::Section)));
   report.add("memory", std::move(items));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "playback/player/laid_textures.hpp"
+#include "playback/player/placed_textures.hpp"
 
 #include <fmt/format.h>
 
@@ -17,8 +17,8 @@
 
 namespace tacto::playback {
 
+using schema::ErrorKind;
 using schema::fail;
-using schema::Fault;
 using schema::Result;
 using schema::TextureLayer;
 
@@ -46,7 +46,7 @@ Result<schema::Scene> scene_of(const ProgramRequest& request,
                                std::optional<schema::PlaybackGain>& kept_gain) {
   if (!names_a_scene(request.file)) return scene_of_texture(request, kept_gain);
   if (request.at_m || request.gain_m_per_n || request.ends)
-    return fail(Fault::usage, "a scene says itself where its textures lie, with which gains and ends",
+    return fail(ErrorKind::usage, "a scene says itself where its textures lie, with which gains and ends",
                 request.file, "change the scene, or name a texture");
   return schema::read_scene(request.file);
 }
@@ -54,7 +54,7 @@ Result<schema::Scene> scene_of(const ProgramRequest& request,
 // What a newer version limits must not be played without.
 Result<void> check_choices(const schema::Scene& scene) {
   if (scene.playback.extra_json.empty()) return {};
-  return fail(Fault::unsuitable,
+  return fail(ErrorKind::unsuitable,
               fmt::format("is of version {}, and its playback says what this program does not know: {}",
                           scene.newer_version, scene.playback.extra_json),
               "scene#/playback", "play it with a newer tactograph, or take that out");
@@ -73,33 +73,33 @@ std::string full_path(const std::string& path) {
   return ignored ? path : full.lexically_normal().string();
 }
 
-std::vector<PlacedTexture> LaidTextures::placed() const {
+std::vector<PlacedTexture> PlacedTextures::placed() const {
   std::vector<PlacedTexture> list;
   for (std::size_t i = 0; i < layers_.size(); ++i)
     list.push_back({&texture(i), layers_[i].at_m, layers_[i].gain_m_per_n / gain()});
   return list;
 }
 
-double LaidTextures::gain() const {
+double PlacedTextures::gain() const {
   double most = 0;
   for (const TextureLayer& layer : layers_) most = std::max(most, std::abs(layer.gain_m_per_n));
   return most;
 }
 
-double LaidTextures::signed_gain() const {
+double PlacedTextures::signed_gain() const {
   const auto size = [](const TextureLayer& layer) { return std::abs(layer.gain_m_per_n); };
   return std::ranges::max(layers_, {}, size).gain_m_per_n;
 }
 
-Ends LaidTextures::ends() const {
+Ends PlacedTextures::ends() const {
   return ends_of(layers_.front().ends);
 }
 
-double LaidTextures::start_m() const {
+double PlacedTextures::start_m() const {
   return std::ranges::min(layers_, {}, &TextureLayer::at_m).at_m;
 }
 
-double LaidTextures::end_m() const {
+double PlacedTextures::end_m() const {
   double end = layers_.front().at_m;
   for (std::size_t i = 0; i < layers_.size(); ++i)
     end = std::max(end, layers_[i].at_m + texture(i).signal.length_m());
@@ -109,7 +109,7 @@ double LaidTextures::end_m() const {
 /// Reads them into one.
 class TextureReader {
  public:
-  explicit TextureReader(LaidTextures& laid) : laid_(laid) {}
+  explicit TextureReader(PlacedTextures& laid) : laid_(laid) {}
 
   Result<void> read(const schema::Scene& scene) {
     if (const auto known = check_choices(scene); !known) return known;
@@ -121,7 +121,7 @@ class TextureReader {
     }
     if (const auto near = check_reach(); !near) return near;
     if (laid_.gain() == 0)
-      return fail(Fault::unsuitable, "every gain is 0", laid_.scene_path_, "give one a gain");
+      return fail(ErrorKind::unsuitable, "every gain is 0", laid_.scene_path_, "give one a gain");
     return {};
   }
   void keep_gain(std::optional<schema::PlaybackGain> gain) { laid_.kept_gain_ = std::move(gain); }
@@ -140,7 +140,7 @@ class TextureReader {
       TACTO_TRY(wav);
       note(schema::note_of_newer_version(stem + ".json", texture->newer_version,
                                          schema::member_names(texture->extra_json)));
-      laid_.files_.emplace(stem, LaidTextures::File{std::move(*texture), wav->sha256});
+      laid_.files_.emplace(stem, PlacedTextures::File{std::move(*texture), wav->sha256});
     }
     laid_.stems_.push_back(stem);
     laid_.layers_.push_back(layer);
@@ -161,7 +161,7 @@ class TextureReader {
       const double reach_m = end_m - start_m;
       if (reach_m / pitch_m <= kMostPathSamples) continue;
       const std::string layer = fmt::format("{}#/layers/{}/at_m", laid_.scene_path_, i);
-      return fail(Fault::unsuitable,
+      return fail(ErrorKind::unsuitable,
                   fmt::format("the textures reach over {:g} m, at a pitch of {:g} um: over {:.0f} samples",
                               reach_m, 1e6 * pitch_m, kMostPathSamples),
                   laid_.scene_path_.empty() ? laid_.rows_[i].file : layer,
@@ -170,10 +170,10 @@ class TextureReader {
     return {};
   }
 
-  LaidTextures& laid_;
+  PlacedTextures& laid_;
 };
 
-Result<LaidTextures> lay_textures(const ProgramRequest& asked) {
+Result<PlacedTextures> lay_textures(const ProgramRequest& asked) {
   ProgramRequest request = asked;
   if (asked.only_in) {
     auto served = served_file(*asked.only_in, asked.file);
@@ -183,7 +183,7 @@ Result<LaidTextures> lay_textures(const ProgramRequest& asked) {
   std::optional<schema::PlaybackGain> kept_gain;
   const auto scene = scene_of(request, kept_gain);
   TACTO_TRY(scene);
-  LaidTextures laid;
+  PlacedTextures laid;
   TextureReader reader(laid);
   reader.keep_gain(std::move(kept_gain));
   if (names_a_scene(request.file)) reader.name_scene(schema::scene_path(request.file));
