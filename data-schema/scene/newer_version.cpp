@@ -30,7 +30,8 @@ std::string note_of_newer_version(const std::string& path, const std::string& ne
 std::string note_of_newer_version(const std::string& path, const Scene& scene) {
   std::vector<std::string> names = member_names(scene.extra_json);
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-    const auto& extra = std::visit([](const auto& layer) { return layer.extra_json; }, scene.layers[i]);
+    const std::string extra =
+        scene.layers[i].visit([](const TextureLayer& layer) { return layer.extra_json; });
     std::ranges::copy(member_names(extra, fmt::format("layers/{}/", i)), std::back_inserter(names));
   }
   return note_of_newer_version(path, scene.newer_version, names);

@@ -242,7 +242,7 @@ void Client::accept(const wire::Frame& frame) {
     if (note.index == description_.notes.size()) description_.notes.push_back(note);
   if (wire::Ticks ticks; type == MessageType::ticks && understood(frame, ticks))
     if (ticks_.size() < kMostTicksKept) ticks_.push_back(ticks);
-  if (wire::ErrorKind fault; type == MessageType::fault && understood(frame, fault)) {
+  if (wire::Fault fault; type == MessageType::fault && understood(frame, fault)) {
     faults_.push_back(fault);
     converter_failed_ = converter_failed_ || fault.code == wire::FaultCode::converter;
   }

@@ -78,7 +78,7 @@ class Client {
 
   /// Takes in what has come, waiting at most `timeout_s` for it.
   schema::Result<void> receive(double timeout_s);
-  std::vector<wire::ErrorKind> take_faults() { return std::exchange(faults_, {}); }
+  std::vector<wire::Fault> take_faults() { return std::exchange(faults_, {}); }
   std::vector<wire::Ticks> take_ticks() { return std::exchange(ticks_, {}); }
   /// The last samples message's.
   const std::optional<FrameArrival>& last_arrival() const { return last_arrival_; }
@@ -121,7 +121,7 @@ class Client {
   wire::Samples block_;
   SampleQueue samples_;
   std::optional<FrameArrival> last_arrival_;
-  std::vector<wire::ErrorKind> faults_;
+  std::vector<wire::Fault> faults_;
   std::vector<wire::Ticks> ticks_;
   bool converter_failed_ = false;
   std::uint32_t refused_drives_ = 0;

@@ -102,7 +102,7 @@ StreamCounts WireDevice::counts() const {
 
 StreamEvents WireDevice::take_events() {
   StreamEvents events = std::exchange(events_, {});
-  for (const wire::ErrorKind& fault : client_->take_faults())
+  for (const wire::Fault& fault : client_->take_faults())
     events.faults.push_back({counts_.frames, fault.code, fault.detail});
   return events;
 }

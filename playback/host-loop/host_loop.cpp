@@ -201,7 +201,7 @@ void HostLoop::take_counts() {
 void HostLoop::take_faults() {
   for (const wire::Ticks& message : device_.take_ticks())
     if (message.count > 0) enabled_ = (message.ticks[message.count - 1].flags & wire::kTickEnabled) != 0;
-  for (const wire::ErrorKind& fault : device_.take_faults())
+  for (const wire::Fault& fault : device_.take_faults())
     if (fault.code != wire::FaultCode::ring_full)
       give_up(firmware_host::words_of(fault.code, fault.detail).what);
 }

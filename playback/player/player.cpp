@@ -41,7 +41,6 @@ bool runs(PlayerState state) {
   return state == PlayerState::armed || state == PlayerState::playing;
 }
 
-// The encoder's step stands in the description of the channel that it gives.
 Result<double> encoder_step(const firmware_host::Description& about, const std::string& uri) {
   for (const wire::Channel& channel : about.channels)
     if (std::strcmp(channel.quantity, "position") == 0 && std::isfinite(channel.scale) && channel.scale != 0)
@@ -50,7 +49,7 @@ Result<double> encoder_step(const firmware_host::Description& about, const std::
               "it lacks a channel of the quantity position");
 }
 
-// The device knows no files.
+// A device reports no file names: the program adds them.
 schema::Error naming(schema::Error error, const Program& program) {
   error.where = fmt::format("{}, on {}", program.name(), error.where);
   return error;
@@ -91,8 +90,8 @@ Result<std::unique_ptr<Player>> Player::make(firmware_host::Client& client, std:
 
 Result<void> Player::require(bool allowed, const char* what, const char* remedy) const {
   if (allowed) return {};
-  return fail(ErrorKind::usage, fmt::format("can't {} in the state {}", what, to_string(state_)), uri_,
-              remedy);
+  const std::string why = fmt::format("can't {} in the state {}", what, to_string(state_));
+  return fail(ErrorKind::usage, why, uri_, remedy);
 }
 
 // Every command that the device obeys is part of the session, but for those of the samples' stream.
@@ -115,9 +114,9 @@ Result<void> Player::may_load() const {
 }
 
 Result<void> Player::load(Program program, double fade_s) {
-  if (const auto may = may_load(); !may) return may;
+  TACTO_TRY(may_load());
   const double factor = runs(state_) ? gain_ : 1;
-  if (const auto near = within_reach(program, program.tray_peak_m, factor); !near) return near;
+  TACTO_TRY(within_reach(program, program.tray_peak_m, factor));
   const wire::Welcome& about = client_.description().welcome;
   wire::Limits& limits = program.prepared.limits;
   limits.drive_v = std::min(limits.drive_v, about.drive_limit_v);
@@ -131,18 +130,16 @@ Result<void> Player::load(Program program, double fade_s) {
 
 Result<void> Player::may_change(const Program& program, double fade_s) const {
   if (!(fade_s >= 0 && fade_s <= kLongestFadeS))
-    return fail(ErrorKind::usage, fmt::format("a fade of {:g} s", fade_s), uri_,
-                "0 s to 10 s; 50 ms is usual");
+    return fail(ErrorKind::usage, fmt::format("a fade of {:g} s", fade_s), uri_, "0 s to 10 s");
   if (view_.expected() < faded_at_)
-    return fail(ErrorKind::usage, "the last change of texture is not through yet", uri_,
-                "load again once it is");
+    return fail(ErrorKind::usage, "the last change of texture has not ended", uri_, "load again later");
   return check_texture_change(program_->prepared, program.prepared,
                               client_.description().welcome.profile_samples);
 }
 
 // The device's gain stays what it is, so that a gain that comes later is a factor of the same.
 Result<void> Player::change(Program program, double fade_s) {
-  if (const auto may = may_change(program, fade_s); !may) return may;
+  TACTO_TRY(may_change(program, fade_s));
   const schema::SessionProgram& brought = program.session;  // of a header, what a change brings
   recorder_->change({view_.expected(), steady_ns(), brought});
   const auto done = upload_change(client_, program.prepared, device_gain_m_per_n_, fade_s);
@@ -186,12 +183,12 @@ Result<void> Player::begin_session(const std::string& path) {
 }
 
 Result<void> Player::arm(const std::string& session_path) {
-  if (const auto may = require(state_ == PlayerState::idle, "arm", "disarm first"); !may) return may;
-  if (const auto may = require(loaded(), "arm", "load a texture or scene first"); !may) return may;
-  if (const auto may = may_gain(gain_); !may) return may;
+  TACTO_TRY(require(state_ == PlayerState::idle, "arm", "disarm first"));
+  TACTO_TRY(require(loaded(), "arm", "load a texture or scene first"));
+  TACTO_TRY(may_gain(gain_));
   // Another program may have been killed in mid-play: the device is then still on its way to rest.
-  if (const auto rests = wait_for_idle(); !rests) return rests;
-  if (const auto begun = begin_session(session_path); !begun) return begun;
+  TACTO_TRY(wait_for_idle());
+  TACTO_TRY(begin_session(session_path));
   fault_.clear();
   stopped_because_.clear();
   view_.begin(program_->prepared.rate_hz, metres_per_count_);
@@ -219,14 +216,14 @@ Result<void> Player::arm(const std::string& session_path) {
 
 Result<void> Player::play() {
   const char* const remedy = state_ == PlayerState::fault ? "disarm first, then arm" : "arm first";
-  if (const auto allowed = require(runs(state_), "play", remedy); !allowed) return allowed;
+  TACTO_TRY(require(runs(state_), "play", remedy));
   stopped_because_.clear();
   return steer(wire::Play{});
 }
 
 Result<void> Player::stop(const std::string& why) {
   const bool may = state_ != PlayerState::idle && state_ != PlayerState::lost;
-  if (const auto allowed = require(may, "stop", "nothing plays"); !allowed) return allowed;
+  TACTO_TRY(require(may, "stop", "nothing plays"));
   stopped_because_ = why;
   return steer(wire::Stop{});
 }
@@ -240,7 +237,7 @@ Result<void> Player::may_gain(double gain) const {
 }
 
 Result<void> Player::gain(double gain) {
-  if (const auto may = may_gain(gain); !may) return may;
+  TACTO_TRY(may_gain(gain));
   gain_ = gain;
   if (!recorder_) return {};
   const auto done = steer(device_gain());
@@ -265,7 +262,7 @@ Result<void> Player::wait_for_idle() {
 
 Result<void> Player::disarm(const std::string& why) {
   if (state_ == PlayerState::idle) return {};
-  if (const auto may = require(state_ != PlayerState::lost, "disarm", "the device is gone"); !may) return may;
+  TACTO_TRY(require(state_ != PlayerState::lost, "disarm", "the device is gone"));
   auto done = steer(wire::Disarm{});
   if (done) done = wait_for_idle();
   if (done) done = tray_.end_stream();
@@ -345,7 +342,7 @@ void Player::take(const wire::Ticks& message) {
   }
 }
 
-// Of a run that is over, ticks may still be on their way: they belong to nobody.
+// Ticks of a run that has ended may still arrive: they are passed over.
 void Player::take_ticks() {
   tray_.take();
   for (const wire::Ticks& message : client_.take_ticks()) {
@@ -358,7 +355,7 @@ void Player::take_ticks() {
 }
 
 void Player::take_faults() {
-  for (const wire::ErrorKind& fault : client_.take_faults()) {
+  for (const wire::Fault& fault : client_.take_faults()) {
     const firmware_host::FaultWords words = firmware_host::words_of(fault.code, fault.detail);
     if (!recorder_) continue;
     // A converter that fails ends the stream of samples; the drive goes on.
@@ -392,7 +389,7 @@ void Player::enter(PlayerState state, const std::string& why) {
   if (listener_) listener_(state, why, device_s);
 }
 
-// What was lost stays told until the next session begins.
+// Losses are reported until the next session begins.
 PlayerStatus Player::status() const {
   PlayerStatus status{state_, fault_, gain_, view_, recorded(), {}, session_path_, round_trip_s_};
   if (!status.recorder && !session_path_.empty()) status.recorder = last_session_;

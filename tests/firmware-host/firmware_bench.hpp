@@ -106,7 +106,7 @@ class FirmwareBench {
   std::vector<wire::Tick> ticks;
   std::vector<std::uint64_t> first_ticks;
   std::vector<wire::Pulse> pulses;
-  std::vector<wire::ErrorKind> faults;
+  std::vector<wire::Fault> faults;
   std::vector<float> drives;
   std::vector<wire::MessageType> order;
   std::uint32_t sequence_ = 0;
@@ -140,7 +140,7 @@ class FirmwareBench {
     if (type == MessageType::note) notes.push_back(parsed<wire::Note>(frame));
     if (type == MessageType::samples) samples.push_back(parsed<wire::Samples>(frame));
     if (type == MessageType::pulse) pulses.push_back(parsed<wire::Pulse>(frame));
-    if (type == MessageType::fault) faults.push_back(parsed<wire::ErrorKind>(frame));
+    if (type == MessageType::fault) faults.push_back(parsed<wire::Fault>(frame));
     if (type != MessageType::ticks) return;
     const auto block = parsed<wire::Ticks>(frame);
     first_ticks.push_back(block.first_tick);

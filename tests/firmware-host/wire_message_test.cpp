@@ -208,7 +208,7 @@ TEST(WireDocument, DeviceFramesAreItsBytes) {
                          10, 1, 2, 3, 4, 5, 6, 7},
                    6),
             frames["pulse"]);
-  EXPECT_EQ(hex_of(ErrorKind{FaultCode::encoder_jump, {}, 10000, 123456789}, 7), frames["fault"]);
+  EXPECT_EQ(hex_of(Fault{FaultCode::encoder_jump, {}, 10000, 123456789}, 7), frames["fault"]);
 }
 
 }  // namespace

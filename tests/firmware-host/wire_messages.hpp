@@ -20,7 +20,7 @@ using AllMessages =
                wire::Play, wire::Stop, wire::Disarm, wire::Drive, wire::Heartbeat, wire::Reset, wire::Welcome,
                wire::ProfileLevels, wire::Taps, wire::Tracking, wire::Energy, wire::Contact, wire::Change,
                wire::Hysteresis, wire::Channel, wire::Note, wire::Answer, wire::Samples, wire::Ticks,
-               wire::Pulse, wire::ErrorKind>;
+               wire::Pulse, wire::Fault>;
 
 class RandomFields {
  public:

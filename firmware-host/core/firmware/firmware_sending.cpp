@@ -62,7 +62,7 @@ bool Firmware::compose_description() noexcept {
 // A converter's fault ends the stream, so it is told after the stream's last frame.
 bool Firmware::compose_fault() noexcept {
   if (!greeted_) return false;
-  wire::ErrorKind fault;
+  wire::Fault fault;
   const FaultCode drive = ticker_.supervisor().fault();
   if (drive != told_) {
     told_ = drive;

@@ -158,7 +158,7 @@ struct Pulse {
 };
 
 /// Unasked, once for each time that something goes wrong.
-struct ErrorKind {
+struct Fault {
   static constexpr MessageType kType = MessageType::fault;
   FaultCode code = FaultCode::none;
   uint8_t reserved[3] = {};
