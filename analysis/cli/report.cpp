@@ -39,7 +39,7 @@ Report project_report(const Project& project, const std::string& output) {
   for (const BrokenFile& file : project.broken)
     broken.push_back(Report().add("file", file.path).add("fault", schema::message(file.error)));
   if (project.broken.empty()) return report;
-  report.add("broken", std::move(broken)).ends_with(project.broken.front().error.fault);
+  report.add("broken", std::move(broken)).ends_with(project.broken.front().error.kind);
   return report;
 }
 

@@ -203,7 +203,7 @@ Result<cli::Report> run_record(const RecordOptions& options) {
   if (gaps && !options.allow_gaps) report.ends_with(schema::ErrorKind::device);
   if (recorded->ended_by && recorded->recording.header.ended.empty())
     cli::warn("the recording is whole, but its device did not stop: " + schema::message(*recorded->ended_by));
-  if (recorded->ended_by) report.ends_with(recorded->ended_by->fault);
+  if (recorded->ended_by) report.ends_with(recorded->ended_by->kind);
   return report;
 }
 

@@ -28,8 +28,8 @@ Check device_seen(const Capabilities& said) {
 
 Check device_missing(const schema::Error& why) {
   if (is_denied(why)) return {"device", Health::works, "it is there", {}};
-  return {"device", Health::fails, schema::message({why.fault, why.what, why.where, {}}),
-          why.remedy.empty() ? "plug it in; 'tactograph scan' lists what is there" : why.remedy, why.fault};
+  return {"device", Health::fails, schema::message({why.kind, why.what, why.where, {}}),
+          why.remedy.empty() ? "plug it in; 'tactograph scan' lists what is there" : why.remedy, why.kind};
 }
 
 Check firmware(const Capabilities& said) {

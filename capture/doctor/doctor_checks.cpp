@@ -133,7 +133,7 @@ Check check_round_trip(firmware_host::Device& device, std::size_t questions) {
   std::vector<double> times_s;
   for (std::size_t i = 0; i < questions; ++i) {
     const auto time_s = device.round_trip_s();
-    if (!time_s && time_s.error().fault == schema::ErrorKind::unsuitable)
+    if (!time_s && time_s.error().kind == schema::ErrorKind::unsuitable)
       return {"round trip", Health::skipped, time_s.error().what, {}};
     if (!time_s) return {"round trip", Health::fails, time_s.error().what, time_s.error().remedy};
     times_s.push_back(*time_s);
@@ -156,8 +156,8 @@ Check check_disk(const std::string& folder, double bytes_per_s) {
   const double block_bytes = std::min(bytes_per_s * schema::kSyncEvery_s, kLargestBlock_bytes);
   const auto disk = measure_disk(folder, static_cast<std::size_t>(block_bytes));
   if (!disk)
-    return {"disk", Health::fails, schema::message({disk.error().fault, disk.error().what, folder, {}}),
-            disk.error().remedy, disk.error().fault};
+    return {"disk", Health::fails, schema::message({disk.error().kind, disk.error().what, folder, {}}),
+            disk.error().remedy, disk.error().kind};
   const std::string found = words_of(*disk, bytes_per_s);
   if (disk->free_bytes < kLeastRoom_s * bytes_per_s || disk->write_bytes_per_s < bytes_per_s)
     return {"disk", Health::fails, found, "record to another disk", schema::ErrorKind::cannot_write};
@@ -179,7 +179,7 @@ Check check_calibration(const firmware_host::Capabilities& said, const DoctorReq
   const auto file = calibration_of(said.serial, request.calibration);
   if (!file)
     return {"calibration", Health::fails, schema::message(file.error()),
-            "name another, or record with --no-calibration", file.error().fault};
+            "name another, or record with --no-calibration", file.error().kind};
   if (!*file) return judged("calibration", "there is none", tare);
   if ((**file).serial != said.serial)
     return {"calibration", Health::fails, "is that of the device " + (**file).serial, "name this device's",

@@ -22,7 +22,7 @@ enum class ErrorKind {
 
 /// One failure. `where` is a file, with line, field or sample; `remedy` says what to do, and may be empty.
 struct Error {
-  ErrorKind fault = ErrorKind::internal;
+  ErrorKind kind = ErrorKind::internal;
   std::string what;
   std::string where;
   std::string remedy;
@@ -32,9 +32,9 @@ template <class T>
 using Result = tl::expected<T, Error>;
 
 /// An Error, ready to be returned from any function that gives a Result.
-inline tl::unexpected<Error> fail(ErrorKind fault, std::string what, std::string where = {},
+inline tl::unexpected<Error> fail(ErrorKind kind, std::string what, std::string where = {},
                                   std::string remedy = {}) {
-  return tl::unexpected(Error{fault, std::move(what), std::move(where), std::move(remedy)});
+  return tl::unexpected(Error{kind, std::move(what), std::move(where), std::move(remedy)});
 }
 
 /// Passes another function's error on, whatever its value type was.
@@ -52,9 +52,10 @@ tl::unexpected<Error> forward_error(const Result<T>& failed) {
       return ::tacto::schema::forward_error(tried_result);       \
   } while (false)
 
-/// The process's exit code for a fault: 1 internal, 2 usage, 3 not found, ... in the order of ErrorKind.
-constexpr int exit_code(ErrorKind fault) {
-  return static_cast<int>(fault) + 1;
+/// The process's exit code for a kind of error: 1 internal, 2 usage, 3 not found, ... in the order of
+/// ErrorKind.
+constexpr int exit_code(ErrorKind kind) {
+  return static_cast<int>(kind) + 1;
 }
 
 /// "where: what (remedy)", on one line.

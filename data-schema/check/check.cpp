@@ -15,8 +15,8 @@ Checked one_finding(const std::string& where, const std::string& what) {
 
 // What only a missing or a newer file can't be judged by.
 bool ends_the_check(const Error& error) {
-  return error.fault == ErrorKind::not_found || error.fault == ErrorKind::unsupported_version ||
-         error.fault == ErrorKind::internal;
+  return error.kind == ErrorKind::not_found || error.kind == ErrorKind::unsupported_version ||
+         error.kind == ErrorKind::internal;
 }
 
 Result<Checked> judged(const Error& error) {

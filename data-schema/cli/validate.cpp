@@ -36,7 +36,7 @@ Result<void> check(const StoredFile& file, Outcome& outcome) {
 void put_unreadable(const std::string& name, const Error& error, Outcome& outcome) {
   outcome.files.push_back(cli::Report().add("file", name).add("kind", "unknown").add("valid", false));
   outcome.faults.push_back(cli::Report().add("where", error.where).add("what", error.what));
-  if (error.fault != ErrorKind::malformed) outcome.worst = error.fault;
+  if (error.kind != ErrorKind::malformed) outcome.worst = error.kind;
 }
 
 void check_name(const std::string& name, Outcome& outcome) {

@@ -12,7 +12,7 @@
 namespace tacto::cli {
 
 int print_error(const schema::Error& error, bool json) {
-  const int code = schema::exit_code(error.fault);
+  const int code = schema::exit_code(error.kind);
   if (!json) {
     talk(fmt::format("tactograph: {}\n", on_one_line(schema::message(error))));
     return code;

@@ -217,7 +217,7 @@ std::string control_reply_line(const std::string& id_json, const ControlFields& 
 std::string control_error_line(const std::string& id_json, const Error& error) {
   Json body = begun(id_json);
   body["ok"] = false;
-  body["error"] = {{"fault", static_cast<int>(error.fault)},
+  body["error"] = {{"fault", static_cast<int>(error.kind)},
                    {"what", error.what},
                    {"where", error.where},
                    {"remedy", error.remedy}};

@@ -131,7 +131,7 @@ Result<FoundTradeTable> machines_own(const std::string& path) {
     return FoundTradeTable{std::move(*own), origin};
   }
   return fail(
-      own.error().fault, own.error().what, own.error().where,
+      own.error().kind, own.error().what, own.error().where,
       "measure it anew with 'tactograph trade --calibrate', or remove it: then the shipped one serves");
 }
 

@@ -61,7 +61,7 @@ int run_with(std::span<const char* const> arguments) {
   const Result<void> done = options ? run(*options) : schema::forward_error(options);
   if (done) return 0;
   say(schema::message(done.error()));
-  return schema::exit_code(done.error().fault);
+  return schema::exit_code(done.error().kind);
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgra
   add_room(*report, program->prepared, asked.room());
   refused.remedy = add_ways_to_fit(*report, asked, *program);
   cli::talk(fmt::format("tactograph: {}\n", cli::on_one_line(schema::message(refused))));
-  return report->ends_with(refused.fault);
+  return report->ends_with(refused.kind);
 }
 
 Result<Report> run_explain(ExplainOptions o) {

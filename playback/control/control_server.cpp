@@ -169,7 +169,7 @@ std::optional<schema::Error> ControlServer::refusal_of(const ControlClient& clie
                                                        const Result<ControlRequest>& request) const {
   const bool greets = request && request->verb == ControlVerb::hello;
   if (is_stranger(client)) {
-    if (!request && request.error().fault == ErrorKind::unsupported_version) return request.error();
+    if (!request && request.error().kind == ErrorKind::unsupported_version) return request.error();
     if (!greets || !is_token(request->token, place_.loopback->token)) return kUnknown;
   }
   if (!request) return request.error();

@@ -26,7 +26,7 @@ std::string how_to_make(const std::string& path) {
 
 Result<std::string> read_control_token(const std::string& path) {
   const auto text = schema::read_file(path);
-  if (!text) return fail(text.error().fault, text.error().what, path, how_to_make(path));
+  if (!text) return fail(text.error().kind, text.error().what, path, how_to_make(path));
   struct stat status {};
   if (stat(path.c_str(), &status) != 0 || (status.st_mode & kOfOthers) != 0)
     return fail(ErrorKind::unsuitable, "others than its owner may read the token", path, "chmod 600 " + path);

@@ -53,7 +53,7 @@ void stop_at_hangup(const struct sigaction& action) {
 
 int failed(const schema::Error& error) {
   cli::talk(fmt::format("tactographd: {}\n", schema::message(error)));
-  return schema::exit_code(error.fault);
+  return schema::exit_code(error.kind);
 }
 
 double steady_s() {

@@ -40,7 +40,7 @@ void warn_if_little_is_seen(const NamedTexture& texture, const SpectrogramHeader
 template <class T>
 tl::unexpected<schema::Error> naming(const NamedTexture& texture, const Result<T>& failed) {
   schema::Error error = failed.error();
-  if (error.fault == ErrorKind::unsuitable) error.where = texture.path + ": " + error.where;
+  if (error.kind == ErrorKind::unsuitable) error.where = texture.path + ": " + error.where;
   return tl::unexpected(error);
 }
 

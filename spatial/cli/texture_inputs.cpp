@@ -161,7 +161,7 @@ Result<std::optional<NamedTexture>> TextureInputs::next_stroke() {
       return NamedTexture{stroke.name, stroke.name, std::move(*texture)};
     }
     const bool last_hope = strokes_.empty() && !made_;
-    if (texture.error().fault != ErrorKind::unsuitable || last_hope) return schema::forward_error(texture);
+    if (texture.error().kind != ErrorKind::unsuitable || last_hope) return schema::forward_error(texture);
     cli::warn(fmt::format("{} makes no texture: {}", stroke.name, schema::message(texture.error())));
   }
   return std::nullopt;

@@ -75,7 +75,7 @@ schema::Result<std::vector<NamedTexture>> open_textures(const std::vector<std::s
 template <class T>
 tl::unexpected<schema::Error> said_of(const NamedTexture& input, const schema::Result<T>& failed) {
   schema::Error error = failed.error();
-  if (error.fault == schema::ErrorKind::unsuitable)
+  if (error.kind == schema::ErrorKind::unsuitable)
     error.where = error.where.empty() ? input.path : input.path + ": " + error.where;
   return tl::unexpected(error);
 }

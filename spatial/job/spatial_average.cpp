@@ -79,7 +79,7 @@ Result<void> add_strokes(TextureMaker& maker, const std::vector<StrokeJob>& jobs
   const Aligner aligner(maker, run.options, run.warnings);
   for (const StrokeJob& job : jobs) {
     const auto added = add_named_stroke(maker, job, aligner, run.several_recordings, averager);
-    if (!added && added.error().fault != ErrorKind::unsuitable) return schema::forward_error(added);
+    if (!added && added.error().kind != ErrorKind::unsuitable) return schema::forward_error(added);
     if (!added)
       run.warnings.push_back(
           fmt::format("stroke {} is not averaged: {}", job.number, schema::message(added.error())));

@@ -92,7 +92,7 @@ Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<
       continue;
     }
     failed.push_back(schema::message(outcome.report.error()));
-    fault = fault.value_or(outcome.report.error().fault);
+    fault = fault.value_or(outcome.report.error().kind);
   }
   Report report;
   report.add("done", made.size());

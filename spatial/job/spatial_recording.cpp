@@ -160,7 +160,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
   std::optional<schema::Error> first;  // why a stroke makes no texture
   for (const StrokeJob& job : jobs) {
     const auto texture = maker.make(job.stroke, job.number);
-    if (!texture && (jobs.size() == 1 || texture.error().fault != ErrorKind::unsuitable))
+    if (!texture && (jobs.size() == 1 || texture.error().kind != ErrorKind::unsuitable))
       return schema::forward_error(texture);
     if (!texture) {
       first = first.value_or(texture.error());
@@ -195,7 +195,7 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
     std::vector<std::string> left_out;
     const auto texture = averaged(maker, group, options_, left_out, progress_);
     for (const std::string& warning : left_out) warn(warning);
-    if (!texture && (groups.size() == 1 || texture.error().fault != ErrorKind::unsuitable))
+    if (!texture && (groups.size() == 1 || texture.error().kind != ErrorKind::unsuitable))
       return schema::forward_error(texture);
     if (!texture) {
       warn(fmt::format("{}: no average: {}", group.stem, schema::message(texture.error())));

@@ -49,7 +49,7 @@ class Takes {
 Result<void> Takes::add(const std::string& recording, const std::function<void(double)>& progress) {
   warnings_.clear();
   auto take = open_take(options_, recording, warnings_);
-  if (!take && take.error().fault != ErrorKind::unsuitable) return schema::forward_error(take);
+  if (!take && take.error().kind != ErrorKind::unsuitable) return schema::forward_error(take);
   std::size_t strokes = 0;
   if (!take) warnings_.push_back("left out: " + schema::message(take.error()));
   if (take)

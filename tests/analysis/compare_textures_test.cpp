@@ -204,7 +204,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   const auto fault_of = [&](const schema::Texture& b, const CompareOptions& options = no_formants()) {
     const auto found = compare(a, b, options);
     EXPECT_FALSE(found);
-    return found ? ErrorKind::internal : found.error().fault;
+    return found ? ErrorKind::internal : found.error().kind;
   };
   auto heights = a;
   heights.quantity = "height";
@@ -215,7 +215,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   auto slow = a, fast = a;
   slow.valid_band = {{0, 100, 900}};
   fast.valid_band = {{0, 1000, 9000}};
-  EXPECT_EQ(compare(slow, fast, no_formants()).error().fault, ErrorKind::unsuitable) << "nothing in common";
+  EXPECT_EQ(compare(slow, fast, no_formants()).error().kind, ErrorKind::unsuitable) << "nothing in common";
   CompareOptions options = no_formants();
   options.window_m = 10;
   EXPECT_EQ(fault_of(a, options), ErrorKind::usage);

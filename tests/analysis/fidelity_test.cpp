@@ -162,7 +162,7 @@ TEST_F(FidelityOfATexture, RefusesWhatCannotBePlayed) {
   const auto fault = [&] {
     const auto found = fidelity(options_);
     EXPECT_FALSE(found);
-    return found ? schema::ErrorKind::internal : found.error().fault;
+    return found ? schema::ErrorKind::internal : found.error().kind;
   };
   options_.speeds_mps = {-0.05};
   EXPECT_EQ(fault(), schema::ErrorKind::usage);
@@ -173,7 +173,7 @@ TEST_F(FidelityOfATexture, RefusesWhatCannotBePlayed) {
   options_.speeds_mps = {0.05, 1e-6};
   const auto endless = fidelity(options_);
   ASSERT_FALSE(endless);
-  EXPECT_EQ(endless.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(endless.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_NE(endless.error().what.find("4e+04 s"), std::string::npos) << endless.error().what;
   // 39.995 mm in the 500 s that 1e7 samples at 20 kHz are, less 2 s around them; a thousandth more for
   // rounding.

@@ -127,7 +127,7 @@ TEST(ApplyCalibration, OneOfAnotherScaleOfTheDeviceIsNot) {
 
 TEST(ApplyCalibration, OneOfAnotherDeviceIsRefused) {
   auto device = header();
-  EXPECT_EQ(apply_calibration(device, {"T-2", {}, {}, {}, {}, {}}, 1, kNow).error().fault,
+  EXPECT_EQ(apply_calibration(device, {"T-2", {}, {}, {}, {}, {}}, 1, kNow).error().kind,
             ErrorKind::unsuitable);
 }
 
@@ -144,7 +144,7 @@ TEST(KeepCalibration, AddsToItsDevicesFile) {
   EXPECT_EQ(file->entries[1].date, kNow);
   auto other = header();
   other.serial = "T-2";
-  EXPECT_EQ(keep_calibration(other, "", {}, path, kNow).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(keep_calibration(other, "", {}, path, kNow).error().kind, ErrorKind::unsuitable);
   EXPECT_EQ(schema::read_calibration(path)->entries.size(), 2U);
 }
 
@@ -166,7 +166,7 @@ TEST(CalibrationOf, IsNoneOnlyWhereNobodyNamedOne) {
   const auto none = calibration_of("T-1", "");
   ASSERT_TRUE(none);
   EXPECT_FALSE(*none);
-  EXPECT_EQ(calibration_of("T-1", folder / "mine.json").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(calibration_of("T-1", folder / "mine.json").error().kind, ErrorKind::not_found);
   ASSERT_TRUE(keep_calibration(header(), "", {tare(3, "")}, "", kNow));
   EXPECT_EQ((*calibration_of("T-1", ""))->entries.size(), 1U);
 }
@@ -205,7 +205,7 @@ TEST(RecordingPart, IsReadFromItsName) {
   EXPECT_EQ(part->to_s, 2.5);
   EXPECT_EQ(parse_recording_part("oak")->name, "oak");
   for (const char* wrong : {"oak@1s", "oak@1..2", "oak@1mm..2mm"})
-    EXPECT_EQ(parse_recording_part(wrong).error().fault, ErrorKind::usage) << wrong;
+    EXPECT_EQ(parse_recording_part(wrong).error().kind, ErrorKind::usage) << wrong;
 }
 
 }  // namespace

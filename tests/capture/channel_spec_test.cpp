@@ -71,7 +71,7 @@ class RefusedSpecs : public testing::TestWithParam<RefusedSpec> {};
 TEST_P(RefusedSpecs, SayWhatWouldFit) {
   const auto spec = parse_channel(GetParam().text, kColumns);
   ASSERT_FALSE(spec);
-  EXPECT_EQ(spec.error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(spec.error().kind, schema::ErrorKind::usage);
   const std::string message = schema::message(spec.error());
   EXPECT_NE(message.find(GetParam().says), std::string::npos) << message;
   EXPECT_NE(message.find(GetParam().names), std::string::npos) << message;

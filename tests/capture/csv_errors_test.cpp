@@ -18,7 +18,7 @@ class CsvErrors : public testing::TestWithParam<ErrorCase> {};
 
 void expect_error(const schema::Result<ReadText>& table, const ErrorCase& target) {
   ASSERT_FALSE(table);
-  EXPECT_EQ(table.error().fault, schema::ErrorKind::malformed);
+  EXPECT_EQ(table.error().kind, schema::ErrorKind::malformed);
   EXPECT_NE(table.error().what.find(target.what), std::string::npos) << table.error().what;
   EXPECT_EQ(table.error().where, target.where);
   EXPECT_EQ(schema::message(table.error()).find('\n'), std::string::npos);

@@ -214,7 +214,7 @@ TEST(CsvLayout, LinesAreSkippedWhereThatIsAskedFor) {
   EXPECT_EQ(layout->columns, (Names{"f", "x"}));
   EXPECT_EQ(layout->units, (Names{"N", "mm"}));
   EXPECT_EQ(layout->data_line, 5U);
-  EXPECT_EQ(find_csv_layout("f\n1\n", true, "t.csv", 3).error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(find_csv_layout("f\n1\n", true, "t.csv", 3).error().kind, schema::ErrorKind::usage);
 }
 
 TEST(CsvLayout, ALineThatIsCutOffIsNotLookedAt) {

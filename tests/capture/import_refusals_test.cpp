@@ -21,7 +21,7 @@ class ImportRefusals : public ImportTest {
     const std::size_t before = folder_.files();
     const auto done = import(asked);
     ASSERT_FALSE(done);
-    EXPECT_EQ(done.error().fault, fault) << schema::message(done.error());
+    EXPECT_EQ(done.error().kind, fault) << schema::message(done.error());
     EXPECT_NE(schema::message(done.error()).find(says), std::string::npos) << schema::message(done.error());
     EXPECT_EQ(folder_.files(), before);
   }

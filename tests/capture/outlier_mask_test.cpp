@@ -57,7 +57,7 @@ TEST(OutlierMask, ManyRowsAreNoOutliers) {
   EXPECT_TRUE(OutlierMask::of(rows, 1100, "t.csv"));
   const auto refused = OutlierMask::of(rows, 1000, "t.csv");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_NE(refused.error().what.find("11 of 1000 rows"), std::string::npos);
 }
 
@@ -144,7 +144,7 @@ TEST_F(MaskedImport, AWrongUnitIsNoOutlier) {
   asked.channels[0] = "tangential_force=f*1kN";
   const auto refused = import(asked);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_NE(refused.error().remedy.find("check unit and scale"), std::string::npos);
   EXPECT_EQ(folder_.files(), 1U);
 }

@@ -151,7 +151,7 @@ TEST(Record, NeverOverwrites) {
   ASSERT_TRUE(kept);
   const auto refused = record(second, request(folder / "oak", 1));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::usage);
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   EXPECT_EQ(schema::open_recording(folder / "oak")->header.sha256, kept->recording.header.sha256);
 }
 
@@ -161,7 +161,7 @@ TEST(Record, RefusesATimeThatIsNone) {
   for (const double time_s : {0.0, -1.0, 1e-9, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
     const auto refused = record(device, request(folder / "oak", time_s));
     ASSERT_FALSE(refused) << time_s;
-    EXPECT_EQ(refused.error().fault, ErrorKind::usage);
+    EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   }
   EXPECT_EQ(folder.files(), 0U);
 }
@@ -242,7 +242,7 @@ TEST(Record, ATimeThatTheDiskHasNoRoomForIsRefused) {
   CountingDevice device(1000);
   const auto refused = record(device, request(folder / "oak", 1e11));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::cannot_write);
+  EXPECT_EQ(refused.error().kind, ErrorKind::cannot_write);
   EXPECT_NE(refused.error().what.find("the disk has"), std::string::npos);
   EXPECT_EQ(folder.files(), 0U);
 }
@@ -284,7 +284,7 @@ TEST(Record, VoltsWithoutATransducerAreRefused) {
   const TemporaryFolder folder;
   CountingDevice device(500);
   device.can().transducer.reset();
-  EXPECT_EQ(record(device, request(folder / "oak", 1)).error().fault, ErrorKind::device);
+  EXPECT_EQ(record(device, request(folder / "oak", 1)).error().kind, ErrorKind::device);
 }
 
 TEST(Record, AFolderThatIsNotThereIsSaidBeforeTheDeviceStarts) {
@@ -292,7 +292,7 @@ TEST(Record, AFolderThatIsNotThereIsSaidBeforeTheDeviceStarts) {
   CountingDevice device(500);
   const auto refused = record(device, request(folder / "none/oak", 1));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::cannot_write);
+  EXPECT_EQ(refused.error().kind, ErrorKind::cannot_write);
   EXPECT_EQ(device.counts().frames, 0U);
 }
 

@@ -47,9 +47,9 @@ TEST(ReferenceScale, TheReferencesOwnUncertaintyIsInIt) {
 
 TEST(ReferenceScale, WrongInputsAreNamed) {
   const Take take = sim_take("surface=C,strokes=20", 5.5);
-  EXPECT_EQ(scale_by_reference(take, "tangential_force", "no_force", {1, 0}).error().fault, ErrorKind::usage);
-  EXPECT_EQ(scale_by_reference(take, "tangential_force", "position", {1, 0}).error().fault, ErrorKind::usage);
-  EXPECT_EQ(scale_by_reference(take, "net_force", "normal_force", {1, 0}).error().fault,
+  EXPECT_EQ(scale_by_reference(take, "tangential_force", "no_force", {1, 0}).error().kind, ErrorKind::usage);
+  EXPECT_EQ(scale_by_reference(take, "tangential_force", "position", {1, 0}).error().kind, ErrorKind::usage);
+  EXPECT_EQ(scale_by_reference(take, "net_force", "normal_force", {1, 0}).error().kind,
             ErrorKind::unsuitable);
   EXPECT_NE(against_net(sim_take("surface=C,strokes=20", 3)).error().what.find("5 s at least"),
             std::string::npos);

@@ -88,11 +88,11 @@ TEST(ReleasedWeight, WrongInputsAreNamed) {
   EXPECT_NE(scale_by_releases(late, "tangential_force", 0).error().what.find("near an end"),
             std::string::npos);
   const std::vector<Release> quiet = {release(1e-5, 1, 0.046, 1)};
-  EXPECT_EQ(scale_by_releases(quiet, "tangential_force", 0).error().fault, ErrorKind::unsuitable);
-  EXPECT_EQ(scale_by_releases(quiet, "force", 0).error().fault, ErrorKind::usage);
-  EXPECT_EQ(scale_by_releases({}, "tangential_force", 0).error().fault, ErrorKind::usage);
+  EXPECT_EQ(scale_by_releases(quiet, "tangential_force", 0).error().kind, ErrorKind::unsuitable);
+  EXPECT_EQ(scale_by_releases(quiet, "force", 0).error().kind, ErrorKind::usage);
+  EXPECT_EQ(scale_by_releases({}, "tangential_force", 0).error().kind, ErrorKind::usage);
   const std::vector<Release> cell = {{sim_take("finger=up", 1), 1}};
-  EXPECT_EQ(scale_by_releases(cell, "net_force", 0).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(scale_by_releases(cell, "net_force", 0).error().kind, ErrorKind::unsuitable);
 }
 
 }  // namespace

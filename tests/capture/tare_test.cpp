@@ -85,7 +85,7 @@ TEST(Tare, ALoadAtRestIsWarnedOf) {
 }
 
 TEST(Tare, RefusesWhatIsTooShort) {
-  EXPECT_EQ(tare_of(sim_take("finger=up", 0.5)).error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(tare_of(sim_take("finger=up", 0.5)).error().kind, schema::ErrorKind::unsuitable);
 }
 
 TEST(Tare, ItsEntriesSayItAll) {

@@ -84,8 +84,8 @@ TEST(Travel, MarksAreTheEndsWhereThereAreSome) {
   take.header.marks = {{1, "mark"}, {2, "mark"}, {4, "mark"}};
   EXPECT_EQ(*count_differences(take, "position"), (std::vector<double>{990, -980}));
   take.header.marks.resize(1);
-  EXPECT_EQ(count_differences(take, "position").error().fault, ErrorKind::unsuitable);
-  EXPECT_EQ(count_differences(take, "speed").error().fault, ErrorKind::usage);
+  EXPECT_EQ(count_differences(take, "position").error().kind, ErrorKind::unsuitable);
+  EXPECT_EQ(count_differences(take, "speed").error().kind, ErrorKind::usage);
 }
 
 TEST(Travel, AreWatchedWhileTheyAreMade) {
@@ -108,13 +108,13 @@ TEST(Travel, AreWatchedWhileTheyAreMade) {
 
 TEST(Travel, WrongInputsAreNamed) {
   const std::vector<double> good = {1000, -1001}, apart = {1000, 500}, none, still = {3};
-  EXPECT_EQ(scale_by_travel(good, 0, 0).error().fault, ErrorKind::usage);
-  EXPECT_EQ(scale_by_travel(none, 1, 0).error().fault, ErrorKind::unsuitable);
-  EXPECT_EQ(scale_by_travel(still, 1, 0).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(scale_by_travel(good, 0, 0).error().kind, ErrorKind::usage);
+  EXPECT_EQ(scale_by_travel(none, 1, 0).error().kind, ErrorKind::unsuitable);
+  EXPECT_EQ(scale_by_travel(still, 1, 0).error().kind, ErrorKind::unsuitable);
   const std::vector<double> coarse = {1000 * 65536.0};  // a converter's codes: its step is what is rounded to
   EXPECT_NEAR(scale_by_travel(coarse, 1, 0, 65536)->scale.uncertainty * 1000 * 65536,
               std::sqrt(2.0 / 12) / 1000, 1e-9);
-  EXPECT_EQ(scale_by_travel(coarse, 1, 0, 65536 * 11).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(scale_by_travel(coarse, 1, 0, 65536 * 11).error().kind, ErrorKind::unsuitable);
   EXPECT_NE(scale_by_travel(apart, 1, 0).error().what.find("disagree"), std::string::npos);
 }
 

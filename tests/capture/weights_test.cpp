@@ -84,15 +84,15 @@ TEST(Weights, AWrongWeightWidensTheUncertainty) {
 TEST(Weights, ThePiezoForgetsThemAndThatIsSaid) {
   const auto refused = weighing_of(sim_take("finger=up,pull=1N", 0.5), "tangential_force", 1);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
   EXPECT_NE(refused.error().what.find("high-pass at 8"), std::string::npos) << refused.error().what;
   EXPECT_NE(refused.error().remedy.find("--reference net_force"), std::string::npos);
 }
 
 TEST(Weights, WrongInputsAreNamed) {
   const Take take = sim_take("finger=up,weight=1N", 0.5);
-  EXPECT_EQ(weighing_of(take, "no_force", 1).error().fault, ErrorKind::usage);
-  EXPECT_EQ(weighing_of(take, "position", 1).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(weighing_of(take, "no_force", 1).error().kind, ErrorKind::usage);
+  EXPECT_EQ(weighing_of(take, "position", 1).error().kind, ErrorKind::unsuitable);
   const auto sliding = weighing_of(sim_take("surface=flat,strokes=4", 1.5), "normal_force", 1);
   ASSERT_FALSE(sliding);
   EXPECT_NE(sliding.error().what.find("does not rest"), std::string::npos);
@@ -100,7 +100,7 @@ TEST(Weights, WrongInputsAreNamed) {
   ASSERT_FALSE(heavy);
   EXPECT_NE(heavy.error().what.find("end of its converter's range"), std::string::npos);
   const Weighing one = *weighing_of(take, "normal_force", 1);
-  EXPECT_EQ(scale_by_weights(std::vector{one, one}, 0).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(scale_by_weights(std::vector{one, one}, 0).error().kind, ErrorKind::unsuitable);
   Weighing same = one;
   same.force_n = 2;  // other weights, the same numbers
   EXPECT_NE(scale_by_weights(std::vector{one, same}, 0).error().what.find("does not follow"),

@@ -50,7 +50,7 @@ TEST(Calibration, IsReadBackToTheBit) {
 TEST(Calibration, WhatIsWrongInItIsNamed) {
   const TemporaryFolder folder;
   const std::string path = folder / "T-1.calibration.json";
-  EXPECT_EQ(read_calibration(path).error().fault, ErrorKind::not_found);
+  EXPECT_EQ(read_calibration(path).error().kind, ErrorKind::not_found);
   CalibrationFile file = made();
   file.entries[0].zero = NAN;
   EXPECT_EQ(write_calibration(path, file).error().where, "/entries/0/zero");
@@ -59,9 +59,9 @@ TEST(Calibration, WhatIsWrongInItIsNamed) {
   EXPECT_EQ(write_calibration(path, file).error().where, "/entries/1/date");
   EXPECT_EQ(folder.files(), 0U);
   std::ofstream(path) << R"({"kind": "calibration", "version": "1.0", "serial": "T-1"})";
-  EXPECT_EQ(read_calibration(path).error().fault, ErrorKind::malformed);
+  EXPECT_EQ(read_calibration(path).error().kind, ErrorKind::malformed);
   std::ofstream(path) << R"({"kind": "calibration", "version": "2.0", "serial": "T-1", "entries": []})";
-  EXPECT_EQ(read_calibration(path).error().fault, ErrorKind::unsupported_version);
+  EXPECT_EQ(read_calibration(path).error().kind, ErrorKind::unsupported_version);
 }
 
 TEST(Calibration, WhatANewerVersionAddsIsKept) {
@@ -86,8 +86,8 @@ TEST(Calibration, LiesWhereTheUsersFoldersAre) {
   setenv("HOME", "/home/x", 1);
   EXPECT_EQ(*calibration_path("T-1"), "/home/x/.config/tactograph/calibrations/T-1.calibration.json");
   unsetenv("HOME");
-  EXPECT_EQ(calibration_path("T-1").error().fault, ErrorKind::not_found);
-  EXPECT_EQ(calibration_path("").error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(calibration_path("T-1").error().kind, ErrorKind::not_found);
+  EXPECT_EQ(calibration_path("").error().kind, ErrorKind::unsuitable);
 }
 
 TEST(Calibration, TheNewestOfAChannelIsFound) {

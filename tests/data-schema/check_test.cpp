@@ -184,7 +184,7 @@ TEST_F(Check, BrokenJsonIsAFindingANewerVersionAnError) {
   edit("oak.json", "\"1.0\"", "\"1.9\"");
   EXPECT_EQ(check_file({FileKind::recording, folder_ / "oak.json"})->newer_version, "1.9");
   edit("oak.json", "\"1.9\"", "\"7.0\"");
-  EXPECT_EQ(check_file({FileKind::recording, folder_ / "oak.json"}).error().fault,
+  EXPECT_EQ(check_file({FileKind::recording, folder_ / "oak.json"}).error().kind,
             ErrorKind::unsupported_version);
   edit("oak.json", "{", "{,");
   EXPECT_TRUE(found(findings(FileKind::recording, "oak.json"), "line 1", "JSON"));
@@ -199,7 +199,7 @@ TEST_F(Check, AStemStandsForAllThatIsUnderIt) {
   EXPECT_EQ(stored_files(folder_ / "oak.texture.wav")->front().path, folder_ / "oak.texture.json");
   EXPECT_EQ(stored_files(folder_ / "oak.wav")->front().path, folder_ / "oak.json");
   EXPECT_EQ(stored_files("wiertlewski2011")->front().kind, FileKind::transducer);
-  EXPECT_EQ(stored_files(folder_ / "ash").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(stored_files(folder_ / "ash").error().kind, ErrorKind::not_found);
 }
 
 }  // namespace

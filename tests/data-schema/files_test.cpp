@@ -51,7 +51,7 @@ TEST(PendingFiles, LeaveNothingAfterAFailedCommit) {
     std::filesystem::create_directories(folder / "a" + "/inside");
     const auto committed = pending.commit();
     ASSERT_FALSE(committed);
-    EXPECT_EQ(committed.error().fault, ErrorKind::cannot_write);
+    EXPECT_EQ(committed.error().kind, ErrorKind::cannot_write);
   }
   EXPECT_EQ(folder.files(), 1U);  // the folder that stood in the way
 }
@@ -65,7 +65,7 @@ TEST(PendingFiles, ThatAreToKeepWhatIsThereAppearAllOrNotAtAll) {
   ASSERT_TRUE(first.commit(Existing::keep));
   const auto late = second.commit(Existing::keep);
   ASSERT_FALSE(late);
-  EXPECT_EQ(late.error().fault, ErrorKind::usage);
+  EXPECT_EQ(late.error().kind, ErrorKind::usage);
   EXPECT_EQ(read_file(folder / "a").value() + read_file(folder / "b").value(), "11");
   std::filesystem::remove(folder / "b");
   PendingFiles third;
@@ -102,7 +102,7 @@ TEST(Files, ATableReplacesOnlyItsLike) {
   std::ofstream(folder / "a.csv") << "time,force\n1,2\n";
   const auto refused = check_table_free(folder / "a.csv", Existing::replace, ours);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::usage);
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
 }
 
 // With or without --force.
@@ -112,7 +112,7 @@ TEST(Files, ASoundFileNeverReplacesARecordingsData) {
     std::ofstream(folder / beside) << "{}";
     const std::string wav = (folder / beside).substr(0, (folder / "a").size()) + ".wav";
     for (const Existing existing : {Existing::keep, Existing::replace})
-      EXPECT_EQ(check_wav_free(wav, existing).error().fault, ErrorKind::usage) << wav;
+      EXPECT_EQ(check_wav_free(wav, existing).error().kind, ErrorKind::usage) << wav;
   }
   EXPECT_TRUE(check_wav_free(folder / "c.wav", Existing::keep));
 }
@@ -138,7 +138,7 @@ TEST(PendingFiles, RefuseFoldersThatAreAbsentOrInTheWay) {
   for (const std::string& path : {folder / "absent/a", folder / "", std::string("/proc/a")}) {
     const auto added = pending.add(path);
     ASSERT_FALSE(added) << path;
-    EXPECT_EQ(added.error().fault, ErrorKind::cannot_write);
+    EXPECT_EQ(added.error().kind, ErrorKind::cannot_write);
   }
   EXPECT_NE(pending.add(folder / "absent/a").error().what.find("no such folder"), std::string::npos);
   EXPECT_EQ(folder.files(), 0U);
@@ -148,8 +148,8 @@ TEST(Files, SayWhyTheyCantBeRead) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_file(folder / "absent").error().what, "there is no such file");
   EXPECT_EQ(read_file(folder / "").error().what, "is a folder, not a file");
-  EXPECT_EQ(check_readable(folder / "absent").error().fault, ErrorKind::not_found);
-  EXPECT_EQ(sha256_of_file(folder / "absent").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(check_readable(folder / "absent").error().kind, ErrorKind::not_found);
+  EXPECT_EQ(sha256_of_file(folder / "absent").error().kind, ErrorKind::not_found);
 }
 
 // The vectors of FIPS 180-4's examples: "", "abc" and a million times "a".

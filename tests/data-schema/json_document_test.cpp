@@ -45,19 +45,19 @@ TEST(Document, ReadsASoundOne) {
 
 TEST(Document, SaysLineAndColumnOfWhatIsNotJson) {
   const Error error = error_in_text("{\n  \"kind\": \"recording\",\n  oops\n}");
-  EXPECT_EQ(error.fault, ErrorKind::malformed);
+  EXPECT_EQ(error.kind, ErrorKind::malformed);
   EXPECT_EQ(error.where, "a.json, line 3, column 3");
   EXPECT_NE(error_in_text("").what.find("not JSON"), std::string::npos);
   EXPECT_NE(error_in_text("{\"kind\": 1e999}").what.find("1e999"), std::string::npos);
   EXPECT_NE(error_in_text("{\"kind\": NaN}").what.find("not JSON"), std::string::npos);
-  EXPECT_EQ(error_in_text(std::string(100000, '[')).fault, ErrorKind::malformed);
+  EXPECT_EQ(error_in_text(std::string(100000, '[')).kind, ErrorKind::malformed);
   const std::string deep = std::string(100000, '[') + std::string(100000, ']');
   EXPECT_EQ(error_in_text("{\"a\": " + deep + "}").what, "the JSON is nested too deeply");
 }
 
 TEST(Document, AMemberThatAppearsTwiceIsRefusedWithItsPlace) {
   const Error top = error_in_text(R"({"kind":"recording","version":"1.0","kind":"recording"})");
-  EXPECT_EQ(top.fault, ErrorKind::malformed);
+  EXPECT_EQ(top.kind, ErrorKind::malformed);
   EXPECT_EQ(top.what, "the member 'kind' appears twice");
   EXPECT_EQ(top.where, "a.json");
   const Error deep =
@@ -86,7 +86,7 @@ TEST(Document, RefusesAnotherMajorVersionNamingBoth) {
   for (const char* version : {"2.0", "0.9"}) {
     document["version"] = version;
     const Error error = error_of(document);
-    EXPECT_EQ(error.fault, ErrorKind::unsupported_version);
+    EXPECT_EQ(error.kind, ErrorKind::unsupported_version);
     EXPECT_NE(error.what.find(version), std::string::npos) << error.what;
     EXPECT_NE(error.what.find("1.x"), std::string::npos) << error.what;
   }
@@ -140,7 +140,7 @@ TEST(Document, NamesBreachesByPointer) {
     const Error error = error_of(document);
     EXPECT_EQ(error.where.rfind(std::string("a.json#") + breach.pointer, 0), 0U) << message(error);
     EXPECT_NE(error.what.find(breach.what), std::string::npos) << message(error);
-    EXPECT_EQ(error.fault, ErrorKind::malformed);
+    EXPECT_EQ(error.kind, ErrorKind::malformed);
   }
 }
 
@@ -183,7 +183,7 @@ TEST(DocumentText, RefusesWhatCantBeStored) {
   body["channels"][0]["offset"] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(document_text("recording", body, "").error().where, "/channels/0/offset");
   body["channels"][0]["offset"] = -std::numeric_limits<double>::infinity();
-  EXPECT_EQ(document_text("recording", body, "").error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(document_text("recording", body, "").error().kind, ErrorKind::unsuitable);
   body = sound_recording();
   body["notes"] = "caf\xE9";
   EXPECT_NE(document_text("recording", body, "").error().what.find("UTF-8"), std::string::npos);

@@ -75,7 +75,7 @@ TEST(LiveRecordingSync, ADiskThatFailsIsSaidToTheWriter) {
     return !written;
   }));
   disk_fails = false;
-  EXPECT_EQ(error.fault, ErrorKind::cannot_write);
+  EXPECT_EQ(error.kind, ErrorKind::cannot_write);
   EXPECT_NE(error.what.find("can't be brought to the disk"), std::string::npos);
 }
 

@@ -81,7 +81,7 @@ TEST(LiveRecording, FoldsItsEventsIntoTheSidecar) {
 TEST(LiveRecording, DroppedOnesAreRecovered) {
   const TemporaryFolder folder;
   { const auto dropped = begun(folder / "oak"); }
-  EXPECT_EQ(open_recording(folder / "oak").error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(open_recording(folder / "oak").error().kind, ErrorKind::unsuitable);
   EXPECT_NE(open_recording(folder / "oak").error().remedy.find("tactograph recover"), std::string::npos);
   const auto recovered = recover_recording(folder / "oak.wav");
   ASSERT_TRUE(recovered) << message(recovered.error());
@@ -158,11 +158,11 @@ TEST(LiveRecording, WhatIsNotItsWavIsLeftAsItIs) {
   { const auto dropped = begun(folder / "oak"); }
   const std::string text(5000, 'x');
   std::ofstream(folder / "oak.wav", std::ios::binary) << text;
-  EXPECT_EQ(recover_recording(folder / "oak").error().fault, ErrorKind::malformed);
+  EXPECT_EQ(recover_recording(folder / "oak").error().kind, ErrorKind::malformed);
   EXPECT_EQ(*read_file(folder / "oak.wav"), text);
   EXPECT_TRUE(fs::exists(folder / "oak.events.jsonl") && !fs::exists(folder / "oak.json"));
   fs::remove(folder / "oak.wav");
-  EXPECT_EQ(recover_recording(folder / "oak").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(recover_recording(folder / "oak").error().kind, ErrorKind::not_found);
   EXPECT_EQ(folder.files(), 1U);
 }
 
@@ -174,7 +174,7 @@ TEST(LiveRecording, WhatTheJournalKnowsAndTheWavLacksIsSaid) {
     ASSERT_TRUE(live.write(counted(1000, 1000)) && live.add(Mark{2000, "late"}));
   }
   fs::resize_file(folder / "oak.wav", 40);
-  EXPECT_EQ(recover_recording(folder / "oak").error().fault, ErrorKind::malformed);
+  EXPECT_EQ(recover_recording(folder / "oak").error().kind, ErrorKind::malformed);
   EXPECT_EQ(fs::file_size(folder / "oak.wav"), 40U);
   overwrite(folder / "oak.wav", 0, std::string(112 + 12, '\0'));
   const auto recovered = recover_recording(folder / "oak");
@@ -260,7 +260,7 @@ TEST(LiveRecording, WhereItsFolderWasRenamedTheFramesAreSaidToBeThere) {
     fs::rename(folder / "here", folder / "there");
     const auto closed = live.close();
     ASSERT_FALSE(closed);
-    EXPECT_EQ(closed.error().fault, ErrorKind::cannot_write);
+    EXPECT_EQ(closed.error().kind, ErrorKind::cannot_write);
     EXPECT_NE(
         closed.error().remedy.find("tactograph recover " +
                                    fs::canonical(folder / "there/oak.wav").replace_extension().string()),
@@ -278,7 +278,7 @@ TEST(LiveRecording, WhereItsFilesWereDeletedThatIsSaid) {
   fs::remove_all(folder / "here");
   const auto closed = live.close();
   ASSERT_FALSE(closed);
-  EXPECT_EQ(closed.error().fault, ErrorKind::cannot_write);
+  EXPECT_EQ(closed.error().kind, ErrorKind::cannot_write);
   EXPECT_NE(closed.error().what.find("deleted"), std::string::npos);
 }
 
@@ -294,7 +294,7 @@ TEST(LiveRecording, NothingIsOverwritten) {
   const TemporaryFolder folder;
   for (const char* taken : {"oak.wav", "oak.json", "oak.events.jsonl"}) {
     std::ofstream(folder / taken) << "mine";
-    EXPECT_EQ(LiveRecording::create(folder / "oak", header()).error().fault, ErrorKind::usage) << taken;
+    EXPECT_EQ(LiveRecording::create(folder / "oak", header()).error().kind, ErrorKind::usage) << taken;
     EXPECT_EQ(*read_file(folder / taken), "mine");
     fs::remove(folder / taken);
   }
@@ -310,11 +310,11 @@ TEST(LiveRecording, DiscardedItLeavesNothing) {
 
 TEST(LiveRecording, NothingToRecoverIsSaid) {
   const TemporaryFolder folder;
-  EXPECT_EQ(recover_recording(folder / "oak").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(recover_recording(folder / "oak").error().kind, ErrorKind::not_found);
   std::ofstream(folder / "oak.events.jsonl") << "{\"event\":\"beg";
-  EXPECT_EQ(recover_recording(folder / "oak").error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(recover_recording(folder / "oak").error().kind, ErrorKind::unsuitable);
   std::ofstream(folder / "oak.events.jsonl") << "{\"event\":\"begin\"}\n";
-  EXPECT_EQ(recover_recording(folder / "oak").error().fault, ErrorKind::malformed);
+  EXPECT_EQ(recover_recording(folder / "oak").error().kind, ErrorKind::malformed);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ void expect_si(std::string_view text, Dimension dimension, double si) {
 void expect_refused(std::string_view text, Dimension dimension, std::string_view why) {
   const auto value = parse_quantity(text, dimension);
   ASSERT_FALSE(value) << text << " was read as " << *value;
-  EXPECT_EQ(value.error().fault, ErrorKind::usage);
+  EXPECT_EQ(value.error().kind, ErrorKind::usage);
   EXPECT_NE(value.error().what.find(why), std::string::npos) << message(value.error());
   EXPECT_NE(value.error().remedy.find(units_of(dimension)), std::string::npos) << message(value.error());
 }

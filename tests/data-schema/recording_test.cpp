@@ -216,7 +216,7 @@ TEST(Recording, NamesTheSampleThatIsNotFinite) {
     EXPECT_TRUE(read_channel(recording, 0));
     const auto position = read_channel(recording, 1);
     ASSERT_FALSE(position);
-    EXPECT_EQ(position.error().fault, ErrorKind::malformed);
+    EXPECT_EQ(position.error().kind, ErrorKind::malformed);
     EXPECT_NE(position.error().what.find("channel 'position', sample 2"), std::string::npos)
         << message(position.error());
   }
@@ -266,7 +266,7 @@ TEST(Recording, SaysWhatIsLeftOfATruncatedWav) {
   edit(folder / "oak.json", "/data/frames", 3);
   EXPECT_EQ(open_recording(folder / "oak").error().what, "has 4 frames, its sidecar says 3");
   std::filesystem::remove(folder / "oak.wav");
-  EXPECT_EQ(open_recording(folder / "oak").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(open_recording(folder / "oak").error().kind, ErrorKind::not_found);
 }
 
 TEST(Recording, RefusesSidecarsThatContradictTheWav) {
@@ -279,7 +279,7 @@ TEST(Recording, RefusesSidecarsThatContradictTheWav) {
   for (const auto& [pointer, lie] : lies) {
     std::ofstream(folder / "oak.json") << sound;
     edit(folder / "oak.json", pointer, lie);
-    EXPECT_EQ(open_recording(folder / "oak").error().fault, ErrorKind::malformed) << pointer;
+    EXPECT_EQ(open_recording(folder / "oak").error().kind, ErrorKind::malformed) << pointer;
   }
 }
 
@@ -306,7 +306,7 @@ TEST(Recording, FromTheFutureIsRefusedByMajorAndKeptByMinor) {
   const TemporaryFolder folder;
   write_simple(folder / "oak");
   edit(folder / "oak.json", "/version", "2.0");
-  EXPECT_EQ(open_recording(folder / "oak").error().fault, ErrorKind::unsupported_version);
+  EXPECT_EQ(open_recording(folder / "oak").error().kind, ErrorKind::unsupported_version);
   edit(folder / "oak.json", "/version", "1.3");
   edit(folder / "oak.json", "/aroma", {{"note", "resin"}});
   const auto newer = open_recording(folder / "oak");
@@ -318,7 +318,7 @@ TEST(Recording, FromTheFutureIsRefusedByMajorAndKeptByMinor) {
 
 TEST(Recording, SaysWhatElseTheNameStandsFor) {
   const TemporaryFolder folder;
-  EXPECT_EQ(open_recording(folder / "oak").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(open_recording(folder / "oak").error().kind, ErrorKind::not_found);
   write_simple(folder / "oak");
   edit(folder / "oak.json", "/kind", "texture");
   EXPECT_EQ(open_recording(folder / "oak").error().what, "its kind is 'texture', not 'recording'");
@@ -326,7 +326,7 @@ TEST(Recording, SaysWhatElseTheNameStandsFor) {
   for (const char* name : {"oak", "oak.wav"}) {
     const auto plain = open_recording(folder / name);
     ASSERT_FALSE(plain);
-    EXPECT_EQ(plain.error().fault, ErrorKind::unsuitable);
+    EXPECT_EQ(plain.error().kind, ErrorKind::unsuitable);
     EXPECT_NE(plain.error().remedy.find("tactograph import"), std::string::npos);
   }
 }
@@ -347,7 +347,7 @@ TEST(RecordingWriter, OverwritesOnlyWhenToldTo) {
   write_simple(folder / "oak");
   const auto refused = RecordingWriter::create(folder / "oak", full_header(SampleFormat::float64));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::usage);
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   write(folder / "oak.wav", full_header(SampleFormat::float64), std::vector<double>{1, 2}, true);
   EXPECT_EQ(open_recording(folder / "oak")->header.frames, 1U);
   EXPECT_EQ(folder.files(), 2U);
@@ -365,10 +365,10 @@ TEST(RecordingWriter, RefusesHeadersThatCantBeStoredBeforeItWrites) {
   for (const RecordingHeader& header : headers) {
     const auto writer = RecordingWriter::create(folder / "oak", header);
     ASSERT_FALSE(writer);
-    EXPECT_EQ(writer.error().fault, ErrorKind::unsuitable) << message(writer.error());
+    EXPECT_EQ(writer.error().kind, ErrorKind::unsuitable) << message(writer.error());
     EXPECT_TRUE(writer.error().where.starts_with("/")) << message(writer.error());
   }
-  EXPECT_EQ(RecordingWriter::create(folder / "absent/oak", full_header(SampleFormat::float64)).error().fault,
+  EXPECT_EQ(RecordingWriter::create(folder / "absent/oak", full_header(SampleFormat::float64)).error().kind,
             ErrorKind::cannot_write);
   EXPECT_EQ(folder.files(), 0U);
 }

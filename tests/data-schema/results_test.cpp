@@ -55,14 +55,14 @@ TEST(Results, ReadBack) {
 TEST(Results, RefusesWhatIsUnsound) {
   Results made = results();
   made.details_json = "[1]";
-  EXPECT_EQ(results_json(made).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(results_json(made).error().kind, ErrorKind::unsuitable);
   made = results();
   made.verb.clear();
-  EXPECT_EQ(results_json(made).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(results_json(made).error().kind, ErrorKind::unsuitable);
   const tests::TemporaryFolder folder;
   put(folder / "a.results.json", R"({"kind": "results", "version": "1.0", "verb": "compare"})");
-  EXPECT_EQ(read_results(folder / "a").error().fault, ErrorKind::malformed);
-  EXPECT_EQ(read_results(folder / "absent").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(read_results(folder / "a").error().kind, ErrorKind::malformed);
+  EXPECT_EQ(read_results(folder / "absent").error().kind, ErrorKind::not_found);
 }
 
 TEST(Results, RefusesACurveOfUnequalLengths) {
@@ -76,7 +76,7 @@ TEST(Results, RefusesACurveOfUnequalLengths) {
   put(path, text.erase(at, 4));
   const auto read = read_results(path);
   ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().fault, ErrorKind::malformed);
+  EXPECT_EQ(read.error().kind, ErrorKind::malformed);
   EXPECT_EQ(read.error().where, path + "#/pictures/1/curves/1");
   const auto checked = check_file({FileKind::results, path});
   ASSERT_EQ(checked->findings.size(), 1u);
@@ -89,9 +89,9 @@ TEST(Results, ReplacesOnlyItsLike) {
   put(folder / "a.json", *results_json(results()));
   EXPECT_TRUE(check_results_free(folder / "a.json", Existing::replace));
   put(folder / "b.json", R"({"kind": "recording"})");
-  EXPECT_EQ(check_results_free(folder / "b.json", Existing::replace).error().fault, ErrorKind::usage);
+  EXPECT_EQ(check_results_free(folder / "b.json", Existing::replace).error().kind, ErrorKind::usage);
   put(folder / "c.json", "{");
-  EXPECT_EQ(check_results_free(folder / "c.json", Existing::replace).error().fault, ErrorKind::usage);
+  EXPECT_EQ(check_results_free(folder / "c.json", Existing::replace).error().kind, ErrorKind::usage);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr const char* kOak = R"({"type":"texture","texture":"oak","at_m":0.01,"g
 void expect_refused(const std::string& text, ErrorKind fault, const std::string& where) {
   const auto scene = parse_scene(text, "s.scene.json");
   ASSERT_FALSE(scene) << text;
-  EXPECT_EQ(scene.error().fault, fault) << message(scene.error());
+  EXPECT_EQ(scene.error().kind, fault) << message(scene.error());
   EXPECT_EQ(scene.error().where, where) << message(scene.error());
 }
 
@@ -98,7 +98,7 @@ TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
                    "its members are kind, version, name, notes, created, creator, playback, layers"}}) {
     const auto scene = parse_scene(text, "s");
     ASSERT_FALSE(scene) << text;
-    EXPECT_EQ(scene.error().fault, ErrorKind::malformed);
+    EXPECT_EQ(scene.error().kind, ErrorKind::malformed);
     EXPECT_EQ(scene.error().where, where) << message(scene.error());
     EXPECT_EQ(scene.error().remedy, remedy) << message(scene.error());
   }

@@ -175,7 +175,7 @@ TEST_F(Session, IsNeverWrittenOverAnother) {
   write_whole();
   const auto second = SessionWriter::create(path_, made_header());
   ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().fault, ErrorKind::usage);
+  EXPECT_EQ(second.error().kind, ErrorKind::usage);
 }
 
 // Wherever it is cut, what was whole is read, and nothing else.
@@ -246,7 +246,7 @@ TEST_F(Session, AFullDiskLeavesWholeBlocksAndLaterOnesAreTaken) {
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old);
   ASSERT_FALSE(failed);
-  EXPECT_EQ(failed.error().fault, ErrorKind::cannot_write);
+  EXPECT_EQ(failed.error().kind, ErrorKind::cannot_write);
   ASSERT_TRUE(writer.add(SessionLoss{100, 100, SessionLoss::Why::disk}));
   ASSERT_TRUE(writer.add(made_ticks(200, 10)));
   ASSERT_TRUE(writer.close({110, 100, 0}));
@@ -264,7 +264,7 @@ TEST_F(Session, AHeaderWithNumbersThatCanNotBeIsNone) {
     const auto text = session_header_text(header);
     const auto parsed = text ? parse_session_header(*text, "one") : forward_error(text);
     ASSERT_FALSE(parsed) << field;
-    EXPECT_EQ(parsed.error().fault, text ? ErrorKind::malformed : ErrorKind::unsuitable);
+    EXPECT_EQ(parsed.error().kind, text ? ErrorKind::malformed : ErrorKind::unsuitable);
     EXPECT_NE(parsed.error().where.find(field), std::string::npos) << parsed.error().where;
   };
   for (const double metres : {0.0, 1e30, -1e-6})
@@ -354,12 +354,12 @@ TEST_F(Session, MoreTexturesThanABlockHoldsAreRefused) {
   auto writer = created();
   const auto large = writer.add(change);
   ASSERT_FALSE(large);
-  EXPECT_EQ(large.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(large.error().kind, ErrorKind::unsuitable);
   SessionHeader header = made_header();
   header.textures = change.program.textures;
   const auto refused = SessionWriter::create(folder_ / "large.session", header);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "large.session"));
 }
 
@@ -367,7 +367,7 @@ TEST_F(Session, NoHeaderIsNoSession) {
   std::ofstream(path_) << "nothing of the kind";
   const auto reader = SessionReader::open(path_);
   ASSERT_FALSE(reader);
-  EXPECT_EQ(reader.error().fault, ErrorKind::malformed);
+  EXPECT_EQ(reader.error().kind, ErrorKind::malformed);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST_F(SpectrogramFile, ReadsBackSeveralOfUnequalLength) {
     expect_same(*read, all[i]);
     EXPECT_EQ(read->strokes, 3u);
   }
-  EXPECT_EQ(read_spectrogram_nc(path(), 3).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(read_spectrogram_nc(path(), 3).error().kind, ErrorKind::unsuitable);
 }
 
 TEST_F(SpectrogramFile, KeepsAmplitudesAndWhatIsKnown) {
@@ -138,26 +138,26 @@ TEST_F(SpectrogramFile, RefusesOtherAxesAndNames) {
   all[1].frequency_step_per_m = 125;
   const auto written = write_spectrogram_nc(path(), all);
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(written.error().kind, ErrorKind::unsuitable);
   EXPECT_NE(message(written.error()).find("ash: its frequency axes differ"), std::string::npos);
   EXPECT_FALSE(write_spectrogram_csv(path("oak.csv"), all));
   EXPECT_FALSE(write_spectrogram_nc(path(), {}));
   EXPECT_EQ(folder_.files(), 0u);
-  EXPECT_EQ(write_spectrogram_nc(folder_ / "absent/oak.nc", std::span(all).first(1)).error().fault,
+  EXPECT_EQ(write_spectrogram_nc(folder_ / "absent/oak.nc", std::span(all).first(1)).error().kind,
             ErrorKind::cannot_write);
 }
 
 TEST_F(SpectrogramFile, RefusesForeignAndBrokenFiles) {
-  EXPECT_EQ(read_spectrogram_nc(path()).error().fault, ErrorKind::not_found);
+  EXPECT_EQ(read_spectrogram_nc(path()).error().kind, ErrorKind::not_found);
   PendingFiles pending;
   ASSERT_TRUE(pending.write(path(), "no netCDF"));
   ASSERT_TRUE(pending.commit());
-  EXPECT_EQ(read_spectrogram_nc(path()).error().fault, ErrorKind::malformed);
+  EXPECT_EQ(read_spectrogram_nc(path()).error().kind, ErrorKind::malformed);
 
   const std::array all = {example(20, "oak")};
   ASSERT_TRUE(write_spectrogram_nc(path(), all));
   std::filesystem::resize_file(path(), std::filesystem::file_size(path()) / 2);
-  EXPECT_EQ(read_spectrogram_nc(path()).error().fault, ErrorKind::malformed);
+  EXPECT_EQ(read_spectrogram_nc(path()).error().kind, ErrorKind::malformed);
 }
 
 TEST_F(SpectrogramFile, TableSaysItsUnits) {

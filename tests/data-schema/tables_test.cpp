@@ -138,7 +138,7 @@ TEST_F(Tables, UnsoundOnesAreRefused) {
   FormantFile odd = formants();
   odd.tables[0].window_m = -1;
   EXPECT_FALSE(formants_json(odd));
-  EXPECT_EQ(read_formants(folder_ / "absent").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(read_formants(folder_ / "absent").error().kind, ErrorKind::not_found);
 }
 
 }  // namespace

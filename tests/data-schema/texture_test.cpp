@@ -147,7 +147,7 @@ TEST_F(TextureFile, SaysWhetherItsNameIsFree) {
   for (const char* name : {"oak", "oak.texture.json", "oak.texture.wav"}) {
     const auto taken = check_texture_free(folder_ / name);
     ASSERT_FALSE(taken);
-    EXPECT_EQ(taken.error().fault, ErrorKind::usage);
+    EXPECT_EQ(taken.error().kind, ErrorKind::usage);
     EXPECT_NE(message(taken.error()).find("oak.texture.json"), std::string::npos);
   }
 }
@@ -186,7 +186,7 @@ TEST_F(TextureFile, NewerMinorIsReadAndItsMembersKept) {
   EXPECT_NE(copy.find("\"grain\""), std::string::npos);
   EXPECT_NE(copy.find("copy.texture.wav"), std::string::npos);
   write("oak.texture.json", replaced(sidecar(), "\"1.3\"", "\"2.0\""));
-  EXPECT_EQ(error_of("oak").fault, ErrorKind::unsupported_version);
+  EXPECT_EQ(error_of("oak").kind, ErrorKind::unsupported_version);
 }
 
 TEST_F(TextureFile, ARecordingIsToldApart) {
@@ -202,7 +202,7 @@ TEST_F(TextureFile, ARecordingIsToldApart) {
   ASSERT_TRUE(writer->close());
   for (const char* name : {"raw", "raw.json", "raw.wav"}) {
     const Error error = error_of(name);
-    EXPECT_EQ(error.fault, ErrorKind::unsuitable) << name;
+    EXPECT_EQ(error.kind, ErrorKind::unsuitable) << name;
     EXPECT_NE(message(error).find("is a recording; make a texture with 'tactograph spatial'"),
               std::string::npos)
         << message(error);
@@ -210,19 +210,19 @@ TEST_F(TextureFile, ARecordingIsToldApart) {
 }
 
 TEST_F(TextureFile, AbsentBrokenAndDisagreeing) {
-  EXPECT_EQ(error_of("nothing").fault, ErrorKind::not_found);
+  EXPECT_EQ(error_of("nothing").kind, ErrorKind::not_found);
   ASSERT_TRUE(write_texture(folder_ / "oak", example()));
   const std::string sound = sidecar();
 
   write("oak.texture.json", replaced(sound, "\"samples\": 5000", "\"samples\": 6000"));
   EXPECT_NE(message(error_of("oak")).find("5000 samples, its sidecar says 6000"), std::string::npos);
   write("oak.texture.json", replaced(sound, "\"pitch_m\": 1e-06", "\"pitch_m\": 2e-06"));
-  EXPECT_EQ(error_of("oak").fault, ErrorKind::malformed);
+  EXPECT_EQ(error_of("oak").kind, ErrorKind::malformed);
   write("oak.texture.json", replaced(sound, "\"direction\": -1", "\"direction\": 0"));
   EXPECT_NE(error_of("oak").where.find("#/direction"), std::string::npos);
   write("oak.texture.json", sound);
   std::filesystem::remove(folder_ / "oak.texture.wav");
-  EXPECT_EQ(error_of("oak").fault, ErrorKind::not_found);
+  EXPECT_EQ(error_of("oak").kind, ErrorKind::not_found);
 }
 
 TEST_F(TextureFile, NamesTheSampleThatIsNoNumber) {
@@ -248,7 +248,7 @@ TEST_F(TextureFile, WritesNothingWhereItCannotWriteAll) {
   EXPECT_EQ(folder_.files(), 0u);
   const auto nowhere = write_texture(folder_ / "absent/oak", example());
   ASSERT_FALSE(nowhere);
-  EXPECT_EQ(nowhere.error().fault, ErrorKind::cannot_write);
+  EXPECT_EQ(nowhere.error().kind, ErrorKind::cannot_write);
 }
 
 // A gain that is saved takes an earlier one's place; the WAV, its hash and what a newer version added stay.
@@ -274,7 +274,7 @@ TEST_F(TextureFile, KeepsAGainAndAllElse) {
   const auto refused = write_playback_gain(
       folder_ / "oak", {std::numeric_limits<double>::quiet_NaN(), "mw", "2026-11-22T21:00:00Z"});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
   EXPECT_EQ(sidecar(), before);
 }
 

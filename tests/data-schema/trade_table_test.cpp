@@ -60,14 +60,14 @@ TEST_F(TradeTableFile, ReadsBack) {
 TEST_F(TradeTableFile, RefusesWhatIsUnsound) {
   TradeTable made = table();
   made.choices.front().cost_ns = -1;
-  EXPECT_EQ(trade_table_json(made).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(trade_table_json(made).error().kind, ErrorKind::unsuitable);
   made = table();
   std::swap(made.choices.front().errors[0], made.choices.front().errors[1]);
   put(folder_ / "b.trade.json", *trade_table_json(made));
   const auto refused = read_trade_table(folder_ / "b.trade.json");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().where.find("#/choices/0/errors"), std::string::npos) << refused.error().where;
-  EXPECT_EQ(read_trade_table(folder_ / "absent.trade.json").error().fault, ErrorKind::not_found);
+  EXPECT_EQ(read_trade_table(folder_ / "absent.trade.json").error().kind, ErrorKind::not_found);
 }
 
 TEST_F(TradeTableFile, TheMachinesOwnComesBeforeTheShippedOne) {
@@ -90,7 +90,7 @@ TEST_F(TradeTableFile, ABrokenOneIsNotPassedOver) {
   ASSERT_TRUE(path);
   std::filesystem::create_directories(std::filesystem::path(*path).parent_path());
   put(*path, "{");
-  EXPECT_EQ(find_trade_table().error().fault, ErrorKind::malformed);
+  EXPECT_EQ(find_trade_table().error().kind, ErrorKind::malformed);
 }
 
 }  // namespace

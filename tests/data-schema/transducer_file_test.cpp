@@ -64,7 +64,7 @@ TEST_F(TransducerFile, NumbersThatNoTransducerHasAreRefusedByName) {
     written(odd, "odd");
     const auto refused = read_transducer(folder_ / "odd");
     ASSERT_FALSE(refused) << name;
-    EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
+    EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
     EXPECT_TRUE(refused.error().where.ends_with(std::string("odd.transducer.json#/") + name))
         << refused.error().where;
     EXPECT_NE(refused.error().what.find("no transducer has less than"), std::string::npos);
@@ -141,7 +141,7 @@ TEST_F(TransducerFile, RefusesAHysteresisWithoutAnInverse) {
     transducer.hysteresis = hysteresis;
     const auto saved = write_transducer(folder_ / "unfit", transducer);
     ASSERT_FALSE(saved);
-    EXPECT_EQ(saved.error().fault, ErrorKind::malformed);
+    EXPECT_EQ(saved.error().kind, ErrorKind::malformed);
     EXPECT_NE(saved.error().where.find("#/hysteresis"), std::string::npos);
   }
   Transducer band = preset_;
@@ -153,7 +153,7 @@ TEST_F(TransducerFile, RefusesAHysteresisWithoutAnInverse) {
 TEST_F(TransducerFile, UnknownNameListsThePresets) {
   const auto read = read_transducer(folder_ / "nobody");
   ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().fault, ErrorKind::not_found);
+  EXPECT_EQ(read.error().kind, ErrorKind::not_found);
   EXPECT_NE(message(read.error()).find("wiertlewski2011, wiertlewski2011-as-printed"), std::string::npos);
 }
 
@@ -162,7 +162,7 @@ TEST_F(TransducerFile, LimitsAreObligatoryAndAboveZero) {
   write("a.transducer.json", replaced(sound, "\"drive_limit_v\"", "\"drive_limit\""));
   const auto without = read_transducer(folder_ / "a");
   ASSERT_FALSE(without);
-  EXPECT_EQ(without.error().fault, ErrorKind::malformed);
+  EXPECT_EQ(without.error().kind, ErrorKind::malformed);
   EXPECT_NE(message(without.error()).find("drive_limit_v"), std::string::npos);
   for (const char* limit : {"drive_limit_v", "displacement_limit_m", "slew_limit_v_per_s"}) {
     const std::string key = std::string("\"") + limit + "\": ";
@@ -193,7 +193,7 @@ TEST_F(TransducerFile, NewerMinorIsReadAndKeptNewerMajorRefused) {
   write("future.transducer.json", replaced(sound, "\"1.0\"", "\"2.0\""));
   const auto future = read_transducer(folder_ / "future");
   ASSERT_FALSE(future);
-  EXPECT_EQ(future.error().fault, ErrorKind::unsupported_version);
+  EXPECT_EQ(future.error().kind, ErrorKind::unsupported_version);
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(WavReader, SaysHowMuchOfATruncatedFileIsLeft) {
   put(folder / "a.wav", wav_of({1, 2, 3}, 16, 20));
   const auto reader = WavReader::open(folder / "a.wav");
   ASSERT_FALSE(reader);
-  EXPECT_EQ(reader.error().fault, ErrorKind::malformed);
+  EXPECT_EQ(reader.error().kind, ErrorKind::malformed);
   EXPECT_EQ(reader.error().what, "truncated: its header promises 10 frames, 3 are left");
 }
 
@@ -85,15 +85,15 @@ TEST(WavReader, RefusesWhatItCantRead) {
   EXPECT_EQ(WavReader::open(folder / "absent.wav").error().what, "there is no such file");
   EXPECT_EQ(WavReader::open(folder / "").error().what, "is a folder, not a file");
   put(folder / "a.wav", "time,force\n0,1\n");
-  EXPECT_EQ(WavReader::open(folder / "a.wav").error().fault, ErrorKind::malformed);
+  EXPECT_EQ(WavReader::open(folder / "a.wav").error().kind, ErrorKind::malformed);
   for (const std::size_t bytes : {0U, 4U, 20U, 40U}) {
     put(folder / "a.wav", wav_of({1, 2, 3}, 16, 6).substr(0, bytes));
-    EXPECT_EQ(WavReader::open(folder / "a.wav").error().fault, ErrorKind::malformed) << bytes;
+    EXPECT_EQ(WavReader::open(folder / "a.wav").error().kind, ErrorKind::malformed) << bytes;
   }
   put(folder / "a.wav", wav_of({1, 2, 3}, 16, 6));
   auto reader = WavReader::open(folder / "a.wav");
-  EXPECT_EQ(reader->seek(4).error().fault, ErrorKind::malformed);
-  EXPECT_EQ(read_wav_channel(folder / "a.wav", 1).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(reader->seek(4).error().kind, ErrorKind::malformed);
+  EXPECT_EQ(read_wav_channel(folder / "a.wav", 1).error().kind, ErrorKind::unsuitable);
 }
 
 TEST(WavReader, RefusesToReadAChannelOfWhatIsCompressed) {
@@ -104,7 +104,7 @@ TEST(WavReader, RefusesToReadAChannelOfWhatIsCompressed) {
   put(folder / "a.wav", compressed);
   const auto samples = read_wav_channel(folder / "a.wav", 0);
   ASSERT_FALSE(samples);
-  EXPECT_EQ(samples.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(samples.error().kind, ErrorKind::unsuitable);
   EXPECT_NE(samples.error().what.find("not plain samples"), std::string::npos) << samples.error().what;
 }
 
@@ -119,7 +119,7 @@ TEST(WavWriter, GivesEveryBitBack) {
   EXPECT_EQ(reader.info().frames, 3U);
   EXPECT_EQ(all_of(reader), samples);
   std::array<std::int32_t, 2> codes{};
-  EXPECT_EQ(reader.read(std::span(codes)).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(reader.read(std::span(codes)).error().kind, ErrorKind::unsuitable);
 }
 
 TEST(WavWriter, KeepsTheHeaderTrueAsItGrows) {
@@ -151,9 +151,9 @@ TEST(WavWriter, MakesPlainWavWithoutPeakOrDate) {
 TEST(WavWriter, RefusesRatesThatNoHeaderHolds) {
   const TemporaryFolder folder;
   for (const double rate : {0.0, -1.0, 0.4, 3e9, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_EQ(WavWriter::create(folder / "a.wav", rate, 1, SampleFormat::float32).error().fault,
+    EXPECT_EQ(WavWriter::create(folder / "a.wav", rate, 1, SampleFormat::float32).error().kind,
               ErrorKind::usage);
-  EXPECT_EQ(WavWriter::create(folder / "absent/a.wav", 10, 1, SampleFormat::float32).error().fault,
+  EXPECT_EQ(WavWriter::create(folder / "absent/a.wav", 10, 1, SampleFormat::float32).error().kind,
             ErrorKind::cannot_write);
   EXPECT_EQ(folder.files(), 0U);
 }

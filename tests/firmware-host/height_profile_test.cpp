@@ -96,7 +96,7 @@ TEST(Surface, RefusesWhatItCanNotMake) {
   EXPECT_NE(make_surface(choice).error().remedy.find("A, B, C"), std::string::npos);
   choice.name = "C";
   choice.period_m = 1e-3;
-  EXPECT_EQ(make_surface(choice).error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(make_surface(choice).error().kind, schema::ErrorKind::usage);
   choice.name = "sine";
   choice.period_m = 10e-6;
   EXPECT_EQ(make_surface(choice).error().where, "period");
@@ -149,7 +149,7 @@ TEST(Surface, AProfileThatNoFingerFollowsIsRefused) {
   EXPECT_NE(refused(force).find("not of heights"), std::string::npos);
   SurfaceChoice absent;
   absent.name = "profile:" + (folder / "absent");
-  EXPECT_EQ(make_surface(absent).error().fault, schema::ErrorKind::not_found);
+  EXPECT_EQ(make_surface(absent).error().kind, schema::ErrorKind::not_found);
 }
 
 }  // namespace

@@ -117,10 +117,10 @@ TEST_F(ReplayedBoard, BeginsAgainWhereItIsLooped) {
 }
 
 TEST_F(ReplayedBoard, RefusesGapsAndWhatIsNotThere) {
-  EXPECT_EQ(make_gadget_board("replay:" + (folder_ / "ash"), "").error().fault, schema::ErrorKind::not_found);
-  EXPECT_EQ(make_gadget_board("piezo:", "").error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(make_gadget_board("replay:" + (folder_ / "ash"), "").error().kind, schema::ErrorKind::not_found);
+  EXPECT_EQ(make_gadget_board("piezo:", "").error().kind, schema::ErrorKind::usage);
   write({{100, 120, 20}});
-  EXPECT_EQ(make_gadget_board("replay:" + name_, "").error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(make_gadget_board("replay:" + name_, "").error().kind, schema::ErrorKind::unsuitable);
 }
 
 }  // namespace

@@ -82,8 +82,8 @@ TEST(PacedSim, TakesRealTime) {
 }
 
 TEST_F(Replay, WhatCannotBeReplayedIsRefused) {
-  EXPECT_EQ(open_device("replay:").error().fault, schema::ErrorKind::usage);
-  EXPECT_EQ(open_device("replay:" + (folder_ / "nothing")).error().fault, schema::ErrorKind::not_found);
+  EXPECT_EQ(open_device("replay:").error().kind, schema::ErrorKind::usage);
+  EXPECT_EQ(open_device("replay:" + (folder_ / "nothing")).error().kind, schema::ErrorKind::not_found);
   const auto device = open_device("replay:" + name_);
   std::vector<std::int32_t> block(4);
   EXPECT_EQ((*device)->read(block).error().what, "the device is not started");

@@ -43,7 +43,7 @@ TEST(SimDevice, OtherTransportsAreRefusedByName) {
   for (const char* uri : {"serial:/dev/ttyACM0", "serial:oak", "surface=C", ""}) {
     const auto device = open_device(uri);
     ASSERT_FALSE(device) << uri;
-    EXPECT_EQ(device.error().fault, schema::ErrorKind::usage);
+    EXPECT_EQ(device.error().kind, schema::ErrorKind::usage);
     EXPECT_NE(device.error().remedy.find("sim:"), std::string::npos);
   }
 }
@@ -51,7 +51,7 @@ TEST(SimDevice, OtherTransportsAreRefusedByName) {
 TEST(SimDevice, MustBeStartedToBeRead) {
   const auto device = open_device("sim:");
   std::vector<std::int32_t> frame(4);
-  EXPECT_EQ((*device)->read(frame).error().fault, schema::ErrorKind::device);
+  EXPECT_EQ((*device)->read(frame).error().kind, schema::ErrorKind::device);
   ASSERT_TRUE((*device)->start());
   EXPECT_EQ((*device)->read(frame), 1U);
   ASSERT_TRUE((*device)->stop());
@@ -97,7 +97,7 @@ TEST(SimDevice, WhatDivergesIsAnErrorWithItsTime) {
   EXPECT_LT(*read, codes.size() / 4);
   read = (*device)->read(codes);
   ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().fault, schema::ErrorKind::device);
+  EXPECT_EQ(read.error().kind, schema::ErrorKind::device);
   EXPECT_NE(read.error().what.find("diverged at 0."), std::string::npos) << read.error().what;
 }
 

@@ -76,7 +76,7 @@ class SimParametersRefused : public testing::TestWithParam<Refusal> {};
 TEST_P(SimParametersRefused, SaysWhereAndWhatThereIs) {
   const auto p = parse_sim_parameters(GetParam().text);
   ASSERT_FALSE(p);
-  EXPECT_EQ(p.error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(p.error().kind, schema::ErrorKind::usage);
   EXPECT_EQ(p.error().where, GetParam().where);
   EXPECT_NE(message(p.error()).find(GetParam().says), std::string::npos) << message(p.error());
 }
@@ -113,7 +113,7 @@ TEST_P(SimParametersAgainst, IsRefusedWithWhatWouldDo) {
   ASSERT_TRUE(p) << message(p.error());
   const auto fits = check_against(*p, *schema::read_transducer("wiertlewski2011"), p->surface.length_m);
   ASSERT_FALSE(fits);
-  EXPECT_EQ(fits.error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(fits.error().kind, schema::ErrorKind::usage);
   EXPECT_EQ(fits.error().where, GetParam().where);
   EXPECT_NE(message(fits.error()).find(GetParam().says), std::string::npos) << message(fits.error());
 }

@@ -151,11 +151,11 @@ TEST(WireDevice, RandomHarmToEverythingLeavesNoSilentHole) {
     Bench bench = bench_with(
         [&](MessageType) { return random() % 20 == 0 ? static_cast<Harm>(1 + random() % 6) : Harm::none; });
     if (!bench.device) {
-      EXPECT_EQ(bench.device.error().fault, schema::ErrorKind::device);
+      EXPECT_EQ(bench.device.error().kind, schema::ErrorKind::device);
       continue;
     }
     const Streamed streamed = stream_from(**bench.device, 8000);
-    EXPECT_TRUE(!streamed.error || streamed.error->fault == schema::ErrorKind::device);
+    EXPECT_TRUE(!streamed.error || streamed.error->kind == schema::ErrorKind::device);
     expect_no_silent_hole(streamed);
     EXPECT_GT(streamed.events.gaps.size(), 0U) << seed;
   }
@@ -218,7 +218,7 @@ TEST(WireDevice, ADeviceThatNeverAnswersIsAnError) {
   for (const auto type : {MessageType::welcome, MessageType::channel}) {
     Bench bench = bench_with(harm_all(type, Harm::drop));
     ASSERT_FALSE(bench.device);
-    EXPECT_EQ(bench.device.error().fault, schema::ErrorKind::device);
+    EXPECT_EQ(bench.device.error().kind, schema::ErrorKind::device);
     EXPECT_NE(bench.device.error().what.find("did not answer hello, asked 3 times in 1.5 s"),
               std::string::npos)
         << message(bench.device.error());
@@ -328,7 +328,7 @@ class OtherVersion final : public Transport {
 TEST(WireDevice, ANewerVersionIsRefusedByName) {
   const auto device = WireDevice::open("test:", std::make_unique<OtherVersion>(std::uint8_t{2}));
   ASSERT_FALSE(device);
-  EXPECT_EQ(device.error().fault, schema::ErrorKind::unsupported_version);
+  EXPECT_EQ(device.error().kind, schema::ErrorKind::unsupported_version);
   EXPECT_NE(device.error().what.find("'far future' (serial X9, firmware 9.0) speaks version 2.4"),
             std::string::npos)
       << message(device.error());
@@ -338,7 +338,7 @@ TEST(WireDevice, ANewerVersionIsRefusedByName) {
 TEST(WireDevice, ADeviceThatWelcomesWithNoVersionIsNoDevice) {
   const auto device = WireDevice::open("test:", std::make_unique<OtherVersion>(std::uint8_t{0}));
   ASSERT_FALSE(device);
-  EXPECT_EQ(device.error().fault, schema::ErrorKind::device);
+  EXPECT_EQ(device.error().kind, schema::ErrorKind::device);
 }
 
 }  // namespace

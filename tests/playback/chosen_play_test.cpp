@@ -80,7 +80,7 @@ TEST(PlaybackChoices, MoreOfWhatIsNotThereIsRefused) {
     EXPECT_FALSE(check_meant(said.off, said.off.over(below))) << said.words[0];
     const auto alone = check_meant(said.more, said.more);
     ASSERT_FALSE(alone) << said.words[0];
-    EXPECT_EQ(alone.error().fault, schema::ErrorKind::usage);
+    EXPECT_EQ(alone.error().kind, schema::ErrorKind::usage);
     for (const char* words : said.words)
       EXPECT_NE(schema::message(alone.error()).find(words), std::string::npos) << words;
   }
@@ -271,7 +271,7 @@ TEST_F(ChosenPlay, AGatedSessionOfAnOlderDeviceIsRefusedByReplay) {
   }
   const auto replayed = replay_session(older);
   ASSERT_FALSE(replayed);
-  EXPECT_EQ(replayed.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(replayed.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_NE(schema::message(replayed.error()).find("gated by contact"), std::string::npos);
 }
 
@@ -309,7 +309,7 @@ TEST(CheckUpload, ADeviceWithoutANormalForceHasNoGate) {
   ASSERT_TRUE(prepared);
   const auto fits = check_upload((*device)->client(), *prepared);
   ASSERT_FALSE(fits);
-  EXPECT_EQ(fits.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(fits.error().kind, schema::ErrorKind::unsuitable);
   for (const char* words : {"reports no normal force", "--contact 0N"})
     EXPECT_NE(schema::message(fits.error()).find(words), std::string::npos) << words;
 }

@@ -41,7 +41,7 @@ TEST_F(DriveFiles, AppearTogetherOrNotAtAll) {
   const std::vector<SignalFile> files{{in("a.wav"), &signal_}, {in("absent/b.wav"), &signal_}};
   const auto written = write_signal_files(files, schema::Existing::keep);
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().fault, schema::ErrorKind::cannot_write);
+  EXPECT_EQ(written.error().kind, schema::ErrorKind::cannot_write);
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
@@ -53,7 +53,7 @@ TEST_F(DriveFiles, HoldNoNumberThatIsNotFinite) {
     const auto written = write_signal_files(
         std::vector<SignalFile>{{in("a.wav"), &signal_}, {in("b.wav"), &broken}}, schema::Existing::keep);
     ASSERT_FALSE(written) << odd;
-    EXPECT_EQ(written.error().fault, schema::ErrorKind::unsuitable);
+    EXPECT_EQ(written.error().kind, schema::ErrorKind::unsuitable);
     EXPECT_NE(written.error().what.find("sample 1 "), std::string::npos) << written.error().what;
     EXPECT_TRUE(fs::is_empty(folder_));
   }
@@ -62,11 +62,11 @@ TEST_F(DriveFiles, HoldNoNumberThatIsNotFinite) {
 TEST_F(DriveFiles, NeverTakeTheNameOfARecording) {
   std::ofstream(in("oak.json")) << "{}";
   const std::vector<SignalFile> taken{{in("oak.wav"), &signal_}};
-  EXPECT_EQ(check_signal_files(taken, schema::Existing::keep).error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(check_signal_files(taken, schema::Existing::keep).error().kind, schema::ErrorKind::usage);
   const std::vector<SignalFile> twice{{in("a.wav"), &signal_}, {in("./a.wav"), &signal_}};
-  EXPECT_EQ(check_signal_files(twice, schema::Existing::keep).error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(check_signal_files(twice, schema::Existing::keep).error().kind, schema::ErrorKind::usage);
   const std::vector<SignalFile> other{{in("a.flac"), &signal_}};
-  EXPECT_EQ(check_signal_files(other, schema::Existing::keep).error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(check_signal_files(other, schema::Existing::keep).error().kind, schema::ErrorKind::usage);
 }
 
 }  // namespace

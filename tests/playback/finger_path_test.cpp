@@ -36,7 +36,7 @@ class BadFingerPath : public testing::TestWithParam<Bad> {};
 TEST_P(BadFingerPath, IsNamedByPlace) {
   const auto path = parse_finger_path(GetParam().text, "p.csv");
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().fault, schema::ErrorKind::malformed);
+  EXPECT_EQ(path.error().kind, schema::ErrorKind::malformed);
   const std::string said = message(path.error());
   EXPECT_NE(said.find(GetParam().said), std::string::npos) << said;
   EXPECT_NE(said.find("p.csv"), std::string::npos) << said;
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(FingerPathCsv, AbsentFileIsNotFound) {
   const auto path = read_finger_path("/nowhere/path.csv");
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().fault, schema::ErrorKind::not_found);
+  EXPECT_EQ(path.error().kind, schema::ErrorKind::not_found);
 }
 
 TEST(FingerPath, OfASignalHasOneKnotASample) {

@@ -102,7 +102,7 @@ TEST_F(PlayerOnSim, AReplayTellsTheFirstTickThatDiffers) {
 TEST_F(PlayerOnSim, WhatCanNotBeDoneIsRefusedWithWhatToDo) {
   const auto expect_refused = [](const schema::Result<void>& result, const std::string& remedy) {
     ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().fault, schema::ErrorKind::usage);
+    EXPECT_EQ(result.error().kind, schema::ErrorKind::usage);
     EXPECT_EQ(result.error().remedy, remedy);
   };
   expect_refused(player_->arm(session_), "load a texture or scene first");
@@ -196,7 +196,7 @@ TEST_F(PlayerOnSim, APlayedTextureThatIsNoNumberNeverGetsToTheDevice) {
   options.rate_hz = kRateHz;
   const auto prepared = prepare(texture, schema::read_transducer("wiertlewski2011").value(), options);
   ASSERT_FALSE(prepared);
-  EXPECT_EQ(prepared.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(prepared.error().kind, schema::ErrorKind::unsuitable);
 }
 
 // Of 0.02 N at 0.5 mm/N: 10 um. The limit holds at load, for live gains, and while textures fade.
@@ -210,7 +210,7 @@ TEST_F(PlayerOnSim, TheTrayIsKeptWithinItsLimitOfDisplacement) {
   };
   const auto refused = player_->load(limited(1e-6));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_NE(refused.error().remedy.find("mm/N"), std::string::npos) << refused.error().remedy;
   ASSERT_TRUE(player_->load(limited(25e-6)));
   EXPECT_FALSE(player_->gain(-2.6));
@@ -262,7 +262,7 @@ TEST(DeviceLock, IsHeldByOneProgramAtATime) {
   ASSERT_TRUE(held) << schema::message(held.error());
   const auto second = DeviceLock::take(name);
   ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(second.error().kind, schema::ErrorKind::unsuitable);
   *held = DeviceLock();
   EXPECT_TRUE(DeviceLock::take(name));
 }
@@ -288,7 +288,7 @@ TEST_F(PlayerOnSim, WithoutRoomForTheSessionsBeginningNothingIsArmed) {
     const FullDisk full(bytes);
     const auto armed = player_->arm(session_);
     ASSERT_FALSE(armed) << bytes << " of " << whole;
-    EXPECT_EQ(armed.error().fault, schema::ErrorKind::cannot_write);
+    EXPECT_EQ(armed.error().kind, schema::ErrorKind::cannot_write);
     EXPECT_NE(armed.error().remedy.find("make room"), std::string::npos);
     EXPECT_EQ(player_->state(), PlayerState::idle);
     EXPECT_FALSE(std::filesystem::exists(session_));
@@ -316,7 +316,7 @@ TEST_F(PlayerOnSim, AReplayNamesTheCommandsThatAreMissing) {
   }
   const auto replayed = replay_session(without);
   ASSERT_FALSE(replayed);
-  EXPECT_EQ(replayed.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(replayed.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_NE(replayed.error().what.find("samples of its upload"), std::string::npos) << replayed.error().what;
   const auto told = report_strokes(without);
   ASSERT_TRUE(told);

@@ -41,7 +41,7 @@ TEST_F(RenderLimits, TheGainThatIsNamedFitsAndIsTheLargest) {
     halve(limit, peak);
     const auto refused = rendered();
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().fault, schema::ErrorKind::unsuitable);
+    EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
     EXPECT_NE(refused.error().what.find(peak.name), std::string::npos) << refused.error().what;
     options_.gain_m_per_n = gain_named_in(refused.error().remedy);
     EXPECT_NEAR(options_.gain_m_per_n, 0.5e-3, 1e-6);

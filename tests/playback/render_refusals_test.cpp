@@ -18,7 +18,7 @@ class RenderRefusals : public testing::Test {
   void expect_refused(schema::ErrorKind fault, const std::string& said) const {
     const auto rendering = render(texture_, path_, *schema::read_transducer("wiertlewski2011"), options_);
     ASSERT_FALSE(rendering) << said;
-    EXPECT_EQ(rendering.error().fault, fault);
+    EXPECT_EQ(rendering.error().kind, fault);
     EXPECT_NE(message(rendering.error()).find(said), std::string::npos) << message(rendering.error());
   }
 };

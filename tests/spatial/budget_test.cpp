@@ -165,7 +165,7 @@ TEST(Budget, NamesWhatIsAttainableWhereItRefuses) {
   ASSERT_TRUE(table);
   const auto refused = choose_texture(*table, {10e3, 500, 0.05, ResampleMethod::linear, {}}, budget_of(1e-4));
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_NE(refused.error().what.find("the least is"), std::string::npos) << refused.error().what;
   EXPECT_NE(refused.error().what.find("linear"), std::string::npos) << refused.error().what;
 }

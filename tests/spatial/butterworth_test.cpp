@@ -102,7 +102,7 @@ TEST(Butterworth, ZeroPhaseHoldsToTwelveDigitsInLongDouble) {
 TEST(Butterworth, RefusesWhatCannotBe) {
   const auto refused = [](int order, Band band, schema::ErrorKind fault) {
     const auto sections = butterworth_band_pass(order, band, 1000);
-    return !sections && sections.error().fault == fault;
+    return !sections && sections.error().kind == fault;
   };
   EXPECT_TRUE(refused(0, {15, 400}, schema::ErrorKind::usage));
   EXPECT_TRUE(refused(21, {15, 400}, schema::ErrorKind::usage));

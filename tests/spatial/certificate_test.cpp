@@ -124,10 +124,10 @@ TEST(Certificate, RefusesWhatTellsNothing) {
   World world;
   world.noise = 0.02;
   const auto one = certificates_of(world, {{0.04, 0.06}}, 1);
-  EXPECT_EQ(one.error().fault, ErrorKind::usage);
+  EXPECT_EQ(one.error().kind, ErrorKind::usage);
   const auto alike = certificates_of(world, {{0.0400, 0.06}, {0.0401, 0.06}}, 1);
   ASSERT_FALSE(alike);
-  EXPECT_EQ(alike.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(alike.error().kind, ErrorKind::unsuitable);
   EXPECT_NE(alike.error().what.find("differ only by a factor of 1.00"), std::string::npos)
       << alike.error().what;
 }

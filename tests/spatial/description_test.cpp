@@ -111,11 +111,11 @@ TEST(Description, RefusesWhatItCantDescribe) {
   DescriptionOptions options;
   for (const double bad : {0.0, 1e-6, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     options.window_m = bad;
-    EXPECT_EQ(describe(texture, options).error().fault, ErrorKind::usage) << bad;
+    EXPECT_EQ(describe(texture, options).error().kind, ErrorKind::usage) << bad;
   }
   texture.valid_band = {{0, 400, 410}, {0.01, 405, 415}, {0.02, 412, 420}};
-  EXPECT_EQ(describe(texture).error().fault, ErrorKind::unsuitable);
-  EXPECT_EQ(describe(samples::noise(5)).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(describe(texture).error().kind, ErrorKind::unsuitable);
+  EXPECT_EQ(describe(samples::noise(5)).error().kind, ErrorKind::unsuitable);
 }
 
 }  // namespace

@@ -215,10 +215,10 @@ TEST(Formants, RefuseOddOptions) {
   const auto made = spatial_spectrogram(samples::noise(20000), {});
   FormantOptions options;
   options.go_on_db = 20;
-  EXPECT_EQ(find_formants(*made, options).error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(find_formants(*made, options).error().kind, schema::ErrorKind::usage);
   options = {};
   options.bridge_m = -1;
-  EXPECT_EQ(find_formants(*made, options).error().fault, schema::ErrorKind::usage);
+  EXPECT_EQ(find_formants(*made, options).error().kind, schema::ErrorKind::usage);
 }
 
 }  // namespace

@@ -140,18 +140,18 @@ TEST(SpectrogramFigure, RefusesWhatItCantDraw) {
   const Drawn oak = drawn(samples::noise(20000));
   SpectrogramPictureOptions options;
   options.dynamic_range_db = 0;
-  EXPECT_EQ(to_png(SpectrogramFigure({{&oak.texture, &oak.spectrogram}}, options)).error().fault,
+  EXPECT_EQ(to_png(SpectrogramFigure({{&oak.texture, &oak.spectrogram}}, options)).error().kind,
             ErrorKind::usage);
   options = {};
   options.min_frequency_per_m = 20e3;
-  EXPECT_EQ(to_png(SpectrogramFigure({{&oak.texture, &oak.spectrogram}}, options)).error().fault,
+  EXPECT_EQ(to_png(SpectrogramFigure({{&oak.texture, &oak.spectrogram}}, options)).error().kind,
             ErrorKind::unsuitable);
   Drawn height = oak;
   height.spectrogram.unit = "m";
   const SpectrogramFigure mixed({{&oak.texture, &oak.spectrogram}, {&height.texture, &height.spectrogram}});
-  EXPECT_EQ(to_svg(mixed).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(to_svg(mixed).error().kind, ErrorKind::unsuitable);
   const std::vector<SpectrogramPanel> many(100, {&oak.texture, &oak.spectrogram});
-  EXPECT_EQ(to_png(SpectrogramFigure(many)).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(to_png(SpectrogramFigure(many)).error().kind, ErrorKind::unsuitable);
 }
 
 TEST(SpectrogramFigure, DrawsSilence) {
@@ -188,7 +188,7 @@ TEST(Picture, ExtensionsAreNamedWhereOneIsUnknown) {
   figure.series = {{"a", {0, 1}, {0, 1}, series_colour(0)}};
   const auto refused = encode_as("a.jpg", figure);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::usage);
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   EXPECT_EQ(refused.error().remedy, "take .png or .svg");
   EXPECT_TRUE(encode_as("A.PNG", figure)->starts_with("\x89PNG"));
   EXPECT_TRUE(encode_as("a.svg", figure)->starts_with("<?xml"));
@@ -255,7 +255,7 @@ TEST(LineFigure, RefusesUnevenOrEmptySeries) {
   ASSERT_FALSE(uneven);
   EXPECT_EQ(uneven.error().where, "series 'modelled'");
   figure.series = {{"nothing", {NAN}, {1}, {}}};
-  EXPECT_EQ(to_png(figure).error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(to_png(figure).error().kind, ErrorKind::unsuitable);
 }
 
 TEST(LineFigure, DrawsAConstantAndAPoint) {

@@ -92,7 +92,7 @@ TEST(Sheet, RefusesMixedUnits) {
   height.spectrogram.unit = "m";
   const auto scales = sheet_scales(std::vector{force.panel(), height.panel()}, {});
   ASSERT_FALSE(scales);
-  EXPECT_EQ(scales.error().fault, schema::ErrorKind::unsuitable);
+  EXPECT_EQ(scales.error().kind, schema::ErrorKind::unsuitable);
 }
 
 // Under the band the picture is veiled and hatched: paler than the same place without a band, with lines in

@@ -169,7 +169,7 @@ TEST(Spectrogram, DensitiesAndAmplitudesAgree) {
 TEST(Spectrogram, DensitiesBeyondSinglePrecisionAreRefused) {
   const auto refused = spatial_spectrogram(samples::sine(1e30, 2000, 12000), {});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
   EXPECT_NE(refused.error().remedy.find("--scaling amplitude"), std::string::npos);
 }
 
@@ -177,7 +177,7 @@ TEST(Spectrogram, DensitiesBeyondSinglePrecisionAreRefused) {
 TEST(Spectrogram, DensitiesBelowSinglePrecisionAreRefusedToo) {
   const auto refused = spatial_spectrogram(samples::sine(1e-30, 2000, 12000), {});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
   SpectrogramOptions amplitudes;
   amplitudes.scaling = schema::Scaling::amplitude;
   const auto shown = spatial_spectrogram(samples::sine(1e-30, 2000, 12000), amplitudes);
@@ -295,7 +295,7 @@ TEST(Spectrogram, TakesTheShortestTextureThatHoldsAWindow) {
   EXPECT_EQ(result->position_m.size(), 1U);
   const auto refused = spatial_spectrogram(samples::noise(9999), {});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().fault, ErrorKind::unsuitable);
+  EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
   EXPECT_EQ(refused.error().remedy, "a window of 9.99 mm would fit");
   SpectrogramOptions options;
   options.window_m = 9.99e-3;
@@ -308,7 +308,7 @@ TEST(Spectrogram, RefusesImpossibleOptions) {
     SpectrogramOptions options;
     change(options);
     const auto result = spatial_spectrogram(texture, options);
-    return result ? ErrorKind::internal : result.error().fault;
+    return result ? ErrorKind::internal : result.error().kind;
   };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -1e-3, 7e-6, 1e300, kNan})

@@ -60,7 +60,7 @@ TEST(FilterInTime, NamesTheValueThatIsNoNumber) {
   for (const auto method : {FilterMethod::fourier, FilterMethod::butterworth, FilterMethod::none}) {
     const auto filtered = filter_in_time(force, 10000, {method, {15, 500}, Edges::treated, 4});
     ASSERT_FALSE(filtered);
-    EXPECT_EQ(filtered.error().fault, schema::ErrorKind::unsuitable);
+    EXPECT_EQ(filtered.error().kind, schema::ErrorKind::unsuitable);
     EXPECT_NE(filtered.error().what.find("1234"), std::string::npos);
   }
   force[1234] = std::numeric_limits<double>::infinity();

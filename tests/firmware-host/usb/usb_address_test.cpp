@@ -20,7 +20,7 @@ TEST(UsbAddress, IsRefusedWhereItNamesNothing) {
   for (const char* bad : {"serial=", "port=", "serial", "speed=3", "1-2", "serial=A,port=1-1"}) {
     const auto address = parse_usb_address(bad);
     ASSERT_FALSE(address) << bad;
-    EXPECT_EQ(address.error().fault, ErrorKind::usage);
+    EXPECT_EQ(address.error().kind, ErrorKind::usage);
     EXPECT_NE(address.error().remedy.find("usb:serial=XYZ"), std::string::npos);
   }
 }
@@ -46,7 +46,7 @@ TEST(UsbAddress, TheOnlyOneNeedsNoName) {
 TEST(UsbAddress, OfSeveralOneMustBeNamed) {
   const auto chosen = choose_usb(kThree, {});
   ASSERT_FALSE(chosen);
-  EXPECT_EQ(chosen.error().fault, ErrorKind::usage);
+  EXPECT_EQ(chosen.error().kind, ErrorKind::usage);
   EXPECT_NE(chosen.error().remedy.find("usb:serial=A7, usb:port=1-2.3, usb:port=2-4"), std::string::npos)
       << message(chosen.error());
 }
@@ -55,10 +55,10 @@ TEST(UsbAddress, OneThatIsNotThereIsNotFound) {
   for (const UsbAddress& address : {UsbAddress{"Z", ""}, UsbAddress{"", "9-9"}}) {
     const auto chosen = choose_usb(kThree, address);
     ASSERT_FALSE(chosen);
-    EXPECT_EQ(chosen.error().fault, ErrorKind::not_found);
+    EXPECT_EQ(chosen.error().kind, ErrorKind::not_found);
     EXPECT_NE(chosen.error().remedy.find("usb:serial=A7"), std::string::npos);
   }
-  EXPECT_EQ(choose_usb({}, {}).error().fault, ErrorKind::not_found);
+  EXPECT_EQ(choose_usb({}, {}).error().kind, ErrorKind::not_found);
 }
 
 }  // namespace

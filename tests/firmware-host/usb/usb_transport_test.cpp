@@ -143,7 +143,7 @@ TEST_F(UsbTransportTest, TroubleWithoutEndIsAnErrorAfterTheBytes) {
       const Heard heard = listen(*cable, 100, 1);
       EXPECT_EQ(heard.bytes, counting(again == 0 ? 10 : 0));
       ASSERT_TRUE(heard.error);
-      EXPECT_EQ(heard.error->fault, ErrorKind::device);
+      EXPECT_EQ(heard.error->kind, ErrorKind::device);
       EXPECT_NE(heard.error->what.find(words), std::string::npos) << heard.error->what;
     }
     EXPECT_FALSE(cable->write(counting(3), kTimeoutS));
@@ -158,7 +158,7 @@ TEST_F(UsbTransportTest, UnpluggedItGivesItsBytesAndThenTheReason) {
   EXPECT_EQ(heard.bytes, counting(70));
   ASSERT_TRUE(heard.error);
   EXPECT_EQ(heard.error->what, "the device was unplugged");
-  EXPECT_EQ(heard.error->fault, ErrorKind::device);
+  EXPECT_EQ(heard.error->kind, ErrorKind::device);
   EXPECT_EQ(heard.error->where, "usb:serial=T1");
   EXPECT_EQ(cable->write(counting(3), kTimeoutS).error().what, "the device was unplugged");
 }
@@ -211,7 +211,7 @@ TEST_F(UsbTransportTest, OnlyTheWiresInterfaceIsLookedAt) {
   add("no way in").endpoints = {0x02};
   add("no way out").endpoints = {0x81};
   EXPECT_TRUE(usb_uris()->empty());
-  EXPECT_EQ(UsbConnection::open({}).error().fault, ErrorKind::not_found);
+  EXPECT_EQ(UsbConnection::open({}).error().kind, ErrorKind::not_found);
   FakeUsbDevice& newer = add("newer", 7);
   newer.protocol = 2;
   newer.endpoints = {0x03, 0x85};
@@ -225,7 +225,7 @@ TEST_F(UsbTransportTest, OnlyTheWiresInterfaceIsLookedAt) {
 TEST_F(UsbTransportTest, OneOfSeveralIsTakenBySerial) {
   add("A", 1);
   add("B", 2);
-  EXPECT_EQ(UsbConnection::open({}).error().fault, ErrorKind::usage);
+  EXPECT_EQ(UsbConnection::open({}).error().kind, ErrorKind::usage);
   EXPECT_EQ(UsbConnection::open({"B", ""})->uri(), "usb:serial=B");
 }
 
@@ -245,7 +245,7 @@ TEST_F(UsbTransportTest, WhyItCannotBeOpenedIsSaid) {
   device.claim_code = LIBUSB_ERROR_BUSY;
   EXPECT_EQ(UsbConnection::open({}).error().what, "another program has the device");
   usb().init_code = LIBUSB_ERROR_OTHER;
-  EXPECT_EQ(usb_uris().error().fault, ErrorKind::device);
+  EXPECT_EQ(usb_uris().error().kind, ErrorKind::device);
 }
 
 TEST_F(UsbTransportTest, ADeviceThatAnswersNothingIsRefusedInItsTime) {
