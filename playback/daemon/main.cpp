@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactographd: plays textures on a device, steered over a socket. See README.md and CONTROL.md.
+// tactographd: plays textures on a device, steered over a socket. See playback/README.md and CONTROL.md.
 #include <fmt/format.h>
 
 #include <chrono>

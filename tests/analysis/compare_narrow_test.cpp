@@ -279,7 +279,7 @@ TEST(CompareNarrow, LinesThatBothHaveAreNoDifference) {
 }
 
 // Noise whose level wanders along the texture: all of it, or a band only. Not judged closely: it is what
-// analysis/README says of textures that are not stationary.
+// analysis/DECISIONS.md says of textures that are not stationary.
 TEST(CompareNarrow, UnsteadyTexturesAreCalledDifferentMoreOften) {
   for (const bool all : {true, false}) {
     Rates rates;

@@ -15,7 +15,7 @@ namespace {
 // The documentation's table, which `tactograph extremes` prints.
 std::string documented() {
   std::ostringstream text;
-  text << std::ifstream(TACTO_SOURCE "/analysis/README.md").rdbuf();
+  text << std::ifstream(TACTO_SOURCE "/tests/MEASURED.md").rdbuf();
   return text.str();
 }
 
@@ -34,7 +34,7 @@ TEST(Extremes, HoldWhatTheirMethodsState) {
     EXPECT_FALSE(row.reference.empty()) << row.condition;
     const bool listed = table.find("| " + row.condition + " | ") != std::string::npos &&
                         table.find(" | " + row.reference + " | ") != std::string::npos;
-    EXPECT_TRUE(listed || all) << row.condition << ": not in analysis/README.md as the command prints it";
+    EXPECT_TRUE(listed || all) << row.condition << ": not in tests/MEASURED.md as the command prints it";
     rooms.insert(row.room);
     EXPECT_TRUE(conditions.insert(row.condition).second) << "twice: " << row.condition;
   }

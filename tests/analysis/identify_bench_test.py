@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A bench identified as a bench can be, with its hysteresis, second mode and finger, and then played: the error of the
-tray's displacement by speed. Prints the table that tests/README.md names."""
+tray's displacement by speed. Prints the table of tests/MEASURED.md."""
 import json
 
 import tacto
@@ -43,7 +43,7 @@ def a_bench_is_identified_alone_and_played():
     assert max(row("sweep of 4 V that meets the device's slew limit", played("limited"))) < -38
     identified("free", BENCH)
     late = row("identified without the finger that it is played with", played("free"))
-    assert -32 < max(late) < -24, late  # what help and README say: about -28
+    assert -32 < max(late) < -24, late  # tests/MEASURED.md: -25.3
     said = tacto.run_json("identify", "-d", LOADED, "--second-mode", "-o", "said")
     assert said["verdict"] == "fits" and "only later" in said["load"], said
     assert abs(said["loop_opening_percent"] - 16) < 0.3, said

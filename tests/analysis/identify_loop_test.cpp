@@ -54,7 +54,7 @@ TEST(IdentifyLoop, TheEmulatedBendersSixteenPercent) {
   const auto x = tray_under(drive, 0.16);
   const LoopFit fit = fit_loops(drive, x, kRateHz, delay_s(), 5).value();
   EXPECT_NEAR(fit.opening, 0.16, 0.002);              // its own definition; 32 plays round it by 1/1000
-  EXPECT_NEAR(fit.lag_rad * 360 / kTurns, 7.7, 0.2);  // firmware-host/README.md: the same loop's fundamental
+  EXPECT_NEAR(fit.lag_rad * 360 / kTurns, 7.7, 0.2);  // firmware-host/DECISIONS.md: its fundamental
   EXPECT_NEAR(fit.gain_m_per_v / 20e-6, 1, 0.005);    // a full swing keeps the linear gain
   EXPECT_TRUE(fit.usable);
   EXPECT_LT(fit.residual_part, 0.005);

@@ -474,7 +474,7 @@ def the_service_manager_is_told():
 
 
 def a_band_that_the_rate_cuts_is_told():
-    """Below 2 kHz the band shrinks, and the status says to what: rate / 3.5 (playback/README). So it does of a loop's period."""
+    """Below 2 kHz the band shrinks, and the status says to what: rate / 3.5 (playback/DECISIONS.md). So it does of a loop's period."""
     prepare_files(rate_hz=1500)
     with daemon():
         client = Client()

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lines of the surfaces A to E under the simulated finger: where they stay (1/mm) and where they move (Hz).
 
-Prints the table of firmware-host/README.md. The spectrum along position is of what `spatial` made of a recording, the one in
+Prints the table of tests/MEASURED.md. The spectrum along position is of what `spatial` made of a recording, the one in
 time of the recording as it is; both here, by NumPy, with a Hann window over 28 mm."""
 import json
 

@@ -119,7 +119,7 @@ TEST(PlaybackChoices, EachInverseGivesTheDriveOfItsResponse) {
 }
 
 // All on levels of 20 points a period, against the finest reading there is: each within the error that
-// README.md states for it (w = 2 pi / points a period), and each clearly better than the one before.
+// playback/DECISIONS.md states for it (w = 2 pi / points a period), each clearly better than the one before.
 TEST(PlaybackChoices, EachInterpolationReadsWithItsOwnError) {
   const schema::Texture texture = grating(3000, 0.01);
   const auto read_by = [&](const char* word) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of fidelity (README): texture C of the emulated device and a real finger's, looped, through the emulated
+"""The table of fidelity (tests/MEASURED.md): texture C of the emulated device and a real finger's, looped, through the emulated
 transducer. Takes the program that measures; fails where row (a) is worse than -50 dB, or where an encoder's step leaves
 more than a constant shift at whole and half counts a tick (rows b). Rows (b) are of 9 speeds and 4 phases of the encoder
 a rate; TACTO_ALL_PHASES=1 takes 40 of each (two minutes of CPU). Without the real data, and under the sanitizers, which

@@ -58,7 +58,7 @@ class MeasuredStrokes : public PlayerOnSim {
   int changed_ = 0;
 };
 
-// The model knows no hysteresis, the tray has it: 16 % of it is -10 dB and some (playback/README.md, row e).
+// The model knows no hysteresis, the tray has it: 16 % of it is -10 dB and some (tests/MEASURED.md, row e).
 TEST_F(MeasuredStrokes, TellAHysteresisThatTheModelDoesNotKnow) {
   const StrokeReport seen = report_of(session_);
   ASSERT_GE(seen.strokes.size(), 3U);

@@ -21,7 +21,7 @@ RATE_HZ = 10000
 SOURCE_S = 12
 BLOCK = 32  # frames in a message at this rate
 SLOW_S = 10  # what an emulated machine that shares its processor may take beyond the stated times
-SILENCE_S = 1  # firmware-host/README.md: a silent stream, and a device that takes nothing
+SILENCE_S = 1  # firmware-host/DECISIONS.md: a silent stream, and a device that takes nothing
 RESULTS = pathlib.Path(tempfile.mkdtemp(prefix="tacto-usb-faults-"))
 
 

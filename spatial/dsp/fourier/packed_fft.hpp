@@ -37,7 +37,7 @@ class PackedFft {
 };
 
 /// Whether measuring a plan is worth it for so many transforms: it takes 0.05 s + 16 us a sample on the
-/// machine of spatial/README.md, and the transforms themselves must take longer than that.
+/// machine of tests/MEASURED.md, and the transforms themselves must take longer than that.
 bool measuring_pays(std::size_t length, std::size_t expected);
 
 /// Whether so many transforms take but a moment, about 0.05 s, so that nobody minds that double precision
