@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The transducer's limits, which no drive passes.
+// Keeps the drive within the transducer's limits.
 #pragma once
 
 #include <stdint.h>
@@ -13,7 +13,7 @@ class DriveLimiter {
  public:
   void set(float drive_v, float step_v) noexcept { drive_v_ = drive_v, step_v_ = step_v, last_v_ = 0; }
 
-  /// `wanted_v` is finite. Adds to `flags` what had to be taken away.
+  /// `wanted_v` is finite. Adds to `flags` the limits that acted.
   float limit(float wanted_v, uint32_t& flags) noexcept {
     const float tall_v = wanted_v > drive_v_ ? drive_v_ : wanted_v < -drive_v_ ? -drive_v_ : wanted_v;
     if (tall_v != wanted_v) flags |= wire::kTickAmplitudeLimited;
