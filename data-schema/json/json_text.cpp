@@ -18,17 +18,17 @@ std::string line_and_column(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, before.size() - (start == before.npos ? 0 : start + 1) + 1);
 }
 
-// What the watch below throws through the library, and parse_json() catches.
+// Thrown through the library by the watch below, and caught by parse_json().
 struct Refusal {
   std::string what, pointer, remedy;
 };
 
-// Names come from outside: a long one is not repeated.
+// Names come from outside: long ones are not repeated.
 std::string quoted(const std::string& name) {
   return name.size() <= 64 ? fmt::format("'{}'", name) : fmt::format("with a name of {} bytes", name.size());
 }
 
-/// Follows the parser's events: how deep they are, and which members each open object has.
+/// Follows the parser's events: the depth, and the members of each open object.
 class ParserWatch {
  public:
   explicit ParserWatch(int deepest) : deepest_(deepest) {}
@@ -46,8 +46,8 @@ class ParserWatch {
 
  private:
   struct Container {
-    std::unordered_set<std::string> names;  // of an object's members; none in an array
-    std::string name;                       // of the member that is being read
+    std::unordered_set<std::string> names;  // of an object's members; empty for an array
+    std::string name;                       // of the current member
     std::size_t elements = 0;               // that were read
   };
 
