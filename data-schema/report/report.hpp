@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a verb found, once: printed for people as aligned lines, for machines as JSON.
+// The result of a verb: printed for people as aligned lines, for programs as JSON.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace tacto::cli {
 
-/// Ordered keys and values. A key ends in its unit (`duration_s`, `pitch_m`, `force_rms_n`, `level_db`), as
-/// everywhere in tactograph: JSON keeps key and SI value, people read "duration  8.5 s".
+/// Ordered keys and values. A key ends in its unit (`duration_s`, `pitch_m`, `force_rms_n`, `level_db`): JSON
+/// keeps key and SI value, people read "duration  8.5 s".
 class Report {
  public:
   Report& add(std::string key, double value_si);
@@ -27,13 +27,12 @@ class Report {
   Report& add(std::string key, Integer count) {
     return put(std::move(key), static_cast<std::int64_t>(count));
   }
-  /// A list of equal things: a table for people (one under the other, where a row has over 20 columns or a
-  /// table of its own), an array of objects for machines.
+  /// A list of similar items: a table for people (one below the other, if a row has over 20 columns or a
+  /// table of its own), an array of objects for programs.
   Report& add(std::string key, std::vector<Report> rows);
   Report& add(std::string key, std::vector<std::string> lines);
 
-  /// Makes the process end with this fault's exit code although the report was made (`validate` found
-  /// faults).
+  /// Makes the process end with this fault's exit code although there is a report (`validate` found faults).
   Report& ends_with(schema::Fault fault);
   int exit_code() const { return exit_code_; }
   bool empty() const { return entries_.empty(); }
