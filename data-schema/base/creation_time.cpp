@@ -10,7 +10,7 @@
 namespace tacto::schema {
 namespace {
 
-// Up to the year 9999: later ones would not fit the form.
+// Up to the year 9999: later ones would not fit into the format.
 constexpr std::time_t kLatest = 253402300799;
 
 std::optional<std::time_t> given_time() {

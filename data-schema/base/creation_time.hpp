@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The date that a new file of ours carries.
+// The creation date of a new file.
 #pragma once
 
 #include <string>

@@ -30,7 +30,7 @@ float log2_of(float x) {
 void to_decibels(std::span<const float> cells, float factor, std::span<float> out) {
   constexpr float kLeast = std::numeric_limits<float>::min();
   const float scale = factor * kLog10Of2;
-  unsigned odd = 0;  // a float's minimum would keep the loop from vector instructions
+  unsigned odd = 0;  // a float's minimum would prevent vector instructions
   const float* const in = cells.data();
   float* const result = out.data();
   for (std::size_t i = 0, count = out.size(); i < count; ++i) {
@@ -38,12 +38,12 @@ void to_decibels(std::span<const float> cells, float factor, std::span<float> ou
     odd |= static_cast<unsigned>(!(in[i] >= kLeast));
   }
   if (odd == 0) return;
-  for (std::size_t i = 0; i < out.size(); ++i)  // nothing, denormals, NaN
+  for (std::size_t i = 0; i < out.size(); ++i)  // zero, denormals, NaN
     if (!(cells[i] >= kLeast))
       out[i] = cells[i] > 0 ? factor * std::log10(cells[i]) : std::numeric_limits<float>::quiet_NaN();
 }
 
-// Block by block, so that what is read and what is written both stay in the first cache.
+// Block by block, so that input and output both stay in the first cache.
 void transpose(std::span<const float> cells, std::size_t rows, std::size_t columns, std::span<float> out) {
   constexpr std::size_t kBlock = 16;
   for (std::size_t r = 0; r < rows; r += kBlock)

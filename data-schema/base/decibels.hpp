@@ -8,7 +8,7 @@
 namespace tacto::schema {
 
 /// out[i] = factor * log10(cells[i]), within 2e-5 dB for factors up to 20 (single precision, a polynomial of
-/// the mantissa); NaN where a cell is not above 0. As many as `out` has.
+/// the mantissa); NaN where a cell is not above 0. `out` gives the number of cells.
 void to_decibels(std::span<const float> cells, float factor, std::span<float> out);
 
 /// The transposed rows: from `rows` rows of `columns` to `columns` rows of `rows`.

@@ -10,11 +10,11 @@ namespace tacto::schema {
 
 /// The kind of a failure; each has an exit code of its own (see exit_code).
 enum class ErrorKind {
-  internal,             ///< a bug of ours
+  internal,             ///< a bug in tactograph
   usage,                ///< the command line or an option's value
   not_found,            ///< a file or device that is not there, or may not be read
   malformed,            ///< a file whose content breaks its format
-  unsuitable,           ///< well-formed data that the operation can't work on (a stroke too short, say)
+  unsuitable,           ///< well-formed data that the operation can't use (a stroke too short, say)
   unsupported_version,  ///< written by a newer major version
   cannot_write,         ///< an output folder or file that can't be written
   device,               ///< a device that failed or refused

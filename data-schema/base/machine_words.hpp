@@ -5,7 +5,7 @@
 
 namespace tacto::schema {
 
-/// Processor, compiler and kind of build: what costs that were measured hold for.
+/// Processor, compiler and kind of build: the conditions under which measured costs are valid.
 std::string machine_words();
 
 }  // namespace tacto::schema

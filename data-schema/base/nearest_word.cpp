@@ -29,7 +29,7 @@ std::size_t typing_errors(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_word(std::string_view typed, std::span<const std::string> words) {
-  constexpr std::size_t kLongest = 64;  // longer words are no typing errors; time grows with the square
+  constexpr std::size_t kLongest = 64;  // longer words are not typing errors; time grows with the square
   std::string nearest;
   std::size_t fewest = kLongest;
   for (const std::string& word : words) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What somebody probably meant by a misspelt word.
+// Suggestions for misspelt words.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 namespace tacto::schema {
 
 /// The word that takes the fewest typing errors (a letter left out, added, replaced, or two swapped: optimal
-/// string alignment), where these are at most a third of its letters, or one; upper and lower case alike.
-/// Empty where none is that near.
+/// string alignment), if these are at most a third of its letters, or one; upper and lower case are alike.
+/// Empty if no word is that near.
 std::string nearest_word(std::string_view typed, std::span<const std::string> words);
 
 /// ", did you mean 'word'?", or nothing.

@@ -65,7 +65,7 @@ constexpr Unit kUnits[] = {
     {"%", Dimension::share, 1e-2},
 };
 
-// Units that are read but never chosen to write with: "cm" would surprise where "12 mm" is expected.
+// Units that are read but not used for writing: "cm" would surprise where "12 mm" is expected.
 bool for_reading_only(const Unit& unit) {
   const std::string_view symbol = unit.symbol;
   const bool of_gravity = unit.dimension == Dimension::acceleration && symbol.ends_with('g');
@@ -91,7 +91,7 @@ std::string canonical(std::string_view symbol) {
   return text;
 }
 
-// "g" is a mass and an acceleration: the dimension that is wanted decides, else the first that has it.
+// "g" is a mass and an acceleration: the requested dimension decides, else the first that has it.
 std::optional<Unit> unit_named(std::string_view symbol, Dimension target = Dimension::mass) {
   std::optional<Unit> any;
   for (const Unit& unit : kUnits) {

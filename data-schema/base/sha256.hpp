@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SHA-256 of bytes that come piece by piece.
+// SHA-256 of bytes that arrive in parts.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ class Sha256 {
   ~Sha256();
 
   void add(std::string_view bytes);
-  /// Of all bytes since the beginning, in lower-case hexadecimal; then it begins anew.
+  /// Of all bytes since the beginning, in lower-case hexadecimal; then it starts again.
   std::string hexadecimal();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Evenly sampled signals, with the axis in the type: a signal over time never passes for one over space.
+// Evenly sampled signals, with the axis in the type: a signal over time cannot be used as one over space.
 #pragma once
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 
 namespace tacto::schema {
 
-// open() takes the lowest number that is free.
+// open() returns the lowest free number.
 void open_closed_descriptors() noexcept {
   int opened = 0;
   while (opened >= 0 && opened <= STDERR_FILENO) opened = open("/dev/null", O_RDWR);

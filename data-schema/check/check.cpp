@@ -13,7 +13,7 @@ Checked one_finding(const std::string& where, const std::string& what) {
   return {{{where, what}}, {}};
 }
 
-// What only a missing or a newer file can't be judged by.
+// Errors that end the check: a missing or a newer file cannot be checked.
 bool ends_the_check(const Error& error) {
   return error.kind == ErrorKind::not_found || error.kind == ErrorKind::unsupported_version ||
          error.kind == ErrorKind::internal;
@@ -24,7 +24,7 @@ Result<Checked> judged(const Error& error) {
   return one_finding(error.where, error.what);
 }
 
-// What no schema can say: read_transducer knows.
+// Checks that a schema cannot express: read_transducer does them.
 std::vector<Finding> check_transducer(const std::string& path) {
   const auto transducer = read_transducer(path);
   if (transducer) return {};

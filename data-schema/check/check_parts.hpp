@@ -16,17 +16,17 @@ std::vector<Finding> check_recording(const std::string& path, const Document& do
 std::vector<Finding> check_texture(const std::string& path, const Document& document,
                                    const Progress& progress);
 
-/// Whether the scene's textures are there and of one kind.
+/// Checks that the scene's textures exist and are of one kind.
 std::vector<Finding> check_scene(const std::string& path, const Document& document);
 
 /// Errors: as of check_file.
 Result<Checked> check_session(const std::string& path);
 Result<Checked> check_spectrogram(const std::string& path);
-/// Of a spectrogram that is readable: its checksum, and whether decibels and flags are those of its cells. A
-/// file without a checksum (before version 1.2) gives a note. Errors: malformed, of reading.
+/// Of a spectrogram that is readable: checks its checksum, and that decibels and flags agree with its cells.
+/// A file without a checksum (before version 1.2) gives a note. Errors: malformed, of reading.
 Result<Checked> check_spectrogram_cells(const std::string& path);
 
-/// What a sidecar says of its WAV.
+/// The properties of a WAV according to its sidecar.
 struct ExpectedWav {
   std::string path;
   std::string sha256;
@@ -36,7 +36,7 @@ struct ExpectedWav {
   std::vector<Channel> channels;
 };
 
-/// Compares header, length, checksum and samples of the WAV with what is expected.
+/// Compares header, length, checksum and samples of the WAV with the expected ones.
 std::vector<Finding> check_wav(const ExpectedWav& expected, const Progress& progress);
 
 }  // namespace tacto::schema

@@ -12,8 +12,8 @@
 namespace tacto::schema {
 namespace {
 
-// Times come from the gaps' counts; the number of the frame behind each tells whether a gap is missing, or
-// stands there twice. The first that does is enough: it moves all others.
+// Times are computed from the gaps' counts; the number of the frame behind each gap shows whether a gap is
+// missing or there twice. Only the first fault is reported: it shifts all later ones.
 std::optional<Violation> sequence_breach(const RecordingHeader& header) {
   std::uint64_t missing = 0;
   for (std::size_t i = 0; i < header.gaps.size(); ++i) {

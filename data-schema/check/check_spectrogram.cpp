@@ -13,7 +13,7 @@ namespace {
 void add_axes(const std::string& path, const Spectrogram& spectrogram, std::vector<Finding>& findings) {
   const auto& positions = spectrogram.position_m;
   if (positions.empty() || spectrogram.bins == 0) findings.push_back({path, "has no cells"});
-  // `not less` rather than `greater or equal`: NaN is no position either.
+  // `not less` instead of `greater or equal`: NaN is not a position either.
   const auto stuck = std::ranges::adjacent_find(positions, [](double a, double b) { return !(a < b); });
   if (stuck != positions.end())
     findings.push_back(
@@ -38,7 +38,7 @@ void add_cells(const std::string& path, const Spectrogram& spectrogram, std::vec
        fmt::format("{} is no density", *found)});
 }
 
-// The checksum, and what was computed of the cells.
+// The checksum, and the values that were computed from the cells.
 Result<Checked> check_stored_cells(const std::string& path, Checked checked) {
   const auto stored = check_spectrogram_cells(path);
   TACTO_TRY(stored);

@@ -13,7 +13,7 @@
 namespace tacto::schema {
 namespace {
 
-// Other machines round the logarithm otherwise: to_decibels() is within 2e-5.
+// Other machines round the logarithm differently: to_decibels() is within 2e-5.
 constexpr float kSameDecibels = 1e-3F;
 
 // One spectrogram of a file, as stored.
@@ -90,7 +90,7 @@ std::string sum_of(const StoredCells& s) {
   return sum.hexadecimal();
 }
 
-// The first cell whose decibels are not its own.
+// The first cell with wrong decibels.
 std::optional<std::size_t> wrong_decibels(const StoredCells& s) {
   std::vector<float> own(s.cells.size()), turned(s.cells.size());
   to_decibels(s.cells, s.cells_name == "amplitude" ? 20.0F : 10.0F, own);
@@ -103,7 +103,7 @@ std::optional<std::size_t> wrong_decibels(const StoredCells& s) {
   return std::nullopt;
 }
 
-// Rounding may put a limit on either side of a bin: such a bin may be known or not.
+// Rounding may move a limit to either side of a bin: such a bin may be valid or not.
 std::optional<std::size_t> wrong_flag(const StoredCells& s) {
   constexpr double kRounding = 1e-9;
   for (std::size_t p = 0; p < s.known_from.size(); ++p)

@@ -9,7 +9,7 @@
 namespace tacto::schema {
 namespace {
 
-// The end of libsndfile's words for a sample format.
+// The end of libsndfile's text for a sample format.
 std::string_view words_for(SampleFormat format) {
   if (format == SampleFormat::pcm32) return "32 bit PCM";
   return format == SampleFormat::float32 ? "32 bit float" : "64 bit float";

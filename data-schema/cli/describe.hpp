@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `info` says of each kind of file, as a report.
+// The reports of `info` for each kind of file.
 #pragma once
 
 #include <string>
@@ -24,19 +24,19 @@ Result<cli::Report> describe_session_table(const std::string& path);
 Result<cli::Report> describe_results(const std::string& path);
 Result<cli::Report> describe_trade(const std::string& path);
 
-/// The report's first lines: file, kind, and by what it was simulated where it was.
+/// The report's first lines: file, kind, and what simulated it.
 cli::Report report_of(FileKind kind, const std::string& path, const std::string& simulated);
 
-/// A table of the strokes that were counted while recording, where there are any.
+/// A table of the strokes that were detected during recording, if there are any.
 void add_strokes(cli::Report& report, const RecordingHeader& header);
 
-/// Adds the text where there is one.
+/// Adds the text if there is one.
 void add_text(cli::Report& report, const char* key, const std::string& text);
 
 /// `key` with the ending of a unit: key_in("rms", "N") is "rms_n". Without an ending for "1".
 std::string key_in(const char* key, const std::string& unit);
 
-/// Says on stderr that a file is of a newer minor version, where it is.
+/// Warns on stderr that a file is of a newer minor version.
 void warn_of_version(const std::string& path, const std::string& newer_version);
 
 }  // namespace tacto::schema

@@ -7,8 +7,8 @@
 namespace tacto::schema {
 namespace {
 
-// Of a zero, which is a stored number, and beside it what it makes of nothing in the channel's unit: by the
-// entry's own scale, or the device's where it has none.
+// For a zero, which is a stored number, also its value in the channel's unit: by the entry's own scale, or
+// the device's if it has none.
 void add_zero(cli::Report& row, const CalibrationEntry& entry) {
   if (!entry.zero) return;
   const double scale = entry.scale.value_or(entry.nominal_scale);

@@ -44,7 +44,7 @@ void add_measured(cli::Report& report, const SessionHeader& header, const Sessio
       .add("lost_measured_samples", totals.lost_samples);
 }
 
-// After which tick, for the device may be ahead of what the host knows.
+// The tick after which it took effect, because the device may be ahead of the host's knowledge.
 void add_changes(cli::Report& report, const std::vector<SessionChange>& changes) {
   if (changes.empty()) return;
   std::vector<cli::Report> rows;

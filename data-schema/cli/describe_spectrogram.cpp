@@ -44,7 +44,7 @@ Result<Report> describe_spectrogram(const std::string& path) {
   report.add("texture", spectrogram->name)
       .add("quantity", spectrogram->quantity)
       .add("unit", spectrogram->unit);
-  // With several strokes the rest of the report is of the first.
+  // With several strokes the rest of the report describes the first.
   report.add("strokes", spectrogram->strokes);
   add_axes(report, *spectrogram);
   add_windowing(report, *spectrogram);

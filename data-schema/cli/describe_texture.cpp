@@ -26,7 +26,7 @@ void add_grid(Report& report, const Texture& texture) {
   report.add("source_origin_m", texture.source_origin_m);
 }
 
-// The band that holds at every position, and the one that holds anywhere.
+// The band that is valid at every position, and the one that is valid somewhere.
 void add_band(Report& report, const std::vector<BandPoint>& band) {
   if (band.empty()) return;
   const auto low = std::ranges::minmax_element(band, {}, &BandPoint::low_per_m);

@@ -39,7 +39,7 @@ Result<cli::Report> describe(const StoredFile& file) {
   return fail(ErrorKind::internal, "a kind of file that nobody describes", file.path);
 }
 
-// A stem can stand for several files: the first is described, the others are named.
+// A stem can name several files: the first is described, the others are listed.
 Result<cli::Report> describe_name(const std::string& name) {
   const auto files = stored_files(name);
   TACTO_TRY(files);

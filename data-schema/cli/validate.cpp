@@ -14,8 +14,7 @@ struct ValidateOptions {
 // Every file of every name, checked.
 struct Outcome {
   std::vector<cli::Report> files, faults;
-  ErrorKind worst =
-      ErrorKind::malformed;  // a file that can't be read at all counts for more than one that is faulty
+  ErrorKind worst = ErrorKind::malformed;  // an unreadable file counts more than a faulty one
 };
 
 Result<void> check(const StoredFile& file, Outcome& outcome) {
@@ -31,8 +30,8 @@ Result<void> check(const StoredFile& file, Outcome& outcome) {
   return {};
 }
 
-// A file that can't be read, is no JSON, or no kind of ours, is a fault of the file like any other: the rest
-// is checked all the same.
+// A file that cannot be read, is not JSON, or is of an unknown kind is a fault like any other: the other
+// files are still checked.
 void put_unreadable(const std::string& name, const Error& error, Outcome& outcome) {
   outcome.files.push_back(cli::Report().add("file", name).add("kind", "unknown").add("valid", false));
   outcome.faults.push_back(cli::Report().add("where", error.where).add("what", error.what));

@@ -6,7 +6,7 @@
 namespace tacto::cli {
 namespace {
 
-// CLI11's callbacks answer a wrong value by throwing.
+// CLI11's callbacks report a wrong value by an exception.
 double share_above_nothing(const std::string& text) {
   const auto share = schema::parse_quantity(text, schema::Dimension::share);
   if (!share) throw CLI::ValidationError("--max-error", schema::message(share.error()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --quality, --max-error and --explain, alike in every verb that chooses by them.
+// --quality, --max-error and --explain, the same in every verb that has them.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct BudgetOptions {
   bool explain = false;
 };
 
-/// `chosen` says in words what the budget chooses, for the help. Both must outlive the parser.
+/// `chosen` describes for the help what the budget chooses. Both must outlive the parser.
 void declare_budget(CLI::App& app, BudgetOptions& options, const std::string& chosen);
 
 }  // namespace tacto::cli

@@ -29,8 +29,7 @@ constexpr std::string_view kFooter =
     "5 data that cannot be used for this, 6 file of a newer version, 7 can't write, 8 device failed.\n"
     "Quantities carry their unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
 
-// A verb that writes its results to files says on the terminal what fits on half a screen.
-// Warnings are among these lines.
+// A verb that writes its results to files prints at most half a screen. Warnings are among these lines.
 constexpr std::size_t kLinesBesideFiles = 15, kFewestLines = 6;
 
 using Verbs = std::span<const Verb* const>;
@@ -69,7 +68,7 @@ std::string printed(Report report, const Entry& entry) {
   return report.json();
 }
 
-// A full disk or a closed pipe behind stdout is a failure to write like any other.
+// A full disk or a closed pipe behind stdout is a failure to write.
 int print_report(const Report& report, const Entry& entry) {
   const std::string text = printed(report, entry);
   const bool written =
@@ -97,7 +96,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-// The first argument that no option takes, with the option that was probably meant.
+// The first unknown argument, with the option that was probably meant.
 std::string nearest_option(const CLI::App& app, const CLI::App& verb) {
   for (const std::string& argument : app.remaining(true))
     if (argument.starts_with("--"))
@@ -130,7 +129,7 @@ std::vector<std::string> verb_names(Verbs verbs) {
   return names;
 }
 
-// CLI11 would only say that a subcommand is required.
+// CLI11's own message says only that a subcommand is required.
 bool is_unknown_verb(Verbs verbs, std::string_view word) {
   const auto names = verb_names(verbs);
   return !word.starts_with('-') && std::ranges::find(names, word) == names.end();
@@ -148,7 +147,7 @@ int print_text(const std::string& text) {
   return std::fputs(text.c_str(), stdout) < 0 ? schema::exit_code(schema::ErrorKind::cannot_write) : 0;
 }
 
-// Of a verb, of a topic, or, without a word, of everything.
+// Help of a verb or a topic, or, without a word, of everything.
 int print_help(const CLI::App& app, const std::string& word, Topics topics, bool json) {
   if (word.empty()) return print_text(app.help() + "\nTopics of 'tactograph help':\n" + topics_text(topics));
   for (const CLI::App* verb : app.get_subcommands({}))
@@ -163,7 +162,7 @@ int print_help(const CLI::App& app, const std::string& word, Topics topics, bool
       json);
 }
 
-// Verbs that end in another way when asked (record) have handlers of their own meanwhile.
+// Verbs that end in another way (record) set handlers of their own.
 void leave_nothing_behind(int signal) {
   schema::remove_pending_files();
   std::signal(signal, SIG_DFL);

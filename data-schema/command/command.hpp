@@ -10,8 +10,9 @@
 
 namespace tacto::cli {
 
-/// Runs one command line; `topics` are what `help` explains beside verbs. Results go to stdout, talk and
-/// errors to stderr. Gives the exit code: 0, or exit_code() of the fault (2 for the command line itself).
+/// Runs one command line; `topics` are explained by `help` beside the verbs. Results go to stdout, messages
+/// and errors to stderr. Returns the exit code: 0, or exit_code() of the fault (2 for the command line
+/// itself).
 int run_command(std::span<const Verb* const> verbs, int argc, const char* const* argv,
                 std::span<const HelpTopic* const> topics = {});
 

@@ -12,7 +12,7 @@
 namespace tacto::cli {
 namespace {
 
-// What a verb takes, by the option before the word, or "positional".
+// The completions of a verb, by the option before the word, or "positional".
 struct Taken {
   std::set<std::string> options = {"--json"};
   std::map<std::string, std::string> values, units;
@@ -33,7 +33,7 @@ void add_type(const std::string& name, const std::string& type, Taken& taken) {
     taken.values[name] = with_spaces(type, "|");
 }
 
-// Those of a verb's parts too (calibrate tare).
+// Also those of a verb's parts (calibrate tare).
 void add_options(const CLI::App& app, Taken& taken) {
   for (const CLI::Option* option : app.get_options()) {
     std::vector<std::string> names;
@@ -88,7 +88,7 @@ std::string cases_of(const Verb& verb) {
   return cases;
 }
 
-// Bash breaks words at : and =, so that what was typed of a device is taken from the line.
+// Bash breaks words at : and =, so the typed part of a device URI is taken from the line.
 constexpr std::string_view kTail = R"(  esac
   local token=$word
   [ -n "$COMP_LINE" ] && token=${COMP_LINE:0:COMP_POINT} && token=${token##* }

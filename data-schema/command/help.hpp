@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `tactograph help TOPIC` says beside the help of verbs.
+// The texts of `tactograph help TOPIC`, beside the help of verbs.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace tacto::cli {
 
-/// A topic that a folder explains: the keys of `sim:`, say.
+/// A topic of a folder, for example the keys of `sim:`.
 struct HelpTopic {
   std::string_view name, summary;
   std::string (*text)();
@@ -21,7 +21,7 @@ std::string topics_text(std::span<const HelpTopic* const> topics);
 /// Names of all topics.
 std::vector<std::string> topic_names(std::span<const HelpTopic* const> topics);
 
-/// What the topic explains; empty where there is no such topic.
+/// The text of the topic; empty if there is no such topic.
 std::string topic_text(std::string_view name, std::span<const HelpTopic* const> topics);
 
 }  // namespace tacto::cli

@@ -81,7 +81,7 @@ std::string exit_status() {
 
 ManPage page_of(const Verb& verb) {
   CLI::App app;
-  const Action action = verb.declare(app);  // what the options are bound to has to live as long
+  const Action action = verb.declare(app);  // the variables of the options must live as long
   put_below_headings(verb.name, app);
   const std::string name = fmt::format("tactograph-{}", verb.name);
   std::string text = heading(name, verb.summary);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Manual pages in section 1, made from the table of verbs: what `man tactograph-spatial` shows.
+// Manual pages in section 1, made from the table of verbs, for `man tactograph-spatial`.
 #pragma once
 
 #include <span>

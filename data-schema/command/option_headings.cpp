@@ -39,7 +39,7 @@ struct Heading {
   Names names;
 };
 
-// An option means the same in every verb.
+// An option has the same meaning in every verb.
 const Heading kHeadings[] = {
     {"Strokes and alignment",
      {"channel", "stroke", "from", "to", "finger-up", "both-ways", "align", "align-range", "max-shift"}},

@@ -7,8 +7,8 @@
 
 namespace tacto::cli {
 
-/// Of a verb with more than ten options: the usual ones, ten at most, come first; every other one below the
-/// heading of what it is about. Call it when all options are declared.
+/// For a verb with more than ten options: the usual ones, ten at most, come first; the others are below a
+/// heading for each subject. Call it after all options are declared.
 void put_below_headings(std::string_view verb, CLI::App& app);
 
 }  // namespace tacto::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --force and --unfit-transducer, alike in every verb that has them.
+// --force and --unfit-transducer, the same in every verb that has them.
 #pragma once
 
 #include "data-schema/command/verb.hpp"
@@ -7,15 +7,15 @@
 
 namespace tacto::cli {
 
-/// --force: outputs replace files of their names. Sets `existing` to keep, with the flag to replace; it must
+/// --force: outputs replace existing files. Sets `existing` to keep, with the flag to replace; it must
 /// outlive the parser.
 void declare_force(CLI::App& app, schema::Existing& existing);
 
 /// --unfit-transducer; `taken` must outlive the parser.
 void declare_unfit_transducer(CLI::App& app, bool& taken);
 
-/// For a verb that replaces no files: --force is refused, and the message names --unfit-transducer, which was
-/// once called so.
+/// For a verb that replaces no files: --force is refused, and the message names --unfit-transducer, the new
+/// name of the option.
 void refuse_force(CLI::App& app);
 
 }  // namespace tacto::cli

@@ -8,7 +8,7 @@
 namespace tacto::cli {
 namespace {
 
-// Handlers have no other way to the outside.
+// A signal handler can reach only global variables.
 std::atomic<bool> stop_is_asked{false};
 std::atomic<std::size_t> marks_asked{0};
 static_assert(std::atomic<std::size_t>::is_always_lock_free);

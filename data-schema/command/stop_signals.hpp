@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people ask of long work under way by signals.
+// Signals that control long work in progress.
 #pragma once
 
 #include <csignal>
@@ -7,8 +7,9 @@
 
 namespace tacto::cli {
 
-/// While it lives, SIGINT and SIGTERM ask to stop, SIGHUP too (the terminal went), and SIGUSR1 marks; before
-/// and after, signals do what they did. A second SIGINT ends the process at once. One at a time.
+/// While the object exists, SIGINT and SIGTERM ask to stop, also SIGHUP (the terminal was closed), and
+/// SIGUSR1 sets a mark; before and after, signals act as usual. A second SIGINT ends the process at once. One
+/// object at a time.
 class StopSignals {
  public:
   StopSignals();

@@ -57,7 +57,7 @@ std::size_t choose(const std::string& option, const std::string& word,
   return static_cast<std::size_t>(found - words.begin());
 }
 
-// CLI11's own says between which 309 digits the number must be.
+// CLI11's own message prints a range with 309 digits.
 const CLI::Validator& from_one() {
   static const CLI::Validator kFromOne(
       [](std::string& text) {

@@ -16,12 +16,12 @@
 
 namespace tacto::cli {
 
-/// What a verb does once its options are read: the report for stdout, or the error for stderr and the exit
-/// code.
+/// The work of a verb after its options are read: gives the report for stdout, or the error for stderr and
+/// the exit code.
 using Action = std::function<schema::Result<Report>()>;
 
-/// An entry of the table in tactograph.cpp. `declare` adds the options to `app`, keeps their values in an
-/// object that the action shares, and gives the action.
+/// An entry of the table in tactograph.cpp. `declare` adds the options to `app`, stores their values in an
+/// object shared with the action, and returns the action.
 struct Verb {
   std::string_view name;
   std::string_view summary;
@@ -36,7 +36,7 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value_
 CLI::Option* add_quantity(CLI::App& app, const std::string& name, std::optional<double>& value_si,
                           schema::Dimension dimension, const std::string& help);
 
-/// The words that an option takes and what each means; the first that has the value is the default shown.
+/// The words of an option and their meanings; the first with the current value is shown as default.
 template <class Choice>
 using Choices = std::vector<std::pair<std::string, Choice>>;
 
@@ -46,7 +46,7 @@ std::string words_of(const std::vector<std::string>& words);
 /// only.
 std::size_t choose(const std::string& option, const std::string& word, const std::vector<std::string>& words);
 
-/// An option that takes one of some words.
+/// An option with one of several words as its value.
 template <class Choice>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Choice& value, const Choices<Choice>& choices,
                         const std::string& help) {
@@ -64,10 +64,10 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Choice& value, c
       ->default_str(standard);
 }
 
-/// For an option that counts: a whole number from 1.
+/// For an option that is a count: a whole number from 1.
 const CLI::Validator& from_one();
 
-/// One line to stderr: what the user should know although the job goes on.
+/// One line to stderr: a warning; the work continues.
 void warn(const std::string& text);
 
 }  // namespace tacto::cli

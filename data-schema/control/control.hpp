@@ -34,9 +34,9 @@ struct ControlRequest {
   std::optional<double> dead_man_s;  ///< arm
   std::optional<double> gain;
   bool save = false;
-  std::vector<std::string> passed_over;  ///< members at top level that are not known
-  /// What the socket knows of who asks; in no line.
-  std::string asked_by;  ///< who saves
+  std::vector<std::string> passed_over;  ///< unknown members at top level
+  /// Filled in by the socket; not in the line.
+  std::string asked_by;  ///< the user, for a saved gain
   std::uint64_t client = 0;
   bool by_tcp = false;
 };
@@ -46,7 +46,7 @@ using ControlValue = std::variant<bool, std::int64_t, double, std::string, std::
 using ControlFields = std::vector<std::pair<std::string, ControlValue>>;
 
 /// One line without its newline. Errors: malformed, naming the member; unsupported_version, in hello.
-/// `id_json`, where given, gets the request's id also where the rest is faulty.
+/// `id_json`, if given, gets the request's id also if the rest is faulty.
 Result<ControlRequest> parse_control_request(std::string_view line, std::string* id_json = nullptr);
 /// The same as a line, newline included.
 std::string control_request_line(const ControlRequest& request);
@@ -57,7 +57,7 @@ std::string control_reply_line(const std::string& id_json, const ControlFields& 
 std::string control_error_line(const std::string& id_json, const Error& error);
 std::string control_event_line(std::string_view name, const ControlFields& fields);
 
-/// What came back. `event` is its name where it is one.
+/// An answer or an event. `event` is the event's name.
 struct ControlReply {
   bool ok = false;
   std::string event;
@@ -65,10 +65,10 @@ struct ControlReply {
   ControlFields fields;
 };
 
-/// Errors: malformed, where it is none.
+/// Errors: malformed, if it is neither.
 Result<ControlReply> parse_control_reply(std::string_view line);
 
-/// A field's number or text; `fallback` where there is none.
+/// A field's number or text; `fallback` if there is none.
 double control_number(const ControlFields& fields, std::string_view name, double fallback = 0);
 std::string control_text(const ControlFields& fields, std::string_view name);
 

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 9> kControlVerbs = {"hello",  "load", "ar
 constexpr int kDeepestRequest = 3;
 constexpr std::string_view kRequestWhere = "request";
 
-// What an object says twice is named; all else that is no request is answered alike.
+// A member that appears twice is named; everything else that is not a request gets the same answer.
 Result<Json> request_json(std::string_view line) {
   auto body = parse_json(line, std::string(kRequestWhere), kDeepestRequest);
   if (body || !body.error().remedy.empty()) return body;
@@ -32,7 +32,7 @@ std::string id_in(const Json& body) try {
   if (!body.is_object() || !body.contains("id")) return {};
   const Json& id = body["id"];
   return id.is_string() || id.is_number() ? id.dump() : std::string();
-} catch (const std::exception&) {  // text that is not UTF-8
+} catch (const std::exception&) {  // not UTF-8
   return {};
 }
 
@@ -41,7 +41,7 @@ tl::unexpected<Error> bad_member(const char* member, std::string what, std::stri
               std::move(remedy));
 }
 
-// A member says what it is; without one the request itself is wrong.
+// The description of a member; without a member the request itself is wrong.
 std::string remedy_for(const std::string& pointer, const Json& rules) {
   if (auto range = remedy_at(pointer, rules); !range.empty()) return range;
   if (auto meaning = meaning_at(pointer, rules); !meaning.empty()) return meaning;
@@ -68,7 +68,7 @@ Result<void> check_members(const ControlRequest& request) {
   return {};
 }
 
-// Who says what another request is told means that one: it is not lost, for it may be a limit.
+// A member of another request was meant for that request: it must not be ignored, because it may be a limit.
 Result<void> check_taken(const Json& body, ControlVerb verb) {
   constexpr std::array<std::pair<const char*, ControlVerb>, 12> kTakenBy = {
       {{"version", ControlVerb::hello},
@@ -125,7 +125,7 @@ bool is_sendable(const ControlValue& value) {
   return number == nullptr || std::isfinite(*number);
 }
 
-// Text of the system's that is no UTF-8 must not make a reply fail.
+// A system text that is not UTF-8 must not make an answer fail.
 std::string line_of(const Json& body) {
   return body.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactographd's configuration, one JSON file: schemas/daemon.schema.json says what each member means.
+// tactographd's configuration, one JSON file: schemas/daemon.schema.json describes each member.
 #pragma once
 
 #include <optional>
@@ -30,7 +30,7 @@ struct DaemonConfig {
   bool undo_hysteresis = true;
   Budget budget;  ///< of what is loaded
   std::optional<double> max_tick_ns;
-  PlaybackChoices playback;  ///< for what neither a request nor a scene says
+  PlaybackChoices playback;  ///< if neither a request nor a scene sets them
 };
 
 /// Errors: not_found; malformed, by JSON pointer, also for a member that does not exist; unsupported_version.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files brought to the disk while they are written. Internal to this folder.
+// Syncs files to disk while they are written. Internal to this folder.
 #pragma once
 
 #include <condition_variable>
@@ -14,17 +14,17 @@
 
 namespace tacto::schema {
 
-/// Syncs files every so often on a thread of its own: a busy disk may take a second for it, and whoever
-/// writes must not wait, or what comes meanwhile would stay in memory and die with the process.
+/// Syncs files periodically on a thread of its own. A sync may take a second on a busy disk. The writer must
+/// not wait for it: frames that arrive meanwhile would stay in memory and be lost with the process.
 class BackgroundSync {
  public:
-  /// The files are there, and may take other names later. Errors: cannot_write.
+  /// The files exist, and may be renamed later. Errors: cannot_write.
   static Result<std::unique_ptr<BackgroundSync>> start(const std::vector<std::string>& paths, double every_s);
   BackgroundSync(const BackgroundSync&) = delete;
   BackgroundSync& operator=(const BackgroundSync&) = delete;
   ~BackgroundSync();
 
-  /// Says that something was written. Doesn't wait for the disk. Errors: cannot_write, of a sync since then.
+  /// Call it after each write. Does not wait for the disk. Errors: cannot_write, of a sync since then.
   Result<void> written();
 
  private:
@@ -37,7 +37,7 @@ class BackgroundSync {
   void sync_all();
 
   const double every_s_;
-  std::vector<Synced> files_;  // of the thread, once it runs
+  std::vector<Synced> files_;  // belong to the thread while it runs
   std::mutex mutex_;
   std::condition_variable changed_;
   bool written_ = false, stop_ = false;

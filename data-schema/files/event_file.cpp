@@ -49,8 +49,8 @@ Result<EventFile> EventFile::create(const std::string& path) {
   const int opened = open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
   if (opened < 0) return unwritable_log(path, errno);
   EventFile file(path, opened);
-  flock(opened, LOCK_EX | LOCK_NB);  // held by nobody else: the file is new
-  // Where a file system can't, a full disk may leave a recording to be recovered instead of closed.
+  flock(opened, LOCK_EX | LOCK_NB);  // nobody else has the lock: the file is new
+  // On a file system that cannot reserve room, a full disk may leave a recording that has to be recovered.
   [[maybe_unused]] const int kept = fallocate(opened, FALLOC_FL_KEEP_SIZE, 0, kRoom);
   return file;
 }
@@ -80,7 +80,7 @@ Result<void> EventFile::remove() {
   return unlink(path_.c_str()) == 0 ? Result<void>{} : unwritable_log(path_, errno);
 }
 
-// By device and inode, which need no /proc.
+// Identifies files by device and inode, without /proc.
 bool EventFile::is_at_its_path() const {
   struct stat here {
   }, there{};

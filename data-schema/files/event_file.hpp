@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The file of events of a recording under way: appended to, locked, with room kept. Internal to this folder.
+// The file of events of a recording in progress: appended to, locked, with reserved room. Internal to this
+// folder.
 #pragma once
 
 #include <string>
@@ -8,12 +9,12 @@
 
 namespace tacto::schema {
 
-/// Owns the open file and its lock, and lets go of both in the end; the file itself stays.
+/// Owns the open file and its lock, and releases both at the end; the file itself stays.
 class EventFile {
  public:
-  /// A new file, locked. Errors: usage, where it is there; cannot_write.
+  /// Creates a file and locks it. Errors: usage, if it exists; cannot_write.
   static Result<EventFile> create(const std::string& path);
-  /// A file that is there. Errors: not_found; unsuitable, where the one who writes it still has it locked.
+  /// Opens an existing file. Errors: not_found; unsuitable, if its writer still has the lock.
   static Result<EventFile> lock(const std::string& path);
   EventFile(EventFile&& other) noexcept;
   EventFile& operator=(EventFile&& other) noexcept;
@@ -21,15 +22,15 @@ class EventFile {
 
   /// Errors: cannot_write.
   Result<void> append(const std::string& text);
-  /// Gives back what was kept for the sidecar; nothing may be appended any more.
+  /// Releases the room for the sidecar; after this, nothing may be appended.
   void release_room();
   Result<void> remove();
 
-  /// Whether its path still names this file: somebody may rename its folder, or delete it.
+  /// Whether its path still names this file: the folder may have been renamed, or the file deleted.
   bool is_at_its_path() const;
-  /// Whether no name is left of it in any folder.
+  /// Whether the file has been deleted from every folder.
   bool is_deleted() const;
-  /// Where it is now, in full; empty where it was deleted, or where there is no /proc to ask.
+  /// Its current path, in full; empty if it was deleted, or without /proc.
   std::string place() const;
 
  private:
@@ -38,7 +39,7 @@ class EventFile {
   int descriptor_ = -1;
 };
 
-/// Brings a file, or the names in a folder, to the disk. Errors: cannot_write.
+/// Syncs a file, or the names in a folder, to disk. Errors: cannot_write.
 Result<void> sync_path(const std::string& path);
 
 /// The folder of a file, "." where it is named without one.

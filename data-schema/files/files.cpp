@@ -41,7 +41,7 @@ tl::unexpected<Error> unreadable(const std::string& path, int error_number) {
   return fail(ErrorKind::not_found, "can't be read: " + reason(error_number), path);
 }
 
-// A pipe, a terminal or a device may never end, or be silent for ever: it is not even opened.
+// A pipe, a terminal or a device may never end: it is not opened.
 Result<void> check_regular(const std::string& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
@@ -51,7 +51,7 @@ Result<void> check_regular(const std::string& path) {
   return {};
 }
 
-// Nor is one waited for that takes the name in between.
+// Also does not wait if one takes the name in between.
 Result<OpenFile> opened(const std::string& path) {
   TACTO_TRY(check_regular(path));
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
@@ -63,7 +63,7 @@ Result<OpenFile> opened(const std::string& path) {
   return unreadable(path, why);
 }
 
-// Gives the file to `take` piece by piece.
+// Passes the file to `take` in parts.
 template <class Take>
 Result<void> for_each_piece(const std::string& path, Take take) {
   const auto file = opened(path);
@@ -113,7 +113,7 @@ tl::unexpected<Error> taken(const std::string& path) {
               "choose another name, or replace it with --force");
 }
 
-// Some file systems can't refuse to replace; there a look beforehand has to do.
+// Some file systems cannot refuse to replace; there the name is checked before.
 Result<void> move(const std::string& temporary, const std::string& path, Existing existing) {
   const unsigned flags = existing == Existing::keep ? RENAME_NOREPLACE : 0;
   int failed = renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, path.c_str(), flags) == 0 ? 0 : errno;
@@ -126,7 +126,7 @@ Result<void> move(const std::string& temporary, const std::string& path, Existin
   return failed == 0 ? Result<void>{} : unwritable(path, failed);
 }
 
-// All of a file system at once: for many files that is far quicker than each by itself.
+// Syncs a whole file system at once: for many files that is much faster than syncing each.
 Result<void> sync_folder(const std::string& temporary, const std::string& path) {
   const int file = open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return unwritable(path, errno);
@@ -142,7 +142,7 @@ Result<void> check_readable(const std::string& path) {
   return file ? Result<void>{} : forward_error(file);
 }
 
-// A path that can't be resolved counts by its words.
+// A path that cannot be resolved is compared as text.
 std::string canonical_path(const std::string& path) {
   std::error_code failed;
   const fs::path absolute = fs::absolute(path, failed);
@@ -177,7 +177,7 @@ std::string sha256_of(std::string_view text) {
   return sum.hexadecimal();
 }
 
-// A link to nothing has the name, too.
+// A link without a target has the name, too.
 Result<void> check_output_free(const std::string& path, Existing existing) {
   std::error_code ignored;
   const bool there = fs::exists(fs::symlink_status(path, ignored));

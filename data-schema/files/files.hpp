@@ -13,7 +13,7 @@ namespace tacto::schema {
 
 struct PendingName;
 
-/// That a file is there and may be read. Errors: not_found, saying whether it is absent, a folder or not
+/// Checks that a file exists and may be read. Errors: not_found, saying whether it is absent, a folder or not
 /// permitted.
 Result<void> check_readable(const std::string& path);
 
@@ -26,11 +26,11 @@ std::string canonical_path(const std::string& path);
 /// Whether both paths name one file, which need not exist: a, ./a, x/../a, and paths through links.
 bool same_file(const std::string& a, const std::string& b);
 
-/// That a file may be changed: who renames a new one over it would not be stopped by its being read-only.
+/// Checks that a file may be changed: renaming a new file over it would succeed even if it is read-only.
 /// Errors: cannot_write.
 Result<void> check_changeable(const std::string& path);
 
-/// The whole file. Only regular files are opened, here and below: a pipe would be waited for. Errors:
+/// The whole file. Only regular files are opened, here and below: reading a pipe would wait. Errors:
 /// not_found (absent, a folder, a pipe or device, no permission).
 Result<std::string> read_file(const std::string& path);
 
@@ -38,32 +38,31 @@ Result<std::string> read_file(const std::string& path);
 Result<std::string> sha256_of_file(const std::string& path);
 std::string sha256_of(std::string_view text);
 
-/// Whether a file's SHA-256 is what a sidecar says. Errors: malformed; not_found.
+/// Checks that a file's SHA-256 is the one in a sidecar. Errors: malformed; not_found.
 Result<void> check_sum(const std::string& path, const std::string& sha256);
 
-/// What happens to files that have the names of outputs already. In verbs: keep, with --force replace.
+/// What to do with existing files that have the names of outputs. In verbs: keep, with --force replace.
 enum class Existing { replace, keep };
 
-/// Whether an output may take the name `path`, before any work is done. Errors: usage, where a file has it
-/// already and is to be kept.
+/// Checks whether an output may have the name `path`, before any work is done. Errors: usage, if a file has
+/// it already and is to be kept.
 Result<void> check_output_free(const std::string& path, Existing existing);
 
-/// The same for a sound file, which never replaces the data of a recording or texture: what has a sidecar
-/// NAME.json, or the events of a recording that was not closed. Errors: usage.
+/// The same for a sound file, which never replaces the data of a recording or texture: a file with a sidecar
+/// NAME.json, or with the events of a recording that was not closed. Errors: usage.
 Result<void> check_wav_free(const std::string& path, Existing existing);
 
-/// The same for an output that replaces only its own kind: a table or a page that `ours` knows by how its
-/// first line begins; an empty file always. Errors: usage, where a file has the name and is to be kept, or
-/// holds something else, which would be lost.
+/// The same for an output that replaces only its own kind: a table or page that `ours` recognises by its
+/// first line; an empty file is always replaced. Errors: usage, if a file has the name and is to be kept, or
+/// has other content, which would be lost.
 Result<void> check_table_free(const std::string& path, Existing existing,
                               const std::function<bool(std::string_view beginning)>& ours);
 
-/// Removes what all pending files of this process have written. For the handler of a signal that ends it:
-/// async-signal-safe.
+/// Removes all pending files of this process. For the handler of a signal that ends it: async-signal-safe.
 void remove_pending_files() noexcept;
 
-/// A set of files that are written beside their names and take them together at commit(). Until then, and
-/// after a failure, the folder is as it was; leftovers are removed by the destructor.
+/// A set of files that are written beside their final names and renamed together at commit(). Until then, and
+/// after a failure, the folder is unchanged; the destructor removes leftovers.
 class PendingFiles {
  public:
   PendingFiles() = default;
@@ -76,8 +75,9 @@ class PendingFiles {
   Result<std::string> add(const std::string& path);
   /// add() and the content at once.
   Result<void> write(const std::string& path, std::string_view content);
-  /// Syncs all to disk, then renames them in the order they were added. Errors: cannot_write; usage, where
-  /// what exists is to be kept and a name is taken, be it since a moment ago: then none of them appears.
+  /// Syncs all to disk, then renames them in the order in which they were added. Errors: cannot_write; usage,
+  /// if existing files are to be kept and a name is taken, also if it was taken a moment ago: then none of
+  /// them appears.
   Result<void> commit(Existing existing = Existing::replace);
 
  private:
@@ -93,8 +93,8 @@ class PendingFiles {
 /// or holds control characters.
 Result<void> check_stem(const std::string& stem);
 
-/// Where a file of ours is kept: "oak" and "oak.texture.json" and "oak.texture.wav" all have the stem "oak"
-/// for the suffix ".texture". For plain recordings the suffix is empty.
+/// The stem of a stored file: "oak" and "oak.texture.json" and "oak.texture.wav" all have the stem "oak" for
+/// the suffix ".texture". For plain recordings the suffix is empty.
 std::string stem_of(const std::string& name, std::string_view suffix);
 
 }  // namespace tacto::schema

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who changes a file in a folder does so alone.
+// A lock for changing a file in a folder.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace tacto::schema {
 
-/// Held while a file is read, changed and replaced: a lock on the file itself would stay with the one that
-/// was replaced. Holds among all programs that take it; where a file system has no such locks it is none.
+/// Held while a file is read, changed and replaced: a lock on the file itself would stay with the replaced
+/// file. It works between all programs that use it; without effect on a file system without such locks.
 class FolderLock {
  public:
-  /// Waits for whoever has the folder of `path`, which must be there. Errors: cannot_write.
+  /// Waits until the lock of the folder of `path` is free; the folder must exist. Errors: cannot_write.
   static Result<FolderLock> take(const std::string& path);
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&& other) noexcept;

@@ -39,7 +39,7 @@ struct TemporaryName {
   std::optional<ProcessMark> mark;  // none where an older version wrote ".TARGET.PID.N.tmp"
 };
 
-// The last dot's right side; `name` keeps the left.
+// Returns the part behind the last dot; `name` keeps the part before it.
 std::string_view take_ending(std::string_view& name) {
   const auto dot = name.rfind('.');
   if (dot == std::string_view::npos) return {};

@@ -9,7 +9,7 @@ PendingName* PendingNames::keep(const std::string& path) {
   const std::lock_guard lock(mutex_);
   PendingName* name = nullptr;
   if (free_.empty()) {
-    name = new PendingName;  // a handler may be reading it at any time to the process's end
+    name = new PendingName;  // never deleted: a signal handler may read it at any time
     name->next = first_.load();
     first_.store(name);
   } else {
@@ -32,7 +32,7 @@ void PendingNames::remove_all() const noexcept {
     if (name->there.load()) unlink(name->path.c_str());
 }
 
-// Never destroyed: files may be pending in objects that outlive it.
+// Never destroyed: objects that outlive it may have pending files.
 PendingNames& pending_names() {
   static PendingNames& names = *new PendingNames;
   return names;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of temporary files, where the handler of a signal finds them.
+// Names of temporary files, readable for a signal handler.
 #pragma once
 
 #include <atomic>
@@ -16,13 +16,13 @@ struct PendingName {
   PendingName* next = nullptr;
 };
 
-/// A list that only grows, so that a handler can walk it at any moment; what is forgotten is used again. Any
+/// A list that only grows, so that a handler can read it at any moment; forgotten entries are used again. Any
 /// thread.
 class PendingNames {
  public:
   PendingName* keep(const std::string& path);
   void forget(PendingName* name);
-  /// Unlinks all that are there. Async-signal-safe.
+  /// Unlinks all files in the list. Async-signal-safe.
   void remove_all() const noexcept;
 
  private:
@@ -31,7 +31,7 @@ class PendingNames {
   std::atomic<PendingName*> first_{nullptr};
 };
 
-/// The process's one.
+/// The list of this process.
 PendingNames& pending_names();
 
 }  // namespace tacto::schema

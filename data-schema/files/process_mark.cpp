@@ -22,13 +22,13 @@ namespace {
 constexpr std::size_t kMarkDigits = 8;
 constexpr std::string_view kNoMark = "00000000";
 
-// Files of /proc and /etc, which are short; empty where there is none.
+// Reads a file of /proc or /etc, which are short; empty if there is none.
 std::string small_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Process numbers are of one such space; containers have their own. It has no name without /proc.
+// The name space of process numbers; containers have their own. Empty without /proc.
 std::string process_number_space() {
   std::error_code unknown;
   return std::filesystem::read_symlink("/proc/self/ns/pid", unknown).string();
@@ -95,7 +95,7 @@ bool read_whole(std::string_view text, Number& number) {
 Liveness liveness_here(const ProcessMark& mark) {
   if (kill(mark.pid, 0) != 0 && errno == ESRCH) return Liveness::ended;
   const auto state = state_of(mark.pid);
-  if (!state) return Liveness::unknown;  // others' processes may be hidden
+  if (!state) return Liveness::unknown;  // processes of other users may be hidden
   const bool gone = state->letter == 'Z' || state->letter == 'X' || state->start != mark.start;
   return gone ? Liveness::ended : Liveness::runs;
 }
@@ -104,7 +104,7 @@ Liveness liveness_here(const ProcessMark& mark) {
 
 const ProcessMark& own_mark() {
   thread_local ProcessMark mark;
-  if (mark.pid == getpid()) return mark;  // a child after fork() has another number
+  if (mark.pid == getpid()) return mark;  // a child has another number after fork()
   mark = {machine_digits(), boot_digits(), getpid(), 0};
   if (const auto state = state_of(mark.pid)) mark.start = state->start;
   return mark;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which process writes a file, as part of the file's name, and whether that process still runs.
+// The process that writes a file, as part of the file's name, and whether it still runs.
 #pragma once
 
 #include <sys/types.h>
@@ -22,7 +22,7 @@ struct ProcessMark {
 enum class Liveness {
   runs,
   ended,
-  unknown,  ///< of another machine or container, or there is no /proc: it may run
+  unknown,  ///< another machine or container, or no /proc: it may run
 };
 
 /// This process. Without /proc, machine and boot are zeros, and its liveness is unknown to all.
@@ -31,11 +31,11 @@ const ProcessMark& own_mark();
 /// "1a2b3c4d-5e6f7a8b-4711-123456".
 std::string text_of(const ProcessMark& mark);
 
-/// Reads what text_of() wrote; nullopt for anything else.
+/// Reads text made by text_of(); nullopt for other text.
 std::optional<ProcessMark> parse_mark(std::string_view text);
 
-/// Whether the process of a mark runs. `last_change` is when its file was changed last: after a restart of
-/// the machine, a file that was changed since then is another machine's with the same name.
+/// Whether the process of a mark runs. `last_change`: when its file was last changed. After a restart of this
+/// machine, a file that was changed since then belongs to another machine with the same name.
 Liveness liveness_of(const ProcessMark& mark, std::time_t last_change);
 
 }  // namespace tacto::schema

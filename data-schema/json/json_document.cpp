@@ -43,7 +43,7 @@ struct KindVersion {
 };
 constexpr KindVersion kNewerKinds[] = {{"session", "1.1"}};  // 1.1: measured displacement
 
-/// The file's version where its minor version is newer than ours, else "".
+/// The file's version if its minor version is newer than this program's, else "".
 Result<std::string> newer_version(const Json& body, std::string_view kind, const std::string& where) {
   const std::string text =
       body.contains("version") && body["version"].is_string() ? body["version"].get<std::string>() : "";
@@ -84,7 +84,7 @@ Result<Json> read_json(const std::string& path) {
 
 // JSON has no NaN and no infinity; the library would write null.
 std::optional<std::string> first_not_finite(const Json& node) {
-  const Json flat = node.flatten();  // named: items() of a temporary would outlive it
+  const Json flat = node.flatten();  // a variable: items() would outlive a temporary
   for (const auto& [pointer, value] : flat.items())
     if (value.is_number_float() && !std::isfinite(value.get<double>())) return pointer;
   return std::nullopt;

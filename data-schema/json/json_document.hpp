@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON documents of ours: the wall around the JSON and JSON Schema libraries. Internal to this folder: its
-// other headers show no JSON. Nothing here throws.
+// JSON documents of tactograph: the only place that uses the JSON and JSON Schema libraries. Internal to this
+// folder: its other headers show no JSON. Nothing here throws.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ namespace tacto::schema {
 
 using Json = nlohmann::ordered_json;
 
-/// The formats' version, "major.minor", of every kind that has none of its own. A minor version only adds
+/// The version, "major.minor", of every format without a version of its own. A minor version only adds
 /// members.
 inline constexpr std::string_view kVersion = "1.0";
 
@@ -30,7 +30,7 @@ struct Violation {
 /// A document that fits its schema. Members that the schema requires are there and have their types.
 struct Document {
   Json body;
-  std::string newer_version;  ///< the file's version, where its minor version is newer than ours; else empty
+  std::string newer_version;  ///< the file's version, if its minor version is newer than this program's
 };
 
 /// Reads a file and checks kind, version and schema. Errors: not_found; malformed, with line and column or
@@ -40,11 +40,11 @@ Result<Document> open_document(const std::string& path, std::string_view kind);
 /// The same for a text in memory; `where` names it in errors.
 Result<Document> parse_document(std::string_view text, const std::string& where, std::string_view kind);
 
-/// The `kind` that a file says it is. Errors: not_found; malformed, where it isn't JSON or names no kind.
+/// The `kind` in a file. Errors: not_found; malformed, if it is not JSON or has no kind.
 Result<std::string> kind_of(const std::string& path);
 
-/// Every breach of the schema of the file's own kind; empty where it is sound. Errors: as open_document, but
-/// for the breaches themselves.
+/// Every breach of the schema of the file's own kind; empty if there is none. Errors: as open_document,
+/// except the breaches themselves.
 Result<std::vector<Violation>> violations_of(const std::string& path);
 
 /// The document to write: kind and version, then `body`, then those members of `extra_json` (an object's
@@ -57,7 +57,7 @@ Result<std::string> document_text(std::string_view kind, const Json& body, const
 /// empty where there are none.
 std::string unknown_members(const Json& body, std::string_view kind);
 
-/// body[key] = text, but only where there is a text: optional members are left out, not empty.
+/// body[key] = text, if there is a text: empty optional members are left out.
 void put_text(Json& body, const char* key, const std::string& text);
 
 /// An optional member, or `fallback` where it is absent. For documents that fit their schema.

@@ -39,14 +39,14 @@ Json expanded(const Json& node, const Json& root) {
   return copy;
 }
 
-// The context is "<root>", "[channels]", "[0]": a JSON pointer in other clothes.
+// The context is "<root>", "[channels]", "[0]": another form of a JSON pointer.
 Json::json_pointer pointer_of(const std::vector<std::string>& context) {
   Json::json_pointer pointer;
   for (std::size_t i = 1; i < context.size(); ++i) pointer /= context[i].substr(1, context[i].size() - 2);
   return pointer;
 }
 
-// The part of the schema that rules the value at `pointer`; null where the schema does not say.
+// The part of the schema for the value at `pointer`; null if the schema has none.
 Json rule_at(const Json& rules, const Json::json_pointer& pointer) {
   if (pointer.empty()) return rules;
   const Json above = rule_at(rules, pointer.parent_pointer());
@@ -70,7 +70,7 @@ std::string brief(const Json& value) {
   return text.size() <= 60 ? text : text.substr(0, 57) + "...";
 }
 
-// The validator's own words leave out what stands there and what may.
+// The validator's messages do not contain the found value and the allowed ones.
 std::string explained(const std::string& said, const Json& value, const Json& rule) {
   if (said.starts_with("Missing")) return said.substr(0, said.size() - 1);
   const bool type = said.find("'type' constraint") != std::string::npos;
@@ -88,7 +88,7 @@ std::string explained(const std::string& said, const Json& value, const Json& ru
   return fmt::format("{} ({})", said.substr(0, said.find_last_not_of('.') + 1), brief(value));
 }
 
-// Said of the object around a breach that has an entry of its own.
+// Reported for the object around a breach that has an entry of its own.
 bool repeats(const std::string& said) {
   return said.starts_with("Failed to validate");
 }
@@ -107,7 +107,7 @@ std::vector<Violation> told(const valijson::ValidationResults& results, const Js
 
 using valijson::adapters::NlohmannJsonAdapter;
 
-// What the validator works by: it reads it only, so that threads may share it.
+// The compiled schema: the validator only reads it, so threads may share it.
 class Compiled {
  public:
   explicit Compiled(const Json& rules) : plain_(rules) {
@@ -126,7 +126,7 @@ struct KnownSchema {
   std::unique_ptr<Compiled> compiled;
 };
 
-// Parsing and compiling takes longer than most documents do: each schema once.
+// Parsing and compiling takes longer than checking most documents: each schema is compiled once.
 class KnownSchemas {
  public:
   const std::optional<Json>& of(std::string_view kind) {
@@ -140,7 +140,7 @@ class KnownSchemas {
     return made.rules;
   }
 
-  // Null where they are none of these.
+  // Null if they are none of these.
   const Compiled* compiled(const Json& rules) {
     const std::lock_guard lock(mutex_);
     for (auto& [kind, known] : known_) {
@@ -176,7 +176,7 @@ std::vector<Violation> validated(const Json& document, const Json& rules) {
   return list;
 }
 
-// Whichever of its ends the rule names.
+// The ends of the range that the rule names.
 std::string range_of(const Json& rule) {
   std::string range;
   const auto add = [&](const char* member, const char* words) {

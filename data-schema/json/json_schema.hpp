@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON Schemas (draft-07) of this folder, and what in a document breaks them. Internal to this folder.
+// JSON Schemas (draft-07) of this room, and breaches of them. Internal to this folder.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,14 @@ namespace tacto::schema {
 /// a process: the reference stays valid, from any thread.
 const std::optional<Json>& schema_of(std::string_view kind);
 
-/// Every breach of `rules`, in the order they were found. Quick where `rules` is what schema_of() gave, by
-/// reference: else they are compiled for this call.
+/// Every breach of `rules`, in the order in which they were found. Fast if `rules` is the reference that
+/// schema_of() returned; otherwise the rules are compiled for this call.
 std::vector<Violation> breaches(const Json& document, const Json& rules);
 
-/// What the rules say that a member is; empty where they do not, and of the whole document.
+/// The description of a member in the rules; empty if there is none, and for the whole document.
 std::string meaning_at(const std::string& pointer, const Json& rules);
 
-/// Of a number: what the rules say that it is, and its range; empty of everything else.
+/// For a number: its description in the rules, and its range; empty for everything else.
 std::string remedy_at(const std::string& pointer, const Json& rules);
 
 }  // namespace tacto::schema

@@ -18,7 +18,7 @@ std::string line_and_column(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, before.size() - (start == before.npos ? 0 : start + 1) + 1);
 }
 
-// What the watch below throws through the library, and parse_json() catches.
+// Thrown through the library by the watch below, and caught by parse_json().
 struct Refusal {
   std::string what, pointer, remedy;
 };
@@ -41,8 +41,8 @@ class ParserWatch {
 
  private:
   struct Container {
-    std::unordered_set<std::string> names;  // of an object's members; none in an array
-    std::string name;                       // of the member that is being read
+    std::unordered_set<std::string> names;  // of an object's members; empty for an array
+    std::string name;                       // of the current member
     std::size_t elements = 0;               // that were read
   };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Text from outside that becomes JSON, in one place: stored files, requests and replies alike. Internal to
-// this folder.
+// JSON text from outside, in one place: stored files, requests and replies. Internal to this folder.
 #pragma once
 
 #include <string>
@@ -10,11 +9,11 @@
 
 namespace tacto::schema {
 
-inline constexpr int kDeepestDocument = 32;  ///< ours nest five deep
+inline constexpr int kDeepestDocument = 32;  ///< documents of tactograph nest five deep
 
 /// One JSON value. Errors: malformed: not JSON, with line and column; nested deeper than `deepest`, which is
-/// found before anything that recurses sees the value; an object with two members of one name, with that name
-/// and the object's place as a JSON pointer (readers differ in which of the two they take, so neither is).
+/// found before any recursion; an object with two members of one name, with that name and the object's place
+/// as a JSON pointer (readers differ in which of the two they take, so neither is taken).
 Result<Json> parse_json(std::string_view text, const std::string& where, int deepest = kDeepestDocument);
 
 /// A member's name as a message quotes it. Names come from outside: a long one is not repeated.

@@ -12,7 +12,7 @@
 namespace tacto::schema {
 namespace {
 
-// Levenshtein's: letters put in, left out or changed.
+// Levenshtein's distance: letters inserted, removed or changed.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -33,7 +33,7 @@ std::vector<std::string> names_in(const Json& rule) {
   return names;
 }
 
-// Up to three letters, as `energy_rms` for `energy_rms_v`, but not every letter of a short name.
+// Up to three letters, as `energy_rms` for `energy_rms_v`, but fewer than a short name has.
 bool is_near(std::string_view said, std::string_view name) {
   return distance(said, name) <= std::min<std::size_t>(3, name.size() / 2);
 }

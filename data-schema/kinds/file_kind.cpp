@@ -48,7 +48,7 @@ Result<StoredFile> by_content(const std::string& path) {
   return StoredFile{static_cast<FileKind>(found - kNames.begin()), path};
 }
 
-// What can't be read is taken for a spectrogram: reading that says what is wrong.
+// A file that cannot be read is treated as a spectrogram: reading it reports the error.
 FileKind netcdf_kind(const std::string& path) {
   return is_session_netcdf(path) ? FileKind::session_table : FileKind::spectrogram;
 }
@@ -76,7 +76,7 @@ std::vector<StoredFile> under_stem(const std::string& stem) {
     if (const std::string path = stem + std::string(ending); kind == FileKind::spectrogram && is_file(path))
       files.push_back({netcdf_kind(path), path});
     else if (is_file(path))
-      // The stem may itself end in ".texture"; a file too broken to say its kind has the kind of its name.
+      // The stem may itself end in ".texture"; a file without a readable kind has the kind of its name.
       files.push_back(kind == FileKind::recording ? by_content(path).value_or(StoredFile{kind, path})
                                                   : StoredFile{kind, path});
   return files;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a name given by the user stands for: which files of ours, of which kinds.
+// The stored files that a name stands for, and their kinds.
 #pragma once
 
 #include <string>
@@ -28,16 +28,16 @@ enum class FileKind {
 /// "recording", "texture", ... as in the files' own member `kind`.
 std::string_view kind_name(FileKind kind);
 
-/// A file of ours. `path` is the one that says what it is: a sidecar, a .nc, a .session; a preset's name for
-/// a preset.
+/// A stored file. `path` is the file that contains the kind: a sidecar, a .nc, a .session; or the name of a
+/// preset.
 struct StoredFile {
   FileKind kind;
   std::string path;
 };
 
-/// A file named in full (a sidecar, its WAV, a .nc, a .session) gives that one; a stem gives every file of
-/// ours under it, the recording first, and never an empty list; a preset's name gives the preset. Errors:
-/// not_found; malformed, where the file is none of ours.
+/// A file named in full (a sidecar, its WAV, a .nc, a .session) gives that file; a stem gives every stored
+/// file with that stem, the recording first, and never an empty list; a preset's name gives the preset.
+/// Errors: not_found; malformed, if the file is not of tactograph.
 Result<std::vector<StoredFile>> stored_files(const std::string& name);
 
 }  // namespace tacto::schema

@@ -13,7 +13,7 @@ struct Sums {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
 };
 
-// Relative to the first pair, or the hours since the host was started would eat the digits.
+// Relative to the first pair: the hours since the host was started would cost precision.
 struct Ahead {
   double host_s, device_ahead_s;
 };

@@ -14,12 +14,12 @@ struct ClockFit {
   double drift_ppm = 0;              ///< above zero: the device's clock is fast
   double drift_uncertainty_ppm = 0;  ///< standard, of the slope, from the scatter (type A)
   double offset_s = 0;               ///< at the first pair
-  double scatter_s = 0;              ///< RMS of what the line leaves: how late messages come
+  double scatter_s = 0;              ///< RMS of the residuals: how late messages come
 };
 
-/// Ordinary least squares over the pairs. None of fewer than 3 pairs, or where they span less than 10 s: the
-/// host's own lateness, some ms, would tell more than the clocks. The uncertainty takes pairs for
-/// independent: a host that is late for long stretches is worse than it says.
+/// Ordinary least squares over the pairs. None for fewer than 3 pairs, or if they span less than 10 s: the
+/// host's own lateness, some ms, would dominate. The uncertainty assumes independent pairs: a host that is
+/// late for long periods has a larger one.
 std::optional<ClockFit> fit_clock(std::span<const ClockPair> pairs);
 
 }  // namespace tacto::schema

@@ -98,7 +98,7 @@ std::uint64_t LiveRecording::frames() const {
   return state_->header.frames;
 }
 
-// Files that are open can be written whatever becomes of their names; to be closed they have to be found.
+// Open files can be written even if their names change; to close the recording they have to be found.
 Result<void> LiveRecording::State::check_place() const {
   const std::string wav_name = stem + ".wav", place = events.place();
   const bool at_its_path = events.is_at_its_path();
@@ -116,7 +116,7 @@ Result<void> LiveRecording::State::check_place() const {
       fmt::format("its frames are in {0}.wav: 'tactograph recover {0}' makes a recording of them", now));
 }
 
-// A WAV that libsndfile could not complete is put right by what it holds.
+// A WAV that libsndfile could not complete is repaired from its content.
 Result<Recording> LiveRecording::close() {
   state_->sync.reset();  // closing syncs by itself
   TACTO_TRY(state_->check_place());

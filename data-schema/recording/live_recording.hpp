@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording while it is made: whatever happens, what was written stays.
+// A recording in progress: what was written stays, whatever happens.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,11 @@ namespace tacto::schema {
 /// killed process loses only the block that was not yet written, whatever the disk does.
 inline constexpr double kSyncEvery_s = 0.05;
 
-/// Writes NAME.wav (32-bit codes, header kept true) and NAME.events.jsonl (what the sidecar will say, then
-/// gaps, marks, clock pairs and faults, a line each) as they come; a thread of its own brings both to the
-/// disk, with pauses of kSyncEvery_s. close() folds the events into NAME.json. Dropped without close(), or
-/// killed, it leaves both files, from which recover_recording() makes the recording. The events' file keeps
-/// room for the sidecar on file systems that can, so that a full disk does not prevent closing. One thread at
-/// a time.
+/// Writes NAME.wav (32-bit codes, header kept up to date) and NAME.events.jsonl (the future sidecar, then
+/// gaps, marks, clock pairs and faults, a line each) as they come; a thread of its own syncs both to disk,
+/// with pauses of kSyncEvery_s. close() moves the events into NAME.json. Without close(), it leaves both
+/// files, from which recover_recording() makes the recording. The events' file reserves room for the sidecar
+/// on file systems that can, so that a full disk does not prevent closing. One thread at a time.
 class LiveRecording {
  public:
   /// `name` as RecordingWriter::create(); the header's format must be pcm32. Errors: usage, where anything of
@@ -46,11 +45,11 @@ class LiveRecording {
   /// Frames written.
   std::uint64_t frames() const;
 
-  /// Puts the WAV's header right, folds the events into the sidecar and removes their file. Once only.
-  /// Errors: cannot_write, also where the files were renamed or deleted meanwhile; unsuitable. After one the
-  /// recording can still be recovered, from where the error says.
+  /// Corrects the WAV's header, moves the events into the sidecar and removes their file. Call it once.
+  /// Errors: cannot_write, also if the files were renamed or deleted meanwhile; unsuitable. After an error
+  /// the recording can still be recovered, from the place that the error names.
   Result<Recording> close();
-  /// Instead of close(), where there is nothing to keep: removes both files. Errors: cannot_write.
+  /// Instead of close(), if there is nothing to keep: removes both files. Errors: cannot_write.
   Result<void> discard();
 
  private:
@@ -62,14 +61,15 @@ class LiveRecording {
 /// What was made of a recording that was never closed.
 struct Recovered {
   Recording recording;
-  std::vector<std::string> notes;  ///< what was lost, and what was put right; also its warnings
+  std::vector<std::string> notes;  ///< what was lost and what was repaired; also its warnings
 };
 
-/// Makes a recording of what a LiveRecording left: writes the WAV's header anew where it was lost, cuts off
-/// an unfinished frame and zeros that were never written, writes the sidecar with the events, removes their
-/// file. `name` as open_recording(). Errors: not_found, also where the WAV is missing; unsuitable, where the
-/// recording was closed, or is still being made; malformed, where journal or WAV are of something else, or
-/// the WAV holds nothing of what the journal knows, and then nothing is changed; cannot_write.
+/// Makes a recording from the files of a LiveRecording that was not closed: writes the WAV's header again if
+/// it was lost, cuts off an unfinished frame and zeros that were never written, writes the sidecar with the
+/// events, removes their file. `name` as open_recording(). Errors: not_found, also if the WAV is missing;
+/// unsuitable, if the recording was closed, or is still in progress; malformed, if journal or WAV belong to
+/// something else, or the WAV contains nothing of what the journal records, and then nothing is changed;
+/// cannot_write.
 Result<Recovered> recover_recording(const std::string& name);
 
 }  // namespace tacto::schema

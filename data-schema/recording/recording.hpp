@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording: what a device or another program's file gave over time, unfiltered, as NAME.wav + NAME.json.
+// A recording: data of a device or of another program's file against time, unfiltered, as NAME.wav +
+// NAME.json.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@
 
 namespace tacto::schema {
 
-/// What a calibration made of a channel: its scale and offset are the calibrated ones, these the device's
-/// own. Uncertainties are standard ones (k = 1); empty dates and absent uncertainties where that part was not
+/// The calibration of a channel: its scale and offset are the calibrated ones, these are the device's own.
+/// Uncertainties are standard ones (k = 1); empty dates and absent uncertainties for a part that was not
 /// calibrated.
 struct AppliedCalibration {
   double nominal_scale = 1, nominal_offset = 0;
@@ -38,13 +39,13 @@ struct Channel {
   std::string unit;      ///< SI symbol: N, m, m/s, m/s^2, V, 1
   double scale = 1;
   double offset = 0;
-  std::optional<double> native_rate_hz;  ///< of a channel that is slower than the recording, and held
+  std::optional<double> native_rate_hz;  ///< of a slower channel, whose values are held
   std::optional<double> range_min;       ///< smallest and largest physical value that the converter can give
   std::optional<double> range_max;
-  std::string source;      ///< where it came from: a column's name, a converter's input
-  std::string derivation;  ///< empty for what was measured; else how it was made ("nominal, 40 mm/s")
+  std::string source;      ///< its origin: a column's name, a converter's input
+  std::string derivation;  ///< empty if measured; else how it was made ("nominal, 40 mm/s")
   std::string calibrated;  ///< ISO date of the calibration, or empty
-  std::optional<AppliedCalibration> calibration;  ///< where one of the device's calibration file was applied
+  std::optional<AppliedCalibration> calibration;  ///< if one of the device's calibration file was applied
 };
 
 /// Missing frames: `count` of them are absent before stored frame `frame`.
@@ -59,13 +60,13 @@ struct Mark {
   std::string label;
 };
 
-/// When a frame was taken by the device's clock, and when it was here by the host's.
+/// The time of a frame by the device's clock, and its arrival by the host's clock.
 struct ClockPair {
   std::uint64_t device_sequence = 0;  ///< the frame's number, lost ones counted
   double device_s = 0, host_s = 0;
 };
 
-/// Something went wrong, known when `frame` frames were there.
+/// A fault that was known when `frame` frames had arrived.
 struct FaultNote {
   std::uint64_t frame = 0;
   std::string what;
@@ -79,9 +80,9 @@ struct RecordingHeader {
   std::uint64_t frames = 0;
   double sample_rate_hz = 0;
   std::vector<Channel> channels;
-  std::string clock;                       ///< what gave the time: "device", "nominal rate given at import"
+  std::string clock;                       ///< source of the time: "device", "nominal rate given at import"
   std::string device;                      ///< device URI or maker's name; empty for an import
-  std::string serial, firmware;            ///< the device's, where it was one
+  std::string serial, firmware;            ///< of the device
   std::string simulated;                   ///< by what, where it is simulated; empty for real data
   std::string source_file, source_sha256;  ///< of an import
   std::optional<Transducer> transducer;
@@ -93,16 +94,16 @@ struct RecordingHeader {
   std::vector<Gap> gaps;
   std::vector<Mark> marks;
   std::vector<ClockPair> clock_pairs;
-  std::vector<StrokeFigures> strokes;     ///< counted while it was recorded
-  std::optional<double> clock_drift_ppm;  ///< how much the device's clock is fast against the host's
+  std::vector<StrokeFigures> strokes;                 ///< counted while it was recorded
+  std::optional<double> clock_drift_ppm;              ///< device's clock against the host's; above 0: fast
   std::optional<double> clock_drift_uncertainty_ppm;  ///< standard
   std::optional<double> clock_offset_s;               ///< device's minus host's clock at the first pair
   std::optional<double> clock_scatter_s;              ///< RMS of the pairs about that line
   std::vector<FaultNote> faults;
-  std::string ended;                  ///< why it ended, where not as it was asked: "disk full", "unplugged"
-  std::vector<std::string> warnings;  ///< said when it was made, kept for who reads it later
+  std::string ended;                  ///< why it ended early: "disk full", "unplugged"
+  std::vector<std::string> warnings;  ///< of its making, kept for readers
   std::string extra_json;             ///< members of a newer minor version, kept as they were
-  std::string newer_version;          ///< set by the reader where the file's minor version is newer than ours
+  std::string newer_version;          ///< set by the reader if the file's minor version is newer than ours
 };
 
 /// A recording on disk, opened. Samples are read channel by channel.
@@ -111,13 +112,13 @@ struct Recording {
   std::string stem;  ///< path without extension
 };
 
-/// The quantities of DESIGN.md and their SI units.
+/// The quantities and their SI units.
 struct QuantityName {
   std::string_view name;
   Dimension dimension;
 };
 std::span<const QuantityName> quantity_names();
-/// Errors: usage, with the names there are.
+/// Errors: usage, with the known names.
 Result<QuantityName> quantity_named(std::string_view name);
 
 /// Opens by stem, by NAME.json or by NAME.wav. Checks the schema, that the WAV is there and has the rate,
@@ -126,14 +127,13 @@ Result<QuantityName> quantity_named(std::string_view name);
 /// unsupported_version.
 Result<Recording> open_recording(const std::string& name);
 
-/// Whether its samples are those that the sidecar was written for. Errors: malformed, where their SHA-256 is
-/// another; not_found.
+/// Checks that its samples are those of the sidecar. Errors: malformed, if their SHA-256 differs; not_found.
 Result<void> check_samples_sum(const Recording& recording);
 
-/// Where the samples are.
+/// The path of the samples.
 std::string wav_path(const Recording& recording);
 
-/// The channel's index. Errors: unsuitable, with the channels there are.
+/// The channel's index. Errors: unsuitable, naming the channels.
 Result<std::size_t> find_channel(const RecordingHeader& header, std::string_view name);
 
 /// One channel in SI units. Frames are as stored: gaps are not filled, so sample i's time is
@@ -168,7 +168,7 @@ class RecordingWriter {
   /// cannot_write.
   Result<void> write(std::span<const double> interleaved);
   Result<void> write(std::span<const std::int32_t> interleaved);
-  /// For what becomes known while writing: gaps, marks, warnings, the rate.
+  /// For data that become known while writing: gaps, marks, warnings, the rate.
   RecordingHeader& header();
   /// Completes frames, checksum, date and creator, and gives both files their names. Once only.
   /// Errors: cannot_write; unsuitable, as of create().

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostPairs = 1000;  // enough for a line and its scatter
 
-// Every second pair is left out until there are few; the first and the last stay.
+// Removes every second pair until there are few enough; keeps the first and the last.
 void thin(std::vector<ClockPair>& pairs) {
   while (pairs.size() > kMostPairs) {
     std::vector<ClockPair> fewer;
@@ -32,7 +32,7 @@ void note_clocks(RecordingHeader& header) {
   header.clock_scatter_s = fit->scatter_s;
 }
 
-// What was noted of frames that did not come to the disk.
+// Removes what was noted for frames that did not reach the disk.
 void forget_beyond_end(RecordingHeader& header) {
   const auto gaps = std::erase_if(header.gaps, [&](const Gap& gap) { return gap.frame > header.frames; });
   const auto marks =

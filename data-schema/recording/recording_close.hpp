@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The end of a recording that was made live, at once or afterwards. Internal to this folder.
+// The end of a live recording, at once or later. Internal to this folder.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace tacto::schema {
 
-/// Puts STEM.wav right, whose frames are what the recording has; writes STEM.json from the header; removes
-/// the events. Errors: malformed, where the WAV's header was never finished; cannot_write; unsuitable.
+/// Corrects STEM.wav, whose frames are those of the recording; writes STEM.json from the header; removes the
+/// events. Errors: malformed, if the WAV's header was never finished; cannot_write; unsuitable.
 Result<Recording> close_recording(const std::string& stem, RecordingHeader header, EventFile& events);
 
 }  // namespace tacto::schema

@@ -10,7 +10,7 @@
 namespace tacto::schema {
 namespace {
 
-// One line; text that is no UTF-8 is kept as far as it is.
+// One line; text that is not UTF-8 is kept as far as possible.
 std::string line_of(const char* event, const Json& body) {
   Json line = {{"event", event}};
   line.update(body);
@@ -26,7 +26,7 @@ Result<RecordingHeader> header_in(std::string_view line, const std::string& path
   return fail(ErrorKind::malformed, "its first line doesn't say what was to be recorded", path);
 }
 
-// Events of a newer version are passed over; false for what is no event.
+// Ignores events of a newer version; false for a line that is not an event.
 bool add_event(RecordingHeader& header, std::string_view line) try {
   const auto body = parse_json(line, {});
   if (!body) return false;
@@ -40,7 +40,7 @@ bool add_event(RecordingHeader& header, std::string_view line) try {
   return false;
 }
 
-// The next line without its end; what has no end is no line.
+// The next line without its end; text without a line end is not a line.
 bool take_line(std::string_view& text, std::string_view& line) {
   const auto end = text.find('\n');
   if (end == std::string_view::npos) return false;
@@ -53,7 +53,7 @@ bool take_line(std::string_view& text, std::string_view& line) {
 
 Result<std::string> begin_line(const RecordingHeader& header) {
   RecordingHeader complete = header;
-  complete.sha256 = std::string(64, '0');  // nobody knows it yet
+  complete.sha256 = std::string(64, '0');  // not known yet
   const auto text = recording_text(complete);
   TACTO_TRY(text);
   return line_of("begin", {{"recording", Json::parse(*text)}});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NAME.events.jsonl: what is known of a recording while it is made, a line each, folded into its sidecar at
-// the end. Internal to this folder.
+// NAME.events.jsonl: what is known during a recording, a line each; moved into its sidecar at the end.
+// Internal to this folder.
 #pragma once
 
 #include <string>
@@ -20,13 +20,13 @@ std::string event_line(const ClockPair& pair);
 std::string event_line(const FaultNote& fault);
 
 struct EventLog {
-  RecordingHeader header;  ///< with the events in it
-  std::string cut_line;    ///< what is left of a line that was being written when all ended
-  std::size_t bad_lines = 0, first_bad_line = 0;  ///< whole ones that say nothing; the first one's number
+  RecordingHeader header;                         ///< with the events in it
+  std::string cut_line;                           ///< the rest of a line that was not finished
+  std::size_t bad_lines = 0, first_bad_line = 0;  ///< complete lines without content; number of the first
 };
 
-/// Reads such a file; a line that says nothing is passed over and counted. Errors: not_found; unsuitable,
-/// where not even the first line is whole; malformed, where that says nothing.
+/// Reads such a file; invalid lines are skipped and counted. Errors: not_found; unsuitable, if not even the
+/// first line is complete; malformed, if it is invalid.
 Result<EventLog> read_events(const std::string& path);
 
 }  // namespace tacto::schema

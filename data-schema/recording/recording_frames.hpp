@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording read stretch by stretch, so that one of any length fits in little memory.
+// Reads a recording in parts, so that one of any length needs little memory.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ class RecordingFrames {
   std::vector<Channel> channels_;
   std::string path_;
   std::vector<double> interleaved_;
-  std::uint64_t next_ = 0;  // the frame that the file stands at
+  std::uint64_t next_ = 0;  // the frame at the file's read position
 };
 
 }  // namespace tacto::schema

@@ -182,7 +182,7 @@ Channel channel_from(const Json& body) {
   return channel;
 }
 
-// A document of its own inside the sidecar: it says its version, and can be taken out as a file.
+// A document inside the sidecar: it has its own version, and can be copied to a file.
 Json embedded_transducer(const Transducer& transducer) {
   Json body = {{"kind", "transducer"}, {"version", kVersion}};
   body.update(transducer_body(transducer));
@@ -233,7 +233,7 @@ RecordingHeader header_from(const Json& body) {
   return header;
 }
 
-// What no schema can say of a channel: its unit is its quantity's, its name is no other's.
+// Checks that a schema cannot express: a channel has the unit of its quantity, and a unique name.
 std::optional<Violation> channel_breach(const RecordingHeader& header, std::size_t i) {
   const Channel& channel = header.channels[i];
   const auto quantity = quantity_named(channel.quantity);

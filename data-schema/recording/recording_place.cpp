@@ -36,7 +36,7 @@ Result<void> check_free(const std::string& stem) {
 Result<void> check_storable(const RecordingHeader& header) {
   RecordingHeader complete = header;
   complete.sha256 = std::string(64, '0');
-  complete.gaps.clear();  // they are measured against the frames to come
+  complete.gaps.clear();  // they would be checked against frames that do not exist yet
   const auto text = recording_text(complete);
   return text ? Result<void>{} : forward_error(text);
 }

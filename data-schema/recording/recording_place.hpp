@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is checked before a recording is begun. Internal to this folder.
+// Checks before a recording is begun. Internal to this folder.
 #pragma once
 
 #include <string>
@@ -9,21 +9,20 @@
 
 namespace tacto::schema {
 
-/// Where the events of a recording are kept while it is made.
+/// The file of the events of a recording in progress.
 std::string events_path(const std::string& stem);
 
-/// The stem of such a file, or of any other of a recording's.
+/// The stem of such a file, or of any other file of a recording.
 std::string recording_stem_of(const std::string& name);
 
-/// That nothing of a recording of this stem is there. Errors: usage, naming the file.
+/// Checks that no file of a recording with this stem exists. Errors: usage, naming the file.
 Result<void> check_free(const std::string& stem);
 
-/// That the header can be stored is known before the first sample, not after the last. Errors: unsuitable, by
-/// JSON pointer.
+/// Checks that the header can be stored, before the first sample. Errors: unsuitable, by JSON pointer.
 Result<void> check_storable(const RecordingHeader& header);
 
-/// Sets checksum, date and creator for the samples in `wav`, and gives the sidecar's text. Errors: not_found;
-/// unsuitable.
+/// Sets checksum, date and creator for the samples in `wav`, and returns the sidecar's text. Errors:
+/// not_found; unsuitable.
 Result<std::string> completed_sidecar(RecordingHeader& header, const std::string& wav);
 
 }  // namespace tacto::schema

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// There is no sidecar: perhaps there are samples that could become a recording.
+// There is no sidecar: there may be samples that can become a recording.
 tl::unexpected<Error> absent_recording(const std::string& name, const std::string& stem) {
   if (is_file(stem + ".events.jsonl"))
     return fail(ErrorKind::unsuitable, "was never closed, or is still being recorded", name,
@@ -54,7 +54,7 @@ Result<void> check_samples(const RecordingHeader& header, const WavInfo& info, c
   return check_frames(header, info, wav);
 }
 
-// The commonest wrong name for a recording is that of another kind of file.
+// The most frequent wrong name is that of another kind of file.
 Result<RecordingHeader> read_sidecar(const std::string& path) {
   const auto document = open_document(path, "recording");
   return document ? recording_header_from(*document, path) : forward_error(document);

@@ -31,7 +31,7 @@ std::optional<Recording> open_closed(const std::string& stem) {
   return recording ? std::optional(std::move(*recording)) : std::nullopt;
 }
 
-// The number of a stored frame, of one that was counted with those that the link lost.
+// The number of a stored frame from a number that also counts lost frames.
 std::uint64_t stored_number(std::uint64_t device_sequence, const std::vector<Gap>& gaps) {
   std::uint64_t lost = 0;
   for (const Gap& gap : gaps)
@@ -39,7 +39,7 @@ std::uint64_t stored_number(std::uint64_t device_sequence, const std::vector<Gap
   return device_sequence - std::min(device_sequence, lost);
 }
 
-// As many frames there were at least, by what was noted beside them.
+// The smallest possible number of frames, from what was noted with them.
 std::uint64_t frames_known_of(const RecordingHeader& header) {
   std::uint64_t known = 0;
   for (const Gap& gap : header.gaps) known = std::max(known, gap.frame);
@@ -50,7 +50,7 @@ std::uint64_t frames_known_of(const RecordingHeader& header) {
   return known;
 }
 
-// What a sidecar can hold, of bytes that may be anything.
+// Text that a sidecar can contain, from arbitrary bytes.
 std::string printable(std::string_view bytes) {
   constexpr std::size_t kMost = 80;
   std::string text(bytes.substr(0, kMost));
@@ -59,7 +59,7 @@ std::string printable(std::string_view bytes) {
   return text;
 }
 
-// Those that lie beyond the samples go later, when the samples are counted.
+// Those beyond the samples are removed later, when the samples are counted.
 std::vector<std::string> make_gaps_agree(std::vector<Gap>& gaps) {
   AgreedGaps agreed = agreed_gaps(gaps);
   gaps = std::move(agreed.gaps);
@@ -90,7 +90,7 @@ std::vector<std::string> notes_on(const EventLog& log) {
   return notes;
 }
 
-// Killed after its sidecar was there, before the events were removed: all is well.
+// Killed after the sidecar was written, before the events were removed: nothing is lost.
 Result<Recovered> already_closed(Recording recording, EventFile& events) {
   TACTO_TRY(events.remove());
   return Recovered{std::move(recording), {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Range, mean and RMS of samples in one pass, and which of them are no numbers.
+// Range, mean and RMS of samples in one pass, and the samples that are not finite.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace tacto::schema {
 
-/// Fed sample by sample. NaN and infinities are counted and left out of the rest; without any number min,
-/// max, mean and RMS are NaN.
+/// Takes sample by sample. NaN and infinities are counted and otherwise left out; without a finite sample
+/// min, max, mean and RMS are NaN.
 class Statistics {
  public:
   void add(double value);
@@ -26,7 +26,7 @@ class Statistics {
   std::uint64_t not_finite() const { return not_finite_; }
   std::uint64_t first_not_finite() const {
     return first_not_finite_;
-  }  ///< its index; only where there is one
+  }  ///< its index; valid only if there is one
 
  private:
   double per_number(double sum) const;
@@ -40,8 +40,8 @@ class Statistics {
 Statistics statistics_of(std::span<const double> values);
 
 /// Of every channel of a WAV at once, in physical units (stored * scale + offset). Reads block by block, so
-/// that a recording of any length fits. `progress`, where given, hears fractions from 0 to 1. Errors: as of
-/// WavReader; malformed, where the WAV has another number of channels.
+/// that a recording of any length fits. `progress`, if given, gets fractions from 0 to 1. Errors: as of
+/// WavReader; malformed, if the WAV has another number of channels.
 Result<std::vector<Statistics>> channel_statistics(const std::string& wav, std::span<const Channel> channels,
                                                    const std::function<void(double)>& progress = {});
 

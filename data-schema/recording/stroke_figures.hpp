@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of a stroke while it is recorded, kept in the recording's sidecar.
+// What is measured of a stroke during recording, kept in the recording's sidecar.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace tacto::schema {
 
-/// A stroke as it was counted while recording; `spatial` finds strokes by itself. Frames are stored ones.
+/// A stroke as it was detected during recording; `spatial` finds strokes on its own. Frames are stored ones.
 struct StrokeFigures {
   std::uint64_t first_frame = 0, frames = 0;
   double length_m = 0;
@@ -18,7 +18,7 @@ struct StrokeFigures {
   std::uint64_t lost_frames = 0;        ///< missing within it
 };
 
-/// The band that a finger is asked to keep to (Wiertlewski 2011, section IV-A5: 50 mm/s, 0.5 N).
+/// The range that the finger should keep (Wiertlewski 2011, section IV-A5: 50 mm/s, 0.5 N).
 struct TargetBand {
   double middle = 0, width = 0;  ///< middle +- width
 

@@ -18,11 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kOnItsWay_s = 0.1;       // events stand in the journal before their frames stand in the WAV
-constexpr std::size_t kFormatBytes = 48;  // "fmt " with its size and content
+constexpr double kOnItsWay_s = 0.1;         // events are in the journal before their frames are in the WAV
+constexpr std::size_t kFormatBytes = 48;    // "fmt " with its size and content
 constexpr std::uint64_t kPageBytes = 4096;  // a file system loses whole pages
 
-// What our writer puts before the first sample.
+// What tactograph's writer puts before the first sample.
 struct EmptyWav {
   std::string bytes;
   RiffLayout layout;
@@ -31,7 +31,7 @@ struct EmptyWav {
   }
 };
 
-// Asked of the writer itself: another version of libsndfile may write another header.
+// Taken from the writer itself: another version of libsndfile may write another header.
 Result<EmptyWav> empty_wav(const std::string& wav, const RecordingHeader& header) {
   PendingFiles beside;  // never committed
   const auto path = beside.add(wav);
@@ -63,7 +63,7 @@ bool same_or_lost(std::string_view found, std::string_view ours) {
   return std::ranges::equal(found, ours, [](char a, char b) { return a == b || a == '\0'; });
 }
 
-// Zeros where its header was; of the header's first bytes, which change, anything may be left.
+// Zeros in place of its header; the first bytes of the header, which change, may contain anything.
 bool is_remnant(const std::string& wav, const EmptyWav& empty) {
   const std::string head = first_bytes(wav, empty.layout.data_at);
   const std::string_view found = head, ours = std::string_view(empty.bytes);
@@ -172,7 +172,7 @@ Result<WavRemains> salvage_wav(const std::string& wav, const RecordingHeader& he
   WavRemains remains;
   const bool sound = is_sound(wav, *empty);
   TACTO_TRY(sound ? Result<void>{} : make_header_sound(wav, *empty, remains));
-  // A header that was lost promises nothing.
+  // A lost header states no length.
   TACTO_TRY(sound ? cut_unwritten(wav, header, remains) : Result<void>{});
   const auto layout = riff_layout(wav);
   if (!layout) return fail(ErrorKind::malformed, "is no WAV", wav);

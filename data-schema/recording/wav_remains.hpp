@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The WAV of a recording that was broken off, made readable. Internal to this folder.
+// Repairs the WAV of an interrupted recording. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,17 @@
 
 namespace tacto::schema {
 
-/// What such a WAV holds.
+/// The content of such a WAV.
 struct WavRemains {
   std::uint64_t frames = 0;
-  std::vector<std::string> notes;  ///< what was put right, what was cut off, what looks lost
+  std::vector<std::string> notes;  ///< what was repaired, what was cut off, what may be lost
 };
 
-/// Writes the header anew where a power cut left zeros in it, by the format of `header`, and cuts off a
-/// broken frame, and frames of zeros that the WAV's header never promised: space that the file got, and no
-/// samples. `known_frames` were there by the journal. Nothing is changed in a file that it can't read.
-/// Errors: not_found, without a WAV; malformed, where its first bytes are neither its header nor zeros, and
-/// where it holds nothing though the journal knows of more than what may have been on its way;
-/// cannot_write.
+/// Writes the header again if a power cut left zeros in it, by the format of `header`. Cuts off an incomplete
+/// frame, and frames of zeros beyond the length in the WAV's header: reserved space without samples.
+/// `known_frames`: frames that the journal records. Changes nothing in a file that it cannot read. Errors:
+/// not_found, without a WAV; malformed, if its first bytes are neither its header nor zeros, or if it is
+/// empty although the journal records more than what may have been on its way; cannot_write.
 Result<WavRemains> salvage_wav(const std::string& wav, const RecordingHeader& header,
                                std::uint64_t known_frames);
 

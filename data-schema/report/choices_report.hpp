@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was chosen for playback, as lines of a report.
+// The playback choices as lines of a report.
 #pragma once
 
 #include "data-schema/report/report.hpp"
@@ -7,7 +7,7 @@
 
 namespace tacto::cli {
 
-/// What was said, under its names in files.
+/// The choices that are set, under their names in files.
 inline void add_choices(Report& report, const schema::PlaybackChoices& choices) {
   for (const auto& [name, member] : schema::kChosenWords)
     if (choices.*member) report.add(name, *(choices.*member));

@@ -16,7 +16,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   /// Clears the line.
   ~Progress();
-  /// 0 to 1. Cheap: call it as often as you like.
+  /// 0 to 1. Cheap: it may be called at any rate.
   void update(double fraction);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a verb found, once: printed for people as aligned lines, for machines as JSON.
+// The result of a verb: printed for people as aligned lines, for programs as JSON.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace tacto::cli {
 
-/// Ordered keys and values. A key ends in its unit (`duration_s`, `pitch_m`, `force_rms_n`, `level_db`), as
-/// everywhere in tactograph: JSON keeps key and SI value, people read "duration  8.5 s".
+/// Ordered keys and values. A key ends in its unit (`duration_s`, `pitch_m`, `force_rms_n`, `level_db`): JSON
+/// keeps key and SI value, people read "duration  8.5 s".
 class Report {
  public:
   Report& add(std::string key, double value_si);
@@ -27,8 +27,8 @@ class Report {
   Report& add(std::string key, Integer count) {
     return put(std::move(key), static_cast<std::int64_t>(count));
   }
-  /// A list of equal things: a table for people (one under the other, where a row has over 20 columns or a
-  /// table of its own), an array of objects for machines.
+  /// A list of similar items: a table for people (one below the other, if a row has over 20 columns or a
+  /// table of its own), an array of objects for programs.
   Report& add(std::string key, std::vector<Report> rows);
   Report& add(std::string key, std::vector<std::string> lines);
 

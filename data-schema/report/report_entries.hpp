@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a report holds, for those who print it. Internal to this folder.
+// The entries of a report, for its printers. Internal to this folder.
 #pragma once
 
 #include "data-schema/report/report.hpp"

@@ -41,8 +41,7 @@ bool is_nested(const Report& row) {
   });
 }
 
-// Rows with tables of their own, or of more columns than can be read across, stand one below the other
-// instead.
+// Rows with tables of their own, or with more columns than fit on a line, are printed one below the other.
 bool is_table(const std::vector<Report>& rows) {
   constexpr std::size_t kMostColumns = 20;
   return keys_of(rows).size() <= kMostColumns && std::ranges::none_of(rows, is_nested);
@@ -119,8 +118,8 @@ Lines all_lines(const Report& report, std::size_t columns) {
   return lines;
 }
 
-// What a short report keeps before all other figures: where the results are, whether they hold, what to do
-// next.
+// Entries that a short report keeps before all other figures: where the results are, whether they are valid,
+// what to do next.
 constexpr std::array<std::string_view, 20> kKept = {
     "file",       "files",    "page",      "written",   "results", "picture",    "session",
     "transducer", "verdict",  "simulated", "fault",     "failed",  "ended",      "next",
@@ -159,7 +158,7 @@ class ShortText {
     std::size_t shown = 1;
     std::size_t missing_rows = 0, missing_columns = 0;
     bool joinable = false;    // a short figure with room beside it
-    std::size_t figures = 1;  // two where another stands beside it
+    std::size_t figures = 1;  // two if another is beside it
     std::optional<TextTable> table;
   };
 
@@ -178,14 +177,14 @@ class ShortText {
     blocks_.push_back(std::move(block));
   }
 
-  // The last line says what is missing.
+  // The last line states what is missing.
   std::size_t room() const {
     std::size_t used = 1;
     for (const Block& block : blocks_) used += block.shown;
     return used < limits_.lines ? limits_.lines - used : 0;
   }
 
-  // Short figures that follow each other stand two on a line.
+  // Consecutive short figures are printed two on a line.
   void pack_figures() {
     const std::size_t half = limits_.columns / 2;
     const auto is_short = [&](const Block& block) {
@@ -211,7 +210,7 @@ class ShortText {
     for (const bool kept : {false, true})
       while (blocks_.size() + 1 > limits_.lines && drop_last(kept)) {
       }
-    // The first table is what the verb was asked for: it shows some rows before figures of less weight.
+    // The first table is the main result: some of its rows come before less important figures.
     const auto table =
         std::ranges::find_if(blocks_, [](const Block& block) { return block.table.has_value(); });
     if (table == blocks_.end()) return;
@@ -221,7 +220,7 @@ class ShortText {
     }
   }
 
-  // The last figure that is kept, or is not; never a table.
+  // The last figure, kept or not; never a table.
   bool drop_last(bool kept) {
     const auto last = std::ranges::find_if(blocks_.rbegin(), blocks_.rend(), [&](const Block& block) {
       return !block.table && is_kept(block.key) == kept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A report as lines on a terminal, no wider and no more than asked.
+// A report as lines on a terminal, within a width and a number of lines.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ struct TextLimits {
   std::size_t lines = 0;
 };
 
-/// Texts wrap at spaces (a path without spaces is never broken); rows of a table that is too wide go on in
-/// further lines, indented. Where the lines do not suffice, tables keep their first rows and columns, figures
+/// Texts wrap at spaces (a path without spaces is never broken); rows of a table that is too wide continue in
+/// further lines, indented. If there are not enough lines, tables keep their first rows and columns, figures
 /// their first lines, and the last line says how much is missing and that --json prints all of it.
 std::string text_of(const Report& report, const TextLimits& limits);
 

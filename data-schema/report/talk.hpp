@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What programs say beside their results.
+// Messages of programs beside their results.
 #pragma once
 
 #include <cstdio>
@@ -7,8 +7,8 @@
 
 namespace tacto::cli {
 
-/// Writes to stderr as it is. Where that fails (closed, a full disk, a pipe without a reader) nobody can be
-/// told, and the work goes on: unlike fmt::print this throws nothing.
+/// Writes to stderr unchanged. If that fails (closed, a full disk, a pipe without a reader), the work
+/// continues without an error: unlike fmt::print this does not throw.
 inline void talk(std::string_view text) noexcept {
   [[maybe_unused]] const std::size_t written = std::fwrite(text.data(), 1, text.size(), stderr);
 }

@@ -39,7 +39,7 @@ TextTable::TextTable(TextRow header, std::vector<TextRow> rows, std::size_t widt
   measure();
   if (width_ == 0 || run_width({0, columns()}) <= width_) return;
   drop_empty_columns();
-  // A header narrower than its values costs nothing; a wider one breaks at its spaces.
+  // A header narrower than its values costs no width; a wider one breaks at its spaces.
   header_words_.clear();
   for (std::size_t c = 0; c < columns(); ++c) {
     std::size_t values = 1;
@@ -66,7 +66,7 @@ void TextTable::measure() {
   }
 }
 
-// A space before each cell and one after it, as far as another follows.
+// A space before each cell, and one after it if another follows.
 std::size_t TextTable::run_width(const Run& run) const {
   std::size_t width = 0;
   for (std::size_t c = run.from; c < run.to; ++c) width += 2 + widths_[c];
@@ -91,7 +91,7 @@ std::string TextTable::line_of(const TextRow& cells, const Run& run, std::size_t
   return last == line.npos ? "" : line.substr(0, last + 1);
 }
 
-// The headers' last lines stand directly above the values.
+// The headers' last lines are directly above the values.
 std::vector<std::string> TextTable::header_lines(const Run& run, std::size_t indent) const {
   std::size_t most = 0;
   for (std::size_t c = run.from; c < run.to; ++c) most = std::max(most, header_words_[c].size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table on a terminal whose lines are no wider than asked. Internal to this folder.
+// A table on a terminal within a given width. Internal to this folder.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ using TextRow = std::vector<std::string>;
 /// The text in lines no wider than `width`, broken at spaces; a longer word has a line of its own.
 std::vector<std::string> wrapped_text(const std::string& text, std::size_t width);
 
-/// Header and rows, all with the same number of cells. Where the cells of a row do not fit beside each other,
-/// headers break at spaces, columns without any value are left out, and the rest of each row goes on in
+/// Header and rows, all with the same number of cells. If the cells of a row do not fit beside each other,
+/// headers break at spaces, columns without values are left out, and the rest of each row continues in
 /// indented lines.
 class TextTable {
  public:
@@ -35,7 +35,7 @@ class TextTable {
 
  private:
   struct Run {
-    std::size_t from = 0, to = 0;  // columns that stand on one line
+    std::size_t from = 0, to = 0;  // columns on one line
   };
   void drop_empty_columns();
   void measure();

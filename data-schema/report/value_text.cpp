@@ -23,7 +23,7 @@ struct Suffix {
   std::string_view unit;
 };
 
-// Longest first, so that "_n_per_m" is not taken for "_per_m".
+// Longest first, so that "_n_per_m" is not read as "_per_m".
 constexpr Suffix kSuffixes[] = {
     {"_n_per_sqrt_hz", std::nullopt, "N/sqrt(Hz)"},
     {"_n_s_per_m", std::nullopt, "N s/m"},
@@ -82,7 +82,7 @@ std::string cell_text(const std::string& key, const ReportPrinter::Value& value)
   return "";
 }
 
-// UTF-8's continuation bytes take no room.
+// UTF-8's continuation bytes have no width.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }

@@ -18,7 +18,7 @@ std::string cell_text(const std::string& key, const ReportPrinter::Value& value)
 /// Columns on a terminal: one for each letter of UTF-8.
 std::size_t width_of(std::string_view text);
 
-/// With spaces up to the width.
+/// Padded with spaces up to the width.
 std::string padded(const std::string& text, std::size_t width);
 
 }  // namespace tacto::cli

@@ -42,7 +42,7 @@ void print_line(const std::string& text) {
 struct Group {
   const Warning* shown = nullptr;
   std::size_t count = 0;
-  bool sized = false;  // their sizes differ: the one shown is the worst
+  bool sized = false;  // their sizes differ: the worst is shown
 };
 
 std::string line_of(const Group& group) {
@@ -68,7 +68,7 @@ std::vector<Group> groups_of(std::span<const Warning> warnings) {
   return groups;
 }
 
-// Numbers, with what may follow them in a name, as one sign.
+// Replaces numbers, with letters that may follow them in a name, by one character.
 std::string without_numbers(const std::string& text) {
   std::string kind;
   for (const char c : text) {

@@ -9,8 +9,8 @@
 
 namespace tacto::cli {
 
-/// What the user should know of one of several things. Warnings of one `kind` differ in size only; without a
-/// kind a warning stands alone.
+/// A warning about one of several things. Warnings of one `kind` differ in size only; a warning without a
+/// kind is printed by itself.
 struct Warning {
   std::string about;  ///< the file or stroke; may be empty
   std::string text;
@@ -21,10 +21,10 @@ struct Warning {
 /// "about: text"
 std::string sentence(const Warning& warning);
 
-/// One line a kind, in the order in which kinds first come: the worst, and of how many.
+/// One line for each kind, in the order of first appearance: the worst, and the number of warnings.
 std::vector<std::string> grouped(std::span<const Warning> warnings);
 
-/// Prints them grouped on stderr, one line a kind. All of them are in the report with --json.
+/// Prints them on stderr, one line for each kind. All of them are in the report with --json.
 void warn_grouped(std::span<const Warning> warnings);
 
 /// The same for sentences: those that differ only in their numbers are of one kind, of which the first is
@@ -34,7 +34,7 @@ void warn_grouped(std::span<const std::string> sentences);
 /// All warnings of this run, each of them, in order: what --json lists.
 std::vector<std::string> all_warnings();
 
-/// How many lines of warnings were printed.
+/// The number of printed warning lines.
 std::size_t printed_warnings();
 
 /// Prints one line, and adds it to all_warnings().

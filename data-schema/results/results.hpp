@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a verb of analysis found, as NAME.results.json: figures for people, curves to draw, all of it for
-// machines.
+// The results of a verb of analysis, as NAME.results.json: figures for people, curves to draw, all details
+// for programs.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 namespace tacto::schema {
 
 struct ResultFigure {
-  std::string name, value;  ///< as people read them, with unit
+  std::string name, value;  ///< for people, with unit
 };
 
 struct ResultCurve {
@@ -34,7 +34,7 @@ struct Results {
   std::string simulated;  ///< by what, where anything in it is simulated
   std::vector<ResultFigure> figures;
   std::vector<ResultPicture> pictures;
-  std::string details_json;  ///< an object's text: what the verb prints with --json
+  std::string details_json;  ///< the text of an object: the verb's output with --json
   std::string created, creator;
   std::string extra_json;
   std::string newer_version;
@@ -48,8 +48,8 @@ Result<Results> read_results(const std::string& name);
 /// does not allow it, or where details_json is no object.
 Result<std::string> results_json(const Results& results);
 
-/// Whether a file of this name may be written: there is none, or one of results, which `existing` says to
-/// replace. Errors: usage.
+/// Checks that a file of this name may be written: it does not exist, or it contains results that `existing`
+/// allows to replace. Errors: usage.
 Result<void> check_results_free(const std::string& path, Existing existing);
 
 }  // namespace tacto::schema

@@ -49,7 +49,7 @@ ResultPicture picture_from(const Json& body) {
   return picture;
 }
 
-// What no schema can say: a curve's points are pairs.
+// A check that a schema cannot express: a curve's points are pairs.
 Result<void> check_curves(const Json& body, const std::string& path) {
   for (std::size_t p = 0; p < body["pictures"].size(); ++p) {
     const Json& curves = body["pictures"][p]["curves"];

@@ -107,13 +107,13 @@ Result<std::string> machine_trade_path() {
 
 namespace {
 
-// Also a link to nowhere, or a folder: somebody meant something by it.
+// Also a link without a target, or a folder: the name is in use.
 bool is_there(const std::string& path) {
   std::error_code ignored;
   return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
 }
 
-// Folders of configurations travel from machine to machine.
+// A folder of settings may be copied to another machine.
 std::string origin_of(const TradeTable& table, const std::string& path) {
   if (!table.newer_version.empty())
     return fmt::format("{}, of version {}, which may say more than this program reads", path,

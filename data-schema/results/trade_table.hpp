@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the choices between speed and accuracy cost on a machine, and what error they leave: NAME.trade.json.
+// The cost of the choices between speed and accuracy on a machine, and their errors: NAME.trade.json.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace tacto::schema {
 
-/// The error of a sine that has so many samples a period: RMS of what it is off, re the sine's RMS.
+/// The error of a sine with so many samples a period: RMS of the error, re the sine's RMS.
 struct ErrorPoint {
   double points_per_period = 0, error = 0;
 };
 
 struct MeasuredChoice {
-  std::string stage;               ///< where one has to choose: "resampling", "grid", "reading" ...
-  std::string name;                ///< what is chosen: "linear"
-  std::string per;                 ///< what the cost is of: "sample", "tick", "tap"
+  std::string stage;               ///< "resampling", "grid", "reading" ...
+  std::string name;                ///< the choice: "linear"
+  std::string per;                 ///< unit of the cost: "sample", "tick", "tap"
   double cost_ns = 0;              ///< CPU time, median
-  double memory_bytes = 0;         ///< for each of `per`, where it keeps any
-  std::vector<ErrorPoint> errors;  ///< by rising points per period; none where it leaves no error of its own
+  double memory_bytes = 0;         ///< for each of `per`, if it needs any
+  std::vector<ErrorPoint> errors;  ///< by rising points per period; empty if it has no error of its own
 
-  /// The error at so many points a period: of the nearest point below, an upper bound as errors fall with
-  /// points; 1 (all is lost) below the first.
+  /// The error at so many points a period: that of the nearest point below, an upper bound because errors
+  /// fall with points; 1 below the first.
   double error_at(double points_per_period) const;
 };
 
@@ -48,8 +48,8 @@ Result<std::string> trade_table_json(const TradeTable& table);
 /// The table that ships with the program.
 Result<TradeTable> shipped_trade_table();
 
-/// Where this machine keeps its own: $XDG_CONFIG_HOME/tactograph/machine.trade.json, under ~/.config without
-/// that variable. Errors: not_found, where neither it nor HOME is set.
+/// The path of this machine's own table: $XDG_CONFIG_HOME/tactograph/machine.trade.json, under ~/.config
+/// without that variable. Errors: not_found, if neither it nor HOME is set.
 Result<std::string> machine_trade_path();
 
 struct FoundTradeTable {
@@ -58,10 +58,10 @@ struct FoundTradeTable {
       origin;  ///< "measured on this machine (PATH)", or that it is the shipped one and what makes one
 };
 
-/// This machine's own table where there is one, else the shipped one. Errors: as of read_trade_table.
+/// This machine's own table if there is one, else the shipped one. Errors: as of read_trade_table.
 Result<FoundTradeTable> find_trade_table();
 
-/// Writes the machine's own, in place of the one before. Errors: cannot_write; unsuitable.
+/// Writes the machine's own table and replaces an earlier one. Errors: cannot_write; unsuitable.
 Result<std::string> write_machine_trade_table(const TradeTable& table);
 
 }  // namespace tacto::schema

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What to say of a file whose minor version is newer than this program's.
+// Messages about a file whose minor version is newer than this program's.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@ namespace tacto::schema {
 /// The names of the members in `extra_json` (an object's text, or empty), each behind `place`.
 std::vector<std::string> member_names(const std::string& extra_json, const std::string& place = "");
 
-/// One sentence for a reader who uses the file all the same; `newer_version` and what is passed over as its
-/// reader gave them. Empty where the version is not newer.
+/// One sentence for a reader who uses the file nevertheless; `newer_version` and the ignored members as the
+/// reader returned them. Empty if the version is not newer.
 std::string note_of_newer_version(const std::string& path, const std::string& newer_version,
                                   const std::vector<std::string>& passed_over);
-/// The same of a scene, its layers' members by their place.
+/// The same for a scene, with its layers' members by their place.
 std::string note_of_newer_version(const std::string& path, const Scene& scene);
 
 }  // namespace tacto::schema

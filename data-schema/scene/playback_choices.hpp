@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How what is played is read, undone and held back: what a scene, the daemon's configuration and a `load` may
-// say of it, all in the same members.
+// How a texture is read, how the transducer is inverted and how the drive is limited: the same members in a
+// scene, in the daemon's configuration and in a `load`.
 #pragma once
 
 #include <optional>
@@ -8,21 +8,22 @@
 
 namespace tacto::schema {
 
-/// Words and bounds are those of the schemas' definition `playback`. What nobody says is for the one below
-/// to say: a request before the scene, the scene before the configuration.
+/// Words and ranges are those of the schemas' definition `playback`. A request has priority over the scene,
+/// the scene over the configuration.
 struct PlaybackChoices {
   std::optional<std::string> interpolation;   ///< nearest, linear, hermite, sinc
   std::optional<std::string> inverse;         ///< full, magnitude, gain, none
   std::optional<std::string> reconstruction;  ///< none, butterworth3: the filter behind the converter
   std::optional<double> cutoff_hz;            ///< of butterworth3
   std::optional<std::string> hold;            ///< none, zero-order
-  std::optional<double> energy_rms_v;         ///< most RMS of the drive, V; 0: no such limit
-  std::optional<double> energy_window_s;      ///< over which
-  std::optional<double> contact_on_n;         ///< normal force from which on there is a drive, N; 0: always
-  std::optional<double> contact_off_n;        ///< below it there is none any more
+  std::optional<double> energy_rms_v;         ///< largest RMS of the drive, V; 0: no limit
+  std::optional<double> energy_window_s;      ///< time window of that RMS
+  std::optional<double> contact_on_n;         ///< normal force from which there is a drive, N; 0: always
+  std::optional<double> contact_off_n;        ///< normal force below which the drive ends
   std::string extra_json;                     ///< members of a newer version
 
-  /// These, and what they leave open as `base` has it. A contact_on_n here leaves base's contact_off_n out.
+  /// These choices, and those of `base` for the unset ones. A contact_on_n here discards base's
+  /// contact_off_n.
   PlaybackChoices over(const PlaybackChoices& base) const;
   bool operator==(const PlaybackChoices&) const = default;
 };

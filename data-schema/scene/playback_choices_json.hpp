@@ -9,9 +9,9 @@ namespace tacto::schema {
 
 /// Precondition: it fits the schemas' definition.
 PlaybackChoices playback_choices_from(const Json& body);
-/// Only what was said.
+/// Only the members that are set.
 Json playback_choices_body(const PlaybackChoices& choices);
-/// Of the member `playback`, where there is one.
+/// Of the member `playback`, if there is one.
 PlaybackChoices playback_choices_in(const Json& document);
 
 }  // namespace tacto::schema

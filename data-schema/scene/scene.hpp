@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene: what lies under the finger where, as NAME.scene.json.
+// A scene: the textures under the finger and their places, as NAME.scene.json.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace tacto::schema {
 
-/// What lies beyond a texture's ends.
+/// What follows beyond a texture's ends.
 enum class TextureEnds { stop, mirror, loop };
 
 /// A recorded texture on the finger's path.
 struct TextureLayer {
-  std::string texture;      ///< as the scene says it: stem or file name
-  double at_m = 0;          ///< where its position 0 lies on the path
+  std::string texture;      ///< as in the scene: stem or file name
+  double at_m = 0;          ///< place of its position 0 on the path
   double gain_m_per_n = 0;  ///< G_psi: displacement for force
   std::string gain_set_by, gain_set_on;
   TextureEnds ends = TextureEnds::stop;  ///< stop, unless it is the only layer
@@ -29,7 +29,7 @@ struct TextureLayer {
 using Layer = OneOf<TextureLayer>;
 
 struct Scene {
-  std::vector<Layer> layers;  ///< at least one; their wanted displacements add up
+  std::vector<Layer> layers;  ///< at least one; their target displacements add up
   std::string name, notes;
   std::string created, creator;
   PlaybackChoices playback;
@@ -40,17 +40,16 @@ struct Scene {
 /// "stop", "mirror", "loop".
 std::string_view to_string(TextureEnds ends);
 
-/// By stem or NAME.scene.json. Errors: not_found; malformed, by JSON pointer, also a member that is not known
-/// here (of a newer minor version it is kept); unsuitable, by JSON pointer,
-/// for a type of layer that this program does not know (with those that it does), and for one of several
-/// textures that would go on beyond its ends; unsupported_version.
+/// By stem or NAME.scene.json. Errors: not_found; malformed, by JSON pointer, also for an unknown member (in
+/// a newer minor version it is kept); unsuitable, by JSON pointer, for an unknown type of layer (naming the
+/// known ones), and for one of several textures that continues beyond its ends; unsupported_version.
 Result<Scene> read_scene(const std::string& name);
 
 /// The same from a text; `where` names it in errors.
 Result<Scene> parse_scene(std::string_view text, const std::string& where);
 
-/// Replaces what is there. Errors: cannot_write, also of a file that is read-only; unsuitable, where the
-/// schema does not allow it.
+/// Replaces an existing file. Errors: cannot_write, also for a read-only file; unsuitable, if the schema does
+/// not allow it.
 Result<void> write_scene(const std::string& stem, const Scene& scene);
 
 /// NAME.scene.json of a stem or file name.

@@ -63,8 +63,7 @@ Result<Layer> layer_from(const Json& body, const std::string& place) {
   return texture_layer_from(body);
 }
 
-// A scene of our own version says nothing that we don't know, but for what is misspelt. What a newer one adds
-// is kept.
+// In a scene of this program's version every unknown member is misspelt. Members of a newer version are kept.
 Result<void> check_known(const Document& document, const std::string& where) {
   if (!document.newer_version.empty()) return {};
   static const auto kRules = schema_of(kSceneKind);
@@ -80,7 +79,7 @@ Result<void> check_known(const Document& document, const std::string& where) {
   return check_members_known(rules["playback"], body["playback"], where + "#/playback");
 }
 
-// Where several lie along a path, what lies beyond one's ends is another's place.
+// If there are several textures along a path, the space beyond one's ends belongs to another.
 Result<void> check_ends(const Scene& scene, const std::string& where) {
   const auto goes_on = [](const Layer& layer) {
     return layer.visit([](const TextureLayer& texture) { return texture.ends != TextureEnds::stop; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session: what was played on what, every tick and every command, from arming to disarming. SESSION.md
-// describes the bytes.
+// A session: a playback with every tick and every command, from arming to disarming. SESSION.md describes the
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct SessionCommand {
   std::vector<std::uint8_t> frame;
 };
 
-/// What the sensor of the driven tray measured: frames that follow each other at the sensor's rate.
+/// Samples of the driven tray's sensor: frames that follow each other at the sensor's rate.
 struct SessionSamples {
   std::uint64_t first_frame = 0;  ///< since the sensor began; frames between two of these are missing
   std::int64_t time_ns = 0;       ///< of the first frame, by the clock of the ticks
@@ -55,7 +55,7 @@ struct SessionLoss {
   Why why = Why::link;
 };
 
-/// Something that happened, in words: a state, a fault.
+/// An event as text: a state, a fault.
 struct SessionEvent {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
@@ -71,7 +71,7 @@ struct SessionTexture {
   std::string file, sha256;
   double at_m = 0, gain_m_per_n = 0;
   TextureEnds ends = TextureEnds::stop;
-  double seam_m = 1e-3;  ///< of a loop: what fades of its end into its beginning; older sessions: 1 mm
+  double seam_m = 1e-3;  ///< of a loop: the part of its end that fades into its beginning; older: 1 mm
 };
 
 /// What is played, and how the drive is made of it.
@@ -79,18 +79,18 @@ struct SessionProgram {
   std::string scene_file, scene_sha256;  ///< empty where a texture was played by itself
   std::vector<SessionTexture> textures;
   std::string inverse;
-  PlaybackChoices choices;  ///< with which it was played; older sessions tell the inverse alone
+  PlaybackChoices choices;  ///< used for the playback; older sessions have the inverse only
   double delay_s = 0, low_hz = 0, high_hz = 0;
   double loop_delay_s = 0;  ///< of a loop closed on the host: from the count to the drive at the device
 };
 
-/// It begins with the program that was armed.
+/// A header contains the program that was armed.
 struct SessionHeader : SessionProgram {
   std::string created, creator, build;
   std::string loop = "device";  ///< or "host"
   double rate_hz = 0, clock_hz = 0, metres_per_count = 0;
   std::string device_uri, device_name, device_serial, device_firmware, simulated;
-  std::string device_protocol;  ///< "1.2", of the wire; empty: not told, older
+  std::string device_protocol;  ///< "1.2", of the wire; empty: an older session
   Transducer transducer;
   std::string transducer_sha256;
   std::optional<SessionSensor> sensor;  ///< none: the device does not report its tray; older sessions
@@ -100,8 +100,8 @@ struct SessionHeader : SessionProgram {
   std::string newer_version;
 };
 
-/// What the next `change` among the commands brings. Where several stand before it, the last one: an earlier
-/// one came to nothing.
+/// The program that the next `change` command brings. If several precede it, the last one is valid: an
+/// earlier one failed.
 struct SessionChange {
   std::uint64_t not_before = 0;
   std::int64_t time_ns = 0;  ///< host's steady clock, before its upload
@@ -112,8 +112,7 @@ struct SessionChange {
 Result<std::string> session_header_text(const SessionHeader& header);
 Result<SessionHeader> parse_session_header(std::string_view text, const std::string& where);
 
-/// A change's program likewise. Errors: as of the header's; unsuitable, where it takes more than a block
-/// holds.
+/// The same for a change's program. Errors: as of the header's; unsuitable, if it is larger than a block.
 Result<std::string> session_program_text(const SessionProgram& program);
 Result<SessionProgram> parse_session_program(std::string_view text, const std::string& where);
 

@@ -21,7 +21,7 @@ void append_number(std::string& bytes, Number value) {
   bytes.append(raw, sizeof raw);
 }
 
-// Takes numbers off the front of a payload that is long enough.
+// Reads numbers from the front of a payload that is long enough.
 class NumberReader {
  public:
   explicit NumberReader(std::string_view bytes) : bytes_(bytes) {}
@@ -110,7 +110,7 @@ std::optional<std::vector<SessionTick>> ticks_from(std::string_view payload) {
   std::vector<SessionTick> ticks(count);
   for (SessionTick& tick : ticks) {
     tick.tick = first + static_cast<std::uint64_t>(&tick - ticks.data());
-    // Unsigned: a damaged time may run over, which is no fault of arithmetic.
+    // Unsigned: a damaged time may wrap, which is defined for unsigned numbers.
     tick.time_ns =
         static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) + take.number<std::uint32_t>());
     tick.encoder = take.number<std::int32_t>();

@@ -32,7 +32,7 @@ inline constexpr std::size_t kMostBlockTicks = 4096;
 /// A whole block. Precondition: at most kMostPayload bytes.
 std::string sealed_block(BlockType type, std::string_view payload);
 
-/// What the first bytes of a block say; none where they are no block's.
+/// The head of a block; none if the bytes are not a block's.
 struct BlockHead {
   BlockType type = BlockType::header;
   std::size_t size = 0;
@@ -41,7 +41,7 @@ struct BlockHead {
 std::optional<BlockHead> block_head(std::string_view bytes);
 bool check_is_right(const BlockHead& head, std::string_view payload);
 
-/// Payloads. Of ticks: at most kMostBlockTicks, following each other without holes, within 4 s.
+/// Payloads. Of ticks: at most kMostBlockTicks, without gaps, within 4 s.
 std::string ticks_payload(std::span<const SessionTick> ticks);
 std::string command_payload(const SessionCommand& command);
 std::string loss_payload(const SessionLoss& loss);
@@ -53,7 +53,7 @@ std::string end_payload(const SessionEnd& end);
 /// Errors: as session_program_text.
 Result<std::string> change_payload(const SessionChange& change);
 
-/// And back; none where the size does not fit.
+/// The reverse; none if the size does not fit.
 std::optional<std::vector<SessionTick>> ticks_from(std::string_view payload);
 std::optional<SessionCommand> command_from(std::string_view payload);
 std::optional<SessionLoss> loss_from(std::string_view payload);

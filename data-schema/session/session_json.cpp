@@ -157,7 +157,7 @@ Result<std::string> too_long(std::size_t bytes) {
               "session", "play a scene of fewer layers");
 }
 
-// It says neither kind nor version, and fits the transducer's schema in all else.
+// It has neither kind nor version, and otherwise fits the transducer's schema.
 Result<void> check_transducer_in(const Json& body, const std::string& where) {
   Json transducer = body["transducer"];
   transducer["kind"] = "transducer";

@@ -20,17 +20,17 @@ struct SessionVariable {
   const char* long_name;
 };
 
-/// Textures that took the place of those before, from a time on.
+/// Textures that replaced the earlier ones, from a time on.
 struct SessionTurn {
   double from_s = 0;                     ///< since the first tick
-  double fade_s = 0;                     ///< over which they came in
+  double fade_s = 0;                     ///< duration of the fade
   std::vector<SessionTexture> textures;  ///< none: the session does not name them
 };
 
 class NetcdfWriter;
 
-/// Dimension `time` (s), the variables over it, and what was played on what as attributes, written piece by
-/// piece: the file depends on the numbers, not on the pieces.
+/// Dimension `time` (s), the variables over it, and the program as attributes, written in parts: the file
+/// depends on the numbers, not on the parts.
 class SessionNetcdf {
  public:
   SessionNetcdf(const std::string& path, const SessionHeader& header, std::uint64_t times,
@@ -39,9 +39,9 @@ class SessionNetcdf {
   SessionNetcdf& operator=(const SessionNetcdf&) = delete;
   ~SessionNetcdf();
 
-  /// The next time, and the values of the variables then, as many as there are variables.
+  /// The next time, and the value of each variable at that time.
   void add(double time_s, std::span<const double> values);
-  /// After the last time. Errors: cannot_write, of all that was done.
+  /// Call after the last time. Errors: cannot_write, of any call.
   Result<void> close(const std::vector<SessionTurn>& turns);
 
  private:
@@ -56,7 +56,7 @@ class SessionNetcdf {
   std::size_t put_ = 0;
 };
 
-/// What such a file says of itself.
+/// The header data of such a file.
 struct SessionTable {
   std::string created, creator, device, transducer, simulated;
   std::vector<std::string> textures;
@@ -66,7 +66,7 @@ struct SessionTable {
   double duration_s = 0;  ///< from the first time to the last
 };
 
-/// Whether it is netCDF of that kind.
+/// Whether it is a netCDF file of that kind.
 bool is_session_netcdf(const std::string& path);
 
 /// Errors: malformed: no netCDF, of another kind, no times or times that do not grow.

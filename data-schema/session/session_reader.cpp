@@ -122,7 +122,7 @@ std::optional<SessionBlock> SessionReader::next() {
 
 namespace {
 
-// One overload a kind of block.
+// One overload for each kind of block.
 struct Count {
   SessionTotals& totals;
   std::optional<SessionChange> next = {};
@@ -141,7 +141,7 @@ struct Count {
   }
   void operator()(SessionChange& change) { next = std::move(change); }
   void operator()(const SessionLoss& loss) { totals.lost_ticks += loss.count; }
-  // Of many, how it began and how it ended.
+  // Of many events, keeps the first and the last.
   void operator()(const SessionEvent& event) {
     ++totals.event_count;
     if (totals.events.size() == kMostEventsKept)

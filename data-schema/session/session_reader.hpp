@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads a session block by block, in little memory, whether or not it was ever closed.
+// Reads a session block by block, in little memory, also one that was not closed.
 #pragma once
 
 #include <memory>
@@ -17,8 +17,8 @@ using SessionBlock = std::variant<std::vector<SessionTick>, SessionCommand, Sess
 enum class SessionEnding {
   unread,    ///< not reached yet
   closed,    ///< by its last block
-  unclosed,  ///< after a whole block: its writer is still at it, or was killed
-  damaged,   ///< in bytes that are no block; what stands before them was read
+  unclosed,  ///< after a whole block: its writer still runs, or was killed
+  damaged,   ///< in bytes that are not a block; the blocks before were read
 };
 
 class SessionReader {
@@ -32,10 +32,10 @@ class SessionReader {
 
   const SessionHeader& header() const;
   const std::string& path() const;
-  /// The next block, in the order of the file; none at its end. Types that are not known are passed over.
+  /// The next block, in the order of the file; none at its end. Unknown types are skipped.
   std::optional<SessionBlock> next();
   SessionEnding ending() const;
-  /// Where the last whole block ended.
+  /// The end of the last whole block.
   std::uint64_t sound_bytes() const;
 
  private:
@@ -44,16 +44,16 @@ class SessionReader {
   std::unique_ptr<State> state_;
 };
 
-/// What a whole session holds, counted.
+/// Totals of a whole session.
 struct SessionTotals {
   std::uint64_t ticks = 0, commands = 0, lost_ticks = 0, late_ticks = 0;
   std::uint64_t samples = 0;       ///< of the tray's sensor
   std::uint64_t lost_samples = 0;  ///< missing between them
   bool samples_grow = true;        ///< each frame after the one before it
   std::int64_t first_ns = 0, last_ns = 0;
-  std::vector<SessionEvent> events;    ///< of many the first 500 and the last 500
+  std::vector<SessionEvent> events;    ///< at most the first 500 and the last 500
   std::uint64_t event_count = 0;       ///< of all
-  std::vector<SessionChange> changes;  ///< the first 1000 that came to be
+  std::vector<SessionChange> changes;  ///< the first 1000 that took effect
   std::optional<SessionEnd> end;
   SessionEnding ending = SessionEnding::unread;
 };

@@ -16,7 +16,7 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::int64_t kFreeOfTicks = 4096, kFreeOfNotes = 2048, kFreeOfLosses = 256;
-constexpr std::int64_t kAhead = 65536;  // room is asked for in such steps
+constexpr std::int64_t kAhead = 65536;  // room is reserved in such steps
 
 tl::unexpected<Error> unwritable_session(const std::string& path, int error_number) {
   if (error_number == EEXIST)
@@ -51,7 +51,7 @@ Result<SessionWriter> SessionWriter::create(const std::string& path, const Sessi
   const int opened = open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
   if (opened < 0) return unwritable_session(path, errno);
   SessionWriter writer(path, opened);
-  flock(opened, LOCK_EX | LOCK_NB);  // held by nobody else: the file is new
+  flock(opened, LOCK_EX | LOCK_NB);  // nobody else has the lock: the file is new
   if (const auto begun = writer.append(sealed_block(BlockType::header, *text), kFreeOfTicks); !begun) {
     unlink(path.c_str());
     return forward_error(begun);
@@ -73,7 +73,7 @@ Result<void> SessionWriter::make_room(std::int64_t bytes) {
   return unwritable_session(path_, errno);
 }
 
-// Half a block would hide what comes after it.
+// An incomplete block would hide the following ones.
 Result<void> SessionWriter::append(const std::string& block, std::int64_t to_keep_free) {
   const auto size = static_cast<std::int64_t>(block.size());
   if (const auto room = make_room(size + to_keep_free); !room) return room;
@@ -127,7 +127,7 @@ Result<void> SessionWriter::sync() {
 
 Result<void> SessionWriter::close(const SessionEnd& end) {
   if (const auto done = append(sealed_block(BlockType::end, end_payload(end)), 0); !done) return done;
-  [[maybe_unused]] const int given_back = ftruncate(descriptor_, size_);  // what was held for more
+  [[maybe_unused]] const int given_back = ftruncate(descriptor_, size_);  // the reserved room
   if (const auto done = sync(); !done) return done;
   ::close(std::exchange(descriptor_, -1));
   return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes a session as it happens.
+// Writes a session while it runs.
 #pragma once
 
 #include <span>
@@ -8,9 +8,9 @@
 
 namespace tacto::schema {
 
-/// Appends whole blocks. After a failure (a full disk) the file ends with its last whole block, and what
-/// comes later may be tried again. Of the disk 4 KiB are held back from ticks, 2 KiB from commands and
-/// events, so that losses and the end can still be told where nothing else finds room. Not safe in the tick.
+/// Appends whole blocks. After a failure (a full disk) the file ends with its last whole block, and later
+/// blocks may be tried again. 4 KiB of the disk are reserved against ticks, 2 KiB against commands and
+/// events, so that losses and the end can still be written. Not safe in the tick.
 class SessionWriter {
  public:
   /// Errors: usage, where the file is there already; cannot_write; as session_header_text.
@@ -19,19 +19,19 @@ class SessionWriter {
   SessionWriter& operator=(SessionWriter&& other) noexcept;
   ~SessionWriter();
 
-  /// Any number of ticks, one following the other without holes. Errors: cannot_write.
+  /// Any number of ticks, without gaps. Errors: cannot_write.
   Result<void> add(std::span<const SessionTick> ticks);
-  /// What the tray's sensor measured. Errors: cannot_write.
+  /// Samples of the tray's sensor. Errors: cannot_write.
   Result<void> add(const SessionSamples& samples);
   Result<void> add(const SessionCommand& command);
   Result<void> add(const SessionLoss& loss);
   Result<void> add(const SessionEvent& event);
-  /// Before the commands of its upload. Errors: cannot_write; as session_program_text.
+  /// Call before the commands of its upload. Errors: cannot_write; as session_program_text.
   Result<void> add(const SessionChange& change);
-  /// Whether there is room for so many bytes more, where the file system tells (else a write will); it is
-  /// held. Errors: cannot_write.
+  /// Whether there is room for so many more bytes, if the file system can tell (otherwise a write will); the
+  /// room is reserved. Errors: cannot_write.
   Result<void> make_room(std::int64_t bytes);
-  /// Returns when all that was added is on the disk. Errors: cannot_write.
+  /// Returns when all added data are on the disk. Errors: cannot_write.
   Result<void> sync();
   /// The last block, and sync(). Errors: cannot_write.
   Result<void> close(const SessionEnd& end);
@@ -42,7 +42,7 @@ class SessionWriter {
   Result<void> append(const std::string& block, std::int64_t to_keep_free);
   std::string path_;
   int descriptor_ = -1;
-  std::int64_t size_ = 0, held_ = 0;  // held_: as far as the disk has promised room
+  std::int64_t size_ = 0, held_ = 0;  // held_: end of the reserved room
 };
 
 }  // namespace tacto::schema

@@ -13,11 +13,11 @@
 namespace tacto::schema {
 namespace {
 
-// A damaged header can claim any length; no spectrogram of ours comes near this (2 GB of cells).
+// A damaged header can contain any length; spectrograms of tactograph stay far below this (2 GB of cells).
 constexpr std::size_t kMostCells = std::size_t{1} << 29;
 
-// HDF5's own clearing up at exit goes through files whose closing failed, and crashes (1.10.8, on a full
-// disk). Whatever was written well is closed by us. Has to be said before HDF5 begins.
+// HDF5's clean-up at exit uses files whose closing failed, and crashes (1.10.8, on a full disk). This class
+// closes every file itself. Has to be called before HDF5 starts.
 void leave_exit_alone() {
   [[maybe_unused]] static const herr_t said = H5dont_atexit();
 }
@@ -53,7 +53,7 @@ int NetcdfWriter::axis(const char* name, int dimension, const std::string& units
   return id;
 }
 
-// Higher levels of deflation gain little and cost seconds. The library's own cache would take 16 MB a
+// Higher levels of deflation gain little and cost seconds. The library's own cache would need 16 MB a
 // variable; rows come in order, so one block at a time is enough.
 int NetcdfWriter::define(const char* name, int type, const Blocks& blocks, bool deflated) {
   constexpr int kShuffle = 1, kDeflate = 1, kLevel = 1;

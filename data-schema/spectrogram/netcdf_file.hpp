@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The wall around the netCDF library: an open file whose first failure sticks, so that a sequence of calls is
-// checked once at its end. Internal to this folder.
+// The only use of the netCDF library: an open file that keeps its first failure, so that a sequence of calls
+// is checked once at its end. Internal to this folder.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace tacto::schema {
 
-/// A variable's dimensions, and in what blocks it lies in the file: a length for each dimension.
+/// A variable's dimensions, and the size of its blocks in the file: a length for each dimension.
 struct Blocks {
   std::vector<int> dimensions;
   std::vector<std::size_t> lengths;
@@ -24,7 +24,7 @@ struct Part {
   std::vector<std::size_t> start, count;
 };
 
-/// A netCDF-4 file being written. After a failure every call does nothing, and close() says what it was.
+/// A netCDF-4 file being written. After a failure every call does nothing, and close() reports the failure.
 class NetcdfWriter {
  public:
   explicit NetcdfWriter(const std::string& path);
@@ -32,7 +32,7 @@ class NetcdfWriter {
   NetcdfWriter& operator=(const NetcdfWriter&) = delete;
   ~NetcdfWriter();
 
-  /// A dimension without a length grows with what is put.
+  /// A dimension without a length grows with the data.
   int dimension(const char* name, std::optional<std::size_t> length);
   /// Variables, each with its unit (none where empty) and long name.
   int axis(const char* name, int dimension, const std::string& units, const std::string& long_name);
@@ -41,7 +41,7 @@ class NetcdfWriter {
   /// Single precision, absent cells NaN.
   int cells(const char* name, const Blocks& blocks, bool deflated, const std::string& units,
             const std::string& long_name);
-  /// Bytes that are 0 or 1, deflated, with the words for both ("unknown known").
+  /// Bytes that are 0 or 1, deflated, with the names of both values ("unknown known").
   int flags(const char* name, const Blocks& blocks, const std::string& meanings,
             const std::string& long_name);
   /// Of the whole file.
@@ -64,7 +64,7 @@ class NetcdfWriter {
   int status_ = 0;
 };
 
-/// A netCDF file being read. After a failure every call gives nothing, and status() says what it was.
+/// A netCDF file being read. After a failure every call returns nothing, and status() reports the failure.
 class NetcdfReader {
  public:
   explicit NetcdfReader(const std::string& path);

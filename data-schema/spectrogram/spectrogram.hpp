@@ -11,11 +11,11 @@
 
 namespace tacto::schema {
 
-/// What a cell holds. density: unit^2 m, one-sided power spectral density. amplitude: unit, a sine of
+/// The content of a cell. density: unit^2 m, one-sided power spectral density. amplitude: unit, a sine of
 /// amplitude A that fills the window reads A at its bin.
 enum class Scaling { density, amplitude };
 
-/// The spatial frequencies that the recording could know at one row.
+/// The valid spatial frequencies at one row.
 struct KnownBand {
   double low_per_m = 0;
   double high_per_m = 0;
@@ -24,36 +24,36 @@ struct KnownBand {
   }
 };
 
-/// How many rows to make and write at once: an even number, of 65,536 cells together or the next below it (or
-/// two rows). The blocks of a netCDF file have about as many.
+/// The number of rows to make and write at once: an even number, of at most 65,536 cells together (or two
+/// rows). The blocks of a netCDF file have about as many.
 inline std::size_t rows_at_once(std::size_t bins) {
   constexpr std::size_t kCells = std::size_t{1} << 16;
   return kCells / bins < 2 ? 2 : kCells / bins / 2 * 2;
 }
 
-/// What is said of a spectrogram beside its cells. Row p belongs to position_m[p], bin k to the spatial
-/// frequency k * frequency_step_per_m.
+/// All data of a spectrogram except its cells. Row p belongs to position_m[p], bin k to the spatial frequency
+/// k * frequency_step_per_m.
 struct SpectrogramHeader {
   std::vector<double> position_m;  ///< centres of the windows
-  /// One a row, or empty where the texture names no valid band: then all is taken for known.
+  /// One a row, or empty if the texture has no valid band: then all frequencies count as valid.
   std::vector<KnownBand> known;
   std::size_t bins = 0;
   double frequency_step_per_m = 0;
   Scaling scaling = Scaling::density;
   std::string quantity, unit;  ///< of the texture
   std::string window;          ///< "blackman"
-  std::string detrend;         ///< "constant" (each window's mean was taken off) or "none"
+  std::string detrend;         ///< "constant" (each window's mean was subtracted) or "none"
   double window_m = 0;
   double hop_m = 0;
   double pitch_m = 0;
   std::size_t padded_samples = 0;
-  /// The window's mean, 0.42 for Blackman's: what amplitudes were divided by, beside its length.
+  /// The window's mean, 0.42 for Blackman's: amplitudes were divided by it and by the window's length.
   double coherent_gain = 0;
   std::size_t decimation = 1;  ///< of the grid on which the transform worked; 1: whole resolution
   std::string name;            ///< the texture's
   std::string simulated;       ///< by what, where it is simulated
-  std::size_t strokes = 1;     ///< set by the reader: how many spectrograms its file holds
-  std::string newer_version;   ///< set by the reader where the file's minor version is newer than ours
+  std::size_t strokes = 1;     ///< set by the reader: number of spectrograms in the file
+  std::string newer_version;   ///< set by the reader if the file's minor version is newer than ours
 
   double frequency_per_m(std::size_t k) const { return static_cast<double>(k) * frequency_step_per_m; }
   bool knows(std::size_t p, std::size_t k) const {
@@ -76,17 +76,17 @@ struct Spectrogram : SpectrogramHeader {
 Result<void> write_spectrogram_nc(const std::string& path, std::span<const Spectrogram> spectrograms,
                                   bool compress = false);
 
-/// Reads one spectrogram (0-based) of a file of ours. Errors: not_found, malformed, unsupported_version;
-/// unsuitable, where the file has fewer.
+/// Reads one spectrogram (0-based) of a file. Errors: not_found, malformed, unsupported_version; unsuitable,
+/// if the file has fewer.
 Result<Spectrogram> read_spectrogram_nc(const std::string& path, std::size_t stroke = 0);
 
 /// Whether it is netCDF of that kind.
 bool is_spectrogram_nc(const std::string& path);
 
-/// A table for other programs: first column position_mm; where the texture says what it knows,
-/// known_from_per_mm and known_to_per_mm; then one column a frequency, headed with the cells' unit and the
-/// frequency ("N2 mm at 0.25/mm"); several spectrograms are told apart by a leading column `stroke`. Errors:
-/// cannot_write; unsuitable, where axes differ.
+/// A table for other programs: first column position_mm; if the texture has a valid band, known_from_per_mm
+/// and known_to_per_mm; then one column a frequency, headed with the cells' unit and the frequency ("N2 mm at
+/// 0.25/mm"); several spectrograms are distinguished by a leading column `stroke`. Errors: cannot_write;
+/// unsuitable, if axes differ.
 Result<void> write_spectrogram_csv(const std::string& path, std::span<const Spectrogram> spectrograms);
 
 }  // namespace tacto::schema

@@ -13,7 +13,7 @@ bool alphabetic(const std::string& text) {
   return std::ranges::all_of(text, [](unsigned char c) { return std::isalpha(c) != 0; });
 }
 
-// Equal but for rounding: positions were computed as index times pitch.
+// Equal except for rounding: positions were computed as index times pitch.
 bool same_positions(const SpectrogramHeader& a, const SpectrogramHeader& b) {
   const std::size_t shared = std::min(a.position_m.size(), b.position_m.size());
   for (std::size_t p = 0; p < shared; ++p)

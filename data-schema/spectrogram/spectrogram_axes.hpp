@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the files of spectrograms share: the units they are written in, and axes that fit. Internal to this
-// folder.
+// Common parts of spectrogram files: units, and the comparison of axes. Internal to this folder.
 #pragma once
 
 #include <optional>
@@ -16,11 +15,11 @@ inline constexpr double kMillimetres = 1e3;  ///< in a metre; also unit^2 mm in 
 /// "N", "m/s", "1".
 std::string cell_unit(const SpectrogramHeader& header);
 
-/// What brings a cell to that unit.
+/// The factor from a cell to that unit.
 float cell_factor(Scaling scaling);
 
-/// Whether a header has cells, and shares frequency axis, quantity, scaling, windowing, and (up to the end of
-/// the shorter) positions with the file's first. Errors: unsuitable, naming what differs.
+/// Checks that a header has cells, and shares frequency axis, quantity, scaling, windowing, and (up to the
+/// end of the shorter) positions with the first one of the file. Errors: unsuitable, naming the difference.
 Result<void> check_axes(const std::optional<SpectrogramHeader>& first, const SpectrogramHeader& header);
 
 }  // namespace tacto::schema

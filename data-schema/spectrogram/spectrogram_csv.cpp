@@ -20,7 +20,7 @@ struct CloseTable {
 };
 using File = std::unique_ptr<std::FILE, CloseTable>;
 
-// Nine digits drop the noise of rounding ("0.30000000000000004") and keep picometres on a metre.
+// Nine digits remove rounding noise ("0.30000000000000004") and keep picometres on a metre.
 void append_axis(Buffer& row, double value) {
   if (std::isfinite(value)) fmt::format_to(std::back_inserter(row), "{:.9g}", value);
 }
@@ -75,7 +75,7 @@ class CsvWriter : public SpectrogramWriter {
     }
   }
 
-  // Empty where there is no finite number.
+  // Empty if there is no finite number.
   void append_cell(float cell) {
     row_.push_back(',');
     if (std::isfinite(cell)) fmt::format_to(std::back_inserter(row_), "{}", cell);

@@ -103,7 +103,7 @@ void read_cells(NetcdfReader& file, std::size_t stroke, Spectrogram& spectrogram
   if (part.count.size() == 3 && !spectrogram.cells.empty()) drop_absent_rows(spectrogram);
 }
 
-// Files of version 1.0 do not say what is known; NaN stands where a texture did not.
+// Files of version 1.0 have no valid band; NaN if a texture had none.
 void read_known(NetcdfReader& file, std::size_t stroke, Spectrogram& spectrogram) {
   if (!file.has("known_from") || !file.has("known_to")) return;
   const Part part = part_of(file, stroke, {spectrogram.position_m.size()});

@@ -17,7 +17,7 @@
 namespace tacto::schema {
 namespace {
 
-// 1.1: amplitudes, what is known; 1.2: decibels, the checksum
+// 1.1: amplitudes, valid band; 1.2: decibels, the checksum
 constexpr const char* kVersion = "1.2";
 
 std::vector<double> in_millimetres(const std::vector<double>& position_m) {
@@ -39,7 +39,7 @@ std::vector<double> limits_per_mm(const std::vector<KnownBand>& known, double Kn
   return values;
 }
 
-// As few blocks as may be, about equally long: the last one's unused end lies in the file too.
+// As few blocks as possible, of about equal length: the unused end of the last block is in the file, too.
 std::size_t block_rows(std::size_t positions, std::size_t bins) {
   const std::size_t blocks = (positions - 1) / rows_at_once(bins) + 1;
   return (positions - 1) / blocks + 1;
@@ -108,7 +108,7 @@ class NcWriter : public SpectrogramWriter {
     return part;
   }
 
-  // Frequency by frequency, as a plot with the position along its lower edge wants it.
+  // Frequency by frequency: the order of a plot with the position along its lower edge.
   void put_decibels(std::size_t first, std::size_t rows) {
     decibels_.resize(scaled_.size());
     turned_.resize(scaled_.size());
@@ -118,7 +118,7 @@ class NcWriter : public SpectrogramWriter {
               std::span<const float>(turned_));
   }
 
-  // Of the spectrogram that was written last.
+  // Writes the data of the last spectrogram.
   void end_sum() {
     if (!first_) return;
     const std::vector<double> absent(header_.known.empty() ? rows_.back() : 0,
@@ -130,7 +130,7 @@ class NcWriter : public SpectrogramWriter {
     sums_ += (sums_.empty() ? "" : "\n") + sum_.hexadecimal();
   }
 
-  // How many come, and how long the longest is, shows only at the end.
+  // The number of spectrograms and the length of the longest are known only at the end.
   void define(const SpectrogramHeader& header) {
     first_ = header;
     const std::size_t positions = header.position_m.size();
@@ -182,7 +182,7 @@ class NcWriter : public SpectrogramWriter {
     }
     const auto bins = static_cast<double>(header_.bins);
     const auto& [low, high] = header_.known[p];
-    // Rounding may not take a bin from the band that contains() gives it.
+    // Rounding must not remove a bin from the band for which contains() is true.
     auto from = static_cast<std::size_t>(std::clamp(low / header_.frequency_step_per_m - 1, 0.0, bins));
     auto to = static_cast<std::size_t>(std::clamp(high / header_.frequency_step_per_m + 2, 0.0, bins));
     while (from < to && !header_.knows(p, from)) ++from;
@@ -190,7 +190,7 @@ class NcWriter : public SpectrogramWriter {
     if (from < to) std::ranges::fill(flags.subspan(from, to - from), 1);
   }
 
-  // What a shorter stroke does not have is not known.
+  // Cells beyond the end of a shorter stroke are not valid.
   void flag_absent_rows() {
     const std::size_t most = rows_at_once(first_->bins);
     flags_.assign(most * first_->bins, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The checksum that a spectrogram's file holds of its cells and axes. Internal to this folder.
+// The checksum of cells and axes in a spectrogram's file. Internal to this folder.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 namespace tacto::schema {
 
 /// SHA-256 over the bytes of one spectrogram as its file stores them, little-endian: the rows of `density` or
-/// `amplitude` (float32), then known_from and known_to (float64; NaN where the texture names no band), its
+/// `amplitude` (float32), then known_from and known_to (float64; NaN if the texture has no valid band), its
 /// positions and the spatial frequencies (float64). The attribute `sha256` has a line for each spectrogram.
 class SpectrogramSum {
  public:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The speed certificate of a texture: which of its peaks belong to the surface, and which to time.
+// The speed certificate of a texture: which of its peaks come from the surface, and which from vibration in
+// time.
 #pragma once
 
 #include <string>
@@ -7,30 +8,30 @@
 
 namespace tacto::schema {
 
-/// spatial: stays in 1/m while the speed changes, so it is the surface's. temporal: stays in Hz: a resonance,
-/// mains.
+/// spatial: stays at one spatial frequency while the speed changes, so it comes from the surface. temporal:
+/// stays at one frequency in Hz: a resonance, mains.
 enum class PeakVerdict { spatial, temporal, undecided };
 
-/// A peak as it lies in the texture that holds the certificate.
+/// A peak in the texture that contains the certificate.
 struct CertifiedPeak {
   PeakVerdict verdict = PeakVerdict::undecided;
-  double confidence = 0;  ///< probability of the verdict; of the likelier one where undecided
-  /// Why it is undecided: "speed_ratio" (too small for the resolution), "signal_to_noise", "outside_band" (no
-  /// other texture knows the place where the likelier hypothesis puts it), "both_fit", "neither_fits"; else
-  /// empty.
+  double confidence = 0;  ///< probability of the verdict; if undecided, of the more probable one
+  /// The reason if it is undecided: "speed_ratio" (too small for the resolution), "signal_to_noise",
+  /// "outside_band" (the place of the more probable hypothesis is in no other texture's valid band),
+  /// "both_fit", "neither_fits"; else empty.
   std::string reason;
   double frequency_per_m = 0;     ///< in this texture
   double frequency_hz = 0;        ///< at this texture's mean speed
   double rms = 0;                 ///< of a sine of its power, where it was strongest; in the texture's unit
   double snr_db = 0;              ///< over the background, where it was strongest
   double snr_needed_db = 0;       ///< what noise alone reaches in one cell of 10,000
-  double speed_ratio = 0;         ///< largest between two textures that know its place
-  double speed_ratio_needed = 0;  ///< from which on the two hypotheses lie a resolution apart
+  double speed_ratio = 0;         ///< largest between two textures whose valid bands contain it
+  double speed_ratio_needed = 0;  ///< at which the two hypotheses are one resolution apart
   std::vector<std::string> found_in;  ///< names of textures
 };
 
 struct Certificate {
-  std::vector<std::string> textures;  ///< what it was made from, by name ...
+  std::vector<std::string> textures;  ///< from which it was made, by name ...
   std::vector<double> speeds_mps;     ///< ... and mean speed
   double speed_ratio = 0;             ///< fastest over slowest
   double confidence_needed = 0;       ///< for a verdict

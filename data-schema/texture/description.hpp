@@ -14,9 +14,9 @@ struct ThirdOctaveBand {
   int number = 0;
   double centre_per_m = 0;
   double low_per_m = 0, high_per_m = 0;  ///< edges of the whole band
-  bool partial = false;                  ///< cut by the valid band: `rms` is that of what is known
+  bool partial = false;                  ///< cut by the valid band: `rms` is that of the valid part
   double rms = 0;                        ///< in the texture's unit
-  double density = 0;                    ///< mean power spectral density of what is known, unit^2 m
+  double density = 0;                    ///< mean power spectral density of the valid part, unit^2 m
 };
 
 /// One texture in a few numbers, within [low_per_m, high_per_m].
@@ -24,14 +24,14 @@ struct Description {
   std::string texture;  ///< its name
   std::string quantity, unit;
   double length_m = 0, pitch_m = 0;
-  double from_m = 0, to_m = 0;           ///< what is described: its part at steady speed
+  double from_m = 0, to_m = 0;           ///< the described part, at steady speed
   double mean_speed_mps = 0;             ///< of the recording; 0 where unknown
-  double low_per_m = 0, high_per_m = 0;  ///< valid all along it, and seen by the window
+  double low_per_m = 0, high_per_m = 0;  ///< valid along all of it, and resolved by the window
   double window_m = 0;
   double rms = 0;        ///< in the texture's unit
   double total_rms = 0;  ///< of its samples, valid or not
   double centroid_per_m = 0;
-  double slope_db_per_octave = 0;  ///< NaN where less than an octave is known
+  double slope_db_per_octave = 0;  ///< NaN if less than an octave is valid
   std::vector<ThirdOctaveBand> bands;
   std::string simulated;  ///< by what, where it is simulated
 };

@@ -31,13 +31,13 @@ struct Formant {
   std::vector<FormantPoint> track;
 };
 
-/// The formants of one texture, and what they were found with.
+/// The formants of one texture, and the settings with which they were found.
 struct FormantTable {
   std::string texture;          ///< its name
   std::string quantity, unit;   ///< of the texture
   std::string level_reference;  ///< "1 N^2 mm"
   double window_m = 0, hop_m = 0;
-  double resolution_per_m = 0;  ///< lines closer than this melt into one
+  double resolution_per_m = 0;  ///< lines closer than this are not separated
   double start_db = 0, go_on_db = 0;
   std::string simulated;  ///< by what, where it is simulated
   std::vector<Formant> formants;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kTextureKind = "texture";
 constexpr std::string_view kTextureSuffix = ".texture";
 
-// A recording under the name is the commonest mistake, and is answered as such.
+// A recording with this name is the most frequent mistake; it has an error message of its own.
 tl::unexpected<Error> absent(const std::string& name) {
   const auto others = stored_files(name);
   if (others && others->front().kind == FileKind::recording)

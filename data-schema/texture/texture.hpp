@@ -13,20 +13,20 @@
 
 namespace tacto::schema {
 
-/// The band that the texture knows at a position: what the recording's band in Hz became at the finger's
-/// speed there.
+/// The valid band of the texture at a position: the recording's band in Hz divided by the finger's speed
+/// there.
 struct BandPoint {
   double position_m = 0;
   double low_per_m = 0;
   double high_per_m = 0;
 };
 
-/// How a texture was made from a recording, so that it can be made again.
+/// How a texture was made from a recording; enough to make it again.
 struct TextureSource {
   std::string recording;         ///< file name of the recording's sidecar
   std::string recording_sha256;  ///< of its WAV
   double from_s = 0, to_s = 0;   ///< the stretch of the recording
-  int stroke = 0;                ///< 1-based; 0 where a stretch was asked for by time
+  int stroke = 0;                ///< 1-based; 0 if a stretch was selected by time
   std::string method;            ///< "hermite"
   std::string filter;            ///< "fourier", "butterworth", "none"
   std::string edges;             ///< "treated", "none"
@@ -34,14 +34,14 @@ struct TextureSource {
   double low_hz = 0, high_hz = 0;
   bool equalised = false;  ///< divided by the sensor's response
   double mean_speed_mps = 0, min_speed_mps = 0, max_speed_mps = 0;
-  double position_moved_m = 0;    ///< how far the positions were moved, at most, to make them monotone
-  double position_quantum_m = 0;  ///< the step of their grid; 0 where none shows
+  double position_moved_m = 0;    ///< largest change of a position to make them monotone
+  double position_quantum_m = 0;  ///< the step of their grid; 0 if there is no visible grid
   double position_noise_m = 0;    ///< standard deviation of their noise, where it is over a quantum
-  int counter_bits = 0;           ///< of an encoder's counter that ran over in the recording; else 0
-  int counter_wraps = 0;          ///< how often it did in the stretch
+  int counter_bits = 0;           ///< of an encoder's counter that wrapped in the recording; else 0
+  int counter_wraps = 0;          ///< number of wraps in the stretch
   std::optional<double> normal_force_n = std::nullopt;  ///< its mean in the stretch, where it was recorded
   bool finger_up = false;                               ///< by that force
-  /// Of a band-pass along position, where that is the filter; the band in Hz is then all that was recorded.
+  /// Of a band-pass along position, if that is the filter; then the band in Hz is all that was recorded.
   std::optional<double> low_per_m = std::nullopt, high_per_m = std::nullopt;
 };
 
@@ -55,13 +55,13 @@ struct AveragedStroke {
   std::string recording = {}, recording_sha256 = {};  ///< where strokes of several recordings were averaged
 };
 
-/// So many strokes were averaged from a position on, up to the next such point.
+/// The number of averaged strokes from a position on, up to the next such point.
 struct StrokeCount {
   double position_m = 0;
   int strokes = 0;
 };
 
-/// What a texture that is the mean of several strokes knows more.
+/// Additional data of a texture that is the mean of several strokes.
 struct TextureAverage {
   std::string align;  ///< "position", "correlation"
   std::vector<double>
@@ -70,9 +70,9 @@ struct TextureAverage {
   std::vector<StrokeCount> counts;  ///< by growing position, from 0 on
 };
 
-/// G_psi as somebody felt it to be right.
+/// G_psi as a user saved it.
 struct PlaybackGain {
-  double gain_m_per_n = 0;  ///< displacement for force; negative turns the texture over
+  double gain_m_per_n = 0;  ///< displacement for force; negative inverts the texture
   std::string who, when;    ///< when: ISO 8601, UTC
 };
 
@@ -81,13 +81,13 @@ struct Texture {
   SpaceSignal signal;
   std::string quantity = "tangential_force";
   std::string unit = "N";
-  int direction = 1;  ///< -1: the stroke was made backwards; it is stored by growing position all the same
-  double source_origin_m = 0;  ///< where position 0 lay on the bench
+  int direction = 1;           ///< -1: the stroke was backwards; it is stored by growing position, too
+  double source_origin_m = 0;  ///< position 0 on the bench
   std::vector<BandPoint> valid_band;
   TextureSource source;                       ///< of an average: from its first stroke to its last
   std::optional<TextureAverage> average;      ///< of several strokes; the WAV has the spread as 2nd channel
-  std::optional<Certificate> certificate;     ///< which of its peaks are the surface's
-  std::optional<PlaybackGain> playback_gain;  ///< with which it is played where nobody says another
+  std::optional<Certificate> certificate;     ///< which of its peaks come from the surface
+  std::optional<PlaybackGain> playback_gain;  ///< default gain of playback
   std::string simulated;                      ///< by what, where it is simulated
   std::string surface, subject, finger, notes;
   std::string created, creator;
@@ -109,18 +109,18 @@ Result<void> write_texture(const std::string& stem, const Texture& texture);
 /// The same with other files, at the commit() of `pending`.
 Result<void> add_texture(PendingFiles& pending, const std::string& stem, const Texture& texture);
 
-/// What the sidecar keeps; none where nobody saved one. Errors: as read_texture, of the sidecar.
+/// The gain in the sidecar; none if none was saved. Errors: as read_texture, of the sidecar.
 Result<std::optional<PlaybackGain>> read_playback_gain(const std::string& name);
 
-/// Puts it into the sidecar, in the place of an earlier one: all else in it stays, known or not, and the WAV
-/// is not touched. Appears whole or not at all. Errors: as read_playback_gain; cannot_write, also of a file
-/// that is read-only; unsuitable, for a gain that is no number.
+/// Writes it into the sidecar, in place of an earlier one. All other members stay, known or not, and the WAV
+/// is not changed. The file appears whole or not at all. Errors: as read_playback_gain; cannot_write, also
+/// for a read-only file; unsuitable, for a gain that is not finite.
 Result<void> write_playback_gain(const std::string& name, const PlaybackGain& gain);
 
-/// Of what an RMS of all samples is: "all samples, filtered to 15-500 Hz", for reports.
+/// The samples to which an RMS applies: "all samples, filtered to 15-500 Hz", for reports.
 std::string whole_rms_band(const Texture& texture);
 
-/// That no texture lies under the name, or that it is to be replaced. Errors: usage, naming the file.
+/// Checks that there is no texture of this name, or that it may be replaced. Errors: usage, naming the file.
 Result<void> check_texture_free(const std::string& stem, Existing existing = Existing::keep);
 
 }  // namespace tacto::schema

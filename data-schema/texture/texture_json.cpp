@@ -49,7 +49,7 @@ constexpr SourceNumber kSourceNumbers[] = {
     {"position_noise_m", &TextureSource::position_noise_m},
 };
 
-// Left out where they are 0.
+// Left out if they are 0.
 struct SourceCount {
   const char* name;
   int TextureSource::*member;
@@ -179,7 +179,7 @@ Json texture_body(const Texture& texture, const TextureData& data) {
   body["direction"] = texture.direction;
   body["source_origin_m"] = texture.source_origin_m;
   if (!texture.valid_band.empty()) body["valid_band"] = band_body(texture.valid_band);
-  // A texture that was drawn or computed, not recorded, names no recording.
+  // A texture that was drawn or computed names no recording.
   if (!texture.source.recording.empty()) body["source"] = source_body(texture.source);
   if (texture.average) {
     body["channels"] = channels_body(texture.unit);

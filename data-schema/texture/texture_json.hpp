@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A texture's sidecar as JSON, and where its two files lie. Internal to this folder.
+// A texture's sidecar as JSON, and the paths of its two files. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct TextureData {
 /// Everything but the samples, under the C++ names; without `kind`, `version` and the texture's extra_json.
 nlohmann::ordered_json texture_body(const Texture& texture, const TextureData& data);
 
-/// Reads what texture_body made. Precondition: the document fits the texture's schema. The signal has its
+/// Reads a document made by texture_body. Precondition: it fits the texture's schema. The signal has its
 /// pitch and no values.
 Texture texture_from(const nlohmann::ordered_json& body);
 TextureData texture_data_from(const nlohmann::ordered_json& body);

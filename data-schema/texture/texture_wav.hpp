@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a texture's samples lie.
+// The file of a texture's samples.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace tacto::schema {
 
-/// The WAV that a texture's sidecar names, and the SHA-256 that it says of it (which read_texture checks). It
-/// may have another name than the sidecar.
+/// The WAV that a texture's sidecar names, and the SHA-256 in the sidecar (which read_texture checks). The
+/// WAV may have another name than the sidecar.
 struct TextureWav {
   std::string path, sha256;
 };

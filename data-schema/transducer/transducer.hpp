@@ -14,7 +14,8 @@
 
 namespace tacto::schema {
 
-/// Names and symbols are the paper's (Table I, equations 1 to 6). All obligatory, but for what is optional.
+/// Names and symbols are the paper's (Table I, equations 1 to 6). All members are required, except the
+/// std::optional ones.
 struct Transducer {
   std::string name;
   double deflection_m = 0;               ///< delta, largest unloaded deflection
@@ -28,7 +29,7 @@ struct Transducer {
   double sensor_resistance_ohm = 0;      ///< R_s
   double amplifier_gain = 0;             ///< G_a
   double amplifier_resistance_ohm = 0;   ///< R_a
-  /// Identified over theoretical gain: theory fixes the shape of a response, identification its size.
+  /// Identified divided by theoretical gain: theory gives the shape of a response, identification its size.
   double sensor_scale = 1;
   double actuator_scale = 1;
   int converter_bits = 16;
@@ -54,13 +55,13 @@ std::complex<double> sensor_response(const Transducer& transducer, double freque
 
 /// H_a = 2 beta k_p G_a / ((1 + 2 R_a C_p s)(m s^2 + b_r s + k_r + k_p)) x actuator_scale, m/V. Equations
 /// (5), (6): with the factor 2 that the printed H_a lacks; a second mode adds its compliance. A hysteresis is
-/// none of it: no transfer function has one.
+/// not part of it: no transfer function has one.
 std::complex<double> actuator_response(const Transducer& transducer, double frequency_hz);
 
 /// Unit-gain analog Butterworth low-pass of order 3, as the paper's reconstruction filter (600 Hz), 1.
 std::complex<double> butterworth3_response(double cutoff_hz, double frequency_hz);
 
-/// Newtons for each volt that the sensor gives in its flat middle, sign included: 1 / Re(H_s) at 100 Hz.
+/// Newtons per volt of the sensor in its flat middle range, sign included: 1 / Re(H_s) at 100 Hz.
 double nominal_newtons_per_volt(const Transducer& transducer);
 
 /// sqrt((k_r + k_p) / m) / 2 pi: the tray's undamped resonance without a finger.
@@ -76,15 +77,15 @@ double actuator_pole_hz(const Transducer& transducer);
 /// The names of the transducers that come with tactograph.
 std::vector<std::string_view> preset_names();
 
-/// What the schema can't say of a transducer: that the hysteresis is an operator with an inverse, and that
-/// the identified band goes upwards. Errors: malformed, in `where`#/field.
+/// Checks what the schema cannot: that the hysteresis is an operator with an inverse, and that the identified
+/// band is increasing. Errors: malformed, in `where`#/field.
 Result<void> check_extras(const Transducer& transducer, const std::string& where);
 
-/// Whether something may be played through it: errors: unsuitable, where its own identification says that it
-/// did not converge or that the model is wrong, and nobody forces it.
+/// Checks whether it may be used for playback. Errors: unsuitable, if its own identification says that it did
+/// not converge or that the model is wrong, unless the user insists.
 Result<void> check_usable(const Transducer& transducer, bool forced);
 
-/// Which numbers a file may hold: those of a transducer that can be made, or, where somebody insists, all
+/// Which numbers a file may contain: those of a possible transducer, or, if the user insists, all numbers
 /// that can be computed with (transducer_plausible.hpp).
 enum class Numbers { plausible, computable };
 

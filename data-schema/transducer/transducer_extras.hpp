@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a transducer's file may say beyond the paper's Table I: hysteresis, a second mode, how it was
+// Optional contents of a transducer's file beyond the paper's Table I: hysteresis, a second mode, how it was
 // identified.
 #pragma once
 
@@ -24,20 +24,20 @@ struct Hysteresis {
 /// The gain at rest stays. Exact for a second mass on a spring and a damper, however it is damped.
 struct ModeAbove {
   double frequency_hz = 0, damping_ratio = 0;
-  double zero_hz = 0, zero_damping_ratio = 0;  ///< where they equal the resonance's there is no mode
+  double zero_hz = 0, zero_damping_ratio = 0;  ///< equal to the resonance's: no mode
 };
 
-/// How the numbers of a file were found, and how far they can be believed.
+/// How the numbers of a file were found, and their limits.
 struct Identification {
   std::string date;        ///< ISO 8601, UTC
   std::string conditions;  ///< load, swing, method ...
   std::string source;      ///< the device or the file
   std::string simulated;   ///< by what, where the device is emulated
   bool converged = false;
-  bool misfit = false;  ///< the residuals are not noise: the model is wrong, by whatever R^2
-  std::string words;    ///< what the fit said about itself
+  bool misfit = false;  ///< the residuals are not noise: the model is wrong, whatever R^2 is
+  std::string words;    ///< the fit's own report
   double r_squared = 0;
-  double low_hz = 0, high_hz = 0;  ///< the numbers are valid from here to here
+  double low_hz = 0, high_hz = 0;  ///< the band in which the numbers are valid
 
   bool usable() const { return converged && !misfit; }
 };

@@ -12,8 +12,8 @@ namespace tacto::schema {
 /// Every parameter under its C++ name, without `kind` and `version`.
 nlohmann::ordered_json transducer_body(const Transducer& transducer);
 
-/// Reads what transducer_body made. Precondition: the members fit the transducer's schema. extra_json and
-/// newer_version stay empty.
+/// Reads a body made by transducer_body. Precondition: the members fit the transducer's schema. extra_json
+/// and newer_version stay empty.
 Transducer transducer_from(const nlohmann::ordered_json& body);
 
 }  // namespace tacto::schema

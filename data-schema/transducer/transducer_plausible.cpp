@@ -77,7 +77,7 @@ bool holds(const Range& range, double value) {
   return (range.or_zero && value == 0) || (value >= range.lowest && value <= range.highest);
 }
 
-// A number of a file, with the name that it has there.
+// A number of a file, with its name in the file.
 struct NamedNumber {
   std::string name;
   double value;

@@ -33,7 +33,7 @@ void take_chunk(RiffLayout& layout, const Chunk& chunk, std::uint64_t at,
   }
 }
 
-// Walks the chunks as far as "data".
+// Reads the chunks as far as "data".
 bool find_data(std::istream& file, RiffLayout& layout) {
   for (Chunk chunk; chunk.read_from(file);) {
     const auto at = static_cast<std::uint64_t>(file.tellg());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where things stand in a WAV, and what its header says of them. Internal to this folder.
+// The layout of a WAV, and the contents of its header. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct RiffLayout {
   std::uint64_t present_bytes = 0;  ///< from data_at to the end of the file
 };
 
-/// Of a RIFF or RF64 WAVE file, as far as its chunk "data". None for other formats, and for a header that is
-/// cut off before the samples.
+/// Of a RIFF or RF64 WAVE file, as far as its chunk "data". None for other formats, and if the header is cut
+/// off before the samples.
 std::optional<RiffLayout> riff_layout(const std::string& path);
 
 }  // namespace tacto::schema

@@ -8,7 +8,7 @@
 namespace tacto::schema {
 namespace {
 
-// 0xFFFFFFFF is ffmpeg's "not known", 0x7FFF.... is sox's.
+// 0xFFFFFFFF is ffmpeg's value for an unknown size, 0x7FFF.... is sox's.
 bool open_ended(std::uint64_t size) {
   return size == 0xFFFFFFFF || size >> 16 == 0x7FFF;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much audio a WAV promises and how much it has: libsndfile silently reads what is there. Internal to
+// The length of a WAV in its header and in the file: libsndfile silently reads what is there. Internal to
 // this folder.
 #pragma once
 

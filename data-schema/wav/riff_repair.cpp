@@ -11,13 +11,13 @@
 namespace tacto::schema {
 namespace {
 
-constexpr std::uint64_t kUnknown = 0xFFFFFFFF;  // of a 32-bit size that "ds64" tells
+constexpr std::uint64_t kUnknown = 0xFFFFFFFF;  // of a 32-bit size that is in "ds64"
 
 tl::unexpected<Error> unwritable_header(const std::string& path) {
   return fail(ErrorKind::cannot_write, "its header can't be written", path);
 }
 
-// Overwrites bytes of a file that is there.
+// Overwrites bytes of an existing file.
 class Patch {
  public:
   explicit Patch(const std::string& path)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sample files: the only door to libsndfile. Frames are interleaved; a frame has one sample of every channel.
+// Sample files: the only use of libsndfile. Frames are interleaved; a frame has one sample of every channel.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,19 @@
 
 namespace tacto::schema {
 
-/// How a WAV of ours stores its samples. pcm32 holds converter codes, float64 imported numbers, float32
+/// How a WAV of tactograph stores its samples. pcm32 holds converter codes, float64 imported numbers, float32
 /// textures.
 enum class SampleFormat { pcm32, float32, float64 };
 
-/// What a sample file holds, as its header says.
+/// The header of a sample file.
 struct WavInfo {
   double sample_rate_hz = 0;
   std::size_t channels = 0;
   std::uint64_t frames = 0;
   bool integer = false;  ///< samples are integer PCM
-  std::string format;    ///< libsndfile's words for it
+  std::string format;    ///< in libsndfile's words
   int code_bits = 0;     ///< width of the codes, where `integer`
-  bool plain = false;    ///< every sample is stored as itself, in as many bits: nothing is compressed
+  bool plain = false;    ///< samples are stored uncompressed, in that many bits
 };
 
 /// Reads any sound file that libsndfile knows. Not safe in the tick.
@@ -39,9 +39,9 @@ class WavReader {
   ~WavReader();
 
   const WavInfo& info() const;
-  /// Fills whole frames from the current place; gives the number of frames read, 0 at the end. Integer
-  /// samples come as plain codes of their own width (16 bit: -32768 ... 32767, no scaling to +-1), float
-  /// samples as they are. Errors: malformed, where the file ends early.
+  /// Fills whole frames from the current place; returns the number of frames read, 0 at the end. Integer
+  /// samples are plain codes of their own width (16 bit: -32768 ... 32767, no scaling to +-1), float samples
+  /// are unchanged. Errors: malformed, if the file ends early.
   Result<std::size_t> read(std::span<double> interleaved);
   /// The same as 32-bit codes: those of a 32-bit file as they are, narrower ones left-justified. Errors: also
   /// unsuitable, where the samples are no integers.
@@ -55,15 +55,15 @@ class WavReader {
   std::unique_ptr<State> state_;
 };
 
-/// Writes a WAV: RF64 that downgrades to plain WAV under 4 GB, its header kept true as it grows, no PEAK
-/// chunk (it would hold the time of day, and equal inputs would not give equal files). Not safe in the tick.
+/// Writes a WAV: RF64 that becomes plain WAV under 4 GB, its header updated as it grows, no PEAK chunk (it
+/// would contain the time of day, and equal inputs would not give equal files). Not safe in the tick.
 class WavWriter {
  public:
   /// Errors: cannot_write; usage, for a rate that no header can hold (it must round to 1 ... 2^31-1).
   static Result<WavWriter> create(const std::string& path, double sample_rate_hz, std::size_t channels,
                                   SampleFormat format);
-  /// The same, never over a file that is there, and with the header on disk from the start. Errors: also
-  /// usage, where there is one.
+  /// The same, but never replaces a file, and with the header on disk from the start. Errors: also usage, if
+  /// the file exists.
   static Result<WavWriter> create_new(const std::string& path, double sample_rate_hz, std::size_t channels,
                                       SampleFormat format);
   WavWriter(WavWriter&&) noexcept;
@@ -74,7 +74,8 @@ class WavWriter {
   /// full ...).
   Result<void> write(std::span<const double> interleaved);
   Result<void> write(std::span<const std::int32_t> interleaved);
-  /// Ends the file. Errors: cannot_write. Without it the destructor closes, and nobody learns of a failure.
+  /// Ends the file. Errors: cannot_write. Without this call the destructor closes it, and failures are not
+  /// reported.
   Result<void> close();
   /// The same, with another rate in the header than it had until now. Errors: also usage, as create().
   Result<void> close_at(double sample_rate_hz);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kPageSamples = 131072;  // 1 MB
 
-// 0 for samples that are no integer codes.
+// 0 for samples that are not integer codes.
 int code_bits(int format) {
   switch (format & SF_FORMAT_SUBMASK) {
     case SF_FORMAT_PCM_S8:
@@ -35,7 +35,7 @@ bool holds_codes(int format) {
   return code_bits(format) > 0;
 }
 
-// Only of these does a header know the exact number of frames.
+// Only for these formats does the header contain the exact number of frames.
 bool holds_plain_samples(int format) {
   const int kind = format & SF_FORMAT_SUBMASK;
   return holds_codes(format) || kind == SF_FORMAT_FLOAT || kind == SF_FORMAT_DOUBLE;
@@ -88,7 +88,7 @@ struct WavReader::State {
   std::string path;
   std::uint64_t next_frame = 0;
 
-  // Whole frames that `samples` has room for.
+  // The whole frames that fit into `samples`.
   sf_count_t room(std::size_t samples) const {
     assert(samples % info.channels == 0);
     return static_cast<sf_count_t>(samples / info.channels);

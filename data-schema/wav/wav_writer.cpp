@@ -101,8 +101,8 @@ Result<WavWriter> WavWriter::create(const std::string& path, int flags, double s
   state->channels = channels;
   state->header_rate = header.samplerate;
   state->format = format;
-  // Before the first sample: afterwards libsndfile ignores it. RF64 has no PEAK chunk to begin with, and in
-  // libsndfile 1.2.0 SFC_SET_ADD_PEAK_CHUNK adds one even when told not to, so that command is not given.
+  // Before the first sample: afterwards libsndfile ignores it. RF64 has no PEAK chunk by default, and in
+  // libsndfile 1.2.0 SFC_SET_ADD_PEAK_CHUNK adds one even with the value false, so that command is not used.
   sf_command(state->file, SFC_RF64_AUTO_DOWNGRADE, nullptr, SF_TRUE);
   sf_command(state->file, SFC_SET_UPDATE_HEADER_AUTO, nullptr, SF_TRUE);
   return WavWriter(std::move(state));

@@ -17,7 +17,7 @@ class FrameBytes {
 
   std::uint64_t frames() const { return layout_.present_bytes / layout_.block_bytes; }
   std::uint64_t frame_of(std::size_t byte) const { return byte / layout_.block_bytes; }
-  // Empty where it can't be read.
+  // Empty if it cannot be read.
   std::string piece(std::uint64_t first, std::uint64_t count) {
     std::string bytes(count * layout_.block_bytes, '\0');
     file_.seekg(static_cast<std::streamoff>(layout_.data_at + first * layout_.block_bytes));

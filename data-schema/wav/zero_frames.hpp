@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames of nothing but zeros at either end of a WAV: what a file system gives for pages that it lost.
-// Internal to this folder.
+// Frames of zeros at either end of a WAV: file systems return zeros for pages that they lost. Internal to
+// this folder.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace tacto::schema {
 
-/// How many frames from the first on are zero in all their bytes. Only whole frames count; a file that can't
-/// be read has none.
+/// The number of frames from the first on with zeros in all their bytes. Only whole frames count; 0 for a
+/// file that cannot be read.
 std::uint64_t zero_frames_at_start(const std::string& path, const RiffLayout& layout);
 /// The same up to the last whole frame.
 std::uint64_t zero_frames_at_end(const std::string& path, const RiffLayout& layout);

@@ -45,10 +45,10 @@ double ExactTick::tick(std::int64_t count, bool raise) {
   level_ += raise ? 1 / std::max(1.0, limits.onset_s * setup_.rate_hz)
                   : -1 / std::max(1.0, limits.release_s * setup_.rate_hz);
   level_ = std::clamp(level_, 0.0, 1.0);
-  const double kernel_input =
+  const double target_v =
       std::clamp<double>(x * level_ * level_ * (3 - 2 * level_), -limits.drive_v, limits.drive_v);
   const double step_v = limits.slew_v_per_s / setup_.rate_hz;
-  last_v_ = std::clamp(kernel_input, last_v_ - step_v, last_v_ + step_v);
+  last_v_ = std::clamp(target_v, last_v_ - step_v, last_v_ + step_v);
   return last_v_;
 }
 

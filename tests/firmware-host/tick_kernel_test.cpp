@@ -264,10 +264,10 @@ TEST(DriveLimiter, NeverPassesItsLimits) {
   float before_v = 0;
   for (int i = 0; i < 10000; ++i) {
     std::uint32_t flags = 0;
-    const float kernel_input = normal(random), drive_v = limiter.limit(kernel_input, flags);
+    const float target_v = normal(random), drive_v = limiter.limit(target_v, flags);
     ASSERT_LE(std::abs(drive_v), 5);
     ASSERT_LE(std::abs(drive_v - before_v), 0.7F * 1.000001F);
-    ASSERT_EQ(flags == 0, drive_v == kernel_input);
+    ASSERT_EQ(flags == 0, drive_v == target_v);
     before_v = drive_v;
   }
 }

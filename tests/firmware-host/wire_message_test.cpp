@@ -104,12 +104,17 @@ TEST(WireMessages, TheLargestFit) {
   EXPECT_FALSE(framed(chunk, 0).empty());
 }
 
+// A frame's further lines are indented by four spaces.
 std::map<std::string, std::string> documented_frames() {
   std::map<std::string, std::string> frames;
   std::ifstream file(TACTO_SOURCE "/firmware-host/core/WIRE.md");
-  for (std::string name, hex, line; std::getline(file, line);)
-    if (const auto at = line.find(" a554"); at != std::string::npos)
-      frames[line.substr(0, at)] = line.substr(at + 1);
+  std::string name;
+  for (std::string line; std::getline(file, line);) {
+    const auto at = line.find(" a554");
+    const bool continued = !name.empty() && line.compare(0, 4, "    ") == 0;
+    if (!continued) name = at == std::string::npos ? "" : line.substr(0, at);
+    if (!name.empty()) frames[name] += line.substr(continued ? 4 : at + 1);
+  }
   return frames;
 }
 

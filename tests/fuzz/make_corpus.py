@@ -76,7 +76,8 @@ DEVICES = {
 
 
 def main():
-    frames = dict(re.findall(r"^([a-z_]+) (a554[0-9a-f]+)$", WIRE.read_text(), re.M))
+    joined = re.sub(r"(?<=[0-9a-f])\n {4}(?=[0-9a-f]+$)", "", WIRE.read_text(), flags=re.M)
+    frames = dict(re.findall(r"^([a-z_]+) (a554[0-9a-f]+)$", joined, re.M))
     for name, text in frames.items():
         (HERE / "corpus/wire" / name).write_bytes(b"\x3f" + bytes.fromhex(text))
     for name, actions in CONVERSATIONS.items():

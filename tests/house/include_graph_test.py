@@ -6,8 +6,8 @@ Also: the table has no cycle, no folder has more than 30 sources, every source f
 libraries is longer than 400 lines, and the root has no other folders. The test first shows on an invented tree that it
 can fail. With --dot it draws the table instead:
 
-    tests/house/include_graph_test.py --dot | dot -Tsvg -o house.svg        # package graphviz
-    tests/house/include_graph_test.py --dot playback | dot -Tsvg -o playback.svg
+    python3 tests/house/include_graph_test.py --dot | dot -Tsvg -o house.svg        # package graphviz
+    python3 tests/house/include_graph_test.py --dot playback | dot -Tsvg -o playback.svg
 """
 import graphlib
 import pathlib

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a board says of itself, and the memory that it gives.
+// The description of a board, and the memory that it provides.
 #pragma once
 
 #include "firmware-host/core/wire/device_messages.hpp"
 
 namespace tacto::core {
 
-/// All of it outlives the firmware. In `about`, the board fills name, serial, firmware, features, clock_hz,
-/// the three rates and the two limits; the core knows the rest.
+/// All of it has to outlive the firmware. In `about`, the board fills name, serial, firmware, features,
+/// clock_hz, the three rates and the two limits; the core fills the rest.
 struct Board {
   wire::Welcome about;
   const wire::Channel* channels = nullptr;

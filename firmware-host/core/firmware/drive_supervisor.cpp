@@ -15,7 +15,7 @@ void DriveSupervisor::arm(const wire::Limits& limits, uint32_t rate_millihertz) 
   state_.store(DriveState::armed);
 }
 
-// The first fault is the one that is told; what follows from it is not.
+// Only the first fault is reported; its consequences are not.
 void DriveSupervisor::fail(FaultCode code, uint32_t detail) noexcept {
   if (state_.load() == DriveState::fault) return;
   detail_ = detail;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When there may be a drive, and when it has to go.
+// Decides when the drive may rise and when it has to fall.
 #pragma once
 
 #include "firmware-host/core/kernel/shared.hpp"
@@ -11,29 +11,29 @@ namespace tacto::core {
 /// drive is at zero at 1 kHz and above: this, and two ticks.
 inline constexpr float kLongestReleaseS = 0.018F;
 
-/// What the main loop wants of the drive.
+/// The state of the drive that the main loop requests.
 enum class Aim : uint8_t { off, hold, play };
 
-/// What the tick saw.
+/// What a tick observed.
 struct TickSights {
   uint32_t encoder_jump = 0;  ///< counts; 0: none
   bool enabled = false;
-  bool drive_lacks = false;  ///< the host's drive has not come
-  bool blind = false;        ///< nor has the encoder's count: no fault, but the drive falls
+  bool drive_lacks = false;  ///< no drive sample from the host
+  bool blind = false;        ///< no encoder count: not a fault, but the drive falls
 };
 
 /// States and transitions (idle: no output; armed: zero; playing; fault: ramping, or at zero):
 ///   idle -> armed by arm(); armed <-> playing by aim(); armed, playing or fault -> idle by aim(off), once at
-///   rest; armed or playing -> fault by a silent host, an open enable input, an encoder's jump, a drive that
-///   lacks for the watchdog's time, a drive that is no number.
-/// The main loop calls arm(), aim() and heard(); the tick all else.
+///   rest; armed or playing -> fault by a silent host, an open enable input, an encoder jump, drive
+///   samples that are missing for the watchdog's time, a drive that is not finite.
+/// The main loop calls arm(), aim() and heard(); the tick calls the other functions.
 class DriveSupervisor {
  public:
   /// In idle only.
   void arm(const wire::Limits& limits, uint32_t rate_millihertz) noexcept;
   void aim(Aim aim) noexcept { aim_.store(aim); }
   Aim aim() const noexcept { return aim_.load(); }
-  /// A sound frame has come from the host.
+  /// An intact frame has arrived from the host.
   void heard() noexcept { heard_.store(heard_.load() + 1); }
   wire::DriveState state() const noexcept { return state_.load(); }
   wire::FaultCode fault() const noexcept { return fault_.load(); }
@@ -41,7 +41,7 @@ class DriveSupervisor {
 
   /// (tick) True where the drive may rise. In idle nothing happens.
   bool observe(const TickSights& sights) noexcept;
-  /// (tick) After the kernel: a drive that was no number, and whether the drive is at rest.
+  /// (tick) After the kernel: whether the drive was finite, and whether it is at rest.
   void settle(bool sound, bool at_rest) noexcept;
 
  private:

@@ -31,7 +31,7 @@ void Firmware::poll() noexcept {
   rest_if_unused();
 }
 
-// One command at a time: the next is read once this one's answer is on its way.
+// One command at a time: the next one is read after this answer has been sent.
 bool Firmware::receive() noexcept {
   if (owed_ != Owed::nothing) return false;
   if (received_used_ == received_size_) {

@@ -11,16 +11,17 @@
 
 namespace tacto::core {
 
-/// Begins with no output and no stream. tick() in the timer's interrupt, poll() in the main loop, as often as
-/// it can: tick() may interrupt poll() anywhere, poll() never runs within a tick (one core; a host calls both
-/// from one thread). 47 KB, the profile's memory (the board's) apart. No heap, no locks, no libm.
+/// Starts with no output and no stream. Call tick() in the timer's interrupt, and poll() in the main loop as
+/// often as possible: tick() may interrupt poll() anywhere, poll() never runs within a tick (one core; a host
+/// calls both from one thread). 47 KB without the profile's memory, which the board provides. No heap, no
+/// locks, no libm.
 class Firmware {
  public:
   /// Precondition: the board's channels and rates are as Board says.
   Firmware(const Board& board, const Hal& hal) noexcept;
 
   void tick() noexcept { ticker_.tick(); }
-  /// Handles what the host sent and sends what is ready, as far as the link takes it. Never waits.
+  /// Handles what the host sent and sends what is ready, as far as the link accepts it. Never waits.
   void poll() noexcept;
 
   wire::DriveState drive_state() const noexcept { return ticker_.supervisor().state(); }

@@ -66,7 +66,7 @@ Reply Firmware::in_idle(const wire::Frame& frame, Message& message,
   return with(frame, message, command);
 }
 
-// What a profile is made of: in idle the one that will be armed, beside one that plays the next.
+// Commands that make a profile: in idle the one to arm, during playback the next one.
 template <class Message>
 Reply Firmware::to_profile(const wire::Frame& frame, Message& message,
                            Reply (Firmware::*command)(const Message&)) noexcept {
@@ -121,7 +121,7 @@ Reply Firmware::reply_to(const wire::Frame& frame) noexcept {
   return {AnswerCode::bad_payload, frame.header.length};
 }
 
-// What a running drive must not have changed under it.
+// Commands that are refused while a drive runs.
 Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
   wire::Limits new_limits;
   wire::Filters new_filters;
@@ -151,7 +151,7 @@ Reply Firmware::reply_to_setup(const wire::Frame& frame) noexcept {
   }
 }
 
-// What comes with a texture: a running drive gets a next one beside it.
+// Commands that make a texture; during playback they make the next one.
 Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
   wire::ProfileBegin begin;
   wire::ProfileLevels new_levels;
@@ -176,7 +176,7 @@ Reply Firmware::reply_to_texture(const wire::Frame& frame) noexcept {
   }
 }
 
-// A host of protocol 1.0 knows nothing of the rest: a new profile begins without it.
+// A host of protocol 1.0 does not send the other settings: a new profile starts without them.
 Reply Firmware::profile_begin(const wire::ProfileBegin& message) noexcept {
   if (!idle()) return next_profile_begin(message);
   taps_.count = 0;
@@ -187,7 +187,8 @@ Reply Firmware::profile_begin(const wire::ProfileBegin& message) noexcept {
   return upload_.begin(message);
 }
 
-// Never where something is read: not in the profile that plays, and not before the one that leaves is gone.
+// Never overwrites samples that are read: neither those of the playing profile nor of one that still fades
+// out.
 Reply Firmware::next_profile_begin(const wire::ProfileBegin& message) noexcept {
   if (ticker_.fading()) return wrong_state();
   changed_ = false;
@@ -196,7 +197,7 @@ Reply Firmware::next_profile_begin(const wire::ProfileBegin& message) noexcept {
   return next_.begin_beside(upload_, message);
 }
 
-// One clock for sampling and driving: a second user takes the rate that is there.
+// One clock for sampling and driving: a second user has to use the current rate.
 Reply Firmware::take_rate(uint32_t rate) noexcept {
   const wire::Welcome& about = board_.about;
   if (rate < about.least_rate_millihertz || rate > about.most_rate_millihertz) return bad_value(0);
@@ -210,7 +211,7 @@ Reply Firmware::take_rate(uint32_t rate) noexcept {
   return {};
 }
 
-// Started while it runs, it begins again at frame 0.
+// A start during a stream restarts it at frame 0.
 Reply Firmware::stream_start(const wire::StreamStart& message) noexcept {
   if (message.block_frames < 1 || message.block_frames > wire::kMaxBlockFrames) return bad_value(1);
   if (idle()) ticker_.stop_stream();
@@ -246,7 +247,7 @@ Reply Firmware::gain(const wire::Gain& message) noexcept {
   return {};
 }
 
-// Sent again because its answer was lost, it has been obeyed already.
+// A repeated command (its answer was lost) has no further effect.
 Reply Firmware::change(const wire::Change& message) noexcept {
   if (!plays_profile()) return wrong_state();
   if (!within(message.fade_s, 0, kLongestFadeS)) return bad_value(0);
@@ -266,7 +267,7 @@ Reply Firmware::sweep(const wire::Sweep& message) noexcept {
   return {};
 }
 
-// Whether all that the source needs is there.
+// Whether everything that the source needs is present.
 Reply Firmware::ready(const wire::Arm& message) noexcept {
   if ((board_.about.features & wire::kFeatureDrive) == 0 || message.source > DriveSource::sweep)
     return bad_value(0);
@@ -298,7 +299,7 @@ TextureSetup Firmware::texture_setup() const noexcept {
           per_full_detail(tracking_.full_detail_counts_per_tick)};
 }
 
-// Filters belong to the profile; limits and touch to every source.
+// Filters apply to the profile only; limits and contact gate apply to every source.
 KernelSetup Firmware::kernel_setup(const wire::Arm& message) const noexcept {
   KernelSetup setup;
   setup.limits = limits_;
@@ -336,7 +337,7 @@ Reply Firmware::disarm() noexcept {
   return {};
 }
 
-// Only from rest: a restart would cut a drive off with a step.
+// Only in idle: a restart would end a drive with a step.
 Reply Firmware::reset() noexcept {
   if (!idle()) return wrong_state();
   ticker_.stop_stream();
@@ -344,7 +345,7 @@ Reply Firmware::reset() noexcept {
   return {};
 }
 
-// A drive that does not fit would be played too late: it is refused whole.
+// Samples that do not fit would be played too late: the message is refused as a whole.
 Reply Firmware::drive(const wire::Drive& message) noexcept {
   auto& queue = ticker_.drive_queue();
   if (idle()) return wrong_state();

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the device has to say, and in which order: what a command is owed, the device's description, faults,
-// data.
+// What the device sends, in this order: answers to commands, its description, faults, data.
 #include "firmware-host/core/firmware/firmware.hpp"
 
 namespace tacto::core {
 
 using wire::FaultCode;
 
-// True where the last frame is gone and the next may be composed.
+// True if the last frame has been sent and the next one may be composed.
 bool Firmware::flush() noexcept {
   while (sent_ < sending_size_) {
     const size_t taken = hal_.send(hal_.board, sending_ + sent_, sending_size_ - sent_);
@@ -32,7 +31,7 @@ bool Firmware::put_block(Block& block) noexcept {
   return true;
 }
 
-// Once more after the data: some of it waits until all data is gone.
+// Once more after the data: some messages wait until all data have been sent.
 bool Firmware::compose() noexcept {
   return compose_prompt() || compose_data() || compose_prompt();
 }
@@ -59,7 +58,7 @@ bool Firmware::compose_description() noexcept {
   return next < end_of_channels ? put(board_.channels[next - 1]) : put(board_.notes[next - end_of_channels]);
 }
 
-// A converter's fault ends the stream, so it is told after the stream's last frame.
+// A converter's fault ends the stream, so it is reported after the stream's last frame.
 bool Firmware::compose_fault() noexcept {
   if (!greeted_) return false;
   wire::Fault fault;
@@ -91,7 +90,7 @@ bool Firmware::compose_full_blocks() noexcept {
   return ticks_.full() && put_block(ticks_);
 }
 
-// Moves records into the blocks. True where a block had to go first, and went.
+// Moves records into the blocks. True if a full block was composed first.
 bool Firmware::gather() noexcept {
   for (const Record* record; (record = ticker_.records().front()) != nullptr; ticker_.records().pop()) {
     const bool old = record->sampled && record->run != run_;

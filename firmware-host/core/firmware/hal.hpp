@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hardware layer: all that the core asks of a board.
+// The hardware layer: all functions that the core needs from a board.
 #pragma once
 
 #include <stddef.h>
@@ -7,8 +7,8 @@
 
 namespace tacto::core {
 
-/// Nine functions, and one that may be absent; `board` is handed to each. None waits, allocates or throws.
-/// Those marked (tick) are called in the tick's interrupt.
+/// Nine required functions, and one that may be absent; `board` is passed to each. None of them waits,
+/// allocates or throws. Those marked (tick) are called in the tick's interrupt.
 struct Hal {
   void* board = nullptr;
   /// (tick) The encoder's count.
@@ -23,15 +23,15 @@ struct Hal {
   void (*write_drive)(void* board, float drive_v) noexcept = nullptr;
   /// (tick) True while the hardware enable input is closed; always true on a board that has none.
   bool (*enable_closed)(void* board) noexcept = nullptr;
-  /// (tick) The device's clock; it never runs over.
+  /// (tick) The device's clock; it does not wrap.
   uint64_t (*clock)(void* board) noexcept = nullptr;
-  /// Ticks at this rate from now on, from the first sample period on; 0: none. The converters begin anew.
+  /// Sets the tick rate from now on, from the first sample period on; 0: no ticks. The converters restart.
   void (*set_rate)(void* board, uint32_t rate_millihertz) noexcept = nullptr;
   /// Bytes from the host, as many as there are, at most `capacity`.
   size_t (*receive)(void* board, uint8_t* bytes, size_t capacity) noexcept = nullptr;
   /// Bytes to the host; gives how many were taken.
   size_t (*send)(void* board, const uint8_t* bytes, size_t size) noexcept = nullptr;
-  /// Begins again as after power-on; need not return.
+  /// Restarts as after power-on; need not return.
   void (*restart)(void* board) noexcept = nullptr;
 };
 

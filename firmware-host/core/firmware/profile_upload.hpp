@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A profile on its way in, chunk by chunk.
+// Receives a profile chunk by chunk.
 #pragma once
 
 #include "firmware-host/core/kernel/profile.hpp"
@@ -7,7 +7,7 @@
 
 namespace tacto::core {
 
-inline constexpr uint32_t kLeastProfile = 6;  ///< samples: what one interpolation reads
+inline constexpr uint32_t kLeastProfile = 6;  ///< samples: as many as one interpolation reads
 
 /// An answer to a command, with its detail.
 struct Reply {
@@ -20,19 +20,19 @@ inline Reply bad_value(uint32_t field) noexcept {
   return {wire::AnswerCode::bad_value, field};
 }
 
-/// Keeps the samples in memory that the board gives. Chunks come in order; one that comes again is written
-/// again. Only a profile whose check is right can be armed. The check is taken chunk by chunk: nothing here
-/// takes longer than a chunk does, unless one came again. For the main loop.
+/// Stores the samples in memory of the board. Chunks come in order; a repeated chunk is written again. Only a
+/// profile with the right check can be armed. The check is computed chunk by chunk: no call takes longer than
+/// one chunk needs, unless a chunk was repeated. For the main loop.
 class ProfileUpload {
  public:
   ProfileUpload(float* memory, uint32_t capacity) noexcept : memory_(memory), capacity_(capacity) {}
 
-  /// In all of the memory.
+  /// Uses all of the memory.
   Reply begin(const wire::ProfileBegin& message) noexcept;
-  /// In what another one, begun in the same memory, leaves free: at the other end of it, so that all that is
-  /// free is always in one piece.
+  /// Uses the memory that another upload leaves free, from its other end, so that the free memory is always
+  /// in one piece.
   Reply begin_beside(const ProfileUpload& other, const wire::ProfileBegin& message) noexcept;
-  /// After begin(): all samples together are those of so many levels.
+  /// After begin(): the samples consist of so many levels.
   Reply levels(const wire::ProfileLevels& message) noexcept;
   Reply chunk(const wire::ProfileChunk& message) noexcept;
   Reply end(const wire::ProfileEnd& message) noexcept;
@@ -54,7 +54,7 @@ class ProfileUpload {
   uint32_t place_ = 0;    // of the first sample in the memory
   uint32_t samples_ = 0;  // of all levels
   uint32_t here_ = 0;
-  uint32_t checked_ = 0, check_ = 0;  // samples that the check holds
+  uint32_t checked_ = 0, check_ = 0;  // samples in the check, and the check
   bool complete_ = false;
 };
 

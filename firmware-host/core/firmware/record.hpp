@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one tick leaves for the stream.
+// What one tick records for the stream.
 #pragma once
 
 #include "firmware-host/core/wire/message_types.hpp"

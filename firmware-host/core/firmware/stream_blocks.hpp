@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records gathered into messages: no message has a hole in it.
+// Collects records into messages without gaps.
 #pragma once
 
 #include "firmware-host/core/firmware/record.hpp"

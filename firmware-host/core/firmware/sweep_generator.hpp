@@ -6,8 +6,8 @@
 
 namespace tacto::core {
 
-/// sin(2 pi phase / 2^32), by Taylor's polynomial of degree 9 on the folded quarter turn: 4e-6 at most off.
-/// Safe in the tick.
+/// sin(2 pi phase / 2^32), by Taylor's polynomial of degree 9 on the folded quarter turn: the error is at
+/// most 4e-6. Safe in the tick.
 float sine_of_phase(uint32_t phase) noexcept;
 
 /// Phase and frequency are integers (2^-64 of a turn a tick), so that the sweep is the same to the bit

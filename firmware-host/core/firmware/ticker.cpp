@@ -30,7 +30,7 @@ void Ticker::arm(DriveSource source, const KernelSetup& setup, uint32_t rate_mil
   watch_.arm(setup.limits.counts_per_tick, setup.rate_hz, hal_.read_encoder(hal_.board));
 }
 
-// What the tick reads is written before the word that sends it there.
+// Writes the data first, then the word after which the tick reads them.
 void Ticker::change(const TextureSetup& texture, float fade_s) noexcept {
   next_texture_ = texture;
   fade_s_ = fade_s;
@@ -67,7 +67,7 @@ void Ticker::sample(Record& record) noexcept {
   tell(FaultCode::converter);
 }
 
-// A session can be replayed to the bit because each tick says which commands it knew.
+// Each tick says which commands it took: therefore a session can be replayed to the bit.
 void Ticker::take_steering(Record& record) noexcept {
   if (const uint8_t steered = steered_.load(); steered != steered_taken_) {
     steered_taken_ = steered;
@@ -86,14 +86,14 @@ void Ticker::take_change() noexcept {
   change_taken_ = true;
 }
 
-// From here on nothing reads the texture that left.
+// From here on the old texture is not read.
 void Ticker::end_change() noexcept {
   if (!change_taken_ || kernel_.changing()) return;
   change_taken_ = false;
   change_.store(kNoChange);
 }
 
-// The host's drive is for this tick or for none: what was not played in its time is not played later.
+// A drive sample of the host belongs to one tick; a late sample is not played.
 float Ticker::target(int32_t count, bool& lacks) noexcept {
   if (source_ == DriveSource::profile) {
     const float target = kernel_.target(count, gain_taken_);
@@ -109,7 +109,7 @@ float Ticker::target(int32_t count, bool& lacks) noexcept {
   return drive_v;
 }
 
-// The count that is played: not always the one that the encoder shows.
+// The count that is played may differ from the one that the encoder shows.
 int32_t Ticker::follow(Record& record) noexcept {
   const uint32_t unseen = hal_.encoder_unseen != nullptr ? hal_.encoder_unseen(hal_.board) : 0;
   const int32_t count = watch_.see(record.encoder, unseen, kernel_.at_rest());
@@ -118,7 +118,7 @@ int32_t Ticker::follow(Record& record) noexcept {
   return count;
 }
 
-// A converter that gives nothing touches nothing.
+// A converter without a sample counts as no contact.
 float Ticker::normal_force(Record& record) noexcept {
   if (!(contact_.on_n > 0)) return kNoForce;
   if (!record.sampled && !hal_.read_channels(hal_.board, record.codes)) return 0;

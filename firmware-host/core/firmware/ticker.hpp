@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tick: look, decide, drive, leave a record.
+// The tick: read the inputs, decide, drive, record.
 #pragma once
 
 #include "firmware-host/core/firmware/drive_supervisor.hpp"
@@ -12,24 +12,24 @@
 
 namespace tacto::core {
 
-/// What the tick counts; the main loop reads.
+/// Counters of the tick; the main loop reads them.
 struct TickCounts {
   uint32_t late = 0, lost_records = 0, underruns = 0, amplitude_limited = 0, slew_limited = 0;
 };
 
-/// tick() is called by the timer's interrupt and neither waits, allocates, locks nor throws; all else is the
-/// main loop's.
+/// tick() is called by the timer's interrupt and does not wait, allocate, lock or throw; the main loop calls
+/// the other functions.
 class Ticker {
  public:
   explicit Ticker(const Hal& hal) noexcept : hal_(hal) {}
 
   void tick() noexcept;
 
-  /// Before the first tick at a rate. The clock's ticks in a period.
+  /// Call before the first tick at a rate. `clocks`: ticks of the clock in a period.
   void set_period(float clocks) noexcept {
     late_clocks_ = static_cast<uint32_t>(1.5F * clocks), ticked_ = false;
   }
-  /// Frames begin at 0 with the next tick; records of this run carry the number that is given back.
+  /// Frames begin at 0 with the next tick; records of this run carry the number that is returned.
   uint8_t start_stream() noexcept;
   void stop_stream() noexcept { stream_.store(Stream::off); }
   bool streaming() const noexcept { return stream_.load() != Stream::off; }
@@ -43,10 +43,10 @@ class Ticker {
   /// Another texture fades in over fade_s, beginning in the tick that first counts it. Armed by a profile,
   /// and not while fading().
   void change(const TextureSetup& texture, float fade_s) noexcept;
-  /// A change is under way: the texture that leaves is still read. Of use until the drive is idle.
+  /// Whether a change still fades: the old texture is still read. Valid until the drive is idle.
   bool fading() const noexcept { return change_.load() != kNoChange; }
   wire::DriveSource source() const noexcept { return source_; }
-  /// A command to the drive has been obeyed.
+  /// Call after a command has changed the drive.
   void steered() noexcept { steered_.store(static_cast<uint8_t>(steered_.load() + 1)); }
   TickKernel& kernel() noexcept { return kernel_; }
   SweepGenerator& sweep() noexcept { return sweep_; }
@@ -57,7 +57,7 @@ class Ticker {
 
   const TickCounts& counts() const noexcept { return counts_; }
   void forget_counts() noexcept { counts_ = {}; }
-  /// The stream's own fault, once; none where there is none.
+  /// Returns the stream's fault, once; none if there is none.
   wire::FaultCode take_stream_fault() noexcept;
   uint64_t fault_clock() const noexcept { return fault_clock_; }
 

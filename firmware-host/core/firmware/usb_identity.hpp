@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// By what a host knows a device on USB.
+// How a host recognises a device on USB.
 #pragma once
 
 #include <stddef.h>
@@ -14,11 +14,11 @@ inline constexpr uint8_t kInterfaceSubclass = 0x54;  ///< 'T'
 inline constexpr uint8_t kInterfaceProtocol = 0x01;  ///< the wire's major version
 inline constexpr char kInterfaceName[] = "tactograph wire 1";
 
-/// From pid.codes' range for tests and use in the house: not for devices that are given away. Their maker
-/// takes numbers of his own.
+/// From pid.codes' range for tests and private use: not for devices that are sold or given away. Their makers
+/// use numbers of their own.
 inline constexpr uint16_t kTestVendor = 0x1209, kTestProduct = 0x0001;
 
-/// Bytes of a bulk packet. A burst ends with a shorter one; where it is a multiple, with one of none.
+/// Bytes of a bulk packet. A burst ends with a shorter one, or with an empty one if its length is a multiple.
 inline constexpr size_t kFullSpeedPacket = 64, kHighSpeedPacket = 512, kSuperSpeedPacket = 1024;
 
 }  // namespace tacto::usb

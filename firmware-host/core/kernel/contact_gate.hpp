@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No finger, no drive.
+// Lets the drive through only while the finger presses.
 #pragma once
 
 #include "firmware-host/core/kernel/envelope.hpp"
@@ -7,11 +7,11 @@
 
 namespace tacto::core {
 
-/// A normal force that nobody reports: the gate is open.
+/// No normal force is reported: the gate is open.
 inline constexpr float kNoForce = __builtin_nanf("");
 
-/// Opens over `ticks` where the normal force reaches `on_n`, closes where it falls below `off_n`. With on_n
-/// of 0, or where nobody reports a force, it is open. Safe in the tick.
+/// Opens over `ticks` where the normal force reaches `on_n`, closes where it falls below `off_n`. It is open
+/// if on_n is 0 or no force is reported. Safe in the tick.
 class ContactGate {
  public:
   void set(float on_n, float off_n, float ticks) noexcept {
@@ -24,7 +24,7 @@ class ContactGate {
     touching_ = touching_ ? force_n >= off_n_ : force_n >= on_n_;
     return weight_.step(touching_);
   }
-  /// All that it needs of the force, as of the last step: who replays it is told this, and no force.
+  /// The decision of the last step. A replay uses it in place of the force.
   bool touching() const noexcept { return touching_; }
 
  private:

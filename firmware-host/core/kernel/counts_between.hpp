@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The encoder's counter runs over.
+// Differences of encoder counts, also where the counter wraps.
 #pragma once
 
 #include <stdint.h>

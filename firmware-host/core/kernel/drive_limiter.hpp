@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The transducer's limits, which no drive passes.
+// Keeps the drive within the transducer's limits.
 #pragma once
 
 #include <stdint.h>
@@ -13,12 +13,10 @@ class DriveLimiter {
  public:
   void set(float drive_v, float step_v) noexcept { drive_v_ = drive_v, step_v_ = step_v, last_v_ = 0; }
 
-  /// `wanted_v` is finite. Adds to `flags` what had to be taken away.
-  float limit(float kernel_input, uint32_t& flags) noexcept {
-    const float tall_v = kernel_input > drive_v_    ? drive_v_
-                         : kernel_input < -drive_v_ ? -drive_v_
-                                                    : kernel_input;
-    if (tall_v != kernel_input) flags |= wire::kTickAmplitudeLimited;
+  /// `target_v` is finite. Adds to `flags` the limits that acted.
+  float limit(float target_v, uint32_t& flags) noexcept {
+    const float tall_v = target_v > drive_v_ ? drive_v_ : target_v < -drive_v_ ? -drive_v_ : target_v;
+    if (tall_v != target_v) flags |= wire::kTickAmplitudeLimited;
     const float most_v = last_v_ + step_v_, least_v = last_v_ - step_v_;
     last_v_ = tall_v > most_v ? most_v : tall_v < least_v ? least_v : tall_v;
     if (last_v_ != tall_v) flags |= wire::kTickSlewLimited;

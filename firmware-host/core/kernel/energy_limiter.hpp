@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much the drive may do over time: what heats the bender and tires the skin.
+// Limits the RMS of the drive over time, which heats the bender and tires the skin.
 #pragma once
 
 #include "firmware-host/core/wire/message_types.hpp"
 
 namespace tacto::core {
 
-/// Follows the mean square e of what is wished (one pole, `window` ticks) and turns it down by limit / root
-/// where the root of e passes the limit. The root is followed by Newton's step once a tick: a gain without
-/// steps, which bounds the RMS within 2 % once `window` has passed. A limit of 0 is none. Safe in the tick.
+/// Follows the mean square e of the unlimited drive (one pole, `window` ticks) and multiplies the drive by
+/// limit / root where the root of e passes the limit. The root is followed by one Newton step a tick: the
+/// gain has no steps, and the RMS stays within 2 % of the limit once `window` has passed. A limit of 0 is
+/// none. Safe in the tick.
 class EnergyLimiter {
  public:
   void set(float rms_v, float window_ticks) noexcept {

@@ -6,7 +6,7 @@
 namespace tacto::core {
 namespace {
 
-constexpr float kHaste = 0.2F, kMostHaste = 0.5F;  // alpha where a miss is too large for what is not known
+constexpr float kHaste = 0.2F, kMostHaste = 0.5F;  // alpha where a miss exceeds the uncertainty
 constexpr float kEdgeNoise = 0.1F;                 // counts: of an edge's place
 constexpr float kTolerableMiss = 4;
 constexpr float kPatience = 1.5F;
@@ -26,14 +26,14 @@ void FingerTracker::begin(int32_t count) noexcept {
   seen_ = 0;
 }
 
-// No edge: once the next one is long overdue, the finger is slower than was thought.
+// No edge: if the next one is long overdue, the finger is slower than estimated.
 void FingerTracker::stay() noexcept {
   const float most = kPatience / since_;
   speed_ = clamped(speed_, -most, most);
   offset_ = clamped(offset_, -1, 2);
 }
 
-// It crossed the same border twice, or stood: what is known is where it is.
+// The finger crossed the same border twice, or stood: only its place is known.
 void FingerTracker::turn(int32_t moved) noexcept {
   offset_ = moved > 0 ? 0.0F : 1.0F;
   speed_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the finger is between the encoder's counts, and how fast it goes.
+// The finger's place between the encoder's counts, and its speed.
 #pragma once
 
 #include <stdint.h>
@@ -14,14 +14,14 @@ struct FingerPlace {
 };
 
 struct TrackerSetup {
-  bool between_counts = false;  ///< or the count alone is the place (its middle is not looked for)
+  bool between_counts = false;  ///< false: the count alone is the place
   float look_ahead_ticks = 0;   ///< the place is where the finger will be: + counts_per_tick x this
   float smoothing_ticks = 100;  ///< over which speed is averaged where counts come every tick
 };
 
-/// Of what an edge tells, at most so much is taken. Measured with an encoder of 1 um (position where the
-/// finger will be in 2 ms, RMS): 0.04 um at constant speed, 1 um at 2 kHz and 0.4 um at 10 kHz with 10 % of
-/// speed wander at 1.5 Hz.
+/// The greatest weight of an edge. Measured with an encoder of 1 um (position where the finger will be in 2
+/// ms, RMS): 0.04 um at constant speed, 1 um at 2 kHz and 0.4 um at 10 kHz with 10 % of speed wander at 1.5
+/// Hz.
 inline constexpr float kMostAlpha = 0.1F;
 
 /// Times the edges: an edge is known to lie at a count's border, crossed within the last tick (where counts

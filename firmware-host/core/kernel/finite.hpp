@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is a number.
+// Tests for finite numbers.
 #pragma once
 
 namespace tacto::core {

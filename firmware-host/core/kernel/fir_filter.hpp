@@ -8,7 +8,7 @@
 namespace tacto::core {
 
 /// y_n = sum_i taps_i x_(n-i), in sixteen sums that are added at the end: the order is part of the result,
-/// and the same everywhere. Always stable. Without taps it passes what comes. Safe in the tick.
+/// and the same everywhere. Always stable. Without taps it passes the input unchanged. Safe in the tick.
 class FirFilter {
  public:
   /// At most kMaxTaps; zeros are added up to a multiple of 16.
@@ -17,7 +17,7 @@ class FirFilter {
     for (uint16_t i = 0; i < count_; ++i) reversed_[count_ - 1 - i] = i < count ? taps[i] : 0;
     rest();
   }
-  /// Forgets the past.
+  /// Resets the states.
   void rest() noexcept {
     for (float& value : past_) value = 0;
     at_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between samples.
+// Interpolation between samples.
 #pragma once
 
 #include "firmware-host/core/kernel/float4.hpp"
@@ -10,7 +10,7 @@ namespace tacto::core {
 /// Samples that an interpolation may read: y[kBefore] is the one at or before the place.
 inline constexpr int32_t kReach = 8, kBefore = 3;
 
-/// What each of kReach samples counts for.
+/// The weights of kReach samples.
 struct Weights {
   Float4 low, high;
 };

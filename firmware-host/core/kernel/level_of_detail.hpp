@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much detail a speed leaves.
+// How much detail can be played at a speed.
 #pragma once
 
 #include <stdint.h>
 
 namespace tacto::core {
 
-/// Half-octaves of speed beyond the one up to which a pyramid's first level serves: whole ones, 0 and more,
-/// and the part of the next.
+/// Half octaves of speed above the speed up to which a pyramid's first level is used: whole ones, 0 and more,
+/// and the fraction of the next.
 struct Detail {
   uint32_t coarser = 0;
   float fade = 0;  ///< 0 <= fade < 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays in parallel: hysteresis, or what undoes it.
+// Play operators in parallel: a hysteresis, or its inverse.
 #pragma once
 
 #include "firmware-host/core/kernel/float4.hpp"
@@ -25,9 +25,9 @@ class PlayOperators {
     }
     rest();
   }
-  /// Passes what comes.
+  /// Passes the input unchanged.
   void clear() noexcept { follows_ = false; }
-  /// Forgets the past: all plays at 0.
+  /// Resets all plays to 0.
   void rest() noexcept {
     for (float& play : plays_) play = 0;
   }

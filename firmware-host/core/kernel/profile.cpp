@@ -38,7 +38,7 @@ int64_t stretch(uint64_t step, float offset) noexcept {
          part_of(step, static_cast<uint32_t>(fractions) << 8);
 }
 
-// Of a place, by sample; one division where it lies elsewhere.
+// The place within one period; divides only if the place is outside of it.
 int64_t within_period(int64_t place, int32_t size) noexcept {
   const auto sample = static_cast<int32_t>(place >> 32);
   if (sample >= 0 && sample < size) return place;
@@ -102,7 +102,7 @@ Float4 Profile::read(uint32_t which, int64_t place) const noexcept {
   return inside ? weighted(scale_.interpolation, level.samples + first, u) : read_near_end(level, first, u);
 }
 
-// The count is brought into a loop's first turn by itself: it is known before the offset is.
+// Reduces the count to a loop's first period before the offset is known.
 bool Profile::place_of(int32_t count, float offset, int64_t& place) const noexcept {
   const int64_t away = counts_between(scale_.origin_count, count);
   if (away > reach_ || away < -reach_) return false;

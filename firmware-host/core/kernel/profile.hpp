@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texture on the device: what is wanted against encoder count, in copies of falling detail, read between
-// samples.
+// The texture on the device: the target signal against the encoder count, in levels of decreasing detail,
+// interpolated between samples.
 #pragma once
 
 #include "firmware-host/core/kernel/interpolation.hpp"
@@ -23,8 +23,8 @@ struct ProfileScale {
 /// Counts farther than this from the origin read zero, whatever the ends: 268 m of a 1 um grid.
 int32_t reach_counts(const ProfileScale& scale) noexcept;
 
-/// Samples of a level: every second one goes with each second level. A loop's first level has a multiple of
-/// 2^((levels - 1) / 2) samples, other ends' one more.
+/// Samples of a level: each second level has half as many. A loop's first level has a multiple of 2^((levels
+/// - 1) / 2) samples, with other ends one more.
 uint32_t level_samples(const ProfileScale& scale, uint32_t level) noexcept;
 /// Of all levels, which lie one after the other.
 uint32_t pyramid_samples(const ProfileScale& scale) noexcept;
@@ -35,14 +35,14 @@ uint32_t pyramid_samples(const ProfileScale& scale) noexcept;
 class Profile {
  public:
   Profile() = default;
-  /// At least 6 samples, which are not copied. `scale` as a ProfileUpload lets through.
+  /// At least 6 samples, which are not copied. `scale` as ProfileUpload accepts it.
   Profile(const float* samples, const ProfileScale& scale) noexcept;
 
   /// At a count, of the first level. Safe in the tick.
   float at(int32_t count) const noexcept { return at(count, 0, {}); }
 
-  /// At count + offset, in so much detail: level `coarser` - 1 fades evenly into level `coarser`, beyond the
-  /// last one into silence: all is continuous. A profile of one level serves at every speed. Beyond
+  /// At count + offset, with that detail: level `coarser` - 1 fades evenly into level `coarser`, and the last
+  /// level into zero, so the result is continuous. A profile of one level is used at every speed. Beyond
   /// reach_counts() it is zero. Safe in the tick.
   float at(int32_t count, float offset, Detail detail) const noexcept;
 

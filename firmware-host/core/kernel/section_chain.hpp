@@ -8,12 +8,13 @@
 namespace tacto::core {
 
 /// Transposed direct form II, in single precision: y = b0 x + s1, s1 = b1 x - a1 y + s2, s2 = b2 x - a2 y.
-/// What four sections in a row make of x is known but for x before it comes: y_k = (b0_1 ... b0_k) x + c_k,
-/// c_k = b0_k c_(k-1) + s1_k. So a tick waits for one product and one sum in four sections, and their states
-/// go on side by side; what remains of a multiple of four goes one by one. The error against double precision
-/// grows as the poles come near the unit circle; TickKernel says its size. States below kSilence, some 500 dB
-/// under a volt, end in zero, one section's every kCalmTicks ticks: silence would else go on in denormals,
-/// with which a tick takes tens of times as long on processors that trap them. Safe in the tick.
+/// The outputs of four sections in a row are linear in x, and all but x is known before the tick: y_k = (b0_1
+/// ... b0_k) x + c_k, c_k = b0_k c_(k-1) + s1_k. So a tick waits for one product and one sum in four
+/// sections, and their states are computed side by side; sections beyond a multiple of four are computed one
+/// by one. The error against double precision grows as the poles come near the unit circle; TickKernel states
+/// it. States below kSilence, some 500 dB under a volt, are set to zero, one section's every kCalmTicks
+/// ticks: otherwise silence would lead to denormal numbers, with which a tick takes tens of times as long on
+/// some processors. Safe in the tick.
 class SectionChain {
  public:
   void set(const wire::Section* sections, uint8_t count) noexcept {
@@ -25,12 +26,12 @@ class SectionChain {
     }
     rest();
   }
-  /// Forgets the past.
+  /// Resets the states.
   void rest() noexcept {
     for (uint8_t i = 0; i < wire::kMaxSections; ++i) s1_[i] = s2_[i] = 0;
     until_calm_ = kCalmTicks, calm_ = 0;
   }
-  /// Of a chain with the same sections: whatever comes in next, both give the same.
+  /// Whether two chains with the same sections give the same output for every further input.
   bool is_where(const SectionChain& other) const noexcept {
     bool same = until_calm_ == other.until_calm_ && calm_ == other.calm_;
     for (uint8_t i = 0; i < count_; ++i) same = same && s1_[i] == other.s1_[i] && s2_[i] == other.s2_[i];
@@ -49,7 +50,7 @@ class SectionChain {
   static constexpr uint8_t kCalmTicks = 8;
 
   static bool is_silent(float state) noexcept { return state < kSilence && state > -kSilence; }
-  // Both or none: one alone would set the section going again.
+  // Both states or none: one alone would excite the section again.
   [[gnu::noinline]] void calm() noexcept {
     until_calm_ = kCalmTicks;
     calm_ = static_cast<uint8_t>(calm_ + 1 < count_ ? calm_ + 1 : 0);

@@ -17,7 +17,7 @@ void TexturePlayer::set(const TextureSetup& texture, float gain_ticks) noexcept 
   begin(gain_ticks);
 }
 
-// A second change before the first is through begins from what is nearer.
+// A second change during a first one starts from the texture with the greater weight.
 void TexturePlayer::change(const TextureSetup& texture, float fade_ticks) noexcept {
   if (fade_ <= 0.5F) which_ ^= 1U;
   playing() = texture;

@@ -12,8 +12,8 @@ namespace tacto::core {
 struct TextureSetup {
   Profile profile;
   TrackerSetup tracker;
-  /// 1 / the speed (counts a tick) up to which the first level holds nothing beyond the band: half-octaves of
-  /// speed count from there. 0: the first level serves always.
+  /// 1 / the speed (counts a tick) up to which the first level contains nothing beyond the band: half octaves
+  /// of speed count from there. 0: the first level is used at every speed.
   float per_full_detail = 0;
 };
 
@@ -26,10 +26,10 @@ inline float per_full_detail(float counts_per_tick) noexcept {
 class TexturePlayer {
  public:
   void set(const TextureSetup& texture, float gain_ticks) noexcept;
-  /// Forgets finger, gain and what is leaving.
+  /// Resets the tracker, the gain and a fading texture.
   void begin(float gain_ticks) noexcept;
   void change(const TextureSetup& texture, float fade_ticks) noexcept;
-  /// The finger is somewhere else, at a speed that nobody knows.
+  /// The finger has moved to another place, at an unknown speed.
   void forget_finger() noexcept { tracker_.set(playing().tracker); }
   bool changing() const noexcept { return fade_ > 0; }
   float target(int32_t count, float gain) noexcept;
@@ -37,18 +37,18 @@ class TexturePlayer {
 
  private:
   float read(const TextureSetup& texture) const noexcept;
-  [[gnu::noinline]] float faded(float value) noexcept;  // seldom: out of the usual tick's way
+  [[gnu::noinline]] float faded(float value) noexcept;  // rare: kept out of the usual tick
   float follow(float gain) noexcept;
 
   TextureSetup& playing() noexcept { return textures_[which_]; }
   const TextureSetup& leaving() const noexcept { return textures_[1 - which_]; }
 
-  TextureSetup textures_[2];  // the one that plays and the one that leaves: a change copies one, not both
+  TextureSetup textures_[2];  // the playing one and the fading one: a change copies one, not both
   uint8_t which_ = 0;
   FingerTracker tracker_;
   FingerPlace place_;
   float gain_ = 0, gain_aim_ = 0, gain_step_ = 0;
-  float fade_ = 0, fade_step_ = 0;  // of what is leaving, 1 to 0
+  float fade_ = 0, fade_step_ = 0;  // weight of the fading texture, 1 to 0
   uint32_t gain_left_ = 0, gain_ticks_ = 1;
   bool gained_ = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one tick kernel: what is wanted becomes what is driven.
+// The tick kernel: from target signal to drive. There is one for host and device.
 #pragma once
 
 #include "firmware-host/core/kernel/contact_gate.hpp"
@@ -12,7 +12,7 @@
 
 namespace tacto::core {
 
-/// All that the kernel plays, as plain data; what is pointed at outlives the kernel's use of it.
+/// The complete setup of the kernel, as plain data; what it points to has to outlive its use by the kernel.
 struct KernelSetup {
   TextureSetup texture;
   const float* taps = nullptr;
@@ -31,15 +31,15 @@ inline float rate_of(uint32_t millihertz) noexcept {
   return 1e-3F * static_cast<float>(millihertz);
 }
 
-/// What a tick is told.
+/// The input of a tick.
 struct TickInput {
   int32_t count = 0;                ///< of the encoder
   float gain = 0;                   ///< of the texture; a change takes 10 ms
   bool raise = false;               ///< towards the full drive, else towards zero
-  float normal_force_n = kNoForce;  ///< where somebody reports it
+  float normal_force_n = kNoForce;  ///< if it is reported
 };
 
-/// What a tick did.
+/// The output of a tick.
 struct TickOutput {
   float drive_v = 0;
   float unlimited_v = 0;  ///< before the limits; its difference to drive_v is what they removed
@@ -53,12 +53,13 @@ struct TickOutput {
 /// with levels, taps, following and limits, 2 kHz to 20 kHz: -105 dB of the drive; eight sections, 20 kHz:
 /// -100 dB for an actuator's inverse (poles of radius 0.99 at most), -64 dB where three of them are
 /// high-passes of 15 Hz (0.9967): such belong into the texture. A drive that is cut at its limits has the
-/// error that it has uncut. Nothing here allocates, locks, throws or calls.
+/// error that it has uncut. No function here allocates, locks, throws or makes system calls.
 class TickKernel {
  public:
-  /// Comes to rest at zero, with all that is to be played.
+  /// Sets up everything; starts at rest at zero.
   void set(const KernelSetup& setup) noexcept;
-  /// Only the limits, at a rate in Hz, above zero; comes to rest at zero. Neither energy nor touch matter.
+  /// Only the limits, at a rate in Hz, above zero; starts at rest at zero, without energy limit and contact
+  /// gate.
   void set(const wire::Limits& limits, float rate_hz) noexcept;
   void set_profile(const Profile& profile) noexcept { player_.set({profile, {}, 0}, 1); }
   SectionChain& sections() noexcept { return sections_; }
@@ -67,7 +68,7 @@ class TickKernel {
   void change(const TextureSetup& texture, float fade_s) noexcept {
     player_.change(texture, fade_s * rate_hz_);
   }
-  /// What was known of its speed: between ticks, at rest.
+  /// Resets the speed of the finger: between ticks, at rest.
   void forget_finger() noexcept { player_.forget_finger(); }
   bool changing() const noexcept { return player_.changing(); }
 
@@ -78,7 +79,8 @@ class TickKernel {
   float target(int32_t count, float gain) noexcept { return player_.target(count, gain); }
   /// One tick of a target, from the texture or from elsewhere.
   TickOutput drive(float target, bool raise, float normal_force_n) noexcept;
-  /// The same where nobody reports a force. What is no finite number drives zero, and `sound` is false.
+  /// The same without a reported force. A target that is not finite gives a drive of zero, and `sound` is
+  /// false.
   float tick(float target, bool raise, uint32_t& flags, bool& sound) noexcept {
     const TickOutput output = drive(target, raise, kNoForce);
     flags |= output.flags;

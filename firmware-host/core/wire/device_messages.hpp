@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the device says. Fields stand in the order of their bytes; core/WIRE.md says what each means.
+// Messages from the device. Fields are in the order of their bytes; core/WIRE.md describes them.
 #pragma once
 
 #include "firmware-host/core/wire/frame.hpp"
@@ -9,14 +9,14 @@ namespace tacto::wire {
 
 /// Bits of Welcome::features.
 enum Feature : uint32_t {
-  kFeatureSimulated = 1,    ///< nothing of it is real
+  kFeatureSimulated = 1,    ///< the device is simulated
   kFeatureDrive = 2,        ///< it has an output
   kFeatureEnableInput = 4,  ///< it has a hardware enable input
   kFeatureTextures = 8,     ///< it reads levels, and understands taps, tracking, energy and contact
   kFeatureHysteresis = 16,  ///< it understands hysteresis
 };
 
-/// Everything to `nonce` stays as it is in every version.
+/// All fields up to `nonce` are the same in every version.
 struct Welcome {
   static constexpr MessageType kType = MessageType::welcome;
   uint8_t major = kProtocolMajor;
@@ -30,8 +30,8 @@ struct Welcome {
   uint32_t features = 0;
   uint32_t clock_hz = 0;  ///< of device_ticks
   uint32_t default_rate_millihertz = 0, least_rate_millihertz = 0, most_rate_millihertz = 0;
-  uint32_t ring_records = 0;     ///< frames or ticks that it keeps while the host is away
-  uint32_t profile_samples = 0;  ///< that a profile may have
+  uint32_t ring_records = 0;     ///< frames or ticks that it keeps while the host does not read
+  uint32_t profile_samples = 0;  ///< samples that a profile may have
   uint32_t drive_queue = 0;      ///< drive samples that it holds
   float drive_limit_v = 0, slew_limit_v_per_s = 0;
   template <class Codec, class Self>
@@ -44,8 +44,8 @@ struct Welcome {
   }
 };
 
-/// One channel: physical = code x scale + offset, in `unit`. Range and rate may be NaN: not known, not
-/// slower.
+/// One channel: physical = code x scale + offset, in `unit`. NaN: the range is not known, or the channel is
+/// as fast as the stream.
 struct Channel {
   static constexpr MessageType kType = MessageType::channel;
   uint8_t index = 0;
@@ -61,7 +61,7 @@ struct Channel {
 
 enum class NoteKind : uint8_t { simulated_by = 0, transducer = 1, surface = 2 };
 
-/// Words about the device, for people and files.
+/// A text about the device, for people and files.
 struct Note {
   static constexpr MessageType kType = MessageType::note;
   uint8_t index = 0;
@@ -73,7 +73,7 @@ struct Note {
   }
 };
 
-/// To each command, in the order in which they came.
+/// The answer to a command, in the order of the commands.
 struct Answer {
   static constexpr MessageType kType = MessageType::answer;
   MessageType of = MessageType::hello;
@@ -97,7 +97,7 @@ struct Samples {
   uint8_t channels = 0;
   uint8_t count = 0;
   uint16_t reserved = 0;
-  int32_t codes[kMaxBlockCodes];  ///< frame by frame; left-justified, of an encoder plain counts
+  int32_t codes[kMaxBlockCodes];  ///< frame by frame; left-justified, encoder counts not shifted
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.first_frame, self.device_ticks, self.enabled);
@@ -115,7 +115,7 @@ struct Tick {
   uint32_t flags = 0;
 };
 
-/// While armed: every tick, as samples are.
+/// Sent while armed: every tick, as samples are.
 struct Ticks {
   static constexpr MessageType kType = MessageType::ticks;
   uint64_t first_tick = 0;
@@ -135,13 +135,14 @@ struct Ticks {
   }
 };
 
-/// How the device is. Counters begin at hello and run over at 2^32.
+/// The device's state. Counters run over at 2^32. Those from late_ticks to slew_limited begin at hello, the
+/// last two when the device starts.
 struct Pulse {
   static constexpr MessageType kType = MessageType::pulse;
   uint32_t token = 0;
   uint64_t device_ticks = 0;
   DriveState state = DriveState::idle;
-  FaultCode fault = FaultCode::none;  ///< the one that the drive is in
+  FaultCode fault = FaultCode::none;  ///< the current fault of the drive
   uint8_t streaming = 0;
   uint8_t enabled = 0;
   int32_t encoder = 0;
@@ -157,7 +158,7 @@ struct Pulse {
   }
 };
 
-/// Unasked, once for each time that something goes wrong.
+/// Sent without a request, once for each event.
 struct Fault {
   static constexpr MessageType kType = MessageType::fault;
   FaultCode code = FaultCode::none;

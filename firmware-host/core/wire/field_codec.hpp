@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields to bytes and bytes to fields, little-endian on every machine. A message names its fields once, and
-// both directions follow.
+// Fields to bytes and bytes to fields, little-endian on every machine. A message lists its fields once, for
+// both directions.
 #pragma once
 
 #include <stddef.h>
@@ -8,11 +8,11 @@
 
 namespace tacto::wire {
 
-/// How a payload was understood.
+/// The result of parsing a payload.
 enum class Parse : uint8_t {
   ok,
   truncated,     ///< shorter than its message
-  out_of_range,  ///< it counts more than its message may hold
+  out_of_range,  ///< a count is larger than its message allows
 };
 
 template <size_t kSize>
@@ -34,8 +34,8 @@ struct UnsignedOf<8> {
   using Type = uint64_t;
 };
 
-/// Appends fields to a buffer. What does not fit is left out, and ok() is false. Floats go as their IEEE-754
-/// bits.
+/// Appends fields to a buffer. What does not fit is left out, and ok() is false. Floats are written as their
+/// IEEE-754 bits.
 class FieldWriter {
  public:
   FieldWriter(uint8_t* bytes, size_t capacity) noexcept : bytes_(bytes), capacity_(capacity) {}
@@ -48,7 +48,7 @@ class FieldWriter {
   void array(const T* values, size_t count) noexcept {
     for (size_t i = 0; i < count; ++i) put(values[i]);
   }
-  /// Gives how many to go through: none where `value` is beyond `most`.
+  /// Returns how many elements to process: none if `value` is larger than `most`.
   template <class T>
   size_t count(const T& value, size_t most) noexcept {
     ok_ = ok_ && value <= most;
@@ -77,8 +77,8 @@ class FieldWriter {
   bool ok_ = true;
 };
 
-/// Takes fields from a payload. Where it ends too early the fields are zero. Bytes after the last field are a
-/// newer minor version's, and are passed over.
+/// Reads fields from a payload. Fields beyond its end are zero. Bytes after the last field belong to a newer
+/// minor version and are ignored.
 class FieldReader {
  public:
   FieldReader(const uint8_t* bytes, size_t size) noexcept : bytes_(bytes), left_(size) {}
@@ -91,7 +91,7 @@ class FieldReader {
   void array(T* values, size_t count) noexcept {
     for (size_t i = 0; i < count; ++i) get(values[i]);
   }
-  /// Gives how many to go through; `value` is zero where it was beyond `most`.
+  /// Returns how many elements to process; `value` is set to zero if it was larger than `most`.
   template <class T>
   size_t count(T& value, size_t most) noexcept {
     get(value);
@@ -112,7 +112,7 @@ class FieldReader {
     left_ -= sizeof bits;
     __builtin_memcpy(&value, &bits, sizeof bits);
   }
-  // A text always ends: its last byte is zero whatever came.
+  // The last byte of a text is always set to zero.
   template <size_t kSize>
   void get(char (&text)[kSize]) noexcept {
     array(text, kSize);

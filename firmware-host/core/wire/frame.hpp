@@ -8,7 +8,7 @@ namespace tacto::wire {
 
 inline constexpr uint8_t kProtocolMajor = 1;
 inline constexpr uint8_t kProtocolMinor = 2;
-inline constexpr uint8_t kOldestMajor = 1;  ///< the oldest that this side still speaks
+inline constexpr uint8_t kOldestMajor = 1;  ///< the oldest that this side supports
 
 inline constexpr uint8_t kSync0 = 0xA5, kSync1 = 0x54;
 inline constexpr size_t kHeaderSize = 12, kCheckSize = 4;
@@ -22,19 +22,19 @@ struct FrameHeader {
   uint32_t sequence = 0;
 };
 
-/// A frame that arrived whole. The payload is the decoder's, until its next call.
+/// An intact frame. The payload is memory of the decoder, valid until its next call.
 struct Frame {
   FrameHeader header;
   const uint8_t* payload = nullptr;
 };
 
-/// Envelops a payload that stands at frame + kHeaderSize already. Gives the frame's size.
+/// Adds header and check to a payload that is at frame + kHeaderSize. Returns the frame's size.
 size_t seal_frame(const FrameHeader& header, uint8_t* frame) noexcept;
 
 /// True where a header begins at `bytes` (kHeaderSize of them): marks and check are right.
 bool read_header(const uint8_t* bytes, FrameHeader& header) noexcept;
 
-/// Writes a message as a frame. Gives its size, or 0 where it does not fit in `capacity` or kMaxPayload.
+/// Writes a message as a frame. Returns its size, or 0 if it does not fit in `capacity` or kMaxPayload.
 template <class Message>
 size_t encode_frame(const Message& message, uint32_t sequence, uint8_t* frame, size_t capacity) noexcept {
   if (capacity < kHeaderSize + kCheckSize) return 0;

@@ -20,7 +20,7 @@ void FrameDecoder::drop(size_t count) noexcept {
   if (filled_ > 0) __builtin_memmove(buffer_, buffer_ + count, filled_);
 }
 
-// The bytes before the next place where a header might begin are of no use.
+// Drops the bytes before the next place where a header may begin.
 void FrameDecoder::seek_header() noexcept {
   size_t place = 1;
   while (place < filled_ && buffer_[place] != kSync0) ++place;

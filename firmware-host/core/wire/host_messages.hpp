@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the host says. Fields stand in the order of their bytes; core/WIRE.md says what each means.
+// Messages from the host. Fields are in the order of their bytes; core/WIRE.md describes them.
 #pragma once
 
 #include "firmware-host/core/wire/frame.hpp"
@@ -15,13 +15,13 @@ struct Bare {
   static void fields(Codec&, Self&) noexcept {}
 };
 
-/// Ends whatever ran, and asks for welcome, channels and notes.
+/// Ends every activity, and requests welcome, channels and notes.
 struct Hello {
   static constexpr MessageType kType = MessageType::hello;
   uint8_t major = kProtocolMajor;
   uint8_t minor = kProtocolMinor;
   uint16_t reserved = 0;
-  uint32_t nonce = 0;  ///< comes back: tells this connection's welcome from an older one's
+  uint32_t nonce = 0;  ///< returned in welcome, to distinguish it from an older one
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.major, self.minor, self.reserved, self.nonce);
@@ -40,7 +40,7 @@ struct StreamStart {
 
 using StreamStop = Bare<MessageType::stream_stop>;
 
-/// Obligatory before arming; never wider than the device's own.
+/// Required before arming; at most the device's own limits.
 struct Limits {
   static constexpr MessageType kType = MessageType::limits;
   float drive_v = 0;
@@ -56,7 +56,7 @@ struct Limits {
   }
 };
 
-/// The texture as wanted drive (before gain and filters) at even places along the encoder.
+/// The texture as target signal (before gain and filters) at equal distances along the encoder.
 struct ProfileBegin {
   static constexpr MessageType kType = MessageType::profile_begin;
   uint32_t samples = 0;
@@ -111,7 +111,7 @@ struct Filters {
   }
 };
 
-/// Of the profile; may change while playing.
+/// Factor on the profile; may change while playing.
 struct Gain {
   static constexpr MessageType kType = MessageType::gain;
   float gain = 0;
@@ -159,7 +159,7 @@ struct Drive {
   }
 };
 
-/// Answered by a pulse. Any sound frame feeds the watchdog; this one is for when there is nothing to say.
+/// Answered by a pulse. Every intact frame resets the watchdog; this one is sent if there is no other.
 struct Heartbeat {
   static constexpr MessageType kType = MessageType::heartbeat;
   uint32_t token = 0;
@@ -171,7 +171,7 @@ struct Heartbeat {
 
 using Reset = Bare<MessageType::reset>;
 
-/// The profile that was begun holds copies of falling detail, one after the other.
+/// The samples of the profile are levels of decreasing detail, one after the other.
 struct ProfileLevels {
   static constexpr MessageType kType = MessageType::profile_levels;
   uint8_t levels = 1;
@@ -200,12 +200,12 @@ struct HysteresisPlay {
   float threshold = 0, weight = 0;
 };
 
-/// Plays between taps and filters that undo the bender's hysteresis.
+/// Play operators between taps and filters; they invert the bender's hysteresis.
 struct Hysteresis {
   static constexpr MessageType kType = MessageType::hysteresis;
   uint8_t count = 0;
   uint8_t reserved[3] = {};
-  float straight = 1;  ///< without a threshold
+  float straight = 1;  ///< gain of the path without a threshold
   HysteresisPlay play_operators[kMaxPlays];
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
@@ -216,13 +216,13 @@ struct Hysteresis {
   }
 };
 
-/// How the finger is followed between counts, and ahead.
+/// How the finger's place is estimated between counts, and predicted.
 struct Tracking {
   static constexpr MessageType kType = MessageType::tracking;
   uint8_t between_counts = 0;
   uint8_t reserved[3] = {};
   float look_ahead_ticks = 0, smoothing_ticks = 0;
-  float full_detail_counts_per_tick = 0;  ///< speed beyond which the second level begins to come in
+  float full_detail_counts_per_tick = 0;  ///< speed above which the second level is mixed in
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.between_counts);
@@ -231,7 +231,7 @@ struct Tracking {
   }
 };
 
-/// The drive's RMS over time; 0 V: no limit.
+/// Limit of the drive's RMS over time; 0 V: no limit.
 struct Energy {
   static constexpr MessageType kType = MessageType::energy;
   float rms_v = 0, window_s = 0;
@@ -244,10 +244,10 @@ struct Energy {
 /// Drive only while the finger presses; 0 N: always.
 struct Contact {
   static constexpr MessageType kType = MessageType::contact;
-  uint8_t channel = 0;  ///< that holds the normal force
+  uint8_t channel = 0;  ///< index of the channel with the normal force
   uint8_t reserved[3] = {};
   float on_n = 0, off_n = 0;
-  float newtons_per_code = 0, offset_n = 0;  ///< of that channel: a small core has no doubles
+  float newtons_per_code = 0, offset_n = 0;  ///< of that channel, in single precision for small cores
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.channel);
@@ -256,7 +256,7 @@ struct Contact {
   }
 };
 
-/// The profile that was uploaded while another one plays takes its place.
+/// The profile that was uploaded during playback replaces the one that plays.
 struct Change {
   static constexpr MessageType kType = MessageType::change;
   float fade_s = 0;  ///< 0 to 10

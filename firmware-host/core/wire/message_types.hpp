@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers of the protocol: types, states, answers and faults. A number once given is never given again.
+// The numbers of the protocol: types, states, answers and faults. A number is never used again.
 #pragma once
 
 #include <stddef.h>
@@ -54,7 +54,7 @@ enum class DriveState : uint8_t {
 /// Where the drive comes from.
 enum class DriveSource : uint8_t { profile = 0, host = 1, sweep = 2 };
 
-/// What lies beyond a profile's ends.
+/// What follows beyond the ends of a profile.
 enum class ProfileEnds : uint8_t { stop = 0, loop = 1, mirror = 2 };
 
 /// How a profile is read between its samples.
@@ -65,14 +65,14 @@ enum class AnswerCode : uint8_t {
   ok = 0,
   unknown_type = 1,
   bad_payload = 2,    ///< too short, or it counts more than it may
-  bad_value = 3,      ///< a value out of range, or no number; detail: which field, from 0
+  bad_value = 3,      ///< a value out of range or not a number; detail: the field, from 0
   wrong_state = 4,    ///< not in this state; detail: the DriveState
-  too_large = 5,      ///< more than the device can hold; detail: how much it can
-  check_failed = 6,   ///< the profile is not what was sent; detail: the check of what is here
-  incomplete = 7,     ///< no profile, or with holes; detail: samples that are here
-  no_limits = 8,      ///< limits come first
+  too_large = 5,      ///< more than the device can hold; detail: how much fits
+  check_failed = 6,   ///< the profile differs from what was sent; detail: check of the samples
+  incomplete = 7,     ///< no profile, or with holes; detail: samples received
+  no_limits = 8,      ///< limits have to be sent first
   enable_open = 9,    ///< the hardware enable input is open
-  wrong_version = 10  ///< a major version that this device does not speak
+  wrong_version = 10  ///< a major version that this device does not support
 };
 
 /// Why a device ramped its drive to zero, or what went wrong in its stream.
@@ -80,11 +80,11 @@ enum class FaultCode : uint8_t {
   none = 0,
   host_silent = 1,     ///< nothing from the host for watchdog_ms; detail: ticks of silence
   enable_open = 2,     ///< the hardware enable input opened
-  encoder_jump = 3,    ///< more counts in a tick than a finger goes; detail: counts
-  drive_underrun = 4,  ///< the host's drive did not come; detail: ticks without
-  not_a_number = 5,    ///< the filtered drive was no finite number
+  encoder_jump = 3,    ///< more counts in a tick than allowed; detail: counts
+  drive_underrun = 4,  ///< no drive sample from the host; detail: ticks without one
+  not_a_number = 5,    ///< the filtered drive was not finite
   converter = 6,       ///< a converter gave no sample
-  ring_full = 7,       ///< the host did not take the stream; detail: records lost so far
+  ring_full = 7,       ///< the host did not read the stream; detail: records lost so far
 };
 inline constexpr uint8_t kFaultCodes = 8;
 
@@ -93,17 +93,17 @@ enum TickFlag : uint32_t {
   kTickEnabled = 1,           ///< the enable input is closed
   kTickPlaying = 2,           ///< state is playing
   kTickFault = 4,             ///< state is fault
-  kTickAmplitudeLimited = 8,  ///< the drive was held to its limit
+  kTickAmplitudeLimited = 8,  ///< the drive was limited to drive_v
   kTickSlewLimited = 16,
   kTickLate = 32,           ///< it began more than half a period late
   kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
   kTickGated = 128,         ///< the finger does not touch: the drive falls
-  kTickBlind = 256,     ///< the encoder was not read for 10 ms: the drive falls, then the count is taken anew
-  kTickTouching = 512,  ///< the contact gate takes the finger for touching; since protocol 1.2
+  kTickBlind = 256,     ///< the encoder was not read for 10 ms: the drive falls, then the new count is used
+  kTickTouching = 512,  ///< the contact gate takes the finger as touching; since protocol 1.2
 };
-/// From this bit on: commands that steer, taken since arming, modulo 256.
+/// From this bit on: the number of steering commands taken since arming, modulo 256.
 inline constexpr uint32_t kTickSteeredShift = 24;
-/// Whether a running drive obeys this command in a tick, which counts it.
+/// Whether this command changes a running drive in a tick; that tick counts it.
 constexpr bool steers(MessageType type) noexcept {
   return type == MessageType::gain || type == MessageType::play || type == MessageType::stop ||
          type == MessageType::disarm || type == MessageType::change;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which frames are missing, and which come twice.
+// Finds missing and repeated frames.
 #pragma once
 
 #include <stdint.h>
@@ -9,7 +9,7 @@ namespace tacto::wire {
 enum class Order : uint8_t {
   expected,
   gap,    ///< frames before it are missing
-  stale,  ///< it, or a later one, was here before: not to be used again
+  stale,  ///< it, or a later one, was received before: to be ignored
 };
 
 /// Sequence numbers grow by one a frame and run over at 2^32. Differences up to 2^31 are forwards.
