@@ -3,7 +3,8 @@
 """The include table of the house (include_table.py): which folder may include which, which library is included where.
 
 Also: the table has no cycle, no folder has more than 30 sources, every source file names its licence, no file of the
-libraries is longer than 400 lines, and the root has no other folders. The test first shows on an invented tree that it
+libraries is longer than 400 lines, every room's CMakeLists.txt lists its sources by tacto_sources(), lines of Markdown
+have at most 120 bytes and their links lead to files, and the root has no other folders. The test first shows on an invented tree that it
 can fail. With --dot it draws the table instead:
 
     python3 tests/house/include_graph_test.py --dot | dot -Tsvg -o house.svg        # package graphviz
@@ -21,6 +22,8 @@ from include_table import MAY_INCLUDE as TABLE
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 MOST_SOURCES = 30  # of a folder
+MOST_BYTES = 120  # of a line of Markdown
+ROOMS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spatial"]
 
 # Header (as a pattern on what stands between the brackets) -> the only places it may be included.
 WALLS = {
@@ -154,12 +157,31 @@ def dot_of(table, room):
     return "\n".join(lines + ["}"])
 
 
-def sources(root):
+def markdown_faults(root, name, text):
+    for number, line in enumerate(text.split("\n"), 1):
+        if len(line.encode()) > MOST_BYTES:
+            yield f"{name}:{number}: {len(line.encode())} bytes; at most {MOST_BYTES}"
+        for link in re.findall(r"\]\(([^)#\s]+)", line):
+            if "://" not in link and not (root / name).parent.joinpath(link).exists():
+                yield f"{name}:{number}: the link leads to no file: {link}"
+
+
+def listing_faults(name, text):
+    for line in re.findall(r"^\s*file\(GLOB[^)]*\.cpp|^\s*\S+\.cpp\b", text, re.M):
+        if "embedded_files" not in line:
+            yield f"{name}: {line.strip()}: sources are listed by tacto_sources()"
+
+
+def files_ending(root, *endings):
     listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=root,
                             capture_output=True, text=True)
     names = listed.stdout.split("\n") if listed.returncode == 0 else [
         str(p.relative_to(root)) for p in root.rglob("*") if "build" not in p.parts]
-    return [n for n in names if n.endswith((".cpp", ".hpp", ".h")) and (root / n).exists()]
+    return [n for n in names if n.endswith(endings) and (root / n).exists()]
+
+
+def sources(root):
+    return files_ending(root, ".cpp", ".hpp", ".h")
 
 
 def root_faults(root):
@@ -194,6 +216,9 @@ def prove_it_can_fail():
     assert list(table_faults({"a": {"b"}, "b": {"c"}, "c": {"a"}})) and list(table_faults({"a": {"b"}}))
     assert list(size_faults([f"a/{n}.cpp" for n in range(MOST_SOURCES + 1)]))
     assert list(unused_rows([], {}))
+    assert list(markdown_faults(ROOT, "a.md", "x" * 121)) and list(markdown_faults(ROOT, "a.md", "[a](b/none.md)"))
+    assert not list(markdown_faults(ROOT, "a.md", "[a](README.md#verbs) [b](https://debian.org)"))
+    assert list(listing_faults("a", "file(GLOB sources *.cpp)")) and list(listing_faults("a", "  render.cpp"))
     with tempfile.TemporaryDirectory() as folder:
         (pathlib.Path(folder) / "surprise").touch()
         assert list(root_faults(pathlib.Path(folder)))
@@ -210,6 +235,10 @@ def main():
     house = [name for name in names if not name.startswith("tests/") and name != "tactograph.cpp"]
     faults = [fault for name in names for fault in faults_of(name, texts[name])]
     faults += [*table_faults(MAY_INCLUDE), *unused_rows(house, texts), *size_faults(house), *root_faults(ROOT)]
+    for name in files_ending(ROOT, ".md"):
+        faults += markdown_faults(ROOT, name, (ROOT / name).read_text())
+    for room in ROOMS:
+        faults += listing_faults(f"{room}/CMakeLists.txt", (ROOT / room / "CMakeLists.txt").read_text())
     print("\n".join(faults) or f"{len(names)} files keep to the include table")
     return 1 if faults else 0
 
