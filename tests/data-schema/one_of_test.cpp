@@ -58,7 +58,9 @@ TEST(OneOf, a_layer_can_be_read_only_by_handling_every_kind) {
   static_assert(!CanGet<Layer, TextureLayer>);
   static_assert(!std::is_same_v<Layer, std::variant<TextureLayer>>);
   static_assert(!CanVisit<const Layer, OfWalls>);
-  const Layer layer = TextureLayer{.texture = "oak"};
+  TextureLayer oak;
+  oak.texture = "oak";
+  const Layer layer = oak;
   EXPECT_EQ(layer.visit([](const TextureLayer& texture) { return texture.texture; }), "oak");
 }
 

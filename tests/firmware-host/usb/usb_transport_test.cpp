@@ -140,7 +140,7 @@ TEST_F(UsbTransportTest, TroubleWithoutEndIsAnErrorAfterTheBytes) {
     device.in.push_front({UsbEvent::data, counting(10)});
     const auto cable = transport();
     for (int again = 0; again < 2; ++again) {
-      const Heard heard = listen(*cable, 100, 1);
+      const Heard heard = listen(*cable, 100, 60);
       EXPECT_EQ(heard.bytes, counting(again == 0 ? 10 : 0));
       ASSERT_TRUE(heard.error);
       EXPECT_EQ(heard.error->kind, ErrorKind::device);
