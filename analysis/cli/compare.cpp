@@ -106,7 +106,8 @@ cli::Action declare_compare(CLI::App& app) {
          "A", options->a,
          "Texture, recording (its stroke becomes one), or session (what the model predicts of its drive)")
       ->required();
-  app.add_option("B", options->b, "Another, of the same quantity; a session's own texture as it was wanted")
+  app.add_option("B", options->b,
+                 "Another, of the same quantity; or, for a session, its own texture as the target")
       ->required();
   app.add_option("-o,--output,--page", options->outputs,
                  "What to write: a page (.html), results for 'report' (.results.json); may be given again");

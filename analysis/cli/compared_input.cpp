@@ -32,11 +32,11 @@ Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, con
                                              std::size_t stroke) {
   const std::size_t there = inputs.expected();
   if (stroke == 0 && there > 1)
-    return schema::fail(ErrorKind::usage, fmt::format("stands for {} textures", there), name,
+    return schema::fail(ErrorKind::usage, fmt::format("names {} textures", there), name,
                         "name one of them, or choose with --stroke (compare: --stroke-a, --stroke-b)");
   if (stroke > there)
     return schema::fail(ErrorKind::usage,
-                        fmt::format("stands for {}, and there is no stroke {}", there, stroke), name);
+                        fmt::format("names {} textures, and there is no stroke {}", there, stroke), name);
   for (std::size_t i = 1;; ++i) {
     auto next = inputs.next();
     TACTO_TRY(next);
@@ -68,7 +68,7 @@ Result<void> match_session(ComparedInput& a, ComparedInput& b) {
   auto target = target_of(texture.texture, stem, *session.played);
   TACTO_TRY(target);
   texture.texture = std::move(*target);
-  texture.name += " as wanted";
+  texture.name += " as the target";
   return {};
 }
 

@@ -50,7 +50,7 @@ cli::Action declare_extremes(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kExtremesVerb{"extremes",
-                              "Try the methods of all rooms far from the usual, each against something "
+                              "Test the methods of all modules with extreme input, each against something "
                               "exact, and print what came of it",
                               "tactograph extremes\n  tactograph extremes --all --json > extremes.json",
                               declare_extremes};

@@ -136,13 +136,12 @@ cli::Action declare_fidelity(CLI::App& app) {
   app.add_option("TEXTURE", play.program.file, "Texture of force: stem or file name")->required();
   app.add_option("-d,--device", play.device_uri, "Device: sim:, sim:hysteresis=0.16 ..., usb:")
       ->capture_default_str();
-  app.add_option(
-      "--transducer", play.transducer,
-      "The model that is inverted: a preset or NAME.transducer.json; the device's own unless told");
+  app.add_option("--transducer", play.transducer,
+                 "The model that is inverted: a preset or NAME.transducer.json; default: the device's own");
   app.add_option("--speed", options->speeds, "Of an emulated finger: one, or several between commas");
   cli::add_quantity(app, "--time", play.time_s, Dimension::time, "On a real device: how long [10 s]");
   cli::add_quantity(app, "--gain", play.program.gain_m_per_n, Dimension::compliance,
-                    "Displacement for force, 1mm/N unless told");
+                    "Displacement for force; default: 1mm/N");
   cli::declare_unfit_transducer(app, play.program.unfit_transducer);
   cli::add_quantity(app, "--rate", play.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
   app.add_option("-o,--output,--page", options->outputs,
@@ -155,7 +154,7 @@ cli::Action declare_fidelity(CLI::App& app) {
 
 const cli::Verb kFidelityVerb{"fidelity",
                               "Play a texture on a device, record what the tray does, and hold it against "
-                              "what was wanted: one number a tray and speed",
+                              "the target: one number for each tray and speed",
                               "tactograph fidelity oak -o oak-fidelity.html\n  tactograph fidelity oak -d "
                               "sim:hysteresis=0.16 --speed 25mm/s,100mm/s",
                               declare_fidelity};

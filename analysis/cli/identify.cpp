@@ -39,7 +39,8 @@ void declare_source(CLI::App& app, IdentifyOptions& o) {
   app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:tray_sensor=on ...");
   app.add_option("-o,--output", o.stem, "What is written, obligatory: NAME.transducer.json");
   app.add_option("--start-from", o.base,
-                 "Preset or file that the fit begins from, and that what can't be told apart is held at");
+                 "Preset or file that the fit starts from; parameters that are not separately identifiable "
+                 "keep its values");
   app.add_option("--picture", o.picture, "Bode plot, or the loops: .svg or .png");
   app.add_option(
       "--results", o.results,
@@ -161,8 +162,7 @@ Result<BodeData> tabled_response(const IdentifyOptions& o) {
   TACTO_TRY(tray);
   const double rate_hz = tray->rate_hz > 0 ? tray->rate_hz : o.rate_hz.value_or(0);
   if (!(rate_hz > 0))
-    return fail(ErrorKind::usage, "nobody says how fast it was sampled", o.file,
-                "give --rate, or a column time_s");
+    return fail(ErrorKind::usage, "the sample rate is not known", o.file, "give --rate, or a column time_s");
   return response_of_record(tray->drive_v, tray->displacement_m, rate_hz, o.plan.low_hz, o.plan.high_hz,
                             o.file);
 }

@@ -151,7 +151,7 @@ std::string best_words(const TradeHalf& half) {
     if (answer.knee_row && answer.knob.find(" x ") == std::string::npos)
       words +=
           fmt::format("{}{}: {}", words.empty() ? "" : "; ", answer.knob, half.rows[*answer.knee_row].choice);
-  return words.empty() ? "none stands out" : words;
+  return words.empty() ? "no best choice" : words;
 }
 
 std::vector<Report> answer_rows(const Trade& trade) {

@@ -48,11 +48,12 @@ Result<void> set_band(Comparison& comparison) {
   comparison.low_per_m = std::max(comparison.pair.low_per_m, kHannBandwidth / comparison.window_m);
   comparison.high_per_m = comparison.pair.high_per_m;
   if (comparison.low_per_m < comparison.high_per_m) return {};
-  return schema::fail(ErrorKind::unsuitable,
-                      fmt::format("a window of {} sees nothing below {}, where what both know ends",
-                                  for_people(comparison.window_m, Dimension::length),
-                                  for_people(comparison.low_per_m, Dimension::spatial_frequency)),
-                      "A and B", "take longer textures");
+  return schema::fail(
+      ErrorKind::unsuitable,
+      fmt::format("a window of {} resolves nothing below {}, where the band that both recorded ends",
+                  for_people(comparison.window_m, Dimension::length),
+                  for_people(comparison.low_per_m, Dimension::spatial_frequency)),
+      "A and B", "take longer textures");
 }
 
 BandComparison compared_band(const schema::ThirdOctaveBand& band, const BandSums& sums, double gain) {

@@ -145,9 +145,10 @@ FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double 
   speed.inverse_error_db = pass.outcome.inverse_error_db;
   speed.notes = pass.outcome.notes;
   if (speed.band_kept_percent < kLeastKeptPercent)
-    speed.notes.push_back(fmt::format(
-        "at {:g} mm/s only {:.2g} % of the texture's power lie in {:g}-{:g} Hz: what is judged is hardly it",
-        1e3 * speed_mps, speed.band_kept_percent, speed.low_hz, speed.high_hz));
+    speed.notes.push_back(
+        fmt::format("at {:g} mm/s only {:.2g} % of the texture's power is in {:g}-{:g} Hz: the figures "
+                    "describe little of it",
+                    1e3 * speed_mps, speed.band_kept_percent, speed.low_hz, speed.high_hz));
   return speed;
 }
 
@@ -157,7 +158,7 @@ void note_wish(FidelitySpeed& speed, const std::vector<double>& target_m, double
   for (const double value : target_m) peak_m = std::max(peak_m, std::abs(value));
   if (peak_m < kOtherUnitWish * limit_m) return;
   speed.notes.push_back(
-      fmt::format("at {:g} mm/s {} are wanted, {:.0f} dB over the transducer's limit of {}: check the "
+      fmt::format("at {:g} mm/s the target is {}, {:.0f} dB over the transducer's limit of {}: check the "
                   "texture's unit, and "
                   "--gain",
                   1e3 * speed.speed_mps, schema::length_for_people(peak_m), 20 * std::log10(peak_m / limit_m),

@@ -21,7 +21,7 @@ using schema::ResultPicture;
 constexpr double kWavesShown = 20;
 
 std::string speed_words(const FidelitySpeed& speed) {
-  return speed.speed_mps > 0 ? for_people(speed.speed_mps, Dimension::speed) : "somebody's finger";
+  return speed.speed_mps > 0 ? for_people(speed.speed_mps, Dimension::speed) : "a recorded finger";
 }
 
 std::string taken_words(const FidelitySpeed& s) {

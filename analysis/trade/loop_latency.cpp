@@ -49,7 +49,7 @@ TradeRow device_loop_row(const playback::Prepared& prepared, double tick_ns) {
   row.latency_s = 0.5 / prepared.rate_hz + 1e-9 * tick_ns;
   row.note =
       "reads and drives in one tick: half a tick's wait, and the tick's time on this computer; only the "
-      "latency is told";
+      "latency is given";
   return row;
 }
 

@@ -27,8 +27,7 @@ bool is_even(const schema::SpaceSignal& signal) {
 schema::Result<Trade> measure_trade(const schema::Texture& texture, const schema::Transducer& transducer,
                                     TradeHalves halves, const std::function<void(double)>& progress) {
   if (is_even(texture.signal))
-    return schema::fail(schema::ErrorKind::unsuitable,
-                        "is the same everywhere: there is nothing to feel, and no error to tell",
+    return schema::fail(schema::ErrorKind::unsuitable, "is constant: it has no error to measure",
                         "the texture", "take one with a surface");
   Trade trade{{}, machine_words(), texture.simulated, {}};
   const double share = halves == TradeHalves::both ? 0.5 : 1;

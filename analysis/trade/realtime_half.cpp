@@ -159,7 +159,7 @@ void RealtimeTrade::add_looking_ahead() {
     TradeRow& row = take("look ahead", ahead ? "on" : "off", outcomes);
     row.note = "speed wanders by 10 %";
     if (outcomes && !ahead)
-      row.note += fmt::format("; re what was wanted {:g} ms before it errs by {}",
+      row.note += fmt::format("; re the target {:g} ms earlier its error is {}",
                               1e3 * outcomes->middle().delay_left_s,
                               playback::percent(worst_of(outcomes->errors(&PlayedOutcome::later_error))));
   }

@@ -205,7 +205,7 @@ std::string answers_table(const TradeHalf& half) {
     if (best)
       rows.push_back({answer.knob, best->choice, fmt::format("{:.3g} %", 100 * best->error),
                       cost_words(*best), never_words(answer)});
-    else  // "not judged", "none stands out": why is in the table of all rows
+    else  // "not judged", "no best choice": why is in the table of all rows
       rows.push_back(
           {answer.knob, answer.knee.substr(0, answer.knee.find(':')), "", "", never_words(answer)});
   }

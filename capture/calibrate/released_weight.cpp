@@ -57,7 +57,7 @@ Result<void> check_stands_out(const Window& window, const std::string& channel) 
     peak = std::max(peak, std::abs(*at));
   }
   if (peak > kRingStandsOut * std::sqrt(noise) && peak > 0) return {};
-  return schema::fail(ErrorKind::unsuitable, "there is no release that stands out", channel,
+  return schema::fail(ErrorKind::unsuitable, "no release is large enough to be found", channel,
                       "hang the weight still, then cut its thread once");
 }
 

@@ -70,7 +70,7 @@ void judge(const Take& take, const ChannelTare& tare, Tare& all) {
     all.unstill.push_back(fmt::format("{} wanders", told.name));
   if (!is_transducers(take, told) && std::abs(tare.mean) > kResting_n)
     all.warnings.push_back(
-        fmt::format("{} rests at {:.3g} {}: is that the sensor's own offset, or does something lie on it?",
+        fmt::format("{} rests at {:.3g} {}: is that the sensor's own offset, or is there a load on it?",
                     told.name, tare.mean, told.unit));
   if (!is_transducers(take, told)) return;
   double power = tare.noise_rms * tare.noise_rms;

@@ -241,7 +241,7 @@ cli::Action declare_force(CLI::App& app) {
   cli::add_quantity(app, "--time", options->time_s, Dimension::time,
                     "How long to listen: 3s a weight, 10s a release or against a reference");
   cli::add_quantity(app, "--gravity", options->gravity_mps2, Dimension::acceleration,
-                    "Here; 9.80665m/s^2, and 0.15 % of uncertainty for it, unless told");
+                    "Local gravity; default: 9.80665m/s^2, with 0.15 % of uncertainty");
   return [options] { return run_calibrate_force(*options); };
 }
 

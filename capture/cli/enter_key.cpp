@@ -17,7 +17,7 @@ schema::Result<bool> read_line() {
   char byte = 0;
   while (read(STDIN_FILENO, &byte, 1) == 1)
     if (byte == '\n') return true;
-  return schema::fail(schema::ErrorKind::usage, "nobody presses Enter", "stdin",
+  return schema::fail(schema::ErrorKind::usage, "the input ended before Enter was pressed", "stdin",
                       "run it in a terminal, or calibrate from recordings (--help)");
 }
 

@@ -39,7 +39,7 @@ struct RecordOptions {
 void declare_options(CLI::App& app, RecordOptions& options) {
   RecordRequest& request = options.request;
   app.add_option("-d,--device", options.device,
-                 "The device: usb:, the only one on USB, unless told; usb:serial=XYZ, or "
+                 "The device; default: usb:, the only one on USB; usb:serial=XYZ, or "
                  "sim:surface=C,speed=50mm/s,seed=1 (all keys: tactograph help sim), or replay:NAME");
   CLI::Option* const name = app.add_option("-o,--output", request.name,
                                            "The recording's name: NAME.wav and NAME.json; never overwrites");
@@ -58,7 +58,7 @@ void declare_options(CLI::App& app, RecordOptions& options) {
                     "A calibration older than this is warned of; 30days");
   app.add_option("--subject", request.subject, "A code for the person, never a name");
   app.add_option("--finger", request.finger, "Which finger, or what slides instead of one");
-  app.add_option("--surface", request.surface, "What is touched; what the device says, unless told");
+  app.add_option("--surface", request.surface, "What is touched; default: as the device reports");
   app.add_option("--notes", request.notes, "Anything else");
 }
 

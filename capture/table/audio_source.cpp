@@ -45,7 +45,7 @@ Result<Source> open_audio(const std::string& file) {
   if (!reader) {
     schema::Error error = reader.error();
     if (error.remedy.empty())
-      error.remedy = "import reads tables (CSV) and what libsndfile knows (WAV, FLAC, OGG ...)";
+      error.remedy = "import reads tables (CSV) and the formats of libsndfile (WAV, FLAC, OGG ...)";
     return tl::unexpected(error);
   }
   const schema::WavInfo& info = reader->info();

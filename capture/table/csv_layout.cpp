@@ -98,7 +98,7 @@ tl::unexpected<schema::Error> mixed_first_line(const TableLine& line, const std:
                                                const std::string& file) {
   const auto at = std::ranges::find_if(fields, is_name) - fields.begin();
   return fail(ErrorKind::malformed,
-              fmt::format("'{}' stands among numbers", fields[static_cast<std::size_t>(at)]),
+              fmt::format("'{}' is a name among numbers", fields[static_cast<std::size_t>(at)]),
               fmt::format("{}: line {}, column {}", file, line.number, at + 1),
               "name every column in the first line, or none");
 }

@@ -206,8 +206,7 @@ bool CsvReader::refuse_ragged(std::string_view line) {
 
 bool CsvReader::refuse_blank() {
   line_ = blank_line_;
-  return refuse("is blank, with rows after it",
-                "a missing row is never passed over: import the parts one by one");
+  return refuse("is blank, with rows after it", "rows may not be missing: import the parts one by one");
 }
 
 bool CsvReader::refuse(std::string what, std::string remedy, std::optional<std::size_t> column) {

@@ -24,7 +24,7 @@ std::string table_format(const CsvLayout& layout) {
   std::string format = fmt::format("table, {}, {} header", delimiter, layout.header ? "with" : "without");
   if (layout.lines_before > 0 && layout.header) format += fmt::format(" in line {}", layout.header_line);
   if (layout.lines_before > 0 && !layout.header) format += fmt::format(", from line {}", layout.data_line);
-  if (layout.lines_before > 0) format += " (lines before it passed over)";
+  if (layout.lines_before > 0) format += " (lines before it ignored)";
   if (layout.units_line > 0) format += fmt::format(", units in line {}", layout.units_line);
   return format;
 }

@@ -9,7 +9,7 @@ namespace {
 const char* words_of(SessionEnding ending) {
   if (ending == SessionEnding::closed) return "closed";
   if (ending == SessionEnding::unclosed) return "not closed: still written, or its writer was killed";
-  return "damaged: what stands before the damage was read";
+  return "damaged: only what precedes the damage was read";
 }
 
 cli::Report& add_texture(cli::Report& row, const SessionTexture& texture) {

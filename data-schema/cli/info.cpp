@@ -36,7 +36,7 @@ Result<cli::Report> describe(const StoredFile& file) {
     case FileKind::session_table:
       return describe_session_table(file.path);
   }
-  return fail(ErrorKind::internal, "a kind of file that nobody describes", file.path);
+  return fail(ErrorKind::internal, "a kind of file without a description", file.path);
 }
 
 // A stem can name several files: the first is described, the others are listed.

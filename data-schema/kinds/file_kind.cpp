@@ -43,7 +43,7 @@ Result<StoredFile> by_content(const std::string& path) {
   const auto found = std::ranges::find(kNames, *name);
   if (found == kNames.end())
     return fail(ErrorKind::malformed,
-                fmt::format("is of the kind '{}', which this program doesn't know", *name), path,
+                fmt::format("is of the kind '{}', which is unknown to this program", *name), path,
                 fmt::format("the kinds are {}", fmt::join(kNames, ", ")));
   return StoredFile{static_cast<FileKind>(found - kNames.begin()), path};
 }

@@ -114,8 +114,7 @@ Result<void> check_holds_something(const std::string& wav, const EmptyWav& empty
   const bool early = static_cast<double>(known_frames) <= kOnItsWay_s * header.sample_rate_hz;
   if (early || size_of(wav) >= empty.layout.data_at + block) return {};
   return fail(ErrorKind::malformed,
-              fmt::format("holds no frames, though the journal beside it knows of {}; nothing was changed",
-                          known_frames),
+              fmt::format("holds no frames, but its journal lists {}; nothing was changed", known_frames),
               wav, "look for the WAV elsewhere (lost+found, a backup) and put it here");
 }
 
@@ -146,9 +145,9 @@ void note_zeros(const std::string& wav, const RiffLayout& layout, const Recordin
 
 void note_what_is_missing(const RecordingHeader& header, std::uint64_t known_frames, WavRemains& remains) {
   if (known_frames > remains.frames)
-    remains.notes.push_back(
-        fmt::format("its journal knows of frame {}, and it ends at {}: at least {} are lost", known_frames,
-                    remains.frames, stretch(known_frames - remains.frames, header)));
+    remains.notes.push_back(fmt::format("its journal lists frame {}, and it ends at {}: at least {} are lost",
+                                        known_frames, remains.frames,
+                                        stretch(known_frames - remains.frames, header)));
 }
 
 Result<void> make_header_sound(const std::string& wav, const EmptyWav& empty, WavRemains& remains) {

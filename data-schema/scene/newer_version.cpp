@@ -23,8 +23,8 @@ std::string note_of_newer_version(const std::string& path, const std::string& ne
                                   const std::vector<std::string>& passed_over) {
   if (newer_version.empty()) return {};
   const std::string names = passed_over.empty() ? "" : fmt::format(": {}", fmt::join(passed_over, ", "));
-  return fmt::format("{}: its version {} is newer than this program's; what it doesn't know is passed over{}",
-                     path, newer_version, names);
+  return fmt::format("{}: its version {} is newer than this program's; unknown members are ignored{}", path,
+                     newer_version, names);
 }
 
 std::string note_of_newer_version(const std::string& path, const Scene& scene) {

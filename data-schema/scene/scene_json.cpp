@@ -58,8 +58,8 @@ Json layer_body(const Layer& layer) {
 
 Result<Layer> layer_from(const Json& body, const std::string& place) {
   if (const std::string type = text_or(body, "type"); type != "texture")
-    return fail(ErrorKind::unsuitable, fmt::format("'{}' is no type of layer that this program knows", type),
-                place + "/type", "the types are: texture");
+    return fail(ErrorKind::unsuitable, fmt::format("'{}' is an unknown type of layer", type), place + "/type",
+                "the types are: texture");
   return texture_layer_from(body);
 }
 

@@ -10,7 +10,7 @@
 namespace tacto::schema {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "numbers are copied in the memory's byte order");
 
 constexpr std::size_t kTickBytes = 20, kCheckBytes = 8, kTicksHead = 20, kMomentBytes = 16;
 

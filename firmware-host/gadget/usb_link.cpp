@@ -96,7 +96,7 @@ void UsbLink::go_down(const char* why) {
 void UsbLink::refuse_setup(bool in) const {
   const ssize_t refused =
       in ? ::read(files_.events.get(), nullptr, 0) : ::write(files_.events.get(), nullptr, 0);
-  if (refused >= 0) settings_.say("a request that the device does not know was not refused");
+  if (refused >= 0) settings_.say("an unknown request was not refused");
 }
 
 void UsbLink::send_bursts() {

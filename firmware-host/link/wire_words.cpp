@@ -46,7 +46,7 @@ FaultWords words_of(AnswerCode code, std::uint32_t detail) {
     case AnswerCode::ok:
       return {"done", ""};
     case AnswerCode::unknown_type:
-      return {"the device does not know this command", "update its firmware"};
+      return {"this command is unknown to the device", "update its firmware"};
     case AnswerCode::bad_payload:
       return {fmt::format("the device cannot read a payload of {} bytes", detail), ""};
     case AnswerCode::bad_value:

@@ -42,8 +42,7 @@ Result<void> UsbOutflow::write(std::span<const std::uint8_t> bytes, double timeo
     if (const auto sent = send(timeout_s); !sent) return sent;
     if (sent_whole()) return {};
     if (transfer_->status == LIBUSB_TRANSFER_TIMED_OUT)
-      return fail(ErrorKind::device,
-                  fmt::format("the device took nothing from this computer for {:g} s", timeout_s),
+      return fail(ErrorKind::device, fmt::format("the device accepted no data for {:g} s", timeout_s),
                   connection_.uri(), "unplug it and plug it in again");
     if (const auto cleared = clear(); !cleared) return cleared;
   }

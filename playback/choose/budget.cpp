@@ -120,8 +120,8 @@ Choices kept_by(const Choices& all, const TickBudget& budget, bool in_time) {
 
 tl::unexpected<schema::Error> no_room(const Readings& readings, const PrepareOptions& options) {
   if (readings.least_samples == 0)
-    return fail(ErrorKind::unsuitable, "knows no interpolation of this program", "table of measured choices",
-                "'tactograph trade --calibrate' measures them");
+    return fail(ErrorKind::unsuitable, "has none of this program's interpolations",
+                "table of measured choices", "'tactograph trade --calibrate' measures them");
   return fail(ErrorKind::unsuitable,
               fmt::format("the texture takes {} samples at least, there is room for {}",
                           readings.least_samples, options.most_samples),
@@ -196,7 +196,7 @@ Result<double> tick_cost_ns(const schema::TradeTable& table, wire::Interpolation
     if (interpolation_of(measured.name) == interpolation)
       return measured.cost_ns + cost_of(table, "inverse") * static_cast<double>(taps) +
              (undoes_hysteresis ? cost_of(table, "hysteresis") : 0);
-  return fail(ErrorKind::unsuitable, fmt::format("does not know what {} costs", to_string(interpolation)),
+  return fail(ErrorKind::unsuitable, fmt::format("has no cost of {}", to_string(interpolation)),
               "table of measured choices", "'tactograph trade --calibrate' measures it");
 }
 

@@ -18,18 +18,17 @@ void add_word(CLI::App& app, const std::string& name, std::optional<std::string>
 
 void declare_path(CLI::App& app, PlaybackChoices& c, const std::string& of) {
   add_word(app, "--interpolation", c.interpolation, {"nearest", "linear", "hermite", "sinc"},
-           of + "How the texture is read between its samples; hermite unless told");
-  add_word(
-      app, "--inverse", c.inverse, {"full", "magnitude", "gain", "none"},
-      of + "What of the transducer the drive undoes: amplitude and phase (unless told), amplitude, the gain "
-           "at rest, or nothing");
+           of + "Interpolation between the texture's samples; default: hermite");
+  add_word(app, "--inverse", c.inverse, {"full", "magnitude", "gain", "none"},
+           of +
+               "What the drive inverts of the transducer: amplitude and phase (default), amplitude, the gain "
+               "at rest, or nothing");
   add_word(app, "--reconstruction", c.reconstruction, {"none", "butterworth3"},
-           of + "Analog filter behind the device's converter, undone as well; none unless told");
-  cli::add_quantity(
-      app, "--cutoff", c.cutoff_hz, Dimension::frequency,
-      of + "Cut-off of butterworth3 (needs one: --reconstruction); 600Hz, the paper's, unless told");
+           of + "Analog filter behind the device's converter, inverted as well; default: none");
+  cli::add_quantity(app, "--cutoff", c.cutoff_hz, Dimension::frequency,
+                    of + "Cut-off of butterworth3 (needs --reconstruction); default: 600Hz, as in the paper");
   add_word(app, "--hold", c.hold, {"none", "zero-order"},
-           of + "Whether the converter holds each sample until the next (unless told), undone as well");
+           of + "Whether the converter holds each sample until the next (default), inverted as well");
 }
 
 void declare_limits(CLI::App& app, PlaybackChoices& c, const std::string& of) {
@@ -37,11 +36,11 @@ void declare_limits(CLI::App& app, PlaybackChoices& c, const std::string& of) {
       app, "--energy-limit", c.energy_rms_v, Dimension::voltage,
       of + "Turn the drive down where its RMS would pass this, at the amplifier's input; 0V: never");
   cli::add_quantity(app, "--energy-window", c.energy_window_s, Dimension::time,
-                    of + "Over which that RMS is taken (needs a limit); 1s unless told");
+                    of + "Window of that RMS (needs a limit); default: 1s");
   cli::add_quantity(app, "--contact", c.contact_on_n, Dimension::force,
                     of + "Drive only from this normal force on, by a device that reports it; 0N: always");
   cli::add_quantity(app, "--contact-off", c.contact_off_n, Dimension::force,
-                    of + "And until it is below this (needs --contact); four fifths of it unless told");
+                    of + "And until it is below this (needs --contact); default: four fifths of it");
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ Result<void> check_taken(const CtlOptions& o) {
                         "command line", who);
   };
   const bool load = o.action == "load", gain = o.action == "gain";
-  if (!o.what.empty() && !load && !gain) return refuse(o.what, "only load and gain are told what");
+  if (!o.what.empty() && !load && !gain) return refuse(o.what, "only load and gain take an argument");
   for (const auto& [option, given] : {std::pair{"--at", o.at_m.has_value()},
                                       {"--gain", o.gain_m_per_n.has_value()},
                                       {"--ends", o.ends.has_value()},
@@ -210,7 +210,7 @@ cli::Action declare_ctl(CLI::App& app) {
       ->required();
   app.add_option("what", o.what, "load: a texture or scene; gain: a factor");
   app.add_option("--socket", o.socket, "The daemon's")->capture_default_str();
-  cli::add_quantity(app, "--at", o.at_m, Dimension::length, "load of a texture: where its position 0 lies");
+  cli::add_quantity(app, "--at", o.at_m, Dimension::length, "load of a texture: the place of its position 0");
   cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance,
                     "load of a texture: displacement for force");
   declare_ends(app, o.ends, "load: ");

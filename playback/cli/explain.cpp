@@ -149,12 +149,12 @@ cli::Action declare_explain(CLI::App& app) {
   cli::add_quantity(app, "--encoder-step", o.prepare.metres_per_count, Dimension::length,
                     "One count of the encoder");
   app.add_option("--device-memory", o.device_memory,
-                 "Samples that the device holds; 2^24, the most that is ever prepared, unless told")
+                 "Samples that the device holds; default: 2^24, the most that is ever prepared")
       ->check(cli::from_one());
   declare_ends(app, o.program.ends);
   declare_choices(app, o.program.choices);
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
-               "Do not undo the hysteresis that the transducer's file tells");
+               "Do not invert the hysteresis of the transducer's file");
   declare_tick_budget(app, o.budget);
   return [options] { return run_explain(*options); };
 }

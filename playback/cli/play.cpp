@@ -37,8 +37,7 @@ struct PlayVerbOptions {
 void declare_what(CLI::App& app, PlayOptions& o) {
   app.add_option("what", o.program.file, "Texture or scene: stem or file name")->required();
   app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:surface=C ...")->required();
-  app.add_option("--transducer", o.transducer,
-                 "A preset or NAME.transducer.json; the device's own unless told");
+  app.add_option("--transducer", o.transducer, "A preset or NAME.transducer.json; default: the device's own");
   cli::declare_unfit_transducer(app, o.program.unfit_transducer);
   cli::refuse_force(app);
   app.add_flag("--implausible", o.program.implausible,
@@ -47,14 +46,14 @@ void declare_what(CLI::App& app, PlayOptions& o) {
                  "Where an emulated device's finger goes: CSV with the columns time_s,position_m, and how it "
                  "presses where there is a column normal_force_n");
   cli::add_quantity(app, "--time", o.time_s, Dimension::time,
-                    "How long; unless told as long as the finger's path, or 10 s");
+                    "How long; default: as long as the finger's path, or 10 s");
 }
 
 void declare_texture(CLI::App& app, PlayOptions& o) {
   cli::add_quantity(app, "--at", o.program.at_m, Dimension::length,
-                    "Of a texture: where its position 0 lies on the encoder's axis");
+                    "Of a texture: the place of its position 0 on the encoder's axis");
   cli::add_quantity(app, "--gain", o.program.gain_m_per_n, Dimension::compliance,
-                    "Of a texture: displacement for force; unless told the one that it keeps, or 1mm/N");
+                    "Of a texture: displacement for force; default: the gain in its file, or 1mm/N");
   declare_ends(app, o.program.ends);
 }
 
@@ -65,7 +64,7 @@ void declare_loop(CLI::App& app, PlayOptions& o) {
   app.add_flag("!--no-look-ahead", o.prepare.look_ahead,
                "Read the texture where the finger is, not where it will be when the inverse has answered");
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
-               "Do not undo the hysteresis that the transducer's file tells");
+               "Do not invert the hysteresis of the transducer's file");
   cli::add_quantity(app, "--onset", o.prepare.onset_s, Dimension::time, "In which the drive rises");
 }
 
@@ -130,7 +129,7 @@ cli::Action declare_play(CLI::App& app) {
   options->play.prepare.onset_s = 0.02;
   declare_what(app, options->play);
   app.add_option("-o,--output", options->session,
-                 "The session: NAME.session; unless told the texture's name and the time of day, here");
+                 "The session: NAME.session; default: the texture's name and the time of day, here");
   declare_texture(app, options->play);
   declare_loop(app, options->play);
   declare_choices(app, options->play.program.choices);

@@ -60,18 +60,18 @@ void add_files(CLI::App& app, RenderVerbOptions& o) {
   cli::declare_force(app, o.existing);
   app.add_option("--displacement", o.displacement,
                  "Also write what the modelled tray does with that drive: float WAV in metres");
-  app.add_option("--wanted", o.target, "Also write the displacement that was wanted: float WAV in metres");
+  app.add_option("--wanted", o.target, "Also write the target displacement: float WAV in metres");
 }
 
 void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
   cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency, "Sample rate of the drive");
   cli::add_quantity(app, "--gain", verb.what.gain_m_per_n, Dimension::compliance,
-                    "Of a texture: displacement for force; unless told the one that it keeps, or 1mm/N");
+                    "Of a texture: displacement for force; default: the gain in its file, or 1mm/N");
   cli::add_quantity(app, "--at", verb.what.at_m, Dimension::length,
-                    "Of a texture: where the texture's position 0 lies on the path's axis; for a path in "
+                    "Of a texture: the place of its position 0 on the path's axis; for a path in "
                     "bench positions give the "
-                    "source_origin_m that `info TEXTURE` tells");
+                    "source_origin_m that `info TEXTURE` prints");
   cli::add_quantity(app, "--low", o.band.low_hz, Dimension::frequency,
                     "Lowest frequency of the displacement");
   cli::add_quantity(app, "--high", o.band.high_hz, Dimension::frequency,
@@ -121,7 +121,7 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
       cli::add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
                             "Whether the converter holds each sample until the next, undone as well");
   app.add_flag("!--keep-hysteresis", o.undo_hysteresis,
-               "Do not undo the hysteresis that the transducer's file tells (the kernel does)");
+               "Do not invert the hysteresis of the transducer's file (the kernel does)");
   verb.engine = cli::add_choice<Engine>(
       app, "--engine", o.engine, {{"reference", Engine::reference}, {"kernel", Engine::kernel}},
       "Who computes the drive: the exact reference, or the tick kernel as it runs in real time");
@@ -242,7 +242,7 @@ Result<void> take_choices(RenderVerbOptions& o, const schema::PlaybackChoices& s
   take(scene.energy_rms_v.has_value(), o.named.energy, r.energy_rms_v, played->energy_rms_v);
   take(scene.energy_window_s.has_value(), o.named.energy_window, r.energy_window_s, played->energy_window_s);
   if (played->contact_on_n > 0)
-    cli::warn("the path tells no normal force: the scene's contact gate is left out");
+    cli::warn("the path has no normal force: the scene's contact gate is left out");
   return {};
 }
 

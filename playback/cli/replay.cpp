@@ -40,7 +40,7 @@ Result<Report> run_replay(const ReplayVerbOptions& o) {
     cli::warn("the session was never closed: what is in it was compared");
   if (outcome->damaged_at) {
     cli::warn(
-        fmt::format("the session is damaged from byte {} on: what stands before it was compared, and may "
+        fmt::format("the session is damaged from byte {} on: what precedes it was compared, and may "
                     "lack a command that stood behind",
                     *outcome->damaged_at));
     report.add("damaged_at_byte", *outcome->damaged_at).ends_with(schema::ErrorKind::malformed);
@@ -69,7 +69,7 @@ cli::Action declare_replay(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kReplayVerb{"replay",
-                            "Compute a session's drive again, and tell the first tick that differs in a bit",
+                            "Compute a session's drive again, and report the first mismatch, to the bit",
                             "tactograph replay first.session", declare_replay};
 
 }  // namespace tacto::playback

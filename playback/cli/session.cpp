@@ -148,7 +148,7 @@ Result<StrokeReport> judge_all(const SessionVerbOptions& o) {
 void warn_of(const StrokeReport& strokes) {
   cli::warn_grouped(strokes.notes);
   if (strokes.stroke_count > strokes.strokes.size())
-    cli::warn(fmt::format("the first {} of {} strokes are told here: --strokes FILE.csv takes all",
+    cli::warn(fmt::format("the first {} of {} strokes are shown; --strokes FILE.csv writes all",
                           strokes.strokes.size(), strokes.stroke_count));
 }
 

@@ -52,7 +52,7 @@ std::string words_of_taken(const ControlFields& fields) {
     return unknown;
   const double all_db = schema::control_number(fields, "limits_took_db", NAN);
   const double second_db = schema::control_number(fields, "limits_took_last_second_db", NAN);
-  if (std::isnan(all_db)) return "not told yet";
+  if (std::isnan(all_db)) return "not known yet";
   return fmt::format("{} in the last second, {:.1f} dB since arming",
                      std::isnan(second_db) ? "nothing" : fmt::format("{:.1f} dB", second_db), all_db);
 }
@@ -61,7 +61,7 @@ std::string words_of_taken(const ControlFields& fields) {
 std::string limits_line(const ControlFields& fields) {
   const std::string tells = schema::control_text(fields, "limits_in_db");
   if (tells.empty()) return {};
-  return fmt::format("limits   took {}   by stroke: {}\n", words_of_taken(fields), tells);
+  return fmt::format("limits   removed {}   by stroke: {}\n", words_of_taken(fields), tells);
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
   if (first == "--version") return std::puts(kCreator.data()) < 0 ? 1 : 0;
   if (argc != 3 || first != "--config")
     return failed(
-        {schema::ErrorKind::usage, "wants --config FILE", "command line", "see tactographd --help"});
+        {schema::ErrorKind::usage, "--config FILE is required", "command line", "see tactographd --help"});
   struct sigaction action {};
   action.sa_handler = ask_to_stop;
   sigaction(SIGTERM, &action, nullptr);

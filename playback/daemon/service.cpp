@@ -371,7 +371,7 @@ std::optional<Result<ControlFields>> Service::handle(const ControlRequest& reque
     case ControlVerb::watch:
       return status();
   }
-  return fail(ErrorKind::internal, "a request that nobody answers", "request");
+  return fail(ErrorKind::internal, "a request without an answer", "request");
 }
 
 bool Service::step(double timeout_s) {

@@ -35,8 +35,7 @@ void LiveLimits::give_up(std::string why) {
 void LiveLimits::hear(const SessionCommand& command) {
   if (!board_) return;
   const auto contact = message_in_frame<wire::Contact>(command.frame);
-  if (contact && contact->on_n > 0 && !tells_touch_)
-    return give_up("the device does not tell when the finger touches");
+  if (contact && contact->on_n > 0 && !tells_touch_) return give_up("the device does not report contact");
   beats_.see(command, rate_hz_);
   commands_.hand(command, [this](const SessionCommand& due) { obey(due); });
 }

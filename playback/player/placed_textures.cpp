@@ -46,18 +46,19 @@ Result<schema::Scene> scene_of(const ProgramRequest& request,
                                std::optional<schema::PlaybackGain>& kept_gain) {
   if (!names_a_scene(request.file)) return scene_of_texture(request, kept_gain);
   if (request.at_m || request.gain_m_per_n || request.ends)
-    return fail(ErrorKind::usage, "a scene says itself where its textures lie, with which gains and ends",
-                request.file, "change the scene, or name a texture");
+    return fail(ErrorKind::usage, "a scene has its own places, gains and ends of textures", request.file,
+                "change the scene, or name a texture");
   return schema::read_scene(request.file);
 }
 
 // What a newer version limits must not be played without.
 Result<void> check_choices(const schema::Scene& scene) {
   if (scene.playback.extra_json.empty()) return {};
-  return fail(ErrorKind::unsuitable,
-              fmt::format("is of version {}, and its playback says what this program does not know: {}",
-                          scene.newer_version, scene.playback.extra_json),
-              "scene#/playback", "play it with a newer tactograph, or take that out");
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("is of version {}, and its playback has members that are unknown to this program: {}",
+                  scene.newer_version, scene.playback.extra_json),
+      "scene#/playback", "play it with a newer tactograph, or take that out");
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ struct ScriptedDevice {
 Result<ScriptedDevice> open_scripted(const std::string& uri, const FingerScript& script) {
   if (!uri.starts_with(kSimScheme)) {
     TACTO_TRY(firmware_host::open_device(uri));
-    return fail(ErrorKind::unsuitable, "only an emulated finger goes where it is told", uri,
+    return fail(ErrorKind::unsuitable, "only an emulated finger follows a path", uri,
                 "leave the finger's path out, or play on sim:");
   }
   auto device = firmware_host::make_sim_device(uri, std::string_view(uri).substr(kSimScheme.size()));

@@ -87,7 +87,7 @@ Result<void> check_onset(const PrepareOptions& options) {
 Result<void> check_place(const PlacedTextures& laid, double farthest_m) {
   const double at_m = std::max(std::abs(laid.start_m()), std::abs(laid.end_m()));
   if (at_m < farthest_m) return {};
-  return fail(ErrorKind::usage, fmt::format("lies as far as {:g} m from the encoder's zero", at_m),
+  return fail(ErrorKind::usage, fmt::format("is up to {:g} m from the encoder's zero", at_m),
               laid.rows().front().file,
               fmt::format("lay it within {:.4g} m (--at, or at_m in the scene)", farthest_m));
 }

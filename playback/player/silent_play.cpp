@@ -20,7 +20,7 @@ std::string reason(const TickView& ticks, const Feelable& what) {
     return fmt::format("the finger did not press with the {:g} N from which on there is a drive (--contact)",
                        what.contact_on_n);
   if (what.stops && (to_m < what.start_m || from_m > what.end_m))
-    return fmt::format("the finger went {}, and what is played lies {} (--at, or at_m in the scene)",
+    return fmt::format("the finger went {}, and the texture is {} (--at, or at_m in the scene)",
                        from_to(from_m, to_m), from_to(what.start_m, what.end_m));
   if (from_m > what.reach_m || to_m < -what.reach_m)
     return fmt::format(
@@ -39,7 +39,7 @@ Feelable feelable(const Program& program) {
 
 std::optional<std::string> note_of_silence(const TickView& ticks, const Feelable& what) {
   if (ticks.ticks() == 0 || ticks.drive_peak_v() > 0) return std::nullopt;
-  return "nothing was felt, the drive stayed at 0 V: " + reason(ticks, what);
+  return "nothing was played, the drive stayed at 0 V: " + reason(ticks, what);
 }
 
 }  // namespace tacto::playback

@@ -27,7 +27,7 @@ std::vector<LeftOut> left_out_of(const Prepared& prepared) {
        prepared.loop_period_m > 0 ? "the texture's end meets its beginning" : "nothing loops");
   if (built.levels < wire::kMaxLevels) left_out.push_back(levels_left_out(prepared));
   tell(built.filters, "a filter that undoes the transducer", "its gain alone, or no inverse, was asked for");
-  tell(built.hysteresis, "plays that undo a hysteresis", "the transducer's file tells none, or it is kept");
+  tell(built.hysteresis, "plays that undo a hysteresis", "the transducer's file has none, or it is kept");
   tell(built.sections, "recursive sections", "only an undone hysteresis needs one");
   tell(built.energy_limits, "an energy limit", "none is named");
   tell(built.touch_gates, "a touch gate", "no normal force is asked for");

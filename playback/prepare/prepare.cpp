@@ -165,7 +165,7 @@ std::optional<double> rate_that_works(const schema::Transducer& transducer, Prep
 Result<void> fail_by_rate(const InverseFilter& filter, const PrepareOptions& o, double works_hz) {
   return fail(ErrorKind::unsuitable,
               fmt::format("{} taps at {:g} Hz last {:.2g} ms: too short for the transducer's inverse, which "
-                          "leaves {:.1f} dB of what is wanted",
+                          "leaves an error of {:.1f} dB of the target",
                           filter.taps.size(), o.rate_hz,
                           1e3 * static_cast<double>(filter.taps.size()) / o.rate_hz, filter.error_db),
               "rate", fmt::format("play at {:g} kHz, or with --inverse gain", 1e-3 * works_hz));
@@ -179,8 +179,8 @@ Result<void> check_inverse(const InverseFilter& filter, const schema::Transducer
   if (const auto works_hz = rate_that_works(transducer, o)) return fail_by_rate(filter, o, *works_hz);
   return fail(
       ErrorKind::unsuitable,
-      fmt::format("over {:g} to {:.4g} Hz its inverse, within 20 dB of gain, leaves {:.1f} dB of what is "
-                  "wanted",
+      fmt::format("over {:g} to {:.4g} Hz its inverse, within 20 dB of gain, leaves an error of {:.1f} dB of "
+                  "the target",
                   band.low_hz, band.high_hz, filter.error_db),
       "transducer", "check its resonance, damping and pole; or play with --inverse gain");
 }

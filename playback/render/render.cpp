@@ -225,8 +225,8 @@ std::string ways_for_reference(const RenderJob& job) {
 
 Result<void> refuse_miss(double error, const Rendering& rendering, const RenderJob& job) {
   if (std::isnan(error))
-    return fail(ErrorKind::unsuitable, "nothing is wanted in the band: no error can be told", "error budget",
-                "render without a budget");
+    return fail(ErrorKind::unsuitable, "the target is zero in the band: there is no error to measure",
+                "error budget", "render without a budget");
   return fail(ErrorKind::unsuitable, "the rendering's " + words_of_miss(error, job.options), "error budget",
               rendering.engine == Engine::kernel ? ways_for_kernel(rendering, job) : ways_for_reference(job));
 }

@@ -55,7 +55,7 @@ Result<void> hear_ticks(const std::string& session, std::uint64_t from, const Ti
 }
 
 tl::unexpected<schema::Error> not_known(const std::string& why, const std::string& session) {
-  return fail(ErrorKind::unsuitable, "what the limits took is not known: " + why,
+  return fail(ErrorKind::unsuitable, "the effect of the limits is not known: " + why,
               schema::session_path(session), "`tactograph replay` says more");
 }
 

@@ -117,7 +117,7 @@ StrokeReport begun_report(const SessionOverview& overview) {
   report.low_hz = overview.header.low_hz, report.high_hz = overview.header.high_hz;
   report.damaged = overview.damaged_at.has_value();
   if (!overview.closed && !report.damaged)
-    report.notes.emplace_back("the session was never closed: what is in it is told");
+    report.notes.emplace_back("the session was never closed: the figures are of the part that was stored");
   if (report.damaged)
     report.notes.push_back(
         fmt::format("{} is damaged from byte {} on: what comes after it is not in the report", overview.path,
@@ -149,16 +149,15 @@ std::string note_of_none(const StrokeFinder& strokes, bool lost) {
 
 std::string note_of_unwanted(std::uint64_t unwanted, std::uint64_t all) {
   return fmt::format(
-      "in {} of {} strokes nothing was wanted: no texture of the session lies where the finger went, or "
-      "those "
-      "that do cancel each other, so there is no wanted RMS and no error to tell",
+      "in {} of {} strokes the target is zero: no texture of the session is where the finger went, or "
+      "the textures there cancel each other, so there is no target RMS and no error",
       unwanted, all);
 }
 
 std::string note_of_unmeasured(std::uint64_t unmeasured, std::uint64_t all) {
   return fmt::format(
-      "in {} of {} strokes samples of the tray's sensor are missing (within 0.3 s of them): what it measured "
-      "there is not told",
+      "in {} of {} strokes samples of the tray's sensor are missing (within 0.3 s of them): these have no "
+      "measured figures",
       unmeasured, all);
 }
 

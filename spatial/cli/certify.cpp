@@ -133,7 +133,7 @@ cli::Action declare_certify(CLI::App& app) {
 
 const cli::Verb kCertifyVerb{
     "certify",
-    "Tell the surface's peaks from those of time (mains, resonances), by strokes at different speeds",
+    "Separate the surface's peaks from those in time (mains, resonances), by strokes at different speeds",
     "tactograph certify oak-slow oak-fast", declare_certify};
 
 }  // namespace tacto::spatial

@@ -101,9 +101,9 @@ cli::Action declare_formants(CLI::App& app) {
   cli::declare_force(app, options->existing);
   declare_spectrogram(app, options->spectrogram);
   cli::add_quantity(app, "--prominence", options->formants.start_db, Dimension::level,
-                    "How far a formant stands out of its background, somewhere");
+                    "Least height of a formant over its background, at its highest point");
   cli::add_quantity(app, "--go-on", options->formants.go_on_db, Dimension::level,
-                    "How far each of its points stands out");
+                    "Least height of each of its points");
   cli::add_quantity(app, "--shortest", options->formants.shortest_m, Dimension::length,
                     "Shortest formant [half a window]");
   cli::add_quantity(app, "--bridge", options->formants.bridge_m, Dimension::length,

@@ -150,7 +150,7 @@ cli::Action declare_sheet(CLI::App& app) {
                  "The sheet, .png or .svg; over 24 textures make SHEET-01 and on")
       ->required();
   cli::declare_force(app, options->existing);
-  app.add_option("--title", options->title, "What stands over it")->capture_default_str();
+  app.add_option("--title", options->title, "Title of the sheet")->capture_default_str();
   app.add_option("--columns", options->columns, "Textures side by side [chosen, at most 4]")
       ->check(CLI::Range(1, 12));
   app.add_flag("--formants", options->formants, "Draw the formants");

@@ -20,7 +20,7 @@ using schema::SpectrogramHeader;
 void warn_of_odd_options(const SpectrogramOptions& options, double pitch_m) {
   if (options.hop_m > options.window_m)
     cli::warn(
-        fmt::format("the hop of {} is longer than the window of {}: what lies between windows is not seen",
+        fmt::format("the hop of {} is longer than the window of {}: the parts between windows are left out",
                     schema::length_for_people(options.hop_m), schema::length_for_people(options.window_m)));
   if (options.max_frequency_per_m > 0.5 / pitch_m)
     cli::warn(fmt::format("a grid of {} holds no frequencies above {}", schema::length_for_people(pitch_m),

@@ -18,7 +18,7 @@ namespace tacto::spatial {
 
 /// What the names on a command line may stand for, as its help says it.
 inline constexpr const char* kTextureInputs =
-    "Textures, or recordings of which each stroke becomes one, by stem or file. NAME stands for NAME-01, "
+    "Textures, or recordings of which each stroke becomes one, by stem or file. NAME means NAME-01, "
     "NAME-02 ... where there is no texture NAME";
 
 /// `path` for messages, `name` for titles and reports. `stored`: path is that of its sidecar, not a stroke's

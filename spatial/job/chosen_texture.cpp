@@ -46,11 +46,11 @@ std::string asked(const schema::Budget& budget) {
 // The promise is of the force behind the band-pass, so what this takes is told by itself, as measured.
 std::string counts_not(double lowest_hz, const BandShare& share) {
   return fmt::format(
-      "what the band-pass itself takes: in this recording's worst stroke {:.3g} % of the RMS of what passes, "
+      "what the band-pass itself removes: in this recording's worst stroke {:.3g} % of the RMS of what "
+      "passes, "
       "{:.3g} % in its middle half (what lies outside of the band: drift, slow friction, the force's steps "
-      "where the finger sets out and stops); what lies within {:.2g} s beyond the record's ends, which "
-      "nobody "
-      "knows; the encoder's rounding and noise; a speed that comes and goes within {:g} frames; slower "
+      "where the finger sets out and stops); what lies within {:.2g} s beyond the record's ends, which is "
+      "unknown; the encoder's rounding and noise; a speed that comes and goes within {:g} frames; slower "
       "places "
       "(the valid band says how far they reach)",
       100 * share.whole, 100 * share.inside, kBandKernelPeriods / lowest_hz, kSteadyFrames);

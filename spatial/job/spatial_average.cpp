@@ -30,9 +30,9 @@ class Aligner {
               options_.align_range_m / pitch_m);
     stroke.correlation = found.correlation;
     if (!found.found) {
-      warnings_.push_back(
-          fmt::format("stroke {} agrees with those before it nowhere within {}: it is averaged as it lies",
-                      job.number, schema::for_people(options_.align_range_m, schema::Dimension::length)));
+      warnings_.push_back(fmt::format(
+          "stroke {} agrees with those before it nowhere within {}: it is averaged without a shift",
+          job.number, schema::for_people(options_.align_range_m, schema::Dimension::length)));
       return texture;
     }
     stroke.shift_m = found.shift * pitch_m;

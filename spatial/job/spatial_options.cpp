@@ -69,7 +69,7 @@ void declare_average(CLI::App& app, SpatialOptions& options) {
       ->needs("--average");
   cli::add_choice<Align>(
       app, "--align", options.align, {{"position", Align::position}, {"correlation", Align::correlation}},
-      "Average strokes as they lie on the bench, or each shifted to agree best with those before")
+      "Average strokes by their position on the bench, or each shifted to agree best with those before")
       ->needs("--average");
   cli::add_quantity(app, "--align-range", options.align_range_m, Dimension::length,
                     "The largest shift that --align correlation tries")

@@ -91,7 +91,7 @@ Result<Report> Takes::finish() {
   }
   if (rows.empty())
     return schema::fail(ErrorKind::unsuitable, "no two strokes of these recordings can be averaged", stem_,
-                        "the warnings say why; --list shows where strokes lie");
+                        "the warnings say why; --list shows the places of strokes");
   TACTO_TRY(pending.commit(options_.existing));
   return Report().add("takes", std::move(takes_)).add("averages", std::move(rows));
 }

@@ -59,7 +59,8 @@ schema::Result<std::vector<std::string>> texture_stems(const std::vector<std::st
     if (!taken.emplace(schema::canonical_path(stems.back()), recording).second)
       return schema::fail(schema::ErrorKind::usage,
                           fmt::format("the textures of several recordings would be named {}", stems.back()),
-                          {}, "give -o a folder, or a name with {} in it, which stands for the recording's");
+                          {},
+                          "give -o a folder, or a name with {} in it, which is replaced by the recording's");
   }
   return stems;
 }

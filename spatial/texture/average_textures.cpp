@@ -33,7 +33,7 @@ schema::Result<void> TextureAverager::check(const schema::Texture& texture, std:
   if (first < first_ - reach || first > first_ + static_cast<std::int64_t>(cells_.size()) + reach)
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("stroke {} lies {} from the others", texture.source.stroke,
+        fmt::format("stroke {} is {} from the others", texture.source.stroke,
                     schema::for_people(static_cast<double>(std::abs(first - first_)) * model_.signal.pitch_m,
                                        schema::Dimension::length)),
         {}, "average strokes over one place; --stroke N makes a texture of this one");
@@ -171,8 +171,8 @@ schema::Result<schema::Texture> TextureAverager::finish(const std::string& align
     return schema::fail(ErrorKind::unsuitable, fmt::format("{} stroke makes no mean", strokes_.size()));
   const Stretch stretch = well_covered();
   if (stretch.end - stretch.begin < 2)
-    return schema::fail(ErrorKind::unsuitable, "the strokes do not lie over one place", {},
-                        "half of them must overlap; --list shows where they lie");
+    return schema::fail(ErrorKind::unsuitable, "the strokes do not overlap", {},
+                        "half of them must overlap; --list shows their places");
   schema::Texture texture = described();
   texture.average = schema::TextureAverage{align, {}, strokes_, counts(stretch)};
   for (std::size_t i = stretch.begin; i < stretch.end; ++i) {

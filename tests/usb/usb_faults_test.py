@@ -141,7 +141,7 @@ def odd_devices():
     expect_to_go_on("stalled")
     expect_end("let_go", "the device was unplugged")
     expect_end("silent", "no frames have come for 1 s")
-    expect("deaf", 8, "took nothing from this computer")
+    expect("deaf", 8, "accepted no data")
     expect("newer", 6, "speaks version 2.0 of the protocol", "update tactograph")
 
 

@@ -57,8 +57,8 @@ void note_overdamped(const ResponseModel& model, std::span<const double> values,
   const auto splits = other_splits(model.choice().direction, values);
   if (splits.empty()) return;
   fit.notes.push_back(
-      fmt::format("the mode is overdamped: of three real poles at {:.4g}, {:.4g} and {:.4g} Hz no response "
-                  "tells which is the electrical one; pole_hz is the one nearest '{}'",
+      fmt::format("the mode is overdamped: of three real poles at {:.4g}, {:.4g} and {:.4g} Hz, a "
+                  "response can't show which is the electrical one; pole_hz is the one nearest '{}'",
                   splits[0][kPole], splits[1][kPole], values[kPole], model.base().name));
 }
 
@@ -73,8 +73,8 @@ void put_parameters(const ResponseFitter& fitter, const ResponseModel& model, Re
       fitted.high = p.value(c + half);
     }
     if (fitter.held(i))
-      fit.notes.push_back(fmt::format(
-          "{} can't be told from the other parameters in this band: held at {:.4g}", p.name, fitted.value));
+      fit.notes.push_back(fmt::format("{} is not separately identifiable in this band: held at {:.4g}",
+                                      p.name, fitted.value));
     fit.parameters.push_back(std::move(fitted));
   }
   note_overdamped(model, fitter.values(), fit);

@@ -227,7 +227,7 @@ Result<void> check_unclipped(const schema::Channel& channel, const std::vector<d
   });
   if (clipped == 0) return {};
   return fail(ErrorKind::unsuitable,
-              fmt::format("{} samples of {} lie at an end of the converter's range", clipped, channel.name),
+              fmt::format("{} samples of {} are at an end of the converter's range", clipped, channel.name),
               stem, "drive less, and record again");
 }
 

@@ -38,8 +38,8 @@ void add_told_apart(const ResponseFit& fit, const ModelChoice& choice, const sch
   for (const FittedParameter& p : fit.parameters)
     results.figures.push_back({p.name + ", 95 %", interval_words(p, fit.claims_intervals())});
   for (const std::string& line : held_words(choice, base))
-    results.figures.push_back({"not told apart", line});
-  for (const std::string& line : fit.notes) results.figures.push_back({"not told apart", line});
+    results.figures.push_back({"not separately identifiable", line});
+  for (const std::string& line : fit.notes) results.figures.push_back({"not separately identifiable", line});
 }
 
 void add_residual_figures(const ResponseFit& fit, Results& results) {

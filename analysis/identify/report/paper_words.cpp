@@ -117,7 +117,7 @@ std::vector<PaperFigure> transducer_figures(const schema::Transducer& paper,
   schema::Transducer theory = paper;
   theory.sensor_scale = 1;
   return {{"resonance_hz", kReportedResonanceHz, schema::resonance_hz(paper), schema::resonance_hz(found),
-           "Table I lies above the reported value with any k_r"},
+           "Table I is above the reported value with any k_r"},
           {"resonance_k_r_as_printed_hz", kReportedResonanceHz, schema::resonance_hz(printed),
            schema::resonance_hz(found), "k_r printed 4.05e-3 N/m, read as 4.05e3"},
           {"damping_ratio", kNothing, schema::damping_ratio(paper), schema::damping_ratio(found),

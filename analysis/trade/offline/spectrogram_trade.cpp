@@ -82,7 +82,7 @@ Result<TradeRow> with_window(const Texture& texture, double window_m, const Octa
   TACTO_TRY(made);
   TradeRow row =
       spectrogram_row(texture, options, "window", length_for_people(window_m), *made, energy.error(*made));
-  row.note = "energy by octaves; tells lines apart from " +
+  row.note = "energy by octaves; separates lines from " +
              schema::for_people(3 / window_m, schema::Dimension::spatial_frequency);
   return row;
 }

@@ -125,7 +125,7 @@ std::vector<PlainAnswer> plain_answers(std::span<const TradeRow> rows) {
   std::vector<PlainAnswer> answers;
   for (const std::string& knob : knobs_of(rows)) {
     const auto choices = choices_of(rows, knob);
-    PlainAnswer answer{knob, choices > 1 ? "none stands out" : choices == 1 ? kOneChoice : kNotJudged, ""};
+    PlainAnswer answer{knob, choices > 1 ? "no best choice" : choices == 1 ? kOneChoice : kNotJudged, ""};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (rows[i].knob != knob) continue;
       ++answer.choices;

@@ -6,10 +6,19 @@
 namespace tacto::firmware_host {
 namespace {
 
-enum : std::size_t { kPulpM, kPulpMps, kBristleM, kTrayM, kTrayMps, kChargeLagN, kInnerM, kInnerMps };
+enum : std::size_t {
+  kPulpM,
+  kPulpMps,
+  kBristleM,
+  kBenchTrayM,
+  kBenchTrayMps,
+  kChargeLagN,
+  kBenchInnerM,
+  kBenchInnerMps
+};
 
 SensorState sensor_part(const OdeState<8>& s) {
-  return {s[kTrayM], s[kTrayMps], s[kChargeLagN], s[kInnerM], s[kInnerMps]};
+  return {s[kBenchTrayM], s[kBenchTrayMps], s[kChargeLagN], s[kBenchInnerM], s[kBenchInnerMps]};
 }
 
 }  // namespace
@@ -26,9 +35,9 @@ TouchBench::TouchBench(const schema::Transducer& transducer, const FingerParamet
 }
 
 double TouchBench::tray_force_n(const State& s, double load_n, double& bristle_rate_mps) {
-  const LugreFriction friction = lugre_friction(finger_, s[kBristleM], s[kPulpMps] - s[kTrayMps]);
+  const LugreFriction friction = lugre_friction(finger_, s[kBristleM], s[kPulpMps] - s[kBenchTrayMps]);
   bristle_rate_mps = friction.bristle_rate_mps;
-  return friction.coefficient * load_n + ridges_.slope_force_n(s[kPulpM] - s[kTrayM], load_n);
+  return friction.coefficient * load_n + ridges_.slope_force_n(s[kPulpM] - s[kBenchTrayM], load_n);
 }
 
 TouchBench::State TouchBench::rate(const State& s, const Drag& bone) {

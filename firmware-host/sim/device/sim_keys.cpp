@@ -88,7 +88,7 @@ constexpr NumberKey kNumbers[] = {
      [](P& p, double v) { p.tray_sensor_noise_m = v; }},
     {"channels", "of the counter, 4", Dimension::none, 1, wire::kMaxChannels, true,
      [](P& p, double v) { p.channels = static_cast<int>(v); }},
-    {"link_buffer", "paced: what nobody reads is lost after this time; never", Dimension::time, 10e-3, 60,
+    {"link_buffer", "paced: data that is not read is lost after this time; never", Dimension::time, 10e-3, 60,
      false, [](P& p, double v) { p.link_buffer_s = v; }},
 };
 

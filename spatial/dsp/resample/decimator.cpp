@@ -75,8 +75,8 @@ void weighted_sum(std::span<const Tap> taps, std::span<float> out) {
 }
 
 Decimator::Decimator(const Decimation& d, std::size_t longest_block)
-    : factor_(d.factor), grid_(d.grid), phases_(d.factor / d.grid) {
-  assert(factor_ > 1 && factor_ % grid_ == 0);
+    : grid_(d.grid), phases_(d.factor / d.grid) {
+  assert(d.factor > 1 && d.factor % grid_ == 0);
   const auto grid = static_cast<double>(grid_);
   if (grid_ > 1) coarse_ = single(low_pass(d.pass, coarse_stop(d)));
   if (phases_ > 1) fine_ = single(low_pass(d.pass * grid, d.stop * grid));

@@ -34,7 +34,7 @@ class Decimator {
   void to_grid(std::span<const float> samples, std::size_t count);
   void to_phases(std::span<const float> values);
 
-  std::size_t factor_, grid_, phases_;
+  std::size_t grid_, phases_;
   std::size_t coarse_reach_ = 0,
               fine_reach_ = 0;             // of the filters to `grid` (in samples) and to `factor` (in grids)
   std::vector<float> coarse_, fine_;       // their values
