@@ -19,7 +19,7 @@ BOOT_S = 400  # without KVM a fast machine needs ten, a shared one a hundred
 KVM_BOOT_S = 20  # with it, about one
 MEMORY_MB = 1024
 # Without KVM the guest's clock counts its instructions, 2^2 ns each, and follows the wall's clock only while the guest is
-# idle. So nothing in the guest is late because this computer is slow or shared; it only takes longer.
+# idle. So a slow computer takes longer, and nothing in the guest is late; one that stops for a second may still end a test.
 COUNTED_CLOCK = ["-icount", "shift=2,align=off,sleep=on"]
 
 
