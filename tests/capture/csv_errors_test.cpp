@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "t.csv: lines 1 to 4"},
         ErrorCase{"blanks_between", "t f\n 0.0  1.5\n 0.1  1.6\n", "has blanks between its columns",
                   "t.csv: lines 1 to 3"},
-        ErrorCase{"name_among_numbers", "1,two,3\n1,2,3\n", "'two' stands among numbers",
+        ErrorCase{"name_among_numbers", "1,two,3\n1,2,3\n", "'two' is a name among numbers",
                   "t.csv: line 1, column 2"},
         ErrorCase{"utf16",
                   std::string("\xFF\xFE"

@@ -132,7 +132,7 @@ TEST_F(ImportTest, UnitsUnderTheNamesAreTheScale) {
   const auto done = import(asked);
   ASSERT_TRUE(done) << schema::message(done.error());
   EXPECT_EQ(done->format,
-            "table, semicolon, with header in line 3 (lines before it passed over), units in line 4, decimal "
+            "table, semicolon, with header in line 3 (lines before it ignored), units in line 4, decimal "
             "commas");
   const auto& header = done->recording.header;
   EXPECT_EQ(header.sample_rate_hz, 2000);

@@ -24,12 +24,19 @@ def table():
     np.savetxt("long.csv", rows, fmt="%.9f", delimiter=",", header="f,x", comments="")
 
 
+def size_of(name):
+    """0 where the import has renamed or removed the file since it was listed."""
+    try:
+        return os.path.getsize(name)
+    except FileNotFoundError:
+        return 0
+
+
 def begun(name):
     """An import that has begun to write its samples, and is held there."""
     process = subprocess.Popen([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT],
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    while process.poll() is None and not any(one.startswith(f".{name}.wav") and os.path.getsize(one) > 1000
-                                             for one in hidden()):
+    while process.poll() is None and not any(one.startswith(f".{name}.wav") and size_of(one) > 1000 for one in hidden()):
         time.sleep(0.0002)
     process.send_signal(signal.SIGSTOP)
     assert process.poll() is None, "the import was over before it could be killed"

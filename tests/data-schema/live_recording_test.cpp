@@ -219,7 +219,7 @@ TEST(LiveRecording, TheGapOfALostLineIsCountedToTheNext) {
   EXPECT_EQ(recovered->recording.header.marks.size(), 1U);
   const std::string notes = joined(recovered->notes);
   for (const char* said : {"1 gaps of its journal contradict", "5 missing frames stood in no line",
-                           "1 marks and 1 gaps lie beyond its last frame, 1010", "at least 990 frames"})
+                           "1 marks and 1 gaps are beyond its last frame, 1010", "at least 990 frames"})
     EXPECT_NE(notes.find(said), std::string::npos) << said << " in " << notes;
 }
 

@@ -150,7 +150,7 @@ def a_newer_version_is_said_once():
             lines = [line for line in said.splitlines() if "newer than this program's" in line]
             assert len(lines) == len(newer), (verb, said)
             for name, passed_over in newer.items():
-                told = [line for line in lines if name.split(".")[0] in line and "1.9" in line and f"passed over: {passed_over}" in line]
+                told = [line for line in lines if name.split(".")[0] in line and "1.9" in line and f"ignored: {passed_over}" in line]
                 assert len(told) == 1, (name, lines)
 
 

@@ -42,8 +42,9 @@ def play_on_host(*arguments, name):
     The host loop runs by the clock. A computer that stops for longer than the watchdog's time ends it in a fault, as it
     should; what a test asks of the session can then not be asked. Every session, whole or ended by a fault, must replay.
     """
-    command = [COMMAND, "play", *map(str, arguments), "--loop", "host", "--force", "-o", name, "--json"]
+    command = [COMMAND, "play", *map(str, arguments), "--loop", "host", "-o", name, "--json"]
     for _ in range(5):
+        pathlib.Path(f"{name}.session").unlink(missing_ok=True)
         done = subprocess.run(command, capture_output=True, text=True, timeout=600)
         assert done.returncode in (0, 8), (command, done)
         if pathlib.Path(f"{name}.session").exists() and done.stdout and json.loads(done.stdout)["ticks"] > 0:

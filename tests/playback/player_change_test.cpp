@@ -96,7 +96,7 @@ TEST_F(PlayerOnSim, AChangeWaitsForTheOneBefore) {
   run(0.1);
   const auto early = player_->load(program());
   ASSERT_FALSE(early);
-  EXPECT_EQ(early.error().remedy, "load again once it is");
+  EXPECT_EQ(early.error().remedy, "load again later");
   run(0.2);
   EXPECT_TRUE(player_->load(program()));
   ASSERT_TRUE(player_->disarm());

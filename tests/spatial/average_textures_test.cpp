@@ -108,7 +108,7 @@ TEST(AverageTextures, RefusesWhatHasNoMean) {
   coarse.signal.pitch_m = 2e-6;
   EXPECT_FALSE(averager.add(coarse, numbered(2)));
   ASSERT_TRUE(averager.add(stroke_over(3000, 1000, 1), numbered(2)));
-  EXPECT_NE(schema::message(averager.finish("position").error()).find("over one place"), std::string::npos);
+  EXPECT_NE(schema::message(averager.finish("position").error()).find("do not overlap"), std::string::npos);
 }
 
 }  // namespace

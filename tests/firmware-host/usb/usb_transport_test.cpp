@@ -194,7 +194,7 @@ TEST_F(UsbTransportTest, ADeviceThatTakesNothingIsAnError) {
   const auto cable = transport();
   const auto written = cable->write(counting(30), 0.5);
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().what, "the device took nothing from this computer for 0.5 s");
+  EXPECT_EQ(written.error().what, "the device accepted no data for 0.5 s");
 }
 
 TEST_F(UsbTransportTest, WhatWasTakenWholeAtTheLastMomentIsTaken) {
