@@ -130,8 +130,7 @@ Result<void> Player::load(Program program, double fade_s) {
 
 Result<void> Player::may_change(const Program& program, double fade_s) const {
   if (!(fade_s >= 0 && fade_s <= kLongestFadeS))
-    return fail(ErrorKind::usage, fmt::format("a fade of {:g} s", fade_s), uri_,
-                "0 s to 10 s; 50 ms is usual");
+    return fail(ErrorKind::usage, fmt::format("a fade of {:g} s", fade_s), uri_, "0 s to 10 s");
   if (view_.expected() < faded_at_)
     return fail(ErrorKind::usage, "the last change of texture has not ended", uri_, "load again later");
   return check_texture_change(program_->prepared, program.prepared,
