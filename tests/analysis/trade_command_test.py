@@ -202,7 +202,8 @@ def check_refusals(folder):
     assert "100 to 300 Hz" in warned
     check_words(said, files=True)
     check_words(tacto.run("trade", "C", "--half", "offline", cwd=folder)[0], files=False)
-    assert "nothing to feel" in tacto.run("trade", "even", "-o", "no.html", cwd=folder, code=5)[1]
+    tacto.run("trade", "even", "-o", "no.html", cwd=folder, code=5)
+    assert not (folder / "no.html").exists()
     assert "named twice" in tacto.run("trade", "C", "-o", "a.csv", "-o", "./a.csv", cwd=folder, code=2)[1]
     assert "at most 10%" in tacto.run("spatial", "C", "-o", "no", "--max-error", "1000%", cwd=folder, code=2)[1]
 

@@ -46,12 +46,5 @@ def the_session_prints_what_it_says():
                 assert folded(part) in printed, f"{command}\ndoes not print: {part}\nbut:\n{done.stdout}{done.stderr}"
 
 
-def its_length_and_width_keep_to_the_limits():
-    lines = README.read_text(encoding="utf-8").split("\n")
-    assert len(lines) <= 111, f"README.md has {len(lines) - 1} lines; at most 110"
-    assert max(map(len, lines)) <= 120, max(lines, key=len)
-
-
 if __name__ == "__main__":
-    its_length_and_width_keep_to_the_limits()
     tacto.in_folder(the_session_prints_what_it_says)

@@ -18,7 +18,7 @@ QUOTED = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
 
 
 def headers_of(root):
-    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=root, capture_output=True, text=True)
+    listed = subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True)
     names = listed.stdout.split("\n") if listed.returncode == 0 else [str(p.relative_to(root)) for p in root.rglob("*.hpp")]
     return sorted(n for n in names if n.endswith((".hpp", ".h")) and not n.startswith(("tests/", "build/")) and (root / n).exists())
 

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""tactographd on an emulated device that does not keep real time: from load to a session that replays, a fault, and refusals.
+What depends on real time is in daemon_test.py."""
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+
+import tacto
+from daemon_test import Client, DAEMON, daemon, prepare_files, ticks_of
+
+UNPACED = "sim:paced=0"  # emulated time passes only while the daemon reads: no watchdog can expire
+
+
+def wait_for_ticks(client, ticks):
+    """Until the daemon has played that many; the fault is the error."""
+    while (status := client.must(request="status"))["ticks"] < ticks:
+        assert status["state"] in ("armed", "playing"), status
+    return status
+
+
+def wait_for_state(client, state):
+    while (status := client.must(request="status"))["state"] != state:
+        assert status["state"] != "fault", status
+    return status
+
+
+def load_arm_play_stop():
+    prepare_files(device=UNPACED)
+    with daemon():
+        client, watcher = Client(), Client()
+        assert watcher.must(request="watch")["state"] == "idle"
+        refused = client.ask(request="play")
+        assert not refused["ok"], refused
+        assert client.must(request="load", file="oak", gain_m_per_n=0.0005)["gain_m_per_n"] == 0.0005
+        session = client.must(request="arm")["session"]
+        client.must(request="play")
+        status = wait_for_ticks(client, 3000)
+        assert status["state"] == "playing" and status["lost_ticks"] == 0 and status["drive_peak_v"] > 0.01, status
+        client.must(request="gain", gain=0.5)
+        wait_for_ticks(client, 6000)
+        assert client.must(request="status")["gain"] == 0.5
+        client.must(request="stop")
+        wait_for_state(client, "armed")
+        client.must(request="disarm")
+        wait_for_state(client, "idle")
+        states = []
+        while not states or states[-1] != "idle":
+            event = json.loads(watcher.lines.readline())
+            states += [event["state"]] if event["event"] == "state" else []
+    assert states == ["armed", "playing", "armed", "idle"], states
+    replayed = tacto.run_json("replay", session)
+    assert replayed["same_to_the_bit"] and replayed["ticks_compared"] >= 6000, replayed
+    assert tacto.run_json("info", session)["ending"] == "closed"
+    assert tacto.run_json("validate", session)["valid"]
+    drive = ticks_of(session)["drive_v"]
+    assert drive[0] == 0 and drive[-1] == 0 and np.max(np.abs(drive)) > 0.01, drive
+    assert np.max(np.abs(np.diff(drive))) <= 15708 / 2000 * (1 + 1e-6), "the transducer's slew limit, V/s over ticks a second"
+
+
+def a_jump_of_the_encoder_is_a_fault():
+    """The drive is zero within 20 ms of the fault and stays zero; the session replays."""
+    prepare_files(device=UNPACED)
+    pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.9,0.006\n0.90001,0.016\n1.8,0.020\n")
+    with daemon():
+        client = Client()
+        client.must(request="load", file="oak", gain_m_per_n=0.0005)
+        session = client.must(request="arm")["session"]
+        client.must(request="play")
+        while (status := client.must(request="status"))["state"] != "fault":
+            assert status["state"] in ("armed", "playing"), status
+        assert status["fault"], status
+        assert not client.ask(request="play")["ok"]
+        faulted = status["ticks"]
+        while client.must(request="status")["ticks"] < faulted + 100:
+            pass
+        client.must(request="disarm")
+        wait_for_state(client, "idle")
+    ticks = ticks_of(session)
+    fault = int(np.argmax(ticks["fault"] > 0))
+    assert ticks["fault"][fault] > 0 and len(ticks) > fault + 40, (fault, len(ticks))
+    assert np.all(ticks["drive_v"][fault + 40:] == 0)
+    assert tacto.run_json("replay", session)["same_to_the_bit"]
+
+
+def wrong_files_are_refused():
+    prepare_files(device=UNPACED)
+    with daemon():
+        client = Client()
+        refused = client.ask(request="load", file="nothing")
+        assert not refused["ok"] and "nothing" in refused["error"]["where"], refused
+        refused = client.ask(request="arm")
+        assert not refused["ok"], refused
+        second = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=60)
+        assert second.returncode == 5, second
+        assert os.stat("control").st_mode & 0o777 == 0o600
+    prepare_files(device_=1)
+    done = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 4 and "device_" in done.stderr, done
+
+
+if __name__ == "__main__":
+    for test in (load_arm_play_stop, a_jump_of_the_encoder_is_a_fault, wrong_files_are_refused):
+        tacto.in_folder(test)
