@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What verbs print: at most 15 lines of 120 columns beside a file, one line for warnings of one kind."""
+"""Output of verbs: at most 15 lines of 120 columns if a file is written, one line for warnings of one kind."""
 import json
 import pathlib
 import subprocess
@@ -11,11 +11,11 @@ STROKES = 24
 
 
 def printed(*arguments, code=0):
-    """All lines that a person sees, of stdout and stderr."""
+    """All lines that a user sees on stdout and stderr."""
     done = subprocess.run([tacto.COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=600)
     assert done.returncode == code, (arguments, done)
     lines = (done.stdout + done.stderr).splitlines()
-    # Progress of long work is redrawn on a terminal.
+    # On a terminal the progress of long work is redrawn in place.
     return [line for line in lines if not line.rstrip().endswith(" %")]
 
 
@@ -54,6 +54,15 @@ def verbs_beside_a_file_are_short():
     assert max(map(len, printed("info", "many"))) <= 120
 
 
+def a_long_warning_is_wrapped():
+    make_strokes()
+    # Named by its stroke, with the number of like ones: 150 columns and more.
+    lines = printed("spatial", "many", "--grid", "200um", "-o", "a-project-with-a-rather-long-name-of-its-own")
+    at = next(i for i, line in enumerate(lines) if line.startswith("tactograph: warning: "))
+    assert max(map(len, lines)) <= 120, max(lines, key=len)
+    assert lines[at + 1].startswith("    ") and len(lines[at]) > 60, lines
+
+
 def json_has_what_the_lines_leave_out():
     make_strokes()
     tacto.run("spatial", "many", "-o", "t")
@@ -67,13 +76,13 @@ def json_has_what_the_lines_leave_out():
 def like_warnings_are_one_line():
     make_strokes()
     asked = ["spatial", "many", "--grid", "200um", "-o", "coarse"]
-    said = [line for line in printed(*asked) if "warning" in line]
-    assert len(said) == 1 and f"of {STROKES} alike" in said[0] and "worst" in said[0], said
+    said = [line for line in tacto.run(*asked)[1].splitlines() if "warning" in line]
+    assert len(said) == 1 and f"of {STROKES} similar ones" in said[0] and "worst" in said[0], said
     out, err = tacto.run(*asked, "--force", "--json")
     warnings = json.loads(out)["warnings"]
     assert len(warnings) == STROKES and err.count("warning") == 1, (warnings, err)
 
 
 if __name__ == "__main__":
-    for test in (verbs_beside_a_file_are_short, json_has_what_the_lines_leave_out, like_warnings_are_one_line):
+    for test in (verbs_beside_a_file_are_short, a_long_warning_is_wrapped, json_has_what_the_lines_leave_out, like_warnings_are_one_line):
         tacto.in_folder(test)

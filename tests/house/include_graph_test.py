@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The include table of the house (include_table.py): which folder may include which, which library is included where.
 
-Also: the table has no cycle, no folder has more than 30 sources, every source file names its licence, no file of the
+Also: the table has no cycle, no folder has more than 30 sources, no short header and source serve one other source alone, every source file names its licence, no file of the
 libraries is longer than 400 lines, every room's CMakeLists.txt lists its sources by tacto_sources(), lines of Markdown
 have at most 120 bytes and their links lead to files, and the root has no other folders. The test first shows on an invented tree that it
 can fail. With --dot it draws the table instead:
@@ -23,26 +23,28 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 MOST_SOURCES = 30  # of a folder
 MOST_BYTES = 120  # of a line of Markdown
+LEAST_PAIR = 40  # lines of a header and a source that only one other source includes
 ROOMS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spatial"]
 
-# Header (as a pattern on what stands between the brackets) -> the only places it may be included.
+# Header (a regular expression for the text between the brackets) -> the only places that may include it.
 WALLS = {
     r"libusb": ["firmware-host/usb"],
     r"fftw3": ["spatial/dsp"],
     r"sndfile": ["data-schema/wav"],
-    r"nlohmann/|valijson/|netcdf|H5": ["data-schema"],
+    r"nlohmann/|valijson/": ["data-schema"],
+    r"netcdf|H5": ["data-schema/netcdf"],
     r"nettle/": ["data-schema/base"],
-    r"opencv2/|cairo|pango": ["spatial/picture"],
+    r"opencv2/|cairo|pango|png": ["spatial/picture/engine"],
     r"pugixml": ["capture/import"],
     r"Eigen/|unsupported/Eigen": ["analysis/identify"],
     r"CLI/": ["data-schema/command"],
 }
 
-# JSON and netCDF readers must not leak into the verbs: only the report printer shares the JSON wall.
+# JSON and netCDF readers must not be used by verbs; only the report printer also uses JSON.
 VERBS = r"(.*/)?cli/|data-schema/(command|report)/|spatial/job/"
 CLI_JSON_EXCEPTION = "data-schema/report/report.cpp"
 
-# What runs on a device has no hosted library behind it.
+# Code that runs on a device uses no hosted library.
 C_HEADERS = {"firmware-host/core": ["stdint.h", "stddef.h"]}
 
 FOLDERS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spatial", "tests", "cmake", "LICENSES", ".ci"]
@@ -126,7 +128,7 @@ def table_faults(table):
 
 
 def unused_rows(names, texts):
-    """An arrow that no source takes any more is taken out of the table, so that it can't come back unseen."""
+    """Arrows that no source uses must be removed from the table, so that the includes cannot come back unnoticed."""
     used = {folder: set() for folder in MAY_INCLUDE}
     for name in names:
         for quote, target in INCLUDE.findall(texts[name]):
@@ -141,6 +143,22 @@ def size_faults(names):
     for folder in sorted(set(folders)):
         if folders.count(folder) > MOST_SOURCES:
             yield f"{folder}: {folders.count(folder)} sources; at most {MOST_SOURCES} can be looked through"
+
+
+def pair_faults(names, texts):
+    """A header and its source that one other source uses and that are short together are merged into that source."""
+    users = {}
+    for name in names:
+        for _, target in INCLUDE.findall(texts[name]):
+            users.setdefault(target, set()).add(name)
+    for header in names:
+        source = header.removesuffix(".hpp") + ".cpp"
+        if not header.endswith(".hpp") or source not in names or header.startswith("firmware-host/core/"):
+            continue
+        lines = texts[header].count("\n") + texts[source].count("\n")
+        others = users.get(header, set()) - {source}
+        if lines < LEAST_PAIR and len(others) == 1:
+            yield f"{header}: {lines} lines with its source, used by {others.pop()} only: merge them"
 
 
 def dot_of(table, room):
@@ -216,6 +234,8 @@ def prove_it_can_fail():
     assert list(table_faults({"a": {"b"}, "b": {"c"}, "c": {"a"}})) and list(table_faults({"a": {"b"}}))
     assert list(size_faults([f"a/{n}.cpp" for n in range(MOST_SOURCES + 1)]))
     assert list(unused_rows([], {}))
+    pair = {"a/b.hpp": "\n" * 19, "a/b.cpp": '#include "a/b.hpp"\n' * 20, "a/c.cpp": '#include "a/b.hpp"\n'}
+    assert list(pair_faults(list(pair), pair)) and not list(pair_faults(list(pair), pair | {"a/b.hpp": "\n" * 20}))
     assert list(markdown_faults(ROOT, "a.md", "x" * 121)) and list(markdown_faults(ROOT, "a.md", "[a](b/none.md)"))
     assert not list(markdown_faults(ROOT, "a.md", "[a](README.md#verbs) [b](https://debian.org)"))
     assert list(listing_faults("a", "file(GLOB sources *.cpp)")) and list(listing_faults("a", "  render.cpp"))
@@ -235,6 +255,7 @@ def main():
     house = [name for name in names if not name.startswith("tests/") and name != "tactograph.cpp"]
     faults = [fault for name in names for fault in faults_of(name, texts[name])]
     faults += [*table_faults(MAY_INCLUDE), *unused_rows(house, texts), *size_faults(house), *root_faults(ROOT)]
+    faults += pair_faults(house, texts)
     for name in files_ending(ROOT, ".md"):
         faults += markdown_faults(ROOT, name, (ROOT / name).read_text())
     for room in ROOMS:
