@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of verbs, and of what `help` explains beside them.
+// The tables of the verbs and of the additional topics of `help`.
 #include <array>
 
 #include "analysis/cli/verbs.hpp"
@@ -13,7 +13,7 @@
 
 namespace {
 
-// In the order of the work: get data, look at it, make textures, see them, play them.
+// In the order of use: get data, inspect them, make textures, show them, play them.
 constexpr std::array<const tacto::cli::Verb*, 28> kVerbs = {
     &tacto::firmware_host::kScanVerb, &tacto::capture::kDoctorVerb,      &tacto::capture::kCalibrateVerb,
     &tacto::capture::kImportVerb,     &tacto::capture::kRecordVerb,      &tacto::capture::kRecoverVerb,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Writes a C++ source that holds text files by name, so that the command needs no files beside it.
-# Takes OUTPUT and FILES (a list).
+# Writes a C++ source with the contents of text files by name, so that the command needs no separate files.
+# Arguments: OUTPUT and FILES (a list).
 set(entries "")
 foreach(path IN LISTS FILES)
   get_filename_component(name ${path} NAME)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Every library from outside, found once. CONTRIBUTING.md says why each is there.
+# Finds every external library once. CONTRIBUTING.md lists the use of each.
 
 find_package(PkgConfig REQUIRED)
 find_package(CLI11 REQUIRED)
@@ -26,7 +26,7 @@ add_library(tacto_opencv INTERFACE)
 target_include_directories(tacto_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE_DIR})
 target_link_libraries(tacto_opencv INTERFACE ${OPENCV_IMGPROC} ${OPENCV_CORE})
 
-# Eigen is headers only, and not held to our warnings.
+# Eigen is headers only; SYSTEM switches off our warnings in them.
 find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 add_library(tacto_eigen INTERFACE)
 target_include_directories(tacto_eigen SYSTEM INTERFACE ${EIGEN_INCLUDE_DIR})

@@ -2,7 +2,7 @@
 # Debian packages from the install tree: tactograph (commands, manual pages, completion, udev rules, systemd unit),
 # tactograph-dev (the Apache-licensed core and schemas), python3-tactograph. `./bootstrap package` makes them.
 
-# Manual pages and completion come from the table of verbs of the program that is installed.
+# The installed program generates manual pages and completion from its table of verbs.
 install(CODE [[
   set(share "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share")
   file(MAKE_DIRECTORY "${share}/man/man1" "${share}/bash-completion/completions")]] COMPONENT tactograph)
@@ -24,7 +24,7 @@ install(DIRECTORY firmware-host/core DESTINATION share/tactograph/src/firmware-h
 install(DIRECTORY data-schema/python/tactograph DESTINATION lib/python3/dist-packages COMPONENT python3-tactograph
         FILES_MATCHING PATTERN "*.py")
 
-# What every Debian package holds about itself.
+# The documentation that every Debian package contains.
 foreach(component tactograph tactograph-dev python3-tactograph)
   install(FILES cmake/debian/copyright DESTINATION share/doc/${component} COMPONENT ${component})
   install(CODE "
@@ -48,7 +48,7 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_TACTOGRAPH_PACKAGE_NAME tactograph)
 set(CPACK_DEBIAN_TACTOGRAPH_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TACTOGRAPH_PACKAGE_SHLIBDEPS ON)
-# shlibdeps finds libraries only: pictures need a font, the daemon's account needs adduser.
+# shlibdeps finds only libraries. In addition, pictures need a font, and the daemon's account needs adduser.
 set(CPACK_DEBIAN_TACTOGRAPH_PACKAGE_DEPENDS "fonts-dejavu-core, adduser")
 set(CPACK_DEBIAN_TACTOGRAPH_PACKAGE_SUGGESTS "python3-tactograph, man-db")
 set(CPACK_DEBIAN_TACTOGRAPH_PACKAGE_CONTROL_EXTRA

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# How every target of the house is built: one set of flags, one way to declare a folder's library and its verbs.
+# Common settings of all targets: flags, and functions that declare a folder's library and its verbs.
 
 add_library(tacto_options INTERFACE)
 target_compile_features(tacto_options INTERFACE cxx_std_20)
@@ -7,9 +7,9 @@ target_include_directories(tacto_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(tacto_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # gcc 12 warns falsely about std::string (bug 105651)
-  # One result on every machine: a fused multiply-add would round differently where the processor has one.
+  # The same bits on every machine: processors with a fused multiply-add would round differently.
   -ffp-contract=off)
-if(CMAKE_UNITY_BUILD)  # gcc takes the files of a unity for headers, and warns of what they keep to themselves
+if(CMAKE_UNITY_BUILD)  # gcc treats the files of a unity build as headers and warns of their anonymous namespaces
   target_compile_options(tacto_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 if(TACTO_SANITIZE)
@@ -18,30 +18,44 @@ if(TACTO_SANITIZE)
   target_link_options(tacto_options INTERFACE -fsanitize=${TACTO_SANITIZE})
 endif()
 
-# All verbs end in one library: the command's table and the tests of the table link the same code.
+# One library links all verbs, for the command and for the tests of its table of verbs.
 add_library(tacto_verbs INTERFACE)
 
-# tacto_sources(VARIABLE FOLDER...) : the sources right in those folders, for every room the same way.
+# tacto_sources(VARIABLE FOLDER...): lists the sources directly in these folders.
 function(tacto_sources variable)
   list(TRANSFORM ARGN APPEND /*.cpp OUTPUT_VARIABLE patterns)
   file(GLOB sources CONFIGURE_DEPENDS ${patterns})
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# tacto_library(NAME sources... ) : a folder's library.
+# tacto_library(NAME sources...): declares a folder's library.
 function(tacto_library name)
   add_library(${name} STATIC ${ARGN})
   target_link_libraries(${name} PUBLIC tacto_options)
 endfunction()
 
-# tacto_compile_quickly(NAME header): for code that waits for people or files, and includes one huge header: that header
-# once, and little optimisation. Halves the time of a build.
+# tacto_module(NAME FOR sources...): what the library FOR loads when it first needs it (data-schema/base/module.hpp), so
+# that a command does not wait for libraries that it does not use. Programs find it by their RUNPATH.
+set(TACTO_MODULES lib/tactograph)
+set(CMAKE_BUILD_RPATH ${CMAKE_BINARY_DIR}/${TACTO_MODULES})
+set(CMAKE_INSTALL_RPATH $ORIGIN/../${TACTO_MODULES})
+function(tacto_module name for)
+  add_library(${name} MODULE ${ARGN})
+  target_link_libraries(${name} PRIVATE tacto_options)
+  set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden BUILD_RPATH "" INSTALL_RPATH ""
+                        LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${TACTO_MODULES})
+  add_dependencies(${for} ${name})
+  install(TARGETS ${name} LIBRARY DESTINATION ${TACTO_MODULES} COMPONENT tactograph)
+endfunction()
+
+# tacto_compile_quickly(NAME header): for code that is not time-critical and includes one large header. The header is
+# precompiled and optimisation is low, which halves the build time.
 function(tacto_compile_quickly name header)
   target_precompile_headers(${name} PRIVATE ${header})
   target_compile_options(${name} PRIVATE -O1)
 endfunction()
 
-# tacto_cli(NAME sources...) : a folder's verbs, linked into the command.
+# tacto_cli(NAME sources...): declares a folder's verbs and links them into the command.
 function(tacto_cli name)
   add_library(${name} STATIC ${ARGN})
   target_link_libraries(${name} PUBLIC tacto_options tacto_command_line)

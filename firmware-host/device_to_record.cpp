@@ -14,7 +14,7 @@ using schema::Result;
 
 constexpr std::string_view kSimScheme = "sim:", kReplayScheme = "replay:";
 
-// The most that the key takes: over a day at its shortest and fastest.
+// The largest value of the key: over a day with the shortest and fastest strokes.
 constexpr std::string_view kStrokesWithoutEnd = "strokes=1000000";
 
 bool has_strokes_key(std::string_view parameters) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A device opened for its stream alone: an emulated finger strokes for as long as it is recorded.
+// Opens a device for recording: an emulated finger makes strokes until the recording ends.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ namespace tacto::firmware_host {
 struct DeviceToRecord {
   std::unique_ptr<Device> device;
   bool ends_by_itself = false;  ///< a replay: its stream ends with the recording
-  /// How many strokes there will be at most; nullopt where a person decides, or they go on without end.
+  /// The largest number of strokes; nullopt if a person decides it, or if there is no limit.
   std::optional<std::uint64_t> strokes;
 };
 
-/// As open_device(); but an emulated finger that the URI gives no number of strokes makes them without end.
-/// The frames of the first strokes are the same, to the bit. Errors: as open_device().
+/// As open_device(), but an emulated finger makes strokes without limit if the URI does not give their
+/// number. The frames of the first strokes are the same, bit by bit. Errors: as open_device().
 schema::Result<DeviceToRecord> open_device_to_record(const std::string& uri);
 
 }  // namespace tacto::firmware_host

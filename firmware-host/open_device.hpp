@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From what the user names to a device that is open: on USB, emulated, or a recording played as one.
+// Opens the device for a URI: on USB, emulated, or a recording played as a device.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,10 @@
 
 namespace tacto::firmware_host {
 
-/// Opens by URI; there are `usb:`, the only device on USB, or one by `serial=` or `port=`; `sim:`, with every
-/// parameter by key=value (see sim/sim_parameters.hpp); and `replay:FILE`, a recording as a device.
-/// Errors: usage: a transport, key or value that does not exist, naming what there is, or several devices on
-/// USB; not_found: no such device, or not permitted; the transducer's file; as WireDevice::open().
+/// Opens by URI: `usb:`, the only device on USB, or one by `serial=` or `port=`; `sim:`, with parameters as
+/// key=value (see sim/device/sim_parameters.hpp); `replay:FILE`, a recording as a device. Errors: usage: a
+/// transport, key or value that does not exist, with the possible ones, or several devices on USB; not_found:
+/// no such device, or not permitted; the transducer's file; as WireDevice::open().
 schema::Result<std::unique_ptr<Device>> open_device(const std::string& uri);
 
 }  // namespace tacto::firmware_host

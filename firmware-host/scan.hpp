@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What devices are there.
+// Lists the available devices.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace tacto::firmware_host {
 
-/// A device that can be named, and what it said when it was greeted, or why it did not.
+/// A device that can be opened by name, with its description or the reason why it has none.
 struct FoundDevice {
   std::string uri;
   schema::Result<Capabilities> said;
 };
 
-/// Those on USB first; where the bus can't be looked at, "usb:" says why. Emulated ones too: one for each
-/// surface. A replay has to be named and is not listed. Each is greeted, which ends a stream that its device
-/// sends to nobody.
+/// Those on USB first; if the bus cannot be read, the entry "usb:" has the reason. Then the emulated ones,
+/// one per surface. A replay needs a file and is not listed. Each device is greeted, which ends a stream that
+/// no program reads.
 std::vector<FoundDevice> scan_devices();
 
 }  // namespace tacto::firmware_host

@@ -28,31 +28,25 @@ struct CompareVerbOptions {
 };
 
 constexpr const char* kRule =
-    "The verdict, by this rule, in this order (T is --tolerance; louder and quieter describe B):\n"
-    "  undecided        fewer than 8 segments of the window, or less than an octave in common\n"
-    "  different        by shape: the one-third-octave bands differ about their mean by more than the "
-    "scatter "
-    "of the segments makes once in 20 times (1,000 bootstrap draws), and by more than T beyond it (shape_db "
-    "over shape_chance_db, shape_excess_db over T)\n"
-    "  different        in a narrow band: among all bands of 1 to 32 cells (a cell is 1 / window wide) the "
-    "largest difference has a score above chance, and is larger than T; the band is named\n"
-    "  different        by a line: one of the two has a line that the other does not have, with a score "
-    "above "
-    "chance, and more than T above the density in the window; its frequency is named\n"
-    "  undecided        the segments scatter so much that T would not show (finest_shape_db over T)\n"
-    "  louder, quieter  the mean level is off by more than T, and its 90 % interval does not hold 0 dB\n"
-    "  same             the whole interval is within T\n"
-    "  undecided        else\n"
-    "Bands and lines are looked for at all frequencies at once: together they call 5 % of the pairs of "
-    "steady textures of one kind different. 'detectable' is what they would find in at least 8 of 10 pairs: "
-    "read it "
-    "beside 'same'. Textures whose level or spectrum changes along them (unsteady ones) are called different "
-    "more often: 7 % of the pairs of noise whose level wanders by 3 dB over 10 mm, but more than half of the "
-    "pairs of single strokes of 35 mm with bursts. Compare longer textures, or stretches in which the "
-    "surface "
-    "is even.\n"
-    "'point by point' says whether the coherence is above what signals with nothing in common reach once in "
-    "20 times: two stretches of one rough surface can be the same without it.";
+    "The verdict, by this rule, in this order (T is --tolerance; louder and quieter describe B):\n  "
+    "undecided        fewer than 8 segments of the window, or less than an octave in common\n  different     "
+    "   by shape: the one-third-octave bands differ about their mean by more than the scatter of the "
+    "segments causes once in 20 times (1,000 bootstrap draws), and by more than T beyond it (shape_db over "
+    "shape_chance_db, shape_excess_db over T)\n  different        in a narrow band: among all bands of 1 to "
+    "32 cells (a cell is 1 / window wide) the largest difference has a score above chance, and is larger "
+    "than T; the band is named\n  different        by a line: one of the two has a line that the other does "
+    "not have, with a score above chance, and more than T above the density in the window; its frequency is "
+    "named\n  undecided        the segments scatter so much that a difference of T could not be detected "
+    "(finest_shape_db over T)\n  louder, quieter  the mean level differs by more than T, and 0 dB is outside "
+    "its 90 % interval\n  same             the whole interval is within T\n  undecided        in all other "
+    "cases\nBands and lines are searched at all frequencies at once: together they call 5 % of the pairs of "
+    "steady textures of one kind different. 'detectable' states which differences they find in at least 8 of "
+    "10 pairs: read it together with 'same'. Textures whose level or spectrum changes along them (unsteady "
+    "ones) are called different more often: 7 % of the pairs of noise whose level wanders by 3 dB over 10 "
+    "mm, but more than half of the pairs of single strokes of 35 mm with bursts. Compare longer textures, or "
+    "stretches in which the surface is even.\n'point by point' says whether the coherence is above the value "
+    "that independent signals reach once in 20 times: two stretches of one rough surface can be the same "
+    "without it.";
 
 schema::Results compare_results(const CompareVerbOptions& o, const ComparedNames& names,
                                 const Comparison& c) {
@@ -91,33 +85,31 @@ void declare_pairing(CLI::App& app, CompareVerbOptions& o) {
   cli::add_choice<PairAlign>(
       app, "--align", o.compare.pair.align,
       {{"position", PairAlign::position}, {"correlation", PairAlign::correlation}, {"none", PairAlign::none}},
-      "How places of A are found in B: by where both lay on the bench (from both starts, where they "
-      "have little in common there), by correlation from there, or not at all");
+      "How A and B are aligned: by their places on the bench (by their starts, if they share little there), "
+      "by correlation from there, or not at all");
   cli::add_quantity(app, "--max-shift", o.compare.pair.max_shift_m, Dimension::length,
-                    "Farthest shift that --align correlation tries");
-  app.add_option("--stroke-a", o.stroke_a, "Which of A's strokes, where it has several")
-      ->check(cli::from_one());
-  app.add_option("--stroke-b", o.stroke_b, "Which of B's")->check(cli::from_one());
+                    "Largest shift that --align correlation tests");
+  app.add_option("--stroke-a", o.stroke_a, "Stroke of A, if A has several")->check(cli::from_one());
+  app.add_option("--stroke-b", o.stroke_b, "Stroke of B, if B has several")->check(cli::from_one());
 }
 
 cli::Action declare_compare(CLI::App& app) {
   auto options = std::make_shared<CompareVerbOptions>();
-  app.add_option(
-         "A", options->a,
-         "Texture, recording (its stroke becomes one), or session (what the model predicts of its drive)")
+  app.add_option("A", options->a,
+                 "Texture, recording (its stroke), or session (the displacement predicted from its drive)")
       ->required();
   app.add_option("B", options->b,
-                 "Another, of the same quantity; or, for a session, its own texture as the target")
+                 "A second one, of the same quantity; for a session also its own texture as the target")
       ->required();
   app.add_option("-o,--output,--page", options->outputs,
-                 "What to write: a page (.html), results for 'report' (.results.json); may be given again");
+                 "Output: a page (.html) or results for 'report' (.results.json); may be repeated");
   cli::declare_force(app, options->existing);
   declare_pairing(app, *options);
   cli::add_quantity(app, "--tolerance", options->compare.tolerance_db, Dimension::level,
-                    "What counts as a difference; 2 dB are a quarter of the amplitude");
+                    "Smallest level difference that counts; 2 dB are a quarter of the amplitude");
   cli::add_quantity(
       app, "--spectrum-window", options->compare.window_m, Dimension::length,
-      "Of the spectra that are compared [an eighth of the shorter, at most 8 waves of the lowest frequency]");
+      "Window of the compared spectra [an eighth of the shorter, at most 8 waves of the lowest frequency]");
   spatial::declare_spectrogram(app, options->compare.spectrogram);
   app.footer(app.get_footer() + "\n" + kRule);
   return [options, &app] { return run_compare(*options, app.count("--json") > 0); };
@@ -126,9 +118,8 @@ cli::Action declare_compare(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kCompareVerb{"compare",
-                             "Hold two textures, recordings or a session and its texture against each other: "
-                             "by band, by coherence, by formants, and "
-                             "in a word",
+                             "Compare two textures, recordings, or a session and its texture: by band, "
+                             "coherence and formants, with a verdict",
                              "tactograph compare oak pine -o oak-pine.html\n  tactograph compare "
                              "first.session oak --align correlation",
                              declare_compare};

@@ -113,7 +113,7 @@ void add_rms(Report& report, const Comparison& c) {
   report.add(rms_key("a", c.pair.unit), c.a_rms).add(rms_key("b", c.pair.unit), c.b_rms);
 }
 
-// Lines of at most 120 columns: the widest label and the gap take 12.
+// A line has at most 120 columns; the widest label and the gap use 12 of them.
 void add_wrapped(Report& report, std::string key, const std::string& text) {
   constexpr std::size_t kColumns = 108;
   std::string line;
@@ -131,7 +131,7 @@ void add_wrapped(Report& report, std::string key, const std::string& text) {
   flush();
 }
 
-// By what, without the conditions: the files and the page have them.
+// The origin without its conditions, which the files and the page contain.
 std::string short_origin(const std::string& simulated) {
   return simulated.substr(0, simulated.find(':'));
 }

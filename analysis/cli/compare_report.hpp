@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `compare` prints.
+// The report of `compare`.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace tacto::analysis {
 
-/// All of it: for --json, for results, and for people where nothing is written.
+/// The complete report: for --json, for results, and for the terminal if no files are written.
 cli::Report compare_report(const ComparedNames& names, const Comparison& comparison);
 
-/// At most 15 lines of at most 120 columns: for people where the rest is in the files `written`.
+/// At most 15 lines of at most 120 columns: for the terminal if the files `written` contain the rest.
 cli::Report brief_compare_report(const ComparedNames& names, const Comparison& comparison,
                                  const std::vector<std::string>& written);
 

@@ -40,7 +40,7 @@ Result<spatial::NamedTexture> chosen_texture(spatial::TextureInputs& inputs, con
   for (std::size_t i = 1;; ++i) {
     auto next = inputs.next();
     TACTO_TRY(next);
-    if (!*next) return schema::fail(ErrorKind::unsuitable, "makes no such texture", name);
+    if (!*next) return schema::fail(ErrorKind::unsuitable, "has no such texture", name);
     if (i >= stroke) return std::move(**next);
   }
 }
@@ -63,7 +63,8 @@ Result<void> match_session(ComparedInput& a, ComparedInput& b) {
   const ComparedInput& session = a.played ? a : b;
   if (texture.file.empty())
     return schema::fail(ErrorKind::unsuitable,
-                        "is no stored texture: a session is compared with the one it played", texture.name);
+                        "is not a stored texture: a session is compared with the texture that it played",
+                        texture.name);
   const std::string stem = schema::stem_of(texture.file, ".texture");
   auto target = target_of(texture.texture, stem, *session.played);
   TACTO_TRY(target);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a name given to `compare` stands for.
+// Reads an input of `compare` by its name.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,20 @@ namespace tacto::analysis {
 
 struct ComparedInput {
   std::string name;  ///< for titles and messages
-  std::string file;  ///< of a stored texture; else empty
+  std::string file;  ///< path of a stored texture, otherwise empty
   schema::Texture texture;
-  std::optional<PlayedTexture> played;  ///< of a session
+  std::optional<PlayedTexture> played;  ///< set for a session
 };
 
-/// A texture, a recording's stroke (made into a texture as `tactograph spatial` does), or a session's.
-/// `stroke` is 1-based; 0: the only one, of a session the longest. Errors: of reading and making; usage:
-/// several textures, and none chosen, or no such one. `progress` hears fractions of a session's reading.
+/// Reads a texture, or makes one from a recording's stroke (as `tactograph spatial` does) or a session's
+/// stroke. `stroke` is 1-based; 0 selects the only stroke, or the longest of a session. `progress` receives
+/// the read fraction of a session. Errors: those of reading and of making the texture; usage: several
+/// textures without a choice, or a stroke that does not exist.
 schema::Result<ComparedInput> compared_input(const std::string& name, std::size_t stroke,
                                              const std::function<void(double)>& progress = {});
 
-/// Where exactly one of them is of a session, the other becomes what that session wanted. Errors: as
-/// wanted_of; unsuitable: the other is no stored texture.
+/// If exactly one input is a session, replaces the other by that session's target. Errors: those of
+/// target_of; unsuitable: the other input is not a stored texture.
 schema::Result<void> match_session(ComparedInput& a, ComparedInput& b);
 
 }  // namespace tacto::analysis

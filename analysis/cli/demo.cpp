@@ -20,7 +20,7 @@ cli::Report row_of(const DemoSurface& surface) {
       .add("peak_frequency_per_m", surface.peak_frequency_per_m)
       .add("replay_speed_mps", surface.replay_speed_mps)
       .add("gain_m_per_n", surface.gain_m_per_n)
-      .add("wanted_rms_m", surface.target_rms_m)
+      .add("target_rms_m", surface.target_rms_m)
       .add("drive_peak_v", surface.drive_peak_v)
       .add("error_rms_m", surface.error_rms_m)
       .add("error_db", surface.error_db)
@@ -36,7 +36,7 @@ schema::Result<cli::Report> demonstrate(const DemoOptions& options) {
   for (const DemoSurface& surface : summary->surfaces) rows.push_back(row_of(surface));
   cli::Report report;
   report.add("simulated", summary->simulated).add("surfaces", std::move(rows)).add("page", summary->page);
-  report.add("next", "open " + summary->page + " in a browser; look into a file with: tactograph info " +
+  report.add("next", "open " + summary->page + " in a browser; describe a file with: tactograph info " +
                          options.folder + "/C");
   return report;
 }
@@ -44,7 +44,7 @@ schema::Result<cli::Report> demonstrate(const DemoOptions& options) {
 cli::Action declare_demo(CLI::App& app) {
   auto options = std::make_shared<DemoOptions>();
   app.add_option("-o,--output", options->folder,
-                 "Folder to write to; what an earlier demo left there is replaced")
+                 "Output folder; the files of an earlier demo there are replaced")
       ->type_name("DIR");
   return [options] { return demonstrate(*options); };
 }

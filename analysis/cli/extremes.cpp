@@ -13,7 +13,7 @@ struct ExtremesOptions {
   bool all = false;
 };
 
-// Without an error there is no margin in dB.
+// An error of 0 has no margin in dB.
 double margin_of(const Extreme& extreme) {
   return extreme.error > 0 && extreme.most > 0 ? extreme.margin_db() : std::nan("");
 }
@@ -43,16 +43,15 @@ schema::Result<cli::Report> try_extremes(const ExtremesOptions& options) {
 
 cli::Action declare_extremes(CLI::App& app) {
   auto options = std::make_shared<ExtremesOptions>();
-  app.add_flag("--all", options->all, "A stroke of 1e8 samples too (a minute more)");
+  app.add_flag("--all", options->all, "Also test a stroke of 1e8 samples (a minute more)");
   return [options] { return try_extremes(*options); };
 }
 
 }  // namespace
 
-const cli::Verb kExtremesVerb{"extremes",
-                              "Test the methods of all modules with extreme input, each against something "
-                              "exact, and print what came of it",
-                              "tactograph extremes\n  tactograph extremes --all --json > extremes.json",
-                              declare_extremes};
+const cli::Verb kExtremesVerb{
+    "extremes",
+    "Test the methods of all modules with extreme input, each against an exact result, and print the errors",
+    "tactograph extremes\n  tactograph extremes --all --json > extremes.json", declare_extremes};
 
 }  // namespace tacto::analysis

@@ -29,7 +29,7 @@ Report tray_row(const FidelitySpeed& speed, const FidelityRow& row, bool simulat
   report.add("tray", row.tray).add("error_db", row.error_db).add("error_in_place_db", row.error_in_place_db);
   if (row.rerecorded_db) report.add("rerecorded_db", *row.rerecorded_db);
   report.add("shift_m", row.shift_m).add("level_db", row.level_db);
-  report.add("wanted_rms_m", row.target_rms_m).add("felt_rms_m", row.felt_rms_m);
+  report.add("target_rms_m", row.target_rms_m).add("displacement_rms_m", row.finger_rms_m);
   return report.add("displacement", simulated ? "simulated" : "modelled");
 }
 
@@ -71,7 +71,7 @@ schema::Results fidelity_results(const Fidelity& fidelity) {
   return results;
 }
 
-// Empty ones, too: a list that ends in a comma lacks one.
+// Keeps empty items, so that a list that ends in a comma is detected.
 std::vector<std::string> between_commas(const std::vector<std::string>& lists) {
   std::vector<std::string> pieces;
   for (const std::string& list : lists) {
@@ -90,7 +90,7 @@ Result<void> read_speeds(FidelityVerbOptions& o) {
   for (const std::string& text : between_commas(o.speeds)) {
     if (text.empty())
       return schema::fail(schema::ErrorKind::usage, "a speed beside a comma is missing", "--speed",
-                          "name one, or several between commas: 25mm/s,100mm/s");
+                          "give one, or several separated by commas: 25mm/s,100mm/s");
     const auto speed = schema::parse_quantity(text, Dimension::speed);
     if (!speed)
       return schema::fail(schema::ErrorKind::usage, speed.error().what, "--speed " + text,
@@ -138,14 +138,15 @@ cli::Action declare_fidelity(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--transducer", play.transducer,
                  "The model that is inverted: a preset or NAME.transducer.json; default: the device's own");
-  app.add_option("--speed", options->speeds, "Of an emulated finger: one, or several between commas");
-  cli::add_quantity(app, "--time", play.time_s, Dimension::time, "On a real device: how long [10 s]");
+  app.add_option("--speed", options->speeds,
+                 "Speed of an emulated finger: one, or several separated by commas");
+  cli::add_quantity(app, "--time", play.time_s, Dimension::time, "Duration on a real device [10 s]");
   cli::add_quantity(app, "--gain", play.program.gain_m_per_n, Dimension::compliance,
                     "Displacement for force; default: 1mm/N");
   cli::declare_unfit_transducer(app, play.program.unfit_transducer);
-  cli::add_quantity(app, "--rate", play.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
+  cli::add_quantity(app, "--rate", play.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
   app.add_option("-o,--output,--page", options->outputs,
-                 "What to write: a page (.html), results for 'report' (.results.json); may be given again");
+                 "Output: a page (.html) or results for 'report' (.results.json); may be repeated");
   cli::declare_force(app, options->existing);
   return [options] { return run_fidelity(*options); };
 }
@@ -153,8 +154,8 @@ cli::Action declare_fidelity(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kFidelityVerb{"fidelity",
-                              "Play a texture on a device, record what the tray does, and hold it against "
-                              "the target: one number for each tray and speed",
+                              "Play a texture on a device and compare the tray's displacement with the "
+                              "target: one error per tray and speed",
                               "tactograph fidelity oak -o oak-fidelity.html\n  tactograph fidelity oak -d "
                               "sim:hysteresis=0.16 --speed 25mm/s,100mm/s",
                               declare_fidelity};

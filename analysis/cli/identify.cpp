@@ -33,30 +33,28 @@ constexpr const char* kUsualBase = "wiertlewski2011";
 
 void declare_source(CLI::App& app, IdentifyOptions& o) {
   app.add_option("FILE", o.file,
-                 "A response (frequency_hz,amplitude_um_per_v,phase_deg, and where it is known "
-                 "noise_um_per_v), loops (drive_v,displacement_um), taps, or a "
-                 "recording with both channels");
+                 "A response (frequency_hz,amplitude_um_per_v,phase_deg, and if known noise_um_per_v), loops "
+                 "(drive_v,displacement_um), taps, or a recording with both channels");
   app.add_option("-d,--device", o.device_uri, "Device: usb:, sim:tray_sensor=on ...");
-  app.add_option("-o,--output", o.stem, "What is written, obligatory: NAME.transducer.json");
+  app.add_option("-o,--output", o.stem, "Output, required: NAME.transducer.json");
   app.add_option("--start-from", o.base,
                  "Preset or file that the fit starts from; parameters that are not separately identifiable "
                  "keep its values");
   app.add_option("--picture", o.picture, "Bode plot, or the loops: .svg or .png");
   app.add_option(
       "--results", o.results,
-      "Also what was found, for 'report': NAME.results.json, parameters with intervals and curves");
-  cli::add_choice<IdentifyMethod>(app, "--method", o.method,
-                                  {{"joint", IdentifyMethod::joint},
-                                   {"sweep", IdentifyMethod::sweep},
-                                   {"multisine", IdentifyMethod::multisine},
-                                   {"chirp", IdentifyMethod::chirp},
-                                   {"loop", IdentifyMethod::loop},
-                                   {"taps", IdentifyMethod::taps}},
-                                  "How. joint: a sine at each frequency and slow loops, fitted together, "
-                                  "with what is on the tray (a finger "
-                                  "that comes only later costs accuracy); sweep, multisine, chirp (nine "
-                                  "times 1 s): the linear model alone; "
-                                  "loop: the hysteresis alone; taps: a sensor's ringing");
+      "Also write the results for 'report': NAME.results.json, parameters with intervals and curves");
+  cli::add_choice<IdentifyMethod>(
+      app, "--method", o.method,
+      {{"joint", IdentifyMethod::joint},
+       {"sweep", IdentifyMethod::sweep},
+       {"multisine", IdentifyMethod::multisine},
+       {"chirp", IdentifyMethod::chirp},
+       {"loop", IdentifyMethod::loop},
+       {"taps", IdentifyMethod::taps}},
+      "Method. joint: a sine at each frequency and slow loops, fitted together, with the load that is on the "
+      "tray (a finger that is added later reduces accuracy); sweep, multisine, chirp (nine times 1 s): only "
+      "the linear model; loop: only the hysteresis; taps: a sensor's ringing");
 }
 
 void declare_model(CLI::App& app, IdentifyOptions& o) {
@@ -64,38 +62,38 @@ void declare_model(CLI::App& app, IdentifyOptions& o) {
                "The model has a second resonance, and its anti-resonance");
   app.add_flag("--lag", o.model.lag, "The model lags by the same angle at all frequencies, for a hysteresis");
   app.add_flag("--finger", o.model.finger,
-               "A finger rests on the tray of a transducer that is known (--start-from): find what it adds");
-  app.add_flag("--implausible", o.implausible, "Take a gain or a resonance far from the base's");
+               "A finger rests on the tray of a known transducer (--start-from): find its stiffness, damping "
+               "and mass");
+  app.add_flag("--implausible", o.implausible, "Accept a gain or a resonance far from that of --start-from");
   cli::declare_force(app, o.existing);
 }
 
 void declare_measuring(CLI::App& app, IdentifyOptions& o) {
-  cli::add_quantity(
-      app, "--amplitude", o.amplitude_v, Dimension::voltage,
-      "Peak of the drive; joint: a fifth of the loops' (1V), others: 0.5V. Loops go as far as the limits; "
-      "with --method loop this is their peak");
+  cli::add_quantity(app, "--amplitude", o.amplitude_v, Dimension::voltage,
+                    "Peak of the drive; default: 1V with joint (a fifth of the loops' peak), else 0.5V. The "
+                    "loops go up to the limits; with --method loop this is their peak");
   cli::add_quantity(app, "--low", o.plan.low_hz, Dimension::frequency, "Lowest frequency");
   cli::add_quantity(app, "--high", o.plan.high_hz, Dimension::frequency, "Highest frequency");
-  app.add_option("--frequencies", o.plan.frequencies, "How many, evenly by octaves")->check(cli::from_one());
+  app.add_option("--frequencies", o.plan.frequencies, "Number of frequencies, evenly spaced by octaves")
+      ->check(cli::from_one());
   cli::add_quantity(app, "--rate", o.rate_hz, Dimension::frequency,
-                    "Of taps, or of loops without a time column");
+                    "Sample rate of taps, or of loops without a time column");
   app.add_option("--fit-on", o.taps_fitted,
-                 "Of taps: how many of the first to fit on and hold the others against; half")
+                 "Of taps: number of first taps to fit; they predict the others; default: half")
       ->check(cli::from_one());
 }
 
 void declare_tables(CLI::App& app, IdentifyOptions& o) {
   app.add_option("--amplitude-unit", o.units.amplitude,
-                 "Of a table without it in the header: um/V, V/N, \"dB m/V\"");
-  app.add_option("--phase-unit", o.units.phase, "Likewise: deg or rad");
+                 "Unit of the amplitude if the header has none: um/V, V/N, \"dB m/V\"");
+  app.add_option("--phase-unit", o.units.phase, "Unit of the phase if the header has none: deg or rad");
   app.add_option("--phase-sign", o.phase_sign, "-1: the table's lags are positive")
       ->check(CLI::IsMember({-1, 1}));
-  app.add_flag("--invert", o.invert, "The answer was measured upside down");
-  app.add_option(
-      "--input", o.input,
-      "Of a recording: the channel that drives; for a sensor that of a fast reference cell, applied_force");
+  app.add_flag("--invert", o.invert, "The response was measured with inverted sign");
+  app.add_option("--input", o.input,
+                 "Input channel of a recording; for a sensor that of a fast reference cell, applied_force");
   app.add_option("--output-channel", o.output,
-                 "Of a recording: the channel that answers; tangential_force for a sensor");
+                 "Output channel of a recording; tangential_force for a sensor");
 }
 
 Result<schema::Transducer> base_of(const IdentifyOptions& o, const firmware_host::Device* device) {
@@ -108,23 +106,23 @@ Result<void> check_band(const IdentifyOptions& o) {
   constexpr std::size_t kMostFrequencies = 1000;
   if (o.plan.frequencies < kLeastFrequencies || o.plan.frequencies > kMostFrequencies)
     return fail(ErrorKind::usage,
-                fmt::format("{} to {} frequencies make a sweep", kLeastFrequencies, kMostFrequencies),
-                "--frequencies", "leave it to 60");
+                fmt::format("a sweep has {} to {} frequencies", kLeastFrequencies, kMostFrequencies),
+                "--frequencies", "the default is 60");
   if (!(o.plan.low_hz > 0 && o.plan.low_hz < o.plan.high_hz))
     return fail(ErrorKind::usage, "the lowest frequency has to be above 0 and below the highest",
-                "--low and --high", "leave them to 10Hz and 1kHz");
+                "--low and --high", "the defaults are 10Hz and 1kHz");
   if (o.amplitude_v && !(*o.amplitude_v > 0))
-    return fail(ErrorKind::usage, "the drive has to be above 0 V", "--amplitude", "leave it to 0.5V");
+    return fail(ErrorKind::usage, "the drive has to be above 0 V", "--amplitude", "the default is 0.5V");
   return {};
 }
 
-Result<IdentifySource> asked_of(const IdentifyOptions& o) {
+Result<IdentifySource> source_of(const IdentifyOptions& o) {
   if (o.file.empty() == o.device_uri.empty())
     return fail(ErrorKind::usage, "name either a file or a device", "identify",
                 "-d sim:tray_sensor=on, or FILE");
   TACTO_TRY(check_band(o));
   if (o.model.finger && (o.model.second_mode || o.base.empty()))
-    return fail(ErrorKind::usage, "a finger's load is found on a transducer that is known", "--finger",
+    return fail(ErrorKind::usage, "a finger's load can be found on a known transducer only", "--finger",
                 "name it with --start-from; its second mode is taken from there");
   IdentifySource asked;
   if (!o.device_uri.empty()) {
@@ -207,8 +205,7 @@ Result<Report> identify_response(const IdentifyOptions& o, IdentifySource& asked
 
 Result<Report> identify_taps(const IdentifyOptions& o, const IdentifySource& asked) {
   if (!o.picture.empty())
-    return fail(ErrorKind::usage, "taps have no picture", "--picture",
-                "leave it out; the table has each tap");
+    return fail(ErrorKind::usage, "taps have no picture", "--picture", "omit it; the table lists each tap");
   if (o.file.empty() || !o.rate_hz)
     return fail(ErrorKind::usage, "taps come from a table and need its rate", "--method taps",
                 "identify taps.csv --rate 100kHz");
@@ -218,17 +215,18 @@ Result<Report> identify_taps(const IdentifyOptions& o, const IdentifySource& ask
   TACTO_TRY(fit);
   const std::size_t fitted = o.taps_fitted > 0 ? o.taps_fitted : taps->taps.size() / 2;
   if (fitted < 2 || fitted + 2 > taps->taps.size())
-    return fail(ErrorKind::usage, "two taps at least on either side", "--fit-on", "leave it to half of them");
-  const auto foretold = foretell_taps(*taps, fitted);
-  TACTO_TRY(foretold);
+    return fail(ErrorKind::usage, "at least two taps have to be fitted, and two predicted", "--fit-on",
+                "the default is half of them");
+  const auto predicted = predict_taps(*taps, fitted);
+  TACTO_TRY(predicted);
   schema::Identification about;
   about.source = o.file;
   about.conditions = "ringing after taps";
   const schema::Transducer found = identified(*fit, asked.base, transducer_name_of(o), about);
   TACTO_TRY(schema::write_transducer(o.stem, found));
-  Report report = taps_report(*fit, *foretold, found, transducer_file_of(o));
+  Report report = taps_report(*fit, *predicted, found, transducer_file_of(o));
   return with_identify_results(
-      o, [&] { return identify_results(*fit, *foretold, found); }, std::move(report));
+      o, [&] { return identify_results(*fit, *predicted, found); }, std::move(report));
 }
 
 Result<Report> identify_by(const IdentifyOptions& o, IdentifySource& asked) {
@@ -239,7 +237,7 @@ Result<Report> identify_by(const IdentifyOptions& o, IdentifySource& asked) {
   return identify_response(o, asked);
 }
 
-// A transducer that was measured is not lost to one that does not fit.
+// Checks the names before the measurement, so that its result is not lost to a name that is taken.
 Result<void> check_names_free(const IdentifyOptions& o) {
   for (const std::string& path : {transducer_file_of(o), o.picture})
     if (auto free = schema::check_output_free(path, o.existing); !free) return free;
@@ -252,7 +250,7 @@ Result<void> check_names_free(const IdentifyOptions& o) {
 Result<Report> run_identify(const IdentifyOptions& o) {
   TACTO_TRY(check_named(o.stem, o.results, o.picture));
   TACTO_TRY(check_names_free(o));
-  auto asked = asked_of(o);
+  auto asked = source_of(o);
   TACTO_TRY(asked);
   auto report = identify_by(o, *asked);
   const bool stopped = !report && asked->stopped;

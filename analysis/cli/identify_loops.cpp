@@ -18,7 +18,7 @@ using cli::Report;
 using schema::Dimension;
 using schema::Result;
 
-constexpr double kSweepPart = 0.75;  // of the time that both take
+constexpr double kSweepPart = 0.75;  // share of the total measuring time
 
 std::string loops_words(double amplitude_v) {
   return "loops of " + schema::for_people(amplitude_v, Dimension::voltage) + " at 1 Hz";
@@ -53,8 +53,8 @@ Result<DrivenTray> loops_of(const IdentifyOptions& o, IdentifySource& source, sc
 void warn_of_limits(const char* what, std::size_t limited) {
   if (limited == 0) return;
   cli::warn(
-      fmt::format("the device held {} ticks of the {} to a limit: they were fitted as they were driven; a "
-                  "smaller --amplitude avoids it",
+      fmt::format("the device limited {} ticks of the {}: the fit uses the limited drive; a smaller "
+                  "--amplitude avoids this",
                   limited, what));
 }
 
@@ -63,7 +63,7 @@ struct SweepAndLoops {
   DrivenTray loops;
 };
 
-// The sweep with the amplitude asked for, the loops as far as the limits go.
+// The sweep has the requested amplitude, the loops the largest that the limits allow.
 Result<SweepAndLoops> measured_both(const IdentifyOptions& o, IdentifySource& source) {
   firmware_host::Device& device = *source.device.device;
   const cli::StopSignals signals;

@@ -12,14 +12,14 @@ namespace tacto::analysis {
 
 namespace {
 
-// One would be lost to the other.
+// Two outputs of the same name would overwrite each other.
 schema::Result<void> check_apart(const std::vector<std::string>& files) {
   for (auto file = files.begin(); file != files.end(); ++file)
     if (!file->empty() && std::any_of(files.begin(), file, [&](const auto& other) {
           return !other.empty() && schema::same_file(*file, other);
         }))
       return schema::fail(schema::ErrorKind::usage, "is named twice", *file,
-                          "give transducer, picture and results names of their own");
+                          "give transducer, picture and results different names");
   return {};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What identify's files are called.
+// Checks the names of the files that identify writes.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace tacto::analysis {
 
-/// Errors: usage, where the transducer file has no name: with one to take, after what is to be written beside
-/// it; where two of the three are one file.
+/// Errors: usage: the transducer file has no name (the message suggests one, made from the name of the
+/// results or the picture), or two of the three names are the same file.
 schema::Result<void> check_named(const std::string& stem, const std::string& results,
                                  const std::string& picture);
 

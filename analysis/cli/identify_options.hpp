@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `identify` was asked for, and what its ways of measuring share.
+// The options of `identify`, and what its methods share.
 #pragma once
 
 #include <functional>
@@ -30,27 +30,27 @@ struct IdentifyOptions {
   schema::Existing existing = schema::Existing::keep;
 };
 
-/// A device, or a file.
+/// The source of a measurement: a device or a file.
 struct IdentifySource {
   playback::PlayerDevice device;
   schema::Transducer base;
-  bool stopped = false;  ///< by a signal, while it was measured
+  bool stopped = false;  ///< by a signal, during the measurement
   bool has_device() const { return device.device != nullptr; }
 };
 
-/// The plan at the device's rate; its peak the one asked for, else `usual_v`.
+/// The plan at the device's rate. Its peak is the requested one, by default `usual_v`.
 ExcitationPlan plan_on(const IdentifyOptions& options, const firmware_host::Device& device, double usual_v);
 std::string transducer_name_of(const IdentifyOptions& options);
 std::string transducer_file_of(const IdentifyOptions& options);
 void add_model_conditions(const IdentifyOptions& options, BodeData& data);
-/// Where a picture was asked for. Errors: as write_figure.
+/// Draws a picture if one was requested. Errors: those of write_figure.
 schema::Result<void> draw_identified(const IdentifyOptions& options, const spatial::Figure& figure,
                                      cli::Report& report);
-/// Where results were asked for; their details are the report as it is.
+/// Writes results if they were requested; their details are the unchanged report.
 schema::Result<cli::Report> with_identify_results(const IdentifyOptions& options,
                                                   const std::function<schema::Results()>& make,
                                                   cli::Report report);
-/// What a response is checked against before and after it is fitted: plausibility.hpp.
+/// Checks a response before and after its fit (plausibility.hpp).
 schema::Result<void> check_fitted(const IdentifyOptions& options, const ResponseFit& fit,
                                   const ModelChoice& choice, const schema::Transducer& base);
 

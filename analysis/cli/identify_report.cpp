@@ -28,11 +28,10 @@ void add_head(Report& report, const schema::Transducer& found, const std::string
   if (!about.usable()) report.ends_with(schema::ErrorKind::unsuitable);
 }
 
-// The figures: tests/analysis/identify_bench_test.py.
+// tests/analysis/identify_bench_test.py measures these figures.
 constexpr const char* kLoadWords =
-    "what was on the tray while this was measured: let the finger rest there, or not, as it will when it "
-    "plays. A "
-    "finger that comes only later costs accuracy (emulated: -37 to -25 dB where -47 to -40 dB were possible)";
+    "the load on the tray during this measurement has to be that of playback (finger or not). A finger that "
+    "is added later reduces accuracy (emulated: -37 to -25 dB instead of -47 to -40 dB)";
 
 void add_loop_rows(Report& report, const LoopFit& fit) {
   report.add("loop_opening_percent", 100 * fit.opening).add("loop_amplitude_v", fit.amplitude_v);
@@ -50,9 +49,9 @@ void add_loop_rows(Report& report, const LoopFit& fit) {
   report.add("operator", std::move(rows));
 }
 
-constexpr int kTableDigits = 4;  // a report's
+constexpr int kTableDigits = 4;  // of a report's table
 
-// A table that is exact to many digits showed three numbers alike.
+// If the table hides an interval, value and limits look equal in it, so the report adds exact figures.
 bool table_hides_an_interval(const ResponseFit& fit) {
   return fit.claims_intervals() && std::ranges::any_of(fit.parameters, [](const FittedParameter& p) {
            return !p.held && interval_is_hidden(p, kTableDigits);
@@ -118,7 +117,7 @@ Report response_report(const ResponseFit& fit, const ModelChoice& choice, const 
   report.add("parameters", parameter_rows(fit));
   std::vector<std::string> held = held_words(choice, base);
   held.insert(held.end(), fit.notes.begin(), fit.notes.end());
-  report.add("not_told_apart", std::move(held));
+  report.add("not_identifiable", std::move(held));
   if (!fit.suggestion.empty()) report.add("model_one_mode_short", fit.one_mode_short);
   add_quality(report, fit);
   add_found(report, found);
@@ -143,7 +142,7 @@ Report joint_report(const JointFit& fit, const ModelChoice& choice, const schema
   return report;
 }
 
-Report taps_report(const TapsFit& fit, const TapsPrediction& foretold, const schema::Transducer& found,
+Report taps_report(const TapsFit& fit, const TapsPrediction& predicted, const schema::Transducer& found,
                    const std::string& file) {
   Report report;
   add_head(report, found, file);
@@ -156,12 +155,12 @@ Report taps_report(const TapsFit& fit, const TapsPrediction& foretold, const sch
   report.add("lowest_damping_ratio", fit.damping_ratio.least)
       .add("highest_damping_ratio", fit.damping_ratio.most)
       .add("r_squared", fit.r_squared);
-  report.add("fitted_taps", foretold.fitted).add("foretold_taps", foretold.foretold);
-  report.add("foretold_resonance_error_percent", 100 * foretold.resonance_error)
-      .add("foretold_damping_error_percent", 100 * foretold.damping_error)
-      .add("foretold_waveform_error_percent", 100 * foretold.waveform_error)
-      .add("shape_error_percent", 100 * foretold.shape_error)
-      .add("foretold_waveform_worst_percent", 100 * foretold.worst_waveform_error);
+  report.add("fitted_taps", predicted.fitted).add("predicted_taps", predicted.predicted);
+  report.add("predicted_resonance_error_percent", 100 * predicted.resonance_error)
+      .add("predicted_damping_error_percent", 100 * predicted.damping_error)
+      .add("predicted_waveform_error_percent", 100 * predicted.waveform_error)
+      .add("shape_error_percent", 100 * predicted.shape_error)
+      .add("predicted_waveform_worst_percent", 100 * predicted.worst_waveform_error);
   std::vector<Report> rows;
   for (const RingingTap& tap : fit.taps) {
     Report row;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `identify` says of what it found.
+// The reports of `identify`.
 #pragma once
 
 #include "analysis/identify/report/identification.hpp"
@@ -7,13 +7,13 @@
 
 namespace tacto::analysis {
 
-/// Each gives the report of one kind of identification; `file` is what was written.
+/// Each function gives the report of one kind of identification; `file` is the written file.
 cli::Report response_report(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
                             const schema::Transducer& found, const std::string& file);
 cli::Report loop_report(const LoopFit& fit, const schema::Transducer& found, const std::string& file);
 cli::Report joint_report(const JointFit& fit, const ModelChoice& choice, const schema::Transducer& base,
                          const schema::Transducer& found, const std::string& file);
-cli::Report taps_report(const TapsFit& fit, const TapsPrediction& foretold, const schema::Transducer& found,
+cli::Report taps_report(const TapsFit& fit, const TapsPrediction& predicted, const schema::Transducer& found,
                         const std::string& file);
 
 }  // namespace tacto::analysis

@@ -43,7 +43,7 @@ Report project_report(const Project& project, const std::string& output) {
   return report;
 }
 
-// The page names all of them.
+// The first names only; the page has all of them.
 std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 6;
   const std::span shown(names.data(), std::min(kNamed, names.size()));
@@ -65,7 +65,8 @@ Result<void> write_page(const Project& project, const ReportVerbOptions& o) {
 
 Result<Report> run_report(const ReportVerbOptions& o) {
   if (!o.output.ends_with(".html"))
-    return schema::fail(schema::ErrorKind::usage, "doesn't end in .html", o.output, "a report is a page");
+    return schema::fail(schema::ErrorKind::usage, "doesn't end in .html", o.output,
+                        "a report is an HTML page");
   TACTO_TRY(check_outputs({o.output}, o.existing));
   cli::Progress progress("reading");
   auto project = read_project(o.folder, o.output, [&](double part) { progress.update(part); });
@@ -89,8 +90,8 @@ cli::Action declare_report(CLI::App& app) {
 
 }  // namespace
 
-const cli::Verb kReportVerb{
-    "report", "Gather a folder's files into one page: what was measured where, with figures and pictures",
-    "tactograph report study -o study.html", declare_report};
+const cli::Verb kReportVerb{"report",
+                            "Describe all files of a folder on one page: origin, main figures and pictures",
+                            "tactograph report study -o study.html", declare_report};
 
 }  // namespace tacto::analysis

@@ -44,7 +44,7 @@ Result<void> check_outputs(const std::vector<std::string>& outputs, schema::Exis
   for (auto path = outputs.begin(); path != outputs.end(); ++path) {
     if (std::any_of(outputs.begin(), path,
                     [&](const auto& other) { return schema::same_file(*path, other); }))
-      return schema::fail(ErrorKind::usage, "is named twice", *path, "give each output a name of its own");
+      return schema::fail(ErrorKind::usage, "is named twice", *path, "give each output a different name");
     if (const auto free = check_output(*path, existing, more); !free) return free;
   }
   return {};

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a verb ends that a signal stopped.
+// Ends a verb that was stopped by a signal.
 #pragma once
 
 #include <csignal>
 
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::analysis {
 
-/// Ends the process as SIGINT ends any, so that shells see no exit code of ours. To be called once everything
-/// is cleared up that the work held, and no StopSignals stands any more.
+/// Ends the process by SIGINT, so that a shell sees the signal and not an exit code. Call it after everything
+/// that the work used is released and no StopSignals object exists.
 inline void end_as_stopped() {
-  cli::talk("tactograph: stopped before the end; nothing is written\n");
+  cli::write_message("tactograph: stopped before the end; nothing is written\n");
   std::signal(SIGINT, SIG_DFL);
   std::raise(SIGINT);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph trade: what each choice costs and errs, on this machine.
+// tactograph trade: error and cost of each choice, measured on this machine.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -39,18 +39,19 @@ struct TradeVerbOptions {
   std::vector<std::string> outputs;
   const CLI::App* app = nullptr;
 
-  /// For machines everything, for people the answer.
+  /// With --json the report has all rows, otherwise the summary.
   bool json() const { return app->count("--json") > 0; }
 };
 
 constexpr const char* kTradeTableEnding = ".trade.json";
 
-// Of a scene each file once.
+// Each texture file of a scene once.
 Result<std::vector<std::string>> textures_named(const std::string& what) {
   const auto files = schema::stored_files(what);
   if (!files || files->front().kind != schema::FileKind::scene) return std::vector{what};
   const auto scene = schema::read_scene(what);
   TACTO_TRY(scene);
+  TACTO_TRY(schema::check_only_tray(*scene, files->front().path));
   if (const auto note = schema::note_of_newer_version(files->front().path, *scene); !note.empty())
     cli::warn(note);
   std::vector<std::string> names;
@@ -131,7 +132,7 @@ Result<Trade> measured_on(const std::string& name, const TradeVerbOptions& o,
 
 constexpr std::size_t kWidestLine = 120;
 
-// As many words a line as fit, with the label before the first.
+// Breaks the text between words; only the first line has the label.
 void add_wrapped(Report& report, const std::string& label, std::string_view text, std::size_t room) {
   std::string key = label;
   while (text.size() > room) {
@@ -144,7 +145,7 @@ void add_wrapped(Report& report, const std::string& label, std::string_view text
   report.add(std::move(key), text);
 }
 
-// Of the choices by themselves; pairs of them ("window x hop") are in the table.
+// Single choices only; pairs of them ("window x hop") are in the table.
 std::string best_words(const TradeHalf& half) {
   std::string words;
   for (const PlainAnswer& answer : plain_answers(half.rows))
@@ -163,7 +164,7 @@ std::vector<Report> answer_rows(const Trade& trade) {
       if (answer.knee_row) {
         const TradeRow& best = half.rows[*answer.knee_row];
         row.add("best", best.choice).add("error_percent", 100 * best.error);
-        row.add("cost", fmt::format("{:.3g} ns a {}", best.cost_ns, best.per));
+        row.add("cost", fmt::format("{:.3g} ns per {}", best.cost_ns, best.per));
       }
       row.add("never_worth_it", fmt::format("{} of {}", answer.never_worth_it, answer.choices));
       rows.push_back(std::move(row));
@@ -171,8 +172,8 @@ std::vector<Report> answer_rows(const Trade& trade) {
   return rows;
 }
 
-// The answer: for each choice the best for its cost. With files the rows are in them; without, the table of
-// the answers follows.
+// The summary: the best choice of each parameter for its cost. Output files contain the rows; without output
+// files the table of the answers follows.
 Report trade_for_people(const TradeVerbOptions& o, const Trade& trade) {
   constexpr std::string_view kLongestLabel = "best, real time  ";
   constexpr std::size_t kRoom = kWidestLine - kLongestLabel.size();
@@ -191,7 +192,8 @@ Report trade_for_people(const TradeVerbOptions& o, const Trade& trade) {
   return report;
 }
 
-// Only the real-time half plays through it, in the band that played_case() leaves as it is.
+// Checks the transducer for the real-time half only, in the band of played_case(); the offline half does not
+// use it.
 Result<schema::Transducer> transducer_of(const TradeVerbOptions& o) {
   auto transducer = schema::read_transducer(
       o.transducer, o.implausible ? schema::Numbers::computable : schema::Numbers::plausible);
@@ -267,13 +269,13 @@ Result<void> check_table_output(const TradeVerbOptions& o) {
   }
   const std::string& path = o.outputs.front();
   if (o.outputs.size() > 1 || !path.ends_with(kTradeTableEnding))
-    return schema::fail(ErrorKind::usage, "is no name for a table of measured choices", path,
+    return schema::fail(ErrorKind::usage, "is not a name for a table of measured choices", path,
                         "name one file NAME.trade.json, or none for this machine's own");
   const auto there =
       schema::is_file(path) ? schema::stored_files(path) : Result<std::vector<schema::StoredFile>>{};
   if (!schema::is_file(path) || (there && there->front().kind == schema::FileKind::trade))
     return schema::check_output_free(path, o.existing);
-  return schema::fail(ErrorKind::usage, "is no table of measured choices, and would be lost", path,
+  return schema::fail(ErrorKind::usage, "is not a table of measured choices, and would be overwritten", path,
                       "choose another name");
 }
 
@@ -302,32 +304,32 @@ cli::Action declare_trade(CLI::App& app) {
   auto options = std::make_shared<TradeVerbOptions>();
   options->app = &app;
   app.add_option("WHAT", options->what,
-                 "Texture, recording (its stroke becomes one) or scene (the worst of its textures)");
-  app.add_option(
-      "-o,--output", options->outputs,
-      "What to write: a page (.html), results for 'report' (.results.json), a table of all choices (.csv), "
-      "error against cost of the first half's unit with most choices (.svg, .png); with --calibrate "
-      "NAME.trade.json; may be given again");
+                 "Texture, recording (its stroke) or scene (the worst of its textures)");
+  app.add_option("-o,--output", options->outputs,
+                 "Output: a page (.html), results for 'report' (.results.json), a table of all choices "
+                 "(.csv), or error against cost for the unit of cost with most choices in the first half "
+                 "(.svg, .png); with --calibrate NAME.trade.json; may be repeated");
   app.add_option("--transducer", options->transducer, "A preset or NAME.transducer.json")
       ->capture_default_str();
   cli::declare_unfit_transducer(app, options->unfit_transducer);
   cli::declare_force(app, options->existing);
   app.add_flag("--implausible", options->implausible,
-               "Take a transducer file whose numbers no transducer has (a mass of 1e-12 kg, say)");
-  app.add_option("--stroke", options->stroke, "Which of several strokes")->check(cli::from_one());
+               "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
+  app.add_option("--stroke", options->stroke, "Stroke of a recording that has several")
+      ->check(cli::from_one());
   cli::add_choice<TradeHalves>(
       app, "--half", options->halves,
       {{"both", TradeHalves::both}, {"offline", TradeHalves::offline}, {"realtime", TradeHalves::real_time}},
       "From recording to spectrogram, from texture to drive, or both");
   app.add_flag("--calibrate", options->calibrate,
-               "Measure this machine's table, by which --quality and --max-error choose, and keep it");
+               "Measure and store this machine's table of choices, which --quality and --max-error use");
   return [options] { return run_trade(*options); };
 }
 
 }  // namespace
 
 const cli::Verb kTradeVerb{
-    "trade", "Measure what each choice between speed and accuracy costs and errs, and say which are worth it",
+    "trade", "Measure error and cost of each choice between speed and accuracy, and report the best ones",
     "tactograph trade oak -o trade.html -o trade.csv\n"
     "  tactograph trade oak --half realtime -o realtime.svg\n"
     "  tactograph trade --calibrate",

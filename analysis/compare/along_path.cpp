@@ -40,12 +40,12 @@ std::vector<schema::BandPoint> band_along_path(const SignalAlongPath& signal,
 
 Result<schema::Texture> texture_along(const SignalAlongPath& signal) {
   if (signal.values.size() < kFewestAlong)
-    return schema::fail(ErrorKind::unsuitable,
-                        fmt::format("has {} samples, {} are the fewest", signal.values.size(), kFewestAlong),
-                        "stroke");
+    return schema::fail(
+        ErrorKind::unsuitable,
+        fmt::format("has {} samples, at least {} are needed", signal.values.size(), kFewestAlong), "stroke");
   const int direction = signal.position_m.back() > signal.position_m.front() ? 1 : -1;
   const auto path = spatial::monotone_path(signal.position_m, direction, {signal.quantum_m, 0});
-  if (path.way_m.size() < 2) return schema::fail(ErrorKind::unsuitable, "the finger gets nowhere", "stroke");
+  if (path.way_m.size() < 2) return schema::fail(ErrorKind::unsuitable, "the finger does not move", "stroke");
   const auto grid = spatial::grid_along(path, direction, signal.pitch_m);
   TACTO_TRY(grid);
   schema::Texture texture;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A signal over time, as a texture along the way that the finger went meanwhile.
+// Converts a signal over time to a texture along the finger's path.
 #pragma once
 
 #include <span>
@@ -12,18 +12,18 @@
 namespace tacto::analysis {
 
 struct SignalAlongPath {
-  std::span<const double> values, position_m;  ///< of equal length; one stroke, which does not turn
+  std::span<const double> values, position_m;  ///< of equal length; one stroke in one direction
   double rate_hz = 0;
-  double quantum_m = 0;  ///< step of the positions, 0 where they have none
-  spatial::Band band;    ///< in Hz, in which the values are known
+  double quantum_m = 0;  ///< step of the positions; 0 if they are not quantised
+  spatial::Band band;    ///< in Hz; the values are valid in it
   double pitch_m = 1e-6;
   std::string quantity, unit;
 };
 
-/// f(x_i) = S_f(S_x^-1(x_i)) as spatial::TextureMaker makes it, by windowed sinc; position 0 of the texture
-/// is the lowest place that a multiple of the pitch lies on, source_origin_m is where that was. The valid
-/// band is the one in Hz over the finger's speed. Errors: unsuitable: a finger that gets nowhere, fewer than
-/// 64 samples.
+/// f(x_i) = S_f(S_x^-1(x_i)) as spatial::TextureMaker computes it, by windowed sinc. Position 0 of the
+/// texture is the lowest multiple of the pitch on the path; source_origin_m is its place on the path. The
+/// valid band is the band in Hz divided by the finger's speed. Errors: unsuitable: a finger that does not
+/// move, fewer than 64 samples.
 schema::Result<schema::Texture> texture_along(const SignalAlongPath& signal);
 
 }  // namespace tacto::analysis

@@ -9,7 +9,7 @@
 namespace tacto::analysis {
 namespace {
 
-constexpr double kLeastRatio = 1e-30;  // equal to rounding: -300 dB, not -infinity
+constexpr double kLeastRatio = 1e-30;  // equal signals: -300 dB, not -infinity
 
 double ratio_db(double part, double whole) {
   return 10 * std::log10(std::max(part / whole, kLeastRatio));

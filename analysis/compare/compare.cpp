@@ -22,7 +22,7 @@ using schema::Result;
 
 constexpr double kShortestCompareWindow = 16;  // samples
 constexpr double kHannBandwidth = 1.5;         // bins
-constexpr double kExplained = 0.5;             // correlation at the places as they are
+constexpr double kExplained = 0.5;             // smallest correlation that counts as agreement
 constexpr double kThousandDb = 60, kNearThousandDb = 1;
 constexpr double kParts = 8, kWavelengths = 8;
 
@@ -41,19 +41,18 @@ Result<std::size_t> compare_window(const TexturePair& pair, const CompareOptions
       options.window_m ? ErrorKind::usage : ErrorKind::unsuitable,
       fmt::format("a window of {} can't be used on {}", for_people(window * pair.pitch_m, Dimension::length),
                   for_people(shorter * pair.pitch_m, Dimension::length)),
-      "window", "two windows, half overlapping, have to fit, of 16 samples or more");
+      "window", "two half-overlapping windows of at least 16 samples have to fit");
 }
 
 Result<void> set_band(Comparison& comparison) {
   comparison.low_per_m = std::max(comparison.pair.low_per_m, kHannBandwidth / comparison.window_m);
   comparison.high_per_m = comparison.pair.high_per_m;
   if (comparison.low_per_m < comparison.high_per_m) return {};
-  return schema::fail(
-      ErrorKind::unsuitable,
-      fmt::format("a window of {} resolves nothing below {}, where the band that both recorded ends",
-                  for_people(comparison.window_m, Dimension::length),
-                  for_people(comparison.low_per_m, Dimension::spatial_frequency)),
-      "A and B", "take longer textures");
+  return schema::fail(ErrorKind::unsuitable,
+                      fmt::format("a window of {} resolves nothing below {}, where the common band ends",
+                                  for_people(comparison.window_m, Dimension::length),
+                                  for_people(comparison.low_per_m, Dimension::spatial_frequency)),
+                      "A and B", "use longer textures");
 }
 
 BandComparison compared_band(const schema::ThirdOctaveBand& band, const BandSums& sums, double gain) {
@@ -108,7 +107,7 @@ void compare_bands(Comparison& comparison, const SegmentSpectra& spectra,
   comparison.spectral_distance_db = std::sqrt(squares / static_cast<double>(bands.size()));
 }
 
-// Close to half the grid's frequency a bin is real and scatters twice as much.
+// Bins near half the grid's frequency are almost real; their variance is twice as large.
 void compare_narrow(Comparison& comparison, const SegmentSpectra& spectra, std::size_t window) {
   const TexturePair& pair = comparison.pair;
   const double high = std::min(comparison.high_per_m, 0.5 / pair.pitch_m - kHannBandwidth * spectra.step);
@@ -128,9 +127,9 @@ Result<void> compare_spectra(Comparison& comparison, std::size_t window) {
   if (!(whole.aa > 0 && whole.bb > 0))
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("is silent from {} to {}", for_people(comparison.low_per_m, Dimension::spatial_frequency),
+        fmt::format("is zero from {} to {}", for_people(comparison.low_per_m, Dimension::spatial_frequency),
                     for_people(comparison.high_per_m, Dimension::spatial_frequency)),
-        whole.aa > 0 ? "B" : "A", "nothing can be compared with silence");
+        whole.aa > 0 ? "B" : "A", "a texture that is zero in the band can't be compared");
   compare_whole(comparison, whole);
   compare_bands(comparison, spectra, spatial::third_octaves(comparison.low_per_m, comparison.high_per_m));
   compare_narrow(comparison, spectra, window);
@@ -160,7 +159,7 @@ void compare_formants(Comparison& comparison, const CompareOptions& options,
                                schema::message(of_a ? of_b.error() : of_a.error()));
     return;
   }
-  constexpr double kBlackmanResolution = 1.7268;  // as spatial/formants links points
+  constexpr double kBlackmanResolution = 1.7268;  // as in spatial/formants for linking points
   comparison.a_formants = std::move(*of_a);
   comparison.b_formants = std::move(*of_b);
   comparison.formant_resolution_per_m = kBlackmanResolution / options.spectrogram.window_m;
@@ -168,27 +167,26 @@ void compare_formants(Comparison& comparison, const CompareOptions& options,
                                        comparison.formant_resolution_per_m, comparison.pair.paired);
 }
 
-// Coherence does not mind a shift, the gain does: moved by half a wave it is negative, and explains little.
+// A small shift hardly changes the coherence, but it changes the gain: half a wave makes the gain negative
+// and leaves little of B explained.
 void note_likeness(Comparison& comparison) {
   if (!comparison.point_by_point) return;
   const double correlation = *comparison.gain * comparison.a_rms / comparison.b_rms;
   if (correlation < -kExplained)
-    comparison.notes.emplace_back("B is A upside down: the gain is negative");
+    comparison.notes.emplace_back("B is A with inverted sign: the gain is negative");
   else if (correlation < kExplained * std::sqrt(*comparison.coherence))
-    comparison.notes.emplace_back(
-        "B follows A, but not at the same places: --align correlation finds the shift");
+    comparison.notes.emplace_back("B is like A, but shifted: --align correlation finds the shift");
 }
 
-// A level of a thousand or a thousandth, and nothing else: one of the two is in another unit.
+// A level of a thousand or a thousandth with the same shape: one of the two probably has another unit.
 void note_units(Comparison& comparison) {
   const Evidence& e = comparison.evidence;
   if (std::abs(std::abs(e.level_db) - kThousandDb) > kNearThousandDb ||
       e.shape_excess_db > comparison.tolerance_db)
     return;
   comparison.notes.push_back(
-      fmt::format("B is {} times A, and of the same shape: if that is a unit (mN for N, um for mm), import "
-                  "one of them again "
-                  "with its own",
+      fmt::format("B is {} times A with the same shape: if a unit is wrong (mN for N, um for mm), import "
+                  "that one again with its unit",
                   e.level_db > 0 ? "a thousand" : "a thousandth"));
 }
 

@@ -33,7 +33,7 @@ double shown_scale(const std::string& unit) {
   return unit == "m" ? 1e6 : 1;
 }
 
-// Densities as the mean over bins that fall into one of so many steps of a logarithmic axis.
+// The mean density of the bins within each of the equal steps of a logarithmic axis.
 ResultCurve density_curve(const Comparison& c, const std::string& name, const std::vector<double>& density) {
   ResultCurve curve{name, {}, {}, false};
   const double scale = std::pow(shown_scale(c.pair.unit), 2) * kPerMm;
@@ -120,13 +120,13 @@ ResultPicture coherence_picture(const Comparison& c) {
           {std::move(coherence), std::move(chance)}};
 }
 
-// The middle of the stretch, so long that single waves show.
+// A stretch in the middle, short enough to show single waves.
 ResultPicture signal_picture(const Comparison& c, const ComparedNames& names) {
   const std::size_t size = std::min(c.pair.a.size(), c.pair.b.size());
   const double wave_m = 40 / std::sqrt(c.low_per_m * c.high_per_m);
   const auto shown = std::min(size, static_cast<std::size_t>(wave_m / c.pair.pitch_m) + 2);
   const std::size_t first = (size - shown) / 2, step = shown / kMostPoints + 1;
-  ResultPicture picture{"The middle of the stretch that is compared",
+  ResultPicture picture{"The middle of the compared part",
                         "position in A (mm)",
                         signal_label(c.pair),
                         false,
@@ -172,7 +172,7 @@ std::string formants_table(const Comparison& c) {
 
 std::string strongest_words(const Comparison& c) {
   const auto& band = c.evidence.narrow;
-  if (!band) return "not looked for: fewer than 6 cells";
+  if (!band) return "not searched: fewer than 6 cells";
   return fmt::format("B {:+.1f} dB from {} to {}, score {:.1f}, chance {:.1f}: {}", band->level_db,
                      for_people(band->low_per_m, Dimension::spatial_frequency),
                      for_people(band->high_per_m, Dimension::spatial_frequency), band->score,
@@ -182,7 +182,7 @@ std::string strongest_words(const Comparison& c) {
 
 std::string line_figure(const Comparison& c) {
   const auto& line = c.evidence.line;
-  if (!line) return "not looked for: too short";
+  if (!line) return "not searched: too short";
   return fmt::format("in {} at {}, {:.1f} dB above the density, score {:.1f}, chance {:.1f}: {}",
                      line->in_b ? "B" : "A", for_people(line->frequency_per_m, Dimension::spatial_frequency),
                      line->level_db, line->score, line->chance_score,
@@ -198,7 +198,7 @@ std::string rms_figure(const Comparison& c) {
   return fmt::format("A {}, B {}", words(c.a_rms), words(c.b_rms));
 }
 
-// The verdict and its first reason.
+// The verdict and the first of its reasons.
 std::string answer_words(const Comparison& c) {
   const std::string& because = c.verdict.because;
   return fmt::format("{}: {}.", to_string(c.verdict.likeness), because.substr(0, because.find("; ")));
@@ -230,11 +230,11 @@ std::vector<schema::ResultFigure> comparison_figures(const Comparison& c) {
                    for_people(c.pair.a_from_m, Dimension::length),
                    for_people(c.low_per_m, Dimension::spatial_frequency),
                    for_people(c.high_per_m, Dimension::spatial_frequency))},
-      {"would have been found", detectable_words(c.evidence, c.tolerance_db)},
+      {"detectable", detectable_words(c.evidence, c.tolerance_db)},
       {"level, B over A", fmt::format("{:+.2f} dB", c.evidence.level_db)},
       {"RMS in that band", rms_figure(c)},
       {"strongest narrow band, relative to the mean level", strongest_words(c)},
-      {"strongest line that one has", line_figure(c)},
+      {"strongest line of one texture", line_figure(c)},
       {"spectral distance",
        fmt::format("{:.2f} dB RMS over {} bands", c.spectral_distance_db, c.bands.size())},
       {"formants", fmt::format("{} matched, {} missed, {} extra", c.formants.matched.size(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A comparison as pictures, and as one page that needs nothing beside it.
+// A comparison as pictures, and as one HTML page that needs no other files.
 #pragma once
 
 #include <string>
@@ -10,21 +10,21 @@
 
 namespace tacto::analysis {
 
-/// How the two are called.
+/// The names of the two inputs.
 struct ComparedNames {
   std::string a, b;
 };
 
-/// Both spectra by band, their difference with its scatter, and where they are paired the coherence and a
-/// stretch of both signals (2,000 points at most a curve: spectra as means over neighbouring bins, signals as
-/// they are).
+/// Both spectra by band, their difference with its scatter and, if they are paired, the coherence and a
+/// stretch of both signals. A curve has at most 2,000 points: spectra are means over neighbouring bins,
+/// signals are unchanged.
 std::vector<schema::ResultPicture> comparison_pictures(const Comparison& comparison,
                                                        const ComparedNames& names);
 
-/// The main figures, as people read them: the verdict first.
+/// The main figures for the reader: the verdict first.
 std::vector<schema::ResultFigure> comparison_figures(const Comparison& comparison);
 
-/// Errors: of drawing.
+/// Errors: those of drawing.
 schema::Result<std::string> comparison_page(const Comparison& comparison, const ComparedNames& names);
 
 }  // namespace tacto::analysis

@@ -13,7 +13,7 @@ namespace {
 
 using Bins = std::vector<std::complex<double>>;
 
-// The windowed, scaled spectra of a signal's segments, those bins that are asked for, one after the other.
+// The windowed and scaled spectra of a signal's segments, one after the other; only the requested bins.
 class Segments {
  public:
   Segments(double pitch, std::size_t window, std::size_t first, std::size_t bins)
@@ -39,7 +39,7 @@ class Segments {
     for (std::size_t n = 0; n < part.size(); ++n) frame_[n] = weights_[n] * (part[n] - mean);
     fft_.forward(frame_, spectrum_);
     for (std::size_t k = first_; k < first_ + bins_; ++k) {
-      const bool twin = k != 0 && 2 * k != weights_.size();  // at the negative frequency
+      const bool twin = k != 0 && 2 * k != weights_.size();  // the negative frequency has the same power
       rows.push_back(scale_ * (twin ? std::numbers::sqrt2 : 1.0) * spectrum_[k]);
     }
   }

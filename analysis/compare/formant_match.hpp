@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which formants of one texture are in another.
+// Matches the formants of two textures.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 namespace tacto::analysis {
 
 struct FormantMatch {
-  std::vector<std::pair<std::size_t, std::size_t>> matched;  ///< of A and of B
-  std::vector<std::size_t> missed;                           ///< of A, not in B
-  std::vector<std::size_t> extra;                            ///< of B, not in A
+  std::vector<std::pair<std::size_t, std::size_t>> matched;  ///< indices in A and in B
+  std::vector<std::size_t> missed;                           ///< in A, not in B
+  std::vector<std::size_t> extra;                            ///< in B, not in A
 };
 
-/// Strongest of A first, each takes the nearest in frequency of B that is left, at most half the resolution
-/// away (1.7268 / window: as ridges are linked); where `by_place`, their extents also overlap by half of the
-/// shorter. Both lists on one axis of position.
+/// Goes through A's formants, strongest first, and matches each with the nearest unmatched frequency in B
+/// within half the resolution (1.7268 / window, as for linking ridges). If `by_place`, their extents must
+/// also overlap by half of the shorter one. Both lists use one position axis.
 FormantMatch match_formants(std::span<const schema::Formant> a, std::span<const schema::Formant> b,
                             double resolution_per_m, bool by_place);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A running mean that keeps a straight line as it is, up to the ends.
+// A running mean that leaves a straight line unchanged, including its ends.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,10 @@
 
 namespace tacto::analysis {
 
-/// Mean over `reach` values to each side; nearer than that to an end over as many as the end allows, the same
-/// number to each side.
+/// Mean over `reach` values to each side. Near an end the reach is shorter, but equal to both sides.
 std::vector<double> local_mean(const std::vector<double>& values, std::size_t reach);
 
-/// v_0, v_0 + v_1, ... after a leading 0: one more value than there are.
+/// 0, v_0, v_0 + v_1, ...: one value more than the input.
 std::vector<double> running_sums(const std::vector<double>& values);
 
 }  // namespace tacto::analysis

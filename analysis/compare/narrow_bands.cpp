@@ -18,15 +18,15 @@ using Values = std::vector<double>;
 
 constexpr std::array<std::size_t, 10> kWidths = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
 constexpr std::size_t kFewestCells = 6;
-constexpr std::size_t kWhitened = 8;  // cells to each side that make the smooth density
+constexpr std::size_t kWhitened = 8;  // cells to each side for the smooth density
 constexpr double kDecibels = 10 / std::numbers::ln10;
 constexpr double kOverlap = 19.0 / 18;  // variance of a mean over half-overlapping Hann windows (Welch 1967)
-constexpr double kCellFloor = 1e-6;     // of the strongest cell: as the verdict's bands
-constexpr double kEightInTen = 0.841621;  // standard deviations above the threshold
+constexpr double kCellFloor = 1e-6;     // of the strongest cell, as for the verdict's bands
+constexpr double kEightInTen = 0.841621;  // standard deviations, for a detection rate of 80 %
 
 // Scores that 4.5 % of the pairs of white Gaussian noise exceed, 15 segments each (4,000 pairs and more up to
-// 192 cells, 600 to 2,000 above): made by tests/analysis/compare_thresholds.py. 8 or 30 segments change them
-// by 1 %.
+// 192 cells, 600 to 2,000 above), from tests/analysis/compare_thresholds.py. With 8 or 30 segments they
+// differ by 1 %.
 struct ChanceScore {
   double cells, score;
 };
@@ -40,7 +40,7 @@ constexpr std::array<ChanceScore, 9> kChance = {{{6, 2.49},
                                                  {768, 4.33},
                                                  {1536, 4.50}}};
 
-// Between the table's values along ln(cells); beyond its end along its last line.
+// Interpolates along ln(cells); extrapolates the table's last line.
 double chance_score(std::size_t cells) {
   const auto count = static_cast<double>(cells);
   std::size_t i = 1;
@@ -54,8 +54,8 @@ double trigamma(double x) {  // Abramowitz and Stegun 6.4.12; within 1e-4 from 3
   return 1 / x + 1 / (2 * x * x) + 1 / (6 * x * x * x);
 }
 
-// Shape of the gamma distribution that a band's power follows: `width` cells of n half-overlapping Hann
-// windows of white noise. The powers of two cells correlate by the squares of the transform of w(x) w(x + s).
+// Shape of the gamma distribution of a band's power: `width` cells of n half-overlapping Hann windows of
+// white noise. The correlation of two cells' powers is the squared transform of w(x) w(x + s).
 double gamma_shape(std::size_t width, std::size_t segments) {
   constexpr std::array<double, 4> kSameSegment = {1, 4.0 / 9, 1.0 / 36, 0};
   constexpr std::array<double, 4> kNextSegment = {1.0 / 36, 0.0200141, 1.0 / 144, 0.000800562};
@@ -75,7 +75,7 @@ Values mean_row(const Values& rows, std::size_t cells) {
   return mean;
 }
 
-// One texture's cells, in the mean over all segments and over all but one.
+// The cells of one texture: mean over all segments, and over all segments but one.
 class CellPowers {
  public:
   CellPowers(const Values& rows, const Values& smooth) : segments_(rows.size() / smooth.size()) {
@@ -115,7 +115,7 @@ class CellPowers {
   std::vector<Powers> without_;
 };
 
-// The cells within the band, each with the floor.
+// The cells within the band, each raised to the floor.
 Values cells_of(const Values& density, const SegmentSpectra& spectra, std::size_t first, std::size_t cells) {
   Values rows, mean(cells, 0.0);
   for (std::size_t row = 0; row < density.size() / spectra.bins; ++row)
@@ -138,7 +138,7 @@ Values smooth_density(const Values& a, const Values& b, std::size_t cells) {
   return logs;
 }
 
-// The jackknife's variance (Efron 1979), of values that were each computed without one segment.
+// The jackknife variance (Efron 1979) of values, each computed without one segment.
 double jackknife_variance(const Values& values) {
   const auto n = static_cast<double>(values.size());
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
@@ -147,7 +147,7 @@ double jackknife_variance(const Values& values) {
   return (n - 1) / n * squares;
 }
 
-// Variance of ln(B / A) in the band, as the segments show it: in pairs where they are paired.
+// Variance of ln(B / A) in the band from the scatter of the segments; paired segments are compared in pairs.
 double seen_variance(const CellPowers& a, const CellPowers& b, bool paired, std::size_t first,
                      std::size_t width) {
   Values of_a, of_b;
@@ -161,11 +161,12 @@ double seen_variance(const CellPowers& a, const CellPowers& b, bool paired, std:
 double steady_variance(const CellPowers& a, const CellPowers& b, std::size_t width) {
   const auto cells = static_cast<double>(a.cells());
   return (trigamma(gamma_shape(width, a.segments())) + trigamma(gamma_shape(width, b.segments()))) *
-         (1 - static_cast<double>(width) / cells);  // less the mean level, which the band is a part of
+         (1 - static_cast<double>(width) / cells);  // the band is itself a part of the mean level
 }
 
-// Standard error of the level of a band of this width, dB: of steady textures, or the larger one that the
-// segments show in the mean over all places. A band's own scatter is too uncertain to divide by.
+// Standard error of the level of a band of this width, dB: that of steady textures, or the scatter of the
+// segments averaged over all places if it is larger. The scatter of a single band is too uncertain to divide
+// by.
 double standard_error(const CellPowers& a, const CellPowers& b, bool paired, std::size_t width) {
   const std::size_t places = a.cells() - width + 1;
   double seen = 0;
@@ -173,9 +174,9 @@ double standard_error(const CellPowers& a, const CellPowers& b, bool paired, std
   return kDecibels * std::sqrt(std::max(seen / static_cast<double>(places), steady_variance(a, b, width)));
 }
 
-// Level by which a band of so many cells must rise to be found, and to exceed the tolerance, in 8 of 10
-// pairs. The rise also lifts the mean level that it is held against, and Hann's window with edges that fall
-// between cells takes the power of a third of a cell out of the band (measured: compare_narrow_test).
+// Rise of a band of so many cells that is found, and exceeds the tolerance, in 8 of 10 pairs. The rise also
+// lifts the mean level, which is subtracted. With Hann's window and edges between cells, the power of a third
+// of a cell falls outside of the band (measured: compare_narrow_test).
 double detectable_db(double standard_error_db, const NarrowBand& best, double tolerance_db, std::size_t width,
                      std::size_t cells) {
   constexpr double kLostCells = 0.35;
@@ -186,13 +187,13 @@ double detectable_db(double standard_error_db, const NarrowBand& best, double to
 }
 
 struct Axis {
-  double step, low;  // between cells; the lower edge of the first
+  double step, low;  // distance of the cells; lower edge of the first cell
 };
 
 void scan_width(NarrowBand& best, const CellPowers& a, const CellPowers& b, bool paired, std::size_t width,
                 const Axis& axis, double tolerance_db) {
   const double error_db = standard_error(a, b, paired, width);
-  // A wide band with a high score but a level within the tolerance must not hide one beyond it.
+  // A wide band with a high score but a level within the tolerance must not hide a band beyond the tolerance.
   const auto rank = [&](double level_db, double score) {
     return std::pair(std::abs(level_db) > tolerance_db, score);
   };
@@ -230,7 +231,7 @@ std::optional<NarrowBand> strongest_band(const SegmentSpectra& spectra, double l
   const Axis axis{spectra.step, spectra.frequency(first) - 0.5 * spectra.step};
   for (const std::size_t width : kWidths)
     if (width <= cells / 2) scan_width(best, a, b, !spectra.ab.empty(), width, axis, tolerance_db);
-  // The cells at the ends reach half a cell beyond the band.
+  // The outer cells extend half a cell beyond the band.
   best.low_per_m = std::max(best.low_per_m, low);
   best.high_per_m = std::min(best.high_per_m, high);
   return best;

@@ -25,9 +25,10 @@ Result<void> check_steady(const SessionStroke& stroke, const std::string& sessio
                         "name another stroke");
   const auto first = static_cast<double>(stroke.first_row);
   const std::uint64_t last = stroke.first_row + stroke.rows.size() - 1;
-  const auto turns = std::ranges::any_of(stroke.turns, [&](const playback::TextureTurn& turn) {
-    const double felt_to = static_cast<double>(turn.row) + turn.fade_ticks + stroke.overview.look_ahead_ticks;
-    return turn.row <= last && felt_to >= first;
+  const auto turns = std::ranges::any_of(stroke.turns, [&](const playback::TextureChange& turn) {
+    const double played_to =
+        static_cast<double>(turn.row) + turn.fade_ticks + stroke.overview.look_ahead_ticks;
+    return turn.row <= last && played_to >= first;
   });
   if (turns)
     return schema::fail(ErrorKind::unsuitable, "the texture changes within the stroke", session,
@@ -40,25 +41,25 @@ Result<void> check_reach(const SessionStroke& stroke, const playback::ProfileRea
   const auto held = [&](const playback::SessionRow& row) { return reach.holds(row.encoder); };
   if (std::ranges::all_of(stroke.rows, held)) return {};
   return schema::fail(ErrorKind::unsuitable,
-                      "the stroke goes to where the device reads no texture any more (`tactograph session` "
-                      "says how far it does)",
+                      "the stroke goes beyond the range in which the device reads the texture (`tactograph "
+                      "session` reports it)",
                       session, "name another stroke");
 }
 
-// With the textures that the whole stroke is of.
+// The session's header with the textures that apply to the whole stroke.
 Result<schema::SessionHeader> header_of(const SessionStroke& stroke, const std::string& session) {
   TACTO_TRY(check_steady(stroke, session));
   schema::SessionHeader header = stroke.overview.header;
   const auto later = std::ranges::find_if(
-      stroke.turns, [&](const playback::TextureTurn& turn) { return turn.row > stroke.first_row; });
+      stroke.turns, [&](const playback::TextureChange& turn) { return turn.row > stroke.first_row; });
   const auto& reach = later == stroke.turns.begin() ? stroke.overview.reach : std::prev(later)->reach;
   TACTO_TRY(check_reach(stroke, reach, session));
   if (later == stroke.turns.begin()) return header;
   const auto& brings = std::prev(later)->brings;
   if (!brings)
     return schema::fail(ErrorKind::unsuitable,
-                        "the texture changes before the stroke, the session does not say to what", session,
-                        "name an earlier stroke");
+                        "the texture changes before the stroke, and the session does not name the new one",
+                        session, "name an earlier stroke");
   static_cast<schema::SessionProgram&>(header) = *brings;
   return header;
 }
@@ -100,10 +101,10 @@ Result<schema::Texture> target_of(const schema::Texture& texture, const std::str
   TACTO_TRY(wav);
   const auto row = std::ranges::find(played.header.textures, wav->sha256, &schema::SessionTexture::sha256);
   if (row == played.header.textures.end())
-    return schema::fail(
-        ErrorKind::unsuitable,
-        fmt::format("is not what the session played, which is {}", played.header.textures.front().file), file,
-        "compare the session with its own texture");
+    return schema::fail(ErrorKind::unsuitable,
+                        fmt::format("is not the texture that the session played, which is {}",
+                                    played.header.textures.front().file),
+                        file, "compare the session with its own texture");
   schema::Texture target = texture;
   for (double& value : target.signal.values) value *= row->gain_m_per_n * played.gain;
   target.quantity = "displacement";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session makes of the tray by the model, as a texture, and what was wanted.
+// Textures of a session: the displacement of the tray by the model, and its target.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,25 @@
 
 namespace tacto::analysis {
 
-/// One stroke of a session: the displacement that the recorded drive makes of the transducer's model (no
-/// finger's load, no hysteresis: playback::predicted_displacement_m), m, against the encoder's position.
+/// One stroke of a session: the displacement, m, that the transducer's model gives for the recorded drive
+/// (without a finger's load, without hysteresis: playback::predicted_displacement_m), against the encoder's
+/// position.
 struct PlayedTexture {
   schema::Texture texture;
-  schema::SessionHeader header;         ///< its textures, choices and scene are those of the stroke
-  std::size_t stroke = 0, strokes = 0;  ///< 1-based, of so many
-  double gain = 1;                      ///< factor on the textures' own gains
+  schema::SessionHeader header;         ///< its textures, choices and scene apply to the stroke
+  std::size_t stroke = 0, strokes = 0;  ///< 1-based number, and the number of all
+  double gain = 1;                      ///< on the textures' own gains
 };
 
-/// `stroke` is 1-based; 0 takes the longest. Errors: as read_session_stroke, texture_along; unsuitable: a
-/// gain or texture that changes within the stroke, or to one that an older session does not name before it.
+/// `stroke` is 1-based; 0 selects the longest. Errors: those of read_session_stroke and texture_along;
+/// unsuitable: a gain or texture that changes within the stroke, or a change to a texture that an older
+/// session does not name before.
 schema::Result<PlayedTexture> played_texture(const std::string& session, std::size_t stroke,
                                              const std::function<void(double)>& progress = {});
 
-/// A texture as the session's finger was to feel it: force times gain, where it lay. `file` names it, by stem
-/// or in full. Errors: unsuitable: not the samples that were played (by SHA-256); not_found.
+/// The target of the session's finger for this texture: force times gain, at its place in the session. `file`
+/// is its path or stem. Errors: unsuitable: the samples are not those that were played (by SHA-256);
+/// not_found.
 schema::Result<schema::Texture> target_of(const schema::Texture& texture, const std::string& file,
                                           const PlayedTexture& played);
 

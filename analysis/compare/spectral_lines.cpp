@@ -19,19 +19,20 @@ using Powers = std::vector<double>;
 constexpr double kTapered = 0.125;                             // of the length, at each end
 constexpr std::size_t kDensity = 48, kLevel = 192, kNear = 8;  // half bins to each side
 constexpr double kFewestBins = 30;
-constexpr double kLineFloor = 1e-6;  // of the strongest place, as in the verdict's bands
-// A line's peak over the density of its bin, times a bin's width: of the taper (1.1) and of Hann (1.5).
+constexpr double kLineFloor = 1e-6;  // of the strongest place, as for the verdict's bands
+// Bandwidths in bins, from a line's peak over the density of its bin: of the taper (1.1) and of Hann (1.5).
 constexpr double kTaperBandwidth = 1.102, kHannWidth = 1.5;
 
-// What 0.5 % of the pairs exceed: fitted to 30-7,680 bins (tests/analysis/compare_thresholds.py), within 3 %.
+// The power that 0.5 % of the pairs exceed: fitted to 30-7,680 bins (tests/analysis/compare_thresholds.py),
+// within 3 %.
 double chance_power(double bins) {
   const double log = std::log(bins);
   return 7.7 + 0.8 * log + 0.02 * log * log;
 }
 
-// A line of mean power P is found in 8 of 10 pairs where sqrt(P) is 0.84 standard deviations of a bin's
-// amplitude, sqrt(1/2), above the threshold's root; the mean of 17 half bins beside it and places between
-// half bins take 0.8 dB (measured: compare_narrow_test).
+// A line of mean power P is found in 8 of 10 pairs if sqrt(P) exceeds the threshold's root by 0.84 standard
+// deviations of a bin's amplitude, sqrt(1/2). The mean of 17 half bins beside the line, and frequencies
+// between half bins, cost 0.8 dB (measured: compare_narrow_test).
 double detectable_power(double threshold) {
   constexpr double kLost = 1.2;
   return kLost * std::pow(std::sqrt(threshold) + 0.841621 * std::numbers::sqrt2 / 2, 2);
@@ -51,7 +52,7 @@ Powers tapered(std::span<const double> values, std::size_t length) {
   return out;
 }
 
-// Powers of the bins within the band, with a floor under what windows and rounding leave.
+// Powers of the bins within the band; the floor covers window leakage and rounding.
 Powers line_powers(std::span<const double> values, spatial::RealFft& fft, std::size_t first,
                    std::size_t count) {
   const Powers frame = tapered(values, fft.length());
@@ -70,7 +71,7 @@ Powers logarithms(const Powers& values) {
   return out;
 }
 
-// Divides both by the smooth density of both, each at its own level: 1 in the mean.
+// Divides each by the smooth density of both, at its own level, so that the mean is 1.
 void flatten(Powers& a, Powers& b) {
   const Powers log_a = logarithms(a), log_b = logarithms(b);
   const Powers near_a = local_mean(log_a, kDensity), near_b = local_mean(log_b, kDensity);
@@ -112,7 +113,7 @@ std::optional<SpectralLine> strongest_line(std::span<const double> a, std::span<
   flatten(of_a, of_b);
   const Peak in_a = highest_over(of_a, of_b), in_b = highest_over(of_b, of_a);
   const Peak& peak = in_b.power > in_a.power ? in_b : in_a;
-  const auto level_db = [&](double power) {  // of a line of so many times a bin's power, in the window
+  const auto level_db = [&](double power) {  // `power` in units of a bin's power
     return 10 * std::log10(1 + power * kTaperBandwidth * window / (kHannWidth * static_cast<double>(n)));
   };
   const double threshold = chance_power(bins);

@@ -26,14 +26,14 @@ using schema::Result;
 using schema::Texture;
 
 constexpr std::size_t kFewestPairSamples = 64;
-constexpr double kSameGrid = 1e-6;                   // of a pitch: rounding, not another grid
-constexpr double kFractionPass = 0.35;               // cycles of the coarse grid that a fractional step keeps
-constexpr double kFractionStop = 1 - kFractionPass;  // what lies beyond would fold onto what is kept
+constexpr double kSameGrid = 1e-6;      // of a pitch: a smaller difference is rounding
+constexpr double kFractionPass = 0.35;  // cycles per coarse sample kept if the ratio is not an integer
+constexpr double kFractionStop = 1 - kFractionPass;  // higher frequencies would alias onto the kept ones
 
-// One texture's steady part, on the common grid.
+// The steady part of one texture, on the common grid.
 struct Side {
   double from_m = 0;   // in the texture
-  double bench_m = 0;  // of its first sample
+  double bench_m = 0;  // place of its first sample on the bench
   double pitch_m = 0;
   std::vector<double> values;
   schema::BandPoint band;
@@ -66,7 +66,7 @@ std::vector<double> filtered(std::span<const double> values, std::span<const dou
   return out;
 }
 
-// Values at the places `first + i step`, counted in samples, as far as there are values.
+// Values at the places `first + i step`, in samples, until the end of the values.
 std::vector<double> at_places(std::span<const double> values, double first, double step) {
   const spatial::WindowedSinc sinc;
   std::vector<double> out;
@@ -95,22 +95,22 @@ void onto_one_grid(Side& a, Side& b, TexturePair& pair) {
   pair.pitch_m = std::max(a.pitch_m, b.pitch_m);
   const double finer_m = std::min(a.pitch_m, b.pitch_m);
   if (pair.pitch_m < finer_m * (1 + kSameGrid)) return;
-  pair.notes.push_back(
-      fmt::format("{} is on a grid of {}, the other of {}: taken onto the coarser one, low-passed",
-                  a.pitch_m < b.pitch_m ? "A" : "B", for_people(finer_m, Dimension::length),
-                  for_people(pair.pitch_m, Dimension::length)));
+  pair.notes.push_back(fmt::format(
+      "{} is on a grid of {}, the other of {}: it was low-passed and resampled on the coarser one",
+      a.pitch_m < b.pitch_m ? "A" : "B", for_people(finer_m, Dimension::length),
+      for_people(pair.pitch_m, Dimension::length)));
   coarsen(a, pair.pitch_m);
   coarsen(b, pair.pitch_m);
 }
 
-// How many samples two runs have in common, the second beginning `apart` samples after the first.
+// Number of common samples of both; the second begins `apart` samples after the first.
 double common_samples(const Side& a, const Side& b, double apart) {
   const double end =
       std::min(static_cast<double>(a.values.size()), apart + static_cast<double>(b.values.size()));
   return end - std::max(0.0, apart);
 }
 
-// Samples from A's first to B's first.
+// Distance from A's first sample to B's first sample, in samples.
 double place_apart(const Side& a, const Side& b, TexturePair& pair) {
   const double apart = (b.bench_m - a.bench_m) / pair.pitch_m;
   const auto shorter = static_cast<double>(std::min(a.values.size(), b.values.size()));
@@ -120,8 +120,8 @@ double place_apart(const Side& a, const Side& b, TexturePair& pair) {
   }
   pair.aligned = "start";
   pair.notes.emplace_back(
-      "on the bench they have less than half of the shorter one in common: compared from both starts, as two "
-      "stretches of perhaps one texture, not place by place");
+      "on the bench they share less than half of the shorter one: they are compared from their starts, not "
+      "place by place");
   return 0;
 }
 
@@ -139,7 +139,7 @@ double correlated_apart(const Side& a, const Side& b, double apart, const PairOp
       spatial::align({0, left}, {apart, right}, options.max_shift_m / pair.pitch_m);
   pair.correlation = found.correlation;
   if (!found.found) {
-    pair.notes.push_back(fmt::format("no shift within {} makes them agree (correlation {:.2f})",
+    pair.notes.push_back(fmt::format("they agree at no shift within {} (correlation {:.2f})",
                                      for_people(options.max_shift_m, Dimension::length), found.correlation));
     return apart;
   }
@@ -182,7 +182,7 @@ void pair_places(Side& a, Side& b, const PairOptions& options, TexturePair& pair
 Result<void> check_alike(const Texture& a, const Texture& b) {
   if (a.quantity == b.quantity && a.unit == b.unit) return {};
   return schema::fail(ErrorKind::unsuitable,
-                      fmt::format("B holds {} in {}, A {} in {}", b.quantity, b.unit, a.quantity, a.unit),
+                      fmt::format("B contains {} in {}, A {} in {}", b.quantity, b.unit, a.quantity, a.unit),
                       "quantity", "compare textures of one quantity");
 }
 
@@ -190,15 +190,15 @@ Result<void> check_pair(const TexturePair& pair) {
   const std::size_t samples = std::min(pair.a.size(), pair.b.size());
   if (samples < kFewestPairSamples)
     return schema::fail(ErrorKind::unsuitable,
-                        fmt::format("they have {} samples in common, {} are the fewest that a spectrum takes",
-                                    samples, kFewestPairSamples),
-                        "A and B", "take longer textures, or a finer grid");
+                        fmt::format("they have {} samples in common, a spectrum needs at least {}", samples,
+                                    kFewestPairSamples),
+                        "A and B", "use longer textures, or a finer grid");
   if (pair.low_per_m < pair.high_per_m) return {};
   return schema::fail(ErrorKind::unsuitable,
                       fmt::format("they have no band in common: one is valid from {} on, the other up to {}",
                                   for_people(pair.low_per_m, Dimension::spatial_frequency),
                                   for_people(pair.high_per_m, Dimension::spatial_frequency)),
-                      "A and B", "take strokes of more alike speed, or wider bands");
+                      "A and B", "use strokes of more similar speed, or wider bands");
 }
 
 }  // namespace
@@ -208,7 +208,7 @@ Result<TexturePair> pair_textures(const Texture& a, const Texture& b, const Pair
   if (!(options.max_shift_m >= 0 && std::isfinite(options.max_shift_m)))
     return schema::fail(ErrorKind::usage, "the largest shift has to be a length", "max-shift");
   if (a.signal.values.empty() || b.signal.values.empty())
-    return schema::fail(ErrorKind::unsuitable, "holds no samples", a.signal.values.empty() ? "A" : "B");
+    return schema::fail(ErrorKind::unsuitable, "has no samples", a.signal.values.empty() ? "A" : "B");
   Side left = side_of(a), right = side_of(b);
   TexturePair pair;
   pair.quantity = a.quantity;

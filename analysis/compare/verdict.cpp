@@ -11,23 +11,17 @@
 #include <span>
 
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/base/statistics.hpp"
 
 namespace tacto::analysis {
 namespace {
 
 constexpr std::size_t kDraws = 1000;
 constexpr std::uint64_t kDrawSeed = 6;
-constexpr double kFloorDb = 60;  // below it lies what windows and converters leave, not the texture
+constexpr double kFloorDb = 60;  // lower powers come from windows and converters, not from the texture
 
 double db_of(double ratio) {
   return 10 * std::log10(ratio);
-}
-
-// One-sided 95 % of Student's t: the normal's quantile and its expansion (Abramowitz and Stegun 26.7.5);
-// within 0.5 % from 5 degrees on.
-double student_t(double degrees) {
-  constexpr double z = 1.644854, z3 = z * z * z, z5 = z3 * z * z;
-  return z + (z3 + z) / (4 * degrees) + (5 * z5 + 16 * z3 + 3 * z) / (96 * degrees * degrees);
 }
 
 using Bands = std::vector<double>;
@@ -59,7 +53,7 @@ std::vector<std::size_t> some_rows(std::size_t rows, std::mt19937_64& random) {
   return drawn;
 }
 
-// Deviations of the bands' differences from what was seen, a draw a row.
+// Deviations of the bands' differences from the measured ones, one draw per row.
 std::vector<Bands> drawn_deviations(const BandPowers& powers, const Bands& seen) {
   std::mt19937_64 random(kDrawSeed);
   const std::size_t rows_a = powers.a.size() / powers.bands, rows_b = powers.b.size() / powers.bands;
@@ -84,7 +78,7 @@ double weighted_mean(const Bands& values, const Bands& weights) {
   return std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
 }
 
-// About the weighted mean; weights sum to 1.
+// RMS deviation from the weighted mean; the weights sum to 1.
 double shape_of(const Bands& values, const Bands& weights) {
   const double mean = weighted_mean(values, weights);
   double sum = 0;
@@ -113,7 +107,9 @@ Bands weights_of(const Bands& scatter, double tolerance_db) {
 void judge_level(Evidence& evidence, const std::vector<Bands>& draws, const Bands& weights) {
   std::vector<double> levels;
   for (const Bands& draw : draws) levels.push_back(weighted_mean(draw, weights));
-  const double reach = student_t(static_cast<double>(evidence.segments - 1)) * root_mean_square(levels);
+  const double reach =
+      schema::student_t(static_cast<double>(evidence.segments - 1), schema::kNormal95OneSided) *
+      root_mean_square(levels);
   evidence.level_db = weighted_mean(evidence.band_db, weights);
   evidence.level_low_db = evidence.level_db - reach;
   evidence.level_high_db = evidence.level_db + reach;
@@ -148,7 +144,7 @@ std::string line_words(const SpectralLine& line) {
       line.score, line.chance_score);
 }
 
-// What narrow bands and lines say of a difference; empty where they say nothing.
+// A sentence about narrow bands and lines that differ; empty if none does.
 std::string narrow_words(const Evidence& e, double tolerance_db) {
   std::string words;
   if (band_differs(e, tolerance_db)) words = band_words(*e.narrow);
@@ -171,7 +167,7 @@ std::string level_words(const Evidence& e) {
 
 Verdict by_level(const Evidence& e, double tolerance_db) {
   const std::string shape =
-      fmt::format("shape alike ({:.1f} dB, chance up to {:.1f} dB)", e.shape_db, e.shape_chance_db);
+      fmt::format("same shape ({:.1f} dB, chance up to {:.1f} dB)", e.shape_db, e.shape_chance_db);
   const std::string words = shape + ", " + level_words(e);
   const bool certain = e.level_low_db > 0 || e.level_high_db < 0;
   if (certain && std::abs(e.level_db) > tolerance_db)
@@ -179,7 +175,8 @@ Verdict by_level(const Evidence& e, double tolerance_db) {
   if (e.level_low_db >= -tolerance_db && e.level_high_db <= tolerance_db)
     return {Likeness::same, fmt::format("{}, within {:g} dB", words, tolerance_db)};
   return {Likeness::undecided,
-          fmt::format("{}: it reaches beyond {:g} dB, but may be 0 or within it", words, tolerance_db)};
+          fmt::format("{}: this interval includes values beyond {:g} dB and values that are not", words,
+                      tolerance_db)};
 }
 
 }  // namespace
@@ -228,11 +225,11 @@ std::string detectable_words(const Evidence& e, double tolerance_db) {
 
 Verdict verdict_of(const Evidence& e, double tolerance_db) {
   if (e.segments < kFewestSegments)
-    return {Likeness::undecided, fmt::format("too short: {} segments of the window, {} are the fewest",
+    return {Likeness::undecided, fmt::format("too short: {} segments of the window, at least {} are needed",
                                              e.segments, kFewestSegments)};
   if (e.bands < kFewestBands)
     return {Likeness::undecided,
-            fmt::format("too little in common: {} one-third-octave bands, an octave ({}) is the least",
+            fmt::format("too little in common: {} one-third-octave bands, at least an octave ({}) is needed",
                         e.bands, kFewestBands)};
   const std::string narrow = narrow_words(e, tolerance_db);
   const bool shape = e.shape_db > e.shape_chance_db && e.shape_excess_db > tolerance_db;
@@ -240,9 +237,9 @@ Verdict verdict_of(const Evidence& e, double tolerance_db) {
     return {Likeness::different, fmt::format("{}{}{}; {}", narrow, shape && !narrow.empty() ? "; " : "",
                                              shape ? shape_words(e, tolerance_db) : "", level_words(e))};
   if (e.finest_shape_db > tolerance_db)
-    return {Likeness::undecided, fmt::format("too noisy: only differences in shape above {:.1f} dB would "
-                                             "show over the scatter of the parts; {}",
-                                             e.finest_shape_db, level_words(e))};
+    return {Likeness::undecided,
+            fmt::format("too noisy: only differences in shape above {:.1f} dB could be detected; {}",
+                        e.finest_shape_db, level_words(e))};
   return by_level(e, tolerance_db);
 }
 

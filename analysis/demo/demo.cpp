@@ -31,7 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 using schema::Result;
 
-// Wiertlewski 2011, Table II; the recording speed is the paper's, the replay is slower and turns round.
+// Wiertlewski 2011, Table II. The recording has the paper's speed; the replay is slower and reverses its
+// direction.
 struct Sample {
   const char* surface;
   const char* description;
@@ -47,14 +48,14 @@ constexpr const char* kNotes = "made by tactograph demo";
 constexpr double kRecordSpeedMps = 50e-3;
 constexpr double kRecordTimeS = 1.0;
 constexpr double kReplayTimeS = 1.6;
-constexpr double kSettleS = 0.1;  // of the comparison: onset, end, and the tray's ringing are left out
+constexpr double kSettleS = 0.1;  // the comparison leaves out onset, end, and the tray's ringing
 
 struct Made {
   schema::Texture texture;
   schema::Spectrogram spectrogram;
 };
 
-// There and back over the middle of the texture, at a speed that swells and falls as a hand's does.
+// Back and forth over the middle of the texture, with a speed that rises and falls like a hand's.
 playback::FingerPath replay_path(const schema::Texture& texture) {
   schema::TimeSignal position{1000, 0, {}};
   const double length_m = texture.signal.length_m(), rate = position.sample_rate_hz;
@@ -82,14 +83,14 @@ bool is_of_a_demo(const std::string& stem) {
   return recording && recording->header.notes == kNotes;
 }
 
-// What an earlier demo left is replaced, other files of these names are not.
+// Replaces the files of an earlier demo, but not other files of these names.
 Result<void> check_replaceable(const std::string& stem) {
   if (is_of_a_demo(stem)) return {};
   std::error_code ignored;
   for (const char* ending :
        {".json", ".wav", ".events.jsonl", ".texture.json", ".texture.wav", ".nc", ".png"})
     if (fs::exists(stem + ending, ignored))
-      return schema::fail(schema::ErrorKind::usage, "is there already, and no earlier demo made it",
+      return schema::fail(schema::ErrorKind::usage, "exists, and was not made by an earlier demo",
                           stem + ending, "choose another folder with -o");
   return {};
 }
@@ -161,7 +162,7 @@ spatial::Series series(const char* name, const schema::TimeSignal& signal, doubl
   return curve;
 }
 
-// A quarter of a second around the middle of the way back: enough to see each ridge.
+// A quarter of a second around the middle of the way back: short enough to show each ridge.
 spatial::LineFigure replay_figure(const playback::Rendering& rendering, const schema::TimeSignal& came,
                                   const DemoSurface& row, const std::string& simulated) {
   spatial::LineFigure figure;
@@ -174,8 +175,8 @@ spatial::LineFigure replay_figure(const playback::Rendering& rendering, const sc
   return figure;
 }
 
-// 1 mm/N, or what the transducer's limits leave of it: rendering is linear, so that one rendering at a small
-// gain tells how much of the limits any gain would use.
+// 1 mm/N, or less if the transducer's limits require it. Rendering is linear, so one rendering at a small
+// gain determines how much of the limits any gain would use.
 Result<double> fitting_gain_m_per_n(const Made& made, const playback::FingerPath& path,
                                     const schema::Transducer& transducer, playback::RenderOptions options) {
   const double wished = options.gain_m_per_n;
@@ -224,7 +225,7 @@ Result<void> check_folder(const std::string& folder, const std::string& page) {
   std::error_code ignored;
   const bool again = is_of_a_demo(folder + "/" + kSamples.front().surface);
   if (again || !fs::exists(page, ignored)) return {};
-  return schema::fail(schema::ErrorKind::usage, "is there already, and no earlier demo made it", page,
+  return schema::fail(schema::ErrorKind::usage, "exists, and was not made by an earlier demo", page,
                       "choose another folder with -o");
 }
 

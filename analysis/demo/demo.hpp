@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The main way, walked on five surfaces of the emulated device: record, texture, spectrogram, replay.
+// The main chain on five surfaces of the emulated device: record, texture, spectrogram, replay.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,13 @@ namespace tacto::analysis {
 
 struct DemoSummary {
   std::vector<DemoSurface> surfaces;
-  std::string simulated;  ///< by what
+  std::string simulated;  ///< origin of the simulation
   std::string page;       ///< path of index.html
 };
 
-/// Writes into `folder` (made where it is absent), for each surface A to E: a recording, a texture, its
-/// spectrogram as picture and netCDF; and one page over all. What an earlier demo left there is replaced.
-/// `progress` hears 0 to 1. Errors: cannot_write, and those of every step.
+/// Writes into `folder` (created if it does not exist), for each surface A to E: a recording, a texture, its
+/// spectrogram as picture and netCDF; and one page about all. Replaces the files of an earlier demo.
+/// `progress` receives 0 to 1. Errors: cannot_write, and those of every step.
 schema::Result<DemoSummary> run_demo(const std::string& folder, const std::function<void(double)>& progress);
 
 }  // namespace tacto::analysis

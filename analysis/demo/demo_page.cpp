@@ -34,7 +34,7 @@ std::string figures(const std::vector<DemoSurface>& surfaces) {
        {"error, 15-500 Hz", replay_row_error}});
 }
 
-// The largest error: what the demo as a whole has shown.
+// The answer is the largest error of all surfaces.
 std::string demo_answer(const std::vector<DemoSurface>& surfaces) {
   const auto worst = std::ranges::max_element(surfaces, {}, &DemoSurface::error_db);
   if (worst == surfaces.end()) return "";
@@ -45,10 +45,9 @@ std::string demo_answer(const std::vector<DemoSurface>& surfaces) {
 
 std::string section(const DemoSurface& s) {
   return fmt::format(
-      "<h2>Surface {}</h2>\n<p>{}. The strongest cell of the spectrogram is at {} and {}.</p>\n{}"
-      "<p>Replayed along a path that turns round, at {} on average: the tray's displacement against its "
-      "target. The "
-      "error over 15-500 Hz is {}, once the delay of {} is taken out.</p>\n{}<p class=\"note\">simulated: "
+      "<h2>Surface {}</h2>\n<p>{}. The strongest cell of the spectrogram is at {} and {}.</p>\n{}<p>Replayed "
+      "along a path that turns round, at {} on average: the tray's displacement against its target. The "
+      "error over 15-500 Hz is {}, after the delay of {} is removed.</p>\n{}<p class=\"note\">simulated: "
       "{}</p>\n",
       escaped(s.surface), escaped(s.description), for_people(s.peak_position_m, Dimension::length),
       for_people(s.peak_frequency_per_m, Dimension::spatial_frequency),
@@ -62,15 +61,12 @@ std::string section(const DemoSurface& s) {
 
 constexpr std::string_view kIntroduction =
     "<p>Each of the five surfaces of Wiertlewski, Lozada and Hayward (2011) was stroked by a simulated "
-    "finger on the simulated "
-    "transducer and recorded; the recording was turned into force against position (piecewise cubic Hermite, "
-    "1 µm grid, "
-    "15-500 Hz, divided by the sensor's response); that texture was played back along another path at "
-    "another speed: force "
-    "times a gain of 1 mm/N (less where the drive would pass the transducer's 5 V), through the inverse of "
-    "the modelled actuator, to the drive in volts. The emulated "
-    "transducer, integrated "
-    "from its equations of motion and knowing nothing of that inverse, then moved its tray.</p>\n";
+    "finger on the simulated transducer and recorded; the recording was turned into force against position "
+    "(piecewise cubic Hermite, 1 µm grid, 15-500 Hz, divided by the sensor's response); that texture was "
+    "played back along another path at another speed: force times a gain of 1 mm/N (less where the drive "
+    "would exceed the transducer's 5 V), through the inverse of the modelled actuator, to the drive in "
+    "volts. The emulated transducer, integrated from its equations of motion, independently of that inverse, "
+    "then moved its tray.</p>\n";
 
 }  // namespace
 

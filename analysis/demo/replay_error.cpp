@@ -68,8 +68,8 @@ class ReplayComparison {
   std::vector<double> target_;
 };
 
-// Coarse steps find the valley, golden section its bottom: the error has one minimum within half a period of
-// 500 Hz.
+// Coarse steps find the minimum's surroundings, golden section the minimum: the error has one minimum within
+// half a period of 500 Hz.
 constexpr double kStepS = 2.5e-4;
 constexpr double kResolutionS = 1e-7;
 

@@ -37,7 +37,7 @@ schema::RecordingHeader encoder_header(double metres_per_count) {
   return header;
 }
 
-// Of the paper's sensor at 100 Hz, by its formula.
+// Gain of the paper's sensor at 100 Hz, by its formula.
 long double newtons_per_volt(const schema::Transducer& t) {
   using Long = long double;
   const std::complex<Long> s(0, 200 * std::numbers::pi_v<Long>);
@@ -70,7 +70,7 @@ double conversion_error() {
   return error;
 }
 
-// Whole periods: Hann's window leaves nothing of the mean, and a quarter of the line's samples.
+// Whole periods: Hann's window then removes the mean, and the sum of a line is a quarter of its samples.
 double hann_error() {
   constexpr std::size_t kHannSamples = 2'000'000;
   constexpr double kCycles = 0.005, kOffset = 1.9e9, kAmplitude = 65536;
@@ -80,7 +80,7 @@ double hann_error() {
   return std::abs(capture::amplitude_of(capture::hann_line(samples, kCycles), kHannSamples) / kAmplitude - 1);
 }
 
-// Speeds of whole um/s: their sum is exact.
+// The speeds are whole um/s, so that their sum is exact.
 double integrated_error() {
   schema::RecordingHeader header = encoder_header(1);
   schema::Channel speed;
@@ -102,7 +102,7 @@ double integrated_error() {
   return off / farthest;
 }
 
-// Gives `take` the times of `rows` ticks, piece by piece, tick i at `at(i)`, until it fails.
+// Passes the times of `rows` ticks to `take` in pieces, tick i at `at(i)`, until it fails.
 template <class At, class Take>
 schema::Result<void> in_pieces(std::uint64_t rows, At at, Take take) {
   constexpr std::uint64_t kPiece = 1 << 16;
@@ -139,7 +139,7 @@ double fast_clock_error() {
   return clock ? std::abs(clock->rate_hz / kRateHz - 1) : INFINITY;
 }
 
-// A minute on each side of seven hours: how many ticks they are said to be.
+// A minute of ticks on each side of a gap of seven hours; the error is that of the gap's number of ticks.
 double long_gap_error() {
   constexpr double kRateHz = 1000 * kFast;
   constexpr std::uint64_t kBefore = 60'000, kMissing = 25'202'520;
@@ -156,7 +156,8 @@ double error_since_1970(double rate_hz) {
   return clock && clock->gaps.empty() ? std::abs(clock->rate_hz / rate_hz - 1) : INFINITY;
 }
 
-// By halves: a step of time there is 2^-22 s, and a quarter of a period is what is let pass.
+// By bisection. A step of double precision at these times is 2^-22 s; the clock tolerates a quarter of a
+// period.
 double fastest_since_1970_hz() {
   double good_hz = 1e4, bad_hz = 1e8;
   while (bad_hz / good_hz > 1.01) {
@@ -166,7 +167,7 @@ double fastest_since_1970_hz() {
   return good_hz;
 }
 
-// The device's microseconds pass 2^32 after 72 min; a pair a second.
+// The device's microseconds exceed 2^32 after 72 min; one pair of times per second.
 double drift_error(double host_start_s) {
   std::vector<schema::ClockPair> pairs;
   for (double time_s = 0; time_s <= kEightHoursS; time_s += 1) {
@@ -181,7 +182,7 @@ std::int32_t wrapped(std::int64_t count) {
   return std::bit_cast<std::int32_t>(static_cast<std::uint32_t>(count));
 }
 
-// Three strokes there and back, at 53 mm/s: no step of it is one of the counter's of 0.1 mm.
+// Three strokes back and forth at 53 mm/s; no step equals a step of 0.1 mm.
 constexpr int kStroke = 377, kCountsAFrame = 53;
 std::vector<schema::StrokeFigures> strokes_from(std::int64_t first_count) {
   const schema::RecordingHeader header = encoder_header(1e-6);
@@ -223,7 +224,7 @@ double wrapped_travel_error() {
   return scale && scale->direction == 1 ? std::abs(scale->scale.value / 1e-6 - 1) : INFINITY;
 }
 
-// Any double there is, denormals and the largest among them, in as many digits as tell it from the next.
+// Any finite double, including denormals and the largest, with enough digits to identify it.
 double numbers_not_read_to_the_bit() {
   constexpr int kNumbers = 200'000;
   std::uint64_t state = 12345;
@@ -248,7 +249,7 @@ std::vector<Extreme> clock_rows() {
   return {
       {"capture", "times of a clock 100 ppm fast over 8 h, printed to 1 us: its rate",
        "1000.1 Hz, by which they were made", fast_clock_error(), 1e-6 / kEightHoursS,
-       "as well as the last digits at both ends tell"},
+       "as well as the last digits at both ends determine"},
       {"capture", "times with a gap of 7 h between two minutes: ticks that are missing", "25,202,520",
        long_gap_error(), 0, "a clock of 1000.1 Hz, printed to 1 us"},
       {"capture", "times in seconds since 1970, at 10 kHz: their rate", "10 kHz", error_since_1970(1e4), 1e-7,
@@ -281,8 +282,8 @@ std::vector<Extreme> capture_extremes() {
        1e-9,
        {}},
       {"capture", "a position from a speed of 8 h at 1 kHz, 28.8e6 steps", "the sum in whole numbers",
-       integrated_error(), 3e-9, "re the way; a rounding a step"},
-      {"capture", "numbers of a table, any double there is: those not read to the bit", "strtod",
+       integrated_error(), 3e-9, "relative to the way; one rounding per step"},
+      {"capture", "numbers of a table, arbitrary doubles: those not read to the bit", "strtod",
        numbers_not_read_to_the_bit(), 0, "200,000, denormals among them"},
       {"capture",
        "an encoder that passes 2^31 in the middle of strokes: lengths and speeds",

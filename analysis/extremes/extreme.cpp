@@ -8,15 +8,15 @@
 namespace tacto::analysis {
 
 double Extreme::margin_db() const {
-  constexpr double kLeast = 1e-300;  // an error of nothing has a margin all the same
+  constexpr double kLeast = 1e-300;  // gives a finite margin for an error of 0
   return 20 * std::log10(most / std::max(error, kLeast));
 }
 
 std::vector<Extreme> all_extremes(bool all, const ExtremesProgress& progress) {
   const std::function<std::vector<Extreme>()> rooms[] = {
-      capture_extremes,  filter_extremes,  [all] { return space_extremes(all); },
-      spectrum_extremes, formant_extremes, inverse_extremes,
-      kernel_extremes,   question_extremes};
+      capture_extremes,  filter_extremes,          [all] { return space_extremes(all); },
+      spectrum_extremes, formant_extremes,         inverse_extremes,
+      kernel_extremes,   identify_compare_extremes};
   std::vector<Extreme> rows;
   for (std::size_t i = 0; i < std::size(rooms); ++i) {
     std::ranges::move(rooms[i](), std::back_inserter(rows));

@@ -19,7 +19,7 @@ constexpr double kFilterPi = std::numbers::pi;
 constexpr const char* kExactSections = "zero-phase sections in long double";
 constexpr const char* kExactKernel = "the filter's definition, summed in long double";
 
-// Re the largest value that passes; the design is the reference's own, too.
+// Re the largest output value. The reference computes its own filter design, too.
 double butterworth_error(std::span<const double> values, int order, Band band, double rate_hz,
                          std::size_t padding) {
   const auto sections = spatial::butterworth_band_pass(order, band, rate_hz);
@@ -29,7 +29,7 @@ double butterworth_error(std::span<const double> values, int order, Band band, d
          largest_of(exact);
 }
 
-// Re the largest value that passes, at `places` places.
+// Re the largest output value, at `places` places.
 double fourier_error(std::span<const double> values, Band band, double rate_hz, std::size_t places) {
   spatial::BlockFourierFilter filter(rate_hz, band);
   std::vector<double> fast;
@@ -45,9 +45,9 @@ double fourier_error(std::span<const double> values, Band band, double rate_hz, 
   return error / largest_of(fast);
 }
 
-// The same 4 s at 1 MHz and at 10 kHz, which other tests hold to the definition: the kernel is the same in
-// seconds. Tones, so that both rates hold the same signal, that come and go: where a record ends depends on
-// its rate.
+// The same 4 s at 1 MHz and at 10 kHz; other tests compare 10 kHz with the definition. The kernel is the same
+// in seconds. The signal consists of tones, so that it is the same at both rates, which fade in and out,
+// because the end of a record depends on its rate.
 double fourier_rate_error() {
   const auto record = [](double rate_hz) {
     std::vector<double> values(static_cast<std::size_t>(4 * rate_hz));
@@ -66,7 +66,7 @@ double fourier_rate_error() {
   return error / largest_of(coarse);
 }
 
-// Denormals have steps of 5e-324: some thousand of them are lost in each sum.
+// The spacing of denormals is 5e-324; the rounding error of a sum is some thousand of these steps.
 void add_forces(std::vector<Extreme>& rows) {
   struct Size {
     double scale, most;

@@ -19,7 +19,7 @@ using schema::Formant;
 
 constexpr double kFormantPitchM = 10e-6, kFormantWindowM = 10e-3;
 constexpr double kBinPerM = 1 / kFormantWindowM;  // of the unpadded window
-constexpr double kStatedBins = 0.02;              // find_formants: of a line 20 dB over its background
+constexpr double kStatedBins = 0.02;              // find_formants: for a line 20 dB over its background
 constexpr double kLinePerM = 3210;
 constexpr std::size_t kFormantSamples = 6000;
 
@@ -58,7 +58,7 @@ std::vector<Formant> formants_in(const schema::Texture& texture,
   return spatial::find_formants(*spectrogram).value_or(std::vector<Formant>{});
 }
 
-// |sum of w_n x_n exp(-2 pi i k n)|^2 about a place, in long double.
+// |sum of w_n x_n exp(-2 pi i k n)|^2 around a place, in long double.
 long double exact_power(const std::vector<double>& values, double centre_m, double per_m) {
   const auto window = static_cast<std::size_t>(std::lround(kFormantWindowM / kFormantPitchM));
   const auto first = static_cast<std::size_t>(std::lround(centre_m / kFormantPitchM)) - window / 2;
@@ -73,7 +73,7 @@ long double exact_power(const std::vector<double>& values, double centre_m, doub
   return std::norm(sum);
 }
 
-// The top of the lobe that a point stands on, by golden section.
+// Maximum of the lobe that contains a point, by golden section.
 double exact_top(const std::vector<double>& values, double centre_m, double near_per_m) {
   constexpr double kGolden = 0.6180339887498949;
   double low = near_per_m - 0.5 * kBinPerM, high = near_per_m + 0.5 * kBinPerM;
@@ -85,7 +85,7 @@ double exact_top(const std::vector<double>& values, double centre_m, double near
   return 0.5 * (low + high);
 }
 
-// Two lines within one lobe: each point of the ridge against the lobe's own top, in bins.
+// Two lines within one lobe: distance of each point of the ridge from the lobe's maximum, in bins.
 double one_lobe_error() {
   const schema::Texture texture = texture_of_lines({{kLinePerM, 1}, {kLinePerM + kBinPerM, 0.5}});
   const auto found = formants_in(texture);
@@ -98,7 +98,7 @@ double one_lobe_error() {
   return error / kBinPerM;
 }
 
-// The largest |found - line| of lines that each have a ridge as long as the texture allows, in bins.
+// The largest |found - line|, in bins, of lines that each give a ridge along the whole texture.
 double lines_error(const std::vector<Formant>& found, const std::vector<ExtremeLine>& lines) {
   double error = 0;
   for (const ExtremeLine& line : lines) {
@@ -114,8 +114,8 @@ std::vector<ExtremeLine> pair_apart(double bins) {
   return {{kLinePerM, 1}, {kLinePerM + bins * kBinPerM, 1}};
 }
 
-// In steps of a quarter of a bin.
-double told_apart_from_bins() {
+// Smallest resolved distance, in steps of a quarter of a bin.
+double resolved_from_bins() {
   double bins = 8;
   while (bins > 0.25 &&
          lines_error(formants_in(texture_of_lines(pair_apart(bins - 0.25))), pair_apart(bins - 0.25)) < 0.25)
@@ -136,8 +136,8 @@ double nearest_to_edge_bins() {
   return bins;
 }
 
-// Noise through three poles at 0.2 /mm: level below, falling by 60 dB a decade above. Its one-sided density
-// is 2 pitch |1 / (1 - r exp(-i w))|^6.
+// Noise through three poles at 0.2 /mm: constant below, decreasing by 60 dB per decade above. Its one-sided
+// density is 2 pitch |1 / (1 - r exp(-i w))|^6.
 constexpr double kSlopePole = 0.98751;  // exp(-2 pi 0.2 /mm 10 um)
 
 double slope_density(double per_m) {
@@ -159,7 +159,7 @@ std::vector<double> slope_values() {
   return values;
 }
 
-// Blackman's sums are 0.42 W and 0.3046 W: a line's density is A^2 / 2 0.42^2 / 0.3046 window.
+// Blackman's sums are 0.42 W and 0.3046 W, so the density of a line is A^2 / 2 0.42^2 / 0.3046 window.
 ExtremeLine line_on_slope(double per_m) {
   constexpr double kOver = 100;  // 20 dB
   return {per_m, std::sqrt(2 * kOver * slope_density(per_m) * 0.3046 / (0.42 * 0.42 * kFormantWindowM))};
@@ -181,8 +181,8 @@ double deepest_on_slope_db() {
   return under_strongest_db(per_m);
 }
 
-// A line 100 dB under another is under the window's side lobes: of both one is told, and no side lobe.
-double told_beside_a_strong_line() {
+// A line 100 dB below another is below the window's side lobes: one formant must be found, and no side lobe.
+double found_beside_strong_line() {
   const auto found = formants_in(texture_of_lines({{kLinePerM, 1}, {3 * kLinePerM, 1e-5}}));
   return std::abs(static_cast<double>(found.size()) - 1);
 }
@@ -195,12 +195,13 @@ double size_error(double size_n) {
                   std::abs(found[0].level_db - usual[0].level_db - 20 * std::log10(size_n)));
 }
 
-// The spectrogram's cells are squares in single precision.
+// The spectrogram's cells are squares in single precision, so that very large and very small forces are
+// refused.
 bool is_refused(double size_n) {
   return !spatial::spatial_spectrogram(texture_of_lines({{kLinePerM, size_n}}), formant_options());
 }
 
-// By halves; `good_n` is not refused.
+// By bisection; `good_n` is not refused.
 double refused_from_n(double good_n, double bad_n) {
   while (std::max(bad_n / good_n, good_n / bad_n) > 1.02) {
     const double middle_n = std::sqrt(good_n * bad_n);
@@ -217,27 +218,28 @@ std::vector<Extreme> formant_extremes() {
   std::vector<Extreme> rows = {
       {"spatial",
        "formants: two lines a bin apart, one lobe; in bins",
-       "the lobe's own top, by the transform's definition in long double",
+       "the top of the lobe, by the transform's definition in long double",
        one_lobe_error(),
        kStatedBins,
        {}},
       {"spatial", "formants: two equal lines 4 bins apart; in bins", "the lines'",
        lines_error(formants_in(texture_of_lines(apart)), apart), kStatedBins,
-       fmt::format("told apart from {:g} bins on", told_apart_from_bins())},
+       fmt::format("separable from {:g} bins on", resolved_from_bins())},
       {"spatial", "formants: a line 2 bins from the band's edge; in bins", "the line's", edge_error(2),
-       kStatedBins, fmt::format("nearer than {:.1f} bins none is told", nearest_to_edge_bins())},
+       kStatedBins, fmt::format("none is reported nearer than {:.1f} bins", nearest_to_edge_bins())},
       {"spatial",
        fmt::format("formants: a line {:.0f} dB down on a slope of 60 dB a decade; in bins",
                    under_strongest_db(kOnSlopePerM)),
        "the line's", slope_error(kOnSlopePerM), kStatedBins,
-       fmt::format("deeper than {:.0f} dB under its row's strongest none is told", deepest_on_slope_db())},
-      {"spatial", "formants: a line 100 dB under another: those told too many", "one",
-       told_beside_a_strong_line(), 0, "the window's side lobes are at -58 dB"}};
+       fmt::format("none is reported deeper than {:.0f} dB below the strongest of its row",
+                   deepest_on_slope_db())},
+      {"spatial", "formants: a line 100 dB below another: false formants", "one", found_beside_strong_line(),
+       0, "the window's side lobes are at -58 dB"}};
   for (const double size_n : {1e-12, 1e18})
     rows.push_back(
         {"spatial", fmt::format("formants: a line of {:g} N; in bins and dB", size_n),
          "that of 1 N, and 20 log10 of it", size_error(size_n), 1e-4,
-         fmt::format("{} {:.1g} N its densities are none of single precision: refused",
+         fmt::format("{} {:.1g} N its densities do not fit single precision: refused",
                      size_n < 1 ? "below" : "from", refused_from_n(size_n, size_n < 1 ? 1e-16 : 1e25))});
   return rows;
 }

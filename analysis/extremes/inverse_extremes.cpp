@@ -15,7 +15,7 @@ namespace {
 using playback::Chain;
 using schema::Transducer;
 
-// The rows' own rate; where a method ends is told for the usual rate of `play` too.
+// The rate of the rows. Limits of a method are also given for the default rate of `play`.
 constexpr double kInverseRateHz = 10e3, kPlayRateHz = 2e3, kInverseDelayS = 2e-3;
 constexpr spatial::Band kInverseBand{15, 500};
 
@@ -28,8 +28,8 @@ playback::InverseFilter undone(const Transducer& t, double rate_hz = kInverseRat
                                   {kInverseDelayS, 20, 2.5 * kInverseBand.high_hz});
 }
 
-// RMS over the band of what the taps as they are stored leave, at frequencies that the design did not look
-// at.
+// Residual of the stored (single-precision) taps, RMS over the band, at other frequencies than those of the
+// design.
 double left_by(const playback::InverseFilter& filter, const Transducer& t) {
   constexpr int kPlaces = 1999;
   double sum = 0;
@@ -53,7 +53,7 @@ Transducer with_damping(double ratio) {
   return t;
 }
 
-// The damping ratio stays.
+// The damping ratio does not change.
 Transducer with_resonance(double frequency_hz) {
   Transducer t = *schema::read_transducer("wiertlewski2011");
   const double ratio = schema::damping_ratio(t), w = 2 * std::numbers::pi * frequency_hz;
@@ -69,8 +69,8 @@ Transducer with_pole(double frequency_hz) {
   return t;
 }
 
-// Where the inverse leaves more than is played: by halves of the interval, from a value that works to one
-// that does not.
+// The value at which the inverse's residual exceeds the limit for playback, by bisection between a value that
+// works and one that fails.
 template <class Make>
 double breaks_at(Make make, double works, double fails, double rate_hz) {
   for (int i = 0; i < 12; ++i) {
@@ -86,14 +86,14 @@ Extreme undone_row(std::string condition, const Transducer& t, double most, std:
           most,       std::move(note)};
 }
 
-// What can't be undone is not played: what is asked is that the design says so, and by how much.
+// Such a transducer is not played. The row checks that the design reports its residual correctly.
 Extreme refused_row(std::string condition, const Transducer& t, std::string note) {
   const auto filter = undone(t);
   const bool said = filter.error_db > playback::kMostInverseErrorDb;
   const double stated = std::pow(10, filter.error_db / 20);
   return {"playback",
           std::move(condition) + ": refused",
-          "what is left, in closed form, against what the design says",
+          "the remaining error in closed form, against that of the design",
           said ? std::abs(left_by(filter, t) / stated - 1) : 1,
           0.02,
           std::move(note)};
@@ -103,9 +103,10 @@ Extreme refused_row(std::string condition, const Transducer& t, std::string note
 
 std::vector<Extreme> inverse_extremes() {
   const auto ends = [](const char* words, auto make, double works, double fails) {
-    return fmt::format("{} {:.3g} at {:g} Hz of ticks, {:.3g} at {:g} Hz: refused, it takes more than 20 dB",
-                       words, breaks_at(make, works, fails, kInverseRateHz), kInverseRateHz,
-                       breaks_at(make, works, fails, kPlayRateHz), kPlayRateHz);
+    return fmt::format(
+        "{} {:.3g} at {:g} Hz of ticks, {:.3g} at {:g} Hz: refused, it requires more than 20 dB", words,
+        breaks_at(make, works, fails, kInverseRateHz), kInverseRateHz,
+        breaks_at(make, works, fails, kPlayRateHz), kPlayRateHz);
   };
   return {undone_row("inverse of a damping ratio of 0.001", with_damping(0.001), 1e-2, {}),
           undone_row("inverse of a damping ratio of 1", with_damping(1), 1e-2, {}),

@@ -19,11 +19,12 @@ using playback::Prepared;
 
 constexpr const char* kExactTicks = "the kernel again in double precision; re the drive's RMS";
 constexpr double kStatedKernelError = 5.6e-6;  // -105 dB: TickKernel
-constexpr double kMostTimeInSilence = 3;  // of a tick: a processor without a way of its own takes 10 to 100
+constexpr double kMostTimeInSilence = 3;       // of a tick; a processor that traps denormals needs 10 to 100
 constexpr double kKernelPi = std::numbers::pi;
 
-// At 100 kHz the filter's taps are too few to undo the transducer (refused): its gain alone. Where the finger
-// goes about a count a tick, rounding may choose another of the places within the count (a row of its own).
+// At 100 kHz the filter has too few taps to invert the transducer (refused), so only its gain is inverted. If
+// the finger moves about a count per tick, rounding may select another position within the count (a row of
+// its own).
 Prepared prepared_for(double rate_hz, std::int32_t origin_count = 0) {
   schema::Texture texture;
   texture.signal.pitch_m = 10e-6;
@@ -51,7 +52,8 @@ struct ErrorSum {
   double ratio() const { return size > 0 ? std::sqrt(error / size) : 1; }
 };
 
-// The kernel beside the exact one: a finger that is at place_m(t), gain(t) times the texture's own.
+// Compares the kernel with the exact one: the finger is at place_m(t), the gain is gain(t) times the
+// texture's.
 template <class Place, class Gain>
 double kernel_error(const Prepared& prepared, double seconds, Place place_m, Gain gain) {
   core::TickKernel kernel;
@@ -82,13 +84,13 @@ void add_rates(std::vector<Extreme>& rows) {
     rows.push_back(
         {"playback", fmt::format("ticks at {:g} Hz{}", rate_hz, fastest ? ", gain alone" : ""), kExactTicks,
          kernel_error(prepared_for(rate_hz), 2, wandering, always_one), kStatedKernelError,
-         fastest ? "128 taps are 1.3 ms here: the full inverse is refused; below 100 Hz and above 100 kHz all"
-                 : ""});
+         fastest
+             ? "128 taps are 1.3 ms here: the full inverse is refused; below 100 Hz and above 100 kHz all are"
+             : ""});
   }
 }
 
-// In counts: the place that the tracker tells against the finger's own. A uniform guess within the count has
-// 0.29.
+// Error of the tracker's position, RMS, in counts. A uniform error within the count has 0.29.
 double place_error(double counts_per_tick) {
   core::FingerTracker tracker;
   tracker.set({true, 0, 100});
@@ -102,7 +104,7 @@ double place_error(double counts_per_tick) {
   return std::sqrt(sum / (kTicks - kFirst));
 }
 
-// The same way twice: about 0, and over the counter's end, where 2^31 - 1 is followed by -2^31.
+// The same path twice: around 0, and across the counter's overflow from 2^31 - 1 to -2^31.
 double wrap_difference() {
   constexpr std::int32_t kFar = std::numeric_limits<std::int32_t>::max() - 30000;
   const Prepared near = prepared_for(2e3), far = prepared_for(2e3, kFar);
@@ -121,14 +123,14 @@ double wrap_difference() {
   return most > 0.05 ? worst / most : 1;
 }
 
-/// What a chain of sections comes to under a constant input.
+/// The final state of a chain of sections under a constant input.
 struct SettledChain {
-  double largest = 0;       ///< |y - wanted| over the cycle that it ends in
-  std::uint64_t ticks = 0;  ///< after which it is in that cycle
+  double largest = 0;       ///< |y - target| over the final cycle
+  std::uint64_t ticks = 0;  ///< before the cycle begins
   std::uint64_t cycle = 0;  ///< its length; 0: none was found
 };
 
-// A chain's state is finite: once it comes back to what it was, all later ticks are known (Brent 1980).
+// A chain has finitely many states: once its state repeats, all later ticks are known (Brent 1980).
 SettledChain settled(core::SectionChain chain, float input, double target) {
   constexpr std::uint64_t kMostTicks = 20'000'000;
   core::SectionChain saved = chain;
@@ -147,7 +149,7 @@ SettledChain settled(core::SectionChain chain, float input, double target) {
   return end;
 }
 
-// Time of a block of ticks under an input.
+// Duration of a block of ticks with a constant input.
 double block_time_s(core::SectionChain& chain, float input, float& sum) {
   constexpr int kTicks = 2000;
   const auto begin = std::chrono::steady_clock::now();
@@ -155,8 +157,8 @@ double block_time_s(core::SectionChain& chain, float input, float& sum) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-// How much longer ticks in silence take than under full scale, each the shortest of many blocks: what is
-// left of a machine that is busy with something else.
+// Ratio of the tick's duration in silence to that at full scale. Each is the shortest of many blocks, to
+// exclude other load of the machine.
 double time_in_silence(core::SectionChain silent, core::SectionChain busy) {
   constexpr int kBlocks = 500;
   double quiet_s = INFINITY, loud_s = INFINITY;
@@ -176,7 +178,7 @@ std::vector<wire::Section> single_precision(const std::vector<spatial::Section>&
   return rounded;
 }
 
-// 15-500 Hz at 20 kHz, order 4: what a lab would upload.
+// 15-500 Hz at 20 kHz, order 4: a typical filter of a laboratory.
 void add_silence(std::vector<Extreme>& rows) {
   const auto sections = single_precision(*spatial::butterworth_band_pass(4, {15, 500}, 20e3));
   core::SectionChain chain;
@@ -235,11 +237,11 @@ std::vector<Extreme> kernel_extremes() {
   const auto million = [](double t) { return t > 1 && t < 2 ? 1.0 : 1e-6; };
   rows.push_back({"playback", "a gain that goes a million-fold up and down", kExactTicks,
                   kernel_error(prepared_for(2e3), 3, wandering, million), kStatedKernelError,
-                  "a gain of 3e38 makes no number: a fault, and the drive falls"});
+                  "a gain of 3e38 gives a value that is not finite: a fault, and the drive falls"});
   rows.push_back({"firmware-host",
                   "coefficients in single precision: band-pass 15-500 Hz, order 4, at 20 kHz",
                   "the response with double ones; re its largest", rounding_of(20e3), 1e-2,
-                  "sections whose poles leave the unit circle: refused"});
+                  "sections whose poles leave the unit circle are refused"});
   add_silence(rows);
   return rows;
 }

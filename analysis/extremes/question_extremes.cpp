@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people ask of files: identify, compare.
+// Extremes of identify and compare.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,14 +30,14 @@ ResponseFit fit_of(const schema::Transducer& truth) {
   return fit_response(data, {}, *schema::read_transducer("wiertlewski2011"));
 }
 
-// The largest of resonance and damping, re themselves.
+// The larger relative error of resonance and damping.
 double parameter_error(const schema::Transducer& truth, const ResponseFit& fit) {
   const double resonance = fit.find("resonance_hz")->value / schema::resonance_hz(truth),
                damping = fit.find("damping_ratio")->value / schema::damping_ratio(truth);
   return std::max(std::abs(resonance - 1), std::abs(damping - 1));
 }
 
-// Three real poles: which two of them are the tray's no response tells, so the response itself is held to.
+// With three real poles no response determines which two are the tray's, so the response itself is compared.
 double response_error(const schema::Transducer& truth, const ResponseFit& fit) {
   double error = 0;
   for (double hz = 10; hz <= 1000; hz *= 1.1) {
@@ -61,7 +61,7 @@ double level_error(double times) {
 
 }  // namespace
 
-std::vector<Extreme> question_extremes() {
+std::vector<Extreme> identify_compare_extremes() {
   const schema::Transducer sharp = damped(1e-3), blunt = damped(5);
   std::vector<Extreme> rows{{"analysis",
                              "identify: a damping ratio of 0.001, no frequency within its resonance",
@@ -71,7 +71,7 @@ std::vector<Extreme> question_extremes() {
                              {}},
                             {"analysis", "identify: a damping ratio of 5", "the closed form's response",
                              response_error(blunt, fit_of(blunt)), 1e-9,
-                             "three real poles: which two are the tray's no response tells"}};
+                             "three real poles: no response determines which two are those of the tray"}};
   for (const double times : {1e-12, 1e12})
     rows.push_back({"analysis",
                     fmt::format("compare: a texture with itself {:g} times", times),

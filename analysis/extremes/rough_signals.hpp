@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the conditions are tried with.
+// Test signals for the conditions.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ inline double largest_difference(std::span<const double> a, std::span<const doub
   return size;
 }
 
-/// White noise on a random walk: energy at all frequencies, most of it low.
+/// White noise plus a random walk: energy at all frequencies, most of it at low ones.
 inline std::vector<double> rough_values(std::size_t size, double scale = 1) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;

@@ -19,7 +19,7 @@ struct UnevenStroke {
   std::vector<double> t, x, f;
 };
 
-// `samples` of them, `step_m` long on average and uneven by a fifth.
+// `samples` samples, on average `step_m` apart, with a variation of a fifth.
 UnevenStroke uneven_stroke(std::size_t samples, double step_m, double force = 1) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> uneven(0.8, 1.2);
@@ -33,7 +33,7 @@ UnevenStroke uneven_stroke(std::size_t samples, double step_m, double force = 1)
   return made;
 }
 
-// Of the force, re the largest, at some places of the grid.
+// Error of the force, re the largest, at some places of the grid.
 double resample_error(const UnevenStroke& s, double pitch_m) {
   const double first = std::ceil(s.x.front() / pitch_m), last = std::floor(s.x.back() / pitch_m);
   const spatial::EvenPlaces places{first, pitch_m, static_cast<std::size_t>(last - first) + 1};
@@ -48,7 +48,7 @@ double resample_error(const UnevenStroke& s, double pitch_m) {
   return error / largest_of(s.f);
 }
 
-// Two knots are a straight line.
+// The cubic through two knots is a straight line.
 double two_samples_error() {
   std::vector<double> out(101);
   spatial::HermiteResampler resampler;
@@ -60,7 +60,7 @@ double two_samples_error() {
   return error;
 }
 
-// A known surface under a known motion that goes on for as long as wanted.
+// A known surface under a known motion of any length.
 double place_m(double sample) {
   return 5e-6 * (sample + 40 * std::sin(sample / 400));
 }
@@ -68,7 +68,7 @@ double force_at(double x_m) {
   return std::sin(2 * kSpacePi * x_m / 0.8e-3);
 }
 
-// The stroke's window [begin, end) of samples to the places in its middle; the largest miss of the surface.
+// Resamples samples [begin, end) of the stroke and returns the largest error against the surface.
 double window_error(spatial::HermiteResampler& resampler, std::size_t begin, std::size_t end, UnevenStroke& s,
                     std::vector<double>& out) {
   s.t.clear(), s.x.clear(), s.f.clear();
@@ -87,8 +87,8 @@ double window_error(spatial::HermiteResampler& resampler, std::size_t begin, std
   return error;
 }
 
-// In windows, since it would not fit: a kernel reaches two knots. What is missed is the monotone cubic's own
-// error at 160 samples a period, the same from first to last.
+// In windows, because the whole stroke would not fit into memory; the kernel uses only two knots to each
+// side. The error is the monotone cubic's at 160 samples per period, the same from first to last.
 Extreme long_stroke(std::size_t samples) {
   constexpr std::size_t kWindow = 100000;
   spatial::HermiteResampler resampler;

@@ -19,8 +19,8 @@ struct PowerAt {
   double per_m = 0, power = 0;
 };
 
-// The transforms under a window h and under its derivative, h', of a line at frequency f are H(k - f) and
-// 2 pi i (k - f) H(k - f): their ratio tells f.
+// A line at frequency f has the transform H(k - f) under a window h, and 2 pi i (k - f) H(k - f) under the
+// derivative h'. Their ratio gives f.
 std::vector<PowerAt> reassigned_powers(const schema::SpaceSignal& signal) {
   const std::size_t count = signal.values.size();
   const double length_m = static_cast<double>(count) * signal.pitch_m;
@@ -39,7 +39,7 @@ std::vector<PowerAt> reassigned_powers(const schema::SpaceSignal& signal) {
   fft.forward(sloped, under_slope);
   std::vector<PowerAt> powers;
   for (std::size_t k = 0; k < fft.bins(); ++k) {
-    const bool twin = k != 0 && 2 * k != count;  // at the negative frequency
+    const bool twin = k != 0 && 2 * k != count;  // the negative frequency has the same power
     if (const double power = (twin ? 2 : 1) * std::norm(under_window[k]); power > 0)
       powers.push_back(
           {static_cast<double>(k) / length_m - (under_slope[k] / under_window[k]).imag(), power});

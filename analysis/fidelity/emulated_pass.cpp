@@ -16,7 +16,7 @@ using playback::FingerPath;
 using schema::ErrorKind;
 using schema::Result;
 
-constexpr double kBesideS = 0.25;  // in which the drive rises before the texture begins
+constexpr double kBesideS = 0.25;  // before the texture, for the drive's initial ramp, and behind it
 
 FingerPath straight_path(const schema::Texture& texture, double at_m, double speed_mps) {
   const double way_m = texture.signal.length_m() + 2 * kBesideS * speed_mps;
@@ -33,7 +33,7 @@ Result<void> write_path(const std::string& file, const FingerPath& path) {
   return files.commit();
 }
 
-// Tick i is (i + 1) periods after arming, when the emulated finger set out.
+// Tick i is (i + 1) periods after arming. The emulated finger starts at arming.
 std::vector<double> true_positions(const FingerPath& path, double rate_hz, std::size_t ticks) {
   auto positions = playback::positions_along(path, rate_hz, ticks + 1);
   positions.erase(positions.begin());
@@ -75,7 +75,7 @@ Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::Pla
   auto columns = playback::read_session_columns(options.session);
   TACTO_TRY(columns);
   EmulatedPass pass{std::move(*columns), std::move(*outcome), {}};
-  // The ramp at the end outlasts the path, where the finger rests.
+  // The final ramp of the drive is longer than the path, at the end of which the finger rests.
   const auto along = static_cast<std::size_t>(path.duration_s() * pass.columns.header.rate_hz);
   pass.position_m =
       true_positions(path, pass.columns.header.rate_hz, std::min(along, pass.columns.tick.size()));

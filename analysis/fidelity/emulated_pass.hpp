@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One pass over a texture on the emulated device, at one speed, through the whole way of playback.
+// One pass over a texture on the emulated device, at one speed, through the complete chain of playback.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace tacto::analysis {
 struct EmulatedPass {
   playback::SessionColumns columns;  ///< the drive as it was sent, tick by tick
   playback::PlayOutcome outcome;
-  /// Where the finger was at each tick, exactly: the encoder knows it to a count.
+  /// Exact position of the finger at each tick; the encoder's resolution is one count.
   std::vector<double> position_m;
 };
 
-/// Texture, upload over the wire, the firmware's kernel on the emulated encoder's counts, session: as
-/// `tactograph play`. The finger goes at `speed_mps` from 0.25 s before the texture to 0.25 s behind it.
-/// `progress` hears which part of it was played. `options` names program, device and preparation; path, time
-/// and session are filled in. Errors: as play_once; usage: stopped; internal: the session's counts are not
-/// the path's.
+/// Plays as `tactograph play` does: texture, upload over the wire, the firmware's kernel with the counts of
+/// the emulated encoder, session. The finger moves at `speed_mps` from 0.25 s before the texture to 0.25 s
+/// behind it. `progress` receives the played fraction. `options` contains program, device and preparation;
+/// path, time and session are set here. Errors: those of play_once; usage: stopped; internal: the session's
+/// counts do not match the path.
 schema::Result<EmulatedPass> emulated_pass(const schema::Texture& texture, playback::PlayOptions options,
                                            double speed_mps, const std::function<bool()>& stop_asked,
                                            const std::function<void(double)>& progress = {});

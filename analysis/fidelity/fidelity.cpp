@@ -11,9 +11,9 @@
 #include "analysis/compare/played_texture.hpp"
 #include "analysis/fidelity/band_kept.hpp"
 #include "analysis/fidelity/emulated_pass.hpp"
-#include "analysis/fidelity/felt.hpp"
+#include "analysis/fidelity/emulated_trays.hpp"
 #include "analysis/fidelity/scratch_folder.hpp"
-#include "analysis/fidelity/trays.hpp"
+#include "analysis/fidelity/tray_displacement.hpp"
 #include "data-schema/base/quantity.hpp"
 #include "playback/model/finger_path.hpp"
 #include "spatial/texture/valid_band.hpp"
@@ -29,17 +29,17 @@ constexpr double kLeftOutS = 0.05, kFadeM = 1e-3;  // left out at either end of 
 constexpr double kFarthestShiftM = 50e-6;
 constexpr double kUsualFidelityGain = 1e-3;
 constexpr double kFastestMps = 10, kLeastKeptPercent = 1;
-// Of the emulated tray; each takes 100 bytes while it is judged (measured), so this 1 GB.
-constexpr double kMostFeltSamples = 1e7;
-constexpr double kAroundS = 2;           // before the texture, behind it, and the drive's ramps
-constexpr double kPlayedShare = 0.4;     // of a speed's time, playing; the rest is the trays'
-constexpr double kOtherUnitWish = 31.6;  // times the limit: 30 dB
+// Samples of the emulated tray. Each needs 100 bytes during the comparison (measured), so this is 1 GB.
+constexpr double kMostTraySamples = 1e7;
+constexpr double kAroundS = 2;            // s before and behind the texture, and for the drive's ramps
+constexpr double kPlayedShare = 0.4;      // share of the time of one speed; the trays take the rest
+constexpr double kOtherUnitRatio = 31.6;  // times the displacement limit: 30 dB
 
 double gain_of(const FidelityOptions& options) {
   return options.play.program.gain_m_per_n.value_or(kUsualFidelityGain);
 }
 
-// A stretch of samples over time, and where the finger was.
+// A stretch of samples over time, with the positions of the finger.
 struct Stretch {
   std::vector<double> position_m;
   std::size_t first = 0, count = 0;
@@ -89,13 +89,13 @@ void judge(FidelityRow& row) {
   row.error_in_place_db = *c.error_db;
   row.level_db = c.power_level_db;
   row.target_rms_m = c.a_rms;
-  row.felt_rms_m = c.b_rms;
+  row.finger_rms_m = c.b_rms;
 }
 
-Result<FidelityRow> compared_row(const std::string& tray, const Texture& target, const Texture& felt) {
+Result<FidelityRow> compared_row(const std::string& tray, const Texture& target, const Texture& played) {
   CompareOptions options;
   options.formants = false;
-  auto comparison = compare(target, felt, options);
+  auto comparison = compare(target, played, options);
   TACTO_TRY(comparison);
   FidelityRow row;
   row.tray = tray;
@@ -110,16 +110,17 @@ struct Wanted {
   spatial::Band band;
 };
 
-// As it moved, and as a sensor saw it.
+// Compares the displacement, and the displacement as the sensor measures it, with the target.
 Result<FidelityRow> twice_compared_row(const std::string& tray, const Wanted& target,
-                                       const std::vector<double>& felt_m, const std::vector<double>& seen_m) {
+                                       const std::vector<double>& finger_m,
+                                       const std::vector<double>& seen_m) {
   const auto row_of = [&](const std::vector<double>& moved_m) -> Result<FidelityRow> {
-    const auto felt =
+    const auto played =
         along_stretch(in_band(moved_m, target.stretch.rate_hz, target.band), target.stretch, target.band);
-    TACTO_TRY(felt);
-    return compared_row(tray, target.texture, *felt);
+    TACTO_TRY(played);
+    return compared_row(tray, target.texture, *played);
   };
-  auto row = row_of(felt_m);
+  auto row = row_of(finger_m);
   if (!row) return row;
   const auto seen = row_of(seen_m);
   if (!seen) return seen;
@@ -152,11 +153,11 @@ FidelitySpeed speed_of(const EmulatedPass& pass, const Texture& texture, double 
   return speed;
 }
 
-// Thirty times the limit is no texture that is played too loud, but another unit.
-void note_wish(FidelitySpeed& speed, const std::vector<double>& target_m, double limit_m) {
+// A target thirty times over the limit suggests a wrong unit rather than a gain that is too large.
+void note_unit(FidelitySpeed& speed, const std::vector<double>& target_m, double limit_m) {
   double peak_m = 0;
   for (const double value : target_m) peak_m = std::max(peak_m, std::abs(value));
-  if (peak_m < kOtherUnitWish * limit_m) return;
+  if (peak_m < kOtherUnitRatio * limit_m) return;
   speed.notes.push_back(
       fmt::format("at {:g} mm/s the target is {}, {:.0f} dB over the transducer's limit of {}: check the "
                   "texture's unit, and "
@@ -173,7 +174,7 @@ double share_done(std::size_t done, std::size_t all) {
   return static_cast<double>(done) / static_cast<double>(all);
 }
 
-// Wanted once, felt once for each tray.
+// Computes the target once, and the displacement for each tray.
 Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Texture& texture,
                                      const Trays& trays, double speed_mps,
                                      const std::function<void(double)>& progress) {
@@ -186,15 +187,15 @@ Result<FidelitySpeed> emulated_speed(const FidelityOptions& options, const Textu
   const auto stretch = judged_stretch(*pass, texture, at_m, speed_mps);
   TACTO_TRY(stretch);
   const auto target_m = target_displacement_m(*pass, texture, at_m, gain_of(options), band);
-  note_wish(speed, target_m, pass->columns.header.transducer.displacement_limit_m);
+  note_unit(speed, target_m, pass->columns.header.transducer.displacement_limit_m);
   const auto target = along_stretch(target_m, *stretch, band);
   TACTO_TRY(target);
   for (const Tray& tray : trays.trays) {
     if (options.stop_asked()) return fidelity_stopped();
     progress(kPlayedShare + (1 - kPlayedShare) * share_done(speed.rows.size(), trays.trays.size()));
-    const auto felt_m = felt_displacement_m(*pass, trays.transducer, tray.physics);
-    const auto seen_m = through_sensor(felt_m, stretch->rate_hz, trays.transducer);
-    auto row = twice_compared_row(tray.name, {*target, *stretch, band}, felt_m, seen_m);
+    const auto finger_m = displacement_at_finger_m(*pass, trays.transducer, tray.physics);
+    const auto seen_m = through_sensor(finger_m, stretch->rate_hz, trays.transducer);
+    auto row = twice_compared_row(tray.name, {*target, *stretch, band}, finger_m, seen_m);
     TACTO_TRY(row);
     speed.rows.push_back(std::move(*row));
   }
@@ -220,7 +221,7 @@ Result<Fidelity> emulated_fidelity(const FidelityOptions& options, const Texture
   return whole;
 }
 
-// Of a real device: what its recorded drive would do to the model, in somebody's longest stroke.
+// For a real device: applies the recorded drive to the transducer's model, in the user's longest stroke.
 Result<Fidelity> modelled_fidelity(const FidelityOptions& options, const Texture& texture,
                                    const std::function<void(double)>& progress) {
   const auto scratch = ScratchFolder::make();
@@ -248,7 +249,7 @@ Result<Fidelity> modelled_fidelity(const FidelityOptions& options, const Texture
   speed.rows.push_back(std::move(*row));
   Fidelity whole;
   whole.simulated = outcome->simulated;
-  whole.displacement = "not measured: what the recorded drive makes of the transducer's model";
+  whole.displacement = "not measured: the transducer's model under the recorded drive";
   whole.speeds.push_back(std::move(speed));
   return whole;
 }
@@ -258,27 +259,27 @@ Result<void> check_speeds(const FidelityOptions& options) {
     if (!(speed > 0 && speed <= kFastestMps))
       return schema::fail(
           ErrorKind::usage,
-          fmt::format("{:g} m/s is no finger's speed: it has to be above 0, and at most {:g} m/s", speed,
+          fmt::format("{:g} m/s is not a finger's speed: it has to be above 0, and at most {:g} m/s", speed,
                       kFastestMps),
           "speed", "fingers slide with 10 to 500 mm/s");
-  if (options.speeds_mps.empty()) return schema::fail(ErrorKind::usage, "there is no speed", "speed");
+  if (options.speeds_mps.empty()) return schema::fail(ErrorKind::usage, "no speed is given", "speed");
   return {};
 }
 
-// Slower ones would fill the memory, after minutes of playing.
+// A slower speed would fill the memory, after minutes of playing.
 Result<void> check_duration(const FidelityOptions& options, const Texture& texture) {
   const double rate_hz = options.play.prepare.rate_hz;
-  const double longest_s = kMostFeltSamples / (rate_hz * static_cast<double>(samples_a_tick(rate_hz)));
+  const double longest_s = kMostTraySamples / (rate_hz * static_cast<double>(samples_a_tick(rate_hz)));
   const double length_m = texture.signal.length_m(), slowest_mps = length_m / (longest_s - kAroundS);
   const auto words = [](double mps) { return schema::for_people(mps, schema::Dimension::speed); };
   for (const double speed : options.speeds_mps)
     if (speed < slowest_mps)
       return schema::fail(
           ErrorKind::unsuitable,
-          fmt::format("at {} the texture's {} take {:.3g} s; at {:g} Hz up to {:.3g} s are held in memory",
+          fmt::format("at {} the texture's {} take {:.3g} s; at {:g} Hz at most {:.3g} s fit into memory",
                       words(speed), schema::length_for_people(length_m), length_m / speed, rate_hz,
                       longest_s - kAroundS),
-          "speed", fmt::format("ask for {} or more", words(1.001 * slowest_mps)));
+          "speed", fmt::format("choose {} or more", words(1.001 * slowest_mps)));
   return {};
 }
 

@@ -26,7 +26,8 @@ std::string speed_words(const FidelitySpeed& speed) {
 
 std::string taken_words(const FidelitySpeed& s) {
   std::string words = fmt::format(
-      "the band of {:.0f}-{:.0f} Hz keeps {:.1f} % of the power of all that is played; drive peak {} of {}; ",
+      "the band of {:.0f}-{:.0f} Hz contains {:.1f} % of the power of the played texture; drive peak {} of "
+      "{}; ",
       s.low_hz, s.high_hz, s.band_kept_percent, for_people(s.drive_peak_v, Dimension::voltage),
       for_people(s.drive_limit_v, Dimension::voltage));
   if (s.amplitude_limited + s.slew_limited == 0) return words + "no tick limited";
@@ -67,7 +68,7 @@ ResultPicture stretch_picture(const FidelitySpeed& speed) {
   const FidelityRow& first = speed.rows.front();
   const FidelityRow& last = speed.rows.back();
   ResultPicture picture{
-      "The middle of the way, " + speed_words(speed), "way (mm)", "displacement (µm)", false, {}};
+      "The middle of the path, " + speed_words(speed), "position (mm)", "displacement (µm)", false, {}};
   picture.curves.push_back(stretch_curve("target", first.comparison, first.comparison.pair.a, false));
   picture.curves.push_back(
       stretch_curve("tray: " + first.tray, first.comparison, first.comparison.pair.b, true));
@@ -92,11 +93,11 @@ std::string rows_table(const FidelitySpeed& speed, const std::string& simulated)
        {"shift", [](const Row& row) { return for_people(row.shift_m, Dimension::length); }},
        {"level", [](const Row& row) { return fmt::format("{:+.2f} dB", row.level_db); }},
        {"target, RMS", [](const Row& row) { return for_people(row.target_rms_m, Dimension::length); }},
-       {"displacement, RMS", [](const Row& row) { return for_people(row.felt_rms_m, Dimension::length); }},
+       {"displacement, RMS", [](const Row& row) { return for_people(row.finger_rms_m, Dimension::length); }},
        {"from", [&](const Row&) { return simulated.empty() ? "modelled" : "simulated"; }}});
 }
 
-// The largest error of all trays and speeds, and the smallest beside it.
+// The largest and the smallest error of all trays and speeds.
 std::string fidelity_answer(const Fidelity& fidelity) {
   const FidelitySpeed *best_at = nullptr, *worst_at = nullptr;
   const FidelityRow *best = nullptr, *worst = nullptr;
@@ -123,7 +124,7 @@ std::vector<schema::ResultFigure> fidelity_figures(const Fidelity& fidelity) {
     for (const FidelityRow& row : speed.rows)
       figures.push_back({fmt::format("{}, {}", speed_words(speed), row.tray),
                          fmt::format("error {:.1f} dB re the target ({})", row.error_db, kind)});
-    figures.push_back({speed_words(speed) + ", taken away", taken_words(speed)});
+    figures.push_back({speed_words(speed) + ", removed", taken_words(speed)});
   }
   return figures;
 }
@@ -147,7 +148,7 @@ schema::Result<std::string> fidelity_page(const Fidelity& fidelity) {
   const auto pictures = fidelity_pictures(fidelity);
   for (std::size_t i = 0; i < fidelity.speeds.size(); ++i) {
     const FidelitySpeed& speed = fidelity.speeds[i];
-    body += fmt::format("<h2>{}</h2>\n<p>Taken away: {}.</p>\n", escaped(speed_words(speed)),
+    body += fmt::format("<h2>{}</h2>\n<p>Removed: {}.</p>\n", escaped(speed_words(speed)),
                         escaped(taken_words(speed)));
     body += rows_table(speed, fidelity.simulated);
     for (const std::string& note : speed.notes)
@@ -158,12 +159,9 @@ schema::Result<std::string> fidelity_page(const Fidelity& fidelity) {
   }
   body +=
       "<p class=\"note\">Error: the power of the displacement minus its target over the target's, in the "
-      "judged "
-      "band, after one constant shift along the way is removed; 'in place' keeps that shift; 're-recorded' "
-      "is the "
-      "error of the displacement that a sensor records. The target is the exact reference at the finger's "
-      "true "
-      "positions.</p>\n";
+      "judged band, after one constant shift along the path is removed; 'in place' keeps that shift; "
+      "'re-recorded' is the error of the displacement that a sensor records. The target is the exact "
+      "reference at the finger's true positions.</p>\n";
   return html_document("Fidelity of " + fidelity.texture, body);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fidelity as figures, pictures, and one page that needs nothing beside it.
+// Fidelity as figures, pictures, and one HTML page that needs no other files.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace tacto::analysis {
 
-/// One for each speed and tray: the error; and what was taken away at each speed.
+/// The error for each speed and tray, and what was removed from the texture at each speed.
 std::vector<schema::ResultFigure> fidelity_figures(const Fidelity& fidelity);
 
-/// For each speed: the error by band of every tray, and a stretch of wanted and felt (the first tray and the
-/// last).
+/// For each speed: the error by band of every tray, and a stretch of target and displacement (the first and
+/// the last tray).
 std::vector<schema::ResultPicture> fidelity_pictures(const Fidelity& fidelity);
 
-/// Errors: of drawing.
+/// Errors: those of drawing.
 schema::Result<std::string> fidelity_page(const Fidelity& fidelity);
 
 }  // namespace tacto::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A folder for files that nobody keeps.
+// A folder for temporary files.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace tacto::analysis {
 
-/// Made under the system's folder for temporary files; gone with this object, and all that is in it.
+/// Created in the system's folder for temporary files. The destructor deletes it with its contents.
 class ScratchFolder {
  public:
   /// Errors: cannot_write.

@@ -24,8 +24,8 @@ details { margin: .8rem 0; border: 1px solid #d5d9de; border-radius: .3rem; padd
 summary { cursor: pointer; padding: .5rem 0; font-weight: 600; }
 )";
 
-// Below this width of the screen a table of so many columns becomes a list: one block a row, "header: value"
-// a line.
+// On a screen narrower than this width, a table of so many columns becomes a list: one block per row, one
+// line "header: value" per cell.
 struct ListedBelow {
   std::size_t columns;
   const char* width;
@@ -46,15 +46,15 @@ std::string list_style() {
   return style;
 }
 
-// The rule for a table of so many columns; empty for one that is never listed.
+// The CSS class for a table of so many columns; empty for a table that never becomes a list.
 std::string table_class(std::size_t columns) {
   for (const ListedBelow& rule : kListedBelow)
     if (columns >= rule.columns) return fmt::format(" class=\"c{}\"", rule.columns);
   return "";
 }
 
-// What a data: URI in a double-quoted attribute can't hold as it is. Base64 would make a third more of it,
-// and of the pictures within an SVG, which are base64 already, a second time.
+// Encodes the characters that a data: URI in a double-quoted attribute cannot contain. Base64 would enlarge
+// the SVG by a third, and the pictures within it, which already are base64, a second time.
 std::string percent_encoded(std::string_view text) {
   std::string uri;
   for (const char c : text)
@@ -63,7 +63,7 @@ std::string percent_encoded(std::string_view text) {
       uri += c == ' ' ? " " : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
     else
       uri += c;
-  // A page links to nothing: a search for "http" shall not find the names of XML's namespaces.
+  // A page has no links: a search for "http" must not find the names of XML's namespaces.
   for (std::size_t at = 0; (at = uri.find("http", at)) != uri.npos;) uri.replace(at, 1, "%68");
   return uri;
 }
@@ -74,7 +74,7 @@ std::size_t longest_word(std::string_view text) {
   return longest;
 }
 
-// Sentences are read from the left; a word without a break, as a path, may be broken anywhere.
+// Sentences are aligned left; a long word without spaces, such as a path, may be broken anywhere.
 std::string cell_class(std::string_view cell) {
   constexpr std::size_t kLongWord = 24, kSentence = 40;
   if (longest_word(cell) > kLongWord) return " class=\"long text\"";
@@ -94,7 +94,7 @@ std::string entity(char c) {
   return c == '"' ? "&quot;" : std::string(1, c);
 }
 
-// How long the first sign of UTF-8 is; 0 where it is none (names of files may be any bytes).
+// Length in bytes of the first UTF-8 character; 0 if it is invalid (names of files may contain any bytes).
 std::size_t sign_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return 1;

@@ -11,14 +11,14 @@
 
 namespace tacto::analysis {
 
-/// Text with <, >, & and quotes written as entities; bytes that are no UTF-8 as U+FFFD.
+/// Writes <, >, & and quotes as entities, and bytes that are not UTF-8 as U+FFFD.
 std::string escaped(std::string_view text);
 
-/// An <img> that holds its SVG as a data: URI; `alternative` is read where pictures can't be seen.
+/// An <img> with its SVG as a data: URI; `alternative` is the text for readers without pictures.
 std::string inline_svg(std::string_view svg, std::string_view alternative);
 
-/// A column of a table whose rows are `Row`s: its header and what a row shows below it, together, so that a
-/// table has as many headers as cells a row.
+/// A column of a table whose rows are `Row`s: the header and the text of a cell together, so that their
+/// numbers agree.
 template <class Row>
 class Column {
  public:
@@ -37,8 +37,8 @@ class Column {
 /// The cell of a row and a column, by number.
 using CellText = std::function<std::string(std::size_t row, std::size_t column)>;
 
-/// A <table> with one row for each of `rows`. Headers and cells are escaped. On a narrow screen each row
-/// becomes a list of "header: cell"; no cell is ever cut.
+/// A <table> with `rows` rows. Headers and cells are escaped. On a narrow screen each row becomes a list of
+/// "header: cell"; cells wrap and are never cut.
 std::string html_table(const std::vector<std::string>& headers, std::size_t rows, const CellText& cell);
 
 template <class Row>
@@ -50,20 +50,20 @@ std::string html_table(const std::vector<Row>& rows,
                     [&](std::size_t row, std::size_t column) { return columns[column].cell(rows[row]); });
 }
 
-/// A <table>; the first row is its head. Cells are escaped. Precondition: all rows of equal size. New tables
-/// take columns instead.
+/// A <table>; the first row is its head. Cells are escaped. Precondition: all rows have the same size. New
+/// code should use columns instead.
 std::string html_table(const std::vector<std::vector<std::string>>& rows);
 
-/// `html` under a line that opens it: for what stands behind the answer, as long tables. Closed at first.
+/// Folds `html` under a line that opens it, for details such as long tables. Initially closed.
 std::string folded(std::string_view summary, std::string_view html);
 
-/// The sentence that answers the page's question: in large letters, before everything else.
+/// The sentence that answers the page's question, in large letters at the top.
 std::string answer(std::string_view sentence);
 
-/// The box that says by what a page's data were simulated; empty where they were not.
+/// The box with the origin of a page's simulated data; empty for real data.
 std::string simulated_box(std::string_view by_what);
 
-/// A whole document around `body`, with the house's style sheet inside.
+/// A complete document around `body`, with the style sheet inside.
 std::string html_document(std::string_view title, std::string_view body);
 
 }  // namespace tacto::analysis

@@ -32,7 +32,7 @@ spatial::LineFigure figure_of(const schema::ResultPicture& picture, const std::s
   if (picture.logarithmic_x) figure.x_scale = spatial::AxisScale::logarithmic;
   std::size_t colour = 0;
   for (const schema::ResultCurve& curve : picture.curves) {
-    // A curve without a name goes with the one before it.
+    // A curve without a name continues the previous one and has its colour.
     if (!curve.name.empty() && !figure.series.empty()) ++colour;
     figure.series.push_back(
         {curve.name, curve.x, curve.y, spatial::series_colour(colour), 1.2, curve.dashed});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The curves of results, drawn.
+// Draws the curves of results.
 #pragma once
 
 #include <span>
@@ -11,15 +11,15 @@
 
 namespace tacto::analysis {
 
-/// As a figure; `simulated` says by what, and shows a badge.
+/// A picture as a figure. `simulated` is the origin of the simulation and adds a badge.
 spatial::LineFigure figure_of(const schema::ResultPicture& picture, const std::string& simulated);
 
-/// All of them as <img> with their SVG inside; a picture without a finite point as a line of text. Errors: of
-/// drawing.
+/// All pictures as <img> with their SVG inside; a picture without a finite point becomes a line of text.
+/// Errors: those of drawing.
 schema::Result<std::string> pictures_html(std::span<const schema::ResultPicture> pictures,
                                           const std::string& simulated);
 
-/// Figures as a table of two columns.
+/// Figures (numbers) as a table of two columns.
 std::string figures_html(std::span<const schema::ResultFigure> figures);
 
 }  // namespace tacto::analysis

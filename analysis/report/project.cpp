@@ -21,7 +21,7 @@ bool hidden(const fs::path& path) {
   return path.filename().string().starts_with(".");
 }
 
-// All but folders below the folder, by name.
+// All entries below the folder except folders, sorted by name.
 Result<std::vector<std::string>> files_below(const std::string& folder, const std::string& leave_out) {
   std::error_code failure, ignored;
   fs::recursive_directory_iterator at(folder, failure);
@@ -42,7 +42,7 @@ Result<std::vector<std::string>> files_below(const std::string& folder, const st
   return files;
 }
 
-// Samples: of a file that names them, or of one that can't be used and is named for itself.
+// Whether the path contains the samples of a readable file, or is a WAV beside an unusable sidecar.
 bool is_sidecars_wav(const std::string& path, const Project& project) {
   const auto names = [&](const ProjectFile& file) { return file.data == path; };
   if (std::ranges::any_of(project.files, names)) return true;
@@ -59,15 +59,14 @@ bool may_be_ours(const std::string& path) {
   return path.ends_with(".json") || path.ends_with(".nc") || path.ends_with(".session");
 }
 
-// A pipe would be waited for, and what a link leads nowhere from is missing in the project.
+// Opening a pipe would block; the target of a broken link is missing.
 std::optional<schema::Error> irregular(const std::string& path) {
   std::error_code ignored;
   if (fs::is_regular_file(path, ignored)) return std::nullopt;
   if (!fs::exists(path, ignored))
-    return schema::Error{ErrorKind::not_found, "is a link that leads nowhere", path,
-                         "put back what it led to, or remove it"};
-  return schema::Error{ErrorKind::unsuitable, "is no file but a pipe, a socket or a device", path,
-                       "remove it, or store what comes out of it"};
+    return schema::Error{ErrorKind::not_found, "is a broken link", path, "restore its target, or remove it"};
+  return schema::Error{ErrorKind::unsuitable, "is not a file but a pipe, a socket or a device", path,
+                       "remove it, or store its data in a file"};
 }
 
 void add_file(const std::string& path, Project& project, const std::function<void(double)>& progress) {
@@ -78,7 +77,7 @@ void add_file(const std::string& path, Project& project, const std::function<voi
   if (is_journal(path)) {
     project.broken.push_back({path,
                               {ErrorKind::malformed, "is of a recording that was never closed", path,
-                               "'tactograph recover' makes it whole"}});
+                               "'tactograph recover' repairs it"}});
     return;
   }
   if (!may_be_ours(path)) {
@@ -108,7 +107,7 @@ Result<Project> read_project(const std::string& folder, const std::string& leave
     if (progress) progress(to);
   }
   if (project.files.empty() && project.broken.empty())
-    return schema::fail(ErrorKind::unsuitable, "holds no file of tactograph", folder,
+    return schema::fail(ErrorKind::unsuitable, "contains no file of tactograph", folder,
                         "name a project's folder");
   std::erase_if(project.foreign, [&](const std::string& path) { return is_sidecars_wav(path, project); });
   std::ranges::stable_sort(project.files, {}, &ProjectFile::kind);

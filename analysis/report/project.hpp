@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All that a folder holds, and the page about it.
+// The contents of a folder, and the page about it.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace tacto::analysis {
 
-/// A file that could not be read, or that is faulty.
+/// A file that is unreadable or faulty.
 struct BrokenFile {
   std::string path;
   schema::Error error;
@@ -20,25 +20,25 @@ struct BrokenFile {
 struct Project {
   std::string folder;
   std::vector<ProjectFile> files;  ///< by kind, then by name
-  std::vector<BrokenFile> broken;  ///< files of ours, or that should be
+  std::vector<BrokenFile> broken;  ///< tactograph's files that are unusable
   std::vector<std::string>
-      foreign;  ///< what can't be described (other programs' files, our pictures and drives): named
+      foreign;  ///< files that are not described (other programs' files, pictures and drives): names only
 };
 
-/// Looks into the folder and those within it (hidden ones and links to folders are passed over). A file of
-/// ours is a .json that says a kind, a .nc, a .session; a .wav goes with the sidecar that names it. One that
-/// cannot be read does not stop the rest; nor do pipes, sockets, devices and links that lead nowhere, which
-/// are never opened. `leave_out` is a path that is not looked at: the page itself. `progress` hears 0 to 1.
-/// Errors: not_found, where there is no such folder; unsuitable, where it holds no file of ours.
+/// Reads the folder and its subfolders, except hidden ones and links to folders. A file of tactograph is a
+/// .json with a kind, a .nc or a .session; a .wav belongs to the sidecar that names it. An unreadable file
+/// does not stop the rest; nor do pipes, sockets, devices and broken links, which are not opened. `leave_out`
+/// is a path to skip: the page itself. `progress` receives 0 to 1. Errors: not_found: the folder does not
+/// exist; unsuitable: it contains no file of tactograph.
 schema::Result<Project> read_project(const std::string& folder, const std::string& leave_out,
                                      const std::function<void(double)>& progress = {});
 
-/// Draws the files' pictures. A file with one that cannot be drawn goes from `files` to `broken`: it does not
-/// stop the rest.
+/// Draws the pictures of all files. If a picture cannot be drawn, its file moves from `files` to `broken`,
+/// and the rest continues.
 void draw_pictures(Project& project);
 
-/// One page that needs nothing beside it: what was measured where as a table, then each file with its figures
-/// and pictures, as far as draw_pictures() has drawn them.
+/// One HTML page that needs no other files: a table of the measurements, then each file with its figures and
+/// the pictures that draw_pictures() has drawn.
 std::string project_page(const Project& project);
 
 }  // namespace tacto::analysis

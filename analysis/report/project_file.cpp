@@ -16,9 +16,9 @@ namespace {
 using schema::FileKind;
 using schema::Result;
 
-constexpr double kChecked = 0.5;  // of the time that a file takes
+constexpr double kChecked = 0.5;  // share of the time for one file
 
-// Of recordings and textures the samples that they name, of other kinds the file itself.
+// The samples' path for recordings and textures, the file itself for other kinds.
 std::string data_path(const schema::StoredFile& file) {
   if (file.kind == FileKind::recording)
     if (const auto recording = schema::open_recording(file.path)) return schema::wav_path(*recording);
@@ -35,7 +35,7 @@ Result<void> check(const schema::StoredFile& file, const Progress& progress) {
   const std::size_t more = checked->findings.size() - 1;
   return schema::fail(schema::ErrorKind::malformed,
                       more == 0 ? what : fmt::format("{}, and {} more faults", what, more), where,
-                      "'tactograph validate' says more");
+                      "'tactograph validate' lists all");
 }
 
 }  // namespace
@@ -64,6 +64,10 @@ Result<void> read_into(const std::string& path, FileKind kind, ProjectFile& file
       return add_session_table(path, file);
     case FileKind::trade:
       return add_trade_table(path, file);
+    case FileKind::device:
+      return add_device(path, file);
+    case FileKind::hand:
+      return add_hand(path, file);
     case FileKind::results:
       break;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One file of a project, as a report shows it.
+// One file of a project, as shown in a report.
 #pragma once
 
 #include <functional>
@@ -15,19 +15,19 @@ namespace tacto::analysis {
 struct ProjectFile {
   std::string path;
   schema::FileKind kind = schema::FileKind::recording;
-  std::string date;       ///< of the measurement where it is known, else of the file's making; ISO 8601
+  std::string date;       ///< of the measurement if known, otherwise of the file's creation; ISO 8601
   std::string origin;     ///< device or source file
-  std::string simulated;  ///< by what; empty for real data
-  std::string data;       ///< path of its samples, or its own where it has none
+  std::string simulated;  ///< origin of the simulation; empty for real data
+  std::string data;       ///< path of its samples, or its own path if it has none
   std::string checksum;   ///< first 12 digits of the SHA-256 of its data
   std::vector<schema::ResultFigure> figures;
   std::vector<schema::ResultPicture> pictures;
-  std::vector<std::string> drawings;  ///< SVG, where a picture is more than curves
-  std::string pictures_html;          ///< `pictures` as the page shows them: by draw_pictures()
+  std::vector<std::string> drawings;  ///< SVG, for pictures that are more than curves
+  std::string pictures_html;          ///< `pictures` as HTML, set by draw_pictures()
 };
 
-/// Checks a file (schema, samples, checksum) and reads what is said of it. Errors: of reading; malformed,
-/// with the first finding of schema::check_file. `progress` hears fractions.
+/// Checks a file (schema, samples, checksum) and reads its contents for the report. `progress` receives
+/// fractions. Errors: those of reading; malformed: with the first finding of schema::check_file.
 schema::Result<ProjectFile> project_file(const schema::StoredFile& file,
                                          const std::function<void(double)>& progress = {});
 

@@ -29,13 +29,13 @@ std::string main_figures(const ProjectFile& file) {
   for (const auto& [name, value] : std::span(file.figures).first(std::min(kShown, file.figures.size())))
     words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", name, value);
   if (words.size() <= kLongest) return words;
-  // Not within a character of several bytes.
+  // Do not cut within a character of several bytes.
   std::size_t end = kLongest;
   while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xC0) == 0x80) --end;
   return words.substr(0, end) + "…";
 }
 
-// Of many files the first are shown, the others open by a click.
+// With more files, the page shows the first ones and folds the rest.
 constexpr std::size_t kRowsShown = 20, kSectionsShown = 12;
 
 std::string files_table(const Project& project, std::size_t from, std::size_t to) {
@@ -69,8 +69,7 @@ std::string broken_list(const Project& project) {
 
 std::string foreign_list(const Project& project) {
   if (project.foreign.empty()) return "";
-  std::string html =
-      fmt::format("<p class=\"note\">Also there, not described here ({}):", project.foreign.size());
+  std::string html = fmt::format("<p class=\"note\">Not described here ({}):", project.foreign.size());
   for (const std::string& path : project.foreign) html += fmt::format(" {};", escaped(within(project, path)));
   html.back() = '.';
   return html + "</p>\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of project_file, one for each kind. Internal to this folder.
+// The readers of project_file, one for each kind. Internal to this folder.
 #pragma once
 
 #include "analysis/report/project_file.hpp"
@@ -9,7 +9,7 @@ namespace tacto::analysis {
 
 using Progress = std::function<void(double)>;
 
-/// Each fills in what the kind knows. Errors: of reading.
+/// Each sets what its kind contains. Errors: those of reading.
 schema::Result<void> read_into(const std::string& path, schema::FileKind kind, ProjectFile& file,
                                const Progress& progress);
 
@@ -25,10 +25,11 @@ schema::Result<void> add_session(const std::string& path, ProjectFile& file, con
 schema::Result<void> add_session_table(const std::string& path, ProjectFile& file);
 schema::Result<void> add_results(const std::string& path, ProjectFile& file);
 schema::Result<void> add_trade_table(const std::string& path, ProjectFile& file);
+schema::Result<void> add_device(const std::string& path, ProjectFile& file);
+schema::Result<void> add_hand(const std::string& path, ProjectFile& file);
 
-/// A signal as smallest and largest values of at most 1,000 pieces: what a page can show of any length. A
-/// rare spike that would squash the rest (spatial::shown_range) is drawn up to the axis's end, and named in
-/// words.
+/// A signal as minimum and maximum of at most 1,000 pieces, so that a page can show any length. A rare spike
+/// that would compress the rest (spatial::shown_range) is cut at the axis's end and described in words.
 class Envelope {
  public:
   explicit Envelope(std::size_t samples);
@@ -46,7 +47,7 @@ class Envelope {
   std::size_t per_piece_, in_piece_ = 0;
   std::size_t per_kept_, seen_ = 0;
   std::vector<Piece> pieces_;
-  std::vector<double> kept_;  // every so-manieth value, 100,000 at most: their percentiles
+  std::vector<double> kept_;  // every n-th value, at most 100,000, for percentiles
 };
 
 }  // namespace tacto::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings, textures, spectrograms and sessions: what has samples.
+// Files with samples: recordings, textures, spectrograms and sessions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ Result<Envelope> channel_envelope(const schema::Recording& recording, std::size_
   return envelope;
 }
 
-// What was felt, or else the first channel.
+// The tangential force, otherwise the first channel.
 std::size_t main_channel(const schema::RecordingHeader& header) {
   const auto force = schema::find_channel(header, "tangential_force");
   return force.value_or(0);
@@ -80,10 +80,11 @@ std::string channels_words(const schema::RecordingHeader& header) {
 }
 
 std::string band_words(const schema::Texture& texture) {
-  if (texture.valid_band.empty()) return "not said";
+  if (texture.valid_band.empty()) return "not stated";
   const schema::BandPoint band = spatial::band_throughout(texture.valid_band);
-  if (!(band.low_per_m < band.high_per_m)) return "none that is known all along";
-  return fmt::format("{} to {} all along", for_people(band.low_per_m, Dimension::spatial_frequency),
+  if (!(band.low_per_m < band.high_per_m)) return "none over the whole length";
+  return fmt::format("{} to {} over the whole length",
+                     for_people(band.low_per_m, Dimension::spatial_frequency),
                      for_people(band.high_per_m, Dimension::spatial_frequency));
 }
 
@@ -93,7 +94,7 @@ std::string in_unit(double value, const std::string& unit) {
   return fmt::format("{:.4g} {}", value, unit);
 }
 
-// A texture too short for a window has its curve alone.
+// A texture that is shorter than a window has no spectrogram, only its curve.
 Result<void> draw_texture(const schema::Texture& texture, const std::string& name, ProjectFile& file) {
   auto spectrogram = spatial::spatial_spectrogram(texture, {});
   if (!spectrogram) {
@@ -153,7 +154,7 @@ schema::ResultPicture Envelope::picture(const std::string& title, const std::str
   spatial::ShownRange range = spatial::shown_range(kept_);
   if (range.beyond == 0) range.low = low, range.high = high;
   if (range.beyond > 0) range.furthest = std::abs(low) > std::abs(high) ? low : high;
-  const std::string words = range.beyond == 0 ? "" : ": " + spatial::beyond_words(range, unit);
+  const std::string words = range.beyond == 0 ? "" : ": " + spatial::out_of_range_text(range, unit);
   return {title + words, x_label, y_label, false, {curve(range)}};
 }
 
@@ -215,9 +216,9 @@ namespace {
 
 constexpr std::size_t kMostTurnsShown = 20;
 
-void add_turns(const std::vector<playback::TextureTurn>& turns, ProjectFile& file) {
+void add_turns(const std::vector<playback::TextureChange>& turns, ProjectFile& file) {
   for (std::size_t i = 0; i < std::min(turns.size(), kMostTurnsShown); ++i) {
-    const playback::TextureTurn& turn = turns[i];
+    const playback::TextureChange& turn = turns[i];
     std::string names = turn.brings ? "" : "not named";
     if (turn.brings)
       for (const schema::SessionTexture& texture : turn.brings->textures)
@@ -226,7 +227,7 @@ void add_turns(const std::vector<playback::TextureTurn>& turns, ProjectFile& fil
   }
 }
 
-// What is shown of a session's ticks, however many.
+// The curves of a session, reduced to a size that does not depend on the number of ticks.
 struct TicksShown {
   Envelope drive, position;
   double peak_v = 0, last_s = 0;

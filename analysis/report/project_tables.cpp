@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Transducers, tables, calibrations, scenes and results: what has no samples.
+// Files without samples: transducers, devices, hands, tables, calibrations, scenes and results.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/calibration/calibration.hpp"
 #include "data-schema/results/trade_table.hpp"
-#include "data-schema/scene/scene.hpp"
 #include "data-schema/session/session_netcdf.hpp"
 #include "data-schema/texture/description.hpp"
 #include "data-schema/texture/formants.hpp"
@@ -24,7 +23,7 @@ using schema::for_people;
 using schema::Result;
 using schema::ResultCurve;
 
-// 10 Hz to 1 kHz, the band in which the paper identified it.
+// 10 Hz to 1 kHz, the band of the paper's identification.
 ResultCurve response_curve(const std::string& name, bool phase,
                            const std::function<std::complex<double>(double)>& response) {
   ResultCurve curve{name, {}, {}, false};
@@ -71,7 +70,7 @@ void add_identification(const schema::Identification& identification, ProjectFil
       {"valid", fmt::format("{} to {}", for_people(identification.low_hz, Dimension::frequency),
                             for_people(identification.high_hz, Dimension::frequency))});
   file.figures.push_back({"conditions", identification.conditions});
-  file.figures.push_back({"what the fit says", identification.words});
+  file.figures.push_back({"result of the fit", identification.words});
 }
 
 ResultCurve bands_curve(const schema::Description& description) {
@@ -146,20 +145,6 @@ Result<void> add_calibration(const std::string& path, ProjectFile& file) {
   return {};
 }
 
-Result<void> add_scene(const std::string& path, ProjectFile& file) {
-  const auto scene = schema::read_scene(path);
-  TACTO_TRY(scene);
-  file.date = scene->created;
-  file.origin = scene->name;
-  for (const schema::Layer& layer : scene->layers)
-    layer.visit([&](const schema::TextureLayer& texture) {
-      file.figures.push_back(
-          {texture.texture, fmt::format("at {}, {}", for_people(texture.at_m, Dimension::length),
-                                        for_people(texture.gain_m_per_n, Dimension::compliance))});
-    });
-  return {};
-}
-
 Result<void> add_trade_table(const std::string& path, ProjectFile& file) {
   const auto table = schema::read_trade_table(path);
   TACTO_TRY(table);
@@ -167,7 +152,7 @@ Result<void> add_trade_table(const std::string& path, ProjectFile& file) {
   file.origin = table->machine;
   for (const schema::MeasuredChoice& choice : table->choices)
     file.figures.push_back(
-        {choice.stage + ", " + choice.name, fmt::format("{:.3g} ns a {}", choice.cost_ns, choice.per)});
+        {choice.stage + ", " + choice.name, fmt::format("{:.3g} ns per {}", choice.cost_ns, choice.per)});
   return {};
 }
 

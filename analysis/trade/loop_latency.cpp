@@ -14,7 +14,7 @@ using firmware_host::Client;
 using schema::Result;
 
 constexpr double kMeasuredS = 0.5, kListenS = 0.02;
-constexpr double kQueueS = 4e-3;  // HostLoop keeps the device's queue that deep
+constexpr double kQueueS = 4e-3;  // HostLoop keeps this much drive in the device's queue
 constexpr const char* kLoopKnob = "loop";
 
 Result<void> play_on(Client& client, const playback::Prepared& prepared) {
@@ -48,7 +48,7 @@ TradeRow device_loop_row(const playback::Prepared& prepared, double tick_ns) {
                0,         {}};
   row.latency_s = 0.5 / prepared.rate_hz + 1e-9 * tick_ns;
   row.note =
-      "reads and drives in one tick: half a tick's wait, and the tick's time on this computer; only the "
+      "reads and drives in one tick: half a tick of waiting, and the tick's time on this computer; only the "
       "latency is given";
   return row;
 }

@@ -28,7 +28,7 @@ schema::Result<Trade> measure_trade(const schema::Texture& texture, const schema
                                     TradeHalves halves, const std::function<void(double)>& progress) {
   if (is_even(texture.signal))
     return schema::fail(schema::ErrorKind::unsuitable, "is constant: it has no error to measure",
-                        "the texture", "take one with a surface");
+                        "the texture", "use a texture that varies");
   Trade trade{{}, machine_words(), texture.simulated, {}};
   const double share = halves == TradeHalves::both ? 0.5 : 1;
   if (halves != TradeHalves::real_time) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Both halves of the trade, and the table that verbs choose by.
+// Both halves of the trade, and the table from which the verbs choose.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@ namespace tacto::analysis {
 
 enum class TradeHalves { both, offline, real_time };
 
-/// A texture's trade; some 20 s. Errors: of measure_offline and measure_realtime.
+/// The trade of one texture; takes about 20 s. Errors: those of measure_offline and measure_realtime.
 schema::Result<Trade> measure_trade(const schema::Texture& texture, const schema::Transducer& transducer,
                                     TradeHalves halves, const std::function<void(double)>& progress);
 
-/// Every stage of the table, on this machine.
+/// Measures every stage of the table on this machine.
 schema::TradeTable measure_trade_table(const std::function<void(double)>& progress);
 
 }  // namespace tacto::analysis

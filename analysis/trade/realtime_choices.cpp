@@ -16,11 +16,11 @@ constexpr double kTickPoints[] = {2.2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 10, 12, 14, 1
 constexpr double kMostTickPoints = 200, kFinerStep = 0.96;
 constexpr wire::Interpolation kReadings[] = {wire::Interpolation::nearest, wire::Interpolation::linear,
                                              wire::Interpolation::hermite, wire::Interpolation::sinc};
-constexpr int kPlacesBetween = 509;  // prime: also between the phases of sinc's table
+constexpr int kPlacesBetween = 509;  // prime, so that the places are also between the phases of sinc's table
 constexpr int kTicksPerBatch = 4000, kBatches = 41;
 constexpr std::uint16_t kFewTaps = 16, kManyTaps = 128;
 
-// Of a sine and a cosine, whose squares add up to twice the mean over all phases.
+// For a sine and a cosine; the sum of their squares is twice the mean over all phases.
 double error_at_place(wire::Interpolation kind, double radians, double u) {
   double sum = 0;
   for (const double phase : {0.0, 0.5 * std::numbers::pi}) {
@@ -41,8 +41,8 @@ double worst_error(wire::Interpolation kind, double points_per_period) {
   return worst;
 }
 
-// Of so many points a period or more: sinc errs most at ten, and what is coarser than the finest has more
-// points than it.
+// The largest error at so many points per period or more: sinc's error is largest at ten, and lower
+// frequencies have more points per period.
 std::vector<schema::ErrorPoint> errors_of(wire::Interpolation kind) {
   std::vector<schema::ErrorPoint> errors;
   double worst = 0, points = kMostTickPoints;
@@ -55,7 +55,7 @@ std::vector<schema::ErrorPoint> errors_of(wire::Interpolation kind) {
   return errors;
 }
 
-// 40 mm of a loop with content up to 31 /mm, of which a finger at 0.1 m/s meets two levels.
+// A loop of 40 mm with content up to 31 /mm, of which a finger at 0.1 m/s uses two levels.
 playback::Prepared measured_texture(wire::Interpolation kind) {
   schema::Texture texture;
   texture.signal.pitch_m = 1e-6;
@@ -74,11 +74,11 @@ playback::Prepared measured_texture(wire::Interpolation kind) {
   return *playback::prepare(texture, *schema::read_transducer("wiertlewski2011"), options);
 }
 
-/// A kernel under a finger that goes on from batch to batch.
+/// A kernel under a finger whose motion continues from batch to batch.
 struct MovingFinger {
   core::TickKernel kernel;
   std::int32_t count = 0;
-  float kept = 0;  // what nobody keeps need not be computed
+  float kept = 0;  // keeps the result, so that the compiler does not remove the computation
   void run() {
     float sum = 0;
     for (int i = 0; i < kTicksPerBatch; ++i)
@@ -95,7 +95,7 @@ wire::Hysteresis sixteen_plays() {
   return play_operators;
 }
 
-/// All that is timed, in one place that stays where it is.
+/// All timed objects, which must not move in memory.
 struct TimedKernels {
   TimedKernels() {
     for (const auto kind : kReadings) textures.push_back(measured_texture(kind));

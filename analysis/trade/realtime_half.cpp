@@ -30,7 +30,7 @@ constexpr std::pair<const char*, Inverse> kInverses[] = {{"none", Inverse::none}
                                                          {"magnitude", Inverse::magnitude},
                                                          {"full", Inverse::full}};
 
-/// Plays cases of one texture and makes rows of them.
+/// Plays cases of one texture and makes rows from them.
 class RealtimeTrade {
  public:
   RealtimeTrade(const schema::Texture& texture, const schema::Transducer& transducer,
@@ -47,11 +47,11 @@ class RealtimeTrade {
     played.options.metres_per_count = kTrueEncoderM;
     return played;
   }
-  // A row, and whose ticks it costs: rows of other knobs can be of the same ticks.
+  // A row and the index of its timed ticks; rows of several knobs may share one timing.
   struct Line {
     TradeRow row;
     std::optional<std::size_t> work;
-    double times = 1;  // what they take
+    double times = 1;  // factor on the time of a tick
     std::string refusal = {};
   };
   TradeRow& put(const std::string& knob, const std::string& choice, const PlayedSpeeds& played) {
@@ -63,7 +63,7 @@ class RealtimeTrade {
     ticks_.push_back(outcome.ticks);
     return lines_.back().row;
   }
-  // What is refused has nothing right.
+  // A refused choice has an error of 1.
   TradeRow& take(const std::string& knob, const std::string& choice, const Result<PlayedSpeeds>& played) {
     if (played) return put(knob, choice, *played);
     lines_.push_back(
@@ -76,7 +76,7 @@ class RealtimeTrade {
   TradeRow& add(const std::string& knob, const std::string& choice, const PlayedCase& played) {
     return take(knob, choice, play(played));
   }
-  // The last line's ticks, told of another knob too.
+  // A row of another knob for the ticks of the last line.
   TradeRow& again(const std::string& knob, const std::string& choice) {
     lines_.push_back(lines_.back());
     lines_.back().row.knob = knob, lines_.back().row.choice = choice;
@@ -102,7 +102,7 @@ class RealtimeTrade {
   const std::function<void(double)>& progress_;
   std::vector<Line> lines_;
   std::vector<std::function<void()>> works_;
-  std::vector<double> ticks_;  // of each
+  std::vector<double> ticks_;  // number of ticks of each work
 };
 
 PlayedCase reading_case(PlayedCase played, wire::Interpolation kind, double density) {
@@ -116,11 +116,11 @@ PlayedCase reading_case(PlayedCase played, wire::Interpolation kind, double dens
 void RealtimeTrade::add_readings() {
   for (const auto kind : kKinds)
     add("interpolation", std::string(playback::to_string(kind)), reading_case(usual(), kind, 16)).note =
-        "16 samples a period; the read force alone";
+        "16 samples per period; only the error of the interpolated force";
   for (const double density : kDensities)
     add("samples per period", fmt::format("{:g}", density),
         reading_case(usual(), wire::Interpolation::hermite, density))
-        .note = "hermite; the read force alone";
+        .note = "hermite; only the error of the interpolated force";
 }
 
 void RealtimeTrade::add_densities() {
@@ -128,7 +128,7 @@ void RealtimeTrade::add_densities() {
     for (const double density : kDensities)
       add("interpolation x samples per period", fmt::format("{}, {:g}", playback::to_string(kind), density),
           reading_case(usual(), kind, density))
-          .note = "the read force alone";
+          .note = "only the error of the interpolated force";
 }
 
 void RealtimeTrade::add_inverses() {
@@ -138,7 +138,7 @@ void RealtimeTrade::add_inverses() {
     const auto outcomes = play(played);
     take("inverse", word, outcomes);
     if (!outcomes) continue;
-    TradeRow& row = again("inverse, amplitudes alone", word);
+    TradeRow& row = again("inverse, amplitudes only", word);
     row.by_speed = outcomes->errors(&PlayedOutcome::amplitude_error);
     row.error = worst_of(row.by_speed);
     row.note = "whatever the phases";
@@ -146,7 +146,7 @@ void RealtimeTrade::add_inverses() {
   for (const double delay_s : {0.5e-3, 1e-3, 2e-3, 3e-3, 4e-3}) {
     PlayedCase played = usual();
     played.options.delay_s = delay_s;
-    add("inverse delay", fmt::format("{:g} ms", 1e3 * delay_s), played).note = "taken back by looking ahead";
+    add("inverse delay", fmt::format("{:g} ms", 1e3 * delay_s), played).note = "compensated by looking ahead";
   }
 }
 
@@ -193,7 +193,7 @@ void RealtimeTrade::add_rate(double rate_hz) {
   }
 }
 
-// Ticks of other rates are compared by what a millisecond of playing costs.
+// Tick rates are compared by the cost per millisecond of playback.
 void RealtimeTrade::add_rates() {
   for (const double rate_hz : kRates) {
     const std::size_t first = lines_.size();
@@ -205,7 +205,7 @@ void RealtimeTrade::add_rates() {
   }
 }
 
-// One level holds all of the texture: what is too fine for the speed folds.
+// With one level, the texture's detail that is too fine for the speed aliases.
 void RealtimeTrade::add_pyramids() {
   const double finest_per_m = playback::highest_spatial_frequency(texture_.signal);
   for (const bool all : {true, false}) {
@@ -232,10 +232,10 @@ void RealtimeTrade::add_precisions() {
   }
   put("precision", "single", *single).note =
       fmt::format("drive differs from double's by {:.1g} of its RMS", std::sqrt(off / size));
-  put("precision", "double", *exact).note = "the reference, which is not written for speed";
+  put("precision", "double", *exact).note = "the reference, not optimised for speed";
 }
 
-// Sixteen plays of equal weight, that open the loop by a sixth between the limits.
+// Sixteen play operators of equal weight, which open the loop by a sixth between the limits.
 schema::Hysteresis usual_hysteresis(double limit_v) {
   constexpr int kPlays = 16;
   constexpr double kWeight = 0.04, kStraight = 0.68;
@@ -254,11 +254,11 @@ void RealtimeTrade::add_hysteresis() {
     PlayedCase played = usual();
     played.options.undo_hysteresis = undone;
     take("hysteresis", undone ? "undone" : "kept", PlayedSpeeds::of(texture_, bender, played)).note =
-        transducer_.hysteresis ? "as the transducer's file has it" : "a bender of 16 plays, assumed";
+        transducer_.hysteresis ? "as the transducer's file has it" : "assumed: a bender of 16 play operators";
   }
 }
 
-// In turns, so that a machine that is busy meanwhile is so for all: what is compared was measured together.
+// In turns, so that other load on the machine affects all cases equally.
 void RealtimeTrade::clock_all() {
   constexpr int kTurns = 41;
   const auto costs = median_costs_ns(works_, 1, kTurns);
@@ -284,7 +284,7 @@ Result<void> RealtimeTrade::check_felt() const {
   if (!std::isnan(worst_of(played->errors()))) return {};
   return schema::fail(schema::ErrorKind::unsuitable,
                       "has nothing within 15 to 500 Hz at " + speed_words(played->errors()), "the texture",
-                      "measure the trade on one that such a finger feels");
+                      "use a texture with content in that band");
 }
 
 Result<std::vector<TradeRow>> RealtimeTrade::rows() {

@@ -27,7 +27,7 @@ bool drawn(const TradeRow& row) {
   return row.cost_ns > 0 && row.error > 0 && row.error < 1;
 }
 
-// A picture holds so many knobs: those with most choices.
+// Limits the number of knobs in a picture to those with most choices.
 std::vector<std::vector<std::size_t>> those_with_most_choices(std::vector<std::vector<std::size_t>> knobs) {
   constexpr std::size_t kMostKnobs = 6;
   std::ranges::stable_sort(knobs, std::greater<>(), [](const auto& rows) { return rows.size(); });
@@ -35,7 +35,7 @@ std::vector<std::vector<std::size_t>> those_with_most_choices(std::vector<std::v
   return knobs;
 }
 
-// Rows by knob, of one unit each.
+// Rows grouped by knob and unit of cost.
 std::vector<std::vector<std::size_t>> by_knob(const TradeHalf& half) {
   std::vector<std::vector<std::size_t>> knobs;
   std::map<std::pair<std::string, std::string>, std::size_t> place;
@@ -48,14 +48,14 @@ std::vector<std::vector<std::size_t>> by_knob(const TradeHalf& half) {
   return knobs;
 }
 
-// Knobs whose costs are of one unit, so that they can share an axis.
+// Knobs with the same unit of cost, which can share an axis.
 struct UnitKnobs {
   std::string per;
   std::vector<std::vector<std::size_t>> knobs;
   std::size_t rows = 0;
 };
 
-// The unit with most choices first.
+// The unit with most choices comes first.
 std::vector<UnitKnobs> by_unit(const TradeHalf& half) {
   std::vector<UnitKnobs> units;
   for (auto& rows : by_knob(half)) {
@@ -71,14 +71,15 @@ std::vector<UnitKnobs> by_unit(const TradeHalf& half) {
 }
 
 std::string cost_axis(const std::string& per) {
-  return fmt::format("CPU time (ns a {})", per);
+  return fmt::format("CPU time (ns per {})", per);
 }
 
 std::string title_of(const TradeHalf& half, const std::string& per) {
-  return fmt::format("Error against cost a {}, {}", per, half.name);
+  return fmt::format("Error against cost per {}, {}", per, half.name);
 }
 
-// Those that no cheaper one undercuts in error: what is on the front for its memory alone would make it turn.
+// Rows without a cheaper row of smaller error. A row that is on the front only for its memory would bend the
+// curve.
 std::vector<std::size_t> front_by_cost(const TradeHalf& half, std::vector<std::size_t> rows) {
   std::ranges::sort(rows, {}, [&](std::size_t i) { return half.rows[i].cost_ns; });
   double least = INFINITY;
@@ -90,7 +91,7 @@ std::vector<std::size_t> front_by_cost(const TradeHalf& half, std::vector<std::s
   return rows;
 }
 
-// Only choices of the front are named: the rest would cover each other.
+// Only choices of the front have names, because the other names would overlap.
 spatial::Series marks_of(const TradeHalf& half, const std::vector<Worth>& worth,
                          const std::vector<std::size_t>& rows, spatial::Colour colour) {
   spatial::Series series{half.rows[rows.front()].knob, {}, {}, colour, 1.5, false, true, {}};
@@ -121,7 +122,7 @@ std::string error_words(const TradeRow& row) {
 }
 
 std::string cost_words(const TradeRow& row) {
-  return row.cost_ns > 0 ? fmt::format("{:.3g} ns a {}", row.cost_ns, row.per) : "";
+  return row.cost_ns > 0 ? fmt::format("{:.3g} ns per {}", row.cost_ns, row.per) : "";
 }
 
 std::string words_by_speed(const TradeRow& row) {
@@ -140,7 +141,7 @@ std::string error_axis(const TradeHalf& half) {
   return is_worst_of_several(half) ? "error at the worst speed (dB re the RMS)" : "error (dB re the RMS)";
 }
 
-// Empty where no finger of this speed was tried.
+// Empty if no finger of this speed was measured.
 double error_at(const TradeRow& row, double speed_mps) {
   const auto at = std::ranges::find(row.by_speed, speed_mps, &ErrorAtSpeed::speed_mps);
   return at == row.by_speed.end() ? kNotMeasured : at->error;
@@ -171,7 +172,7 @@ spatial::LineFigure figure_about(const TradeHalf& half, const Trade& trade, std:
   return figure;
 }
 
-// Marks, and the front through them.
+// Adds the marks of a knob and its front.
 void add_knob(spatial::LineFigure& figure, const TradeHalf& half, const std::vector<Worth>& worth,
               const std::vector<std::size_t>& rows, spatial::Colour colour, const std::string& name) {
   spatial::Series line{"", {}, {}, colour, 1, true, false, {}};
@@ -184,7 +185,7 @@ void add_knob(spatial::LineFigure& figure, const TradeHalf& half, const std::vec
   figure.series.back().name = name;
 }
 
-// In a small picture: by which device, without what it recorded.
+// The device without the description of the recording, for a small picture.
 std::string device_of(const std::string& simulated) {
   return simulated.substr(0, simulated.find(": "));
 }
@@ -205,14 +206,14 @@ std::string answers_table(const TradeHalf& half) {
     if (best)
       rows.push_back({answer.knob, best->choice, fmt::format("{:.3g} %", 100 * best->error),
                       cost_words(*best), never_words(answer)});
-    else  // "not judged", "no best choice": why is in the table of all rows
+    else  // "not judged", "no best choice": the table of all rows has the reason
       rows.push_back(
           {answer.knob, answer.knee.substr(0, answer.knee.find(':')), "", "", never_words(answer)});
   }
   return html_table(rows);
 }
 
-// Side by side where the screen is wide enough for two.
+// Two columns if the screen is wide enough.
 schema::Result<std::string> knob_pictures(const TradeHalf& half, const Trade& trade) {
   std::string html =
       "<div style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,24rem),1fr));"
@@ -227,7 +228,7 @@ schema::Result<std::string> knob_pictures(const TradeHalf& half, const Trade& tr
 
 std::string speeds_paragraph() {
   return fmt::format(
-      "<p>Each error is the worst of fingers of {:g} mm/s, unless a note names another.</p>\n",
+      "<p>Each error is the worst of fingers at {:g} mm/s, unless a note names another.</p>\n",
       fmt::join(kTradeSpeeds_mps | std::views::transform([](double v) { return 1e3 * v; }), ", "));
 }
 
@@ -314,8 +315,8 @@ std::string trade_csv(const Trade& trade) {
 
 schema::Result<std::string> trade_page(const Trade& trade) {
   std::string body = fmt::format(
-      "<h1>Speed for accuracy</h1>\n<p>Measured on {}, with {}. First the answer: for each choice, what is "
-      "best for its cost. Then what it costs and errs, as pictures; all rows are below them.</p>\n",
+      "<h1>Speed for accuracy</h1>\n<p>Measured on {}, with {}. First the best of each choice. Then the "
+      "errors and costs as pictures; all rows are below them.</p>\n",
       escaped(trade.machine), escaped(trade.texture));
   if (!trade.simulated.empty())
     body +=

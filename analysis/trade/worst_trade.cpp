@@ -13,7 +13,7 @@ const TradeRow* same_choice(const TradeHalf& half, const TradeRow& row) {
   return found == half.rows.end() ? nullptr : &*found;
 }
 
-// Both were measured under the same fingers; one that has nothing to feel of the one may have of the other.
+// Both have the same fingers; a finger may be without an error (NaN) in one of them.
 void take_worse(std::vector<ErrorAtSpeed>& errors, const std::vector<ErrorAtSpeed>& others) {
   for (std::size_t i = 0; i < std::min(errors.size(), others.size()); ++i)
     errors[i].error = std::fmax(errors[i].error, others[i].error);

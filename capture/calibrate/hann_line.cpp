@@ -8,7 +8,7 @@
 namespace tacto::capture {
 namespace {
 
-// e^(2 pi i cycles n) for n = 0, 1, ...; plain arithmetic, for complex products mind infinities.
+// e^(2 pi i cycles n) for n = 0, 1, ... In real arithmetic: std::complex products also test for infinities.
 struct Rotor {
   explicit Rotor(double cycles)
       : step_re(std::cos(2 * std::numbers::pi * cycles)), step_im(std::sin(2 * std::numbers::pi * cycles)) {}

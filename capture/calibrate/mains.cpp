@@ -10,7 +10,7 @@
 namespace tacto::capture {
 namespace {
 
-constexpr double kStandsOut = 18;  // power against the neighbours' mean
+constexpr double kLineToFloorPower = 18;  // power relative to the mean of the neighbours
 constexpr int kHarmonics = 6, kNearest = 4, kFurthest = 13;
 
 struct Samples {
@@ -23,7 +23,7 @@ struct Samples {
   }
 };
 
-// The mains is off its frequency by some 0.1 Hz, its harmonics by more.
+// The mains frequency deviates by about 0.1 Hz, its harmonics by more.
 double highest_near(const Samples& samples, double frequency_hz) {
   double highest = 0;
   for (int half = -4; half <= 4; ++half)
@@ -42,7 +42,7 @@ double mean_power_around(const Samples& samples, double frequency_hz) {
 std::optional<MainsLine> line_at(const Samples& samples, double frequency_hz) {
   const double amplitude = highest_near(samples, frequency_hz);
   const double floor = mean_power_around(samples, frequency_hz), power = amplitude * amplitude;
-  if (!(power > kStandsOut * floor) || power == 0) return std::nullopt;
+  if (!(power > kLineToFloorPower * floor) || power == 0) return std::nullopt;
   return MainsLine{frequency_hz, amplitude, 10 * std::log10(power / std::max(floor, 1e-300))};
 }
 

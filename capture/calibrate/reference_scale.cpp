@@ -20,12 +20,12 @@ using Complex = std::complex<double>;
 constexpr double kLowest_hz = 15, kHighest_hz = 61, kApart_hz = 2;
 constexpr double kWindow_s = 1, kShortestPush_s = 5, kLeastCoherence = 0.5;
 constexpr std::size_t kFewestBins = 6;
-// Windows that overlap by half are not quite independent: Hann's share a sixth of their amplitude.
+// Windows that overlap by half are correlated: for Hann windows the coefficient is 1/6.
 constexpr double kIndependent = 1 / (1 + 2.0 / 36);
 
 struct Bin {
   double frequency_hz = 0;
-  Complex ratio;  // the reference over the piezo, both in N by the device's own scales
+  Complex ratio;  // reference / piezo, both in N by the nominal scales of the device
   double coherence = 0;
   double weight = 0;  // 1 / variance of ln |ratio|
 };
@@ -52,7 +52,7 @@ Bin bin_at(const Pair& pair, double frequency_hz) {
   return {frequency_hz, xy / xx, coherence, 2 * n * coherence / (1 - coherence)};
 }
 
-// The piezo's newtons are those of 100 Hz: by how much they are wrong at another frequency.
+// The nominal newtons of the piezo are exact at 100 Hz. This is their error, a factor, at another frequency.
 Complex shape(const schema::Transducer& transducer, double frequency_hz) {
   return schema::sensor_response(transducer, frequency_hz) * schema::nominal_newtons_per_volt(transducer);
 }
@@ -113,25 +113,27 @@ Result<void> check(const Take& take, std::size_t channel, std::size_t reference)
     return schema::fail(ErrorKind::unsuitable, "is not the transducer's own channel", told.name,
                         "load cells are calibrated by weights: --mass 0g --mass 100g");
   if (take.header.channels[reference].unit != "N" || channel == reference)
-    return schema::fail(ErrorKind::usage, "is no force to compare with", take.header.channels[reference].name,
-                        "as --reference net_force");
+    return schema::fail(ErrorKind::usage, "is not a force that can be a reference",
+                        take.header.channels[reference].name, "for example --reference net_force");
   if (static_cast<double>(take.frames()) < kShortestPush_s * take.header.sample_rate_hz)
-    return schema::fail(ErrorKind::unsuitable, fmt::format("needs {:g} s at least", kShortestPush_s),
+    return schema::fail(ErrorKind::unsuitable, fmt::format("needs at least {:g} s", kShortestPush_s),
                         told.name);
   for (const std::size_t each : {channel, reference})
     if (clips(take, each))
-      return schema::fail(ErrorKind::unsuitable, "is clipped", take.header.channels[each].name, "pull less");
+      return schema::fail(ErrorKind::unsuitable, "is clipped", take.header.channels[each].name,
+                          "pull with less force");
   return {};
 }
 
 std::vector<std::string> notes_on(const std::vector<Bin>& bins, const Fit& fit, const ReferenceScale& found,
                                   const std::string& reference) {
-  return {fmt::format("against {} in {} bins from {:g} to {:g} Hz, coherence from {:.3f}", reference,
-                      bins.size(), bins.front().frequency_hz, bins.back().frequency_hz, found.coherence),
-          fmt::format("the reference's slowness taken off by a line over f^2: {:.2g} % at the highest",
-                      found.extrapolated_percent),
-          fmt::format("uncertainty: of that line, from the coherence (type A, x {:.3g}), and of {}",
-                      fit.birge, reference)};
+  return {
+      fmt::format("against {} in {} bins from {:g} to {:g} Hz, coherence from {:.3f}", reference, bins.size(),
+                  bins.front().frequency_hz, bins.back().frequency_hz, found.coherence),
+      fmt::format("delay of the reference corrected by a line over f^2: {:.2g} % at the highest frequency",
+                  found.extrapolated_percent),
+      fmt::format("uncertainty: of that line, from the coherence (type A, factor {:.3g}), and of {}",
+                  fit.birge, reference)};
 }
 
 }  // namespace
@@ -147,12 +149,12 @@ Result<ReferenceScale> scale_by_reference(const Take& take, const std::string& c
   const auto bins = bins_of({piezo, cell, take.header.sample_rate_hz}, *take.header.transducer);
   if (bins.size() < kFewestBins)
     return schema::fail(ErrorKind::unsuitable,
-                        fmt::format("has too little in common with {} between {:g} and {:g} Hz", reference,
+                        fmt::format("has too little coherence with {} between {:g} and {:g} Hz", reference,
                                     kLowest_hz, kHighest_hz),
-                        channel, "slide a finger to and fro on something coarse, for 10 s or more");
+                        channel, "slide a finger back and forth on a rough surface for at least 10 s");
   if (signs_differ(bins))
     return schema::fail(ErrorKind::unsuitable, fmt::format("has the opposite sign of {}", reference), channel,
-                        "see which way round the load cell is mounted, and its cable");
+                        "check the direction in which the load cell is mounted, and its cable");
   const Fit fit = fitted(bins);
   ReferenceScale found;
   found.ratio = std::exp(fit.log_ratio);

@@ -21,7 +21,7 @@ constexpr double kBefore_s = 0.1, kRinging_s = 0.5, kRingStandsOut = 20;
 constexpr double kLowestRing_hz = 10, kHighestRing_hz = 60, kRingsApart_hz = 1 / kRinging_s;
 
 struct Window {
-  std::vector<double> newtons;  // by the device's own scale, about what they were before
+  std::vector<double> newtons;  // by the nominal scale of the device, relative to the mean before the release
   double rate_hz;
 };
 
@@ -35,7 +35,7 @@ Result<Window> window_of(const Release& release, std::size_t channel) {
   const auto length = static_cast<std::ptrdiff_t>(kRinging_s * rate_hz);
   if (peak - codes.begin() < before || codes.end() - (peak - before) < length)
     return schema::fail(
-        ErrorKind::unsuitable, "the release is too near an end", told.name,
+        ErrorKind::unsuitable, "the release is too near the start or the end", told.name,
         fmt::format("{:g} s before it and {:g} s after it are needed", kBefore_s, kRinging_s - kBefore_s));
   Window window{{peak - before, peak - before + length}, rate_hz};
   const std::ptrdiff_t quiet = before * 9 / 10;
@@ -44,12 +44,12 @@ Result<Window> window_of(const Release& release, std::size_t channel) {
   for (double& value : window.newtons) value = (value - rest) * told.scale;
   const double physical = *peak * told.scale + told.offset;
   if ((told.range_max && physical >= *told.range_max) || (told.range_min && physical <= *told.range_min))
-    return schema::fail(ErrorKind::unsuitable, "is clipped", told.name, "release less");
+    return schema::fail(ErrorKind::unsuitable, "is clipped", told.name, "release a smaller weight");
   return window;
 }
 
-// Against the noise of what was before: a release cannot be mistaken.
-Result<void> check_stands_out(const Window& window, const std::string& channel) {
+// Compared with the noise before the release, so that noise is not accepted as a release.
+Result<void> check_above_noise(const Window& window, const std::string& channel) {
   const auto before = static_cast<std::ptrdiff_t>(0.9 * kBefore_s * window.rate_hz);
   double noise = 0, peak = 0;
   for (auto at = window.newtons.begin(); at != window.newtons.end(); ++at) {
@@ -57,8 +57,8 @@ Result<void> check_stands_out(const Window& window, const std::string& channel) 
     peak = std::max(peak, std::abs(*at));
   }
   if (peak > kRingStandsOut * std::sqrt(noise) && peak > 0) return {};
-  return schema::fail(ErrorKind::unsuitable, "no release is large enough to be found", channel,
-                      "hang the weight still, then cut its thread once");
+  return schema::fail(ErrorKind::unsuitable, "no release is large enough to be detected", channel,
+                      "wait until the weight hangs still, then cut its thread once");
 }
 
 double spectrum_at(const Window& window, double frequency_hz) {
@@ -75,7 +75,7 @@ double expected_at(const schema::Transducer& transducer, double force_n, double 
   return shape * force_n / (2 * std::numbers::pi * frequency_hz);
 }
 
-// How much the channel gives of what it should.
+// The ratio of the measured to the expected spectrum.
 Uncertain gain_of(const Window& window, const schema::Transducer& transducer, double force_n) {
   double xm = 0, mm = 0, xx = 0, count = 0;
   for (double frequency_hz = kLowestRing_hz; frequency_hz <= kHighestRing_hz;
@@ -98,11 +98,11 @@ Result<Uncertain> gain_of(const Release& release, const std::string& channel) {
   if (!(release.force_n > 0)) return schema::fail(ErrorKind::usage, "a release needs a weight", "release");
   const auto window = window_of(release, *index);
   TACTO_TRY(window);
-  TACTO_TRY(check_stands_out(*window, channel));
+  TACTO_TRY(check_above_noise(*window, channel));
   return gain_of(*window, *transducer, release.force_n);
 }
 
-// The mean; of several the larger of what their fits and what their scatter say.
+// The mean. For several gains the uncertainty is the larger of the fits' and of the scatter.
 Uncertain mean_of_gains(const std::vector<Uncertain>& gains) {
   const auto count = static_cast<double>(gains.size());
   double mean = 0, fits = 0, scatter = 0;
@@ -125,7 +125,7 @@ Result<ReleasedScale> scale_by_releases(std::span<const Release> releases, const
     gains.push_back(*gain);
   }
   if (gains.empty())
-    return schema::fail(ErrorKind::usage, "a release is needed", "release", "as --release 100g");
+    return schema::fail(ErrorKind::usage, "a release is needed", "release", "for example --release 100g");
   const Uncertain gain = mean_of_gains(gains);
   const schema::RecordingHeader& header = releases.front().take.header;
   const double own_scale = header.channels[*schema::find_channel(header, channel)].scale;
@@ -133,11 +133,12 @@ Result<ReleasedScale> scale_by_releases(std::span<const Release> releases, const
   ReleasedScale found;
   found.scale = {scale, std::abs(scale) * std::hypot(gain.uncertainty / gain.value, relative),
                  gain.degrees_of_freedom};
-  found.notes = {fmt::format("{} releases, {:g} to {:g} Hz", gains.size(), kLowestRing_hz, kHighestRing_hz),
-                 fmt::format("uncertainty: {} (type A), and {:.2g} % of all forces alike (type B)",
-                             gains.size() > 1 ? "scatter of the releases or what their fits leave, the larger"
-                                              : "what the fit leaves; one release shows no scatter",
-                             100 * relative)};
+  found.notes = {
+      fmt::format("{} releases, {:g} to {:g} Hz", gains.size(), kLowestRing_hz, kHighestRing_hz),
+      fmt::format("uncertainty: {} (type A), and {:.2g} % common to all forces (type B)",
+                  gains.size() > 1 ? "scatter of the releases or residuals of their fits, the larger"
+                                   : "residuals of the fit; one release has no scatter",
+                  100 * relative)};
   return found;
 }
 

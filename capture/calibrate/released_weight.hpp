@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The transducer's scale by a known pull that is let go.
+// The transducer's scale from the release of a known force.
 #pragma once
 
 #include <span>
@@ -22,13 +22,14 @@ struct ReleasedScale {
   std::vector<std::string> notes;
 };
 
-/// A pull that ends is a step, |F(f)| = force / (2 pi f), and the transducer answers M(f) = F(f) times its
-/// response over its nominal gain. Over 0.5 s around the largest sample, from 10 to 60 Hz in steps of 2 Hz
-/// (orthogonal over 0.5 s, no window: it begins and ends at rest), c = sum |X| |M| / sum |M|^2 is how much
-/// the channel gives of what it should, and the scale is the device's own over c. Uncertainty: of one release
-/// what the fit leaves; of several also their scatter, whichever is larger, and all forces' common relative
-/// uncertainty. What a thread adds that does not part at once, is not in it: repeat it. Errors: usage: no
-/// such channel, no force; unsuitable: no transducer, no release that stands out, too near an end, clipped.
+/// A force that ends suddenly is a step, |F(f)| = force / (2 pi f). The expected spectrum is M(f) = F(f)
+/// times the transducer's response over its nominal gain; X(f) is the measured one. Both are compared over
+/// 0.5 s around the largest sample, from 10 to 60 Hz in steps of 2 Hz (orthogonal over 0.5 s; no window,
+/// because the signal is at rest at both ends): c = sum |X| |M| / sum |M|^2, and the scale is the nominal
+/// scale over c. Uncertainty: for one release the residual of the fit, for several the larger of that and
+/// their scatter; and the relative uncertainty that all forces share. The error of a thread that does not
+/// break at once is not included: repeat the release. Errors: usage: no such channel, no force; unsuitable:
+/// no transducer, no release above the noise, a release too near an end, clipped.
 schema::Result<ReleasedScale> scale_by_releases(std::span<const Release> releases, const std::string& channel,
                                                 double relative_force_uncertainty);
 

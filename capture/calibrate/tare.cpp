@@ -9,6 +9,7 @@
 
 #include "capture/calibrate/hann_line.hpp"
 #include "capture/calibrate/mains.hpp"
+#include "data-schema/base/statistics.hpp"
 #include "data-schema/recording/statistics.hpp"
 
 namespace tacto::capture {
@@ -31,7 +32,7 @@ std::vector<double> physical(const Take& take, std::size_t channel) {
   return values;
 }
 
-// Of white noise a line's power is exponential: its median is ln 2 of its mean.
+// The power of a line of white noise is exponentially distributed: its median is ln 2 times its mean.
 double noise_density(std::span<const double> samples, double rate_hz, double native_rate_hz) {
   const double highest_hz = std::min(kHighestNoise_hz, 0.45 * std::min(rate_hz, native_rate_hz));
   std::vector<double> powers;
@@ -39,8 +40,7 @@ double noise_density(std::span<const double> samples, double rate_hz, double nat
     const double frequency_hz = kLowestNoise_hz + (highest_hz - kLowestNoise_hz) * i / (kLines - 1);
     powers.push_back(density_of(hann_line(samples, frequency_hz / rate_hz), samples.size(), rate_hz));
   }
-  std::ranges::nth_element(powers, powers.begin() + kLines / 2);
-  return std::sqrt(powers[kLines / 2] / std::numbers::ln2);
+  return std::sqrt(schema::upper_median(std::span(powers)) / std::numbers::ln2);
 }
 
 double rms_about_mean(std::span<const double> samples) {
@@ -59,7 +59,7 @@ ChannelTare tare_of_channel(const Take& take, std::size_t channel) {
   return tare;
 }
 
-// The transducer's own channel, whose noise its parameters state.
+// Whether this is the channel of the transducer, whose noise is among the transducer's parameters.
 bool is_transducers(const Take& take, const Channel& channel) {
   return channel.quantity == "tangential_force" && take.header.transducer.has_value();
 }
@@ -67,10 +67,10 @@ bool is_transducers(const Take& take, const Channel& channel) {
 void judge(const Take& take, const ChannelTare& tare, Tare& all) {
   const Channel& told = take.header.channels[tare.channel];
   if (drift_ratio(take.codes[tare.channel]) > kMostTareDrift)
-    all.unstill.push_back(fmt::format("{} wanders", told.name));
+    all.motion_signs.push_back(fmt::format("{} drifts", told.name));
   if (!is_transducers(take, told) && std::abs(tare.mean) > kResting_n)
     all.warnings.push_back(
-        fmt::format("{} rests at {:.3g} {}: is that the sensor's own offset, or is there a load on it?",
+        fmt::format("{} is {:.3g} {} at rest: check whether this is the offset of the sensor or a load on it",
                     told.name, tare.mean, told.unit));
   if (!is_transducers(take, told)) return;
   double power = tare.noise_rms * tare.noise_rms;
@@ -78,8 +78,8 @@ void judge(const Take& take, const ChannelTare& tare, Tare& all) {
   const double floor =
       take.header.transducer->noise_n_per_sqrt_hz * std::sqrt(take.header.sample_rate_hz / 2);
   if (floor > 0 && power > std::pow(kMostNoise * floor, 2))
-    all.unstill.push_back(fmt::format("{} has {:.3g} N of noise, and {:.3g} N is its floor", told.name,
-                                      std::sqrt(power), floor));
+    all.motion_signs.push_back(fmt::format("{} has {:.3g} N of noise, and its noise floor is {:.3g} N",
+                                           told.name, std::sqrt(power), floor));
 }
 
 void judge_motion(const Take& take, Tare& all) {
@@ -89,8 +89,8 @@ void judge_motion(const Take& take, Tare& all) {
     const auto [least, most] = std::ranges::minmax(take.codes[i]);
     const double moved_m = std::abs((most - least) * told.scale);
     if (moved_m > kMoved_m)
-      all.warnings.push_back(
-          fmt::format("{} moved by {:.3g} mm: nothing must touch meanwhile", told.name, moved_m * 1e3));
+      all.warnings.push_back(fmt::format("{} moved by {:.3g} mm: nothing may touch the device during a tare",
+                                         told.name, moved_m * 1e3));
   }
 }
 
@@ -103,7 +103,7 @@ bool is_clipped(const Take& take, std::size_t channel) {
 
 std::vector<std::string> notes_on(const ChannelTare& tare, const Channel& told) {
   std::vector<std::string> notes = {
-      "uncertainty: scatter of the means of 20 blocks (type A), and the converter's step where noise does "
+      "uncertainty: scatter of the means of 20 blocks (type A), and the step of the converter if noise does "
       "not dither it"};
   for (const MainsLine& line : tare.mains)
     notes.push_back(fmt::format("mains at {:g} Hz: {:.3g} {} peak, {:.0f} dB above its neighbours",
@@ -115,21 +115,21 @@ std::vector<std::string> notes_on(const ChannelTare& tare, const Channel& told) 
 
 Result<Tare> tare_of(const Take& take) {
   if (static_cast<double>(take.frames()) < kShortestTare_s * take.header.sample_rate_hz)
-    return schema::fail(ErrorKind::unsuitable, fmt::format("a tare needs {:g} s at least", kShortestTare_s),
+    return schema::fail(ErrorKind::unsuitable, fmt::format("a tare needs at least {:g} s", kShortestTare_s),
                         "time");
   Tare tare;
   for (std::size_t i = 0; i < take.codes.size(); ++i) {
     const Channel& told = take.header.channels[i];
     if (told.unit != "N") continue;
     if (is_clipped(take, i))
-      return schema::fail(ErrorKind::unsuitable, "is at an end of its converter's range", told.name,
-                          "take the load off, or see its wiring");
+      return schema::fail(ErrorKind::unsuitable, "is at the limit of its converter's range", told.name,
+                          "remove the load, or check the wiring");
     tare.channels.push_back(tare_of_channel(take, i));
     judge(take, tare.channels.back(), tare);
   }
   judge_motion(take, tare);
   if (!tare.channels.empty()) return tare;
-  return schema::fail(ErrorKind::unsuitable, "has no channel of force", take.header.device);
+  return schema::fail(ErrorKind::unsuitable, "has no force channel", take.header.device);
 }
 
 std::vector<schema::CalibrationEntry> entries_of(const Tare& tare, const Take& take) {

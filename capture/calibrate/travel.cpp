@@ -32,18 +32,19 @@ double scatter(std::span<const double> differences, double mean) {
 }
 
 Result<void> check(std::span<const double> differences, double travel_m, double step) {
-  if (!(travel_m > 0)) return schema::fail(ErrorKind::usage, "a travel is longer than nothing", "travel");
-  if (differences.empty()) return schema::fail(ErrorKind::unsuitable, "there is no travel in it", "travel");
+  if (!(travel_m > 0)) return schema::fail(ErrorKind::usage, "a travel must be longer than 0", "travel");
+  if (differences.empty()) return schema::fail(ErrorKind::unsuitable, "it contains no travel", "travel");
   const double mean = mean_length(differences);
   for (const double difference : differences) {
     if (std::abs(difference) < kFewestCounts * step)
-      return schema::fail(ErrorKind::unsuitable, fmt::format("{:.0f} counts are no travel", difference),
-                          "travel", "go from one mark to the other, and mark both");
+      return schema::fail(ErrorKind::unsuitable,
+                          fmt::format("{:.0f} counts are too few for a travel", difference), "travel",
+                          "move from one mark to the other, and mark both");
     if (std::abs(std::abs(difference) - mean) > kMostApart * mean)
       return schema::fail(ErrorKind::unsuitable,
-                          fmt::format("the travels disagree: {:.0f} counts, and {:.0f} in the mean",
+                          fmt::format("the travels differ: {:.0f} counts, and {:.0f} in the mean",
                                       std::abs(difference), mean),
-                          "travel", "go the whole way each time");
+                          "travel", "move the whole distance each time");
   }
   return {};
 }
@@ -54,22 +55,21 @@ Result<TravelScale> scale_by_travel(std::span<const double> differences, double 
                                     double travel_uncertainty_m, double step) {
   TACTO_TRY(check(differences, travel_m, step));
   if (!(travel_uncertainty_m >= 0))
-    return schema::fail(ErrorKind::usage, "an uncertainty is zero or more", "--travel-uncertainty");
+    return schema::fail(ErrorKind::usage, "an uncertainty must be 0 or more", "--travel-uncertainty");
   const auto count = static_cast<double>(differences.size());
   const double mean = mean_length(differences), spread = scatter(differences, mean) / std::sqrt(count);
   const double ends = step * std::sqrt(2.0 / 12 / count);
   TravelScale found;
   const double relative = std::hypot(std::hypot(spread, ends) / mean, travel_uncertainty_m / travel_m);
-  // Where the scatter is less than the counts' own ends, it is they that the uncertainty comes from.
+  // If the scatter is below the rounding at both ends, the rounding determines the uncertainty.
   const double freedom = spread > ends ? count - 1 : std::numeric_limits<double>::infinity();
   found.scale = {travel_m / mean, relative * travel_m / mean, freedom};
   found.direction = differences.front() > 0 ? 1 : -1;
-  found.notes = {
-      fmt::format("{} travels of {:.6g} m, {:.1f} counts each, scatter {:.2g} counts", count, travel_m, mean,
-                  scatter(differences, mean)),
-      fmt::format("uncertainty: scatter (type A{}), a count's rounding at both ends, and {:.3g} m of "
-                  "the travel (type B)",
-                  count < 2 ? ": unknown, one travel only" : "", travel_uncertainty_m)};
+  found.notes = {fmt::format("{} travels of {:.6g} m, {:.1f} counts each, scatter {:.2g} counts", count,
+                             travel_m, mean, scatter(differences, mean)),
+                 fmt::format("uncertainty: scatter (type A{}), rounding to a count at both ends, and {:.3g} "
+                             "m of the travel (type B)",
+                             count < 2 ? ": unknown, only one travel" : "", travel_uncertainty_m)};
   return found;
 }
 
@@ -85,8 +85,8 @@ Result<std::vector<double>> count_differences(const Take& take, const std::strin
   const auto& marks = take.header.marks;
   if (marks.empty()) return std::vector{travelled_counts(codes.front(), codes.back())};
   if (marks.size() == 1)
-    return schema::fail(ErrorKind::unsuitable, "has one mark, and a travel has two ends",
-                        take.header.wav_file, "mark both ends of each travel");
+    return schema::fail(ErrorKind::unsuitable, "has one mark, but a travel needs two", take.header.wav_file,
+                        "mark both ends of each travel");
   std::vector<double> differences;
   const auto at = [&](const schema::Mark& mark) {
     return codes[std::min<std::size_t>(mark.frame, codes.size() - 1)];

@@ -7,12 +7,13 @@
 #include <numeric>
 #include <vector>
 
+#include "data-schema/base/statistics.hpp"
+
 namespace tacto::capture {
 namespace {
 
 constexpr std::size_t kBlocks = 20;
 constexpr std::uint64_t kTopBit = 1ULL << 62U;
-constexpr double kZ95 = 1.959963984540054;  // of the normal distribution
 
 double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -45,14 +46,8 @@ double scatter_within(std::span<const double> samples, const std::vector<double>
 
 }  // namespace
 
-double coverage_factor_95(double nu) {
-  if (nu <= 1) return 12.7062047;
-  if (nu <= 2) return 4.30265273;
-  const double z = kZ95, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z, z9 = z7 * z * z;
-  const double first = (z3 + z) / 4, second = (5 * z5 + 16 * z3 + 3 * z) / 96;
-  const double third = (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / 384;
-  const double fourth = (79 * z9 + 776 * z7 + 1482 * z5 - 1920 * z3 - 945 * z) / 92160;
-  return z + (first + (second + (third + fourth / nu) / nu) / nu) / nu;
+double coverage_factor_95(double degrees_of_freedom) {
+  return schema::student_t(degrees_of_freedom, schema::kNormal95);
 }
 
 double step_of(std::span<const double> samples) {

@@ -21,7 +21,7 @@ struct Line {
   double zero = 0, slope = 0, u_zero = 0, u_slope = 0;
 };
 
-// Codes are large and forces small: both are taken about their weighted means.
+// Codes are large and forces small, so both are used relative to their weighted means.
 Line fitted(std::span<const Weighing> weighings) {
   double w = 0, f = 0, c = 0;
   for (const Weighing& one : weighings) {
@@ -56,20 +56,20 @@ Result<void> check(std::span<const Weighing> weighings) {
   const auto different = [&](const Weighing& one) { return one.force_n != weighings.front().force_n; };
   if (std::ranges::none_of(weighings, different))
     return schema::fail(ErrorKind::unsuitable, "two different forces are needed", "mass",
-                        "as --mass 0g --mass 100g");
+                        "for example --mass 0g --mass 100g");
   return {};
 }
 
-tl::unexpected<schema::Error> forgets_static_forces(const Take& take, const std::string& channel) {
+tl::unexpected<schema::Error> static_force_error(const Take& take, const std::string& channel) {
   return schema::fail(
       ErrorKind::unsuitable,
-      fmt::format("a weight at rest cannot calibrate it: the piezo's high-pass at {:.2g} Hz forgets a "
+      fmt::format("a weight at rest cannot calibrate it: the high-pass of the piezo at {:.2g} Hz removes a "
                   "constant force within {:.0f} ms",
                   schema::sensor_pole_hz(*take.header.transducer),
                   4e3 / (6.28 * schema::sensor_pole_hz(*take.header.transducer))),
       channel,
-      "calibrate net_force by weights (--channel net_force), then this one against it: slide a finger with "
-      "--reference net_force; or without a load cell by a weight whose thread is cut: --release 10g");
+      "calibrate net_force by weights (--channel net_force), then this channel with --reference net_force "
+      "while a finger slides; without a load cell, cut the thread of a weight: --release 10g");
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ Result<WeighedScale> scale_by_weights(std::span<const Weighing> weighings, doubl
   const Line line = fitted(weighings);
   if (!std::isfinite(line.slope) || std::abs(line.slope) < 5 * line.u_slope)
     return schema::fail(ErrorKind::unsuitable, "the channel does not follow the forces", "mass",
-                        "is it the right channel, and did the weights hang on it?");
+                        "check that it is the right channel, and that the weights hang on it");
   const auto freedom = static_cast<double>(weighings.size()) - 2;
   const double birge = freedom > 0 ? std::max(1.0, std::sqrt(chi_square(weighings, line) / freedom)) : 1.0;
   const double scale = 1 / line.slope;
@@ -90,8 +90,8 @@ Result<WeighedScale> scale_by_weights(std::span<const Weighing> weighings, doubl
   found.largest_residual_n = largest_residual_n(weighings, line);
   found.notes = {
       fmt::format("{} forces, largest residual {:.3g} N", weighings.size(), found.largest_residual_n),
-      fmt::format("uncertainty: scatter of the means through a straight line (type A, x {:.3g}), and "
-                  "{:.2g} % of all forces alike (type B)",
+      fmt::format("uncertainty: scatter of the means about a straight line (type A, factor {:.3g}), and "
+                  "{:.2g} % common to all forces (type B)",
                   birge, 100 * relative)};
   return found;
 }
@@ -101,21 +101,21 @@ Result<Weighing> weighing_of(const Take& take, const std::string& name, double f
   if (!index)
     return schema::fail(ErrorKind::usage, index.error().what, index.error().where, index.error().remedy);
   const schema::Channel& told = take.header.channels[*index];
-  if (told.unit != "N") return schema::fail(ErrorKind::unsuitable, "is no channel of force", name);
-  if (told.quantity == "tangential_force" && take.header.transducer) return forgets_static_forces(take, name);
+  if (told.unit != "N") return schema::fail(ErrorKind::unsuitable, "is not a force channel", name);
+  if (told.quantity == "tangential_force" && take.header.transducer) return static_force_error(take, name);
   const std::vector<double>& codes = take.codes[*index];
   if (codes.size() < kFewestSamples) return schema::fail(ErrorKind::unsuitable, "is too short", name);
   if (drift_ratio(codes) > kMostDrift)
-    return schema::fail(ErrorKind::unsuitable, fmt::format("does not rest under {:.4g} N", force_n), name,
+    return schema::fail(ErrorKind::unsuitable, fmt::format("is not constant under {:.4g} N", force_n), name,
                         "wait until the weight hangs still");
   const auto [least, most] = std::ranges::minmax(codes);
   const double low = least * told.scale + told.offset, high = most * told.scale + told.offset;
   if ((told.range_max && std::max(low, high) >= *told.range_max) ||
       (told.range_min && std::min(low, high) <= *told.range_min))
-    return schema::fail(ErrorKind::unsuitable, "is at an end of its converter's range", name,
-                        "hang less on it");
+    return schema::fail(ErrorKind::unsuitable, "is at the limit of its converter's range", name,
+                        "use smaller weights");
   Weighing weighing{force_n, mean_of(codes)};
-  weighing.code.uncertainty = std::max(weighing.code.uncertainty, 0.29);  // a number's own step
+  weighing.code.uncertainty = std::max(weighing.code.uncertainty, 0.29);  // of rounding: 1 / sqrt(12)
   return weighing;
 }
 

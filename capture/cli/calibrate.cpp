@@ -15,9 +15,10 @@ struct Way {
 };
 
 constexpr Way kWays[] = {
-    {"tare", "Nothing touches: offset, noise floor and mains of each force channel", declare_tare},
-    {"force", "Known weights on a load cell; or the piezo against a load cell", declare_force},
-    {"encoder", "A known travel", declare_encoder},
+    {"tare", "Without any contact: offset, noise floor and mains of each force channel", declare_tare},
+    {"force", "Force scale: by known weights on a load cell, or of the piezo against a load cell",
+     declare_force},
+    {"encoder", "Position scale, by a known travel", declare_encoder},
 };
 
 cli::Action declare_calibrate(CLI::App& app) {
@@ -30,14 +31,15 @@ cli::Action declare_calibrate(CLI::App& app) {
   return [actions]() -> schema::Result<cli::Report> {
     for (const auto& [one, action] : *actions)
       if (one->parsed()) return action();
-    return schema::fail(schema::ErrorKind::usage, "calibrate what?", "calibrate", "tare, force or encoder");
+    return schema::fail(schema::ErrorKind::usage, "the calibration is missing", "calibrate",
+                        "give tare, force or encoder");
   };
 }
 
 }  // namespace
 
 const cli::Verb kCalibrateVerb{
-    "calibrate", "Find a device's offsets, scales and noise, and keep them for its recordings",
+    "calibrate", "Measure a device's offsets, scales and noise, and store them for its recordings",
     "tactograph calibrate tare\n"
     "  tactograph calibrate force --mass 0g --mass 100g --mass 200g\n"
     "  tactograph calibrate force --reference net_force --time 20s\n"

@@ -11,7 +11,7 @@
 #include "capture/cli/enter_key.hpp"
 #include "capture/record/watch_counts.hpp"
 #include "data-schema/report/report.hpp"
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 #include "firmware-host/open_device.hpp"
 
 namespace tacto::capture {
@@ -42,7 +42,7 @@ Result<Travels> of_recordings(const CalibrateEncoderOptions& options) {
     auto take = take_from(*part);
     TACTO_TRY(take);
     if (travels.last && travels.last->header.serial != take->header.serial)
-      return schema::fail(schema::ErrorKind::unsuitable, "is of another device than the one before", text);
+      return schema::fail(schema::ErrorKind::unsuitable, "is from another device than the one before", text);
     const auto differences = count_differences(*take, options.channel);
     TACTO_TRY(differences);
     travels.differences.insert(travels.differences.end(), differences->begin(), differences->end());
@@ -53,7 +53,8 @@ Result<Travels> of_recordings(const CalibrateEncoderOptions& options) {
 }
 
 void ask_for_end(std::size_t ends) {
-  cli::talk(fmt::format("Go to the {} mark, then press Enter: ", ends % 2 == 0 ? "first" : "second"));
+  cli::write_message(
+      fmt::format("Move to the {} mark, then press Enter: ", ends % 2 == 0 ? "first" : "second"));
   std::fflush(stderr);
 }
 
@@ -105,13 +106,14 @@ Result<cli::Report> run_calibrate_encoder(const CalibrateEncoderOptions& options
 cli::Action declare_encoder(CLI::App& app) {
   auto options = std::make_shared<CalibrateEncoderOptions>();
   declare_common(app, options->common);
-  cli::add_quantity(app, "--travel", options->travel_m, Dimension::length, "From one mark to the other")
+  cli::add_quantity(app, "--travel", options->travel_m, Dimension::length,
+                    "Distance from one mark to the other")
       ->required();
   cli::add_quantity(app, "--travel-uncertainty", options->travel_uncertainty_m, Dimension::length,
-                    "Standard uncertainty of that");
-  app.add_option("--repeats", options->repeats, "How many travels, there and back in turn")
+                    "Standard uncertainty of that distance");
+  app.add_option("--repeats", options->repeats, "Number of travels, alternately forth and back")
       ->check(cli::from_one());
-  app.add_option("--channel", options->channel, "The encoder's");
+  app.add_option("--channel", options->channel, "Channel of the encoder");
   app.add_option("--from", options->from,
                  "Recordings instead of the device: travels from mark to mark, or from beginning to end");
   return [options] { return run_calibrate_encoder(*options); };

@@ -41,8 +41,8 @@ Result<Mass> parse_mass(const std::string& text, double gravity_mps2) {
     return Mass{*force_n, words, recording};
   const auto mass_kg = schema::parse_quantity(words, Dimension::mass);
   if (!mass_kg)
-    return schema::fail(ErrorKind::usage, fmt::format("'{}' is no mass and no force", words), "mass",
-                        "as 100g, 0.98N, or 100g=recording@1s..3s");
+    return schema::fail(ErrorKind::usage, fmt::format("'{}' is neither a mass nor a force", words), "mass",
+                        "for example 100g, 0.98N, or 100g=recording@1s..3s");
   return Mass{*mass_kg * gravity_mps2, words, recording};
 }
 
@@ -52,8 +52,8 @@ Result<Take> take_for(const Mass& mass, const CalibrateForceOptions& options) {
     return part ? take_from(*part) : schema::forward_error(part);
   }
   const auto ready = wait_for_enter(
-      mass.force_n == 0 ? "Take everything off " + options.channel
-                        : fmt::format("Hang {} on {} and let it rest", mass.words, options.channel));
+      mass.force_n == 0 ? "Remove everything from " + options.channel
+                        : fmt::format("Hang {} on {} and wait until it rests", mass.words, options.channel));
   TACTO_TRY(ready);
   const auto device = firmware_host::open_device(options.common.device);
   return device ? take_from(**device, options.time_s.value_or(3)) : schema::forward_error(device);
@@ -95,7 +95,8 @@ Result<Weighed> weigh(const CalibrateForceOptions& options, double gravity_mps2)
     auto take = take_for(*mass, options);
     TACTO_TRY(take);
     if (weighed.last && weighed.last->header.serial != take->header.serial)
-      return schema::fail(ErrorKind::unsuitable, "is of another device than the one before", mass->recording);
+      return schema::fail(ErrorKind::unsuitable, "is from another device than the one before",
+                          mass->recording);
     const auto weighing = weighing_of(*take, options.channel, mass->force_n);
     TACTO_TRY(weighing);
     weighed.weighings.push_back(*weighing);
@@ -146,15 +147,15 @@ Result<Take> pull_for(const CalibrateForceOptions& options) {
 
 Result<Take> take_of_release(const Mass& mass, const CalibrateForceOptions& options) {
   if (mass.recording.empty())
-    TACTO_TRY(
-        wait_for_enter(fmt::format("Hang {} by a thread that pulls along +x; cut it within {:g} s after you",
-                                   mass.words, options.time_s.value_or(10))));
+    TACTO_TRY(wait_for_enter(
+        fmt::format("Hang {} on a thread that pulls along +x (cut it within {:g} s after Enter)", mass.words,
+                    options.time_s.value_or(10))));
   CalibrateForceOptions plain = options;
   plain.from = mass.recording;
   return pull_for(plain);
 }
 
-// The reference's newest scale; without one the device's own, of which nobody knows how good it is.
+// The newest calibrated scale of the reference; otherwise its nominal scale, whose uncertainty is unknown.
 Result<Uncertain> scale_of_reference(const CalibrateForceOptions& options, const Take& take) {
   const auto index = schema::find_channel(take.header, options.reference);
   if (!index)
@@ -165,7 +166,7 @@ Result<Uncertain> scale_of_reference(const CalibrateForceOptions& options, const
   if (entry != nullptr && std::abs(entry->nominal_scale / own_scale - 1) < 1e-9)
     return Uncertain{*entry->scale, entry->scale_uncertainty.value_or(0)};
   cli::warn(options.reference +
-            " is not calibrated itself: its own scale is taken as it is, and the uncertainty leaves it out");
+            " is not calibrated itself: its nominal scale is used, and the uncertainty does not include it");
   return Uncertain{own_scale, 0};
 }
 
@@ -212,8 +213,9 @@ Result<cli::Report> run_calibrate_force(CalibrateForceOptions options) {
   const int ways = (options.masses.empty() ? 0 : 1) + (options.releases.empty() ? 0 : 1) +
                    (options.reference.empty() ? 0 : 1);
   if (ways != 1)
-    return schema::fail(ErrorKind::usage, "needs weights, or a reference, or releases", "force",
-                        "as --mass 0g --mass 100g; for the piezo --reference net_force, or --release 10g");
+    return schema::fail(
+        ErrorKind::usage, "needs either weights, or a reference, or releases", "force",
+        "for example --mass 0g --mass 100g; for the piezo --reference net_force, or --release 10g");
   if (!options.masses.empty()) return by_weights(options);
   if (options.channel == "normal_force") options.channel = "tangential_force";
   return options.reference.empty() ? by_releases(options) : by_reference(options);
@@ -225,21 +227,19 @@ cli::Action declare_force(CLI::App& app) {
   auto options = std::make_shared<CalibrateForceOptions>();
   declare_common(app, options->common);
   app.add_option("--mass", options->masses,
-                 "A known weight, hung when asked for: 0g, 100g, 0.5N; or one of a recording: "
-                 "100g=oak@1s..3s. Two at least");
+                 "A known weight, hung when requested: 0g, 100g, 0.5N; or of a recording: 100g=oak@1s..3s. "
+                 "At least two");
   app.add_option("--channel", options->channel,
-                 "Which channel the weights pull on; with --reference and --release tangential_force");
-  app.add_option(
-      "--reference", options->reference,
-      "For the piezo, which forgets weights at rest: the load cell's channel of the same pull, while "
-      "a finger slides");
-  app.add_option(
-      "--release", options->releases,
-      "For the piezo without a load cell: a weight on a thread that is cut, 10g, or 10g=oak@1s..3s; "
-      "several for their scatter");
+                 "Channel that is calibrated; with --reference and --release tangential_force");
+  app.add_option("--reference", options->reference,
+                 "For the piezo, which does not measure constant forces: channel of a load cell for the same "
+                 "force while a finger slides");
+  app.add_option("--release", options->releases,
+                 "For the piezo without a load cell: a weight on a thread that is cut, 10g, or "
+                 "10g=oak@1s..3s; several show the scatter");
   app.add_option("--from", options->from, "With --reference: a recording instead of the device");
   cli::add_quantity(app, "--time", options->time_s, Dimension::time,
-                    "How long to listen: 3s a weight, 10s a release or against a reference");
+                    "Duration of a measurement: 3s per weight, 10s per release or with a reference");
   cli::add_quantity(app, "--gravity", options->gravity_mps2, Dimension::acceleration,
                     "Local gravity; default: 9.80665m/s^2, with 0.15 % of uncertainty");
   return [options] { return run_calibrate_force(*options); };

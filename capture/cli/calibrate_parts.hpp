@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The three ways to calibrate, and what they share.
+// The three kinds of calibration, and their common parts.
 #pragma once
 
 #include <functional>
@@ -13,31 +13,31 @@
 
 namespace tacto::capture {
 
-/// Where frames come from, and where the result goes.
+/// The source of the frames and the destination of the result.
 struct CalibrateOptions {
   std::string device = "usb:";
-  std::string calibration;  ///< the file; empty: where calibrations are kept
+  std::string calibration;  ///< the file; empty: the default path of calibrations
   bool dry_run = false;
-  bool anyway = false;  ///< also what can't be right
+  bool anyway = false;  ///< keep implausible results, too
 };
 
 void declare_common(CLI::App& app, CalibrateOptions& options);
 
-/// Each adds its options to a subcommand and gives what it does.
+/// Each adds its options to a subcommand and returns the subcommand's action.
 cli::Action declare_tare(CLI::App& app);
 cli::Action declare_force(CLI::App& app);
 cli::Action declare_encoder(CLI::App& app);
 
-/// "scale", "scale_uncertainty", "interval of 95 %", against the device's own. `per` is the unit's ending.
+/// Adds "scale", its uncertainty, its 95 % interval and its ratio to the nominal scale. `unit` is "N" or "m".
 void add_scale(cli::Report& report, const Uncertain& scale, double own_scale, const std::string& unit);
 
-/// Keeps the entries unless it is a dry run, and says where. A scale that can't be right (doubt_of_scale) is
-/// warned of where nothing is kept or `anyway` was said. Errors: unsuitable: one, else; as
-/// keep_calibration().
+/// Writes the entries to the calibration file, except in a dry run, and adds the path to the report. An
+/// implausible scale (scale_fault) causes a warning if nothing is written or `anyway` is set. Errors:
+/// unsuitable: an implausible scale in any other case; as keep_calibration().
 schema::Result<cli::Report> kept(cli::Report report, const CalibrateOptions& options, const Take& take,
                                  std::vector<schema::CalibrationEntry> entries);
 
-/// The report's first lines: whose calibration it is.
+/// The first lines of the report: which device it is.
 cli::Report report_on(const Take& take);
 
 }  // namespace tacto::capture

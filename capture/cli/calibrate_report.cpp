@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "capture/cli/calibrate_parts.hpp"
-#include "capture/import/believable_scale.hpp"
+#include "capture/import/plausible_scale.hpp"
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/report/report.hpp"
 
@@ -11,12 +11,12 @@ namespace {
 
 schema::Result<void> check_scales(const std::vector<schema::CalibrationEntry>& entries, bool only_warn) {
   for (const schema::CalibrationEntry& entry : entries) {
-    const std::string doubt = doubt_of_scale(entry);
+    const std::string doubt = scale_fault(entry);
     if (doubt.empty()) continue;
     if (!only_warn)
-      return schema::fail(schema::ErrorKind::unsuitable, doubt + ": not kept", entry.method,
-                          "look for a mistaken unit or two exchanged weights with --dry-run; keep it with "
-                          "--anyway");
+      return schema::fail(schema::ErrorKind::unsuitable, doubt + ": not stored", entry.method,
+                          "check for a wrong unit or two exchanged weights with --dry-run; store it "
+                          "nevertheless with --anyway");
     cli::warn(doubt);
   }
   return {};
@@ -27,11 +27,11 @@ schema::Result<void> check_scales(const std::vector<schema::CalibrationEntry>& e
 void declare_common(CLI::App& app, CalibrateOptions& options) {
   app.add_option("-d,--device", options.device, "The device: usb:, usb:serial=XYZ, sim:...");
   app.add_option("--calibration", options.calibration,
-                 "The file to keep it in; SERIAL.calibration.json in ~/.config/tactograph/calibrations");
-  app.add_flag("--dry-run", options.dry_run, "Measure and say, keep nothing");
+                 "Calibration file; default: SERIAL.calibration.json in ~/.config/tactograph/calibrations");
+  app.add_flag("--dry-run", options.dry_run, "Measure and print only; store nothing");
   app.add_flag("--anyway", options.anyway,
-               "Keep it also where it can't be right: something moved in a tare, a scale more than twice or "
-               "less than half the device's own, or known worse than to 20 %");
+               "Store it even if it is implausible: movement in a tare, a scale above twice or below half "
+               "the nominal one, or uncertain by more than 20 %");
   app.fallthrough();
 }
 

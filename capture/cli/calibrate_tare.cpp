@@ -47,11 +47,11 @@ Result<Take> take_for(const CalibrateTareOptions& options) {
 }
 
 Result<void> check_still(const Tare& tare, bool anyway) {
-  if (tare.unstill.empty()) return {};
-  const std::string what = fmt::format("it was not still: {}", fmt::join(tare.unstill, "; "));
+  if (tare.motion_signs.empty()) return {};
+  const std::string what = fmt::format("the device was not at rest: {}", fmt::join(tare.motion_signs, "; "));
   if (!anyway)
     return schema::fail(schema::ErrorKind::unsuitable, what, "tare",
-                        "take the finger off and wait, or say --anyway");
+                        "remove the finger and wait, or use --anyway");
   cli::warn(what);
   return {};
 }
@@ -77,7 +77,7 @@ cli::Action declare_tare(CLI::App& app) {
   auto options = std::make_shared<CalibrateTareOptions>();
   declare_common(app, options->common);
   app.add_option("--from", options->from, "A recording instead of the device: oak, or oak@1s..3s");
-  cli::add_quantity(app, "--time", options->time_s, schema::Dimension::time, "How long to listen");
+  cli::add_quantity(app, "--time", options->time_s, schema::Dimension::time, "Duration of the measurement");
   return [options] { return run_calibrate_tare(*options); };
 }
 

@@ -31,11 +31,13 @@ schema::Result<cli::Report> run_doctor(const DoctorOptions& options) {
   const Diagnosis diagnosis = examine(request);
   std::vector<cli::Report> rows;
   for (const Check& check : diagnosis.checks) rows.push_back(row_of(check));
-  const Check* const obstacle = diagnosis.obstacle();
+  const Check* const first_failure = diagnosis.first_failure();
   cli::Report report;
-  report.add("checks", std::move(rows)).add("can_record", obstacle == nullptr).add("next", diagnosis.next);
-  if (obstacle != nullptr)
-    report.ends_with(obstacle->name == "disk" ? obstacle->fault : schema::ErrorKind::device);
+  report.add("checks", std::move(rows))
+      .add("can_record", first_failure == nullptr)
+      .add("next", diagnosis.next);
+  if (first_failure != nullptr)
+    report.ends_with(first_failure->name == "disk" ? first_failure->fault : schema::ErrorKind::device);
   return report;
 }
 
@@ -43,24 +45,22 @@ cli::Action declare_doctor(CLI::App& app) {
   auto options = std::make_shared<DoctorOptions>();
   DoctorRequest& request = options->request;
   app.add_option("-d,--device", request.device, "The device: usb:, usb:serial=XYZ, sim:...");
-  app.add_option("-o,--folder", request.folder, "Where recordings are to go");
+  app.add_option("-o,--folder", request.folder, "Folder of the recordings");
   app.add_option("--calibration", request.calibration,
-                 "The device's calibration, where it is not the one that 'tactograph calibrate' keeps");
+                 "Calibration file of the device, if not the one that 'tactograph calibrate' stores");
   cli::add_quantity(app, "--stale-after", options->stale_after_s, schema::Dimension::time,
-                    "A calibration older than this is stale; 30days");
-  app.add_option("--questions", request.questions, "How many answers of the device are timed");
-  app.footer(
-      app.get_footer() +
-      "\nExit code 0 where a recording can be made, 7 where the folder or the disk is in the way, else 8.");
+                    "Age from which a calibration is stale; default: 30days");
+  app.add_option("--questions", request.questions, "Number of measured round trips to the device");
+  app.footer(app.get_footer() +
+             "\nExit code 0: a recording can be made; 7: the folder or the disk prevents it; 8: another "
+             "cause prevents it.");
   return [options] { return run_doctor(*options); };
 }
 
 }  // namespace
 
-const cli::Verb kDoctorVerb{"doctor",
-                            "Say what works between you and a recording: device, permission, limits, disk, "
-                            "calibration",
-                            "tactograph doctor\n  tactograph doctor -d sim:surface=C -o /data/study-3 --json",
-                            declare_doctor};
+const cli::Verb kDoctorVerb{
+    "doctor", "Check what a recording needs: device, permission, limits, disk, calibration",
+    "tactograph doctor\n  tactograph doctor -d sim:surface=C -o /data/study-3 --json", declare_doctor};
 
 }  // namespace tacto::capture

@@ -7,12 +7,12 @@
 
 #include <cstdio>
 
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::capture {
 namespace {
 
-// Byte by byte, so that nothing of the next line is taken.
+// Byte by byte, so that no byte of the next line is consumed.
 schema::Result<bool> read_line() {
   char byte = 0;
   while (read(STDIN_FILENO, &byte, 1) == 1)
@@ -24,7 +24,7 @@ schema::Result<bool> read_line() {
 }  // namespace
 
 schema::Result<void> wait_for_enter(const std::string& what_to_do) {
-  cli::talk(fmt::format("{}, then press Enter: ", what_to_do));
+  cli::write_message(fmt::format("{}, then press Enter: ", what_to_do));
   std::fflush(stderr);
   const auto line = read_line();
   return line ? schema::Result<void>{} : schema::forward_error(line);

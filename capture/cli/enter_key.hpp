@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A person at the bench who says when it is done.
+// Confirmation with the Enter key by the person at the bench.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace tacto::capture {
 
-/// Prints what to do to stderr and waits for a line on stdin. Errors: usage: stdin has ended.
+/// Prints the instruction to stderr and waits for a line on stdin. Errors: usage: stdin has ended.
 schema::Result<void> wait_for_enter(const std::string& what_to_do);
 
-/// Whether a line has come on stdin since the last call; does not wait. Errors: usage: stdin has ended.
+/// Whether a line has arrived on stdin since the last call; does not wait. Errors: usage: stdin has ended.
 schema::Result<bool> enter_was_pressed();
 
 }  // namespace tacto::capture

@@ -25,7 +25,7 @@ double parsed_percent(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, percent);
   if (error != std::errc() || std::string_view(stop, end) != "%" || !std::isfinite(percent))
-    throw CLI::ValidationError("--humidity", fmt::format("'{}' is no percentage; write it as 45%", text));
+    throw CLI::ValidationError("--humidity", fmt::format("'{}' is not a percentage; write it as 45%", text));
   return percent;
 }
 
@@ -34,39 +34,36 @@ void declare_data(CLI::App& app, ImportRequest& request) {
          "FILE", request.file,
          "CSV table, sound file that libsndfile reads (WAV, FLAC, OGG ...), or a measured profile (XML)")
       ->required();
-  app.add_option("-o,--output", request.name, "The recording's name: NAME.wav and NAME.json")->required();
-  app.add_option(
-         "--channel", request.channels,
-         "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (without one, that of the table's column); "
-         "again "
-         "for each. COLUMN by header name or number from 1; LABEL:QUANTITY for a second channel of one "
-         "quantity. Not needed for mono audio: a signal")
+  app.add_option("-o,--output", request.name, "Name of the recording: NAME.wav and NAME.json")->required();
+  app.add_option("--channel", request.channels,
+                 "A channel, QUANTITY=COLUMN*SCALE+OFFSET and a unit (default: that of the column); repeat "
+                 "for each. COLUMN: header name or number from 1; LABEL:QUANTITY for a second channel of a "
+                 "quantity. Mono audio needs none: it is a signal")
       ->allow_extra_args(false);
   app.add_option("--skip", request.skip_lines,
-                 "Lines of a table before its header or first row, where they are not found");
+                 "Number of lines before the header or first row of a table, if they are not detected");
   cli::add_quantity(app, "--rate", request.rate_hz, Dimension::frequency,
-                    "Samples per second of a table (or of audio whose header is wrong)");
+                    "Samples per second of a table, or of audio with a wrong header");
   app.add_option("--time-column", request.time_column,
-                 "Find the rate from a column of times, COLUMN*SCALE and a unit: t_ms*1ms");
+                 "Compute the rate from a column of times, COLUMN*SCALE and a unit: t_ms*1ms");
   cli::add_quantity(
       app, "--pitch", request.pitch_m, Dimension::length,
-      "Heights in space, this far apart: makes a texture (as a height and a position without a rate do)");
+      "Distance between heights: makes a texture (so do a height and a position without a rate)");
   cli::add_quantity(app, "--speed", request.speed_mps, Dimension::speed,
-                    "Where there is no position: make a nominal one at this speed");
+                    "Speed of a nominal position, if none was measured");
   app.add_flag("!--no-position", request.integrate_speed, "Do not integrate a speed channel to a position");
-  app.add_flag(
-      "--mask-outliers", request.mask_outliers,
-      "Leave out rows with samples out of any plausible range: they become gaps, nothing is filled in");
-  app.add_flag("--force", request.replace, "Replace a recording of that name");
+  app.add_flag("--mask-outliers", request.mask_outliers,
+               "Remove rows with implausible samples: they become gaps and are not filled in");
+  app.add_flag("--force", request.replace, "Replace a recording of the same name");
 }
 
 void declare_circumstances(CLI::App& app, ImportRequest& request) {
-  app.add_option("--date", request.recorded, "Day of the measurement, as 2026-03-14");
-  app.add_option("--calibrated", request.calibrated, "Day of the calibration that the scales are from");
+  app.add_option("--date", request.recorded, "Date of the measurement, as 2026-03-14");
+  app.add_option("--calibrated", request.calibrated, "Date of the calibration of the scales");
   app.add_option("--subject", request.subject, "A code for the person, never a name");
-  app.add_option("--finger", request.finger, "Which finger, or what slid instead of one");
-  app.add_option("--surface", request.surface, "What was touched");
-  app.add_option("--notes", request.notes, "Anything else");
+  app.add_option("--finger", request.finger, "Finger, or object that slid instead of one");
+  app.add_option("--surface", request.surface, "Surface that was touched");
+  app.add_option("--notes", request.notes, "Other notes");
   app.add_option_function<std::string>(
          "--humidity",
          [&request](const std::string& text) { request.humidity_percent = parsed_percent(text); },
@@ -89,7 +86,7 @@ std::vector<cli::Report> rows_of(const Imported& imported) {
   return rows;
 }
 
-// The channels that `spatial` makes textures of; it takes tangential_force where it has the choice.
+// The channels that `spatial` can make textures of; its default is tangential_force.
 std::vector<std::string> texture_channels(const schema::RecordingHeader& header) {
   constexpr std::string_view kQuantities[] = {"tangential_force",
                                               "tangential_force_x",
@@ -114,7 +111,7 @@ std::string in_shell(const std::string& name) {
   return quoted + "'";
 }
 
-// A command that works as it is; the other channels that could be chosen follow in a comment of the shell.
+// A command that can be run unchanged; the other possible channels follow in a shell comment.
 std::string next_command(const schema::Recording& recording) {
   const auto& channels = recording.header.channels;
   const bool placed = std::ranges::find(channels, "position", &schema::Channel::quantity) != channels.end();
@@ -133,7 +130,7 @@ std::string outliers_of(const Imported& imported, const ImportRequest& request) 
   const auto plural = [](std::uint64_t count) { return count == 1 ? "" : "s"; };
   const std::string samples = fmt::format("{} sample{}", imported.outliers, plural(imported.outliers));
   if (!request.mask_outliers) return samples + "; --mask-outliers makes gaps of their rows";
-  return fmt::format("{} in {} row{}, which are gaps now", samples, imported.masked_rows,
+  return fmt::format("{} in {} row{}, which are now gaps", samples, imported.masked_rows,
                      plural(imported.masked_rows));
 }
 
@@ -169,7 +166,7 @@ schema::Result<cli::Report> run_profile(const ImportRequest& request) {
 }
 
 schema::Result<cli::Report> run_import(const ImportRequest& request) {
-  if (asks_for_profile(request)) return run_profile(request);
+  if (is_profile_request(request)) return run_profile(request);
   schema::Result<Imported> imported = [&] {
     cli::Progress progress("importing");
     return import_file(request, [&](double fraction) { progress.update(fraction); });
@@ -189,7 +186,7 @@ cli::Action declare_import(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kImportVerb{
-    "import", "Make a recording of another program's file, or a texture of a height profile",
+    "import", "Convert a file of another program to a recording, or a height profile to a texture",
     "tactograph import trial.csv -o trial --rate 10kHz --channel tangential_force=lateral_V*0.444444N"
     " --channel position=encoder_count*0.5um\n"
     "  tactograph import trial.csv -o trial --rate 10kHz --channel normal_force=2*-0.31+1.6647N --speed "

@@ -21,7 +21,7 @@ bool in_both_bands(const schema::StrokeFigures& stroke) {
          (!stroke.mean_normal_n || schema::kTargetLoad_n.holds(*stroke.mean_normal_n));
 }
 
-// Of the strokes that were counted while recording; nothing where none were.
+// Figures of the strokes that were counted while recording; none if no strokes were counted.
 void add_strokes(cli::Report& row, const schema::RecordingHeader& header) {
   if (header.strokes.empty()) return;
   const auto count = static_cast<double>(header.strokes.size());
@@ -70,13 +70,13 @@ schema::Result<cli::Report> run_list(const std::string& folder) {
 
 cli::Action declare_list(CLI::App& app) {
   auto folder = std::make_shared<std::string>(".");
-  app.add_option("FOLDER", *folder, "Where the recordings are");
+  app.add_option("FOLDER", *folder, "Folder of the recordings");
   return [folder] { return run_list(*folder); };
 }
 
 }  // namespace
 
-const cli::Verb kListVerb{"list", "Table the recordings of a folder by subject, surface and date",
+const cli::Verb kListVerb{"list", "List the recordings of a folder by subject, surface and date",
                           "tactograph list\n  tactograph list study-3 --json", declare_list};
 
 }  // namespace tacto::capture

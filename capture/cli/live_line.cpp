@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kBar = 8;
 
-// How far towards its converter's ends a channel went.
+// The largest value of a channel as a fraction of its converter's range.
 double part_of_range(const schema::Channel& channel, const ChannelLevel& level) {
   const double up = channel.range_max && *channel.range_max > 0 ? level.largest / *channel.range_max : 0;
   const double down = channel.range_min && *channel.range_min < 0 ? level.smallest / *channel.range_min : 0;
@@ -34,7 +34,7 @@ std::string bars(const LiveView& view, const schema::RecordingHeader& header) {
   return text;
 }
 
-// The same where bars have no room.
+// The same as numbers, for lines too short for bars.
 std::string peaks(const LiveView& view, const schema::RecordingHeader& header) {
   std::string text;
   for (std::size_t i = 0; i < view.levels.size(); ++i)
@@ -44,7 +44,7 @@ std::string peaks(const LiveView& view, const schema::RecordingHeader& header) {
   return text.empty() ? text : text + " %  ";
 }
 
-// What can't be mended afterwards stands where it is seen.
+// Clipping is shown near the beginning of the line, because it cannot be corrected afterwards.
 std::string clipping(const LiveView& view, const schema::RecordingHeader& header) {
   std::string text;
   for (std::size_t i = 0; i < view.levels.size(); ++i)

@@ -17,7 +17,7 @@
 #include "data-schema/command/stop_signals.hpp"
 #include "data-schema/report/progress.hpp"
 #include "data-schema/report/report.hpp"
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 #include "data-schema/report/warnings.hpp"
 #include "firmware-host/device_to_record.hpp"
 #include "firmware-host/sim/device/sim_parameters.hpp"
@@ -41,33 +41,33 @@ void declare_options(CLI::App& app, RecordOptions& options) {
   app.add_option("-d,--device", options.device,
                  "The device; default: usb:, the only one on USB; usb:serial=XYZ, or "
                  "sim:surface=C,speed=50mm/s,seed=1 (all keys: tactograph help sim), or replay:NAME");
-  CLI::Option* const name = app.add_option("-o,--output", request.name,
-                                           "The recording's name: NAME.wav and NAME.json; never overwrites");
+  CLI::Option* const name =
+      app.add_option("-o,--output", request.name,
+                     "Name of the recording: NAME.wav and NAME.json; existing files are not replaced");
   app.add_option("--template", options.pattern,
-                 "Instead of a name: {subject}_{surface}_{take}, where takes count up; {finger} too")
+                 "Instead of a name: a pattern such as {subject}_{surface}_{finger}_{take}; {take} counts up")
       ->excludes(name);
   cli::add_quantity(app, "--time", request.time_s, Dimension::time,
-                    "How long to record; without it until --strokes are made, or Ctrl-C");
-  app.add_option("--strokes", request.strokes, "End after so many strokes of 5 mm or more")
+                    "Duration; default: until --strokes are made, or Ctrl-C");
+  app.add_option("--strokes", request.strokes, "End after this number of strokes of at least 5 mm")
       ->check(cli::from_one());
-  app.add_flag("--allow-gaps", options.allow_gaps, "Lost frames are no failure");
+  app.add_flag("--allow-gaps", options.allow_gaps, "Exit code 0 even if frames are lost");
   app.add_option("--calibration", options.calibration,
-                 "The device's calibration, where it is not the one that 'tactograph calibrate' keeps");
-  app.add_flag("--no-calibration", options.no_calibration, "Only what the device says of itself");
+                 "Calibration file of the device, if not the one that 'tactograph calibrate' stores");
+  app.add_flag("--no-calibration", options.no_calibration, "Use the nominal scales of the device only");
   cli::add_quantity(app, "--stale-after", options.stale_after_s, Dimension::time,
-                    "A calibration older than this is warned of; 30days");
+                    "Age from which a calibration causes a warning; default: 30days");
   app.add_option("--subject", request.subject, "A code for the person, never a name");
-  app.add_option("--finger", request.finger, "Which finger, or what slides instead of one");
-  app.add_option("--surface", request.surface, "What is touched; default: as the device reports");
-  app.add_option("--notes", request.notes, "Anything else");
+  app.add_option("--finger", request.finger, "Finger, or object that slides instead of one");
+  app.add_option("--surface", request.surface, "Surface that is touched; default: as the device reports");
+  app.add_option("--notes", request.notes, "Other notes");
 }
 
 std::string footer_text() {
   return "\nThe emulated device (sim:) and its keys: tactograph help sim\n"
-         "While it records: Ctrl-C or q stops and keeps, m or SIGUSR1 marks. A crash or a power cut loses "
-         "the last 100 ms\n"
-         "(a power cut a second, where the disk was busy):\n"
-         "'tactograph recover NAME' makes a recording of the rest.";
+         "During a recording, Ctrl-C or q ends and stores it, m or SIGUSR1 sets a mark. After a crash or a "
+         "power cut,\n'tactograph recover NAME' restores the recording without its last 100 ms (1 s after a "
+         "power cut with a busy disk).";
 }
 
 cli::Report row_of(const schema::Channel& channel, const schema::Statistics& statistics) {
@@ -85,27 +85,28 @@ std::vector<cli::Report> rows_of(const Recorded& recorded) {
   return rows;
 }
 
-constexpr const char* kRealTime = "paced=1 makes it run in real time";
+constexpr const char* kRealTime = "with paced=1 it runs in real time";
 
-// A device that does not keep time fills the disk before anybody can press Ctrl-C.
+// A device that does not run in real time would fill the disk before the user can press Ctrl-C.
 Result<void> check_end(const firmware_host::DeviceToRecord& opened, const RecordOptions& options) {
   const RecordRequest& request = options.request;
-  if (opened.device->keeps_time() || opened.ends_by_itself || request.time_s) return {};
+  if (opened.device->is_real_time() || opened.ends_by_itself || request.time_s) return {};
   if (request.strokes == 0)
-    return schema::fail(schema::ErrorKind::usage,
-                        "this device runs faster than real time and would fill the disk: it needs an end",
-                        options.device, fmt::format("add --time 2s or --strokes 2; {}", kRealTime));
+    return schema::fail(
+        schema::ErrorKind::usage,
+        "this device runs faster than real time and would fill the disk: give the recording an end",
+        options.device, fmt::format("add --time 2s or --strokes 2; {}", kRealTime));
   if (request.strokes <= opened.strokes.value_or(request.strokes)) return {};
   return schema::fail(schema::ErrorKind::usage,
-                      fmt::format("it makes {} strokes, and the recording would wait for {}", *opened.strokes,
-                                  request.strokes),
-                      options.device, "ask for fewer --strokes, give the device more, or add --time 2s");
+                      fmt::format("the device makes {} strokes, but the recording would end after {}",
+                                  *opened.strokes, request.strokes),
+                      options.device, "use fewer --strokes, let the device make more, or add --time 2s");
 }
 
-// What a stopwatch beside the experiment would not agree with.
+// Reports a device that does not run in real time.
 void add_pace(cli::Report& report, const firmware_host::Device& device) {
-  if (device.keeps_time()) return;
-  report.add("pace", fmt::format("faster than real time: as fast as this computer can; {}", kRealTime));
+  if (device.is_real_time()) return;
+  report.add("pace", fmt::format("as fast as this computer allows, faster than real time; {}", kRealTime));
 }
 
 cli::Report report_on(const Recorded& recorded, const firmware_host::Device& device) {
@@ -128,7 +129,7 @@ cli::Report report_on(const Recorded& recorded, const firmware_host::Device& dev
 
 Result<std::string> chosen_name(const RecordOptions& options) {
   if (options.pattern.empty() && options.request.name.empty())
-    return schema::fail(schema::ErrorKind::usage, "the recording has no name", {},
+    return schema::fail(schema::ErrorKind::usage, "the name of the recording is missing", {},
                         "give -o NAME, or --template '{subject}_{surface}_{take}'");
   if (options.pattern.empty()) return options.request.name;
   const RecordRequest& request = options.request;
@@ -142,7 +143,7 @@ std::size_t terminal_columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79;
 }
 
-// The experimenter's side of a recording: signals and keys in, a line of figures out.
+// The user interface of a recording: signals and keys are the input, a line of figures is the output.
 class Console {
  public:
   RecordHooks hooks() {
@@ -151,7 +152,7 @@ class Console {
     hooks.new_marks = [this] { return signals_.take_marks() + std::exchange(marks_, 0); };
     if (isatty(STDERR_FILENO) == 1)
       hooks.view = [](const LiveView& view, const schema::RecordingHeader& header) {
-        cli::talk(fmt::format("\r\033[K{}", live_line(view, header, terminal_columns())));
+        cli::write_message(fmt::format("\r\033[K{}", live_line(view, header, terminal_columns())));
         std::fflush(stderr);
       };
     else
@@ -159,7 +160,7 @@ class Console {
     return hooks;
   }
   ~Console() {
-    if (isatty(STDERR_FILENO) == 1) cli::talk("\r\033[K");
+    if (isatty(STDERR_FILENO) == 1) cli::write_message("\r\033[K");
   }
 
  private:
@@ -202,7 +203,8 @@ Result<cli::Report> run_record(const RecordOptions& options) {
   const bool gaps = !recorded->recording.header.gaps.empty() || recorded->counts.lost_frames > 0;
   if (gaps && !options.allow_gaps) report.ends_with(schema::ErrorKind::device);
   if (recorded->ended_by && recorded->recording.header.ended.empty())
-    cli::warn("the recording is whole, but its device did not stop: " + schema::message(*recorded->ended_by));
+    cli::warn("the recording is complete, but the device did not stop: " +
+              schema::message(*recorded->ended_by));
   if (recorded->ended_by) report.ends_with(recorded->ended_by->kind);
   return report;
 }

@@ -33,9 +33,9 @@ cli::Report report_on(const schema::Recovered& recovered) {
   return report;
 }
 
-// A run that was killed may have left nothing but temporary files: to remove them is all there is to do.
+// A killed run may have left only temporary files. Their removal is then complete recovery.
 cli::Report report_on_nothing() {
-  return cli::Report().add("recording", "there is none to recover");
+  return cli::Report().add("recording", "no recording was found that needs recovery");
 }
 
 schema::Result<cli::Report> run_recover(const std::string& name) {
@@ -51,16 +51,16 @@ schema::Result<cli::Report> run_recover(const std::string& name) {
 
 cli::Action declare_recover(CLI::App& app) {
   auto name = std::make_shared<std::string>();
-  app.add_option("FILE", *name, "The recording that was broken off, by its stem or one of its files")
-      ->required();
+  app.add_option("FILE", *name, "The interrupted recording, by its stem or one of its files")->required();
   app.footer(app.get_footer() +
-             "\nIt also removes hidden temporary files (.NAME...tmp) that killed runs left of this name.");
+             "\nIt also removes hidden temporary files (.NAME...tmp) of killed runs with this name.");
   return [name] { return run_recover(*name); };
 }
 
 }  // namespace
 
-const cli::Verb kRecoverVerb{"recover", "Complete a recording that was broken off: crash, kill, power cut",
+const cli::Verb kRecoverVerb{"recover",
+                             "Complete a recording that was interrupted by a crash, a kill or a power cut",
                              "tactograph recover oak", declare_recover};
 
 }  // namespace tacto::capture

@@ -7,7 +7,7 @@
 namespace tacto::capture {
 
 TerminalKeys::TerminalKeys() {
-  // In the background of a shell, a change of the terminal would stop the process.
+  // A background process that changes the terminal's settings is stopped by the kernel.
   terminal_ = isatty(STDIN_FILENO) == 1 && tcgetpgrp(STDIN_FILENO) == getpgrp() &&
               tcgetattr(STDIN_FILENO, &before_) == 0;
   if (!terminal_) return;

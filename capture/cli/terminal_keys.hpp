@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys pressed while something else goes on.
+// Single key presses, read without blocking.
 #pragma once
 
 #include <termios.h>
 
 namespace tacto::capture {
 
-/// While it lives, a terminal on stdin gives keys as they are pressed, unechoed; Ctrl-C stays a signal. Where
-/// stdin is no terminal there are no keys.
+/// While this object exists, a terminal on stdin delivers each key at once and without echo; Ctrl-C remains a
+/// signal. If stdin is not a terminal, no key is ever delivered.
 class TerminalKeys {
  public:
   TerminalKeys();
@@ -15,7 +15,7 @@ class TerminalKeys {
   TerminalKeys& operator=(const TerminalKeys&) = delete;
   ~TerminalKeys();
 
-  /// The next key that is waiting, 0 where none is.
+  /// The next key in the input, 0 if there is none.
   char next();
 
  private:

@@ -12,7 +12,7 @@ namespace {
 using firmware_host::Capabilities;
 using firmware_host::Device;
 
-// What a device is taken for that nobody has seen: the paper's rate, four channels of 32 bits.
+// The assumed data rate if there is no device: the paper's sample rate, four channels of 32 bits.
 constexpr double kUsualBytesPerS = 10e3 * 4 * 4;
 
 double bytes_per_s(const Capabilities& capabilities) {
@@ -27,27 +27,28 @@ Check device_seen(const Capabilities& said) {
 }
 
 Check device_missing(const schema::Error& why) {
-  if (is_denied(why)) return {"device", Health::works, "it is there", {}};
+  if (is_denied(why)) return {"device", Health::works, "connected", {}};
   return {"device", Health::fails, schema::message({why.kind, why.what, why.where, {}}),
-          why.remedy.empty() ? "plug it in; 'tactograph scan' lists what is there" : why.remedy, why.kind};
+          why.remedy.empty() ? "plug it in; 'tactograph scan' lists connected devices" : why.remedy,
+          why.kind};
 }
 
 Check firmware(const Capabilities& said) {
   return {"firmware",
           Health::works,
-          fmt::format("{}, {:g} Hz, {} channels", said.firmware.empty() ? "of no version" : said.firmware,
+          fmt::format("{}, {:g} Hz, {} channels", said.firmware.empty() ? "no version" : said.firmware,
                       said.sample_rate_hz, said.channels.size()),
           {}};
 }
 
 Check skipped(const char* name) {
-  return {name, Health::skipped, "needs a device", {}};
+  return {name, Health::skipped, "requires a device", {}};
 }
 
-void look_at(Device& device, const DoctorRequest& request, std::vector<Check>& checks) {
+void check_device(Device& device, const DoctorRequest& request, std::vector<Check>& checks) {
   const Capabilities& said = device.capabilities();
   checks.push_back(device_seen(said));
-  checks.push_back({"permission", Health::works, "it may be used", {}});
+  checks.push_back({"permission", Health::works, "access is permitted", {}});
   checks.push_back(firmware(said));
   checks.push_back(check_round_trip(device, request.questions));
   checks.push_back(check_real_time(request.root));
@@ -56,7 +57,8 @@ void look_at(Device& device, const DoctorRequest& request, std::vector<Check>& c
   checks.push_back(check_calibration(said, request));
 }
 
-void look_without(const schema::Error& why, const DoctorRequest& request, std::vector<Check>& checks) {
+void check_without_device(const schema::Error& why, const DoctorRequest& request,
+                          std::vector<Check>& checks) {
   checks.push_back(device_missing(why));
   checks.push_back(check_permission(why, request.root));
   checks.push_back(skipped("firmware"));
@@ -68,10 +70,10 @@ void look_without(const schema::Error& why, const DoctorRequest& request, std::v
 }
 
 std::string next_of(const Diagnosis& diagnosis, const DoctorRequest& request, bool in_real_time) {
-  if (const Check* const obstacle = diagnosis.obstacle())
-    return obstacle->name == "device" && request.device.starts_with("usb:")
-               ? "plug it in, or try the emulated one: tactograph doctor -d sim:surface=C"
-               : obstacle->remedy;
+  if (const Check* const first_failure = diagnosis.first_failure())
+    return first_failure->name == "device" && request.device.starts_with("usb:")
+               ? "plug it in, or use the emulated device: tactograph doctor -d sim:surface=C"
+               : first_failure->remedy;
   const auto calibration = std::ranges::find(diagnosis.checks, "calibration", &Check::name);
   if (calibration->health == Health::warns) return calibration->remedy;
   return fmt::format("tactograph record -d {} -o oak{}", request.device, in_real_time ? "" : " --time 2s");
@@ -79,7 +81,7 @@ std::string next_of(const Diagnosis& diagnosis, const DoctorRequest& request, bo
 
 }  // namespace
 
-const Check* Diagnosis::obstacle() const {
+const Check* Diagnosis::first_failure() const {
   const auto found = std::ranges::find(checks, Health::fails, &Check::health);
   return found == checks.end() ? nullptr : &*found;
 }
@@ -88,10 +90,10 @@ Diagnosis examine(const DoctorRequest& request) {
   Diagnosis diagnosis;
   const auto device = firmware_host::open_device(request.device);
   if (device)
-    look_at(**device, request, diagnosis.checks);
+    check_device(**device, request, diagnosis.checks);
   else
-    look_without(device.error(), request, diagnosis.checks);
-  diagnosis.next = next_of(diagnosis, request, !device || (*device)->keeps_time());
+    check_without_device(device.error(), request, diagnosis.checks);
+  diagnosis.next = next_of(diagnosis, request, !device || (*device)->is_real_time());
   return diagnosis;
 }
 

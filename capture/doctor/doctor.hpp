@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What works and what does not between a user and a recording, in the order in which it is needed.
+// Checks of all that a recording needs, in the order in which it is needed.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@ namespace tacto::capture {
 
 struct DoctorRequest {
   std::string device = "usb:";
-  std::string folder = ".";  ///< where recordings are to go
-  std::string calibration;   ///< the device's file; empty: where it is usually kept
+  std::string folder = ".";  ///< the folder for recordings
+  std::string calibration;   ///< the calibration file of the device; empty: the default path
   double stale_after_s = kStaleAfter_s;
-  std::size_t questions = 200;  ///< of which the round trip is the median
-  std::string root = "/";       ///< of /proc and /etc; another one in tests
+  std::size_t questions = 200;  ///< heartbeats; the round trip is their median
+  std::string root = "/";       ///< the root of /proc and /etc; another one in tests
 };
 
 enum class Health { works, warns, fails, skipped };
@@ -28,31 +28,31 @@ struct Check {
                      ///< "temporary files", "calibration"
   Health health = Health::works;
   std::string found;
-  std::string remedy;                                   ///< what to do; empty where all is well
-  schema::ErrorKind fault = schema::ErrorKind::device;  ///< of what fails
+  std::string remedy;  ///< the instruction to the user; empty if nothing is wrong
+  schema::ErrorKind fault = schema::ErrorKind::device;  ///< the kind of error, if the check fails
 };
 
 struct Diagnosis {
   std::vector<Check> checks;
-  std::string next;  ///< what to type
-  /// The first that stands in the way of a recording; nullptr where one can be made.
-  const Check* obstacle() const;
+  std::string next;  ///< the next command to type
+  /// The first failed check that prevents a recording; nullptr if a recording can be made.
+  const Check* first_failure() const;
 };
 
-/// What a device that is used must give; the checks that need one are skipped where there is none.
+/// Runs all checks; those that need a device are skipped if there is none.
 Diagnosis examine(const DoctorRequest& request);
 
-/// The parts, each a check of its own. `bytes_per_s` is what the device's stream brings to the disk.
+/// The parts, one check each. `bytes_per_s` is the data rate of the device's stream.
 Check check_round_trip(firmware_host::Device& device, std::size_t questions);
 Check check_real_time(const std::string& root);
 Check check_disk(const std::string& folder, double bytes_per_s);
-/// Removes the temporary files that killed runs left in the folder; warns of those whose run may go on
-/// elsewhere.
+/// Removes the temporary files of killed runs from the folder; warns of files whose run may still be active
+/// on another machine.
 Check check_temporary_files(const std::string& folder);
 Check check_calibration(const firmware_host::Capabilities& capabilities, const DoctorRequest& request);
-/// Whether a device is there that this user may not open.
+/// Whether the error says that a device is present that this user has no permission to open.
 bool is_denied(const schema::Error& why);
-/// Of a device that could not be opened, and why.
+/// The check of the permission to open a device, after opening failed with `why`.
 Check check_permission(const schema::Error& why, const std::string& root);
 
 }  // namespace tacto::capture

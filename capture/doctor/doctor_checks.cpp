@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The doctor's checks, one a function.
+// The checks of `doctor`, one function each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,14 +22,14 @@ namespace {
 using schema::Dimension;
 using schema::for_people;
 
-constexpr double kSlowAnswer_s = 5e-3;  // ours: a heartbeat is due every 50 ms in playback
-constexpr double kSlowSync_s = 50e-3;   // with it a power cut may cost more than 100 ms
+constexpr double kSlowAnswer_s = 5e-3;  // our choice: in playback a heartbeat is due every 50 ms
+constexpr double kSlowSync_s = 50e-3;   // a slower disk may lose more than 100 ms of data in a power cut
 constexpr double kLeastRoom_s = 10, kGoodRoom_s = 600, kGoodSpeed = 4;
 constexpr double kLeastLocked_bytes = 64 << 20;
 constexpr double kLargestBlock_bytes = 16 << 20;
 constexpr const char* kRule = "60-tactograph.rules";
 
-// An emulated device is at rest only if asked for it; a real one is when its user takes the finger off.
+// A real device is at rest when its user removes the finger. An emulated one needs an option for it.
 std::string tare_command(const std::string& device) {
   constexpr std::string_view kSim = "sim:";
   std::string at_rest = device;
@@ -60,17 +60,17 @@ std::string installed_rule(const std::string& root) {
 std::string advice_on(const RealtimeLimits& limits) {
   if (!limits.granted)
     return "playback without it may be late: put '@audio - rtprio 80' and '@audio - memlock unlimited' into "
-           "/etc/security/limits.d/tactograph.conf, be of the group audio, and log in anew";
+           "/etc/security/limits.d/tactograph.conf, join the group audio, and log in again";
   if (limits.locked_bytes && *limits.locked_bytes < kLeastLocked_bytes)
     return "playback locks its memory: put '@audio - memlock unlimited' into "
            "/etc/security/limits.d/tactograph.conf";
   if (limits.runtime && *limits.runtime < 0.9)
-    return "the kernel throttles real-time threads: sysctl kernel.sched_rt_runtime_us=950000";
+    return "the kernel limits the time of real-time threads: sysctl kernel.sched_rt_runtime_us=950000";
   return {};
 }
 
 std::string words_of(const RealtimeLimits& limits) {
-  return fmt::format("{}, limit {}; {} of memory may be locked; threads may run {} of the time",
+  return fmt::format("{}, limit {}; {} of memory can be locked; real-time threads can run {} of the time",
                      limits.granted ? "granted" : "not granted", limits.priority,
                      limits.locked_bytes ? fmt::format("{:.3g} MB", *limits.locked_bytes / 1e6) : "all",
                      limits.runtime ? fmt::format("{:.0f} %", 100 * *limits.runtime) : "an unknown part");
@@ -78,7 +78,7 @@ std::string words_of(const RealtimeLimits& limits) {
 
 std::string words_of(const DiskSpeed& disk, double bytes_per_s) {
   return fmt::format(
-      "{:.0f} MB/s for {:.3g} MB/s, synced in {} (at worst {}), {:.3g} GB free for {}",
+      "{:.0f} MB/s ({:.3g} MB/s needed), synchronised in {} (maximum {}), {:.3g} GB free for {}",
       disk.write_bytes_per_s / 1e6, bytes_per_s / 1e6, for_people(disk.sync_median_s, Dimension::time),
       for_people(disk.sync_worst_s, Dimension::time), disk.free_bytes / 1e9,
       disk.free_bytes / bytes_per_s > 5400 ? fmt::format("{:.0f} h", disk.free_bytes / bytes_per_s / 3600)
@@ -86,9 +86,11 @@ std::string words_of(const DiskSpeed& disk, double bytes_per_s) {
 }
 
 std::string advice_on(const DiskSpeed& disk, double bytes_per_s) {
-  if (disk.free_bytes < kGoodRoom_s * bytes_per_s) return "there is little room: less than 10 min";
-  if (disk.write_bytes_per_s < kGoodSpeed * bytes_per_s) return "it is hardly fast enough: use another disk";
-  if (disk.sync_median_s > kSlowSync_s) return "it syncs slowly: a power cut may cost more than 100 ms";
+  if (disk.free_bytes < kGoodRoom_s * bytes_per_s) return "the disk has little space: less than 10 min";
+  if (disk.write_bytes_per_s < kGoodSpeed * bytes_per_s)
+    return "the disk is hardly fast enough: use another disk";
+  if (disk.sync_median_s > kSlowSync_s)
+    return "the disk synchronises slowly: after a power cut more than 100 ms may be missing";
   return {};
 }
 
@@ -99,7 +101,7 @@ std::string size_in_words(const std::vector<schema::Leftover>& files) {
   return fmt::format("{} file{}, {:.3g} MB", files.size(), files.size() == 1 ? "" : "s", bytes / 1e6);
 }
 
-// The channel's newest scale and zero, once where they are one.
+// The newest entries with a scale and a zero of the channel; one entry if both are in the same.
 std::vector<const schema::CalibrationEntry*> newest_of(const schema::CalibrationFile& file,
                                                        const std::string& channel) {
   const auto* const scale = schema::newest_scale(file, channel);
@@ -118,13 +120,14 @@ bool is_denied(const schema::Error& why) {
 
 Check check_permission(const schema::Error& why, const std::string& root) {
   const std::string rule = installed_rule(root);
-  const std::string found = rule.empty() ? fmt::format("{} is not installed", kRule) : rule + " is there";
+  const std::string found = rule.empty() ? fmt::format("{} is not installed", kRule) : rule + " is installed";
   const std::string remedy =
-      rule.empty() ? fmt::format(
-                         "echo '{}' | sudo tee /etc/udev/rules.d/{} && sudo udevadm control "
-                         "--reload && sudo udevadm trigger, then plug the device in anew",
-                         kUdevRule, kRule)
-                   : "be of the group plugdev, or sit at the computer; then plug the device in anew";
+      rule.empty()
+          ? fmt::format(
+                "echo '{}' | sudo tee /etc/udev/rules.d/{} && sudo udevadm control "
+                "--reload && sudo udevadm trigger, then plug the device in again",
+                kUdevRule, kRule)
+          : "join the group plugdev, or log in at the computer itself; then plug the device in again";
   if (is_denied(why)) return {"permission", Health::fails, found, remedy, schema::ErrorKind::not_found};
   return rule.empty() ? judged("permission", found, remedy) : judged("permission", found, {});
 }
@@ -138,13 +141,13 @@ Check check_round_trip(firmware_host::Device& device, std::size_t questions) {
     if (!time_s) return {"round trip", Health::fails, time_s.error().what, time_s.error().remedy};
     times_s.push_back(*time_s);
   }
-  if (times_s.empty()) return {"round trip", Health::skipped, "not asked", {}};
+  if (times_s.empty()) return {"round trip", Health::skipped, "not measured", {}};
   std::ranges::sort(times_s);
   const double median_s = times_s[times_s.size() / 2], late_s = times_s[times_s.size() * 99 / 100];
   return judged("round trip",
                 fmt::format("median {}, 99 of 100 within {}", for_people(median_s, Dimension::time),
                             for_people(late_s, Dimension::time)),
-                late_s > kSlowAnswer_s ? "answers are slow: fewer hubs, or another port" : "");
+                late_s > kSlowAnswer_s ? "answers are slow: use fewer hubs or another port" : "");
 }
 
 Check check_real_time(const std::string& root) {
@@ -168,10 +171,10 @@ Check check_temporary_files(const std::string& folder) {
   const auto removed = schema::remove_ended(schema::leftovers_in(folder));
   const auto kept = schema::leftovers_in(folder);
   std::string found = removed.empty() ? "" : fmt::format("removed {} of killed runs", size_in_words(removed));
-  if (kept.empty()) return judged("temporary files", found.empty() ? "none are left" : found, {});
-  found += fmt::format("{}{} of runs that may still go on, here or on another machine, the first {}",
+  if (kept.empty()) return judged("temporary files", found.empty() ? "none" : found, {});
+  found += fmt::format("{}{} of runs that may still be active, here or on another machine, the first {}",
                        found.empty() ? "" : "; ", size_in_words(kept), kept.front().path);
-  return judged("temporary files", found, "if no such run goes on, remove them: rm " + kept.front().path);
+  return judged("temporary files", found, "if no such run is active, remove them: rm " + kept.front().path);
 }
 
 Check check_calibration(const firmware_host::Capabilities& said, const DoctorRequest& request) {
@@ -179,11 +182,11 @@ Check check_calibration(const firmware_host::Capabilities& said, const DoctorReq
   const auto file = calibration_of(said.serial, request.calibration);
   if (!file)
     return {"calibration", Health::fails, schema::message(file.error()),
-            "name another, or record with --no-calibration", file.error().kind};
-  if (!*file) return judged("calibration", "there is none", tare);
+            "use another file, or record with --no-calibration", file.error().kind};
+  if (!*file) return judged("calibration", "no calibration was found", tare);
   if ((**file).serial != said.serial)
-    return {"calibration", Health::fails, "is that of the device " + (**file).serial, "name this device's",
-            schema::ErrorKind::unsuitable};
+    return {"calibration", Health::fails, "is the calibration of the device " + (**file).serial,
+            "use the file of this device", schema::ErrorKind::unsuitable};
   std::vector<std::string> parts, stale, ahead;
   for (const schema::Channel& channel : said.channels)
     for (const auto* entry : newest_of(**file, channel.name)) {
@@ -192,11 +195,12 @@ Check check_calibration(const firmware_host::Capabilities& said, const DoctorReq
       if (!age_s || *age_s > request.stale_after_s) stale.push_back(channel.name);
       if (age_s && *age_s < -kClockSlack_s) ahead.push_back(channel.name);
     }
-  if (parts.empty()) return judged("calibration", "has nothing on these channels", tare);
+  if (parts.empty()) return judged("calibration", "contains no entry for these channels", tare);
   const std::string found = fmt::format("{}", fmt::join(parts, ", "));
   if (!ahead.empty())
-    return judged("calibration", fmt::format("of the future: {}; {}", fmt::join(ahead, ", "), found),
-                  "one clock is wrong: set this one, or put the file away and calibrate anew");
+    return judged(
+        "calibration", fmt::format("dated in the future: {}; {}", fmt::join(ahead, ", "), found),
+        "one clock is wrong: set the clock of this computer, or remove the file and calibrate again");
   return stale.empty()
              ? judged("calibration", found, {})
              : judged("calibration", fmt::format("stale: {}; {}", fmt::join(stale, ", "), found), tare);

@@ -24,7 +24,7 @@ std::optional<double> runtime_part(const std::string& root) {
   return *runtime_us < 0 ? 1 : *runtime_us / *period_us;
 }
 
-// In a thread of its own: this one stays what it is.
+// In a separate thread, so that the priority of this one does not change.
 bool is_granted() {
   bool granted = false;
   std::thread([&] { granted = firmware_host::RealtimePriority().granted(); }).join();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A position where none was measured: from a speed that was, or one that was only meant.
+// A position that was not measured, computed from a measured or a nominal speed.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace tacto::capture {
 
-/// Positions frame by frame, in metres, from 0 at the first. Times come from the clock's count, gaps counted:
-/// exact, where a sum of periods would drift.
+/// Positions frame by frame, in metres, from 0 at the first. Times are computed from the frame count, gaps
+/// included: this is exact, while a sum of periods would drift.
 class DerivedPosition {
  public:
   /// speed * time; the channel's derivation says "nominal: 40 mm/s".
   static DerivedPosition nominal(double speed_mps);
-  /// The trapezoid rule over a speed channel. Across a gap it takes the speed to have changed evenly.
+  /// The trapezoid rule over a speed channel. Across a gap the speed is assumed to change linearly.
   static DerivedPosition integrated(const schema::Channel& speed);
 
   const schema::Channel& channel() const { return channel_; }
-  /// The next frame's position. `stored` is the speed channel's number, of no account where the position is
-  /// nominal. The header has its rate and gaps.
+  /// The next frame's position. `stored` is the number of the speed channel; it is ignored if the position is
+  /// nominal. The rate and the gaps are those of `header`.
   double next(const schema::RecordingHeader& header, double stored);
 
  private:

@@ -34,7 +34,7 @@ bool names(const std::vector<std::string>& channels, std::string_view quantity) 
   });
 }
 
-// A table's columns of a profile.
+// The columns of a table that contains a profile.
 struct Columns {
   ScaledColumn height;
   std::optional<ScaledColumn> position;
@@ -48,20 +48,21 @@ Result<Columns> columns_of(const ImportRequest& request, const Source& source) {
     if (spec.quantity == "height") height = spec.source;
     if (spec.quantity == "position") position = spec.source;
     if (spec.quantity != "height" && spec.quantity != "position")
-      return fail(ErrorKind::usage, fmt::format("a profile has no {}", spec.quantity), "--channel",
-                  "it is a height, and a position or --pitch");
+      return fail(ErrorKind::usage, fmt::format("a profile cannot contain {}", spec.quantity), "--channel",
+                  "it consists of a height, and a position or --pitch");
   }
   if (!height)
-    return fail(ErrorKind::usage, "which column is the height? They are: " + columns_in_words(source.columns),
-                source.file, "name it, as in --channel 'height=2*1um'");
+    return fail(ErrorKind::usage,
+                "the column of the height is not known; the columns are: " + columns_in_words(source.columns),
+                source.file, "give it, for example --channel 'height=2*1um'");
   if (position.has_value() == request.pitch_m.has_value())
     return fail(ErrorKind::usage,
-                position ? "both --pitch and a position were given" : "a table doesn't say its pitch",
-                source.file, "give --pitch 0.25um, or --channel 'position=1*1mm'");
+                position ? "both --pitch and a position were given" : "the pitch is missing", source.file,
+                "give either --pitch 0.25um or --channel 'position=1*1mm'");
   return Columns{*height, position};
 }
 
-// The table's two columns in metres, and how to name a row.
+// The table's two columns in metres, and the name of a row for messages.
 struct Table {
   std::vector<double> height_m, position_m;
   std::deque<CsvReader::Landmark> lines;
@@ -104,7 +105,7 @@ void turn_round(HeightProfile& profile, std::vector<double>& position_m) {
   profile.direction = -1;
 }
 
-// The even grid from the first position to the last, and how far the positions are off it.
+// Finds the even grid from the first position to the last, and the largest deviation from it.
 Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& file) {
   std::vector<double>& x = table.position_m;
   if (x.back() < x.front()) turn_round(profile, x);
@@ -112,17 +113,17 @@ Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& 
   profile.origin_m = x.front();
   profile.pitch_m = (x.back() - x.front()) / last;
   if (profile.pitch_m == 0)
-    return fail(ErrorKind::unsuitable, "the position does not move", file,
-                "a profile is heights at growing positions; is this the right column?");
+    return fail(ErrorKind::unsuitable, "the position does not change", file,
+                "a profile needs heights at increasing positions; check that this is the right column");
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double off_m = std::abs(x[i] - (x.front() + static_cast<double>(i) * profile.pitch_m));
     profile.unevenness_m = std::max(profile.unevenness_m, off_m);
     if (off_m <= kMostUnevenness * profile.pitch_m && profile.pitch_m > 0) continue;
     const std::size_t row = profile.direction > 0 ? i : x.size() - 1 - i;
     return fail(ErrorKind::unsuitable,
-                fmt::format("the position of {:.6g} mm is {:.3g} um off an even grid of {:.6g} um",
+                fmt::format("the position of {:.6g} mm deviates by {:.3g} um from an even grid of {:.6g} um",
                             x[i] * 1e3, off_m * 1e6, profile.pitch_m * 1e6),
-                table.place_of(file, row), "resample the profile evenly where it was made");
+                table.place_of(file, row), "resample the profile evenly in the program that made it");
   }
   return {};
 }
@@ -130,12 +131,12 @@ Result<void> find_grid(HeightProfile& profile, Table& table, const std::string& 
 Result<HeightProfile> profile_of(const ImportRequest& request, Table table) {
   HeightProfile profile;
   if (table.height_m.size() < 2)
-    return fail(ErrorKind::unsuitable, "a profile has two heights or more", request.file);
+    return fail(ErrorKind::unsuitable, "a profile needs at least two heights", request.file);
   profile.height_m = std::move(table.height_m);
   profile.pitch_m = request.pitch_m.value_or(0);
   if (request.pitch_m) {
     if (*request.pitch_m > 0) return profile;
-    return fail(ErrorKind::usage, "a pitch is above 0", "--pitch");
+    return fail(ErrorKind::usage, "a pitch must be above 0", "--pitch");
   }
   const auto found = find_grid(profile, table, request.file);
   return found ? Result<HeightProfile>(std::move(profile)) : schema::forward_error(found);
@@ -146,7 +147,8 @@ Result<HeightProfile> read_profile_table(const ImportRequest& request,
   const auto source = open_source(request.file, request.skip_lines);
   TACTO_TRY(source);
   if (!source->csv)
-    return fail(ErrorKind::unsuitable, "is no table", request.file, "a profile is a CSV table or XML");
+    return fail(ErrorKind::unsuitable, "is not a table", request.file,
+                "a profile must be a CSV table or XML");
   const auto columns = columns_of(request, *source);
   TACTO_TRY(columns);
   auto table = read_table(*source, *columns, progress);
@@ -156,8 +158,9 @@ Result<HeightProfile> read_profile_table(const ImportRequest& request,
 Result<void> check_xml_options(const ImportRequest& request) {
   if (request.channels.empty() && !request.pitch_m && !request.rate_hz && request.time_column.empty())
     return {};
-  return fail(ErrorKind::usage, "an XML profile names its heights and its spacing itself", request.file,
-              "leave --channel, --pitch, --rate and --time-column out");
+  return fail(ErrorKind::usage,
+              "an XML profile already contains the channel of its heights and their spacing", request.file,
+              "omit --channel, --pitch, --rate and --time-column");
 }
 
 Result<schema::Texture> texture_of(const HeightProfile& profile, const ImportRequest& request) {
@@ -188,14 +191,14 @@ Result<void> check_free(const std::string& stem, bool replace) {
   std::error_code ignored;
   for (const char* ending : {".texture.json", ".texture.wav"})
     if (!replace && std::filesystem::exists(stem + ending, ignored))
-      return fail(ErrorKind::usage, "is there already", stem + ending,
-                  "choose another name, or --force to replace it");
+      return fail(ErrorKind::usage, "exists already", stem + ending,
+                  "choose another name, or replace it with --force");
   return {};
 }
 
 }  // namespace
 
-bool asks_for_profile(const ImportRequest& request) {
+bool is_profile_request(const ImportRequest& request) {
   if (is_xml(request.file) || request.pitch_m) return true;
   return names(request.channels, "height") && names(request.channels, "position") && !request.rate_hz &&
          request.time_column.empty();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A height profile measured in space, made a texture of heights.
+// Import of a height profile, measured in space, as a texture of heights.
 #pragma once
 
 #include <functional>
@@ -13,29 +13,30 @@
 
 namespace tacto::capture {
 
-/// How far a position may be from its place on the even grid, in pitches: positions are often printed with
-/// few digits. Heights are taken to lie on the grid; further off is no even profile.
+/// The largest deviation of a position from the even grid, in pitches: positions are often printed with few
+/// digits. Heights are assumed to be at the positions of the grid. A profile with a larger deviation is not
+/// even.
 inline constexpr double kMostUnevenness = 0.25;
 
-/// Heights on an even grid, and what their file says of them.
+/// Heights on an even grid, and the description in their file.
 struct HeightProfile {
   double pitch_m = 0;
   double origin_m = 0;  ///< position of the first height
-  int direction = 1;    ///< -1: it was measured backwards, and is turned round
+  int direction = 1;    ///< -1: it was measured backwards and has been reversed
   std::vector<double> height_m;
-  double unevenness_m = 0;     ///< how far positions were off the grid, at most
-  std::string surface, notes;  ///< what was measured, by whom
+  double unevenness_m = 0;     ///< the largest deviation of a position from the grid
+  std::string surface, notes;  ///< the object and the author of the measurement
 };
 
-/// Whether what the user asks for is a profile in space, not a recording in time: an XML file, a pitch, or a
+/// Whether the request is for a profile in space and not a recording in time: an XML file, a pitch, or a
 /// height and a position without a rate and without a time column.
-bool asks_for_profile(const ImportRequest& request);
+bool is_profile_request(const ImportRequest& request);
 
-/// Reads it: the XML of the National Physical Laboratory's profiles (DATA/DATAFILE: UNITS, NUMPOINTS,
-/// SPACING, DATA_POINT_VALUES), or a table with a height channel and either a position channel or
-/// request.pitch_m. Errors: usage (options that don't fit); not_found; malformed, with line and column, or
-/// with the XML's element; unsuitable, for positions that stand, turn or are off the even grid by more than
-/// kMostUnevenness, naming the line.
+/// Reads the XML of the National Physical Laboratory's profiles (DATA/DATAFILE: UNITS, NUMPOINTS, SPACING,
+/// DATA_POINT_VALUES), or a table with a height channel and either a position channel or request.pitch_m.
+/// Errors: usage (options that do not agree); not_found; malformed, with line and column, or with the XML's
+/// element; unsuitable, with the line, for positions that do not change, that reverse, or that deviate from
+/// the even grid by more than kMostUnevenness.
 schema::Result<HeightProfile> read_height_profile(const ImportRequest& request,
                                                   const std::function<void(double)>& progress);
 
@@ -44,8 +45,8 @@ struct ImportedProfile {
   std::string stem;
 };
 
-/// Reads it and writes STEM.texture.wav and STEM.texture.json: quantity height, metres, known from 0 to half
-/// a cycle a sample. Errors: as read_height_profile(); usage, where the texture is there and not
+/// Reads the profile and writes STEM.texture.wav and STEM.texture.json: quantity height, metres, known band 0
+/// to half a cycle per sample. Errors: as read_height_profile(); usage, if the texture exists and not
 /// request.replace; cannot_write.
 schema::Result<ImportedProfile> import_profile(const ImportRequest& request,
                                                const std::function<void(double)>& progress);

@@ -29,21 +29,21 @@ void gather(const RowBlock& block, std::size_t column, std::vector<double>& valu
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = numbers[i * block.columns];
 }
 
-// One channel on its way from the source to the file.
+// A measured channel during the import.
 struct Measured {
   std::size_t column = 0;  // in the blocks
   std::unique_ptr<Plausibility> judged;
-  std::vector<double> stored;  // of the block at hand
+  std::vector<double> stored;  // of the current block
 };
 
 struct Derived {
   DerivedPosition position;
-  std::size_t speed = 0;  // which measured channel it is integrated from
+  std::size_t speed = 0;  // the measured channel that is integrated
   std::vector<double> stored;
   double smallest = 0, largest = 0;
 };
 
-// An import under way, block by block.
+// A running import, block by block.
 class Import {
  public:
   Import(const ImportRequest& request, ImportPlan plan, Progress progress);
@@ -67,16 +67,17 @@ class Import {
   std::uint64_t outliers() const;
   Result<Imported> close();
   Progress share(double from, double to) const;
-  Result<void> read(const TakeRows& take_rows, const Progress& progress, schema::Sha256* sum = nullptr);
+  Result<void> read(const RowHandler& take_rows, const Progress& progress, schema::Sha256* sum = nullptr);
 
   const ImportRequest& request_;
   ImportPlan plan_;
   Progress progress_;
   std::vector<std::size_t> columns_;
-  RecordingHeader header_;  // until the writer has it: its channels are what `judged` looks at
+  RecordingHeader header_;  // until it is moved to the writer; `judged` refers to its channels
   std::vector<Measured> measured_;
   std::optional<Derived> derived_;
-  std::vector<std::unique_ptr<Plausibility>> judged_unmasked_;  // with the mask: of all rows
+  std::vector<std::unique_ptr<Plausibility>>
+      unmasked_plausibility_;  // only with the mask: statistics of all rows
   OutlierMask mask_;
   std::uint64_t rows_ = 0;
   ClockFinder clock_;
@@ -119,7 +120,7 @@ Progress Import::share(double from, double to) const {
   return [this, from, to](double fraction) { progress_(from + (to - from) * fraction); };
 }
 
-Result<void> Import::read(const TakeRows& take_rows, const Progress& progress, schema::Sha256* sum) {
+Result<void> Import::read(const RowHandler& take_rows, const Progress& progress, schema::Sha256* sum) {
   return read_source(plan_.source, columns_, take_rows, progress, sum);
 }
 
@@ -130,7 +131,7 @@ void Import::take_times(const RowBlock& block) {
   for (double& value : times_s_) value = value * time.scale + time.offset;
 }
 
-// Positions need the clock before the first of them can be written.
+// The clock must be known before the first position can be written.
 Result<void> Import::first_clock() {
   const auto survey = [this](const RowBlock& block) -> Result<void> {
     take_times(block);
@@ -162,7 +163,7 @@ Result<void> Import::survey(const RowBlock& block) {
   return {};
 }
 
-// What is to be left out is known before the first sample is written, and so are the times of what stays.
+// Finds the rows to leave out, and so the times of the others, before the first sample is written.
 Result<void> Import::find_outliers() {
   const auto take_rows = [this](const RowBlock& block) { return survey(block); };
   if (const auto surveyed = read(take_rows, share(0, 0.2)); !surveyed) return surveyed;
@@ -177,9 +178,9 @@ Result<void> Import::find_outliers() {
 Result<void> Import::mask_what_was_found() {
   std::vector<std::uint64_t> rows;
   for (std::size_t k = 0; k < measured_.size(); ++k) {
-    judged_unmasked_.push_back(
+    unmasked_plausibility_.push_back(
         std::exchange(measured_[k].judged, std::make_unique<Plausibility>(header_.channels[k])));
-    std::ranges::copy(judged_unmasked_[k]->outlier_samples(), std::back_inserter(rows));
+    std::ranges::copy(unmasked_plausibility_[k]->outlier_samples(), std::back_inserter(rows));
   }
   auto mask = OutlierMask::of(std::move(rows), rows_, request_.file);
   TACTO_TRY(mask);
@@ -247,7 +248,7 @@ bool Import::second_pass_needed() const {
   return (!clock_known_ && clock_.second_pass_needed()) || std::ranges::any_of(measured_, needs);
 }
 
-// What has to be named by its line: gaps and faults of the clock, or samples that stand alone.
+// Finds the line numbers for messages: gaps and errors of the clock, or isolated samples.
 Result<void> Import::name(const RowBlock& block, bool clock) {
   const auto place_of = [&](std::uint64_t row) { return block.place_of(row); };
   if (clock) {
@@ -279,7 +280,7 @@ Result<void> Import::second_pass(double from, double to) {
 }
 
 void Import::add_warnings(RecordingHeader& header) const {
-  RecordingHeader source = header;  // before rows of it were left out
+  RecordingHeader source = header;  // the header before rows were left out
   if (request_.mask_outliers) source.gaps = plan_.time ? clock_.clock().gaps : std::vector<schema::Gap>{};
   const auto time_of = [&](std::uint64_t sample) {
     return fmt::format("{:.6g} s", schema::frame_time_s(source, sample));
@@ -288,12 +289,12 @@ void Import::add_warnings(RecordingHeader& header) const {
     header.warnings.push_back("no position was measured: it is " + derived_->position.channel().derivation);
   std::ranges::move(gap_warnings(source.gaps), std::back_inserter(header.warnings));
   for (std::size_t k = 0; k < measured_.size(); ++k) {
-    const Plausibility& judged = request_.mask_outliers ? *judged_unmasked_[k] : *measured_[k].judged;
+    const Plausibility& judged = request_.mask_outliers ? *unmasked_plausibility_[k] : *measured_[k].judged;
     std::ranges::move(judged.warnings(time_of), std::back_inserter(header.warnings));
   }
   if (mask_.count() > 0)
     header.warnings.push_back(
-        fmt::format("outliers masked: {} row{} left out and recorded as gaps, not filled in", mask_.count(),
+        fmt::format("outliers masked: {} row{} removed and recorded as gaps, not filled in", mask_.count(),
                     mask_.count() == 1 ? "" : "s"));
 }
 
@@ -306,7 +307,7 @@ ChannelRange range_of(const schema::Channel& channel, double low, double high) {
 std::uint64_t Import::outliers() const {
   std::uint64_t count = 0;
   for (const Measured& channel : measured_) count += channel.judged->outliers();
-  for (const auto& judged : judged_unmasked_) count += judged->outliers();
+  for (const auto& judged : unmasked_plausibility_) count += judged->outliers();
   return count;
 }
 

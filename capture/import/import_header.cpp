@@ -26,7 +26,7 @@ schema::Channel described(const ChannelSpec& spec, const Source& source, const s
   return channel;
 }
 
-// Integer codes end where their width does: 16 bits at -32768 and 32767.
+// The range of integer codes follows from their width: -32768 to 32767 for 16 bits.
 void describe_range(schema::Channel& channel, int code_bits) {
   if (code_bits == 0) return;
   const double full = std::ldexp(1.0, code_bits - 1);
@@ -43,9 +43,9 @@ void describe_clock(RecordingHeader& header, const ImportRequest& request, const
   }
   const auto& given = request.rate_hz;
   header.sample_rate_hz = given ? *given : *plan.source.rate_hz;
-  header.clock = given ? "nominal rate given at import" : "rate of the sound file";
+  header.clock = given ? "nominal rate, given at import" : "rate of the sound file";
   if (given && plan.source.rate_hz)
-    header.clock += fmt::format(" (its file says {:g} Hz)", *plan.source.rate_hz);
+    header.clock += fmt::format(" (its header has {:g} Hz)", *plan.source.rate_hz);
 }
 
 }  // namespace

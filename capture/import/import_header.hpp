@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a recording says of the file it was imported from.
+// The header of an imported recording.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace tacto::capture {
 
-/// All that is known before the data are read. Of a plan with a time column the rate is not set.
+/// The part that is known before the data are read. With a time column, the rate is not set yet.
 schema::RecordingHeader import_header(const ImportRequest& request, const ImportPlan& plan);
 
-/// One line, or none where there are no gaps.
+/// One line, or none if there are no gaps.
 std::vector<std::string> gap_warnings(const std::vector<schema::Gap>& gaps);
 
 }  // namespace tacto::capture

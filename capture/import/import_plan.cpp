@@ -26,11 +26,11 @@ Result<void> check_output(const ImportRequest& request) {
   std::error_code ignored;
   for (const std::string& path : {stem + ".wav", stem + ".json"}) {
     if (fs::equivalent(path, request.file, ignored))
-      return fail(ErrorKind::usage, "is the file that is imported", path,
+      return fail(ErrorKind::usage, "is the imported file itself", path,
                   "choose another name for the recording");
     if (fs::exists(path, ignored) && !request.replace)
-      return fail(ErrorKind::usage, "is there already", path,
-                  "choose another name, or --force to replace it");
+      return fail(ErrorKind::usage, "exists already", path,
+                  "choose another name, or replace it with --force");
     schema::PendingFiles probe;
     TACTO_TRY(probe.add(path));
   }
@@ -38,13 +38,13 @@ Result<void> check_output(const ImportRequest& request) {
 }
 
 Result<void> check_rate(const std::optional<double>& rate_hz) {
-  constexpr double kLargest = std::numeric_limits<int>::max();  // what a WAV's header holds
+  constexpr double kLargest = std::numeric_limits<int>::max();  // the limit of a WAV header
   if (!rate_hz || (std::round(*rate_hz) >= 1 && *rate_hz <= kLargest)) return {};
-  return fail(ErrorKind::usage, fmt::format("a rate of {:g} Hz is none that a recording can have", *rate_hz),
-              "--rate", "it is samples per second, as in --rate 10kHz");
+  return fail(ErrorKind::usage, fmt::format("a recording cannot have a rate of {:g} Hz", *rate_hz), "--rate",
+              "give samples per second, for example --rate 10kHz");
 }
 
-// A name that needs no number, else the number: what the user can type after '='.
+// The name of a column if it is unique, otherwise its number: the text that the user can type after '='.
 std::string typed(const Source& source, std::size_t column) {
   const std::string& name = source.columns[column];
   return name.empty() || std::ranges::count(source.columns, name) > 1 ? std::to_string(column + 1) : name;
@@ -52,14 +52,14 @@ std::string typed(const Source& source, std::size_t column) {
 
 Result<void> check_clock(const ImportRequest& request, const Source& source) {
   if (request.rate_hz && !request.time_column.empty())
-    return fail(ErrorKind::usage, "both --rate and --time-column were given", {}, "one of them is enough");
+    return fail(ErrorKind::usage, "both --rate and --time-column were given", {}, "give only one of them");
   if (request.rate_hz || !request.time_column.empty() || source.rate_hz) return {};
-  return fail(
-      ErrorKind::usage, "a table doesn't say its rate", source.file,
-      "add --rate, as in --rate 10kHz, or --time-column, as in --time-column " + typed(source, 0) + "*1s");
+  return fail(ErrorKind::usage, "the rate of the table is not known", source.file,
+              "add --rate, for example --rate 10kHz, or --time-column, for example --time-column " +
+                  typed(source, 0) + "*1s");
 }
 
-// The first column of forces by its unit, which then needs none; else the first.
+// The first column with a unit of force, which needs no unit in the option; otherwise the first column.
 std::string force_example(const Source& source) {
   for (std::size_t i = 0; i < source.units.size(); ++i) {
     const auto unit = known_unit(source.units[i], schema::Dimension::force);
@@ -70,12 +70,13 @@ std::string force_example(const Source& source) {
 
 tl::unexpected<schema::Error> no_channels(const Source& source) {
   const std::string rate = source.rate_hz ? "" : "--rate 10kHz ";
-  return fail(ErrorKind::usage,
-              "which columns are which channels? They are: " + columns_in_words(source.columns), source.file,
-              fmt::format("name them, as in {}--channel '{}'", rate, force_example(source)));
+  return fail(
+      ErrorKind::usage,
+      "the channels of the columns are not known; the columns are: " + columns_in_words(source.columns),
+      source.file, fmt::format("give them, for example {}--channel '{}'", rate, force_example(source)));
 }
 
-// Integer codes are scaled to what an audio editor shows, -1 to 1.
+// Integer codes are scaled as in an audio editor, to -1 to 1.
 ChannelSpec whole_signal(const Source& source) {
   const double scale = source.code_bits > 0 ? std::ldexp(1.0, 1 - source.code_bits) : 1;
   return {"signal", "signal", schema::Dimension::none, {0, scale, 0}};
@@ -94,12 +95,14 @@ bool has(const std::vector<ChannelSpec>& channels, std::string_view quantity) {
 Result<void> check_speed(const ImportRequest& request, const std::vector<ChannelSpec>& channels) {
   if (!request.speed_mps) return {};
   if (has(channels, "position"))
-    return fail(ErrorKind::usage, "there is a position channel, so no nominal one is made", "--speed",
-                "leave one out");
+    return fail(ErrorKind::usage, "a nominal position is not possible, because there is a position channel",
+                "--speed", "omit one of them");
   if (has(channels, "speed"))
-    return fail(ErrorKind::usage, "there is a speed channel, which is integrated to a position", "--speed",
-                "leave one out");
-  if (*request.speed_mps == 0) return fail(ErrorKind::usage, "a speed of zero gives no position", "--speed");
+    return fail(ErrorKind::usage,
+                "a nominal position is not possible, because a speed channel is integrated to a position",
+                "--speed", "omit one of them");
+  if (*request.speed_mps == 0)
+    return fail(ErrorKind::usage, "with a speed of 0 there is no position", "--speed");
   return {};
 }
 
@@ -117,14 +120,14 @@ bool is_date(const std::string& text) {
 
 Result<void> check_date(const std::string& text, const std::string& option) {
   if (text.empty() || is_date(text)) return {};
-  return fail(ErrorKind::usage, fmt::format("'{}' is no date", text), option, "write it as 2026-03-14");
+  return fail(ErrorKind::usage, fmt::format("'{}' is not a date", text), option, "write it as 2026-03-14");
 }
 
 Result<void> check_metadata(const ImportRequest& request) {
   const auto percent = request.humidity_percent.value_or(0);
   if (!(percent >= 0 && percent <= 100))
-    return fail(ErrorKind::usage, fmt::format("{:g} % is no relative humidity", percent), "--humidity",
-                "it is 0% to 100%");
+    return fail(ErrorKind::usage, fmt::format("{:g} % is not a relative humidity", percent), "--humidity",
+                "give 0% to 100%");
   if (const auto recorded = check_date(request.recorded, "--date"); !recorded) return recorded;
   return check_date(request.calibrated, "--calibrated");
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An import thought through before it is made: what is wrong with the request is said before long data are
-// read.
+// The plan of an import: errors in the request are reported before long data are read.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +16,14 @@ namespace tacto::capture {
 struct ImportPlan {
   Source source;
   std::vector<ChannelSpec> channels;
-  std::optional<ScaledColumn> time;  ///< the column that gives the clock
+  std::optional<ScaledColumn> time;  ///< the time column
 };
 
-/// Opens the source and checks the request against it and against the place of the output.
-/// Errors: as import_file(), but those of the data themselves.
+/// Opens the source and checks the request against it and against the output path. Errors: as import_file(),
+/// except those in the data.
 schema::Result<ImportPlan> plan_import(const ImportRequest& request);
 
-/// The columns that the plan needs, each once, growing.
+/// The columns that the plan needs, without duplicates, in ascending order.
 std::vector<std::size_t> columns_of(const ImportPlan& plan);
 
 }  // namespace tacto::capture

@@ -9,11 +9,11 @@
 namespace tacto::capture {
 namespace {
 
-// Ours. A bad export of 10,000 rows had 3 (dirty/T1.csv).
+// Our choice. A damaged export of 10,000 rows had 3 (dirty/T1.csv).
 constexpr double kMostShare = 0.01;
 constexpr std::size_t kFewRows = 10;
 
-// `count` rows are missing before the row `row` of the source, or that row itself.
+// `count` missing rows before the row `row` of the source; if masked, that row itself.
 struct Missing {
   std::uint64_t row = 0, count = 0;
   bool masked = false;
@@ -28,9 +28,10 @@ schema::Result<OutlierMask> OutlierMask::of(std::vector<std::uint64_t> rows, std
   rows.erase(twice.begin(), twice.end());
   const bool many = static_cast<double>(rows.size()) > kMostShare * static_cast<double>(all);
   if (rows.size() > kFewRows && many)
-    return schema::fail(schema::ErrorKind::unsuitable,
-                        fmt::format("{} of {} rows hold outliers: too many to be left out", rows.size(), all),
-                        file, "check unit and scale; import without --mask-outliers names the first of them");
+    return schema::fail(
+        schema::ErrorKind::unsuitable,
+        fmt::format("{} of {} rows contain outliers: too many to be removed", rows.size(), all), file,
+        "check unit and scale; an import without --mask-outliers lists the first of them");
   OutlierMask mask;
   mask.rows_ = std::move(rows);
   return mask;

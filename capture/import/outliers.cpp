@@ -9,10 +9,10 @@ namespace tacto::capture {
 namespace {
 
 constexpr double kFar = 10;       // times the usual distance from the local median
-constexpr double kUsual = 0.99;   // the share of samples that is usual
-constexpr double kOtherSize = 5;  // times larger or smaller than its neighbourhood
+constexpr double kUsual = 0.99;   // the quantile that defines the usual distance
+constexpr double kOtherSize = 5;  // times larger or smaller than the median around it
 
-// Leading bits of a distance: the exponent and four bits of the mantissa, so a bin is 1/16 wide.
+// The leading bits of a distance: the exponent and four bits of the mantissa, so a bin is 1/16 wide.
 constexpr int kDropped = 48;
 constexpr std::size_t kBins = std::size_t{1} << 15;
 
@@ -24,7 +24,7 @@ double upper_edge(std::size_t bin) {
   return bin == 0 ? 0 : std::bit_cast<double>((std::uint64_t{bin} + 1) << kDropped);
 }
 
-// Without branches, so that a compiler can do several at once.
+// Without branches, so that the compiler can vectorise.
 double lesser(double a, double b) {
   return a < b ? a : b;
 }
@@ -46,9 +46,9 @@ bool has_other_size(double value, double median) {
 
 Outliers::Outliers() : histogram_(kBins) {}
 
-// Further from each neighbour than half its distance from the median, and on the same side of both. The first
-// and the last sample have one neighbour: there the signal beside them must be calm, for a sine that begins
-// at zero is no fault.
+// Whether the sample differs from each neighbour by more than half its distance from the median, with the
+// same sign. The first and the last sample have one neighbour; in their place the two samples beside them
+// must be nearly equal, so that a sine that begins at zero is not an outlier.
 bool Outliers::stands_alone(std::size_t i, double distance) const {
   const std::vector<double>& v = window_;
   if (!has_other_size(v[i], v[i] - distance)) return false;
@@ -97,7 +97,7 @@ void Outliers::find_range(std::size_t begin, std::size_t end, const Found& found
     if (std::abs(distances_[i]) > far_ && stands_alone(i, distances_[i])) found(first_ + i, window_[i]);
 }
 
-// All samples whose two followers are known; the first two wait for the first five.
+// Visits all samples with two known samples after them; the first two need the first five.
 template <class Visit>
 void Outliers::visit(std::span<const double> values, Visit visit) {
   window_.insert(window_.end(), values.begin(), values.end());
@@ -109,7 +109,7 @@ void Outliers::visit(std::span<const double> values, Visit visit) {
   next_ = 3;
 }
 
-// The last two, whose medians are of the last five; then all is ready for another time through.
+// Visits the last two samples, whose medians are of the last five, and prepares for the next pass.
 template <class Visit>
 void Outliers::visit_rest(Visit visit) {
   ended_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples that stand alone among their neighbours: a digit or an exponent lost on the way.
+// Isolated outliers: samples in which a digit or an exponent was lost.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,14 @@
 
 namespace tacto::capture {
 
-/// Finds samples that stand alone: far from both neighbours, on the same side of both, and five times larger
-/// or smaller than the median of the five samples around. Far is ten times what 99 % of the samples are from
-/// their own median of five (known to 1/16), and ten times the finest step. Real transients, steps and noise
-/// have neighbours that follow, and pass. Channels of less than five samples are not judged.
+/// Finds isolated samples: far from both neighbours, in the same direction, and five times larger or smaller
+/// than the median of the five samples around. "Far" is ten times the distance that 99 % of the samples have
+/// from their own median of five (known to 1/16), and at least ten times the finest step. In real transients,
+/// steps and noise the neighbours change too, so they are not reported. Channels of fewer than five samples
+/// are not examined.
 ///
-/// Twice through the samples, in pieces of any size: survey() all of them, then end(); where any() says so,
-/// find() all of them again, and end(). Memory: 256 KB and one piece, whatever the length.
+/// Two passes over the samples, in pieces of any size: survey() for all, then end_survey(); if any() is true,
+/// find() for all again, then end_find(). Memory: 256 KB and one piece, for any length.
 class Outliers {
  public:
   using Found = std::function<void(std::uint64_t sample, double value)>;
@@ -25,9 +26,9 @@ class Outliers {
   Outliers();
   void survey(std::span<const double> values);
   void end_survey();
-  /// After the survey: some sample stands alone.
+  /// After the survey: at least one sample is isolated.
   bool any() const { return farthest_ > far_; }
-  /// Calls `found` for each, in order.
+  /// Calls `found` for each isolated sample, in order.
   void find(std::span<const double> values, const Found& found);
   void end_find(const Found& found);
 
@@ -42,15 +43,15 @@ class Outliers {
   bool stands_alone(std::size_t i, double distance) const;
   double usual_distance() const;
 
-  std::vector<double> window_;     // samples not yet done with, and three before them
+  std::vector<double> window_;     // samples that are still needed, and three before them
   std::vector<double> distances_;  // of window_ from the medians around
   std::uint64_t first_ = 0;        // the number of window_'s first sample
-  std::size_t next_ = 0;           // the first in window_ that was not visited
+  std::size_t next_ = 0;           // the first in window_ that has not been visited
   bool ended_ = false;
   std::vector<std::uint64_t> histogram_;  // of distances, by their leading bits
   std::uint64_t count_ = 0;
   double finest_ = std::numeric_limits<double>::infinity();
-  double farthest_ = 0;  // of the samples that stand alone but for the measure of far
+  double farthest_ = 0;  // of the isolated samples, before the comparison with far_
   double far_ = 0;
 };
 

@@ -12,16 +12,16 @@
 namespace tacto::capture {
 namespace {
 
-constexpr std::size_t kNamed = 5;  // samples that a warning names
+constexpr std::size_t kNamed = 5;  // the number of samples that a warning lists
 
 struct Bound {
   std::string_view quantity;
   double largest;
 };
 
-// A fingertip explores at some 0.1 m/s and presses with some newtons (Wiertlewski 2011: 50 mm/s, 0.5 N); a
-// hand in the air stays below 5 m/s, a force sensor for fingers below 50 N, a bench below 10 m, a piezo
-// amplifier below 1 kV.
+// A fingertip explores at about 0.1 m/s with some newtons (Wiertlewski 2011: 50 mm/s, 0.5 N). A hand in the
+// air stays below 5 m/s, a force sensor for fingers below 50 N, a bench below 10 m, a piezo amplifier below 1
+// kV.
 constexpr Bound kBounds[] = {
     {"tangential_force", 50}, {"tangential_force_x", 50}, {"net_force", 50},
     {"normal_force", 50},     {"position", 10},           {"speed", 5},
@@ -98,15 +98,15 @@ std::string Plausibility::listed(const Sightings& sightings, const TimeOf& time_
 
 std::vector<std::string> Plausibility::warnings(const TimeOf& time_of) const {
   if (count_ > 1 && smallest_ == largest_)
-    return {fmt::format("{} never changes: {} throughout", channel_.name, people(physical(smallest_)))};
+    return {fmt::format("{} is constant: {}", channel_.name, people(physical(smallest_)))};
   std::vector<std::string> warnings;
   if (beyond_.count > 0)
     warnings.push_back(fmt::format("{}: {} beyond any plausible {} ({}): {}; check unit and scale",
                                    channel_.name, count_of(beyond_.count, count_), channel_.quantity,
                                    people(bound_), listed(beyond_, time_of)));
   if (alone_.count > 0)
-    warnings.push_back(fmt::format("{}: {} out of any range that their neighbours make plausible: {}",
-                                   channel_.name, count_of(alone_.count, count_), listed(alone_, time_of)));
+    warnings.push_back(fmt::format("{}: {} implausible compared with their neighbours: {}", channel_.name,
+                                   count_of(alone_.count, count_), listed(alone_, time_of)));
   return warnings;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What no touch can have given: reported, never changed.
+// Checks for values that touch cannot cause: they are reported and not changed.
 #pragma once
 
 #include <cstddef>
@@ -12,40 +12,42 @@
 #include <vector>
 
 #include "capture/import/outliers.hpp"
-#include "capture/import/place_of.hpp"
+#include "capture/import/source_row.hpp"
 #include "data-schema/recording/recording.hpp"
 
 namespace tacto::capture {
 
-/// The largest magnitude that a quantity has at a bench where a finger slides, in its SI unit; infinity where
-/// there is none. Wide on purpose: beyond it the unit or the scale is wrong.
+/// The largest magnitude of a quantity on a bench for a sliding finger, in its SI unit; infinity if there is
+/// no limit. The limits are wide on purpose: beyond them the unit or the scale is wrong.
 double largest_plausible(std::string_view quantity);
 
-/// Says of a sample when it was: "4.227 s".
+/// The time of a sample for messages: "4.227 s".
 using TimeOf = std::function<std::string(std::uint64_t sample)>;
 
-/// One channel looked at for values beyond largest_plausible(), lone samples, and no change at all. Twice
-/// through its samples, as LoneSamples: survey, and where second_pass_needed() once more. Memory as there.
+/// Checks one channel for values beyond largest_plausible(), isolated samples, and a constant value. Two
+/// passes over the samples, as in Outliers: survey, and a second one if second_pass_needed(). Memory as
+/// there.
 class Plausibility {
  public:
-  /// Precondition: `channel` outlives this.
+  /// Precondition: `channel` exists as long as this object.
   explicit Plausibility(const schema::Channel& channel);
 
-  /// `first` is the number of the first of `stored`, as in the file.
+  /// `first` is the number in the file of the first sample of `stored`.
   void survey(std::span<const double> stored, std::uint64_t first, const PlaceOf& place_of);
   void end_survey();
   bool second_pass_needed() const { return smallest_ < largest_ && lone_.any(); }
-  /// `place_of` is also asked for the two samples before `stored`: a lone sample is known by its followers.
+  /// `place_of` is also called for the two samples before `stored`: a sample is isolated only if those after
+  /// it show it.
   void find(std::span<const double> stored, const PlaceOf& place_of);
   void end_find(const PlaceOf& place_of);
 
-  /// Of the samples named or counted in warnings() as beyond or alone: all that there are, and the first
+  /// The samples that warnings() lists or counts as out of range or isolated: their number, and the first
   /// kMostOutliers of them.
   std::uint64_t outliers() const { return beyond_.count + alone_.count; }
   const std::vector<std::uint64_t>& outlier_samples() const { return outlier_samples_; }
   static constexpr std::size_t kMostOutliers = 1'000'000;  // 8 MB
 
-  /// One line for each thing to warn of, with the first few samples by name, and how many there are.
+  /// One line per fault, with the first few samples and the number of samples.
   std::vector<std::string> warnings(const TimeOf& time_of) const;
   double smallest_stored() const { return smallest_; }
   double largest_stored() const { return largest_; }

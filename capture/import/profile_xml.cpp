@@ -29,7 +29,7 @@ std::string_view stripped(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-// The document while it is read; `file` is for messages.
+// The document during reading; `file` is for messages.
 struct Reader {
   const std::string& file;
   pugi::xml_document document;
@@ -50,14 +50,14 @@ Result<double> Reader::number(const char* path) const {
   double value = 0;
   const std::string_view written = text(path);
   if (read_number(written, mark, value) == NumberFault::none) return value;
-  return broken(fmt::format("'{}' is no number", written.substr(0, 40)), path);
+  return broken(fmt::format("'{}' is not a number", written.substr(0, 40)), path);
 }
 
 Result<double> Reader::unit() const {
   constexpr const char* kPath = "/DATA/DATAFILE/UNITS";
   const auto known = schema::parse_unit(text(kPath));
   if (known && known->dimension == schema::Dimension::length) return known->si;
-  return broken(fmt::format("'{}' is no unit of length", text(kPath).substr(0, 40)), kPath);
+  return broken(fmt::format("'{}' is not a unit of length", text(kPath).substr(0, 40)), kPath);
 }
 
 Result<std::vector<double>> Reader::heights(double unit_m) const {
@@ -69,7 +69,7 @@ Result<std::vector<double>> Reader::heights(double unit_m) const {
     char mark = '.';
     double value = 0;
     if (read_number(word, mark, value) != NumberFault::none)
-      return broken(fmt::format("value {}, '{}', is no number", heights.size() + 1, word.substr(0, 40)),
+      return broken(fmt::format("value {}, '{}', is not a number", heights.size() + 1, word.substr(0, 40)),
                     kPath);
     heights.push_back(value * unit_m);
     left = stripped(left.substr(word.size()));
@@ -86,19 +86,19 @@ std::string joined(std::initializer_list<std::string_view> texts) {
 
 Result<HeightProfile> profile_in(const Reader& reader) {
   if (const auto type = reader.text("/DATA/DATAFILE/DATA_TYPE"); !type.empty() && type != "2D")
-    return fail(ErrorKind::unsuitable, fmt::format("holds {} data, not a profile", type), reader.file,
-                "take a profile from it, and import that");
+    return fail(ErrorKind::unsuitable, fmt::format("contains {} data, not a profile", type), reader.file,
+                "extract a profile, and import that");
   const auto unit_m = reader.unit();
   TACTO_TRY(unit_m);
   const auto spacing = reader.number("/DATA/DATAFILE/SPACING");
   TACTO_TRY(spacing);
-  if (!(*spacing > 0)) return reader.broken("a spacing is above 0", "/DATA/DATAFILE/SPACING");
+  if (!(*spacing > 0)) return reader.broken("a spacing must be above 0", "/DATA/DATAFILE/SPACING");
   auto heights = reader.heights(*unit_m);
   TACTO_TRY(heights);
   const auto points = reader.number("/DATA/DATAFILE/NUMPOINTS");
   TACTO_TRY(points);
   if (*points != static_cast<double>(heights->size()))
-    return reader.broken(fmt::format("{} values where {} are promised", heights->size(), *points),
+    return reader.broken(fmt::format("{} values, but NUMPOINTS is {}", heights->size(), *points),
                          "/DATA/DATAFILE/NUMPOINTS");
   HeightProfile profile;
   profile.pitch_m = *spacing * *unit_m;
@@ -119,9 +119,9 @@ Result<HeightProfile> read_profile_xml(const std::string& file) try {
   const auto parsed = reader.document.load_buffer(bytes->data(), bytes->size());
   if (!parsed)
     return fail(ErrorKind::malformed,
-                fmt::format("is no XML: {} at byte {}", parsed.description(), parsed.offset), file);
+                fmt::format("is not XML: {} at byte {}", parsed.description(), parsed.offset), file);
   if (!reader.document.child("DATA").child("DATAFILE"))
-    return fail(ErrorKind::malformed, "holds no profile: there is no DATA/DATAFILE", file);
+    return fail(ErrorKind::malformed, "contains no profile: there is no DATA/DATAFILE", file);
   return profile_in(reader);
 } catch (const std::bad_alloc&) {
   return fail(ErrorKind::malformed, "is too large to be read", file);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The XML in which the National Physical Laboratory publishes measured profiles: the only door to pugixml.
+// The XML of the profiles that the National Physical Laboratory publishes. Only this file uses pugixml.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-// Leading bits of a step: the exponent and six bits of the mantissa, so a bin is 1/64 wide.
+// The leading bits of a step: the exponent and six bits of the mantissa, so a bin is 1/64 wide.
 constexpr int kDroppedTimes = 46;
 
 double whole_where_close(double rate_hz) {
@@ -24,10 +24,11 @@ double whole_where_close(double rate_hz) {
 }
 
 tl::unexpected<schema::Error> uneven(double step, double period, const std::string& where) {
-  return fail(ErrorKind::malformed,
-              fmt::format("the time step of {:.6g} s is no whole number of periods of {:.6g} s (within {:g})",
-                          step, period, kMostJitter),
-              where, "resample it evenly where it was made, or give --rate instead of --time-column");
+  return fail(
+      ErrorKind::malformed,
+      fmt::format("the time step of {:.6g} s is not a whole number of periods of {:.6g} s (within {:g})",
+                  step, period, kMostJitter),
+      where, "resample it evenly in the program that made it, or give --rate instead of --time-column");
 }
 
 }  // namespace
@@ -47,7 +48,8 @@ void ClockFinder::Bin::add(const Bin& other) {
   count += other.count;
 }
 
-// Steps of one bin follow each other in nearly every file: the map is asked where the bin changes.
+// In nearly every file the steps of one bin are consecutive, so the map is accessed only when the bin
+// changes.
 void ClockFinder::survey(std::span<const double> time_s) {
   Bin run;
   std::uint64_t run_key = 0;
@@ -57,7 +59,7 @@ void ClockFinder::survey(std::span<const double> time_s) {
       first_s_ = time;
       continue;
     }
-    stands_or_falls_ = stands_or_falls_ || !(step > 0);
+    not_increasing_ = not_increasing_ || !(step > 0);
     const std::uint64_t key = std::bit_cast<std::uint64_t>(step) >> kDroppedTimes;
     if (key != run_key) {
       if (run.count > 0) bins_[run_key].add(run);
@@ -78,7 +80,8 @@ double ClockFinder::median_step() const {
   return 0;
 }
 
-// Not the median itself: printed times of 3 kHz step by 0.3, 0.3, 0.4 ms, and only their mean is the period.
+// The median would be wrong: printed times at 3 kHz have steps of 0.3, 0.3 and 0.4 ms, and only their mean is
+// the period.
 double ClockFinder::find_period() const {
   const double median = median_step();
   double sum = 0;
@@ -96,8 +99,9 @@ bool ClockFinder::is_one_tick(double step) const {
 }
 
 Result<void> ClockFinder::end_survey(const std::string& file) {
-  if (count_ < 3) return fail(ErrorKind::malformed, "has too few rows to find a rate from their times", file);
-  if (stands_or_falls_) return {};
+  if (count_ < 3)
+    return fail(ErrorKind::malformed, "has too few rows to compute a rate from their times", file);
+  if (not_increasing_) return {};
   period_s_ = find_period();
   for (const auto& [key, bin] : bins_)
     uneven_ = uneven_ || !is_one_tick(bin.smallest) || !is_one_tick(bin.largest);
@@ -123,9 +127,9 @@ Result<void> ClockFinder::locate(std::span<const double> time_s, const PlaceOf& 
     if (row == 0) continue;
     if (!(time > before))
       return fail(ErrorKind::malformed,
-                  fmt::format("time goes from {} s to {} s: it must grow", before, time),
+                  fmt::format("time goes from {} s to {} s: it must increase", before, time),
                   fmt::format("{}: {}", file, place_of(row)));
-    if (stands_or_falls_) continue;
+    if (not_increasing_) continue;
     if (const auto fits = locate_step(time - before, row, place_of, file); !fits) return fits;
   }
   return {};

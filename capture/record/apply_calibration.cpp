@@ -18,7 +18,7 @@ using schema::Channel;
 using schema::ErrorKind;
 using schema::Result;
 
-// Scales are written with all their digits: these are the same, or they are not.
+// Scales are written with all their digits, so equal scales differ only by rounding.
 bool same(double a, double b) {
   return std::abs(a - b) <= 1e-9 * std::abs(b);
 }
@@ -31,13 +31,13 @@ struct Found {
   const CalibrationEntry *scale, *zero;
 };
 
-// An entry that was made of another own scale of the device tells nothing of today's codes.
+// An entry that was made with another nominal scale does not apply to the codes of today.
 const CalibrationEntry* usable(const CalibrationEntry* entry, const Channel& channel,
                                std::vector<std::string>& warnings) {
   if (entry == nullptr || same(entry->nominal_scale, channel.scale)) return entry;
-  warnings.push_back(
-      fmt::format("the device has another scale for {} than when it was calibrated ({}, {}): not applied",
-                  channel.name, entry->method, day_of(entry->date)));
+  warnings.push_back(fmt::format(
+      "the calibration of {} is not applied: its nominal scale differs from that at the calibration ({}, {})",
+      channel.name, entry->method, day_of(entry->date)));
   return nullptr;
 }
 
@@ -46,10 +46,10 @@ void warn_of_date(const CalibrationEntry* entry, double stale_after_s, const std
   if (entry == nullptr) return;
   const auto age_s = schema::seconds_between(entry->date, now);
   if (age_s && *age_s < -kClockSlack_s)
-    warnings.push_back(fmt::format(
-        "the calibration of {} is of the future ({}, {}, {:.0f} days ahead): one clock is wrong, and until "
-        "then no newer one counts",
-        entry->channel, entry->method, day_of(entry->date), -*age_s / 86400));
+    warnings.push_back(
+        fmt::format("the calibration of {} is dated in the future ({}, {}, {:.0f} days ahead): one clock is "
+                    "wrong; newer calibrations are ignored until then",
+                    entry->channel, entry->method, day_of(entry->date), -*age_s / 86400));
   if (age_s && *age_s <= stale_after_s) return;
   warnings.push_back(fmt::format("the calibration of {} is stale ({}, {}, {:.0f} days old)", entry->channel,
                                  entry->method, day_of(entry->date), age_s.value_or(0) / 86400));
@@ -91,8 +91,8 @@ Result<void> check_serial(const CalibrationFile& file, const std::string& serial
   if (file.serial == serial) return {};
   return schema::fail(
       ErrorKind::unsuitable,
-      fmt::format("is the calibration of the device '{}', and this is '{}'", file.serial, serial),
-      "calibration", "name the file of this device with --calibration FILE");
+      fmt::format("is the calibration of the device '{}', but this device is '{}'", file.serial, serial),
+      "calibration", "give the file of this device with --calibration FILE");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blocks of frames on their way from the thread that captures to the thread that writes.
+// Blocks of frames between the capturing thread and the writing thread.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@
 namespace tacto::capture {
 
 struct FrameBlock {
-  std::vector<std::int32_t> codes;  ///< room for a block
-  std::size_t used = 0;             ///< codes in it
+  std::vector<std::int32_t> codes;  ///< the size of a block
+  std::size_t used = 0;             ///< the codes that are valid
   firmware_host::StreamEvents events;
   std::vector<schema::Mark> marks;
-  bool last = false;  ///< nothing comes after it
+  bool last = false;  ///< the last block of the recording
 };
 
-/// A ring of blocks that are allocated once: one thread fills, one takes. A slow disk makes the filling
-/// thread wait when all are full, and the device then says what it lost.
+/// A ring of preallocated blocks with one producer and one consumer thread. With a slow disk all blocks fill
+/// and the producer waits; the device then loses frames and reports them.
 class BlockQueue {
  public:
   BlockQueue(std::size_t blocks, std::size_t codes) : free_(static_cast<std::ptrdiff_t>(blocks)), filled_(0) {
@@ -28,7 +28,7 @@ class BlockQueue {
     for (FrameBlock& block : ring_) block.codes.resize(codes);
   }
 
-  /// The next block to fill, waited for; then filled().
+  /// Waits for the next free block; followed by filled().
   FrameBlock& to_fill() {
     free_.acquire();
     FrameBlock& block = ring_[next_to_fill_++ % ring_.size()];
@@ -39,7 +39,7 @@ class BlockQueue {
   }
   void filled() { filled_.release(); }
 
-  /// The next block to take, waited for; then taken().
+  /// Waits for the next filled block; followed by taken().
   FrameBlock& to_take() {
     filled_.acquire();
     return ring_[next_to_take_++ % ring_.size()];
@@ -48,7 +48,7 @@ class BlockQueue {
 
  private:
   std::vector<FrameBlock> ring_;
-  std::size_t next_to_fill_ = 0, next_to_take_ = 0;  // each of one thread alone
+  std::size_t next_to_fill_ = 0, next_to_take_ = 0;  // each is used by one thread only
   std::counting_semaphore<> free_, filled_;
 };
 

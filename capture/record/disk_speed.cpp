@@ -19,7 +19,7 @@ using schema::Result;
 
 constexpr std::size_t kSyncs = 20, kTrialBytes = 1 << 20, kPieces = 16;
 
-// Unnamed as soon as it is open.
+// A file whose name is removed as soon as it is open.
 class ScratchFile {
  public:
   explicit ScratchFile(const std::string& folder) {
@@ -53,8 +53,8 @@ class ScratchFile {
 };
 
 tl::unexpected<schema::Error> refused(const std::string& folder) {
-  return schema::fail(ErrorKind::cannot_write, std::string("can't be written to: ") + std::strerror(errno),
-                      folder, "record to another folder, or see who owns this one");
+  return schema::fail(ErrorKind::cannot_write, std::string("cannot be written to: ") + std::strerror(errno),
+                      folder, "record to another folder, or check the owner of this one");
 }
 
 template <class Job>

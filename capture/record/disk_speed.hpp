@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How fast a folder's disk takes what a recording gives it.
+// The speed of a folder's disk for writes as a recording makes them.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@ namespace tacto::capture {
 
 struct DiskSpeed {
   double free_bytes = 0;
-  double write_bytes_per_s = 0;                ///< 16 MB, brought to the disk
-  double sync_median_s = 0, sync_worst_s = 0;  ///< of 20 blocks as a recording syncs them
+  double write_bytes_per_s = 0;                ///< of 16 MB, written and synced
+  double sync_median_s = 0, sync_worst_s = 0;  ///< of 20 blocks, synced as in a recording
 };
 
-/// Writes to a file without a name's trace: it is gone when this returns, or dies. `block_bytes` is what a
-/// recording brings to the disk at once. Takes what the disk takes, some 0.1 s. Errors: cannot_write: the
-/// folder is not there or may not be written to, or the disk is full.
+/// Writes to an unnamed file, which is gone when this function returns or the process ends. `block_bytes` is
+/// the amount that a recording syncs at once. Duration: that of the disk, about 0.1 s. Errors: cannot_write:
+/// the folder does not exist or is not writable, or the disk is full.
 schema::Result<DiskSpeed> measure_disk(const std::string& folder, std::size_t block_bytes);
 
 }  // namespace tacto::capture

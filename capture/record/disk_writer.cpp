@@ -9,7 +9,7 @@
 namespace tacto::capture {
 namespace {
 
-constexpr std::size_t kMostBlocks = 200;  // four seconds of 20 ms
+constexpr std::size_t kMostBlocks = 200;  // four seconds in blocks of 20 ms
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
 std::size_t blocks_of(std::size_t codes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The thread that brings captured blocks to the disk.
+// The thread that writes captured blocks to the disk.
 #pragma once
 
 #include <atomic>
@@ -12,21 +12,21 @@
 
 namespace tacto::capture {
 
-/// Takes blocks from the capturing thread and writes them, gaps and marks before the frames they stand with.
-/// to_fill(), filled(), end() and failed() are the capturing thread's; after end() the recording is its own
-/// again. A failure to write is kept, and what comes after it is passed over.
+/// Writes the blocks of the capturing thread; gaps and marks are written before the frames of their block.
+/// Only the capturing thread calls to_fill(), filled(), end() and failed(); after end() it may use the
+/// recording again. After a write error, which is kept, all further blocks are dropped.
 class DiskWriter {
  public:
-  /// `live` outlives this; `codes` is the room of a block.
+  /// `live` must exist as long as this object; `codes` is the size of a block.
   DiskWriter(schema::LiveRecording& live, std::size_t codes);
   ~DiskWriter();
 
   FrameBlock& to_fill() { return queue_.to_fill(); }
   void filled() { queue_.filled(); }
-  /// Waits until all is written. Once, at the latest in the destructor.
+  /// Waits until all blocks are written. Later calls do nothing; the destructor calls it, too.
   void end();
   bool failed() const { return failed_; }
-  /// After end(), where it failed.
+  /// After end(), if failed().
   const schema::Error& error() const { return error_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an experimenter wants to see while a finger is recorded.
+// The figures that an experimenter watches during a recording.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@
 
 namespace tacto::capture {
 
-/// One channel since the view before.
+/// One channel since the previous view.
 struct ChannelLevel {
-  double smallest = 0, largest = 0;  ///< in its unit
-  bool clipped = false;              ///< it came to an end of its converter's range
+  double smallest = 0, largest = 0;  ///< in the channel's unit
+  bool clipped = false;              ///< a sample is at an end of its converter's range
 };
 
 struct LiveView {
-  double time_s = 0;                 ///< lost frames counted
-  std::vector<ChannelLevel> levels;  ///< of each channel
+  double time_s = 0;                 ///< lost frames included
+  std::vector<ChannelLevel> levels;  ///< one per channel
   std::optional<double> speed_mps;   ///< of the finger, mean of the last 0.1 s; none without a position
   std::optional<double> normal_n;    ///< likewise
   std::size_t strokes = 0;
@@ -32,22 +32,22 @@ struct LiveView {
   std::uint64_t disk_left_bytes = 0;
 };
 
-/// Takes the blocks of a stream and knows what to show of them. One thread.
+/// Computes the figures of a view from the blocks of a stream. For use in one thread.
 class LiveFigures {
  public:
-  /// `header` outlives this.
+  /// `header` must exist as long as this object.
   explicit LiveFigures(const schema::RecordingHeader& header);
 
-  /// Whole frames, as stored.
+  /// Whole frames, in stored codes.
   void add(std::span<const std::int32_t> codes);
   const schema::RecordingHeader& header() const { return header_; }
   const std::vector<schema::Statistics>& statistics() const { return statistics_; }
   std::size_t strokes() const { return counter_.strokes().size(); }
-  /// No more frames come: a stroke that had come to a stop is counted.
+  /// After the last frame: counts a stroke whose motion has stopped.
   void finish() { counter_.finish(); }
-  /// The strokes so far as the sidecar keeps them, with what is missing in them by the header's gaps.
+  /// The strokes so far in the form of the sidecar, with their missing frames by the header's gaps.
   std::vector<schema::StrokeFigures> stroke_figures() const;
-  /// Of all since the last call; time, losses and disk are the caller's to add.
+  /// The figures since the last call; the caller adds time, losses and disk space.
   LiveView take_view();
 
  private:
@@ -55,7 +55,7 @@ class LiveFigures {
   std::uint64_t clipped_in(std::span<const std::int32_t> frame) const;
   schema::StrokeFigures figures_of(const CountedStroke& stroke) const;
   double physical(std::span<const std::int32_t> codes, std::size_t frame, std::size_t channel) const;
-  // Where a counter that passes 2^31 goes on.
+  // Continues when the 32-bit counter overflows.
   double next_position_m(std::int32_t code);
 
   const schema::RecordingHeader& header_;
@@ -65,7 +65,7 @@ class LiveFigures {
   StrokeCounter counter_;
   std::uint64_t recent_frames_ = 0;
   std::int32_t last_code_ = 0;
-  std::int64_t unwrapped_ = 0;  // the position's code, turns of the counter counted
+  std::int64_t unwrapped_ = 0;  // the code of the position, with the overflows of the counter
   double last_position_m_ = 0, moved_m_ = 0, load_sum_n_ = 0;
   bool begun_ = false;
 };

@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kBlock_s = 0.02;
 constexpr auto kViewEvery = std::chrono::milliseconds(100);
-constexpr double kSpare_bytes = 1 << 20;  // left on the disk for the sidecar
+constexpr double kSpare_bytes = 1 << 20;  // reserved on the disk for the sidecar
 
 std::string folder_of(const std::string& name) {
   const auto folder = std::filesystem::path(schema::stem_of(name, "")).parent_path();
@@ -40,13 +40,14 @@ double disk_left_bytes(const std::string& name) {
   return unknown ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
-// The frames to take; as many as can be counted where no time was given.
+// The number of frames to record; the largest number if no time is given.
 Result<std::uint64_t> frames_wanted(const RecordRequest& request, double rate_hz) {
   if (!request.time_s) return std::numeric_limits<std::uint64_t>::max();
   const double frames = std::floor(*request.time_s * rate_hz + 0.5);
   if (!(frames >= 1 && frames < 0x1p53))
-    return schema::fail(ErrorKind::usage, fmt::format("{:g} s is no time to record for", *request.time_s),
-                        "time", "give a time above zero, as 2s");
+    return schema::fail(ErrorKind::usage,
+                        fmt::format("{:g} s is not a possible duration of a recording", *request.time_s),
+                        "time", "give a time above 0, for example 2s");
   return static_cast<std::uint64_t>(frames);
 }
 
@@ -54,10 +55,10 @@ Result<void> check_folder(const RecordRequest& request) {
   std::error_code unknown;
   const std::string folder = folder_of(request.name);
   if (std::filesystem::is_directory(folder, unknown)) return {};
-  return schema::fail(ErrorKind::cannot_write, "there is no such folder", folder, "make it first");
+  return schema::fail(ErrorKind::cannot_write, "there is no such folder", folder, "create it first");
 }
 
-// A sidecar is UTF-8; from the bytes alone nobody can tell what a Latin-1 keyboard meant.
+// A sidecar is UTF-8; text in another encoding cannot be recognised from its bytes alone.
 Result<void> check_words(const RecordRequest& request) {
   const std::pair<const char*, const std::string&> words[] = {{"--subject", request.subject},
                                                               {"--finger", request.finger},
@@ -81,16 +82,16 @@ Result<void> check_room(const RecordRequest& request, const schema::RecordingHea
                         kSpare_bytes;
   const double left = disk_left_bytes(request.name);
   if (needed <= left) return {};
-  const std::string what = request.time_s
-                               ? fmt::format("{:g} s need {}", *request.time_s, megabytes(needed))
-                               : fmt::format("a recording needs {} to begin with", megabytes(needed));
-  return schema::fail(ErrorKind::cannot_write,
-                      fmt::format("{}, and the disk has {} left", what, megabytes(left)),
-                      folder_of(request.name),
-                      request.time_s ? "record for less, or to another disk" : "record to another disk");
+  const std::string what =
+      request.time_s ? fmt::format("{:g} s need {} of disk space", *request.time_s, megabytes(needed))
+                     : fmt::format("a recording needs {} of disk space to start", megabytes(needed));
+  return schema::fail(
+      ErrorKind::cannot_write, fmt::format("{}, but only {} are free", what, megabytes(left)),
+      folder_of(request.name),
+      request.time_s ? "record for a shorter time, or to another disk" : "record to another disk");
 }
 
-// One recording: from the device to the writer, looked at on the way.
+// One recording: blocks from the device to the writer, and figures of them for the view.
 class Capture {
  public:
   Capture(Device& device, const RecordRequest& request, const RecordHooks& hooks, schema::LiveRecording& live,
@@ -139,7 +140,7 @@ bool Capture::goes_on() const {
   return !hooks_.stop || !hooks_.stop();
 }
 
-// A device that only counts its losses lost them before the block.
+// If a device reports only the number of losses, they are assumed to be before the block.
 void Capture::take_events(FrameBlock& block) {
   block.events = device_.take_events();
   std::uint64_t told = 0;
@@ -182,11 +183,11 @@ void Capture::run() {
   writer_.end();
 }
 
-// Ahead of others' work, so that the link's buffer is emptied in time; a source that never makes us wait
-// would leave them nothing.
+// At real-time priority, so that the link's buffer is read in time. Not for a source that never blocks,
+// because other threads would then not run.
 void Capture::take_all() {
   std::optional<firmware_host::RealtimePriority> priority;
-  if (device_.keeps_time()) priority.emplace();
+  if (device_.is_real_time()) priority.emplace();
   while (goes_on()) {
     take_block();
     tell();
@@ -200,7 +201,7 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
   if (nothing) {
     TACTO_TRY(live.discard());
     if (failure_) return tl::unexpected(*failure_);
-    return schema::fail(ErrorKind::device, "the device gave no frames", device_.capabilities().uri);
+    return schema::fail(ErrorKind::device, "the device sent no frames", device_.capabilities().uri);
   }
   schema::RecordingHeader& header = live.header();
   figures_.finish();
@@ -208,13 +209,13 @@ Result<Recorded> Capture::finish(schema::LiveRecording& live) {
   if (failure_) header.ended = failure_->what;
   const std::uint64_t due = stream_ended_ && request_.time_s ? target_ : 0;
   for (std::string& warning : stream_warnings(counts, due)) header.warnings.push_back(std::move(warning));
-  if (failure_) header.warnings.push_back("it ended early: " + schema::message(*failure_));
+  if (failure_) header.warnings.push_back("the recording ended early: " + schema::message(*failure_));
   auto recording = live.close();
   TACTO_TRY(recording);
   return Recorded{std::move(*recording), figures_.statistics(), counts, failure_};
 }
 
-// What is said of a calibration stands in the sidecar too.
+// The warnings about the calibration are also written to the sidecar.
 Result<schema::RecordingHeader> calibrated_header(const Device& device, const RecordRequest& request) {
   auto header = header_for(device.capabilities(), request);
   if (!header || !request.calibration) return header;

@@ -12,14 +12,13 @@ schema::Channel sensor_in_newtons(const schema::Channel& volts, const schema::Tr
   schema::Channel newtons = volts;
   newtons.unit = "N";
   newtons.scale *= gain;
-  if (newtons.offset != 0) newtons.offset *= gain;  // no -0 in the sidecar
+  if (newtons.offset != 0) newtons.offset *= gain;  // avoids -0 in the sidecar
   if (newtons.range_min) *newtons.range_min *= gain;
   if (newtons.range_max) *newtons.range_max *= gain;
   if (gain < 0) std::swap(newtons.range_min, newtons.range_max);
   newtons.derivation = fmt::format(
-      "nominal: output volts x {:.6g} N/V, the gain of {} at 100 Hz; its response is not flat, so newtons "
-      "come from "
-      "dividing by the transducer's model",
+      "nominal: output voltage x {:.6g} N/V, the gain of {} at 100 Hz; its response is not flat: divide by "
+      "the transducer's model for the force",
       gain, transducer.name);
   return newtons;
 }
@@ -42,7 +41,7 @@ schema::Result<schema::RecordingHeader> header_for(const firmware_host::Capabili
   for (const schema::Channel& channel : capabilities.channels) {
     const bool volts = channel.quantity == "tangential_force" && channel.unit == "V";
     if (volts && !header.transducer)
-      return schema::fail(schema::ErrorKind::device, "the device gives volts but names no transducer",
+      return schema::fail(schema::ErrorKind::device, "the device measures volts but reports no transducer",
                           capabilities.uri);
     header.channels.push_back(volts ? sensor_in_newtons(channel, *header.transducer) : channel);
   }
@@ -54,13 +53,14 @@ std::vector<std::string> stream_warnings(const firmware_host::StreamCounts& coun
   std::vector<std::string> warnings;
   if (counts.clipped > 0)
     warnings.push_back(
-        fmt::format("{} samples were beyond a converter's range and are clipped", counts.clipped));
+        fmt::format("{} samples exceeded the range of a converter and are clipped", counts.clipped));
   if (counts.lost_frames > 0)
-    warnings.push_back(fmt::format("{} frames were lost on the way from the device", counts.lost_frames));
+    warnings.push_back(
+        fmt::format("{} frames were lost during the transfer from the device", counts.lost_frames));
   if (counts.damaged_messages + counts.missing_messages > 0)
-    warnings.push_back(fmt::format(
-        "of the device's messages {} came damaged and {} are missing; frames that were in them are gaps",
-        counts.damaged_messages, counts.missing_messages));
+    warnings.push_back(
+        fmt::format("of the device's messages {} were damaged and {} are missing; their frames are gaps",
+                    counts.damaged_messages, counts.missing_messages));
   if (counts.frames < frames_wanted)
     warnings.push_back(
         fmt::format("the device's stream ended after {} of {} frames", counts.frames, frames_wanted));

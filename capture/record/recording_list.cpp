@@ -22,7 +22,7 @@ std::string without(const std::string& text, std::size_t ending) {
   return text.substr(0, text.size() - ending);
 }
 
-// "S01_oak_2": 2. Counting the rows would give another number once a take was removed.
+// "S01_oak_2": 2. A count of the recordings would change when a take is removed.
 std::optional<int> take_of(const std::string& stem) {
   const auto bar = stem.find_last_of("_-");
   if (bar == std::string::npos || bar + 1 == stem.size()) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<int> take_of(const std::string& stem) {
   return failed == std::errc() && stopped == end ? std::optional(take) : std::nullopt;
 }
 
-// A sidecar that is broken shows itself by the WAV beside it; other JSON is none of ours.
+// A damaged sidecar is recognised by the WAV beside it; other JSON files are not recordings.
 void add_sidecar(const std::string& path, std::vector<ListedRecording>& list) {
   const auto files = schema::stored_files(path);
   const std::string stem = without(path, 5);
@@ -62,11 +62,11 @@ Result<std::vector<ListedRecording>> list_recordings(const std::string& folder) 
       list.push_back({without(path, kEvents.size()),
                       {},
                       {},
-                      "never closed, or still being recorded: see 'tactograph recover'"});
+                      "not closed, or still being recorded: see 'tactograph recover'"});
     else if (path.ends_with(".json"))
       add_sidecar(path, list);
   }
-  if (failed) return schema::fail(ErrorKind::not_found, "can't be listed: " + failed.message(), folder);
+  if (failed) return schema::fail(ErrorKind::not_found, "cannot be listed: " + failed.message(), folder);
   std::ranges::sort(list, {}, by_subject_and_surface);
   return list;
 }

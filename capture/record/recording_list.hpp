@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The recordings of a folder, by who touched what.
+// The recordings of a folder, by subject and surface.
 #pragma once
 
 #include <optional>
@@ -14,12 +14,12 @@ namespace tacto::capture {
 struct ListedRecording {
   std::string stem;
   schema::RecordingHeader header;
-  std::optional<int> take;  ///< the number that its name ends with, as in S01_oak_2
-  std::string trouble;      ///< why it can't be opened, or that it was never closed; else empty
+  std::optional<int> take;  ///< the number at the end of its name, as in S01_oak_2
+  std::string trouble;  ///< the reason why it cannot be opened, or that it was never closed; otherwise empty
 };
 
-/// All recordings in a folder, not in folders below it, by subject, surface and date; those in trouble last,
-/// by name. Files of other kinds are passed over. Errors: not_found.
+/// All recordings in a folder, without its subfolders, by subject, surface and date; those with trouble last,
+/// by name. Files of other kinds are skipped. Errors: not_found.
 schema::Result<std::vector<ListedRecording>> list_recordings(const std::string& folder);
 
 }  // namespace tacto::capture

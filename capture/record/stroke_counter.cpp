@@ -25,10 +25,10 @@ void StrokeCounter::reach(double position_m) {
   reached_ = {position_m, frame_, load_sum_n_, clipped_};
 }
 
-// A step that took long is a finger that trembled at its end.
+// If the last step took long, it is tremor at the end of the stroke, and the step before it counts.
 const StrokeCounter::Step& StrokeCounter::last_step() const {
-  const bool crept = static_cast<double>(reached_.frame - before_.frame) > kStopped_s * rate_hz_;
-  return crept && before_.frame > left_frame_ ? before_ : reached_;
+  const bool was_slow = static_cast<double>(reached_.frame - before_.frame) > kStopped_s * rate_hz_;
+  return was_slow && before_.frame > left_frame_ ? before_ : reached_;
 }
 
 void StrokeCounter::end() {
@@ -49,7 +49,7 @@ void StrokeCounter::finish() {
 
 void StrokeCounter::add(double position_m, double normal_n, std::uint64_t clipped) {
   if (frame_ == 0) begin(position_m);
-  const double gone_m = (position_m - furthest_m_) * direction_;
+  const double advance_m = (position_m - furthest_m_) * direction_;
   load_sum_n_ += normal_n;
   clipped_ += clipped;
   if (direction_ == 0 && std::abs(position_m - from_m_) <= kStill_m) stand(position_m);
@@ -60,7 +60,7 @@ void StrokeCounter::add(double position_m, double normal_n, std::uint64_t clippe
     furthest_frame_ = frame_;
     if ((position_m - reached_.at_m) * direction_ >= kStill_m) reach(position_m);
   }
-  const bool turned = direction_ != 0 && gone_m <= -kTurn_m;
+  const bool turned = direction_ != 0 && advance_m <= -kTurn_m;
   const bool rests = static_cast<double>(frame_ - furthest_frame_) > kRest_s * rate_hz_;
   if (turned || rests) {
     end();

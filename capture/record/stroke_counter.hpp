@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strokes counted while they are made, for the one who coaches the finger.
+// Counts strokes during a recording, as feedback for the experimenter.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,27 @@ struct CountedStroke {
   double length_m = 0;
   int direction = 1;  ///< -1: backwards
   double mean_speed_mps = 0;
-  double mean_normal_n = 0;  ///< 0 where no normal force is recorded
+  double mean_normal_n = 0;  ///< 0 if no normal force is recorded
   std::uint64_t clipped_samples = 0;
 };
 
-/// Feeds on positions, frame by frame. A stroke goes one way for at least kShortest_m; it ends where the
-/// finger has turned back by kTurn_m or stood still for kRest_s, or where the stream ends behind it
-/// (finish()). What it stood before and after is no part of it. A count for coaching, not the strokes that
-/// `spatial` finds. Memory: the strokes.
+/// Counts strokes from positions, frame by frame. A stroke is motion in one direction over at least
+/// kShortest_m. It ends when the finger has moved back by kTurn_m or has been at rest for kRest_s, or at the
+/// end of the stream (finish()). Rest before and after the motion is not part of it. This count is feedback
+/// and may differ from the strokes that `spatial` finds. Memory: the strokes.
 class StrokeCounter {
  public:
   static constexpr double kShortest_m = 5e-3, kTurn_m = 0.5e-3, kRest_s = 0.15;
-  /// Within so far of a place it stands there; and for so long at a stream's end, it has come to a stop.
+  /// A finger within kStill_m of a place is at rest; at the end of a stream it has to be at rest for
+  /// kStopped_s.
   static constexpr double kStill_m = 0.1e-3, kStopped_s = 0.02;
 
   explicit StrokeCounter(double sample_rate_hz) : rate_hz_(sample_rate_hz) {}
 
   /// `clipped` samples of this frame are at an end of their converter's range.
   void add(double position_m, double normal_n, std::uint64_t clipped = 0);
-  /// The stream has ended: counts the movement at hand if it had come to a stop. One cut off is no stroke.
+  /// The stream has ended: counts the current motion if it has stopped. A motion that was cut off is no
+  /// stroke.
   void finish();
   const std::vector<CountedStroke>& strokes() const { return strokes_; }
 
@@ -41,7 +43,7 @@ class StrokeCounter {
   void stand(double position_m);
   void reach(double position_m);
 
-  /// How far it came, in steps of kStill_m, with what was summed up from leaving to there.
+  /// The farthest position so far, in steps of kStill_m, with the sums from the start of the motion to it.
   struct Step {
     double at_m = 0;
     std::uint64_t frame = 0;
@@ -53,14 +55,14 @@ class StrokeCounter {
   double rate_hz_;
   std::vector<CountedStroke> strokes_;
   std::uint64_t frame_ = 0;
-  // Of the movement at hand: where it began, where it was left for good, the furthest that it came, the last
-  // two steps of the way there, and the load since leaving.
+  // Of the current motion: the place before it, the place and frame at which it starts, the farthest
+  // position, the last two steps to that position, and the sums since the start.
   double from_m_ = 0, left_m_ = 0, furthest_m_ = 0;
   std::uint64_t left_frame_ = 0, furthest_frame_ = 0;
   Step reached_, before_;
   double load_sum_n_ = 0;
   std::uint64_t clipped_ = 0;
-  int direction_ = 0;  // 0 until it has moved by kTurn_m
+  int direction_ = 0;  // 0 until the motion has reached kTurn_m
 };
 
 }  // namespace tacto::capture

@@ -15,7 +15,7 @@ using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kShortest_s = 0.1, kLongest_s = 600;  // 10 min of four channels at 10 kHz are 190 MB
-constexpr double kSettling_s = 0.1;                    // of filters, when a stream begins
+constexpr double kSettling_s = 0.1;                    // of filters at the beginning of a stream
 constexpr std::size_t kBlockFrames = 256;
 
 void append(Take& take, std::span<const std::int32_t> codes) {
@@ -39,14 +39,14 @@ Result<void> fill(Take& take, firmware_host::Device& device, std::size_t frames)
 
 Result<double> time_in(const std::string& text, const std::string& whole) {
   auto time_s = schema::parse_quantity(text, schema::Dimension::time);
-  if (!time_s) return schema::fail(ErrorKind::usage, time_s.error().what, whole, "as oak@1s..3s");
+  if (!time_s) return schema::fail(ErrorKind::usage, time_s.error().what, whole, "for example oak@1s..3s");
   return time_s;
 }
 
 Result<void> check_source(const schema::Recording& recording) {
   if (recording.header.format != schema::SampleFormat::pcm32 || recording.header.serial.empty())
-    return schema::fail(ErrorKind::unsuitable, "does not say which device it came from", recording.stem,
-                        "calibrate with recordings that 'tactograph record' made");
+    return schema::fail(ErrorKind::unsuitable, "does not contain the device that recorded it", recording.stem,
+                        "use recordings made by 'tactograph record'");
   return {};
 }
 
@@ -55,20 +55,20 @@ Result<void> check_part(const schema::RecordingHeader& header, const std::string
   for (const schema::Gap& gap : header.gaps)
     if (gap.frame > first && gap.frame < last)
       return schema::fail(ErrorKind::unsuitable, "frames are missing in this part", name,
-                          "choose a part without");
+                          "choose a part without gaps");
   if (static_cast<double>(last - first) >= kShortest_s * header.sample_rate_hz) return {};
-  return schema::fail(ErrorKind::unsuitable, fmt::format("has less than {:g} s there", kShortest_s), name,
-                      "choose a longer part");
+  return schema::fail(ErrorKind::unsuitable, fmt::format("this part is shorter than {:g} s", kShortest_s),
+                      name, "choose a longer part");
 }
 
-// A part that reaches beyond the end was meant of another recording.
+// A part that ends after the recording is an error of the user: probably the wrong recording.
 Result<void> check_end(const schema::RecordingHeader& header, const RecordingPart& part) {
   const double end_s = schema::frame_time_s(header, header.frames);
   if (part.to_s == std::numeric_limits<double>::infinity() || part.to_s < end_s + 1 / header.sample_rate_hz)
     return {};
   return schema::fail(ErrorKind::unsuitable,
-                      fmt::format("has {:.4g} s, and the part ends at {:g} s", end_s, part.to_s), part.name,
-                      "name a part that it has");
+                      fmt::format("has {:.4g} s, but the part ends at {:g} s", end_s, part.to_s), part.name,
+                      "give a part within the recording");
 }
 
 std::uint64_t frame_at(const schema::RecordingHeader& header, double time_s) {
@@ -91,8 +91,8 @@ Result<RecordingPart> parse_recording_part(const std::string& text) {
   const std::string span = text.substr(at + 1);
   const auto dots = span.find("..");
   if (dots == std::string::npos)
-    return schema::fail(ErrorKind::usage, fmt::format("'{}' is no span of time", span), text,
-                        "as oak@1s..3s");
+    return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a time range", span), text,
+                        "for example oak@1s..3s");
   const auto from_s = time_in(span.substr(0, dots), text), to_s = time_in(span.substr(dots + 2), text);
   TACTO_TRY(from_s);
   TACTO_TRY(to_s);
@@ -115,12 +115,13 @@ schema::Channel nominal(const schema::Channel& channel) {
 
 Result<Take> take_from(firmware_host::Device& device, double time_s) {
   if (!(time_s >= kShortest_s && time_s <= kLongest_s))
-    return schema::fail(ErrorKind::usage, fmt::format("{:g} s is no time to calibrate in", time_s), "time",
-                        fmt::format("from {:g} s to {:g} s", kShortest_s, kLongest_s));
+    return schema::fail(ErrorKind::usage,
+                        fmt::format("{:g} s is not a possible duration of a calibration", time_s), "time",
+                        fmt::format("give {:g} s to {:g} s", kShortest_s, kLongest_s));
   auto header = header_for(device.capabilities(), {});
   TACTO_TRY(header);
   for (schema::Channel& channel : header->channels)
-    channel = nominal(channel);  // a replay's may be calibrated
+    channel = nominal(channel);  // in a replay it may be calibrated
   const auto frames = static_cast<std::size_t>(time_s * header->sample_rate_hz);
   Take take{std::move(*header), device.capabilities().name, {}};
   take.codes.resize(take.header.channels.size());

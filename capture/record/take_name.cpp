@@ -21,7 +21,7 @@ using schema::Result;
 
 constexpr int kMostTakes = 9999;
 
-// The stems that folders have, each folder read once: takes are looked for by the thousand.
+// The stems in each folder. Each folder is read once, because thousands of take numbers may be tested.
 class TakenStems {
  public:
   bool holds(const std::string& stem) {
@@ -47,7 +47,7 @@ class TakenStems {
   std::map<std::string, std::set<std::string>> folders_;
 };
 
-// UTF-8 beyond ASCII stays: names of surfaces are in every language.
+// UTF-8 beyond ASCII is kept: names of surfaces may be in any language.
 std::string file_safe(std::string text) {
   std::ranges::replace_if(
       text,
@@ -69,11 +69,11 @@ Result<std::string> part_of(const std::string& name, const NameParts& parts, int
   if (name == "take") return fmt::format("{}", take);
   const auto found = std::ranges::find(parts, name, &std::pair<std::string, std::string>::first);
   if (found == parts.end())
-    return fail(ErrorKind::usage, fmt::format("there is no {{{}}}", name), "--template",
-                "there are " + known(parts));
+    return fail(ErrorKind::usage, fmt::format("{{{}}} is not a placeholder", name), "--template",
+                "the placeholders are " + known(parts));
   if (found->second.empty())
     return fail(ErrorKind::usage, fmt::format("{{{}}} is empty", name), "--template",
-                fmt::format("say what it is, with --{}", name));
+                fmt::format("give it with --{}", name));
   return file_safe(found->second);
 }
 
@@ -86,7 +86,8 @@ Result<std::string> filled(const std::string& pattern, const NameParts& parts, i
     }
     const auto close = pattern.find('}', at);
     if (close == std::string::npos)
-      return fail(ErrorKind::usage, "a brace is never closed", "--template", "there are " + known(parts));
+      return fail(ErrorKind::usage, "a brace is not closed", "--template",
+                  "the placeholders are " + known(parts));
     const auto part = part_of(pattern.substr(at + 1, close - at - 1), parts, take);
     if (!part) return part;
     name += *part;
@@ -103,10 +104,10 @@ Result<std::string> name_of_take(const std::string& pattern, const NameParts& pa
   auto next = filled(pattern, parts, counts ? kMostTakes : 1);
   if (!next) return next;
   if (taken.holds(*next))
-    return fail(
-        ErrorKind::usage,
-        counts ? fmt::format("there is a take {} already", kMostTakes) : "a recording of that name is there",
-        pattern, counts ? "choose another template" : "put {take} into it, which counts up");
+    return fail(ErrorKind::usage,
+                counts ? fmt::format("take {} exists already", kMostTakes)
+                       : "a recording of that name exists already",
+                pattern, counts ? "choose another template" : "add {take} to it, which counts up");
   for (int take = (counts ? kMostTakes : 1) - 1; take >= 1; --take) {
     auto name = filled(pattern, parts, take);
     if (!name || taken.holds(*name)) break;

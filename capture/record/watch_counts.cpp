@@ -23,7 +23,7 @@ struct Watch {
     const auto got = device.read(block);
     TACTO_TRY(got);
     if (*got == 0)
-      return schema::fail(ErrorKind::device, "the stream ended before the travels did",
+      return schema::fail(ErrorKind::device, "the stream ended before the last travel",
                           device.capabilities().uri);
     return block[(*got - 1) * channels + channel];
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An encoder watched while somebody moves it.
+// Reads an encoder at marks while it is moved by hand.
 #pragma once
 
 #include <functional>
@@ -11,14 +11,13 @@
 namespace tacto::capture {
 
 struct WatchedCounts {
-  Take take;                   ///< the device's words, no frames
-  std::vector<double> counts;  ///< at each mark
+  Take take;                   ///< the description of the device, without frames
+  std::vector<double> counts;  ///< one at each mark
 };
 
-/// Streams without a break, so that no count is missed, and asks `marked` after each 20 ms; where it says
-/// yes, the count at the end of them is kept, until there are so many. Errors: usage: no such channel;
-/// device: as of Device, or its stream ended; those
-/// of `marked`.
+/// Streams without interruption, so that no count is missed, and calls `marked` every 20 ms. If it returns
+/// true, the count at the end of these 20 ms is kept, until there are `marks` counts. Errors: usage: no such
+/// channel; device: as in Device, or its stream ended; those of `marked`.
 schema::Result<WatchedCounts> watch_counts(firmware_host::Device& device, const std::string& channel,
                                            std::size_t marks,
                                            const std::function<schema::Result<bool>()>& marked);

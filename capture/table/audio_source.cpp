@@ -21,10 +21,10 @@ tl::unexpected<schema::Error> not_finite(const Source& source, std::uint64_t fra
                                          double value) {
   return fail(ErrorKind::malformed, std::isnan(value) ? "is NaN" : "is infinite",
               fmt::format("{}: sample {}, {}", source.file, frame, column_in_words(source.columns, column)),
-              "import the part without it: a value that isn't known is never filled in");
+              "import the part without it: unknown values are not filled in");
 }
 
-// The chosen columns of a piece whose first frame is `first`.
+// Appends the chosen columns of a piece whose first frame is `first`.
 Result<void> choose(const Source& source, std::span<const std::size_t> columns, std::uint64_t first,
                     std::span<const double> piece, std::vector<double>& rows) {
   const std::size_t channels = source.columns.size();
@@ -49,13 +49,13 @@ Result<Source> open_audio(const std::string& file) {
     return tl::unexpected(error);
   }
   const schema::WavInfo& info = reader->info();
-  if (info.frames == 0) return fail(ErrorKind::malformed, "holds no samples", file);
+  if (info.frames == 0) return fail(ErrorKind::malformed, "contains no samples", file);
   Source source{file, {}, std::nullopt, info.sample_rate_hz, info.code_bits, info.format};
   for (std::size_t i = 0; i < info.channels; ++i) source.columns.push_back(fmt::format("ch{}", i + 1));
   return source;
 }
 
-Result<void> read_audio(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
+Result<void> read_audio(const Source& source, std::span<const std::size_t> columns, const RowHandler& take,
                         const std::function<void(double)>& progress) {
   auto reader = schema::WavReader::open(source.file);
   TACTO_TRY(reader);
@@ -64,7 +64,7 @@ Result<void> read_audio(const Source& source, std::span<const std::size_t> colum
   for (std::uint64_t done = 0;;) {
     const auto got = reader->read(std::span(piece));
     TACTO_TRY(got);
-    if (*got == 0 && done == 0) return fail(ErrorKind::malformed, "holds no samples", source.file);
+    if (*got == 0 && done == 0) return fail(ErrorKind::malformed, "contains no samples", source.file);
     if (*got == 0) return {};
     const auto chosen = choose(source, columns, done, std::span(piece).first(*got * channels), rows);
     if (!chosen) return chosen;

@@ -11,13 +11,13 @@
 
 namespace tacto::capture {
 
-/// Columns "ch1", "ch2" ..., the header's rate, the width of integer codes. Errors: malformed, where
-/// libsndfile doesn't know the file; as WavReader::open().
+/// Columns "ch1", "ch2" ..., the header's rate, the width of integer codes. Errors: malformed, if libsndfile
+/// does not support the file; as WavReader::open().
 schema::Result<Source> open_audio(const std::string& file);
 
-/// Block by block: integer samples as codes of their own width, others as they are. Errors: those of `take`;
-/// malformed, with the sample, for NaN and Inf, or a file without samples.
+/// Reads block by block: integer samples as codes of their own width, others unchanged. Errors: those of
+/// `take`; malformed, with the sample, for NaN and Inf, or a file without samples.
 schema::Result<void> read_audio(const Source& source, std::span<const std::size_t> columns,
-                                const TakeRows& take, const std::function<void(double)>& progress);
+                                const RowHandler& take, const std::function<void(double)>& progress);
 
 }  // namespace tacto::capture

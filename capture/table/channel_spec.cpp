@@ -22,7 +22,7 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-// A column's part of the text, and what comes after it.
+// The column of the text, and the text after it.
 struct Cut {
   std::size_t column = 0;
   std::string_view rest;
@@ -38,7 +38,7 @@ std::vector<std::string> names_without_units(const std::vector<std::string>& nam
   return all;
 }
 
-// A header's name may have any sign in it, so the longest name that the text begins with is meant.
+// A name in a header may contain any character, so the longest name at the beginning of the text is used.
 std::optional<Cut> cut_by_name(std::string_view text, const std::vector<std::string>& columns) {
   std::optional<Cut> best;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -83,7 +83,7 @@ std::optional<double> take_number(std::string_view& text) {
   return value;
 }
 
-// "*0.5+3um" without the column: numbers first, in the unit that is left over.
+// "*0.5+3um" without the column: first the numbers, then the text after them as the unit of both.
 struct Calibration {
   double scale = 1;
   double offset = 0;
@@ -110,7 +110,7 @@ std::optional<Calibration> read_calibration(std::string_view rest) {
 }
 
 std::string fitting(Dimension dimension) {
-  return "the units that fit: " + schema::units_of(dimension);
+  return "possible units: " + schema::units_of(dimension);
 }
 
 Result<double> worth_of_columns_unit(const std::string& column_unit, Dimension dimension) {
@@ -119,7 +119,7 @@ Result<double> worth_of_columns_unit(const std::string& column_unit, Dimension d
   const auto known = known_unit(column_unit, dimension);
   if (known && known->dimension == dimension) return known->si;
   return fail(ErrorKind::usage,
-              fmt::format("has no unit, and the column's own, '{}', {}", column_unit,
+              fmt::format("has no unit, and that of the column, '{}', {}", column_unit,
                           known ? "is of another quantity" : "is not known"),
               {}, fitting(dimension) + example);
 }
@@ -130,11 +130,11 @@ Result<double> si_worth(std::string_view unit, Dimension dimension, const std::s
   if (const auto worth = schema::parse_quantity("1 " + std::string(unit), dimension)) return *worth;
   const bool of_another = schema::parse_unit(unit).has_value();
   return fail(ErrorKind::usage,
-              fmt::format("'{}' is {}", unit, of_another ? "a unit of another quantity" : "no known unit"),
+              fmt::format("'{}' is {}", unit, of_another ? "a unit of another quantity" : "not a known unit"),
               {}, fitting(dimension));
 }
 
-// What was wrong with a part, said of the whole text that the user wrote.
+// The error of a part, reported with the whole text of the option.
 tl::unexpected<schema::Error> in_option(const schema::Error& error, std::string_view text) {
   schema::Error whole = error;
   whole.where = fmt::format("'{}'", text);
@@ -146,11 +146,11 @@ Result<ScaledColumn> scaled(std::string_view text, Dimension dimension, const Co
   TACTO_TRY(cut);
   const auto calibration = read_calibration(cut->rest);
   if (!calibration)
-    return fail(ErrorKind::usage, fmt::format("'{}' is no scale and offset", cut->rest), {},
+    return fail(ErrorKind::usage, fmt::format("'{}' is not a scale with an offset", cut->rest), {},
                 fmt::format("write COLUMN*SCALE+OFFSET and a unit of {}", schema::units_of(dimension)));
   const auto si = si_worth(calibration->unit, dimension, columns.units[cut->column]);
   TACTO_TRY(si);
-  if (calibration->scale == 0) return fail(ErrorKind::usage, "has a scale of zero: the column would be lost");
+  if (calibration->scale == 0) return fail(ErrorKind::usage, "has a scale of 0, which removes the column");
   return ScaledColumn{cut->column, calibration->scale * *si, calibration->offset * *si};
 }
 
@@ -175,8 +175,7 @@ Result<ScaledColumn> parse_scaled_column(std::string_view text, Dimension dimens
 Result<ChannelSpec> parse_channel(std::string_view text, const ColumnNames& columns) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos)
-    return in_option({ErrorKind::usage, "names no column", {}, "write QUANTITY=COLUMN*SCALE and a unit"},
-                     text);
+    return in_option({ErrorKind::usage, "has no column", {}, "write QUANTITY=COLUMN*SCALE and a unit"}, text);
   auto spec = channel_without_column(trimmed(text.substr(0, equals)));
   if (!spec) return in_option(spec.error(), text);
   const auto column = scaled(text.substr(equals + 1), spec->dimension, columns);
@@ -195,7 +194,7 @@ Result<std::vector<ChannelSpec>> parse_channels(const std::vector<std::string>& 
       return in_option({ErrorKind::usage,
                         fmt::format("there are two channels '{}'", spec->name),
                         {},
-                        fmt::format("label one of them: LABEL:{}=COLUMN...", spec->quantity)},
+                        fmt::format("give one of them a label: LABEL:{}=COLUMN...", spec->quantity)},
                        text);
     specs.push_back(std::move(*spec));
   }

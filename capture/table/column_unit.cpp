@@ -20,7 +20,7 @@ constexpr Spelling kSpellings[] = {
     {"mm/sec", "mm/s"}, {"m/sec", "m/s"},   {"micron", "um"},    {"microns", "um"},
 };
 
-// Of one kind around the whole.
+// Whether a pair of matching brackets encloses the whole text.
 bool is_bracketed(std::string_view text) {
   if (text.size() < 2) return false;
   const char first = text.front(), last = text.back();
@@ -39,7 +39,7 @@ std::string_view symbol_of(std::string_view text) {
   return text;
 }
 
-// Where the last bracket of a name begins that ends with it.
+// The start of the bracket at the end of a name; npos if there is none.
 std::size_t bracket_in(std::string_view name) {
   if (name.ends_with(')')) return name.rfind('(');
   return name.ends_with(']') ? name.rfind('[') : std::string_view::npos;

@@ -12,8 +12,8 @@ bool is_quoted(std::string_view field) {
   return field.size() >= 2 && field.front() == '"' && field.back() == '"';
 }
 
-// Only a quote that opens the field guards delimiters; one in its middle (3.5" disk) is a character like
-// others.
+// Only a quote at the beginning of a field protects delimiters; a quote inside it (3.5" disk) is an ordinary
+// character.
 bool opens_with_quote(std::string_view line, std::size_t begin) {
   const std::size_t first = line.find_first_not_of(' ', begin);
   return first != std::string_view::npos && line[first] == '"';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A line of a table cut into its fields, quotes obeyed.
+// Splits a line of a table into its fields, with quotes.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@
 
 namespace tacto::capture {
 
-/// Where the field that begins at `begin` ends: at the next delimiter outside quotes, or at the line's end.
-/// A quote that is never closed ends with the line.
+/// The end of the field that begins at `begin`: the next delimiter outside quotes, or the end of the line. A
+/// quote that is not closed ends with the line.
 std::size_t field_end(std::string_view line, std::size_t begin, char delimiter);
 
-/// How many fields a line has: one more than its delimiters outside quotes.
+/// The number of fields in a line: one more than the number of delimiters outside quotes.
 std::size_t field_count(std::string_view line, char delimiter);
 
-/// A field's content: blanks around it and its quotes removed, doubled quotes made single.
+/// The content of a field: without surrounding blanks and quotes, doubled quotes made single.
 std::string unquoted(std::string_view field);
 
 /// All fields of a line, unquoted.
@@ -25,7 +25,7 @@ std::vector<std::string> fields_of(std::string_view line, char delimiter);
 /// The line without carriage returns at its end.
 std::string_view without_returns(std::string_view line);
 
-/// Lines that hold no fields: blank ones, and comments, whose first character is '#'.
+/// Lines without fields: blank ones, and comments, whose first character is '#'.
 bool is_blank_line(std::string_view line);
 bool is_comment_line(std::string_view line);
 

@@ -23,12 +23,12 @@ using schema::Result;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kSampledLines = 20;
 
-// Where lines begin, and which one is the first.
+// The offset and the number of the first line.
 struct Beginning {
   std::size_t offset = 0, line = 1;
 };
 
-// The first lines with fields in them. A line that the head cuts off is none.
+// The first lines that have fields. A line that is cut off at the end of `head` is not used.
 std::vector<TableLine> sample_lines(std::string_view head, bool whole, Beginning at, char line_end,
                                     std::size_t most) {
   std::vector<TableLine> lines;
@@ -44,7 +44,7 @@ std::vector<TableLine> sample_lines(std::string_view head, bool whole, Beginning
   return lines;
 }
 
-// The largest number of lines that this delimiter cuts into equally many fields; 0 where it cuts none.
+// The largest number of lines that this delimiter splits into the same number of fields; 0 if it splits none.
 std::size_t agreeing_lines(std::span<const TableLine> lines, char delimiter) {
   std::map<std::size_t, std::size_t> lines_by_fields;
   for (const TableLine& line : lines) ++lines_by_fields[field_count(line.text, delimiter)];
@@ -54,7 +54,7 @@ std::size_t agreeing_lines(std::span<const TableLine> lines, char delimiter) {
   return most;
 }
 
-// Where two agree alike, the rarer sign decides: in "0,5;1,5" the comma is decimal.
+// If two delimiters agree equally well, the rarer sign is used: in "0,5;1,5" the comma is decimal.
 char find_delimiter(std::span<const TableLine> lines) {
   char best = ',';
   std::size_t most = 0;
@@ -68,7 +68,7 @@ char find_delimiter(std::span<const TableLine> lines) {
 
 enum class FirstLine { header, data, mixed };
 
-// Mixed lines are data where the next line has its text in the same columns (a column of dates, say).
+// A mixed line is data if the next line has text in the same columns (for example a column of dates).
 FirstLine kind_of(const std::vector<std::string>& first, const std::vector<std::string>& next) {
   const auto names = std::ranges::count_if(first, is_name);
   const auto numbers = std::ranges::count_if(first, is_numeric);
@@ -83,7 +83,8 @@ Result<void> check_text(std::string_view head, const std::string& file) {
   const bool utf16 = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
   if (utf16) return fail(ErrorKind::malformed, "is UTF-16 text", file, "save it as UTF-8");
   if (const auto zero = head.find('\0'); zero != std::string_view::npos)
-    return fail(ErrorKind::malformed, fmt::format("has a zero byte at {}: it is no text", zero), file);
+    return fail(ErrorKind::malformed, fmt::format("has a zero byte at {}: it is not a text file", zero),
+                file);
   return {};
 }
 
@@ -91,7 +92,7 @@ tl::unexpected<schema::Error> no_lines(std::string_view head, bool whole, const 
   if (head.empty()) return fail(ErrorKind::malformed, "is empty", file);
   if (!whole)
     return fail(ErrorKind::malformed, fmt::format("has no data in its first {} bytes", head.size()), file);
-  return fail(ErrorKind::malformed, "holds no data, only blank lines and comments", file);
+  return fail(ErrorKind::malformed, "contains no data, only blank lines and comments", file);
 }
 
 tl::unexpected<schema::Error> mixed_first_line(const TableLine& line, const std::vector<std::string>& fields,
@@ -100,7 +101,7 @@ tl::unexpected<schema::Error> mixed_first_line(const TableLine& line, const std:
   return fail(ErrorKind::malformed,
               fmt::format("'{}' is a name among numbers", fields[static_cast<std::size_t>(at)]),
               fmt::format("{}: line {}, column {}", file, line.number, at + 1),
-              "name every column in the first line, or none");
+              "give a name to every column in the first line, or to none");
 }
 
 void take_header(CsvLayout& layout, const TableLine& line, std::vector<std::string> fields) {
@@ -111,14 +112,14 @@ void take_header(CsvLayout& layout, const TableLine& line, std::vector<std::stri
   layout.data_line = line.number + 1;
 }
 
-// Where the units have a row of their own, it follows the header's line and counts more than the names' own.
+// A separate row of units follows the header and has priority over the units in the names.
 void take_units(CsvLayout& layout, const std::vector<std::string>& row) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i)
     layout.units.push_back(i < row.size() && !row[i].empty() ? row[i] : split_unit(layout.columns[i]).unit);
 }
 
-// Whether the lines after the first are rows of its width, alike in where they have text; one that has no
-// text at all is enough. If not, the table may begin later.
+// Whether the lines after the first are rows of the same width, with text in the same columns; a row without
+// any text is sufficient. If not, the table may begin later.
 bool begins_at_once(std::span<const TableLine> lines, char delimiter) {
   if (lines.size() < 2) return true;
   const auto next = fields_in(lines[1], delimiter);
@@ -130,7 +131,7 @@ bool begins_at_once(std::span<const TableLine> lines, char delimiter) {
   });
 }
 
-// With --skip the table begins where the user says.
+// With --skip the table begins at the line that the user gives.
 std::optional<TableStart> later_start(std::span<const TableLine> lines, bool begin_is_given) {
   auto start = find_table_start(lines);
   if (!start || start->first_row == 0) return std::nullopt;
@@ -164,17 +165,17 @@ bool has_no_number(const TableLine& line, char delimiter) {
   return std::ranges::none_of(fields_in(line, delimiter), is_numeric);
 }
 
-// A text, or columns of a kind that is not read.
+// Refuses a text, or columns of a kind that import cannot read.
 Result<void> check_rows_follow(std::span<const TableLine> lines, char delimiter, const std::string& file) {
   const auto none = [&](const TableLine& line) { return has_no_number(line, delimiter); };
   if (lines.size() < 2 || !std::ranges::all_of(lines, none)) return {};
   const std::string where =
       fmt::format("{}: lines {} to {}", file, lines.front().number, lines.back().number);
   if (are_numbers_between_blanks(lines.back()))
-    return fail(ErrorKind::malformed, "has blanks between its columns", where,
+    return fail(ErrorKind::malformed, "has spaces between its columns", where,
                 "save it with commas, semicolons or tabs between them");
-  return fail(ErrorKind::malformed, "holds no numbers there", where,
-              "a table has rows of numbers; --skip N passes over N lines before it");
+  return fail(ErrorKind::malformed, "contains no numbers there", where,
+              "a table needs rows of numbers; --skip N ignores N lines before it");
 }
 
 Result<CsvLayout> layout_at_once(CsvLayout layout, std::span<const TableLine> lines, bool whole,
@@ -198,7 +199,8 @@ Result<Beginning> after_lines(std::string_view head, Beginning at, std::size_t s
   for (std::size_t skipped = 0; skipped < skip; ++skipped, ++at.line) {
     const auto end = head.find(line_end, at.offset);
     if (end == std::string_view::npos)
-      return fail(ErrorKind::usage, fmt::format("no table can follow {} lines: there are {}", skip, skipped),
+      return fail(ErrorKind::usage,
+                  fmt::format("no table can follow {} lines: the file has {}", skip, skipped),
                   fmt::format("--skip, {}", file), "give the number of lines before the table");
     at.offset = end + 1;
   }

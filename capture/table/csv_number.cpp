@@ -25,7 +25,8 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-// What was written instead of a finite number: "nan", "-Inf", "1.#QNAN" (older Windows), "#NUM!" stays text.
+// Text that stands for a number that is not finite: "nan", "-Inf", "1.#QNAN" (older Windows). "#NUM!" remains
+// text.
 NumberFault fault_of_words(std::string_view field) {
   std::string word = lower(field);
   if (word.starts_with('-') || word.starts_with('+')) word.erase(0, 1);
@@ -36,8 +37,8 @@ NumberFault fault_of_words(std::string_view field) {
   return NumberFault::text;
 }
 
-// from_chars knows only the point; a field that has one decimal comma and no point is copied with it
-// exchanged.
+// from_chars supports only the decimal point, so a field with one decimal comma and no point is copied and
+// the comma replaced.
 NumberFault read_with_comma(std::string_view field, double& value) {
   std::array<char, 64> copy{};
   if (field.size() > copy.size() || field.find('.') != std::string_view::npos) return NumberFault::text;

@@ -19,7 +19,7 @@ namespace {
 using schema::ErrorKind;
 using schema::Result;
 
-// What a message shows of a field: a mistaken file can have a page of text in it.
+// The part of a field that a message contains: a damaged file can have a page of text in one field.
 std::string shown(std::string_view field) {
   constexpr std::size_t kMost = 40;
   const std::string text = to_utf8(trimmed(field).substr(0, kMost));
@@ -35,18 +35,18 @@ std::string words_for(NumberFault fault, std::string_view field) {
     case NumberFault::infinite:
       return fmt::format("is infinite ('{}')", shown(field));
     case NumberFault::too_large:
-      return fmt::format("'{}' is beyond what a number can hold", shown(field));
+      return fmt::format("'{}' is too large for a number", shown(field));
     case NumberFault::mixed_marks:
       return fmt::format("'{}' has another decimal mark than the rows before", shown(field));
     default:
-      return fmt::format("'{}' is no number", shown(field));
+      return fmt::format("'{}' is not a number", shown(field));
   }
 }
 
 std::string remedy_for(NumberFault fault) {
   const bool unknown =
       fault == NumberFault::nan || fault == NumberFault::infinite || fault == NumberFault::missing;
-  return unknown ? "import the part without it: a value that isn't known is never filled in" : "";
+  return unknown ? "import the part without it: unknown values are not filled in" : "";
 }
 
 }  // namespace
@@ -75,34 +75,39 @@ CsvReader::CsvReader(CsvLayout layout, const std::vector<std::size_t>& columns, 
 Result<void> CsvReader::feed(std::string_view piece) {
   assert(!error_);
   if (piece.empty()) return {};
-  if (!carried_.empty()) {
+  if (!incomplete_line_.empty()) {
     const std::size_t end = std::min(piece.find(layout_.line_end), piece.size() - 1);
-    carried_ += piece.substr(0, end + 1);
+    incomplete_line_ += piece.substr(0, end + 1);
     piece.remove_prefix(std::min(end + 1, piece.size()));
-    std::string_view whole = carried_;
+    std::string_view whole = incomplete_line_;
     if (!take_lines(whole)) return tl::unexpected(*error_);
-    carried_.erase(0, carried_.size() - whole.size());
+    incomplete_line_.erase(0, incomplete_line_.size() - whole.size());
   }
   if (!take_lines(piece)) return tl::unexpected(*error_);
-  carried_ += piece;
+  incomplete_line_ += piece;
   return {};
 }
 
 Result<void> CsvReader::finish() {
-  if (!carried_.empty() && !take_line(carried_)) return tl::unexpected(*error_);
-  carried_.clear();
-  if (rows_ == 0) return schema::fail(ErrorKind::malformed, "holds no row of numbers", file_);
+  if (!incomplete_line_.empty() && !take_line(incomplete_line_)) return tl::unexpected(*error_);
+  incomplete_line_.clear();
+  if (rows_ == 0) return schema::fail(ErrorKind::malformed, "contains no row of numbers", file_);
   return {};
 }
 
+void CsvReader::exchange_rows(NumberStore& store) {
+  std::swap(store, store_);
+  drop_rows();
+}
+
 void CsvReader::drop_rows() {
-  count_ = 0;
+  store_.count = 0;
   dropped_ = rows_;
   const std::size_t oldest = rows_ - std::min(rows_, kRowsRemembered);
   while (landmarks_.size() > 1 && landmarks_[1].row <= oldest) landmarks_.pop_front();
 }
 
-// Takes all whole lines and leaves what comes after them.
+// Reads all complete lines and leaves the bytes after them.
 bool CsvReader::take_lines(std::string_view& bytes) {
   for (;;) {
     take_plain_rows(bytes);
@@ -118,7 +123,7 @@ void CsvReader::take_plain_rows(std::string_view& bytes) {
                      kept_};
   if (blank_line_ != 0 || form.mark == form.delimiter) return;
   make_room(bytes.size() / 2 + kept_);
-  const PlainRows read = read_plain_rows(bytes, form, numbers_.get() + count_);
+  const PlainRows read = read_plain_rows(bytes, form, store_.numbers.get() + store_.count);
   if (read.rows == 0) return;
   if (read.marked) decimal_mark_ = form.mark;
   note_rows(read.rows);
@@ -150,7 +155,7 @@ bool CsvReader::take_row(std::string_view line) {
     } else if (!take_number(line, at, column)) {
       return false;
     }
-    ++at;  // over the delimiter
+    ++at;  // skips the delimiter
   }
   if (at <= line.size()) return refuse_ragged(line);
   note_rows(1);
@@ -158,7 +163,7 @@ bool CsvReader::take_row(std::string_view line) {
 }
 
 bool CsvReader::take_number(std::string_view line, std::size_t& at, std::size_t column) {
-  double& value = numbers_[count_ + places_[column]];
+  double& value = store_.numbers[store_.count + places_[column]];
   if (decimal_mark_ != ',' && take_plain_number(line, at, value)) return true;
   const std::size_t end = field_end(line, at, layout_.delimiter);
   const std::string field = unquoted(line.substr(at, end - at));
@@ -168,7 +173,7 @@ bool CsvReader::take_number(std::string_view line, std::size_t& at, std::size_t 
   return true;
 }
 
-// The common case, quickly: a bare number right up to its delimiter.
+// The fast path for the common case: a plain number directly before its delimiter.
 bool CsvReader::take_plain_number(std::string_view line, std::size_t& at, double& value) {
   const char* const begin = line.data() + at;
   const char* const end = line.data() + line.size();
@@ -193,20 +198,19 @@ bool CsvReader::refuse_number(NumberFault fault, std::string_view line, std::str
 }
 
 bool CsvReader::refuse_ragged(std::string_view line) {
-  constexpr std::size_t kFirstRows = 5;  // where lines before the table may have been taken for rows
+  constexpr std::size_t kFirstRows = 5;  // lines before the table may have been read as rows
   const std::size_t fields = field_count(line, layout_.delimiter);
   std::string remedy =
-      fmt::format("the delimiter was taken to be {}",
+      fmt::format("the detected delimiter is {}",
                   layout_.delimiter == '\t' ? std::string("a tab") : fmt::format("'{}'", layout_.delimiter));
-  if (rows_ < kFirstRows) remedy += "; --skip N passes over N lines before the table";
-  return refuse(
-      fmt::format("has {} field{} where {} are due", fields, fields == 1 ? "" : "s", places_.size()),
-      std::move(remedy));
+  if (rows_ < kFirstRows) remedy += "; --skip N ignores N lines before the table";
+  return refuse(fmt::format("has {} field{} instead of {}", fields, fields == 1 ? "" : "s", places_.size()),
+                std::move(remedy));
 }
 
 bool CsvReader::refuse_blank() {
   line_ = blank_line_;
-  return refuse("is blank, with rows after it", "rows may not be missing: import the parts one by one");
+  return refuse("is blank, but rows follow", "rows must not be missing: import the parts separately");
 }
 
 bool CsvReader::refuse(std::string what, std::string remedy, std::optional<std::size_t> column) {
@@ -216,24 +220,24 @@ bool CsvReader::refuse(std::string what, std::string remedy, std::optional<std::
   return false;
 }
 
-// Not a vector: it would set to zero what is about to be written.
+// Not std::vector, which would first set to zero what is then overwritten.
 void CsvReader::make_room(std::size_t numbers) {
-  if (room_ - count_ >= numbers) return;
-  const std::size_t room = std::max(2 * room_, count_ + numbers);
+  if (store_.room - store_.count >= numbers) return;
+  const std::size_t room = std::max(2 * store_.room, store_.count + numbers);
   auto larger = std::make_unique_for_overwrite<double[]>(room);
-  std::copy_n(numbers_.get(), count_, larger.get());
-  numbers_ = std::move(larger);
-  room_ = room;
+  std::copy_n(store_.numbers.get(), store_.count, larger.get());
+  store_.numbers = std::move(larger);
+  store_.room = room;
 }
 
-// Rows on lines that follow each other, the first on the next line.
+// Records rows on consecutive lines; the first is on the next line.
 void CsvReader::note_rows(std::size_t rows) {
   const bool follows =
       !landmarks_.empty() && landmarks_.back().line + (rows_ - landmarks_.back().row) == line_;
   if (!follows) landmarks_.push_back({rows_, line_});
   blank_line_ = 0;
   rows_ += rows;
-  count_ += rows * kept_;
+  store_.count += rows * kept_;
 }
 
 }  // namespace tacto::capture

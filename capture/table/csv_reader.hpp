@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers of some columns of a table, piece by piece.
+// Reads the numbers of selected columns of a table, piece by piece.
 #pragma once
 
 #include <cstddef>
@@ -17,39 +17,49 @@
 
 namespace tacto::capture {
 
-/// Takes a table's bytes in pieces of any size and gives the numbers of the chosen columns, row by row. No
-/// input or output of its own: what it gives depends on the bytes alone, not on how they were cut. Other
-/// columns may hold anything, but every row must have all of them. Comment lines are passed over, blank lines
-/// only before the first row and after the last. Memory: the rows that were not dropped, and the longest
-/// line. Not safe in the tick.
+/// Memory for numbers, of which `count` are used. A vector would first set them to zero.
+struct NumberStore {
+  std::unique_ptr<double[]> numbers;
+  std::size_t count = 0, room = 0;
+
+  std::span<const double> span() const { return {numbers.get(), count}; }
+};
+
+/// Accepts the bytes of a table in pieces of any size and returns the numbers of the chosen columns, row by
+/// row. It does no input or output: the result depends on the bytes alone, not on how they are divided. The
+/// other columns may contain anything, but every row must have all columns. Comment lines are skipped; blank
+/// lines are permitted only before the first row and after the last. Memory: the rows that were not dropped,
+/// and the longest line. Not safe in the tick.
 class CsvReader {
  public:
-  /// `columns`: 0-based, each once, inside layout.columns. `file` is for messages.
+  /// `columns`: 0-based, without duplicates, less than the number of layout.columns. `file` is for messages.
   CsvReader(CsvLayout layout, const std::vector<std::size_t>& columns, std::string file);
 
-  /// The next bytes from layout.data_offset on. Errors: malformed, with line and column: a ragged row, text
-  /// in a number, NaN, Inf, a missing value, a number no double holds, mixed decimal marks, a blank line
-  /// among rows. After an error the reader is of no more use.
+  /// The next bytes from layout.data_offset on. Errors: malformed, with line and column: a row with another
+  /// number of fields, text in a number, NaN, Inf, a missing value, a number out of the range of double,
+  /// mixed decimal marks, a blank line between rows. After an error the reader cannot be used any more.
   schema::Result<void> feed(std::string_view piece);
-  /// The end of the file: its last line may lack a line end. Errors: as feed(); malformed, where there is no
+  /// The end of the file: its last line may lack a line end. Errors: as feed(); malformed, if there is no
   /// row.
   schema::Result<void> finish();
 
-  /// Whole rows that came since drop_rows(), each with its numbers in the order of `columns`.
-  std::span<const double> rows() const { return {numbers_.get(), count_}; }
-  std::size_t first_row() const { return dropped_; }  ///< which row of the table is the first of rows()
+  /// The complete rows since drop_rows(), each with its numbers in the order of `columns`.
+  std::span<const double> rows() const { return store_.span(); }
+  std::size_t first_row() const { return dropped_; }  ///< the row of the table at the start of rows()
   void drop_rows();
+  /// As drop_rows(), but the caller gets the rows, and gives room for new ones: an empty store.
+  void exchange_rows(NumberStore& store);
 
-  /// Rows before first_row() of which the line is still known.
+  /// The number of rows before first_row() whose line is still known.
   static constexpr std::size_t kRowsRemembered = 4;
-  /// The file's line, from 1, of each row that doesn't stand on the line after the row before it.
+  /// The line in the file, from 1, of each row that is not on the line after the previous row.
   struct Landmark {
     std::size_t row = 0;
     std::size_t line = 0;
   };
   const std::deque<Landmark>& landmarks() const { return landmarks_; }
 
-  /// The decimal mark that the numbers showed: '.', ',', or 0 where there was none.
+  /// The decimal mark of the numbers: '.', ',', or 0 if there was none.
   char decimal_mark() const { return decimal_mark_; }
 
  private:
@@ -70,11 +80,10 @@ class CsvReader {
   std::string file_;
   std::vector<std::size_t> places_;  // of each column of the file: its place in a row, or RowForm::kSkipped
   std::size_t kept_;                 // numbers of a row
-  std::unique_ptr<double[]> numbers_;
-  std::size_t count_ = 0, room_ = 0;
+  NumberStore store_;                // rows()
   std::deque<Landmark> landmarks_;
-  std::string carried_;  // a line whose end has not come yet
-  std::size_t line_;     // number of the line that comes next
+  std::string incomplete_line_;  // an incomplete line
+  std::size_t line_;             // number of the next line
   std::size_t rows_ = 0, dropped_ = 0;
   std::size_t blank_line_ = 0;  // the first blank line since the last row, 0 for none
   char decimal_mark_ = 0;
@@ -84,7 +93,7 @@ class CsvReader {
 /// The line of a row, from 1.
 std::size_t line_of_row(const std::deque<CsvReader::Landmark>& landmarks, std::size_t row);
 
-/// "column 2 ('force')", or without the name where there is none. `column` is 0-based.
+/// "column 2 ('force')", or without the name if it has none. `column` is 0-based.
 std::string column_in_words(const std::vector<std::string>& names, std::size_t column);
 
 }  // namespace tacto::capture

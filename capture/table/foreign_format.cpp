@@ -22,9 +22,9 @@ constexpr std::string_view kHdf5 =
     "write its columns as CSV, in Python: numpy.savetxt('trial.csv', numpy.column_stack([t, f]), "
     "delimiter=','); "
     "then import that";
-constexpr std::string_view kUnpack = "unpack it, then import what is in it";
-constexpr std::string_view kExport = "export it as CSV where it was made, then import that";
-constexpr std::string_view kDownload = "it is a page of the web: download the file itself";
+constexpr std::string_view kUnpack = "unpack it, then import its contents";
+constexpr std::string_view kExport = "export it as CSV in the program that made it, then import that";
+constexpr std::string_view kDownload = "it is a web page: download the file itself";
 
 struct Magic {
   std::string_view bytes;
@@ -71,7 +71,7 @@ constexpr Magic kMagics[] = {
     {"<html"sv, {"HTML", kDownload}},
 };
 
-// The use of a ZIP archive shows in the names of its files, which are not compressed.
+// The kind of a ZIP archive is recognised from the names of its files, which are not compressed.
 constexpr Magic kArchived[] = {
     {"bindata/"sv, {"an X3P height profile (ISO 25178-72)", kProfile}},
     {"main.xml"sv, {"an X3P height profile (ISO 25178-72)", kProfile}},

@@ -12,14 +12,15 @@ namespace tacto::capture {
 schema::Result<InputFile> InputFile::open(const std::string& path) {
   std::error_code unknown;
   const auto status = std::filesystem::status(path, unknown);
-  // A pipe could not be opened a second time, and opening one may wait for ever.
+  // A pipe cannot be opened a second time, and opening one may block forever.
   if (std::filesystem::exists(status) && !is_regular_file(status) && !is_directory(status))
-    return schema::fail(schema::ErrorKind::not_found, "is no regular file", path, "write it to a file first");
+    return schema::fail(schema::ErrorKind::not_found, "is not a regular file", path,
+                        "write it to a file first");
   TACTO_TRY(schema::check_readable(path));
   InputFile input;
   input.path_ = path;
   input.file_.reset(std::fopen(path.c_str(), "rbe"));
-  if (!input.file_) return schema::fail(schema::ErrorKind::not_found, "can't be opened", path);
+  if (!input.file_) return schema::fail(schema::ErrorKind::not_found, "cannot be opened", path);
   const auto size = std::filesystem::file_size(path, unknown);
   input.size_ = unknown ? 0 : size;
   return input;
@@ -29,7 +30,7 @@ schema::Result<std::size_t> InputFile::read(std::span<char> bytes) {
   const std::size_t got = std::fread(bytes.data(), 1, bytes.size(), file_.get());
   if (got < bytes.size() && std::ferror(file_.get()) != 0)
     return schema::fail(schema::ErrorKind::not_found,
-                        "can't be read: " + std::generic_category().message(errno), path_);
+                        "cannot be read: " + std::generic_category().message(errno), path_);
   return got;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file of bytes, read from its beginning to its end.
+// A file of bytes, read from beginning to end.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +17,10 @@ class InputFile {
   /// Errors: not_found (absent, a folder, no permission).
   static schema::Result<InputFile> open(const std::string& path);
 
-  /// Fills `bytes` as far as the file goes; gives how many there were, 0 at the end. Errors: not_found (the
-  /// disk failed).
+  /// Fills `bytes` up to the end of the file. Returns the number of bytes, 0 at the end. Errors: not_found
+  /// (the disk failed).
   schema::Result<std::size_t> read(std::span<char> bytes);
-  /// When it was opened, in bytes; 0 for what has no size, as a pipe.
+  /// The size at opening, in bytes; 0 for a file without a size, such as a pipe.
   std::size_t size() const { return size_; }
 
  private:

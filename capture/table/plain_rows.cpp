@@ -17,11 +17,12 @@
 namespace tacto::capture {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // bytes that are searched for the ends of fields at once
+constexpr std::size_t kBlock = 64;  // the number of bytes that are searched for ends of fields at once
 
 using Bytes = std::array<std::uint8_t, 16>;
 
-// Of a number whose last digit is rightmost: closes the hole that the decimal mark leaves.
+// Shuffles for a number whose last digit is in the last byte: they shift the digits before the decimal mark
+// by one byte, over the mark.
 constexpr auto all_closings() {
   std::array<Bytes, 16> table{};
   for (std::size_t mark = 0; mark < 16; ++mark)
@@ -30,7 +31,7 @@ constexpr auto all_closings() {
   return table;
 }
 
-// 16 bytes from place n on keep the last n of 16 bytes.
+// The 16 bytes from index n on are a mask that keeps the last n of 16 bytes.
 constexpr auto all_lengths() {
   std::array<std::uint8_t, 33> table{};
   for (std::size_t i = 16; i < table.size(); ++i) table[i] = 0xFF;
@@ -44,7 +45,7 @@ constexpr auto kLengths = all_lengths();
   return _mm_loadu_si128(static_cast<const __m128i*>(bytes));
 }
 
-// 16 digits, the first leftmost: pairs, then fours, then eights.
+// The value of 16 digits, the first in the lowest byte: sums of pairs, then of fours, then of eights.
 [[gnu::target("sse4.1")]] inline std::int64_t value_of(__m128i digits) {
   const __m128i pairs =
       _mm_maddubs_epi16(digits, _mm_setr_epi8(10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1, 10, 1));
@@ -55,7 +56,7 @@ constexpr auto kLengths = all_lengths();
   return static_cast<std::int64_t>((both & 0xFFFFFFFF) * 100000000 + (both >> 32));
 }
 
-// The number right before `end`, of `length` characters without its sign. Precondition: 16 readable bytes
+// The number that ends at `end`, with `length` characters without its sign. Precondition: 16 readable bytes
 // before `end`, length up to 16.
 [[gnu::target("sse4.1")]] inline PlainDecimal read_before(const char* end, std::size_t length, char mark) {
   const __m128i all = _mm_sub_epi8(load(end - 16), _mm_set1_epi8('0'));
@@ -83,13 +84,13 @@ PlainDecimal read_long(const char* at, const char* end, char mark) {
   return {end, value, text.find('.') != std::string_view::npos};
 }
 
-// The rows of a stretch, field by field.
+// Reads rows field by field.
 class Scan {
  public:
   Scan(std::string_view bytes, const RowForm& form, double* numbers)
       : form_(form), begin_(bytes.data()), row_(begin_), field_(begin_), numbers_(numbers) {}
 
-  // A field that goes up to `end`, where a delimiter or a line end stands; false where it isn't plain.
+  // Reads the field up to `end`, where a delimiter or a line end is; false if it is not plain.
   [[gnu::target("sse4.1")]] bool take(const char* end);
   PlainRows read() const { return {static_cast<std::size_t>(row_ - begin_), rows_, marked_}; }
 
@@ -99,8 +100,8 @@ class Scan {
 
   const RowForm form_;
   const char* const begin_;
-  const char* row_;    // where the row began
-  const char* field_;  // where the field begins
+  const char* row_;    // the beginning of the row
+  const char* field_;  // the beginning of the field
   double* numbers_;
   std::size_t column_ = 0, rows_ = 0;
   bool marked_ = false, row_marked_ = false;
@@ -143,7 +144,7 @@ inline void Scan::end_row(const char* next) {
   marked_ = row_marked_;
 }
 
-// Where delimiters and line ends stand: a bit a byte.
+// The positions of delimiters and line ends, one bit per byte.
 [[gnu::target("sse4.1")]] inline std::uint64_t field_ends(const char* block, const RowForm& form) {
   const __m128i delimiter = _mm_set1_epi8(form.delimiter), line_end = _mm_set1_epi8(form.line_end);
   std::uint64_t ends = 0;

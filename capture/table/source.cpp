@@ -6,6 +6,7 @@
 #include "capture/table/audio_source.hpp"
 #include "capture/table/foreign_format.hpp"
 #include "capture/table/input_file.hpp"
+#include "capture/table/table_stages.hpp"
 #include "data-schema/recording/recording.hpp"
 
 namespace tacto::capture {
@@ -15,7 +16,7 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-constexpr std::size_t kPieceBytes = std::size_t{1} << 17;  // with its numbers it stays in the cache
+constexpr std::size_t kPieceBytes = std::size_t{1} << 17;  // fits into the cache with its numbers
 
 std::string table_format(const CsvLayout& layout) {
   const char* const delimiter = layout.delimiter == '\t'  ? "tab"
@@ -37,19 +38,18 @@ Result<Source> open_table(const std::string& file, std::string_view head, bool w
 
 Result<Source> open_sound(const std::string& file, std::size_t skip) {
   if (skip == 0) return open_audio(file);
-  return fail(ErrorKind::usage, "has no lines that could be skipped", file,
-              "leave --skip out: this is no table");
+  return fail(ErrorKind::usage, "has no lines to skip", file, "omit --skip: this is not a table");
 }
 
-// Of MATLAB's files libsndfile takes any numbers for sound: only its own name their rate so.
+// libsndfile reads the numbers of any MATLAB file as audio. Only its own files name the rate "samplerate".
 Result<Source> open_foreign(const std::string& file, const ForeignFormat& format, std::string_view head) {
   if (format.may_be_sound && head.find("samplerate") != std::string_view::npos) return open_audio(file);
   return fail(ErrorKind::unsuitable, fmt::format("is {}, which import does not read", format.what), file,
               std::string(format.remedy));
 }
 
-// Sound files have zero bytes among their first, text has none; UTF-16 has both and is a table to be
-// converted.
+// Audio files have zero bytes near the beginning, text has none; UTF-16 has them too and is a table that the
+// user has to convert.
 bool is_binary(std::string_view head) {
   const bool utf16 = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
   return !utf16 && head.find('\0') != std::string_view::npos;
@@ -65,9 +65,9 @@ Result<void> refuse_own(const std::string& file, std::string_view head) {
     return fail(ErrorKind::unsuitable, "is JSON, not a table or a sound file", file,
                 "a recording needs no import: see 'tactograph info'");
   if (file.ends_with(".texture.wav"))
-    return fail(ErrorKind::unsuitable, "is a texture already", file, "see 'tactograph info'");
+    return fail(ErrorKind::unsuitable, "is already a texture", file, "see 'tactograph info'");
   if (file.ends_with(".wav") && schema::open_recording(file))
-    return fail(ErrorKind::unsuitable, "is a recording already", file, "see 'tactograph info'");
+    return fail(ErrorKind::unsuitable, "is already a recording", file, "see 'tactograph info'");
   return {};
 }
 
@@ -102,37 +102,6 @@ Result<Source> open_source(const std::string& file, std::size_t skip) {
 
 namespace {
 
-Result<void> hand_over(CsvReader& reader, std::size_t columns, const TakeRows& take) {
-  if (reader.rows().empty()) return {};
-  const auto taken =
-      take({reader.rows(), columns, reader.first_row(), &reader.landmarks(), reader.decimal_mark()});
-  reader.drop_rows();
-  return taken;
-}
-
-Result<void> read_table(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
-                        const std::function<void(double)>& progress, schema::Sha256* sum) {
-  auto input = InputFile::open(source.file);
-  TACTO_TRY(input);
-  CsvReader reader(*source.csv, {columns.begin(), columns.end()}, source.file);
-  std::string piece(kPieceBytes, '\0');
-  std::size_t skipped = source.csv->data_offset;
-  for (std::size_t done = 0;;) {
-    const auto got = input->read(piece);
-    TACTO_TRY(got);
-    if (*got == 0) break;
-    const std::string_view bytes = std::string_view(piece).substr(0, *got);
-    if (sum != nullptr) sum->add(bytes);
-    if (const auto fed = reader.feed(bytes.substr(std::min(skipped, bytes.size()))); !fed) return fed;
-    if (const auto taken = hand_over(reader, columns.size(), take); !taken) return taken;
-    skipped -= std::min(skipped, bytes.size());
-    done += *got;
-    progress(static_cast<double>(done) / static_cast<double>(std::max(input->size(), done)));
-  }
-  if (const auto ended = reader.finish(); !ended) return ended;
-  return hand_over(reader, columns.size(), take);
-}
-
 // libsndfile reads the file itself, so its bytes are read once more for the sum.
 Result<void> add_file(const std::string& file, schema::Sha256& sum) {
   auto input = InputFile::open(file);
@@ -148,9 +117,9 @@ Result<void> add_file(const std::string& file, schema::Sha256& sum) {
 
 }  // namespace
 
-Result<void> read_source(const Source& source, std::span<const std::size_t> columns, const TakeRows& take,
+Result<void> read_source(const Source& source, std::span<const std::size_t> columns, const RowHandler& take,
                          const std::function<void(double)>& progress, schema::Sha256* sum) {
-  if (source.csv) return read_table(source, columns, take, progress, sum);
+  if (source.csv) return TableStages(source, columns, sum).run(take, progress);
   const auto read = read_audio(source, columns, take, progress);
   return read && sum != nullptr ? add_file(source.file, *sum) : read;
 }

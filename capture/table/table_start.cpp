@@ -13,7 +13,7 @@ namespace {
 
 using Fields = std::vector<std::string>;
 
-constexpr std::size_t kRowsToTrust = 5;  // a setting or two may be numbers alone
+constexpr std::size_t kRowsToTrust = 5;  // one or two lines of settings may be only numbers
 
 struct FieldCounts {
   std::size_t names = 0, numbers = 0;
@@ -40,20 +40,20 @@ bool is_half_numbers(const Fields& fields) {
   return numbers > 0 && numbers >= names;
 }
 
-// A row of a table with text in it is none: here no number may be among them.
+// A row of a table may contain text, so a line of names must contain no number.
 bool is_names_alone(const Fields& fields) {
   const auto [names, numbers] = count_fields(fields);
   return names > 0 && numbers == 0;
 }
 
-// Of a plain number the unit is "1", which is a number too.
+// The unit of a plain number is "1", which is also a number.
 bool is_units_row(const Fields& fields) {
   const auto no_unit = [](const std::string& field) { return is_numeric(field) && field != "1"; };
   return std::ranges::none_of(fields, no_unit) && std::ranges::any_of(fields, is_known_unit) &&
          std::ranges::count_if(fields, may_be_unit) * 2 > std::ranges::ssize(fields);
 }
 
-// How many of the lines from `first` on are rows like it, counted up to kRowsToTrust.
+// The number of rows of the same form from line `first` on, at most kRowsToTrust.
 std::size_t rows_from(std::span<const TableLine> lines, std::size_t first, char delimiter, Rows kind) {
   Fields like;
   std::size_t rows = 0;
@@ -65,8 +65,8 @@ std::size_t rows_from(std::span<const TableLine> lines, std::size_t first, char 
   return rows;
 }
 
-// The first line from which rows follow, up to the last line where there are less than kRowsToTrust. One row
-// of one column alone is a number that may mean anything.
+// The first line from which kRowsToTrust rows follow, or fewer if the lines end before. A single row with a
+// single column is not sufficient: it may be any number.
 std::optional<std::size_t> first_row_with(std::span<const TableLine> lines, char delimiter, Rows kind) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const std::size_t rows = rows_from(lines, i, delimiter, kind);
@@ -76,7 +76,7 @@ std::optional<std::size_t> first_row_with(std::span<const TableLine> lines, char
   return std::nullopt;
 }
 
-// The delimiter that gives most columns; its first row.
+// The first row with the delimiter that gives the most columns.
 std::optional<TableStart> widest_rows(std::span<const TableLine> lines, Rows kind) {
   std::optional<TableStart> best;
   for (const char delimiter : {'\t', ';', ','}) {
@@ -89,13 +89,13 @@ std::optional<TableStart> widest_rows(std::span<const TableLine> lines, Rows kin
   return best;
 }
 
-// Over rows with a mistake in them.
+// Moves the start up over rows with an error, so that they are refused later and not skipped.
 void take_broken_rows(TableStart& start, std::span<const TableLine> lines) {
   while (start.first_row > 0 && is_half_numbers(fields_in(lines[start.first_row - 1], start.delimiter)))
     --start.first_row;
 }
 
-// Rows further up, before a row that is text by mistake, would be lost.
+// Whether there are rows before the start. They would be lost, because of a row that is text by mistake.
 bool is_after_rows(const TableStart& start, std::span<const TableLine> lines, const Fields& like) {
   return std::ranges::any_of(lines.first(start.first_row), [&](const TableLine& line) {
     const Fields fields = fields_in(line, start.delimiter);
@@ -108,7 +108,7 @@ bool names_columns(const TableStart& start, const TableLine& line) {
   return is_names_alone(fields) && names_for(fields, start).has_value();
 }
 
-// One line of units is a header like others where no names precede it.
+// A line of units without names before it is an ordinary header.
 bool units_under_names(const TableStart& start, std::span<const TableLine> lines) {
   if (start.first_row < 2) return false;
   const Fields units = fields_in(lines[start.first_row - 1], start.delimiter);

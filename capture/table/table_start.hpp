@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a table begins in a file whose first lines are something else: titles, settings, names, units.
+// Finds the beginning of a table in a file whose first lines are titles, settings, names, units.
 #pragma once
 
 #include <cstddef>
@@ -21,24 +21,24 @@ struct TableLine {
 
 struct TableStart {
   char delimiter = ',';
-  std::size_t first_row = 0;  ///< of the lines, as what follows
+  std::size_t first_row = 0;  ///< index among the lines, as in the next members
   std::optional<std::size_t> names, units;
   std::size_t columns = 0;
-  std::size_t least_names = 0;  ///< one less where the rows end with a delimiter
+  std::size_t least_names = 0;  ///< one less if the rows end with a delimiter
 };
 
-/// The first five rows of numbers that follow each other and have equally many fields (less where the lines
-/// end before), and the lines of names and of units right before them. Where no rows are numbers alone, some
-/// columns may be text. A row with a mistake in it, right before them, is one of them: it is refused later,
-/// never passed over. nullopt where there are no such rows, where lines further up are such rows too, or
-/// where the line before them has several fields that are neither their names nor units.
+/// Finds the first five consecutive rows of numbers with the same number of fields (fewer if the lines end
+/// before), and the lines of names and of units directly before them. If no rows consist of numbers alone,
+/// some columns may be text. A row with an error directly before them belongs to the table: it is refused
+/// later and not skipped. nullopt if there are no such rows, if lines before them are such rows too, or if
+/// the line before them has several fields that are neither names nor units.
 std::optional<TableStart> find_table_start(std::span<const TableLine> lines);
 
-/// The fields as names of the columns: a surplus field is left out where it is empty or "Comment",
-/// as LabVIEW writes it. nullopt where there are too many or too few.
+/// The fields as column names: a surplus field is dropped if it is empty or "Comment", as LabVIEW writes it.
+/// nullopt if there are too many or too few.
 std::optional<std::vector<std::string>> names_for(std::vector<std::string> fields, const TableStart& start);
 
-/// Whether two lines have text in the same fields, and equally many of them.
+/// Whether two lines have the same number of fields, and text in the same fields.
 bool has_text_where(const std::vector<std::string>& a, const std::vector<std::string>& b);
 
 std::vector<std::string> fields_in(const TableLine& line, char delimiter);

@@ -11,7 +11,7 @@ std::uint8_t byte_at(std::string_view bytes, std::size_t i) {
   return static_cast<std::uint8_t>(bytes[i]);
 }
 
-// Length of a sequence by its first byte; 0 for a byte that begins none.
+// The length of a sequence from its first byte; 0 for a byte that cannot begin one.
 std::size_t sequence_length(std::uint8_t first) {
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first <= 0xDF) return 2;
@@ -19,7 +19,8 @@ std::size_t sequence_length(std::uint8_t first) {
   return first >= 0xF0 && first <= 0xF4 ? 4 : 0;
 }
 
-// The second byte's range is narrower after these first bytes: overlong forms, surrogates, above U+10FFFF.
+// After these first bytes the range of the second byte is narrower: overlong forms, surrogates, above
+// U+10FFFF.
 bool second_fits(std::uint8_t first, std::uint8_t second) {
   if (first == 0xE0) return second >= 0xA0;
   if (first == 0xED) return second <= 0x9F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Text of other programs as UTF-8.
+// Conversion of other programs' text to UTF-8.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace tacto::capture {
 /// Whether the bytes are well-formed UTF-8 (RFC 3629: no overlong forms, no surrogates).
 bool is_utf8(std::string_view bytes);
 
-/// The text as UTF-8: unchanged where it is that already, else read as Latin-1 (ISO 8859-1).
+/// The text as UTF-8: unchanged if it is UTF-8 already, otherwise read as Latin-1 (ISO 8859-1).
 std::string to_utf8(std::string_view bytes);
 
 }  // namespace tacto::capture

@@ -119,7 +119,7 @@ std::optional<NumberAndUnit> split(std::string_view text) {
 
 tl::unexpected<Error> wrong(std::string_view text, std::string_view why, Dimension dimension) {
   return fail(ErrorKind::usage, fmt::format("'{}' {}", text, why), {},
-              fmt::format("write a number with one of: {}", units_of(dimension)));
+              fmt::format("give a number with one of: {}", units_of(dimension)));
 }
 
 }  // namespace
@@ -152,7 +152,8 @@ Result<Unit> parse_unit(std::string_view symbol) {
   for (const Unit& unit : kUnits)
     if (unit_named(unit.symbol)->dimension == unit.dimension)  // once each
       known += (known.empty() ? "" : ", ") + std::string(unit.symbol);
-  return fail(ErrorKind::usage, fmt::format("'{}' is no known unit", symbol), {}, "the units are: " + known);
+  return fail(ErrorKind::usage, fmt::format("'{}' is not a known unit", symbol), {},
+              "the units are: " + known);
 }
 
 std::string_view si_symbol(Dimension dimension) {

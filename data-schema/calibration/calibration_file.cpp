@@ -45,8 +45,8 @@ std::optional<std::time_t> time_of(const std::string& date) {
 
 Result<std::string> calibration_path(const std::string& serial) {
   if (serial.empty())
-    return fail(ErrorKind::unsuitable, "the device has no serial number to keep a calibration under", {},
-                "name a file with --calibration FILE");
+    return fail(ErrorKind::unsuitable, "the device has no serial number for the name of a calibration file",
+                {}, "give a file with --calibration FILE");
   return config_folder("calibrations").map([&](const std::filesystem::path& folder) {
     return (folder / "calibrations" / file_name_of(serial)).string();
   });

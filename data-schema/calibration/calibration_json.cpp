@@ -4,12 +4,12 @@
 namespace tacto::schema {
 namespace {
 
-struct Part {
+struct EntryPart {
   const char* name;
   std::optional<double> CalibrationEntry::*member;
 };
 
-constexpr Part kParts[] = {
+constexpr EntryPart kParts[] = {
     {"scale", &CalibrationEntry::scale},         {"scale_uncertainty", &CalibrationEntry::scale_uncertainty},
     {"zero", &CalibrationEntry::zero},           {"zero_uncertainty", &CalibrationEntry::zero_uncertainty},
     {"noise_rms", &CalibrationEntry::noise_rms}, {"noise_density", &CalibrationEntry::noise_density},

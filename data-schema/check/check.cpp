@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "data-schema/check/check.hpp"
 
+#include <algorithm>
+
 #include "data-schema/check/check_parts.hpp"
+#include "data-schema/device/device.hpp"
+#include "data-schema/device/hand.hpp"
 #include "data-schema/results/results.hpp"
+#include "data-schema/scene/scene.hpp"
 #include "data-schema/session/session_netcdf.hpp"
 #include "data-schema/transducer/transducer.hpp"
 
@@ -24,17 +29,21 @@ Result<Checked> judged(const Error& error) {
   return one_finding(error.where, error.what);
 }
 
-// Checks that a schema cannot express: read_transducer does them.
-std::vector<Finding> check_transducer(const std::string& path) {
-  const auto transducer = read_transducer(path);
-  if (transducer) return {};
-  return {{transducer.error().where, transducer.error().what}};
+// Checks that a schema cannot express: the reader does them.
+template <class Value>
+std::vector<Finding> check_by_reading(const Result<Value>& read) {
+  if (read) return {};
+  return {{read.error().where, read.error().what}};
 }
 
-std::vector<Finding> check_results(const std::string& path) {
-  const auto results = read_results(path);
-  if (results) return {};
-  return {{results.error().where, results.error().what}};
+// The transducer of a tray is named as in a scene: a preset, or from the folder of the file.
+std::vector<Finding> check_device_file(const std::string& path) {
+  const auto device = read_device(path);
+  if (!device) return check_by_reading(device);
+  if (device->transducer.empty() || std::ranges::count(preset_names(), device->transducer) > 0) return {};
+  const auto transducer = read_transducer(texture_in_scene(path, device->transducer));
+  if (transducer) return {};
+  return {{path + "#/transducer", message(transducer.error())}};
 }
 
 Result<Checked> check_document(const StoredFile& file, const Progress& progress) {
@@ -49,21 +58,35 @@ Result<Checked> check_document(const StoredFile& file, const Progress& progress)
   checked.newer_version = document->newer_version;
   if (file.kind == FileKind::recording) checked.findings = check_recording(file.path, *document, progress);
   if (file.kind == FileKind::scene) checked.findings = check_scene(file.path, *document);
-  if (file.kind == FileKind::transducer) checked.findings = check_transducer(file.path);
-  if (file.kind == FileKind::results) checked.findings = check_results(file.path);
+  if (file.kind == FileKind::transducer) checked.findings = check_by_reading(read_transducer(file.path));
+  if (file.kind == FileKind::device) checked.findings = check_device_file(file.path);
+  if (file.kind == FileKind::hand) checked.findings = check_by_reading(read_hand(file.path));
+  if (file.kind == FileKind::results) checked.findings = check_by_reading(read_results(file.path));
   if (file.kind == FileKind::texture) checked.findings = check_texture(file.path, *document, progress);
   return checked;
 }
 
-Result<Checked> check_preset(const std::string& name) {
-  const auto transducer = read_transducer(name);
-  return transducer ? Checked{} : judged(transducer.error());
+template <class Value>
+Result<Checked> judged_preset(const Result<Value>& read) {
+  return read ? Checked{} : judged(read.error());
+}
+
+Result<Checked> check_preset(const StoredFile& preset) {
+  if (preset.kind == FileKind::device) return judged_preset(read_device(preset.path));
+  if (preset.kind == FileKind::hand) return judged_preset(read_hand(preset.path));
+  return judged_preset(read_transducer(preset.path));
+}
+
+bool is_preset(const StoredFile& file) {
+  const bool has_presets =
+      file.kind == FileKind::transducer || file.kind == FileKind::device || file.kind == FileKind::hand;
+  return has_presets && !file.path.ends_with(".json");
 }
 
 }  // namespace
 
 Result<Checked> check_file(const StoredFile& file, const Progress& progress) {
-  if (file.kind == FileKind::transducer && !file.path.ends_with(".json")) return check_preset(file.path);
+  if (is_preset(file)) return check_preset(file);
   if (file.kind == FileKind::session) {
     auto checked = check_session(file.path);
     return checked ? checked : judged(checked.error());

@@ -16,7 +16,7 @@ std::vector<Finding> check_recording(const std::string& path, const Document& do
 std::vector<Finding> check_texture(const std::string& path, const Document& document,
                                    const Progress& progress);
 
-/// Checks that the scene's textures exist and are of one kind.
+/// Checks that the files exist that the scene names, that textures are forces, and reads the atoms.
 std::vector<Finding> check_scene(const std::string& path, const Document& document);
 
 /// Errors: as of check_file.

@@ -20,10 +20,11 @@ std::optional<Violation> sequence_breach(const RecordingHeader& header) {
     const Gap& gap = header.gaps[i];
     missing += gap.count;
     if (gap.device_sequence != gap.frame + missing)
-      return Violation{fmt::format("/gaps/{}/device_sequence", i),
-                       fmt::format("is {}, and by its frame and the gaps up to it {}: a gap is missing, or "
-                                   "stored twice",
-                                   gap.device_sequence, gap.frame + missing)};
+      return Violation{
+          fmt::format("/gaps/{}/device_sequence", i),
+          fmt::format(
+              "is {}, but its frame and the gaps before it give {}: a gap is missing, or stored twice",
+              gap.device_sequence, gap.frame + missing)};
   }
   return std::nullopt;
 }

@@ -2,20 +2,65 @@
 #include <fmt/format.h>
 
 #include "data-schema/check/check_parts.hpp"
+#include "data-schema/files/files.hpp"
+#include "data-schema/scene/atoms.hpp"
 #include "data-schema/scene/scene.hpp"
 #include "data-schema/texture/texture.hpp"
 
 namespace tacto::schema {
 namespace {
 
-void check_layer(const std::string& path, std::size_t index, const TextureLayer& layer,
-                 std::vector<Finding>& findings) {
-  const std::string where = fmt::format("{}#/layers/{}/texture", path, index);
-  const auto texture = read_texture(texture_in_scene(path, layer.texture));
+void check_played_texture(const std::string& path, const std::string& name, const std::string& where,
+                          std::vector<Finding>& findings) {
+  const auto texture = read_texture(texture_in_scene(path, name));
   if (!texture) findings.push_back({where, message(texture.error())});
   if (texture && texture->unit != "N")
     findings.push_back(
-        {where, fmt::format("{} is in {}: a scene plays forces, in N", layer.texture, texture->unit)});
+        {where, fmt::format("{} is in {}, but a scene needs forces in N", name, texture->unit)});
+}
+
+void check_layer(const std::string& path, std::size_t index, const TextureLayer& layer,
+                 std::vector<Finding>& findings) {
+  check_played_texture(path, layer.texture, fmt::format("{}#/layers/{}/texture", path, index), findings);
+}
+
+// Looks for the files that a layer of a patch names; what is in a map is checked by its own reader.
+class ForceLayerFiles {
+ public:
+  ForceLayerFiles(const std::string& path, std::string where, std::vector<Finding>& findings)
+      : path_(path), where_(std::move(where)), findings_(findings) {}
+
+  void operator()(const HeightMapLayer& layer) { look_for(layer.file, ".height.nc"); }
+  void operator()(const ForceMapLayer& layer) { look_for(layer.file, ".force.nc"); }
+  void operator()(const TextureForceLayer& layer) {
+    check_played_texture(path_, layer.file, where_, findings_);
+  }
+  void operator()(const FieldLayer& layer) {
+    const auto atoms = read_atoms(texture_in_scene(path_, layer.file));
+    if (!atoms) findings_.push_back({where_, message(atoms.error())});
+  }
+  template <class L>
+    requires(!requires(L layer) { layer.file; })
+  void operator()(const L& /*layer*/) {}
+
+ private:
+  void look_for(const std::string& name, const std::string& ending) {
+    const std::string full = texture_in_scene(path_, name);
+    if (is_file(full) || is_file(full + ending)) return;
+    findings_.push_back({where_, fmt::format("there is no file {} or {}{}", name, name, ending)});
+  }
+
+  const std::string& path_;
+  std::string where_;
+  std::vector<Finding>& findings_;
+};
+
+void check_patch(const std::string& path, std::size_t index, const Patch& patch,
+                 std::vector<Finding>& findings) {
+  for (std::size_t i = 0; i < patch.layers.size(); ++i) {
+    const std::string where = fmt::format("{}#/patches/{}/layers/{}/file", path, index, i);
+    patch.layers[i].visit(ForceLayerFiles(path, where, findings));
+  }
 }
 
 Finding fault_of(const Error& error) {
@@ -30,6 +75,7 @@ std::vector<Finding> check_scene(const std::string& path, const Document& docume
   if (!scene) return {fault_of(scene.error())};
   for (std::size_t i = 0; i < scene->layers.size(); ++i)
     scene->layers[i].visit([&](const TextureLayer& layer) { check_layer(path, i, layer, findings); });
+  for (std::size_t i = 0; i < scene->patches.size(); ++i) check_patch(path, i, scene->patches[i], findings);
   return findings;
 }
 

@@ -13,12 +13,13 @@ Result<Checked> check_session(const std::string& path) {
   const SessionTotals totals = session_totals(*reader);
   if (totals.ending == SessionEnding::damaged)
     checked.findings.push_back(
-        {fmt::format("{}, byte {}", path, reader->sound_bytes()), "is no block with a right check"});
+        {fmt::format("{}, byte {}", path, reader->sound_bytes()), "is not a block with a correct checksum"});
   if (totals.end && totals.end->ticks != totals.ticks)
-    checked.findings.push_back(
-        {path, fmt::format("its last block counts {} ticks, there are {}", totals.end->ticks, totals.ticks)});
+    checked.findings.push_back({path, fmt::format("its last block gives {} ticks, but there are {}",
+                                                  totals.end->ticks, totals.ticks)});
   if (totals.samples > 0 && !reader->header().sensor)
-    checked.findings.push_back({path, "holds measured samples, and its header does not describe the sensor"});
+    checked.findings.push_back(
+        {path, "contains measured samples, but its header does not describe the sensor"});
   if (!totals.samples_grow)
     checked.findings.push_back({path, "its measured samples are not in the order of their frames"});
   return checked;

@@ -17,7 +17,7 @@ void add_axes(const std::string& path, const Spectrogram& spectrogram, std::vect
   const auto stuck = std::ranges::adjacent_find(positions, [](double a, double b) { return !(a < b); });
   if (stuck != positions.end())
     findings.push_back(
-        {fmt::format("{}, position {}", path, stuck - positions.begin() + 1), "positions must grow"});
+        {fmt::format("{}, position {}", path, stuck - positions.begin() + 1), "positions must increase"});
 }
 
 void add_windowing(const std::string& path, const Spectrogram& spectrogram, std::vector<Finding>& findings) {
@@ -35,7 +35,7 @@ void add_cells(const std::string& path, const Spectrogram& spectrogram, std::vec
   const auto cell = static_cast<std::size_t>(found - spectrogram.cells.begin());
   findings.push_back(
       {fmt::format("{}, position {}, bin {}", path, cell / spectrogram.bins, cell % spectrogram.bins),
-       fmt::format("{} is no density", *found)});
+       fmt::format("{} is not a density", *found)});
 }
 
 // The checksum, and the values that were computed from the cells.

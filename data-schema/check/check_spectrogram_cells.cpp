@@ -138,17 +138,16 @@ Result<Checked> check_spectrogram_cells(const std::string& path) {
   Checked checked;
   StoredSpectrograms file(path);
   const std::string sums = file.sums();
-  if (sums.empty()) checked.note = "no checksum: files before version 1.2 have none; cells are not compared";
+  if (sums.empty())
+    checked.note = "there is no checksum (files before version 1.2 have none): cells are not compared";
   const std::size_t count = file.count();
   for (std::size_t stroke = 0; stroke < count; ++stroke) {
     const StoredCells stored = file.read(stroke);
     TACTO_TRY(file.status(path));
     const std::string where = count == 1 ? path : fmt::format("{}, stroke {}", path, stroke + 1);
     if (!sums.empty() && sum_of(stored) != nth_line(sums, stroke))
-      checked.findings.push_back(
-          {where, "its cells, known band or axes are not those that its attribute sha256 was made of"});
-    add_cell(where, stored, wrong_decibels(stored), "its decibels are not those of its cell",
-             checked.findings);
+      checked.findings.push_back({where, "its cells, known band or axes do not match its attribute sha256"});
+    add_cell(where, stored, wrong_decibels(stored), "its decibels do not match its cell", checked.findings);
     add_cell(where, stored, wrong_flag(stored), "`known` contradicts known_from and known_to",
              checked.findings);
   }

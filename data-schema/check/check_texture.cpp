@@ -23,9 +23,9 @@ void add_band(const std::string& path, const Texture& texture, std::vector<Findi
     const BandPoint& point = texture.valid_band[i];
     const std::string where = fmt::format("{}#/valid_band/{}", path, i);
     if (point.high_per_m < point.low_per_m)
-      findings.push_back({where, "its upper end lies below its lower end"});
+      findings.push_back({where, "its upper end is below its lower end"});
     if (i > 0 && point.position_m < texture.valid_band[i - 1].position_m)
-      findings.push_back({where + "/position_m", "positions must not fall"});
+      findings.push_back({where + "/position_m", "positions must not decrease"});
   }
 }
 
@@ -38,7 +38,7 @@ void add_counts(const std::string& path, const Texture& texture, std::vector<Fin
     if (counts[i].strokes > most)
       findings.push_back({where + "/strokes", fmt::format("is more than the {} strokes averaged", most)});
     if (i > 0 && counts[i].position_m <= counts[i - 1].position_m)
-      findings.push_back({where + "/position_m", "positions must rise"});
+      findings.push_back({where + "/position_m", "positions must increase"});
   }
 }
 

@@ -19,14 +19,14 @@ std::vector<Finding> check_layout(const ExpectedWav& expected, const WavInfo& in
   std::vector<Finding> findings;
   const auto differ = [&](const std::string& what) { findings.push_back({expected.path, what}); };
   if (info.sample_rate_hz != expected.header_rate)
-    differ(fmt::format("its header's rate is {}, by its sidecar it is {}", info.sample_rate_hz,
-                       expected.header_rate));
+    differ(
+        fmt::format("its header has the rate {}, its sidecar {}", info.sample_rate_hz, expected.header_rate));
   if (info.channels != expected.channels.size())
     differ(fmt::format("has {} channels, its sidecar {}", info.channels, expected.channels.size()));
   if (!info.format.ends_with(words_for(expected.format)))
-    differ(fmt::format("holds '{}', by its sidecar {}", info.format, words_for(expected.format)));
+    differ(fmt::format("contains '{}', its sidecar has {}", info.format, words_for(expected.format)));
   if (info.frames != expected.frames)
-    differ(fmt::format("{}holds {} frames, by its sidecar {}",
+    differ(fmt::format("{}contains {} frames, its sidecar has {}",
                        info.frames < expected.frames ? "truncated: " : "", info.frames, expected.frames));
   return findings;
 }
@@ -34,7 +34,7 @@ std::vector<Finding> check_layout(const ExpectedWav& expected, const WavInfo& in
 void add_checksum(const ExpectedWav& expected, std::vector<Finding>& findings) {
   const auto sum = sha256_of_file(expected.path);
   if (sum && *sum != expected.sha256)
-    findings.push_back({expected.path, fmt::format("its checksum (SHA-256) is {}, by its sidecar {}", *sum,
+    findings.push_back({expected.path, fmt::format("its checksum (SHA-256) is {}, its sidecar has {}", *sum,
                                                    expected.sha256)});
 }
 

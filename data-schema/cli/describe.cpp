@@ -28,8 +28,8 @@ std::string key_in(const char* key, const std::string& unit) {
 
 void warn_of_version(const std::string& path, const std::string& newer_version) {
   if (newer_version.empty()) return;
-  cli::warn(fmt::format("{}: its version {} is newer than this program's; unknown members are left out", path,
-                        newer_version));
+  cli::warn(fmt::format("{}: its version {} is newer than this program's; unknown members are not shown",
+                        path, newer_version));
 }
 
 }  // namespace tacto::schema

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <concepts>
+
 #include "data-schema/cli/describe.hpp"
 #include "data-schema/report/choices_report.hpp"
 #include "data-schema/scene/scene.hpp"
@@ -15,6 +17,56 @@ cli::Report row_of(const TextureLayer& layer) {
   return row;
 }
 
+// A layer of a patch: its numbers under their names in the file.
+cli::Report row_of(const ForceLayer& layer) {
+  cli::Report row;
+  row.add("type", type_of(layer));
+  add_text(row, "file", file_of(layer));
+  layer.visit([&]<class L>(const L& of) {
+    if constexpr (std::same_as<L, GroovesLayer>) {
+      row.add("profile", to_string(of.profile));
+      if (!of.filter_m) row.add("filter", "auto");
+    }
+  });
+  for (const auto& [name, number] : numbers_of(layer)) row.add(std::string(name), number.value);
+  return row;
+}
+
+cli::Report row_of(const Patch& patch) {
+  cli::Report row;
+  row.add("patch", patch.name).add("x_m", patch.x_m).add("y_m", patch.y_m);
+  row.add("width_m", patch.width_m).add("height_m", patch.height_m).add("angle_deg", patch.angle_deg);
+  row.add("order", patch.order).add("combine", to_string(patch.combine));
+  std::vector<cli::Report> layers;
+  for (const ForceLayer& layer : patch.layers) layers.push_back(row_of(layer));
+  return row.add("layers", std::move(layers));
+}
+
+// The numbers that can be changed during playback.
+std::vector<cli::Report> slider_rows(const Scene& scene) {
+  std::vector<cli::Report> rows;
+  for (const Patch& patch : scene.patches)
+    for (std::size_t i = 0; i < patch.layers.size(); ++i)
+      for (const auto& [name, number] : numbers_of(patch.layers[i]))
+        if (number.slider)
+          rows.push_back(cli::Report()
+                             .add("patch", patch.name)
+                             .add("layer", i)
+                             .add("member", name)
+                             .add("value", number.value)
+                             .add("from", number.slider->from)
+                             .add("to", number.slider->to));
+  return rows;
+}
+
+void add_patches(cli::Report& report, const Scene& scene) {
+  if (scene.patches.empty()) return;
+  std::vector<cli::Report> rows;
+  for (const Patch& patch : scene.patches) rows.push_back(row_of(patch));
+  report.add("patches", std::move(rows));
+  if (auto sliders = slider_rows(scene); !sliders.empty()) report.add("sliders", std::move(sliders));
+}
+
 }  // namespace
 
 Result<cli::Report> describe_scene(const std::string& path) {
@@ -26,7 +78,8 @@ Result<cli::Report> describe_scene(const std::string& path) {
   std::vector<cli::Report> rows;
   for (const Layer& layer : scene->layers)
     rows.push_back(layer.visit([](const TextureLayer& texture) { return row_of(texture); }));
-  report.add("layers", std::move(rows));
+  if (!rows.empty()) report.add("layers", std::move(rows));
+  add_patches(report, *scene);
   cli::add_choices(report, scene->playback);
   add_text(report, "notes", scene->notes);
   return report;

@@ -8,8 +8,9 @@ namespace {
 
 const char* words_of(SessionEnding ending) {
   if (ending == SessionEnding::closed) return "closed";
-  if (ending == SessionEnding::unclosed) return "not closed: still written, or its writer was killed";
-  return "damaged: only what precedes the damage was read";
+  if (ending == SessionEnding::unclosed)
+    return "not closed: it is still being written, or its writer was killed";
+  return "damaged: only the part before the damage was read";
 }
 
 cli::Report& add_texture(cli::Report& row, const SessionTexture& texture) {

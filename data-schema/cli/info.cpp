@@ -33,10 +33,14 @@ Result<cli::Report> describe(const StoredFile& file) {
       return describe_results(file.path);
     case FileKind::trade:
       return describe_trade(file.path);
+    case FileKind::device:
+      return describe_device(file.path);
+    case FileKind::hand:
+      return describe_hand(file.path);
     case FileKind::session_table:
       return describe_session_table(file.path);
   }
-  return fail(ErrorKind::internal, "a kind of file without a description", file.path);
+  return fail(ErrorKind::internal, "this kind of file cannot be described", file.path);
 }
 
 // A stem can name several files: the first is described, the others are listed.
@@ -67,7 +71,7 @@ Result<cli::Report> run_info(const InfoOptions& options) {
 cli::Action declare_info(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   app.add_option("FILE", options->names,
-                 "Recordings, textures, spectrograms, transducers: by stem, in full, or a preset's name")
+                 "Recordings, textures, scenes, devices ...: by stem, in full, or a preset's name")
       ->required();
   return [options] { return run_info(*options); };
 }
@@ -75,7 +79,7 @@ cli::Action declare_info(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kInfoVerb{
-    "info", "Say what a file holds: channels, units, ranges, gaps, calibration, where it came from",
+    "info", "Describe the contents of a file: channels, units, ranges, gaps, calibration, origin",
     "tactograph info oak\n  tactograph info oak.texture.json wiertlewski2011 --json", declare_info};
 
 }  // namespace tacto::schema

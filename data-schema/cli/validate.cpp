@@ -66,7 +66,7 @@ cli::Action declare_validate(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kValidateVerb{
-    "validate", "Check files against their schema, checksum and samples, and list every fault",
+    "validate", "Check files (schema, checksum, samples), and list every fault",
     "tactograph validate oak\n  tactograph validate oak.texture.json bench.transducer.json",
     declare_validate};
 

@@ -21,18 +21,17 @@ void declare_budget(CLI::App& app, BudgetOptions& options, const std::string& ch
   auto* quality = add_choice<std::optional<Quality>>(
       app, "--quality", options.budget.quality,
       {{"fast", Quality::fast}, {"balanced", Quality::balanced}, {"exact", Quality::exact}},
-      fmt::format(
-          "Choose {} by what was measured: the cheapest that errs by 1 % (fast) or 0.1 % (balanced) of "
-          "the RMS at most, or what errs least (exact). What is named stays as named",
-          chosen));
+      fmt::format("Choose {} by measured errors: the fastest with at most 1 % (fast) or 0.1 % (balanced) of "
+                  "the RMS, or that with the smallest error (exact). Given options are not changed",
+                  chosen));
   auto* most = app.add_option_function<std::string>(
       "--max-error",
       [&options](const std::string& text) { options.budget.max_error = share_above_nothing(text); },
-      "The same for another error, like 0.1% of the RMS");
+      "The same for another largest error, for example 0.1% of the RMS");
   most->type_name(fmt::format("NUMBER+UNIT({})", schema::units_of(schema::Dimension::share)))
       ->excludes(quality);
   app.add_flag("--explain", options.explain,
-               "Say what was chosen by --quality or --max-error, why, and by which table");
+               "Report the choice of --quality or --max-error, its reason, and its table");
 }
 
 }  // namespace tacto::cli

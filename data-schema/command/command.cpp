@@ -26,8 +26,8 @@ namespace {
 constexpr std::string_view kFooter =
     "Help on a verb or a topic (sim, units, exit-codes): tactograph help TOPIC\n"
     "Exit codes: 0 done, 1 internal error, 2 command line, 3 file or device not found, 4 malformed file,\n"
-    "5 data that cannot be used for this, 6 file of a newer version, 7 can't write, 8 device failed.\n"
-    "Quantities carry their unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
+    "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed.\n"
+    "Quantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
 
 // A verb that writes its results to files prints at most half a screen. Warnings are among these lines.
 constexpr std::size_t kLinesBesideFiles = 15, kFewestLines = 6;
@@ -189,10 +189,10 @@ int run_command(Verbs verbs, int argc, const char* const* argv, Topics topics) {
   std::vector<std::unique_ptr<Entry>> entries;
   for (const Verb* verb : verbs) {
     entries.push_back(std::make_unique<Entry>(declare(app, *verb)));
-    entries.back()->app->add_flag("--json", entries.back()->json, "Print the result as JSON, and errors too");
+    entries.back()->app->add_flag("--json", entries.back()->json, "Print results and errors as JSON");
     put_below_headings(verb->name, *entries.back()->app);
   }
-  CLI::App* help = app.add_subcommand("help", "Explain a verb or a topic: sim, units, exit-codes");
+  CLI::App* help = app.add_subcommand("help", "Show help on a verb or a topic: sim, units, exit-codes");
   std::string word;
   help->add_option("TOPIC", word, "A verb or a topic");
   CLI::App* completion = app.add_subcommand("completion", "Print the bash completion script");

@@ -5,21 +5,20 @@
 
 #include <string_view>
 
-#include "data-schema/report/harmless.hpp"
 #include "data-schema/report/report_text.hpp"
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::cli {
 
 int print_error(const schema::Error& error, bool json) {
   const int code = schema::exit_code(error.kind);
   if (!json) {
-    talk(fmt::format("tactograph: {}\n", on_one_line(schema::message(error))));
+    write_message(fmt::format("tactograph: {}\n", on_one_line(schema::message(error))));
     return code;
   }
   Report object;
   object.add("what", error.what).add("where", error.where).add("remedy", error.remedy).add("exit_code", code);
-  talk(json_line(object));
+  write_message(json_line(object));
   return code;
 }
 

@@ -29,12 +29,12 @@ std::string exit_codes_text() {
   return "  0  done\n  1  internal error: please report it\n  2  command line\n  3  file or device not "
          "found\n"
          "  4  malformed file\n  5  data that cannot be used for this\n  6  file of a newer version\n"
-         "  7  can't write\n  8  device failed\n"
+         "  7  cannot write\n  8  device failed\n"
          "With --json an error is an object on one line of stderr: what, where, remedy, exit_code.\n";
 }
 
-constexpr HelpTopic kTopics[] = {{"units", "how quantities are written, and the units there are", units_text},
-                                 {"exit-codes", "what the command's exit code means", exit_codes_text}};
+constexpr HelpTopic kTopics[] = {{"units", "how quantities are written, and the known units", units_text},
+                                 {"exit-codes", "meaning of the exit codes", exit_codes_text}};
 
 template <class Use>
 void for_each_topic(std::span<const HelpTopic* const> topics, Use use) {

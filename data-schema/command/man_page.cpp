@@ -114,7 +114,7 @@ schema::Result<void> write_man_pages(const std::string& folder, std::span<const 
     file << page.text;
     if (!file.flush())
       return schema::fail(schema::ErrorKind::cannot_write, "the manual page could not be written",
-                          folder + "/" + page.file, "give a folder that exists and may be written to");
+                          folder + "/" + page.file, "give an existing folder with write permission");
   }
   return {};
 }

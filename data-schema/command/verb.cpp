@@ -51,9 +51,9 @@ std::size_t choose(const std::string& option, const std::string& word,
                    const std::vector<std::string>& words) {
   const auto found = std::ranges::find(words, word);
   if (found == words.end())
-    throw CLI::ValidationError(
-        option, fmt::format("there is no '{}'{}: take one of {}", word, schema::did_you_mean(word, words),
-                            fmt::join(words, ", ")));
+    throw CLI::ValidationError(option,
+                               fmt::format("'{}' is not a possible value{}: use one of {}", word,
+                                           schema::did_you_mean(word, words), fmt::join(words, ", ")));
   return static_cast<std::size_t>(found - words.begin());
 }
 
@@ -63,7 +63,7 @@ const CLI::Validator& from_one() {
       [](std::string& text) {
         const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
         const bool fits = digits && text.find_first_not_of('0') != std::string::npos;
-        return fits ? std::string() : fmt::format("'{}' is no whole number from 1 on", text);
+        return fits ? std::string() : fmt::format("'{}' is not a whole number of at least 1", text);
       },
       "POSITIVE");
   return kFromOne;

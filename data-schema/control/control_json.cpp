@@ -24,7 +24,7 @@ constexpr std::string_view kRequestWhere = "request";
 Result<Json> request_json(std::string_view line) {
   auto body = parse_json(line, std::string(kRequestWhere), kDeepestRequest);
   if (body || !body.error().remedy.empty()) return body;
-  return fail(ErrorKind::malformed, "the line is not one JSON object", std::string(kRequestWhere),
+  return fail(ErrorKind::malformed, "the line is not a JSON object", std::string(kRequestWhere),
               R"(send lines such as {"request":"status"})");
 }
 
@@ -52,18 +52,18 @@ Result<void> check_version_of(const std::string& version) {
   const auto major = [](std::string_view text) { return text.substr(0, text.find('.')); };
   if (major(version) == major(kControlVersion)) return {};
   return fail(ErrorKind::unsupported_version,
-              fmt::format("the client speaks version {} of the control protocol, this daemon {}", version,
-                          kControlVersion),
+              fmt::format("the client uses version {} of the control protocol, this daemon version {}",
+                          version, kControlVersion),
               std::string(kRequestWhere), "use the tactograph that came with the daemon");
 }
 
 Result<void> check_members(const ControlRequest& request) {
   if (request.verb == ControlVerb::hello && request.version.empty())
-    return bad_member("version", "hello says no version", R"(add "version":"1.0")");
+    return bad_member("version", "hello contains no version", R"(add "version":"1.0")");
   if (request.verb == ControlVerb::load && request.file.empty())
-    return bad_member("file", "load names no file", "add the file of a texture or scene");
+    return bad_member("file", "load contains no file", "add the file name of a texture or scene");
   if (request.verb == ControlVerb::gain && !request.gain)
-    return bad_member("gain", "gain has no gain", R"(add a factor, as in "gain":0.5)");
+    return bad_member("gain", "gain contains no factor", R"(add a factor, as in "gain":0.5)");
   if (request.verb == ControlVerb::hello) return check_version_of(request.version);
   return {};
 }
@@ -86,7 +86,7 @@ Result<void> check_taken(const Json& body, ControlVerb verb) {
   const auto word = [](ControlVerb of) { return kControlVerbs[static_cast<std::size_t>(of)]; };
   for (const auto& [name, taker] : kTakenBy)
     if (body.contains(name) && verb != taker)
-      return bad_member(name, fmt::format("'{}' takes no '{}'", word(verb), name),
+      return bad_member(name, fmt::format("'{}' does not accept '{}'", word(verb), name),
                         fmt::format("send it with '{}'", word(taker)));
   return {};
 }
@@ -233,11 +233,11 @@ std::string control_event_line(std::string_view name, const ControlFields& field
 Result<ControlReply> parse_control_reply(std::string_view line) try {
   const auto body = parse_json(line, "reply");
   if (body && body->is_object()) return reply_from(*body);
-  return fail(ErrorKind::malformed, body ? "the daemon's reply is no JSON object" : body.error().what,
-              "reply", "is it tactographd that listens there?");
+  return fail(ErrorKind::malformed, body ? "the reply of the daemon is not a JSON object" : body.error().what,
+              "reply", "check that the server at this address is tactographd");
 } catch (const std::exception&) {  // a member of another type than ours has
-  return fail(ErrorKind::malformed, "the daemon's reply is none of tactographd's", "reply",
-              "is it tactographd that listens there?");
+  return fail(ErrorKind::malformed, "the reply is not one of tactographd", "reply",
+              "check that the server at this address is tactographd");
 }
 
 double control_number(const ControlFields& fields, std::string_view name, double fallback) {

@@ -14,7 +14,7 @@ namespace {
 
 tl::unexpected<Error> not_synced(const std::string& path, int error_number) {
   return fail(ErrorKind::cannot_write,
-              "can't be brought to the disk: " + std::generic_category().message(error_number), path);
+              "cannot be written to the disk: " + std::generic_category().message(error_number), path);
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ constexpr off_t kRoom = off_t{256} * 1024;  // a sidecar with some thousand gaps
 
 tl::unexpected<Error> unwritable_log(const std::string& path, int error_number) {
   if (error_number == EEXIST)
-    return fail(ErrorKind::usage, "is there already, and is not overwritten", path, "choose another name");
-  return fail(ErrorKind::cannot_write, "can't be written: " + std::generic_category().message(error_number),
+    return fail(ErrorKind::usage, "exists already, and is not overwritten", path, "choose another name");
+  return fail(ErrorKind::cannot_write, "cannot be written: " + std::generic_category().message(error_number),
               path);
 }
 
@@ -58,10 +58,10 @@ Result<EventFile> EventFile::create(const std::string& path) {
 Result<EventFile> EventFile::lock(const std::string& path) {
   const int opened = open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (opened < 0)
-    return fail(ErrorKind::not_found, "can't be opened: " + std::generic_category().message(errno), path);
+    return fail(ErrorKind::not_found, "cannot be opened: " + std::generic_category().message(errno), path);
   EventFile file(path, opened);
   if (flock(opened, LOCK_EX | LOCK_NB) == 0) return file;
-  return fail(ErrorKind::unsuitable, "is still being recorded", path, "end the recording first");
+  return fail(ErrorKind::unsuitable, "is still being recorded", path, "stop the recording first");
 }
 
 Result<void> EventFile::append(const std::string& text) {

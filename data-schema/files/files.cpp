@@ -36,9 +36,8 @@ std::string reason(int error_number) {
 
 tl::unexpected<Error> unreadable(const std::string& path, int error_number) {
   if (error_number == ENOENT)
-    return fail(ErrorKind::not_found, "there is no such file", path,
-                "see how it is spelt, and in which folder");
-  return fail(ErrorKind::not_found, "can't be read: " + reason(error_number), path);
+    return fail(ErrorKind::not_found, "there is no such file", path, "check its name and its folder");
+  return fail(ErrorKind::not_found, "cannot be read: " + reason(error_number), path);
 }
 
 // A pipe, a terminal or a device may never end: it is not opened.
@@ -47,7 +46,7 @@ Result<void> check_regular(const std::string& path) {
   const fs::file_status status = fs::status(path, ignored);
   if (fs::is_directory(status)) return fail(ErrorKind::not_found, "is a folder, not a file", path);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    return fail(ErrorKind::not_found, "is no regular file", path, "write it to a file first");
+    return fail(ErrorKind::not_found, "is not a regular file", path, "write it to a file first");
   return {};
 }
 
@@ -78,14 +77,14 @@ Result<void> for_each_piece(const std::string& path, Take take) {
 }
 
 tl::unexpected<Error> unwritable(const std::string& path, int error_number) {
-  return fail(ErrorKind::cannot_write, "can't be written: " + reason(error_number), path);
+  return fail(ErrorKind::cannot_write, "cannot be written: " + reason(error_number), path);
 }
 
 Result<void> check_target(const fs::path& path) {
   std::error_code ignored;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!fs::is_directory(folder, ignored))
-    return fail(ErrorKind::cannot_write, "there is no such folder", folder.string(), "make it first");
+    return fail(ErrorKind::cannot_write, "there is no such folder", folder.string(), "create it first");
   if (path.filename().empty() || fs::is_directory(path, ignored))
     return fail(ErrorKind::cannot_write, "is a folder, not a file", path.string());
   return {};
@@ -109,7 +108,7 @@ Result<void> sync(const std::string& temporary, const std::string& path) {
 }
 
 tl::unexpected<Error> taken(const std::string& path) {
-  return fail(ErrorKind::usage, "is there already, and is not overwritten", path,
+  return fail(ErrorKind::usage, "exists already, and is not overwritten", path,
               "choose another name, or replace it with --force");
 }
 
@@ -202,7 +201,7 @@ Result<void> check_table_free(const std::string& path, Existing existing,
   std::string line(kLongestBeginning, '\0');
   line.resize(std::fread(line.data(), 1, line.size(), file->get()));
   if (line.empty() || ours(line.substr(0, line.find('\n')))) return check_output_free(path, existing);
-  return fail(ErrorKind::usage, "holds something else, and would be lost", path,
+  return fail(ErrorKind::usage, "has other contents and is not overwritten", path,
               "choose another name, or remove it first");
 }
 
@@ -214,8 +213,8 @@ Result<void> check_sum(const std::string& path, const std::string& sha256) {
   const auto is = sha256_of_file(path);
   TACTO_TRY(is);
   if (*is == sha256) return {};
-  return fail(ErrorKind::malformed, "is not what its sidecar was written for: its SHA-256 is another", path,
-              "bring the right one back, or make it anew; 'tactograph validate' says more");
+  return fail(ErrorKind::malformed, "does not match its sidecar: its SHA-256 differs", path,
+              "restore the right file, or make it again; 'tactograph validate' lists the faults");
 }
 
 PendingFiles::~PendingFiles() {
@@ -276,18 +275,18 @@ Result<void> check_changeable(const std::string& path) {
   const auto status = fs::status(path, failed);
   const bool read_only = !failed && (status.permissions() & kAnyWrite) == fs::perms::none;
   if (!read_only && access(path.c_str(), W_OK) == 0) return {};
-  return fail(ErrorKind::cannot_write, read_only ? "is read-only" : "may not be written", path,
-              "permit it (chmod u+w), or work on a copy");
+  return fail(ErrorKind::cannot_write, read_only ? "is read-only" : "must not be written (no permission)",
+              path, "change its permissions (chmod u+w), or use a copy");
 }
 
 Result<void> check_stem(const std::string& stem) {
   const std::string name = fs::path(stem).filename().string();
   std::error_code ignored;
   if (name.empty() || name == "." || name == ".." || fs::is_directory(stem, ignored))
-    return fail(ErrorKind::usage, fmt::format("'{}' is no name for a file", stem), {},
-                "give one, as in FOLDER/NAME");
+    return fail(ErrorKind::usage, fmt::format("'{}' is not a file name", stem), {},
+                "give one, for example FOLDER/NAME");
   if (std::ranges::any_of(name, [](char c) { return c >= 0 && c < ' '; }))
-    return fail(ErrorKind::usage, "the name of the output holds control characters", {},
+    return fail(ErrorKind::usage, "the name of the output contains control characters", {},
                 "choose another name");
   return {};
 }

@@ -28,7 +28,7 @@ Result<FolderLock> FolderLock::take(const std::string& path) {
   const std::string folder = folder_of(path);
   const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (opened < 0)
-    return fail(ErrorKind::cannot_write, "can't be opened: " + std::generic_category().message(errno),
+    return fail(ErrorKind::cannot_write, "cannot be opened: " + std::generic_category().message(errno),
                 folder);
   FolderLock lock(opened);
   while (flock(opened, LOCK_EX) != 0 && errno == EINTR) {

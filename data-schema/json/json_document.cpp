@@ -20,7 +20,7 @@ std::string place(const std::string& where, const std::string& pointer) {
 
 Result<std::string> kind_in(const Json& body, const std::string& where) {
   const bool named = body.is_object() && body.contains("kind") && body["kind"].is_string();
-  if (!named) return fail(ErrorKind::malformed, "JSON without a `kind`: not a file of tactograph's", where);
+  if (!named) return fail(ErrorKind::malformed, "JSON without a `kind`: not a file of tactograph", where);
   return body["kind"].get<std::string>();
 }
 
@@ -41,7 +41,8 @@ std::optional<Version> version_from(std::string_view text) {
 struct KindVersion {
   std::string_view kind, version;
 };
-constexpr KindVersion kNewerKinds[] = {{"session", "1.1"}};  // 1.1: measured displacement
+constexpr KindVersion kNewerKinds[] = {{"scene", "1.1"},     // 1.1: patches of force layers
+                                       {"session", "1.1"}};  // 1.1: measured displacement
 
 /// The file's version if its minor version is newer than this program's, else "".
 Result<std::string> newer_version(const Json& body, std::string_view kind, const std::string& where) {
@@ -54,7 +55,7 @@ Result<std::string> newer_version(const Json& body, std::string_view kind, const
   if (version->major != ours.major)
     return fail(ErrorKind::unsupported_version,
                 fmt::format("its format has version {}, this program reads {}.x", text, ours.major), where,
-                version->major > ours.major ? "a newer tactograph reads it" : "");
+                version->major > ours.major ? "use a newer tactograph" : "");
   return version->minor > ours.minor ? text : "";
 }
 
@@ -102,7 +103,7 @@ Json merged(std::string_view kind, const Json& body, const std::string& extra_js
 
 Result<std::string> written(const Json& document, std::string_view kind) {
   if (const auto pointer = first_not_finite(document))
-    return fail(ErrorKind::unsuitable, "a number that is not finite can't be stored", *pointer);
+    return fail(ErrorKind::unsuitable, "a number that is not finite cannot be stored", *pointer);
   const auto& rules = schema_of(kind);
   if (!rules) return fail(ErrorKind::internal, fmt::format("there is no usable schema for '{}'", kind));
   const auto list = breaches(document, *rules);
@@ -140,7 +141,8 @@ Result<std::vector<Violation>> violations_of(const std::string& path) {
   TACTO_TRY(kind);
   const auto& rules = schema_of(*kind);
   if (!rules)
-    return fail(ErrorKind::malformed, fmt::format("'{}' is no kind of tactograph's", *kind), path + "#/kind");
+    return fail(ErrorKind::malformed, fmt::format("'{}' is not a kind of file of tactograph", *kind),
+                path + "#/kind");
   TACTO_TRY(newer_version(*body, *kind, path));
   return breaches(*body, *rules);
 }
@@ -149,7 +151,8 @@ Result<std::string> document_text(std::string_view kind, const Json& body,
                                   const std::string& extra_json) try {
   return written(merged(kind, body, extra_json), kind);
 } catch (const std::exception& thrown) {  // text that is not UTF-8
-  return fail(ErrorKind::unsuitable, fmt::format("can't be written as JSON: {}", json_reason(thrown.what())));
+  return fail(ErrorKind::unsuitable,
+              fmt::format("cannot be written as JSON: {}", json_reason(thrown.what())));
 }
 
 std::string unknown_members(const Json& body, std::string_view kind) {

@@ -14,7 +14,9 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
+#include "data-schema/base/nearest_word.hpp"
 #include "data-schema/files/embedded_files.hpp"
+#include "data-schema/json/json_text.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -70,19 +72,30 @@ std::string brief(const Json& value) {
   return text.size() <= 60 ? text : text.substr(0, 57) + "...";
 }
 
+// Names a member that may be the missing one, misspelt: one that the rule does not know, with a near name.
+std::string misspelt_hint(const std::string& said, const Json& value, const Json& rule) {
+  const auto from = said.find('\''), to = said.rfind('\'');
+  if (from == to || !rule.is_object() || !rule.contains("properties")) return {};
+  const std::vector<std::string> missing = {said.substr(from + 1, to - from - 1)};
+  for (const auto& [name, of] : value.items())
+    if (!rule["properties"].contains(name) && !nearest_word(name, missing).empty())
+      return fmt::format("; {} is probably a misspelling of it", quoted_name(name));
+  return {};
+}
+
 // The validator's messages do not contain the found value and the allowed ones.
 std::string explained(const std::string& said, const Json& value, const Json& rule) {
-  if (said.starts_with("Missing")) return said.substr(0, said.size() - 1);
+  if (said.starts_with("Missing")) return said.substr(0, said.size() - 1) + misspelt_hint(said, value, rule);
   const bool type = said.find("'type' constraint") != std::string::npos;
   if (type && rule.contains("type"))
     return fmt::format("{} is not of type {}", brief(value), list_of(rule["type"]));
   if (said.find("enum") != std::string::npos && rule.contains("enum"))
-    return fmt::format("{} is none of {}", brief(value), list_of(rule["enum"]));
+    return fmt::format("{} is not one of {}", brief(value), list_of(rule["enum"]));
   if (rule.contains("const")) return fmt::format("{} is not {}", brief(value), rule["const"].dump());
   const bool barred = said.find("'not' constraint") != std::string::npos && rule.contains("not");
   if (barred && rule["not"].contains("required"))
-    return fmt::format("{} exclude each other: say one of them", list_of(rule["not"]["required"]));
-  if (barred) return fmt::format("{} must not stand here", brief(value));
+    return fmt::format("{} exclude each other: give only one of them", list_of(rule["not"]["required"]));
+  if (barred) return fmt::format("{} is not allowed here", brief(value));
   if (said.find("regex") != std::string::npos && rule.contains("pattern"))
     return fmt::format("{} does not match {}", brief(value), rule["pattern"].dump());
   return fmt::format("{} ({})", said.substr(0, said.find_last_not_of('.') + 1), brief(value));
@@ -169,7 +182,8 @@ std::vector<Violation> validated(const Json& document, const Json& rules) {
       known == nullptr ? std::optional<Compiled>(std::in_place, rules) : std::nullopt;
   const valijson::Schema& schema = known != nullptr ? known->schema() : own->schema();
   valijson::ValidationResults results;
-  valijson::Validator validator;
+  // It keeps the regular expressions that it has compiled, which takes longer than all other checks.
+  thread_local valijson::Validator validator;
   const bool sound = validator.validate(schema, NlohmannJsonAdapter(plain_document), &results);
   auto list = told(results, document, rules);
   if (!sound && list.empty()) list.push_back({"", "the document does not fit its schema"});

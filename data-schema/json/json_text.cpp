@@ -49,7 +49,7 @@ class ParserWatch {
   void name_member(const std::string& name) {
     if (!open_.back().names.insert(name).second)
       throw Refusal{fmt::format("the member {} appears twice", quoted_name(name)), place_of_object(),
-                    "keep one of the two"};
+                    "remove one of the two"};
     open_.back().name = name;
   }
   std::string place_of_object() const {

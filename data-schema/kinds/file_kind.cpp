@@ -8,15 +8,15 @@
 
 #include "data-schema/files/files.hpp"
 #include "data-schema/json/json_document.hpp"
+#include "data-schema/json/named_document.hpp"
 #include "data-schema/session/session_netcdf.hpp"
-#include "data-schema/transducer/transducer.hpp"
 
 namespace tacto::schema {
 namespace {
 
-constexpr std::array<std::string_view, 12> kNames = {
-    "recording",   "texture", "transducer", "spectrogram", "formants", "descriptions",
-    "calibration", "scene",   "session",    "results",     "trade",    "session_table"};
+constexpr std::array<std::string_view, 14> kNames = {
+    "recording", "texture", "transducer", "spectrogram", "formants", "descriptions", "calibration",
+    "scene",     "session", "results",    "trade",       "device",   "hand",         "session_table"};
 
 struct Ending {
   FileKind kind;
@@ -35,7 +35,12 @@ constexpr Ending kEndings[] = {
     {FileKind::session, ".session"},
     {FileKind::results, ".results.json"},
     {FileKind::trade, ".trade.json"},
+    {FileKind::device, ".device.json"},
+    {FileKind::hand, ".hand.json"},
 };
+
+// What comes with tactograph under a name.
+constexpr FileKind kPresetKinds[] = {FileKind::transducer, FileKind::device, FileKind::hand};
 
 Result<StoredFile> by_content(const std::string& path) {
   const auto name = kind_of(path);
@@ -43,7 +48,7 @@ Result<StoredFile> by_content(const std::string& path) {
   const auto found = std::ranges::find(kNames, *name);
   if (found == kNames.end())
     return fail(ErrorKind::malformed,
-                fmt::format("is of the kind '{}', which is unknown to this program", *name), path,
+                fmt::format("has the kind '{}', which this program does not support", *name), path,
                 fmt::format("the kinds are {}", fmt::join(kNames, ", ")));
   return StoredFile{static_cast<FileKind>(found - kNames.begin()), path};
 }
@@ -58,7 +63,7 @@ Result<StoredFile> by_wav(const std::string& path) {
   const std::string sidecar = path.substr(0, path.size() - 4) + ".json";
   if (is_file(sidecar)) return by_content(sidecar);
   return fail(ErrorKind::not_found, fmt::format("has no sidecar {}", sidecar), path,
-              "a sound file of another program becomes a recording with 'tactograph import'");
+              "'tactograph import' converts a sound file of another program to a recording");
 }
 
 Result<StoredFile> named_in_full(const std::string& path) {
@@ -66,8 +71,8 @@ Result<StoredFile> named_in_full(const std::string& path) {
   if (path.ends_with(".session")) return StoredFile{FileKind::session, path};
   if (path.ends_with(".wav")) return by_wav(path);
   if (path.ends_with(".json")) return by_content(path);
-  return fail(ErrorKind::malformed, "is no file of tactograph", path,
-              "its files end in .json, .wav, .nc or .session");
+  return fail(ErrorKind::malformed, "is not a file of tactograph", path,
+              "names of its files end in .json, .wav, .nc or .session");
 }
 
 std::vector<StoredFile> under_stem(const std::string& stem) {
@@ -82,6 +87,15 @@ std::vector<StoredFile> under_stem(const std::string& stem) {
   return files;
 }
 
+std::vector<StoredFile> presets_named(const std::string& name) {
+  std::vector<StoredFile> files;
+  for (const FileKind kind : kPresetKinds) {
+    const auto presets = preset_names(kind_name(kind));
+    if (std::ranges::find(presets, name) != presets.end()) files.push_back({kind, name});
+  }
+  return files;
+}
+
 }  // namespace
 
 std::string_view kind_name(FileKind kind) {
@@ -92,13 +106,12 @@ Result<std::vector<StoredFile>> stored_files(const std::string& name) {
   if (is_file(name))
     return named_in_full(name).map([](StoredFile file) { return std::vector{std::move(file)}; });
   if (auto files = under_stem(name); !files.empty()) return files;
-  const auto presets = preset_names();
-  if (std::ranges::find(presets, name) != presets.end())
-    return std::vector{StoredFile{FileKind::transducer, name}};
+  if (auto presets = presets_named(name); !presets.empty()) return presets;
   if (is_file(name + ".events.jsonl"))
-    return fail(ErrorKind::unsuitable, "was never closed, or is still being recorded", name,
-                fmt::format("'tactograph recover {}' makes a recording of what is there", name));
-  return fail(ErrorKind::not_found, "there is no such file", name, "name a file in full, or by its stem");
+    return fail(ErrorKind::unsuitable, "is not closed, or is still being recorded", name,
+                fmt::format("'tactograph recover {}' makes a recording of the existing files", name));
+  return fail(ErrorKind::not_found, "there is no such file", name,
+              "give the full name of a file, or its stem");
 }
 
 }  // namespace tacto::schema

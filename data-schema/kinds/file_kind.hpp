@@ -22,6 +22,8 @@ enum class FileKind {
   session,
   results,
   trade,
+  device,
+  hand,
   session_table  ///< a session as netCDF
 };
 

@@ -105,9 +105,9 @@ Result<void> LiveRecording::State::check_place() const {
   if (at_its_path && is_file(wav_name)) return {};
   const std::string now = recording_stem_of(place);
   if (events.is_deleted() || at_its_path || (!place.empty() && !is_file(now + ".wav")))
-    return fail(ErrorKind::cannot_write, "was deleted while it was recorded: its frames are lost", wav_name,
+    return fail(ErrorKind::cannot_write, "was deleted during the recording: its frames are lost", wav_name,
                 "record again");
-  const char* const renamed = "was renamed, or its folder was, while it was recorded";
+  const char* const renamed = "was renamed during the recording, or its folder was";
   if (place.empty())
     return fail(ErrorKind::cannot_write, renamed, wav_name,
                 "find its .events.jsonl: 'tactograph recover' makes a recording of it and its WAV");
@@ -130,7 +130,7 @@ Result<void> LiveRecording::discard() {
   std::error_code failed;
   std::filesystem::remove(state_->stem + ".wav", failed);
   if (failed)
-    return fail(ErrorKind::cannot_write, "can't be removed: " + failed.message(), state_->stem + ".wav");
+    return fail(ErrorKind::cannot_write, "cannot be removed: " + failed.message(), state_->stem + ".wav");
   return state_->events.remove();
 }
 

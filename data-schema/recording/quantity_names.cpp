@@ -32,7 +32,7 @@ Result<QuantityName> quantity_named(std::string_view name) {
     if (quantity.name == name) return quantity;
     known += (known.empty() ? "" : ", ") + std::string(quantity.name);
   }
-  return fail(ErrorKind::usage, fmt::format("'{}' is no known quantity", name), {},
+  return fail(ErrorKind::usage, fmt::format("'{}' is not a known quantity", name), {},
               "the quantities are: " + known);
 }
 

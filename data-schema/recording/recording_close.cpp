@@ -39,7 +39,7 @@ void forget_beyond_end(RecordingHeader& header) {
       std::erase_if(header.marks, [&](const Mark& mark) { return mark.frame > header.frames; });
   if (gaps + marks > 0)
     header.warnings.push_back(fmt::format(
-        "{} marks and {} gaps are beyond its last frame, {}, and were left out", marks, gaps, header.frames));
+        "{} marks and {} gaps are beyond its last frame, {}, and were removed", marks, gaps, header.frames));
   std::erase_if(header.strokes, [&](const StrokeFigures& stroke) {
     return stroke.first_frame + stroke.frames > header.frames;
   });

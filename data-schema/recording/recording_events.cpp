@@ -23,7 +23,7 @@ Result<RecordingHeader> header_in(std::string_view line, const std::string& path
   const auto document = parse_document(body->at("recording").dump(), path, "recording");
   return document ? recording_header_from(*document, path) : forward_error(document);
 } catch (const std::exception&) {
-  return fail(ErrorKind::malformed, "its first line doesn't say what was to be recorded", path);
+  return fail(ErrorKind::malformed, "its first line does not describe the recording", path);
 }
 
 // Ignores events of a newer version; false for a line that is not an event.
@@ -77,7 +77,7 @@ Result<EventLog> read_events(const std::string& path) {
   TACTO_TRY(file);
   std::string_view text = *file, line;
   if (!take_line(text, line))
-    return fail(ErrorKind::unsuitable, "ends before its first line does: nothing was recorded yet", path,
+    return fail(ErrorKind::unsuitable, "its first line is incomplete: nothing was recorded yet", path,
                 "delete it");
   auto header = header_in(line, path);
   TACTO_TRY(header);

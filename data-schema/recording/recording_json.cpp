@@ -252,10 +252,10 @@ std::optional<Violation> gap_breach(const RecordingHeader& header, std::size_t i
   const std::uint64_t frame = header.gaps[i].frame;
   if (frame > header.frames || (i > 0 && frame < header.gaps[i - 1].frame))
     return Violation{fmt::format("/gaps/{}/frame", i),
-                     fmt::format("gaps must grow and end at frame {}", header.frames)};
+                     fmt::format("gaps must increase and end at frame {} or before", header.frames)};
   if (i > 0 && frame == header.gaps[i - 1].frame &&
       header.gaps[i].device_sequence == header.gaps[i - 1].device_sequence)
-    return Violation{fmt::format("/gaps/{}/device_sequence", i), "the same gap is there twice"};
+    return Violation{fmt::format("/gaps/{}/device_sequence", i), "the same gap occurs twice"};
   return std::nullopt;
 }
 

@@ -29,7 +29,7 @@ Result<void> check_free(const std::string& stem) {
   std::error_code ignored;
   for (const std::string& path : {stem + ".json", stem + ".wav", events_path(stem)})
     if (std::filesystem::exists(path, ignored))
-      return fail(ErrorKind::usage, "is there already, and is not overwritten", path, "choose another name");
+      return fail(ErrorKind::usage, "exists already, and is not overwritten", path, "choose another name");
   return {};
 }
 

@@ -17,40 +17,39 @@ namespace fs = std::filesystem;
 // There is no sidecar: there may be samples that can become a recording.
 tl::unexpected<Error> absent_recording(const std::string& name, const std::string& stem) {
   if (is_file(stem + ".events.jsonl"))
-    return fail(ErrorKind::unsuitable, "was never closed, or is still being recorded", name,
-                fmt::format("'tactograph recover {}' makes a recording of what is there", stem));
+    return fail(ErrorKind::unsuitable, "is not closed, or is still being recorded", name,
+                fmt::format("'tactograph recover {}' makes a recording of the existing files", stem));
   const std::string samples = is_file(name) ? name : stem + ".wav";
   if (!is_file(samples))
     return fail(ErrorKind::not_found, "there is no such recording", name,
                 "a recording is NAME.json and NAME.wav");
   return fail(ErrorKind::unsuitable, fmt::format("is not a recording: there is no {}.json", stem), samples,
-              fmt::format("'tactograph import {} -o NAME' makes one of it", samples));
+              fmt::format("'tactograph import {} -o NAME' converts it to a recording", samples));
 }
 
 Result<void> check_frames(const RecordingHeader& header, const WavInfo& info, const std::string& wav) {
   if (info.frames < header.frames)
-    return fail(
-        ErrorKind::malformed,
-        fmt::format("truncated: its sidecar promises {} frames, {} are left", header.frames, info.frames),
-        wav);
+    return fail(ErrorKind::malformed,
+                fmt::format("truncated: its sidecar has {} frames, the file {}", header.frames, info.frames),
+                wav);
   if (info.frames > header.frames)
     return fail(ErrorKind::malformed,
-                fmt::format("has {} frames, its sidecar says {}", info.frames, header.frames), wav);
+                fmt::format("has {} frames, its sidecar {}", info.frames, header.frames), wav);
   return {};
 }
 
 Result<void> check_samples(const RecordingHeader& header, const WavInfo& info, const std::string& wav) {
   if (info.channels != header.channels.size())
     return fail(ErrorKind::malformed,
-                fmt::format("has {} channels, its sidecar names {}", info.channels, header.channels.size()),
-                wav);
+                fmt::format("has {} channels, its sidecar {}", info.channels, header.channels.size()), wav);
   if (info.integer != (header.format == SampleFormat::pcm32))
-    return fail(ErrorKind::malformed, fmt::format("holds {}, its sidecar says otherwise", info.format), wav);
-  if (info.sample_rate_hz != std::round(header.sample_rate_hz))
-    return fail(ErrorKind::malformed,
-                fmt::format("has a rate of {} Hz, its sidecar says {} Hz", info.sample_rate_hz,
-                            header.sample_rate_hz),
+    return fail(ErrorKind::malformed, fmt::format("contains {}, its sidecar has another format", info.format),
                 wav);
+  if (info.sample_rate_hz != std::round(header.sample_rate_hz))
+    return fail(
+        ErrorKind::malformed,
+        fmt::format("has a rate of {} Hz, its sidecar {} Hz", info.sample_rate_hz, header.sample_rate_hz),
+        wav);
   return check_frames(header, info, wav);
 }
 

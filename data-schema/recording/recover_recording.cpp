@@ -19,10 +19,10 @@ namespace {
 Result<void> check_recoverable(const std::string& stem) {
   if (is_file(events_path(stem))) return {};
   if (is_file(stem + ".json"))
-    return fail(ErrorKind::unsuitable, "was closed: there is nothing to recover", stem + ".json",
-                "'tactograph validate' says whether it is sound");
-  return fail(ErrorKind::not_found, "there is no recording under way or broken off", stem,
-              "name it by its stem: it has left NAME.wav and NAME.events.jsonl");
+    return fail(ErrorKind::unsuitable, "was closed and needs no recovery", stem + ".json",
+                "'tactograph validate' checks it");
+  return fail(ErrorKind::not_found, "there is no active or interrupted recording", stem,
+              "give its stem: its files are NAME.wav and NAME.events.jsonl");
 }
 
 std::optional<Recording> open_closed(const std::string& stem) {
@@ -65,28 +65,26 @@ std::vector<std::string> make_gaps_agree(std::vector<Gap>& gaps) {
   gaps = std::move(agreed.gaps);
   std::vector<std::string> notes;
   if (agreed.left_out > 0)
-    notes.push_back(
-        fmt::format("{} gaps of its journal contradict those before them and were left out: its "
-                    "time may be wrong there",
-                    agreed.left_out));
+    notes.push_back(fmt::format(
+        "{} gaps of its journal contradict those before them and were ignored: its time may be wrong there",
+        agreed.left_out));
   if (agreed.untold > 0)
     notes.push_back(
-        fmt::format("{} missing frames stood in no line of its journal that can be read: they are "
-                    "counted to the gap after them, and the time before it is too early",
+        fmt::format("{} missing frames are in no readable line of its journal: they were added to the next "
+                    "gap, so the time before it is too early",
                     agreed.untold));
   return notes;
 }
 
 std::vector<std::string> notes_on(const EventLog& log) {
   std::vector<std::string> notes = {
-      "it was never closed: what came in its last 100 ms may be missing, or in a "
-      "second where the disk was busy and power was cut"};
-  if (!log.cut_line.empty()) notes.push_back("its last event was broken off: " + printable(log.cut_line));
+      "it was not closed: its last 100 ms may be missing (up to 1 s after a power cut with a busy disk)"};
+  if (!log.cut_line.empty()) notes.push_back("its last event is incomplete: " + printable(log.cut_line));
   if (log.bad_lines > 0)
-    notes.push_back(fmt::format(
-        "{} lines of its journal can't be read (the first is line {}) and were left out: a gap, a "
-        "mark or a fault may be unknown, and its time may have a hole",
-        log.bad_lines, log.first_bad_line));
+    notes.push_back(
+        fmt::format("{} lines of its journal are not readable (the first is line {}) and were ignored: a "
+                    "gap, a mark or a fault may be unknown, and a gap in time undetected",
+                    log.bad_lines, log.first_bad_line));
   return notes;
 }
 

@@ -43,7 +43,7 @@ Result<EmptyWav> empty_wav(const std::string& wav, const RecordingHeader& header
   auto bytes = read_file(*path);
   TACTO_TRY(bytes);
   if (!layout || layout->format_at < 8 || layout->data_at < layout->format_at + kFormatBytes - 8)
-    return fail(ErrorKind::internal, "an empty WAV has another header than is known", *path);
+    return fail(ErrorKind::internal, "an empty WAV has an unknown header", *path);
   return EmptyWav{std::move(*bytes), *layout};
 }
 
@@ -79,8 +79,8 @@ tl::unexpected<Error> unknown_content(const std::string& wav, const EmptyWav& em
                           "zeros; nothing was changed",
                           bytes),
               wav,
-              fmt::format("where its frames are sound behind them, 'dd if=/dev/zero of={} bs={} count=1 "
-                          "conv=notrunc' on a copy makes it recoverable",
+              fmt::format("if the frames after them are intact, use 'dd if=/dev/zero of={} bs={} count=1 "
+                          "conv=notrunc' on a copy, then recover it",
                           wav, bytes));
 }
 
@@ -88,13 +88,13 @@ Result<void> write_header(const std::string& wav, const EmptyWav& empty) {
   std::fstream file(wav, std::ios::binary | std::ios::in | std::ios::out);
   file.write(empty.bytes.data(), static_cast<std::streamsize>(empty.layout.data_at));
   file.close();
-  return file ? Result<void>{} : fail(ErrorKind::cannot_write, "its header can't be written", wav);
+  return file ? Result<void>{} : fail(ErrorKind::cannot_write, "its header cannot be written", wav);
 }
 
 Result<void> cut_off_at(const std::string& wav, std::uint64_t bytes) {
   std::error_code failed;
   fs::resize_file(wav, bytes, failed);
-  return failed ? fail(ErrorKind::cannot_write, "can't be shortened: " + failed.message(), wav)
+  return failed ? fail(ErrorKind::cannot_write, "cannot be shortened: " + failed.message(), wav)
                 : Result<void>{};
 }
 
@@ -114,8 +114,8 @@ Result<void> check_holds_something(const std::string& wav, const EmptyWav& empty
   const bool early = static_cast<double>(known_frames) <= kOnItsWay_s * header.sample_rate_hz;
   if (early || size_of(wav) >= empty.layout.data_at + block) return {};
   return fail(ErrorKind::malformed,
-              fmt::format("holds no frames, but its journal lists {}; nothing was changed", known_frames),
-              wav, "look for the WAV elsewhere (lost+found, a backup) and put it here");
+              fmt::format("contains no frames, but its journal lists {}; nothing was changed", known_frames),
+              wav, "look for the WAV elsewhere (lost+found, a backup) and copy it here");
 }
 
 // The header's sizes are written after the frames that they count.
@@ -127,7 +127,7 @@ Result<void> cut_unwritten(const std::string& wav, const RecordingHeader& header
   const std::uint64_t written = frames - zero_frames_at_end(wav, *layout);
   const std::uint64_t kept = std::clamp(length->promised_frames, std::min(written, frames), frames);
   if (kept == frames) return {};
-  remains.notes.push_back(fmt::format("its last {} were zeros that were never written: they were cut off",
+  remains.notes.push_back(fmt::format("its last {} were zeros that had not been written: they were removed",
                                       stretch(frames - kept, header)));
   return cut_off_at(wav, layout->data_at + kept * layout->block_bytes);
 }
@@ -137,7 +137,7 @@ void note_zeros(const std::string& wav, const RiffLayout& layout, const Recordin
   const std::uint64_t first = zero_frames_at_start(wav, layout), last = zero_frames_at_end(wav, layout);
   const auto note = [&](const char* where, std::uint64_t frames) {
     remains.notes.push_back(
-        fmt::format("its {} {} are zeros: they may have been lost", where, stretch(frames, header)));
+        fmt::format("its {} {} are zeros: they may be lost", where, stretch(frames, header)));
   };
   if ((first + 1) * layout.block_bytes > kPageBytes - layout.data_at) note("first", first);
   if (last * layout.block_bytes >= kPageBytes && last < remains.frames) note("last", last);
@@ -145,7 +145,7 @@ void note_zeros(const std::string& wav, const RiffLayout& layout, const Recordin
 
 void note_what_is_missing(const RecordingHeader& header, std::uint64_t known_frames, WavRemains& remains) {
   if (known_frames > remains.frames)
-    remains.notes.push_back(fmt::format("its journal lists frame {}, and it ends at {}: at least {} are lost",
+    remains.notes.push_back(fmt::format("its journal lists frame {}, but it ends at {}: at least {} are lost",
                                         known_frames, remains.frames,
                                         stretch(known_frames - remains.frames, header)));
 }
@@ -154,7 +154,7 @@ Result<void> make_header_sound(const std::string& wav, const EmptyWav& empty, Wa
   if (!is_remnant(wav, empty)) return unknown_content(wav, empty);
   if (size_of(wav) >= empty.layout.data_at)
     remains.notes.push_back(
-        "its WAV's header was damaged and was written anew: frames near it may be damaged too");
+        "the header of its WAV was damaged and was rewritten: frames near it may be damaged, too");
   return write_header(wav, empty);
 }
 
@@ -163,8 +163,8 @@ Result<void> make_header_sound(const std::string& wav, const EmptyWav& empty, Wa
 Result<WavRemains> salvage_wav(const std::string& wav, const RecordingHeader& header,
                                std::uint64_t known_frames) {
   if (!is_file(wav))
-    return fail(ErrorKind::not_found, "is missing: only its journal is there", wav,
-                "put it beside the journal; where nothing was recorded, delete the journal");
+    return fail(ErrorKind::not_found, "is missing: only its journal exists", wav,
+                "copy it to the folder of the journal; if nothing was recorded, delete the journal");
   const auto empty = empty_wav(wav, header);
   TACTO_TRY(empty);
   TACTO_TRY(check_holds_something(wav, *empty, header, known_frames));
@@ -174,11 +174,11 @@ Result<WavRemains> salvage_wav(const std::string& wav, const RecordingHeader& he
   // A lost header states no length.
   TACTO_TRY(sound ? cut_unwritten(wav, header, remains) : Result<void>{});
   const auto layout = riff_layout(wav);
-  if (!layout) return fail(ErrorKind::malformed, "is no WAV", wav);
+  if (!layout) return fail(ErrorKind::malformed, "is not a WAV file", wav);
   remains.frames = layout->present_bytes / layout->block_bytes;
   note_zeros(wav, *layout, header, remains);
   if (const auto left = layout->present_bytes % layout->block_bytes; left != 0)
-    remains.notes.push_back(fmt::format("its last frame was broken off: {} bytes of it were cut off", left));
+    remains.notes.push_back(fmt::format("its last frame was incomplete: its {} bytes were removed", left));
   note_what_is_missing(header, known_frames, remains);
   return remains;
 }

@@ -6,7 +6,7 @@
 
 #include <cstdio>
 
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::cli {
 
@@ -16,7 +16,7 @@ Progress::Progress(std::string task)
     : task_(std::move(task)), terminal_(isatty(STDERR_FILENO) == 1), next_(Clock::now() + 1s) {}
 
 Progress::~Progress() {
-  if (shown_ && terminal_) talk("\r\033[K");
+  if (shown_ && terminal_) write_message("\r\033[K");
 }
 
 void Progress::update(double fraction) {
@@ -24,7 +24,8 @@ void Progress::update(double fraction) {
   if (now < next_) return;
   next_ = now + (terminal_ ? 100ms : 5000ms);
   shown_ = true;
-  talk(fmt::format("{}{}  {:3.0f} %{}", terminal_ ? "\r" : "", task_, 100 * fraction, terminal_ ? "" : "\n"));
+  write_message(
+      fmt::format("{}{}  {:3.0f} %{}", terminal_ ? "\r" : "", task_, 100 * fraction, terminal_ ? "" : "\n"));
   std::fflush(stderr);
 }
 

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "data-schema/base/quantity.hpp"
-#include "data-schema/report/harmless.hpp"
+#include "data-schema/report/terminal.hpp"
 
 namespace tacto::cli {
 
@@ -29,6 +29,7 @@ constexpr Suffix kSuffixes[] = {
     {"_n_s_per_m", std::nullopt, "N s/m"},
     {"_v_per_n", std::nullopt, "V/N"},
     {"_v_per_s", std::nullopt, "V/s"},
+    {"_n_per_s", std::nullopt, "N/s"},
     {"_n_per_m", std::nullopt, "N/m"},
     {"_n_per_v", std::nullopt, "N/V"},
     {"_m_per_n", Dimension::compliance, ""},
@@ -42,6 +43,7 @@ constexpr Suffix kSuffixes[] = {
     {"_ohm", std::nullopt, "ohm"},
     {"_hz", Dimension::frequency, ""},
     {"_kg", std::nullopt, "kg"},
+    {"_deg", std::nullopt, "degrees"},
     {"_db", std::nullopt, "dB"},
     {"_s", Dimension::time, ""},
     {"_m", Dimension::length, ""},
@@ -76,9 +78,9 @@ std::string cell_text(const std::string& key, const ReportPrinter::Value& value)
   if (const auto* number = std::get_if<double>(&value)) return number_for_people(key, *number);
   if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "yes" : "no";
-  if (const auto* text = std::get_if<std::string>(&value)) return harmless(*text);
+  if (const auto* text = std::get_if<std::string>(&value)) return without_controls(*text);
   if (const auto* lines = std::get_if<std::vector<std::string>>(&value))
-    return harmless(fmt::format("{}", fmt::join(*lines, "; ")));
+    return without_controls(fmt::format("{}", fmt::join(*lines, "; ")));
   return "";
 }
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <mutex>
 
-#include "data-schema/report/harmless.hpp"
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
+#include "data-schema/report/text_table.hpp"
 
 namespace tacto::cli {
 namespace {
@@ -31,12 +31,16 @@ void keep(const std::string& text) {
   kept().warnings.push_back(text);
 }
 
-void print_line(const std::string& text) {
+constexpr std::size_t kWarningColumns = 120, kWarningIndent = 4;
+
+void print_wrapped(const std::string& text) {
+  const auto lines =
+      wrapped_text("tactograph: warning: " + on_one_line(text), kWarningColumns - kWarningIndent);
   {
     const std::lock_guard lock(kept().mutex);
-    ++kept().printed;
+    kept().printed += lines.size();
   }
-  talk(fmt::format("tactograph: warning: {}\n", on_one_line(text)));
+  write_message(fmt::format("{}\n", fmt::join(lines, "\n" + std::string(kWarningIndent, ' '))));
 }
 
 struct Group {
@@ -47,7 +51,7 @@ struct Group {
 
 std::string line_of(const Group& group) {
   if (group.count == 1) return sentence(*group.shown);
-  return fmt::format("{} ({} of {} alike; --json lists all)", sentence(*group.shown),
+  return fmt::format("{} ({} of {} similar ones; --json lists all)", sentence(*group.shown),
                      group.sized ? "the worst" : "the first", group.count);
 }
 
@@ -92,7 +96,7 @@ std::vector<std::string> grouped(std::span<const Warning> warnings) {
 
 void warn_grouped(std::span<const Warning> warnings) {
   for (const Warning& warning : warnings) keep(sentence(warning));
-  for (const std::string& line : grouped(warnings)) print_line(line);
+  for (const std::string& line : grouped(warnings)) print_wrapped(line);
 }
 
 void warn_grouped(std::span<const std::string> sentences) {
@@ -113,7 +117,7 @@ std::size_t printed_warnings() {
 
 void print_warning(const std::string& text) {
   keep(text);
-  print_line(text);
+  print_wrapped(text);
 }
 
 }  // namespace tacto::cli

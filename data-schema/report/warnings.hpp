@@ -24,7 +24,7 @@ std::string sentence(const Warning& warning);
 /// One line for each kind, in the order of first appearance: the worst, and the number of warnings.
 std::vector<std::string> grouped(std::span<const Warning> warnings);
 
-/// Prints them on stderr, one line for each kind. All of them are in the report with --json.
+/// Prints them on stderr, one for each kind. All of them are in the report with --json.
 void warn_grouped(std::span<const Warning> warnings);
 
 /// The same for sentences: those that differ only in their numbers are of one kind, of which the first is
@@ -34,10 +34,11 @@ void warn_grouped(std::span<const std::string> sentences);
 /// All warnings of this run, each of them, in order: what --json lists.
 std::vector<std::string> all_warnings();
 
-/// The number of printed warning lines.
+/// The number of lines that warnings have taken: at most 120 columns, further lines of a warning indented
+/// by 4.
 std::size_t printed_warnings();
 
-/// Prints one line, and adds it to all_warnings().
+/// Prints it, and adds it to all_warnings().
 void print_warning(const std::string& text);
 
 }  // namespace tacto::cli

@@ -70,7 +70,7 @@ Result<Json> details_of(const std::string& text) {
   if (text.empty()) return Json::object();
   Json details = Json::parse(text, nullptr, false);
   if (details.is_object()) return details;
-  return fail(ErrorKind::unsuitable, "are no JSON object", "details");
+  return fail(ErrorKind::unsuitable, "are not a JSON object", "details");
 }
 
 }  // namespace
@@ -118,8 +118,8 @@ Result<void> check_results_free(const std::string& path, Existing existing) {
   const auto there = stored_files(path);
   if (there && there->front().kind == FileKind::results) return check_output_free(path, existing);
   return fail(ErrorKind::usage,
-              there ? fmt::format("is a {}, and would be lost", kind_name(there->front().kind))
-                    : "is there, is no file of results, and would be lost",
+              there ? fmt::format("is a {} and is not overwritten", kind_name(there->front().kind))
+                    : "is not a file of results and is not overwritten",
               path, "choose another name");
 }
 

@@ -51,7 +51,7 @@ Result<TradeTable> table_of(const Result<Document>& document, const std::string&
   table.machine = text_or(body, "machine");
   for (const Json& each : body["choices"]) table.choices.push_back(choice_from(each));
   if (const auto bad = std::ranges::find_if_not(table.choices, rises); bad != table.choices.end())
-    return fail(ErrorKind::malformed, "points per period do not rise",
+    return fail(ErrorKind::malformed, "points per period do not increase",
                 fmt::format("{}#/choices/{}/errors", where, bad - table.choices.begin()),
                 "measure again with 'tactograph trade --calibrate'");
   table.created = text_or(body, "created");
@@ -94,7 +94,7 @@ Result<TradeTable> shipped_trade_table() {
   const auto files = embedded_files();
   const auto found = std::ranges::find(files, kShippedTable, &EmbeddedFile::name);
   if (found == files.end())
-    return fail(ErrorKind::internal, "is not in the program", std::string(kShippedTable));
+    return fail(ErrorKind::internal, "is missing in the program", std::string(kShippedTable));
   return table_of(parse_document(found->text, std::string(found->name), kTradeKind),
                   std::string(found->name));
 }
@@ -116,7 +116,7 @@ bool is_there(const std::string& path) {
 // A folder of settings may be copied to another machine.
 std::string origin_of(const TradeTable& table, const std::string& path) {
   if (!table.newer_version.empty())
-    return fmt::format("{}, of version {}, which may say more than this program reads", path,
+    return fmt::format("{}, of the newer version {}, whose unknown members are ignored", path,
                        table.newer_version);
   if (table.machine == machine_words()) return fmt::format("measured on this machine ({})", path);
   return fmt::format(
@@ -130,9 +130,8 @@ Result<FoundTradeTable> machines_own(const std::string& path) {
     const std::string origin = origin_of(*own, path);
     return FoundTradeTable{std::move(*own), origin};
   }
-  return fail(
-      own.error().kind, own.error().what, own.error().where,
-      "measure it anew with 'tactograph trade --calibrate', or remove it: then the shipped one serves");
+  return fail(own.error().kind, own.error().what, own.error().where,
+              "measure it again with 'tactograph trade --calibrate', or remove it to use the shipped table");
 }
 
 }  // namespace

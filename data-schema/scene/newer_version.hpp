@@ -16,7 +16,7 @@ std::vector<std::string> member_names(const std::string& extra_json, const std::
 /// reader returned them. Empty if the version is not newer.
 std::string note_of_newer_version(const std::string& path, const std::string& newer_version,
                                   const std::vector<std::string>& passed_over);
-/// The same for a scene, with its layers' members by their place.
+/// The same for a scene, with the members of its layers and patches by their place.
 std::string note_of_newer_version(const std::string& path, const Scene& scene);
 
 }  // namespace tacto::schema

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene: the textures under the finger and their places, as NAME.scene.json.
+// A scene: what is under the finger, and where, as NAME.scene.json.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 #include "data-schema/base/error.hpp"
 #include "data-schema/base/one_of.hpp"
+#include "data-schema/scene/patch.hpp"
 #include "data-schema/scene/playback_choices.hpp"
 
 namespace tacto::schema {
@@ -24,17 +25,18 @@ struct TextureLayer {
   std::string extra_json;                ///< members of a newer version
 };
 
-/// One layer of a scene, of one kind. Code that reads a layer handles every kind of it, or does not compile:
-/// height maps, walls, friction and contact transients become further kinds.
+/// One layer of a scene for a tray, of one kind. Code that reads a layer handles every kind of it, or does
+/// not compile.
 using Layer = OneOf<TextureLayer>;
 
 struct Scene {
-  std::vector<Layer> layers;  ///< at least one; their target displacements add up
+  std::vector<Layer> layers;   ///< of a tray; their target displacements add up
+  std::vector<Patch> patches;  ///< of a force device; a scene has layers, patches, or both, 256 layers in all
   std::string name, notes;
   std::string created, creator;
   PlaybackChoices playback;
   std::string extra_json;
-  std::string newer_version;  ///< with which it is written again
+  std::string newer_version;  ///< with which it is written again; else 1.0, with patches 1.1
 };
 
 /// "stop", "mirror", "loop".
@@ -42,15 +44,24 @@ std::string_view to_string(TextureEnds ends);
 
 /// By stem or NAME.scene.json. Errors: not_found; malformed, by JSON pointer, also for an unknown member (in
 /// a newer minor version it is kept); unsuitable, by JSON pointer, for an unknown type of layer (naming the
-/// known ones), and for one of several textures that continues beyond its ends; unsupported_version.
+/// known ones), for one of several textures that continues beyond its ends, and by check_patches;
+/// unsupported_version.
 Result<Scene> read_scene(const std::string& name);
 
 /// The same from a text; `where` names it in errors.
 Result<Scene> parse_scene(std::string_view text, const std::string& where);
 
 /// Replaces an existing file. Errors: cannot_write, also for a read-only file; unsuitable, if the schema does
-/// not allow it.
+/// not allow it, and by check_patches.
 Result<void> write_scene(const std::string& stem, const Scene& scene);
+
+/// Checks what the schema cannot: the number of layers, different names of patches, values within their
+/// sliders, masses of bodies, friction. Errors: unsuitable, by JSON pointer.
+Result<void> check_patches(const Scene& scene, const std::string& where);
+
+/// For commands that play a tray. Errors: unsuitable, if the scene has force patches: their playback is not
+/// built yet.
+Result<void> check_only_tray(const Scene& scene, const std::string& where);
 
 /// NAME.scene.json of a stem or file name.
 std::string scene_path(const std::string& name);

@@ -9,6 +9,7 @@
 #include "data-schema/json/json_document.hpp"
 #include "data-schema/json/json_schema.hpp"
 #include "data-schema/json/known_members.hpp"
+#include "data-schema/scene/patch_json.hpp"
 #include "data-schema/scene/playback_choices_json.hpp"
 #include "data-schema/scene/scene.hpp"
 
@@ -16,6 +17,7 @@ namespace tacto::schema {
 namespace {
 
 constexpr std::string_view kSceneKind = "scene";
+constexpr std::string_view kWithoutPatches = "1.0";  // the version
 constexpr std::string_view kSceneSuffix = ".scene";
 constexpr std::array<std::string_view, 3> kEndsWords = {"stop", "mirror", "loop"};
 constexpr std::array<std::string_view, 7> kTextureMembers = {
@@ -58,8 +60,8 @@ Json layer_body(const Layer& layer) {
 
 Result<Layer> layer_from(const Json& body, const std::string& place) {
   if (const std::string type = text_or(body, "type"); type != "texture")
-    return fail(ErrorKind::unsuitable, fmt::format("'{}' is an unknown type of layer", type), place + "/type",
-                "the types are: texture");
+    return fail(ErrorKind::unsuitable, fmt::format("'{}' is not a known type of layer", type),
+                place + "/type", "the types are: texture");
   return texture_layer_from(body);
 }
 
@@ -69,12 +71,11 @@ Result<void> check_known(const Document& document, const std::string& where) {
   static const auto kRules = schema_of(kSceneKind);
   const Json& rules = (*kRules)["properties"];
   const Json& body = document.body;
-  if (const auto known = check_members_known(*kRules, body, where); !known) return known;
-  for (std::size_t i = 0; i < body["layers"].size(); ++i) {
-    const auto known = check_members_known(rules["layers"]["items"], body["layers"][i],
-                                           fmt::format("{}#/layers/{}", where, i));
-    if (!known) return known;
-  }
+  TACTO_TRY(check_members_known(*kRules, body, where));
+  const Json layers = body.value("layers", Json::array());
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    TACTO_TRY(
+        check_members_known(rules["layers"]["items"], layers[i], fmt::format("{}#/layers/{}", where, i)));
   if (!body.contains("playback")) return {};
   return check_members_known(rules["playback"], body["playback"], where + "#/playback");
 }
@@ -84,22 +85,44 @@ Result<void> check_ends(const Scene& scene, const std::string& where) {
   const auto goes_on = [](const Layer& layer) {
     return layer.visit([](const TextureLayer& texture) { return texture.ends != TextureEnds::stop; });
   };
-  if (scene.layers.size() == 1) return {};
+  if (scene.layers.size() <= 1) return {};
   const auto layer = std::ranges::find_if(scene.layers, goes_on);
   if (layer == scene.layers.end()) return {};
-  return fail(ErrorKind::unsuitable, "one of several textures can't go on beyond its ends",
+  return fail(ErrorKind::unsuitable, "with several textures none can continue beyond its ends",
               fmt::format("{}#/layers/{}/ends", where, layer - scene.layers.begin()), R"(make it "stop")");
 }
 
-Result<Scene> scene_from(const Document& document, const std::string& where) {
-  Scene scene;
+Result<void> read_layers(const Document& document, const std::string& where, Scene& scene) {
+  if (!document.body.contains("layers")) return {};
   for (const Json& body : document.body["layers"]) {
     auto layer = layer_from(body, fmt::format("{}#/layers/{}", where, scene.layers.size()));
     TACTO_TRY(layer);
     scene.layers.push_back(std::move(*layer));
   }
+  return {};
+}
+
+Result<void> read_patches(const Document& document, const std::string& where, Scene& scene) {
+  if (!document.body.contains("patches")) return {};
+  if (document.body["version"] == kWithoutPatches)
+    return fail(ErrorKind::malformed, fmt::format("a scene of version {} has no patches", kWithoutPatches),
+                where + "#/version", fmt::format("the version is {}", version_of_kind(kSceneKind)));
+  const auto unknown = document.newer_version.empty() ? UnknownMembers::refused : UnknownMembers::kept;
+  for (const Json& body : document.body["patches"]) {
+    auto patch = patch_from(body, unknown, fmt::format("{}#/patches/{}", where, scene.patches.size()));
+    TACTO_TRY(patch);
+    scene.patches.push_back(std::move(*patch));
+  }
+  return {};
+}
+
+Result<Scene> scene_from(const Document& document, const std::string& where) {
+  Scene scene;
+  TACTO_TRY(read_layers(document, where, scene));
   TACTO_TRY(check_known(document, where));
+  TACTO_TRY(read_patches(document, where, scene));
   TACTO_TRY(check_ends(scene, where));
+  TACTO_TRY(check_patches(scene, where));
   scene.name = text_or(document.body, "name");
   scene.notes = text_or(document.body, "notes");
   scene.created = text_or(document.body, "created");
@@ -110,16 +133,22 @@ Result<Scene> scene_from(const Document& document, const std::string& where) {
   return scene;
 }
 
+// A scene without patches is written as older programs read it.
+std::string written_version(const Scene& scene) {
+  if (!scene.newer_version.empty()) return scene.newer_version;
+  return std::string(scene.patches.empty() ? kWithoutPatches : version_of_kind(kSceneKind));
+}
+
 Json scene_body(const Scene& scene) {
-  Json body = Json::object();
-  put_text(body, "version", scene.newer_version);
+  Json body = {{"version", written_version(scene)}};
   put_text(body, "name", scene.name);
   put_text(body, "notes", scene.notes);
   put_text(body, "created", scene.created);
   put_text(body, "creator", scene.creator);
   if (Json playback = playback_choices_body(scene.playback); !playback.empty()) body["playback"] = playback;
-  body["layers"] = Json::array();
+  if (!scene.layers.empty() || scene.patches.empty()) body["layers"] = Json::array();
   for (const Layer& layer : scene.layers) body["layers"].push_back(layer_body(layer));
+  for (const Patch& patch : scene.patches) body["patches"].push_back(patch_body(patch));
   return body;
 }
 
@@ -145,9 +174,10 @@ Result<Scene> read_scene(const std::string& name) {
 }
 
 Result<void> write_scene(const std::string& stem, const Scene& scene) {
+  const std::string path = scene_path(stem);
   const auto text = document_text(kSceneKind, scene_body(scene), scene.extra_json);
   TACTO_TRY(text);
-  const std::string path = scene_path(stem);
+  TACTO_TRY(check_patches(scene, path));
   if (is_file(path))
     if (const auto free = check_changeable(path); !free) return free;
   PendingFiles pending;

@@ -152,9 +152,9 @@ constexpr std::size_t kMostProgramText = kMostPayload - 16;  // beside a change'
 
 Result<std::string> too_long(std::size_t bytes) {
   return fail(ErrorKind::unsuitable,
-              fmt::format("what is played takes {} bytes to name, a session has room for {}", bytes,
+              fmt::format("the description of the textures needs {} bytes, but a session allows {}", bytes,
                           kMostProgramText),
-              "session", "play a scene of fewer layers");
+              "session", "play a scene with fewer layers");
 }
 
 // It has neither kind nor version, and otherwise fits the transducer's schema.
@@ -166,7 +166,7 @@ Result<void> check_transducer_in(const Json& body, const std::string& where) {
   const auto faults = breaches(transducer, *kRules);
   if (faults.empty()) return {};
   return fail(ErrorKind::malformed, faults.front().what,
-              fmt::format("{}#/transducer{}", where, faults.front().pointer), "bring the right file back");
+              fmt::format("{}#/transducer{}", where, faults.front().pointer), "restore the right file");
 }
 
 SessionHeader session_from(const Json& body) {

@@ -36,7 +36,7 @@ void put_turns(NetcdfWriter& file, const std::vector<SessionTurn>& turns) {
                          turn.fade_s, name);
   };
   for (const SessionTurn& turn : turns) {
-    if (turn.textures.empty()) add(turn, "the session does not say");
+    if (turn.textures.empty()) add(turn, "not in the session");
     for (const SessionTexture& texture : turn.textures) add(turn, texture.file);
   }
   if (!lines.empty()) file.attribute("changes", lines);
@@ -107,10 +107,10 @@ Result<SessionTable> read_session_table(const std::string& path) {
   const bool ours = file.text("kind") == kSessionKind;
   const std::vector<double> time_s = file.axis("time");
   TACTO_TRY(file.status(path));
-  if (!ours) return fail(ErrorKind::malformed, "is netCDF, but no session of tactograph", path);
+  if (!ours) return fail(ErrorKind::malformed, "is netCDF, but not a session of tactograph", path);
   const auto stuck = std::ranges::adjacent_find(time_s, [](double a, double b) { return !(a < b); });
   if (time_s.empty() || stuck != time_s.end())
-    return fail(ErrorKind::malformed, time_s.empty() ? "has no times" : "its times must grow", path);
+    return fail(ErrorKind::malformed, time_s.empty() ? "has no times" : "its times must increase", path);
   table.times = time_s.size();
   table.duration_s = time_s.back() - time_s.front();
   return table;

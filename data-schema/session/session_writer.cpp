@@ -20,8 +20,8 @@ constexpr std::int64_t kAhead = 65536;  // room is reserved in such steps
 
 tl::unexpected<Error> unwritable_session(const std::string& path, int error_number) {
   if (error_number == EEXIST)
-    return fail(ErrorKind::usage, "is there already, and is not overwritten", path, "choose another name");
-  return fail(ErrorKind::cannot_write, "can't be written: " + std::generic_category().message(error_number),
+    return fail(ErrorKind::usage, "exists already, and is not overwritten", path, "choose another name");
+  return fail(ErrorKind::cannot_write, "cannot be written: " + std::generic_category().message(error_number),
               path);
 }
 

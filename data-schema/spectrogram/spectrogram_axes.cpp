@@ -49,7 +49,7 @@ Result<void> check_axes(const std::optional<SpectrogramHeader>& first, const Spe
   if (!first) return {};
   if (const char* what = difference(*first, header); what != nullptr)
     return fail(ErrorKind::unsuitable, fmt::format("its {} differ from those of '{}'", what, first->name),
-                header.name, "write it to a file of its own");
+                header.name, "write it to a separate file");
   return {};
 }
 

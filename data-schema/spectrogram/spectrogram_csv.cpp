@@ -97,7 +97,8 @@ class CsvWriter : public SpectrogramWriter {
   }
 
   Result<void> stopped() const {
-    return fail(ErrorKind::cannot_write, "writing stopped half-way", path_, "is the disk full?");
+    return fail(ErrorKind::cannot_write, "the file was not written completely", path_,
+                "check whether the disk is full");
   }
 
   File file_;
@@ -115,7 +116,7 @@ Result<std::unique_ptr<SpectrogramWriter>> open_spectrogram_csv(const std::strin
                                                                 const SpectrogramFileOptions& options) {
   File file(std::fopen(path.c_str(), "wbe"));
   const std::string& named = options.named.empty() ? path : options.named;
-  if (!file) return fail(ErrorKind::cannot_write, "the file can't be made", named);
+  if (!file) return fail(ErrorKind::cannot_write, "the file cannot be created", named);
   return std::make_unique<CsvWriter>(std::move(file), named, options.several);
 }
 

@@ -31,10 +31,10 @@ Result<Version> check_kind(NetcdfReader& file, const std::string& path) {
   const std::string text = file.text("version");
   const Version version = version_of(text);
   if (file.text("kind") != "spectrogram" || version.major == 0)
-    return fail(ErrorKind::malformed, "is netCDF, but no spectrogram of tactograph", path);
+    return fail(ErrorKind::malformed, "is netCDF, but not a spectrogram of tactograph", path);
   if (version.major > kMajor)
     return fail(ErrorKind::unsupported_version,
-                fmt::format("is of version {}; this program reads {}.x", text, kMajor), path,
+                fmt::format("has version {}; this program reads {}.x", text, kMajor), path,
                 "use a newer tactograph");
   return version;
 }
@@ -118,7 +118,7 @@ Result<Spectrogram> read_stroke(NetcdfReader& file, std::size_t stroke, const st
   spectrogram.strokes = std::max(file.length("stroke"), std::size_t{1});
   if (stroke >= spectrogram.strokes)
     return fail(ErrorKind::unsuitable,
-                fmt::format("holds {} spectrograms, not {}", spectrogram.strokes, stroke + 1), path);
+                fmt::format("contains {} spectrograms, not {}", spectrogram.strokes, stroke + 1), path);
   read_attributes(file, stroke, spectrogram);
   read_axes(file, spectrogram);
   read_cells(file, stroke, spectrogram);

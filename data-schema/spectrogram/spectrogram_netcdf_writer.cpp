@@ -157,11 +157,11 @@ class NcWriter : public SpectrogramWriter {
     const bool amplitude = first_->scaling == Scaling::amplitude;
     cells_ = file_.cells(amplitude ? "amplitude" : "density", blocks, options_.compress, cell_unit(*first_),
                          (amplitude ? "amplitude of " : "power spectral density of ") + first_->quantity);
-    known_ = file_.flags("known", blocks, "unknown known", "whether the recording could know the cell");
+    known_ = file_.flags("known", blocks, "unknown known", "whether the recording determines the cell");
     known_from_ =
-        file_.values("known_from", limits, "1/mm", "lowest spatial frequency that the recording could know");
+        file_.values("known_from", limits, "1/mm", "lowest spatial frequency that the recording determines");
     known_to_ =
-        file_.values("known_to", limits, "1/mm", "highest spatial frequency that the recording could know");
+        file_.values("known_to", limits, "1/mm", "highest spatial frequency that the recording determines");
   }
 
   void define_decibels(Blocks blocks) {

@@ -41,14 +41,14 @@ Result<void> check_layout(const std::string& wav, const TextureData& data, doubl
   const WavInfo& info = reader->info();
   if (info.frames != data.samples)
     return fail(ErrorKind::malformed,
-                fmt::format("holds {} samples, its sidecar says {}", info.frames, data.samples), wav);
+                fmt::format("contains {} samples, its sidecar has {}", info.frames, data.samples), wav);
   if (info.channels != data.channels)
     return fail(ErrorKind::malformed,
-                fmt::format("has {} channels, its sidecar describes {}", info.channels, data.channels), wav);
+                fmt::format("has {} channels, its sidecar {}", info.channels, data.channels), wav);
   if (info.sample_rate_hz != header_rate_of(pitch_m))
     return fail(
         ErrorKind::malformed,
-        fmt::format("has {} samples a metre, its sidecar a pitch of {} m", info.sample_rate_hz, pitch_m),
+        fmt::format("has {} samples per metre, its sidecar a pitch of {} m", info.sample_rate_hz, pitch_m),
         wav);
   return {};
 }
@@ -66,9 +66,9 @@ Result<void> check_single(const std::vector<double>& samples, const std::string&
   const auto found = std::ranges::find_if(samples, beyond);
   if (found == samples.end()) return {};
   return fail(ErrorKind::unsuitable,
-              fmt::format("sample {} is {:.4g} {}, beyond the 3.4e38 that a texture's file holds",
+              fmt::format("sample {} is {:.4g} {}, above the 3.4e38 that a texture's file can store",
                           found - samples.begin(), *found, unit),
-              where, "look at the channel's scale: 'tactograph info' of the recording shows it");
+              where, "check the scale of the channel: 'tactograph info' of the recording shows it");
 }
 
 Result<void> check_not_lost(const std::vector<double>& samples, const std::string& unit,
@@ -76,12 +76,11 @@ Result<void> check_not_lost(const std::vector<double>& samples, const std::strin
   double largest = 0;
   for (const double each : samples) largest = std::max(largest, std::abs(each));
   if (largest == 0 || largest >= static_cast<double>(std::numeric_limits<float>::min())) return {};
-  return fail(
-      ErrorKind::unsuitable,
-      fmt::format("its largest value is {:.4g} {}, below the 1.2e-38 that a texture's file holds: all "
-                  "would be stored as zeros, or nearly",
-                  largest, unit),
-      where, "look at the channel's scale: 'tactograph info' of the recording shows it");
+  return fail(ErrorKind::unsuitable,
+              fmt::format("its largest value is {:.4g} {}, below the 1.2e-38 that a texture's file can "
+                          "store: all values would be nearly 0",
+                          largest, unit),
+              where, "check the scale of the channel: 'tactograph info' of the recording shows it");
 }
 
 Result<std::vector<double>> read_samples(const std::string& wav, std::size_t channel) {

@@ -8,13 +8,12 @@
 #include <complex>
 #include <vector>
 
+#include "data-schema/base/plausible_range.hpp"
+
 namespace tacto::schema {
 namespace {
 
-struct Range {
-  double lowest, highest;
-  bool or_zero = false;
-};
+using Range = PlausibleRange;
 
 struct PlausibleMember {
   const char* name;
@@ -73,10 +72,6 @@ constexpr Range kComputable{1e-18, 1e18, true};
 constexpr Range kComputableResponse{1e-18, 1e18};
 constexpr std::array kProbedHz = {0.0, 1.0, 10.0, 100.0, 1e3};
 
-bool holds(const Range& range, double value) {
-  return (range.or_zero && value == 0) || (value >= range.lowest && value <= range.highest);
-}
-
 // A number of a file, with its name in the file.
 struct NamedNumber {
   std::string name;
@@ -104,35 +99,27 @@ std::vector<NamedNumber> numbers_of(const Transducer& transducer) {
   return numbers;
 }
 
-std::string member_of(const std::string& where, const std::string& name) {
-  return where + (where.find('#') == std::string::npos ? "#/" : "/") + name;
-}
-
 }  // namespace
 
 Result<void> check_plausible(const Transducer& transducer, const std::string& where) {
   for (const NamedNumber& number : numbers_of(transducer))
-    if (!holds(number.plausible, number.value))
-      return fail(ErrorKind::unsuitable,
-                  fmt::format("{} is {:g}: no transducer has less than {:g} or more than {:g}", number.name,
-                              number.value, number.plausible.lowest, number.plausible.highest),
-                  member_of(where, number.name),
-                  "correct it; render, play, explain and trade take it with --implausible");
+    TACTO_TRY(check_range(number.plausible, number.value, number.name, where,
+                          "correct it; render, play, explain and trade accept it with --implausible"));
   return {};
 }
 
 Result<void> check_computable(const Transducer& transducer, const std::string& where) {
   for (const NamedNumber& number : numbers_of(transducer))
-    if (!holds(kComputable, number.value))
+    if (!kComputable.contains(number.value))
       return fail(ErrorKind::unsuitable,
-                  fmt::format("{} is {:g}: nothing can be computed with less than {:g} or more than {:g}",
-                              number.name, number.value, kComputable.lowest, kComputable.highest),
-                  member_of(where, number.name), "correct it");
+                  fmt::format("{} is {:g}: computations need a value from {:g} to {:g}", number.name,
+                              number.value, kComputable.lowest, kComputable.highest),
+                  place_of_member(where, number.name), "correct it");
   for (const double hz : kProbedHz)
-    if (const double size = std::abs(actuator_response(transducer, hz)); !holds(kComputableResponse, size))
+    if (const double size = std::abs(actuator_response(transducer, hz)); !kComputableResponse.contains(size))
       return fail(
           ErrorKind::unsuitable,
-          fmt::format("its members together give {:g} m/V at {:g} Hz: nothing can be computed with that",
+          fmt::format("its members together give {:g} m/V at {:g} Hz, which cannot be used for a computation",
                       size, hz),
           where, "correct them");
   return {};

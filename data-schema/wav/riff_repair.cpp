@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kUnknown = 0xFFFFFFFF;  // of a 32-bit size that is in "ds64"
 
 tl::unexpected<Error> unwritable_header(const std::string& path) {
-  return fail(ErrorKind::cannot_write, "its header can't be written", path);
+  return fail(ErrorKind::cannot_write, "its header cannot be written", path);
 }
 
 // Overwrites bytes of an existing file.
@@ -45,7 +45,7 @@ class Patch {
 Result<RiffLayout> layout_of(const std::string& path) {
   const auto layout = riff_layout(path);
   if (layout && layout->format_at > 0 && layout->block_bytes > 0) return *layout;
-  return fail(ErrorKind::malformed, "is no WAV, or its header was never finished", path);
+  return fail(ErrorKind::malformed, "is not a WAV file, or its header is incomplete", path);
 }
 
 void set_sizes(Patch& patch, const RiffLayout& layout, std::uint64_t data_bytes) {

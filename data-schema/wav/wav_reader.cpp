@@ -70,7 +70,7 @@ WavInfo described(const SF_INFO& header) {
 
 tl::unexpected<Error> truncated(const std::string& path, std::uint64_t promised, std::uint64_t present) {
   return fail(ErrorKind::malformed,
-              fmt::format("truncated: its header promises {} frames, {} are left", promised, present), path);
+              fmt::format("truncated: its header has {} frames, the file {}", promised, present), path);
 }
 
 Result<void> check_length(const std::string& path) {
@@ -131,7 +131,7 @@ Result<std::size_t> WavReader::read(std::span<double> interleaved) {
 
 Result<std::size_t> WavReader::read(std::span<std::int32_t> interleaved) {
   if (!state_->info.integer)
-    return fail(ErrorKind::unsuitable, "its samples are no integer codes", state_->path);
+    return fail(ErrorKind::unsuitable, "its samples are not integer codes", state_->path);
   const sf_count_t wanted = state_->room(interleaved.size());
   return state_->advanced(sf_readf_int(state_->file.get(), interleaved.data(), wanted), wanted);
 }
@@ -140,7 +140,8 @@ Result<void> WavReader::seek(std::uint64_t frame) {
   const auto target = static_cast<sf_count_t>(frame);
   if (frame > state_->info.frames || sf_seek(state_->file.get(), target, SEEK_SET) != target)
     return fail(ErrorKind::malformed,
-                fmt::format("has no frame {}: it ends at {}", frame, state_->info.frames), state_->path);
+                fmt::format("does not contain frame {}: it ends at {}", frame, state_->info.frames),
+                state_->path);
   state_->next_frame = frame;
   return {};
 }
@@ -150,10 +151,10 @@ Result<std::vector<double>> read_wav_channel(const std::string& path, std::size_
   TACTO_TRY(reader);
   const std::size_t channels = reader->info().channels;
   if (channel >= channels)
-    return fail(ErrorKind::unsuitable, fmt::format("has {} channels, no channel {}", channels, channel + 1),
-                path);
+    return fail(ErrorKind::unsuitable,
+                fmt::format("has {} channels, but no channel {}", channels, channel + 1), path);
   if (!reader->info().plain)
-    return fail(ErrorKind::unsuitable, fmt::format("holds {}, not plain samples", reader->info().format),
+    return fail(ErrorKind::unsuitable, fmt::format("contains {}, not plain samples", reader->info().format),
                 path, "import it");
   std::vector<double> piece(std::max<std::size_t>(kPageSamples / channels, 1) * channels);
   std::vector<double> values;

@@ -26,17 +26,18 @@ int subformat(SampleFormat format) {
 
 Result<void> check_rate(double sample_rate_hz, const std::string& path) {
   if (std::round(sample_rate_hz) >= 1 && std::round(sample_rate_hz) <= kLargestRate) return {};
-  return fail(ErrorKind::usage, fmt::format("a WAV can't hold the rate {} per second", sample_rate_hz), path);
+  return fail(ErrorKind::usage, fmt::format("a WAV file cannot store the rate {} per second", sample_rate_hz),
+              path);
 }
 
 tl::unexpected<Error> unwritten(const std::string& path, SNDFILE* file) {
-  return fail(ErrorKind::cannot_write, fmt::format("can't be written: {}", sf_strerror(file)), path);
+  return fail(ErrorKind::cannot_write, fmt::format("cannot be written: {}", sf_strerror(file)), path);
 }
 
 tl::unexpected<Error> not_opened(const std::string& path, int error_number) {
   if (error_number == EEXIST)
-    return fail(ErrorKind::usage, "is there already, and is not overwritten", path, "choose another name");
-  return fail(ErrorKind::cannot_write, "can't be written: " + std::generic_category().message(error_number),
+    return fail(ErrorKind::usage, "exists already, and is not overwritten", path, "choose another name");
+  return fail(ErrorKind::cannot_write, "cannot be written: " + std::generic_category().message(error_number),
               path);
 }
 
@@ -123,7 +124,7 @@ Result<void> WavWriter::write(std::span<const std::int32_t> interleaved) {
 Result<void> WavWriter::close() {
   const int failed = sf_close(std::exchange(state_->file, nullptr));
   if (failed == 0) return {};
-  return fail(ErrorKind::cannot_write, fmt::format("can't be completed: {}", sf_error_number(failed)),
+  return fail(ErrorKind::cannot_write, fmt::format("cannot be completed: {}", sf_error_number(failed)),
               state_->path);
 }
 

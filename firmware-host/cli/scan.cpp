@@ -36,16 +36,15 @@ schema::Result<cli::Report> run_scan() {
 }
 
 cli::Action declare_scan(CLI::App& app) {
-  app.footer(
-      app.get_footer() +
-      "\nDevices on USB are found by their interface, whoever made them, and named by serial or port. A "
-      "recording is a device too: replay:FILE, or replay:FILE,paced=1.");
+  app.footer(app.get_footer() +
+             "\nDevices on USB of any maker are found by their interface and identified by serial number or "
+             "port. A recording is also a device: replay:FILE, or replay:FILE,paced=1.");
   return [] { return run_scan(); };
 }
 
 }  // namespace
 
-const cli::Verb kScanVerb{"scan", "List the devices that are there, emulated ones too", "tactograph scan",
+const cli::Verb kScanVerb{"scan", "List available devices, including emulated ones", "tactograph scan",
                           declare_scan};
 
 }  // namespace tacto::firmware_host

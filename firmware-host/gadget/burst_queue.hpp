@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bytes on their way to the host, with the places where something other than bytes is due.
+// A queue of bytes to the host, with the places of other events between them.
 #pragma once
 
 #include <chrono>
@@ -12,32 +12,32 @@
 
 namespace tacto::firmware_host {
 
-/// What follows a burst's bytes. All but `none` and `end` are faults for tests.
+/// The event after a burst's bytes. All but `none` and `end` are faults for tests.
 enum class BurstEnd : std::uint8_t {
   none,    ///< more bytes may follow in the same transfer
   end,     ///< the transfer ends here
   stall,   ///< the endpoint stalls
-  unplug,  ///< the device lets go of the data line
+  unplug,  ///< the device disconnects from the bus
 };
 
 struct Burst {
   std::vector<std::uint8_t> bytes;
   BurstEnd end = BurstEnd::none;
-  bool last = false;  ///< nothing waits behind it
+  bool last = false;  ///< the queue is empty after it
 };
 
-/// One thread puts, another takes.
+/// One thread writes, another reads.
 class BurstQueue {
  public:
   void put(std::span<const std::uint8_t> bytes, BurstEnd end = BurstEnd::none);
-  /// What waits, up to `most` bytes or the first end; empty where nothing came within `wait`.
+  /// The next bytes, up to `most` bytes or the first end; empty if nothing arrives within `wait`.
   Burst take(std::size_t most, std::chrono::milliseconds wait);
   void clear();
   std::size_t waiting() const;
 
  private:
   struct End {
-    std::uint64_t at = 0;  // bytes ever put before it
+    std::uint64_t at = 0;  // number of all bytes before it
     BurstEnd end = BurstEnd::none;
   };
   bool something() const { return !bytes_.empty() || !ends_.empty(); }

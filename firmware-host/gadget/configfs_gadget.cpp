@@ -23,7 +23,7 @@ const fs::path kGadgets = "/sys/kernel/config/usb_gadget", kPorts = "/sys/class/
 constexpr const char* kLanguage = "strings/0x409";  // English
 constexpr const char* kConfiguration = "configs/c.1";
 
-// One write() a value: configfs and sysfs take each as a whole. Gives 0, or the error's number.
+// One write() per value: configfs and sysfs require it. Returns 0, or the error number.
 int write_value(const fs::path& path, const std::string& value) {
   const FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   return file.is_open() && ::write(file.get(), value.data(), value.size()) >= 0 ? 0 : errno;
@@ -50,15 +50,15 @@ Result<void> make_folders(const fs::path& folder) {
   if (!error) return {};
   const bool may_not = error == std::errc::permission_denied;
   return schema::fail(ErrorKind::device, fmt::format("cannot be made: {}", error.message()), folder.string(),
-                      may_not ? "run as root" : "modprobe libcomposite usb_f_fs, and see the kernel's log");
+                      may_not ? "run as root" : "modprobe libcomposite usb_f_fs, and check the kernel's log");
 }
 
 Result<void> require_configfs() {
   std::error_code none;
   if (fs::is_directory(kGadgets, none)) return {};
-  return schema::fail(ErrorKind::device, "this kernel has no USB gadgets, or they are not loaded",
-                      kGadgets.string(),
-                      "as root: modprobe libcomposite; mount -t configfs none /sys/kernel/config");
+  return schema::fail(
+      ErrorKind::device, "this kernel has no USB gadget support, or its modules are not loaded",
+      kGadgets.string(), "as root: modprobe libcomposite; mount -t configfs none /sys/kernel/config");
 }
 
 }  // namespace
@@ -76,12 +76,12 @@ Result<std::string> choose_port(const std::string& target) {
   const std::vector<std::string> ports = device_ports();
   if (ports.empty())
     return schema::fail(ErrorKind::device, "this machine has no USB device port", kPorts.string(),
-                        "take a board with a device or OTG port, in device mode; to try it out here, as "
-                        "root: modprobe dummy_hcd");
+                        "use a board with a device or OTG port, in device mode; for a test on this machine, "
+                        "as root: modprobe dummy_hcd");
   if (target.empty()) return ports.front();
   if (std::find(ports.begin(), ports.end(), target) != ports.end()) return target;
   return schema::fail(ErrorKind::device, fmt::format("there is no device port '{}'", target), "--udc",
-                      fmt::format("there are: {}", fmt::join(ports, ", ")));
+                      fmt::format("the device ports are: {}", fmt::join(ports, ", ")));
 }
 
 Result<void> set_connected(const std::string& port, bool connected) {
@@ -108,8 +108,8 @@ Result<ConfigfsGadget> ConfigfsGadget::create(const std::string& port, const Usb
   TACTO_TRY(require_configfs());
   const fs::path folder = kGadgets / ("tactograph-" + port);
   if (const std::string bound = text_of(folder / "UDC"); !bound.empty())
-    return schema::fail(ErrorKind::device, fmt::format("a tactograph runs on {} already", bound),
-                        folder.string(), "end that one, or take another port with --udc");
+    return schema::fail(ErrorKind::device, fmt::format("another tactograph gadget already uses {}", bound),
+                        folder.string(), "stop that one, or use another port with --udc");
   ConfigfsGadget gadget(folder, port);
   gadget.remove();
   TACTO_TRY(gadget.make(identity));
@@ -140,18 +140,19 @@ Result<void> ConfigfsGadget::bind() {
   const int error = write_value(folder_ / "UDC", port_);
   if (error == 0) return {};
   if (error != EBUSY)
-    return schema::fail(ErrorKind::device, fmt::format("does not take the device: {}", std::strerror(error)),
-                        port_, "see the kernel's log");
-  return schema::fail(ErrorKind::device, fmt::format("the device port {} is taken by another gadget", port_),
-                      "--udc", fmt::format("grep . {}/*/UDC says by which", kGadgets.string()));
+    return schema::fail(ErrorKind::device,
+                        fmt::format("does not accept the device: {}", std::strerror(error)), port_,
+                        "check the kernel's log");
+  return schema::fail(ErrorKind::device, fmt::format("the device port {} is used by another gadget", port_),
+                      "--udc", fmt::format("'grep . {}/*/UDC' shows which", kGadgets.string()));
 }
 
-// Nobody is bound where this fails: it may have been done from outside.
+// If this fails, the gadget is not bound: it may have been unbound from outside.
 void ConfigfsGadget::unbind() {
   write_value(folder_ / "UDC", "\n");
 }
 
-// In the order that configfs asks for; what is not there needs no removing.
+// In the order that configfs requires; missing entries are no error.
 void ConfigfsGadget::remove() const {
   std::error_code none;
   fs::remove(folder_ / kConfiguration / "function", none);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The device as the kernel's configfs knows it: who it is, what it has, and the port that it is bound to.
+// The device in the kernel's configfs: its identity, its function, and the port that it is bound to.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +16,27 @@ struct UsbIdentity {
   std::string serial, name;
 };
 
-/// The device ports (USB device controllers) that there are, by name.
+/// The names of the device ports (USB device controllers).
 std::vector<std::string> device_ports();
-/// `wanted`, or the first where that is empty. Errors: device: there is none, or none of that name (with
-/// those there are).
+/// `target`, or the first port if that is empty. Errors: device: there is none, or none of that name (with
+/// the existing ones).
 schema::Result<std::string> choose_port(const std::string& target);
 
-/// One gadget with one FunctionFS function, named after its port; taken down and removed with the object.
+/// One gadget with one FunctionFS function, named after its port; unbound and removed by the destructor.
 class ConfigfsGadget {
  public:
-  /// Makes the gadget's folders; what a process that was killed left of them goes first. Errors: device: no
-  /// configfs, no permission, or a running gadget of ours on this port.
+  /// Creates the folders of the gadget, after removing those that a killed process left. Errors: device: no
+  /// configfs, no permission, or a running gadget of this program on this port.
   static schema::Result<ConfigfsGadget> create(const std::string& port, const UsbIdentity& identity);
   ConfigfsGadget(ConfigfsGadget&& other) noexcept;
   ConfigfsGadget& operator=(ConfigfsGadget&&) = delete;
   ~ConfigfsGadget();
 
-  /// What to mount, as type functionfs.
+  /// The source to mount, with type functionfs.
   const std::string& instance() const { return instance_; }
-  /// Plugs the device in: from now on the host sees it. Errors: device: the port is taken.
+  /// Plugs the device in: the host can see it. Errors: device: the port is in use.
   schema::Result<void> bind();
-  /// Pulls it out.
+  /// Unplugs the device.
   void unbind();
 
  private:
@@ -48,7 +48,7 @@ class ConfigfsGadget {
   std::string port_, instance_;
 };
 
-/// Lets go of the data line, as pulling the cable does, or takes it again. Errors: device.
+/// Disconnects from the bus, like an unplugged cable, or connects again. Errors: device.
 schema::Result<void> set_connected(const std::string& port, bool connected);
 
 }  // namespace tacto::firmware_host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What becomes of the drive after a fault, seen on the device, in its own ticks.
+// Measures the drive after a fault, in the ticks of the device.
 #pragma once
 
 #include <cmath>
@@ -11,24 +11,24 @@
 
 namespace tacto::firmware_host {
 
-/// A drive's way to zero.
+/// The fall of the drive to zero.
 struct DriveFall {
   double from_v = 0;  ///< level in the tick before the fault
-  double fell_s = 0;  ///< from there to the last tick that had a drive
-  double left_v = 0;  ///< level when the watch ended: 0 where the drive stayed away
-  /// Before the fault: since the tick before which bytes came from the host last.
+  double fell_s = 0;  ///< from that tick to the last tick with a drive
+  double left_v = 0;  ///< level at the end of the observation: 0 if the drive stayed at zero
+  /// Before the fault: the time since the tick before which the last bytes from the host arrived.
   double silent_s = 0;
 };
 
-/// Looks at each tick, and for kWatchS beyond a fault. A drive that crosses zero has not ended: what counts
-/// is the last tick that had one.
+/// Examines each tick, and continues for kWatchS after a fault. A drive that crosses zero has not ended: the
+/// last tick with a drive is decisive.
 class DriveWatch {
  public:
   static constexpr double kWatchS = 0.1;
 
-  /// Bytes have come from the host since the last tick.
+  /// Bytes from the host have arrived since the last tick.
   void heard() { heard_ = true; }
-  /// After each tick. Gives the fall once it has been watched to its end.
+  /// Call after each tick. Returns the fall when its observation is complete.
   std::optional<DriveFall> observe(wire::DriveState state, double drive_v, double period_s) {
     const bool fault = state == wire::DriveState::fault;
     silent_ticks_ = std::exchange(heard_, false) ? 0 : silent_ticks_ + 1;
@@ -46,7 +46,7 @@ class DriveWatch {
     rested_ = drive_v == 0;
     return fall_;
   }
-  /// Whether the last tick was the first one with a drive since a fall was given.
+  /// Whether the last tick was the first one with a drive since a fall was returned.
   bool rose() const { return rose_; }
 
  private:

@@ -27,7 +27,7 @@ bool is(std::span<const std::uint8_t> frame, wire::MessageType type) {
   return header_of(frame).type == static_cast<std::uint8_t>(type);
 }
 
-// Another place each time, so that header, payload and check all have their turn.
+// Another bit each time, so that errors occur in header, payload and check.
 void turn_bit(std::span<std::uint8_t> frame, std::uint64_t count) {
   const std::uint64_t bit = count * 7919 % (frame.size() * 8);
   frame[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
@@ -63,7 +63,7 @@ void FaultInjector::pass_samples(std::vector<std::uint8_t>& frame) {
   if (falls_on(plan_.repeat_every, samples_)) emit(frame);
 }
 
-// A frame as a device of that version would seal it.
+// Changes a frame to one of a device of that version.
 void FaultInjector::claim_version(std::span<std::uint8_t> frame) const {
   if (is(frame, wire::MessageType::welcome)) {
     frame[wire::kHeaderSize] = *plan_.major;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between the core and the cable: frames pass, or go wrong as a plan says.
+// Passes frames from the core to the cable, with the faults of a plan.
 #pragma once
 
 #include <functional>

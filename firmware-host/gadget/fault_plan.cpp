@@ -17,15 +17,15 @@ struct Key {
 };
 
 constexpr Key kKeys[] = {
-    {"corrupt-every", "each Nth message of samples has a bit turned over", &FaultPlan::corrupt_every},
-    {"drop-every", "each Nth message of samples is left out", &FaultPlan::drop_every},
+    {"corrupt-every", "each Nth message of samples has one inverted bit", &FaultPlan::corrupt_every},
+    {"drop-every", "each Nth message of samples is not sent", &FaultPlan::drop_every},
     {"truncate-every", "each Nth message of samples lacks its second half", &FaultPlan::truncate_every},
     {"repeat-every", "each Nth message of samples is sent twice", &FaultPlan::repeat_every},
     {"packet", "no transfer is longer than N bytes", &FaultPlan::packet},
-    {"stall-after", "the endpoint to the host stalls once N frames are sent", &FaultPlan::stall_after},
-    {"unplug-after", "unplugs itself in the middle of frame N+1", &FaultPlan::unplug_after},
-    {"silent-after", "says nothing more once N frames are sent", &FaultPlan::silent_after},
-    {"deaf-after", "takes nothing more after N transfers from the host", &FaultPlan::deaf_after}};
+    {"stall-after", "the endpoint to the host stalls after N frames", &FaultPlan::stall_after},
+    {"unplug-after", "the device disconnects in the middle of frame N+1", &FaultPlan::unplug_after},
+    {"silent-after", "nothing is sent after N frames", &FaultPlan::silent_after},
+    {"deaf-after", "nothing is received after N transfers from the host", &FaultPlan::stop_reading_after}};
 constexpr std::string_view kVersion = "version";
 
 bool read_number(std::string_view text, std::uint64_t& value) {
@@ -35,7 +35,8 @@ bool read_number(std::string_view text, std::uint64_t& value) {
 
 tl::unexpected<schema::Error> bad_value(std::string_view key, std::string_view value,
                                         std::string_view target) {
-  return schema::fail(ErrorKind::usage, fmt::format("'{}' is no {} for {}", value, target, key), "--fault");
+  return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a {} for {}", value, target, key),
+                      "--fault");
 }
 
 Result<void> read_version(std::string_view text, FaultPlan& plan) {
@@ -49,7 +50,7 @@ Result<void> read_version(std::string_view text, FaultPlan& plan) {
   return {};
 }
 
-// Only what happens after a number of frames may happen at once.
+// Zero is permitted only for faults that occur after a number of frames.
 Result<void> read_count(const Key& key, std::string_view text, FaultPlan& plan) {
   std::uint64_t value = 0;
   const bool after = key.name.ends_with("-after");
@@ -65,7 +66,7 @@ Result<void> read_pair(std::string_view pair, FaultPlan& plan) {
   if (name == kVersion) return read_version(value, plan);
   for (const Key& key : kKeys)
     if (key.name == name) return read_count(key, value, plan);
-  return schema::fail(ErrorKind::usage, fmt::format("there is no fault '{}'", name), "--fault",
+  return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a known fault", name), "--fault",
                       "tactograph-gadget --help lists them");
 }
 
@@ -83,7 +84,7 @@ Result<FaultPlan> parse_fault_plan(std::string_view text) {
 
 std::string fault_words() {
   std::string words =
-      fmt::format("  {:<18}{}\n", "version=2.0", "claims to speak that version of the protocol");
+      fmt::format("  {:<18}{}\n", "version=2.0", "the device reports that version of the protocol");
   for (const Key& key : kKeys) words += fmt::format("  {:<18}{}\n", fmt::format("{}=N", key.name), key.words);
   return words;
 }

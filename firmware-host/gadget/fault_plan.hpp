@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a device does wrong on purpose, so that a host can be tested.
+// Intentional faults of a device, so that hosts can be tested.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,26 @@
 
 namespace tacto::firmware_host {
 
-/// Nothing unless asked for. `every` counts messages of samples, from 1; `after` counts all frames that the
-/// device sent since it started, and happens once.
+/// No faults by default. `every` counts messages of samples, from 1; `after` counts all frames that the
+/// device has sent since its start, and the fault occurs once.
 struct FaultPlan {
-  std::optional<std::uint64_t> corrupt_every;   ///< a bit is turned over
-  std::optional<std::uint64_t> drop_every;      ///< left out
-  std::optional<std::uint64_t> truncate_every;  ///< its second half is left out
-  std::optional<std::uint64_t> repeat_every;    ///< sent twice
-  std::optional<std::uint64_t> packet;          ///< no transfer is longer than so many bytes
-  std::optional<std::uint64_t> stall_after;     ///< the endpoint to the host stalls
-  std::optional<std::uint64_t> unplug_after;    ///< in the middle of a frame
-  std::optional<std::uint64_t> silent_after;    ///< nothing more is sent, while the device stays plugged in
-  std::optional<std::uint64_t> deaf_after;      ///< nothing more is received, after so many transfers
-  std::optional<std::uint8_t> major;            ///< of the protocol that it claims to speak
+  std::optional<std::uint64_t> corrupt_every;       ///< one bit is inverted
+  std::optional<std::uint64_t> drop_every;          ///< left out
+  std::optional<std::uint64_t> truncate_every;      ///< its second half is left out
+  std::optional<std::uint64_t> repeat_every;        ///< sent twice
+  std::optional<std::uint64_t> packet;              ///< the largest size of a transfer in bytes
+  std::optional<std::uint64_t> stall_after;         ///< the endpoint to the host stalls
+  std::optional<std::uint64_t> unplug_after;        ///< in the middle of a frame
+  std::optional<std::uint64_t> silent_after;        ///< nothing more is sent, but the device stays plugged in
+  std::optional<std::uint64_t> stop_reading_after;  ///< nothing more is received, after so many transfers
+  std::optional<std::uint8_t> major;                ///< the protocol version in its welcome
   std::uint8_t minor = 0;
 };
 
 /// "corrupt-every=100,version=2.0": see fault_words(). Errors: usage: a key that does not exist (with those
-/// that do), a value that is no number.
+/// that do), a value that is not a number.
 schema::Result<FaultPlan> parse_fault_plan(std::string_view text);
-/// One line for each key, for people.
+/// One line per key, for help.
 std::string fault_words();
 
 }  // namespace tacto::firmware_host

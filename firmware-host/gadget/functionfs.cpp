@@ -25,7 +25,7 @@ tl::unexpected<schema::Error> failed(std::string_view what, const std::string& w
                       std::move(remedy));
 }
 
-/// A folder with the function mounted on it, while the files are opened.
+/// A folder with the function mounted on it, during the opening of the files.
 class Mount {
  public:
   ~Mount() {
@@ -36,7 +36,8 @@ class Mount {
   Result<void> mount(const std::string& instance) {
     std::error_code none;
     std::string pattern = (std::filesystem::temp_directory_path(none) / "tactograph-ffs-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) return failed("no folder to mount on can be made", pattern);
+    if (::mkdtemp(pattern.data()) == nullptr)
+      return failed("the folder of the mount cannot be created", pattern);
     folder_ = pattern;
     mounted_ = ::mount(instance.c_str(), folder_.c_str(), "functionfs", 0, nullptr) == 0;
     if (!mounted_) return failed("FunctionFS cannot be mounted", folder_, "run as root; modprobe usb_f_fs");

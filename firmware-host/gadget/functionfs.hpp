@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernel's door to a USB interface: three files, one for events, one for each endpoint.
+// The kernel's interface to a USB function: three files, one for events, one per endpoint.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct FunctionFs {
   FileDescriptor out;     ///< from the host
 };
 
-/// Mounts the function `instance` where nobody sees it, describes the interface, opens its files. Nothing is
-/// left of the mount once they are closed, however the process ends. Errors: device: no permission, no such
+/// Mounts the function `instance` privately, writes the descriptors of the interface, opens its files. The
+/// mount disappears when they are closed, however the process ends. Errors: device: no permission, no such
 /// function, or the kernel refuses the descriptors.
 schema::Result<FunctionFs> open_functionfs(const std::string& instance);
 

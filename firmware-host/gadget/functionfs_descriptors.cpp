@@ -10,10 +10,10 @@
 namespace tacto::firmware_host {
 namespace {
 
-constexpr std::uint8_t kInEndpoint = 0x81, kOutEndpoint = 0x02;  // a wish: the kernel may give others
+constexpr std::uint8_t kInEndpoint = 0x81, kOutEndpoint = 0x02;  // the kernel may assign others
 constexpr std::uint16_t kEnglish = 0x0409;
 
-/// Little-endian, as USB and FunctionFS want it on every machine.
+/// Little-endian on every machine, as USB and FunctionFS require.
 class Bytes {
  public:
   void u8(std::initializer_list<std::uint8_t> values) { bytes_.insert(bytes_.end(), values); }
@@ -25,7 +25,7 @@ class Bytes {
     u16(static_cast<std::uint16_t>(value >> 16));
   }
   void text(std::string_view text) { bytes_.insert(bytes_.end(), text.begin(), text.end()); }
-  /// The whole's size goes where the header keeps it.
+  /// Writes the total size into the header.
   std::vector<std::uint8_t> with_length_at(std::size_t place) {
     for (std::size_t i = 0; i < 4; ++i)
       bytes_[place + i] = static_cast<std::uint8_t>(bytes_.size() >> (8 * i));

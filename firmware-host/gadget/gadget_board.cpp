@@ -63,8 +63,8 @@ Result<std::unique_ptr<GadgetBoard>> make_gadget_board(const std::string& uri, c
   const std::string_view words = uri;
   if (words.starts_with(kSim)) return make_sim(words.substr(kSim.size()), serial);
   if (words.starts_with(kReplay)) return make_replay(words.substr(kReplay.size()), serial);
-  return schema::fail(ErrorKind::usage, fmt::format("'{}' is no board", uri), "--board",
-                      "there are sim:surface=C and so on, replay:FILE, and replay:FILE,loop=1");
+  return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a known board", uri), "--board",
+                      "use sim: (for example sim:surface=C), replay:FILE, or replay:FILE,loop=1");
 }
 
 }  // namespace tacto::firmware_host

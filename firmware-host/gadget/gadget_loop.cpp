@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostWaiting = 1 << 20;     // bytes for the host: some seconds of frames
 constexpr std::uint64_t kTicksBetweenPolls = 32;  // an eighth of the core's ring
 constexpr std::chrono::milliseconds kIdleWake{
-    50};  // nothing ticks: only the host, or a signal, has to be heard
+    50};  // without ticks, only the host and signals need a response
 
 }  // namespace
 
@@ -63,17 +63,17 @@ void GadgetLoop::step() {
         "{:.3f} V within {:.2f} ms",
         words_of(supervisor.fault(), supervisor.fault_detail()).what, 1e3 * fall->silent_s, fall->from_v,
         fall->left_v, 1e3 * fall->fell_s));
-  if (drive_.rose()) say_("the drive rises for the first time since the fault");
+  if (drive_.rose()) say_("the drive increases for the first time since the fault");
 }
 
 std::uint64_t GadgetLoop::due() {
   double slipped_s = 0;
   const std::uint64_t ticks = pacer_.due(TickPacer::Clock::now(), slipped_s);
   if (slipped_s > 0 && !std::exchange(told_slow_, true))
-    say_(fmt::format(
-        "the board was held up, or this machine is too slow for it: {:.2f} s behind the clock, and going "
-        "on from there (said once)",
-        slipped_s));
+    say_(
+        fmt::format("the board was delayed, or this machine is too slow for it: it continues {:.2f} s behind "
+                    "the clock (printed once)",
+                    slipped_s));
   return ticks;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gadget's main loop: a board's ticks held to the clock, its bytes to and from the cable.
+// The gadget's main loop: runs the board's ticks by the clock, and moves bytes between board and cable.
 #pragma once
 
 #include <functional>
@@ -12,15 +12,15 @@
 
 namespace tacto::firmware_host {
 
-/// One thread. Where the host does not take what the board says, the board is not polled: as on a small
-/// device, its ring fills and it counts what it loses. After a fault it says when the host was heard last,
-/// what became of the drive, and when there is one again.
+/// For one thread. If the host does not read, the board is not polled: as on a small device, its ring fills
+/// and it counts its losses. After a fault it reports the last time of data from the host, the fall of the
+/// drive, and the next rise of the drive.
 class GadgetLoop {
  public:
   GadgetLoop(GadgetBoard& board, UsbLink& link, const FaultPlan& faults,
              std::function<void(const std::string&)> say);
 
-  /// Until `stopped` says so; looked at twenty times a second at least.
+  /// Runs until `stopped` returns true; it is called at least twenty times per second.
   void run(const std::function<bool()>& stopped);
 
  private:

@@ -22,8 +22,8 @@ Result<void> read_id(const std::string& text, GadgetOptions& options) {
   const bool good = colon < text.size() && read_hexadecimal(words.substr(0, colon), options.vendor) &&
                     read_hexadecimal(words.substr(colon + 1), options.product);
   if (good) return {};
-  return schema::fail(ErrorKind::usage, fmt::format("'{}' is no pair of numbers", text), "--id",
-                      "VENDOR:PRODUCT in hexadecimal, as 1209:0001");
+  return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a pair of numbers", text), "--id",
+                      "give VENDOR:PRODUCT in hexadecimal, for example 1209:0001");
 }
 
 Result<void> read_faults(const std::string& text, GadgetOptions& options) {
@@ -76,18 +76,18 @@ Result<GadgetOptions> parse_gadget_options(std::span<const char* const> argument
 
 std::string gadget_help() {
   return fmt::format(
-      R"(tactograph-gadget: makes this machine, through its USB device port, a device for tactograph
+      R"(tactograph-gadget: emulates a tactograph device at the USB device port of this machine
 
 usage: tactograph-gadget [--board BOARD] [--serial TEXT] [--udc PORT] [--id VENDOR:PRODUCT] [--fault FAULTS]
 
-  --board BOARD   where samples come from: sim: (physics; sim:surface=C,speed=50mm/s and so on), or replay:FILE (a
-                  recording's codes, once; replay:FILE,loop=1 again and again). Default: sim:
-  --serial TEXT   its serial number, on USB and in its welcome. Default: the board's own
+  --board BOARD   source of the samples: sim: (physics; for example sim:surface=C,speed=50mm/s), or replay:FILE (a
+                  recording's codes, once; replay:FILE,loop=1 repeats them). Default: sim:
+  --serial TEXT   serial number, on USB and in the welcome message. Default: that of the board
   --udc PORT      the device port, one of /sys/class/udc. Default: the first
   --id V:P        USB vendor and product, hexadecimal. Default: {:04x}:{:04x}, which is for tests and in-house use only
-  --fault FAULTS  goes wrong on purpose, so that a host can be tested. Between commas:
+  --fault FAULTS  simulated faults for tests of a host, separated by commas:
 {}
-Runs until Ctrl-C or SIGTERM; unplugging and plugging in again do not end it. Needs root, libcomposite and usb_f_fs.
+It runs until Ctrl-C or SIGTERM, also after it was unplugged. It needs root, libcomposite and usb_f_fs.
 )",
       usb::kTestVendor, usb::kTestProduct, fault_words());
 }

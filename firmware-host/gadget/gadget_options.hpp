@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the gadget is asked to be on its command line.
+// The command line of the gadget.
 #pragma once
 
 #include <span>
@@ -19,7 +19,7 @@ struct GadgetOptions {
   FaultPlan faults;
 };
 
-/// Errors: usage: an option that does not exist, one without its value, a value that cannot be read.
+/// Errors: usage: an option that does not exist, one without its value, an invalid value.
 schema::Result<GadgetOptions> parse_gadget_options(std::span<const char* const> arguments);
 std::string gadget_help();
 

@@ -7,7 +7,7 @@
 #include <exception>
 
 #include "data-schema/base/standard_descriptors.hpp"
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 #include "firmware-host/gadget/configfs_gadget.hpp"
 #include "firmware-host/gadget/gadget_loop.hpp"
 #include "firmware-host/gadget/gadget_options.hpp"
@@ -24,13 +24,13 @@ void stop_on_signals() {
 }
 
 void say(const std::string& words) {
-  cli::talk(fmt::format("tactograph-gadget: {}\n", words));
+  cli::write_message(fmt::format("tactograph-gadget: {}\n", words));
 }
 
-// Plugged in from here to the end. The link outlives the plug: nothing blocks in it then.
+// Plugged in during this function. The link is destroyed after unplugging, so that it cannot block.
 Result<void> run_plugged(ConfigfsGadget& gadget, GadgetBoard& board, FunctionFs files,
                          const GadgetOptions& options, const std::string& port) {
-  UsbLink link(std::move(files), {port, options.faults.deaf_after, say});
+  UsbLink link(std::move(files), {port, options.faults.stop_reading_after, say});
   if (const auto bound = gadget.bind(); !bound) return bound;
   say(fmt::format("{} with serial {} on {}", options.board, board.serial(), port));
   GadgetLoop(board, link, options.faults, say).run([] { return stop_asked != 0; });

@@ -22,11 +22,11 @@ Result<void> check(const schema::Recording& recording) {
   };
   if (header.format != schema::SampleFormat::pcm32)
     return unsuitable("holds numbers of another program, not a converter's codes",
-                      "only what a device recorded can be a device's");
+                      "only a recording of a device can be replayed");
   if (!header.gaps.empty())
-    return unsuitable("has gaps, and a device's tick leaves none out", "take one without");
+    return unsuitable("has gaps, but a device has none in its ticks", "use a recording without gaps");
   if (header.channels.size() > wire::kMaxChannels)
-    return unsuitable("has more than the 16 channels that a device may have", "");
+    return unsuitable("has more than 16 channels, the limit of a device", "");
   return {};
 }
 
@@ -100,7 +100,7 @@ void ReplayBoard::set_rate(std::uint32_t rate_millihertz) {
   ended_ = !reader_.seek(0);
 }
 
-// False at the end, and where the file cannot be read any more: to the core both are converters that fail.
+// False at the end, or if the file cannot be read any more: the core reports both as failed converters.
 bool ReplayBoard::refill() {
   const auto frames = static_cast<std::size_t>(recording_.header.sample_rate_hz) + 1;
   used_ = 0;

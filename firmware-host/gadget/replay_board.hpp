@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A board whose converters give a recording's codes, one frame a tick.
+// A board whose converters return a recording's codes, one frame per tick.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 
 namespace tacto::firmware_host {
 
-/// The recording begins with the first tick of each time that the board begins to tick. At its end the
-/// converters fail, which ends the stream with that fault; looped, it begins again. Takes drive within its
-/// transducer's limits, where the recording names one, and does nothing with it. Reads ahead by a second.
+/// The recording begins with the first tick each time the board starts to tick. At its end the converters
+/// fail, which ends the stream with that fault; with `loop` it begins again. If the recording names a
+/// transducer, the board accepts drive within its limits and ignores it. Reads ahead by a second.
 class ReplayBoard final : public GadgetBoard {
  public:
-  /// `name` as for open_recording(). Errors: as open_recording() and WavReader::open(); unsuitable: no codes
+  /// `name` as for open_recording(). Errors: as open_recording() and WavReader::open(); unsuitable: not codes
   /// of a converter, gaps, more channels than a device may have.
   static schema::Result<std::unique_ptr<ReplayBoard>> open(const std::string& name, bool loop,
                                                            const std::string& serial);
@@ -48,7 +48,7 @@ class ReplayBoard final : public GadgetBoard {
   std::vector<wire::Note> notes_;
   HostedProfile texture_;
   std::optional<std::size_t> position_;  // the encoder's channel
-  std::vector<std::int32_t> ahead_;      // frames read and not yet given
+  std::vector<std::int32_t> ahead_;      // frames that have been read but not used
   std::size_t used_ = 0;                 // of it
   std::vector<std::int32_t> frame_;
   bool ticking_ = false, ended_ = false;

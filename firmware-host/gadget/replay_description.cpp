@@ -35,7 +35,7 @@ std::string name_of(const schema::Recording& recording) {
   return "replay of " + std::filesystem::path(recording.stem).filename().string();
 }
 
-// The host looks a transducer up by its name: one that it cannot know by that is not named.
+// The host finds a transducer by its name, so only a transducer with a known name is reported.
 bool is_preset(const schema::Transducer& transducer) {
   return schema::read_transducer(transducer.name).has_value();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a recording says of itself when it is played out as a device.
+// The description of a recording that is played as a device.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace tacto::firmware_host {
 
-/// Flagged as simulated, whatever the recording was: what comes now is no measurement. An empty `serial`:
-/// "replay". It has an output where the recording names a transducer.
+/// Always flagged as simulated, because a replay is not a measurement. An empty `serial`: "replay". The
+/// device has an output if the recording names a transducer.
 wire::Welcome replay_welcome(const schema::Recording& recording, const std::string& serial);
 std::vector<wire::Channel> replay_channels(const schema::RecordingHeader& header);
 std::vector<wire::Note> replay_notes(const schema::Recording& recording);

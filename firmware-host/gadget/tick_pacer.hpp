@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ticks held to the clock on the wall.
+// Runs ticks by the wall clock.
 #pragma once
 
 #include <algorithm>
@@ -8,16 +8,15 @@
 
 namespace tacto::firmware_host {
 
-/// Tick k is due at start + k periods, whenever the process wakes: being held up costs no tick, and the rate
-/// does not drift. Wakes for several ticks at once. A board that has fallen far behind does not hurry after
-/// it for ever: the schedule slips.
+/// Tick k is due at start + k periods, however late the process wakes: a delay costs no tick, and the rate
+/// does not drift. One wake-up may run several ticks. If a board is far behind, the schedule shifts instead.
 class TickPacer {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr double kWakeS = 2e-3;    ///< at most this often
-  static constexpr double kBehindS = 0.05;  ///< farther behind than this, the schedule slips
+  static constexpr double kBehindS = 0.05;  ///< if it is farther behind, the schedule shifts
 
-  /// From now on.
+  /// Starts the schedule at `now`.
   void start(double period_s, Clock::time_point now) {
     period_s_ = period_s;
     start_ = now;
@@ -26,7 +25,7 @@ class TickPacer {
   void stop() { period_s_ = 0; }
   bool running() const { return period_s_ > 0; }
 
-  /// Ticks that are due and not done. Gives the time that was given up in `slipped_s`, if any.
+  /// The number of ticks that are due. `slipped_s` returns the shift of the schedule, if any.
   std::uint64_t due(Clock::time_point now, double& slipped_s) {
     const double behind_s = seconds(now - start_) - static_cast<double>(done_) * period_s_;
     slipped_s = behind_s > kBehindS ? behind_s : 0;

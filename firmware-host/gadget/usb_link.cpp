@@ -16,9 +16,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t kTransfer = 16384;        // most bytes of one
-constexpr std::size_t kMostReceived = 1 << 18;  // bytes that the board has not taken
-constexpr milliseconds kNap{20};                // between looks at what no event tells
+constexpr std::size_t kTransfer = 16384;        // the largest transfer, bytes
+constexpr std::size_t kMostReceived = 1 << 18;  // bytes that the board has not read
+constexpr milliseconds kPollInterval{20};       // interval of polling for changes without an event
 
 const char* speed_of(std::size_t packet) {
   return packet >= usb::kSuperSpeedPacket ? "super" : packet >= usb::kHighSpeedPacket ? "high" : "full";
@@ -57,7 +57,7 @@ void UsbLink::wait_until(Clock::time_point time) {
 void UsbLink::watch_events() {
   while (!stopping_) {
     pollfd ready{files_.events.get(), POLLIN, 0};
-    if (::poll(&ready, 1, 5 * static_cast<int>(kNap.count())) > 0) handle_event();
+    if (::poll(&ready, 1, 5 * static_cast<int>(kPollInterval.count())) > 0) handle_event();
   }
 }
 
@@ -68,12 +68,12 @@ void UsbLink::handle_event() {
     case FUNCTIONFS_ENABLE:
       return come_up();
     case FUNCTIONFS_DISABLE:
-      return go_down("the host is gone, or begins anew");
+      return go_down("the host disconnected or restarts");
     case FUNCTIONFS_UNBIND:
       return go_down("the device port is closed");
     case FUNCTIONFS_SETUP:
       return refuse_setup((event.u.setup.bRequestType & USB_DIR_IN) != 0);
-    default:  // bind, suspend, resume: transfers go on where they were
+    default:  // bind, suspend, resume: transfers continue
       return;
   }
 }
@@ -101,17 +101,17 @@ void UsbLink::refuse_setup(bool in) const {
 
 void UsbLink::send_bursts() {
   while (!stopping_) {
-    const Burst burst = to_host_.take(kTransfer, kNap);
+    const Burst burst = to_host_.take(kTransfer, kPollInterval);
     if (!burst.bytes.empty() && !send_burst(burst)) {
       to_host_.clear();
-      std::this_thread::sleep_for(kNap);
+      std::this_thread::sleep_for(kPollInterval);
     } else if (burst.end > BurstEnd::end) {
       do_end(burst.end);
     }
   }
 }
 
-// False where the host is gone. What it has not taken is lost, as on a cable that is pulled.
+// False if the host is gone. Its unread bytes are lost, as with an unplugged cable.
 bool UsbLink::send_burst(const Burst& burst) {
   const auto size = static_cast<ssize_t>(burst.bytes.size());
   if (::write(files_.in.get(), burst.bytes.data(), burst.bytes.size()) != size) return false;
@@ -130,20 +130,20 @@ void UsbLink::do_end(BurstEnd end) {
     settings_.say(schema::message(gone.error()));
 }
 
-// A host that sends faster than the board takes has to wait.
-bool UsbLink::crowded() {
+// A host that sends faster than the board reads has to wait.
+bool UsbLink::input_is_full() {
   const std::lock_guard lock(mutex_);
   return from_host_.size() > kMostReceived;
 }
 
-// Where no host has configured the device, the endpoint gives an error at once.
+// If no host has configured the device, the endpoint returns an error at once.
 void UsbLink::receive_bursts() {
   std::array<std::uint8_t, kTransfer> bytes{};
   for (std::uint64_t transfers = 0; !stopping_;) {
-    const bool deaf = settings_.deaf_after && transfers >= *settings_.deaf_after;
-    const ssize_t got = deaf || crowded() ? -1 : ::read(files_.out.get(), bytes.data(), bytes.size());
+    const bool deaf = settings_.stop_reading_after && transfers >= *settings_.stop_reading_after;
+    const ssize_t got = deaf || input_is_full() ? -1 : ::read(files_.out.get(), bytes.data(), bytes.size());
     if (got < 0) {
-      std::this_thread::sleep_for(kNap);
+      std::this_thread::sleep_for(kPollInterval);
       continue;
     }
     ++transfers;

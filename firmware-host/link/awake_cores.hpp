@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cores that answer at once: no deep idle while a real-time loop runs.
+// Prevents deep idle states of the cores while a real-time loop runs.
 #pragma once
 
 #include <fcntl.h>
@@ -9,9 +9,9 @@
 
 namespace tacto::firmware_host {
 
-/// Asks the kernel (PM QoS, /dev/cpu_dma_latency) that no core sleep so deeply that waking takes time, for as
-/// long as it lives; on virtual machines it also keeps a core from being given away between two ticks.
-/// Without the permission nothing happens.
+/// While this object exists, the kernel (PM QoS, /dev/cpu_dma_latency) does not use idle states with a long
+/// wake-up time; on a virtual machine this also prevents that a core is given away between two ticks. Without
+/// the permission it has no effect.
 class AwakeCores {
  public:
   AwakeCores() noexcept : file_(::open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC)) {

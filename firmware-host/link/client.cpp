@@ -20,9 +20,9 @@ using wire::Parse;
 constexpr double kAnswerTimeoutS = 0.5;
 constexpr double kStallS = 1;
 constexpr int kAttempts = 3;
-constexpr double kMostBehindS = 10;  // of frames that stand before an answer; a device queues no more
+constexpr double kMostBehindS = 10;  // of frames queued before an answer; no device queues more
 constexpr std::size_t kReceiveBytes = 16384;
-constexpr std::size_t kMostTicksKept = 4096;  // messages; 40 s where nobody takes them
+constexpr std::size_t kMostTicksKept = 4096;  // messages; 40 s if no caller fetches them
 
 template <class Message>
 bool understood(const wire::Frame& frame, Message& message) {
@@ -42,7 +42,7 @@ Result<std::unique_ptr<Client>> Client::connect(std::unique_ptr<Transport> trans
 
 Result<void> Client::greet() {
   Asking asking{transport_->now_s(), blocks_seen_};
-  while (may_ask(asking)) {
+  while (may_retry(asking)) {
     if (const auto flushed = asking.times > 1 ? flush() : Result<void>(); !flushed) return flushed;
     const auto greeted = greet_once();
     TACTO_TRY(greeted);
@@ -53,9 +53,9 @@ Result<void> Client::greet() {
   return silent(MessageType::hello, asking);
 }
 
-// A device may have seconds of frames waiting for a slow bus, and its answer stands behind them: as long as
-// they come, it is not silent.
-bool Client::may_ask(Asking& asking) const {
+// With a slow bus a device may have seconds of frames queued before its answer. While frames arrive, it is
+// not silent.
+bool Client::may_retry(Asking& asking) const {
   const bool sends = blocks_seen_ > asking.blocks_seen;
   asking.blocks_seen = blocks_seen_;
   const bool in_time = transport_->now_s() - asking.since_s < kMostBehindS;
@@ -64,14 +64,14 @@ bool Client::may_ask(Asking& asking) const {
   return true;
 }
 
-// An earlier program may have left half a frame: a device that waits for its end gets it, and finds the hello
-// behind it.
+// An earlier program may have sent an incomplete frame. These zeros complete it, so that the device finds the
+// next hello.
 Result<void> Client::flush() {
   constexpr std::array<std::uint8_t, wire::kMaxFrame> kNoFrame{};
   return transport_->write(kNoFrame, kAnswerTimeoutS);
 }
 
-// True once the whole description is here.
+// True if the whole description has been received.
 Result<bool> Client::greet_once() {
   description_ = {};
   description_.welcome.major = 0;
@@ -87,7 +87,7 @@ Result<bool> Client::greet_once() {
   return await(kAnswerTimeoutS, [&] { return described(); });
 }
 
-// Of another version, no more than its welcome can be expected.
+// From another version only the welcome is expected.
 bool Client::described() const {
   const wire::Welcome& welcome = description_.welcome;
   if (welcome.major == 0) return false;
@@ -99,12 +99,11 @@ Result<void> Client::check_version() const {
   const wire::Welcome& device = description_.welcome;
   const bool newer = device.major > wire::kProtocolMajor;
   if (!newer && device.major >= wire::kOldestMajor) return {};
-  return fail(
-      ErrorKind::unsupported_version,
-      fmt::format("'{}' (serial {}, firmware {}) speaks version {}.{} of the protocol; {} speaks {}.{}",
-                  device.name, device.serial, device.firmware, device.major, device.minor, kCreator,
-                  wire::kProtocolMajor, wire::kProtocolMinor),
-      where_, newer ? "update tactograph" : "update the device's firmware");
+  return fail(ErrorKind::unsupported_version,
+              fmt::format("'{}' (serial {}, firmware {}) uses version {}.{} of the protocol; {} uses {}.{}",
+                          device.name, device.serial, device.firmware, device.major, device.minor, kCreator,
+                          wire::kProtocolMajor, wire::kProtocolMinor),
+              where_, newer ? "update tactograph" : "update the device's firmware");
 }
 
 Result<std::uint32_t> Client::send(const Encoder& encode) {
@@ -128,12 +127,12 @@ Result<bool> Client::await(double timeout_s, Done done) {
   return true;
 }
 
-// An answer to any of its attempts will do.
+// The answer may be to any of the attempts.
 Result<void> Client::exchange(const Encoder& encode, MessageType type) {
   answer_.reset();
   const std::uint32_t first = sequence_;
   Asking asking{transport_->now_s(), blocks_seen_};
-  while (may_ask(asking)) {
+  while (may_retry(asking)) {
     TACTO_TRY(send(encode));
     const auto answered = await(kAnswerTimeoutS, [&] {
       return answer_ && answer_->of == type && answer_->of_sequence - first < sequence_ - first;
@@ -141,7 +140,7 @@ Result<void> Client::exchange(const Encoder& encode, MessageType type) {
     TACTO_TRY(answered);
     if (!*answered) continue;
     if (answer_->code != wire::AnswerCode::ok) return refused(type, *answer_);
-    if (obeyed_) obeyed_(sent_);
+    if (on_command_done_) on_command_done_(sent_);
     return {};
   }
   return silent(type, asking);
@@ -155,7 +154,7 @@ tl::unexpected<schema::Error> Client::refused(MessageType type, const wire::Answ
 
 tl::unexpected<schema::Error> Client::silent(MessageType type, const Asking& asking) const {
   return fail(ErrorKind::device,
-              fmt::format("the device did not answer {}, asked {} times in {:g} s", to_string(type),
+              fmt::format("the device did not answer {} (sent {} times in {:g} s)", to_string(type),
                           asking.times, asking.times * kAnswerTimeoutS),
               where_, "unplug it and plug it in again");
 }
@@ -171,7 +170,7 @@ Result<void> Client::send_drive(const wire::Drive& drive) {
 Result<wire::Pulse> Client::heartbeat() {
   pulse_.reset();
   Asking asking{transport_->now_s(), blocks_seen_};
-  while (may_ask(asking)) {
+  while (may_retry(asking)) {
     std::uint32_t token = 0;
     const auto sent = send([&](std::uint32_t sequence, std::span<std::uint8_t> frame) {
       token = sequence;
@@ -207,8 +206,8 @@ Result<void> Client::await_samples(std::size_t frames) {
         await(kStallS, [&] { return samples_.pushed() > before || enough() || converter_failed_; });
     TACTO_TRY(came);
     if (!*came)
-      return fail(ErrorKind::device, fmt::format("no frames have come for {:g} s", kStallS), where_,
-                  "the device has stopped or restarted: see its supply and its cable");
+      return fail(ErrorKind::device, fmt::format("no frames were received for {:g} s", kStallS), where_,
+                  "the device has stopped or restarted: check its supply and its cable");
   }
   return {};
 }
@@ -248,7 +247,7 @@ void Client::accept(const wire::Frame& frame) {
   }
 }
 
-// Another version's welcome may be shorter: what names the device stands first.
+// The welcome of another version may be shorter: the fields that name the device are at the beginning.
 void Client::accept_welcome(const wire::Frame& frame) {
   wire::Welcome welcome;
   const Parse parsed = wire::parse(frame.payload, frame.header.length, welcome);

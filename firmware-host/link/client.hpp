@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The host's side of the wire: greets a device, commands it, and receives its streams, over any transport.
+// The host's side of the wire: greets a device, sends commands, and receives its streams, over any transport.
 #pragma once
 
 #include <functional>
@@ -18,31 +18,31 @@
 
 namespace tacto::firmware_host {
 
-/// What a device said of itself.
+/// The description that a device sends after hello.
 struct Description {
   wire::Welcome welcome;
   std::vector<wire::Channel> channels;
   std::vector<wire::Note> notes;
 };
 
-/// When a frame was taken, and when its message came here.
+/// The time at which a frame was sampled, and the time at which its message arrived.
 struct FrameArrival {
   std::uint64_t frame = 0;  ///< the device's number
   double device_s = 0, host_s = 0;
 };
 
-/// What came from the device damaged, twice or not at all.
+/// Messages from the device that were damaged, repeated or missing.
 struct LinkCounts {
   wire::DecoderCounts frames;
   std::uint32_t lost = 0, stale = 0;
   std::uint32_t refused_drives = 0;
 };
 
-/// One connection. Every call ends within its timeouts, whatever the device does. One thread.
+/// One connection. Every call ends within its timeouts, for any behaviour of the device. For one thread.
 class Client {
  public:
-  /// Says hello and waits for the description, as often as command(). Errors: device: no answer, or none that
-  /// makes sense; unsupported_version: a device of a major version that is not spoken here, by name.
+  /// Sends hello and waits for the description, with the repetitions of command(). Errors: device: no answer,
+  /// or an invalid one; unsupported_version: a device with an unsupported major version, which is named.
   static schema::Result<std::unique_ptr<Client>> connect(std::unique_ptr<Transport> transport,
                                                          std::string where);
 
@@ -50,9 +50,9 @@ class Client {
   Transport& transport() { return *transport_; }
   const std::string& where() const { return where_; }
 
-  /// Sends a command and waits for its answer; sends again where none comes: three times in 1.5 s, and up to
-  /// 10 s while a device is still sending frames that it had before. Errors: device: no answer, gone, or
-  /// refused, with the reason.
+  /// Sends a command and waits for its answer. Without an answer it is sent again: three times in 1.5 s, and
+  /// up to 10 s while the device is still sending frames that it had queued. Errors: device: no answer, gone,
+  /// or refused, with the reason.
   template <class Message>
   schema::Result<void> command(const Message& message) {
     return exchange(
@@ -61,33 +61,35 @@ class Client {
         },
         Message::kType);
   }
-  /// From now on `told` hears each command that the device has obeyed, as the frame that was sent.
-  void listen(std::function<void(std::span<const std::uint8_t> frame)> told) { obeyed_ = std::move(told); }
-  /// Sends without waiting: drive. Errors: device: gone.
+  /// From now on `told` is called after each successful command, with the frame that was sent.
+  void listen(std::function<void(std::span<const std::uint8_t> frame)> told) {
+    on_command_done_ = std::move(told);
+  }
+  /// Sends drive without waiting for an answer. Errors: device: gone.
   schema::Result<void> send_drive(const wire::Drive& drive);
-  /// Feeds the watchdog; gives the device's state. Errors: as of command().
+  /// Resets the watchdog; returns the device's state. Errors: as command().
   schema::Result<wire::Pulse> heartbeat();
 
-  /// Frames begin at 0. Errors: as of command().
+  /// Frames begin at 0. Errors: as command().
   schema::Result<void> start_stream(std::uint32_t rate_millihertz, std::uint8_t block_frames);
   schema::Result<void> stop_stream();
   /// Waits until `frames` are in the queue, or a gap is reached. Errors: device: gone, silent for a second,
-  /// or its converter failed; what came before is in the queue.
+  /// or its converter failed; the frames before the error are in the queue.
   schema::Result<void> await_samples(std::size_t frames);
   SampleQueue& samples() { return samples_; }
 
-  /// Takes in what has come, waiting at most `timeout_s` for it.
+  /// Processes the bytes that have arrived; waits at most `timeout_s` for them.
   schema::Result<void> receive(double timeout_s);
   std::vector<wire::Fault> take_faults() { return std::exchange(faults_, {}); }
   std::vector<wire::Ticks> take_ticks() { return std::exchange(ticks_, {}); }
-  /// The last samples message's.
+  /// Of the last samples message.
   const std::optional<FrameArrival>& last_arrival() const { return last_arrival_; }
   LinkCounts counts() const;
 
  private:
   struct Asking {
     double since_s = 0;
-    std::uint64_t blocks_seen = 0;  // when it was asked last
+    std::uint64_t blocks_seen = 0;  // at the previous attempt
     int times = 0;
   };
   using Encoder = std::function<std::size_t(std::uint32_t sequence, std::span<std::uint8_t> frame)>;
@@ -106,7 +108,7 @@ class Client {
   void accept_welcome(const wire::Frame& frame);
   void accept_samples(const wire::Frame& frame);
   tl::unexpected<schema::Error> refused(wire::MessageType type, const wire::Answer& answer) const;
-  bool may_ask(Asking& asking) const;
+  bool may_retry(Asking& asking) const;
   tl::unexpected<schema::Error> silent(wire::MessageType type, const Asking& asking) const;
 
   std::unique_ptr<Transport> transport_;
@@ -126,9 +128,9 @@ class Client {
   bool converter_failed_ = false;
   std::uint32_t refused_drives_ = 0;
   std::vector<std::uint8_t> received_;
-  std::uint64_t blocks_seen_ = 0;   // messages of samples, of an earlier program too
+  std::uint64_t blocks_seen_ = 0;   // messages of samples, also of an earlier program's stream
   std::vector<std::uint8_t> sent_;  // the last frame
-  std::function<void(std::span<const std::uint8_t>)> obeyed_;
+  std::function<void(std::span<const std::uint8_t>)> on_command_done_;
 };
 
 }  // namespace tacto::firmware_host

@@ -15,10 +15,10 @@ struct CodeRange {
   bool clips(std::int32_t code) const { return code <= least || code >= most; }
 };
 
-/// From a channel's physical range, scale and offset; of a channel without a range, the ends of 32 bits.
+/// From a channel's physical range, scale and offset; without a range, the ends of 32 bits.
 CodeRange code_range(const schema::Channel& channel);
 
-/// How many codes of interleaved whole frames are at an end.
+/// The number of codes at an end, in interleaved whole frames.
 std::uint64_t clipped_codes(std::span<const std::int32_t> interleaved,
                             std::span<const schema::Channel> channels);
 

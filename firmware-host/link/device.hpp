@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The device as the host sees it: what it can do, and its stream of frames. Real and emulated ones are chosen
-// alike.
+// The device for the host: its capabilities and its stream of frames. Real and emulated ones have the same
+// interface.
 #pragma once
 
 #include <cstddef>
@@ -18,80 +18,81 @@
 
 namespace tacto::firmware_host {
 
-/// What a device says of itself when it is opened.
+/// The properties that a device reports when it is opened.
 struct Capabilities {
-  std::string uri;  ///< as it was asked for; on USB the one that tells it from others
+  std::string uri;  ///< as requested; on USB the one that distinguishes it from others
   std::string name;
   std::string serial;
   std::string firmware;   ///< its version
-  std::string simulated;  ///< by what; empty for a real device
-  std::string clock;      ///< what gives the time: "device"
+  std::string simulated;  ///< the name of the simulation; empty for a real device
+  std::string clock;      ///< the time base: "device"
   double sample_rate_hz = 0;
-  /// One a sample of each frame, in order. Physical = code x scale + offset, in `unit`. The transducer's own
-  /// channel, `tangential_force`, is in volts at its output: how many newtons that is depends on the
-  /// transducer's model, and the device does not know it.
+  /// One per sample of each frame, in order. Physical = code x scale + offset, in `unit`. The transducer's
+  /// own channel, `tangential_force`, is in volts at its output: its newtons depend on the model of the
+  /// transducer, which is not part of the device.
   std::vector<schema::Channel> channels;
   std::optional<schema::Transducer> transducer;
-  std::string surface;  ///< what lies on the tray, where the device knows it
+  std::string surface;  ///< the surface on the tray, if the device reports it
 };
 
-/// What has happened in a stream since start().
+/// Counters of a stream since start().
 struct StreamCounts {
   std::uint64_t frames = 0;
   std::uint64_t lost_frames = 0;
-  /// Of what the device sent: messages that came damaged, and that never came (the damaged ones among them).
+  /// Messages from the device that were damaged, and that are missing (including the damaged ones).
   std::uint64_t damaged_messages = 0, missing_messages = 0;
-  std::uint64_t clipped = 0;  ///< samples at either end of a converter's range, over all channels
+  std::uint64_t clipped = 0;  ///< samples at either end of a converter's range, in all channels
 };
 
-/// When a frame was taken by the device's clock, and when its message was here by the host's steady clock.
+/// The sampling time of a frame by the device's clock, and the arrival time of its message by the host's
+/// steady clock.
 struct ClockPair {
-  std::uint64_t device_sequence = 0;  ///< the frame's number, lost ones counted
+  std::uint64_t device_sequence = 0;  ///< the frame's number, lost frames included
   double device_s = 0, host_s = 0;
 };
 
-/// Something went wrong on the device; words_of() says it to people.
+/// A fault of the device; words_of() gives its message.
 struct DeviceFault {
-  std::uint64_t frame = 0;  ///< frames given before it was known
+  std::uint64_t frame = 0;  ///< number of frames returned before it was reported
   wire::FaultCode code = wire::FaultCode::none;
   std::uint32_t detail = 0;
 };
 
-/// What a stream brought beside its frames.
+/// The events of a stream.
 struct StreamEvents {
-  std::vector<schema::Gap> gaps;  ///< `frame` counts the frames given since start()
+  std::vector<schema::Gap> gaps;  ///< `frame` counts the frames returned since start()
   std::vector<ClockPair> clock_pairs;
   std::vector<DeviceFault> faults;
 };
 
 class Client;
 
-/// A device that is open. Not safe to share between threads.
+/// An open device. Not safe to share between threads.
 class Device {
  public:
   virtual ~Device() = default;
 
   virtual const Capabilities& capabilities() const = 0;
-  /// Begins the stream. Errors: device.
+  /// Starts the stream. Errors: device.
   virtual schema::Result<void> start() = 0;
-  /// Fills whole frames, at most as many as fit; a sample is a converter code left-justified in 32 bits, of
-  /// an encoder its plain count. Gives the number of frames; 0 where the stream has ended. It stops short at
-  /// a gap: missing frames are never within what it gives, and take_events() has them before the frames that
-  /// follow are given. Errors: device: not started, gone, or failed, after all frames that came before.
+  /// Fills whole frames, at most as many as fit; a sample is a converter code left-justified in 32 bits, or
+  /// the plain count of an encoder. Returns the number of frames; 0 if the stream has ended. It stops at a
+  /// gap: the returned frames never contain a gap, and take_events() has the gap before the frames after it
+  /// are returned. Errors: device: not started, gone, or failed, after all earlier frames.
   virtual schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) = 0;
-  /// Ends the stream. Errors: device.
+  /// Stops the stream. Errors: device.
   virtual schema::Result<void> stop() = 0;
   virtual StreamCounts counts() const = 0;
-  /// Whether frames come by the clock on the wall, and are lost where nobody takes them.
-  virtual bool keeps_time() const { return true; }
-  /// What has happened since the last call, or start().
+  /// Whether frames arrive in real time, and are lost if they are not read.
+  virtual bool is_real_time() const { return true; }
+  /// The events since the last call, or start().
   virtual StreamEvents take_events() { return {}; }
-  /// One question and its answer, by the clock on the wall; not while streaming. Errors: device: no answer;
-  /// unsuitable: nobody is there to answer, as in a replay.
+  /// The time of one request and its answer, by the wall clock; not while streaming. Errors: device: no
+  /// answer; unsuitable: there is no device, as in a replay.
   virtual schema::Result<double> round_trip_s() {
-    return schema::fail(schema::ErrorKind::unsuitable, "answers no questions", capabilities().uri);
+    return schema::fail(schema::ErrorKind::unsuitable, "does not answer requests", capabilities().uri);
   }
-  /// The conversation itself, for what is no stream: drive. Null where nobody is there to answer.
+  /// The client of the connection, for drive. Null if there is no device to control.
   virtual Client* conversation() { return nullptr; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An encoder's counts as the device itself takes them, for folders that have nothing to do with its core.
+// Differences of encoder counts as in the device, for folders that do not include its core.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace tacto::firmware_host {
 
-/// From one count to another, the short way: a counter of 32 bits that passes 2^31 goes on.
+/// The shorter way between two counts: a 32-bit counter that overflows at 2^31 continues.
 inline std::int32_t counts_between(std::int32_t from, std::int32_t to) noexcept {
   return core::counts_between(from, to);
 }

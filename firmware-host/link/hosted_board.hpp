@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What boards have in common whose core runs in a process of this computer.
+// Common parts of boards whose core runs in a process on this computer.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace tacto::firmware_host {
 
-/// Room for a texture: 16 MB, of which the system gives only what is written to.
+/// Memory for a texture: 16 MB, allocated by the system only when it is written.
 class HostedProfile {
  public:
-  /// A metre of texture on a 1 um grid, in all its levels.
+  /// One metre of texture on a 1 um grid, with all levels.
   static constexpr std::uint32_t kSamples = 1U << 22;
   float* data() { return samples_.get(); }
 
@@ -24,7 +24,7 @@ class HostedProfile {
   std::unique_ptr<float[]> samples_ = std::make_unique_for_overwrite<float[]>(kSamples);
 };
 
-/// The core's view of what the board keeps, and goes on keeping.
+/// The board's description for the core; the arguments must outlive it.
 inline core::Board board_of(const wire::Welcome& welcome, const std::vector<wire::Channel>& channels,
                             const std::vector<wire::Note>& notes, HostedProfile& profile) {
   core::Board board;
@@ -38,7 +38,7 @@ inline core::Board board_of(const wire::Welcome& welcome, const std::vector<wire
   return board;
 }
 
-/// Moves the first bytes that wait to `bytes`, as many as fit; gives their number.
+/// Moves the first bytes of `waiting` to `bytes`, as many as fit; returns their number.
 inline std::size_t take_first(std::vector<std::uint8_t>& waiting, std::span<std::uint8_t> bytes) {
   const std::size_t size = std::min(bytes.size(), waiting.size());
   std::copy_n(waiting.begin(), size, bytes.begin());

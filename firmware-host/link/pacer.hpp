@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emulated time that waits for the clock on the wall.
+// Paces emulated time by the wall clock.
 #pragma once
 
 #include <chrono>
@@ -7,17 +7,17 @@
 
 namespace tacto::firmware_host {
 
-/// Keeps emulated time from running ahead of real time by more than a millisecond. Where the process was held
-/// up, emulated time catches up.
+/// Prevents emulated time from being ahead of real time by more than a millisecond. After a delay of the
+/// process, emulated time catches up.
 class Pacer {
  public:
   void wait_until(double emulated_s) const {
     if (due(emulated_s) - Clock::now() > kSlack) std::this_thread::sleep_until(due(emulated_s));
   }
-  /// However short the wait.
+  /// Also for waits shorter than kSlack.
   void sleep_until(double emulated_s) const { std::this_thread::sleep_until(due(emulated_s)); }
 
-  /// Real time since this began.
+  /// Real time since construction.
   double now_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
  private:

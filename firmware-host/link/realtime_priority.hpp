@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A thread that must not wait for others' work, for as long as it is needed.
+// Real-time priority of a thread for the lifetime of an object.
 #pragma once
 
 #include <pthread.h>
@@ -7,9 +7,9 @@
 
 namespace tacto::firmware_host {
 
-/// Gives the calling thread a priority of SCHED_FIFO (1 is the lowest; 0: none), where the user may have it,
-/// and takes it back at the end; threads made in between inherit it. Without the permission nothing happens:
-/// `tactograph doctor` says whether there is one. Made and destroyed by the same thread.
+/// Sets the priority of the calling thread to SCHED_FIFO (1 is the lowest; 0: no change) if the user has the
+/// permission, and restores it in the destructor; threads created in between inherit it. Without the
+/// permission it has no effect: `tactograph doctor` reports it. Construct and destroy it in the same thread.
 class RealtimePriority {
  public:
   explicit RealtimePriority(int priority = 1) noexcept {

@@ -50,7 +50,7 @@ std::size_t SampleQueue::take(std::span<std::int32_t> interleaved) {
   return count;
 }
 
-// Moves what is left to the front once that is the smaller half.
+// Moves the remaining codes to the front when they are less than half.
 void SampleQueue::compact() {
   if (used_ * 2 < codes_.size()) return;
   codes_.erase(codes_.begin(), codes_.begin() + used_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames between the wire and whoever reads, in order, with what is missing.
+// A queue of frames between the wire and the reader, in order, with gaps.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,20 @@
 
 namespace tacto::firmware_host {
 
-/// Frames are numbered by the device; a number that is passed over is a gap, one that was here before is
-/// dropped. Memory: what was pushed and not yet taken.
+/// The device numbers the frames: a missing number is a gap, a repeated one is dropped. Memory: the frames
+/// that have not been read.
 class SampleQueue {
  public:
   void begin(std::size_t channels);
   void push(const wire::Samples& samples);
 
-  /// Whole frames that can be taken before the next gap.
+  /// Whole frames before the next gap.
   std::size_t frames() const;
   bool has_gap() const { return !gaps_.empty(); }
   bool at_gap() const { return !gaps_.empty() && gaps_.front().frame == taken_; }
-  /// A gap that stands before the next frame: `frame` counts the frames that were taken before it.
-  /// Precondition: at_gap().
+  /// The gap before the next frame: `frame` is the number of frames read before it. Precondition: at_gap().
   schema::Gap take_gap();
-  /// Fills whole frames, at most frames(); gives their number.
+  /// Fills whole frames, at most frames(); returns their number.
   std::size_t take(std::span<std::int32_t> interleaved);
   std::uint64_t pushed() const { return pushed_; }
   std::uint64_t lost() const { return lost_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a device says of itself, as capabilities. A device may say anything: what cannot be used is refused
-// here.
+// Converts a device's description to capabilities. A device may send any values; those that cannot be used
+// are refused here.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Result<schema::Channel> channel_of(const wire::Channel& said, const std::string&
   const auto quantity = schema::quantity_named(said.quantity);
   if (!quantity)
     return fail(ErrorKind::device,
-                fmt::format("its channel {} is of no known quantity: '{}'", said.index, said.quantity), where,
+                fmt::format("its channel {} has an unknown quantity: '{}'", said.index, said.quantity), where,
                 quantity.error().remedy);
   if (!std::isfinite(said.scale) || said.scale == 0 || !std::isfinite(said.offset))
     return fail(ErrorKind::device, fmt::format("its channel '{}' has no usable scale or offset", said.name),
@@ -47,7 +47,7 @@ std::string note_of(const Description& description, wire::NoteKind kind) {
   return {};
 }
 
-// The device, and behind a colon what its samples are of.
+// The device, and after a colon the source of its samples.
 std::string simulated_samples(const Description& description) {
   std::string said;
   for (const wire::Note& note : description.notes)
@@ -66,8 +66,8 @@ Result<Capabilities> capabilities_of(const Description& description, std::string
   Capabilities capabilities;
   capabilities.sample_rate_hz = 1e-3 * description.welcome.default_rate_millihertz;
   if (capabilities.sample_rate_hz <= 0 || description.channels.empty())
-    return fail(ErrorKind::device, "the device names no sampling rate or no channel", uri,
-                "see its firmware");
+    return fail(ErrorKind::device, "the device reports no sampling rate or no channel", uri,
+                "check its firmware");
   for (const wire::Channel& said : description.channels) {
     auto channel = channel_of(said, uri);
     TACTO_TRY(channel);

@@ -13,14 +13,14 @@ namespace {
 using schema::ErrorKind;
 using schema::Result;
 
-constexpr double kBlockS = 5e-3;  // of frames in a message: small against what people see
+constexpr double kBlockS = 5e-3;  // of frames in a message: imperceptible in a live view
 constexpr double kClockPairEveryS = 1;
 
 std::uint8_t block_frames(double rate_hz) {
   return static_cast<std::uint8_t>(std::clamp(rate_hz * kBlockS, 1.0, double{wire::kMaxBlockFrames}));
 }
 
-// The counters run over, as their differences do.
+// The counters wrap, and so does their difference.
 std::uint32_t damaged(const LinkCounts& link) {
   return link.frames.oversize + link.frames.bad_check + link.frames.truncated;
 }
@@ -50,7 +50,7 @@ Result<void> WireDevice::start() {
   return started;
 }
 
-// A loss is counted when its gap is told, not when it is known: whoever reads compares the two.
+// A loss is counted when its gap is returned, not when it is detected, because readers compare the two.
 void WireDevice::take_gaps() {
   while (client_->samples().at_gap()) {
     events_.gaps.push_back(client_->samples().take_gap());
@@ -70,7 +70,7 @@ void WireDevice::note_clock() {
   events_.clock_pairs.push_back({arrival->frame, arrival->device_s, arrival->host_s});
 }
 
-// Frames that came before an error are given before the error is.
+// Frames before an error are returned before the error.
 Result<std::size_t> WireDevice::read(std::span<std::int32_t> interleaved) {
   if (!started_) return schema::fail(ErrorKind::device, "the device is not started", capabilities_.uri);
   const std::size_t channels = capabilities_.channels.size(), target = interleaved.size() / channels;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A device that speaks the wire, as a Device: whatever the transport.
+// A device that uses the wire protocol, over any transport.
 #pragma once
 
 #include "firmware-host/link/client.hpp"
@@ -7,8 +7,8 @@
 
 namespace tacto::firmware_host {
 
-/// Streams at the device's default rate. What the device says of itself becomes its capabilities; its
-/// transducer, named by a note, is read as read_transducer() does.
+/// Streams at the device's default rate. Its description becomes its capabilities; its transducer, named by a
+/// note, is read as in read_transducer().
 class WireDevice final : public Device {
  public:
   /// Connects. Errors: as Client::connect(); device: a description that cannot be used; as read_transducer().
@@ -24,7 +24,7 @@ class WireDevice final : public Device {
   schema::Result<double> round_trip_s() override;
 
   Client* conversation() override { return client_.get(); }
-  /// For what is not a stream: drive, heartbeat.
+  /// For functions besides the stream: drive, heartbeat.
   Client& client() { return *client_; }
 
  private:
@@ -43,11 +43,12 @@ class WireDevice final : public Device {
   double next_pair_s_ = 0;
 };
 
-/// By what the device is simulated, whatever it does: its first note of that. Empty for a real one.
+/// The name of the device's simulation, from its first note of that kind. Empty for a real device.
 std::string simulated_device(const Description& description);
 
-/// Capabilities from a description; `simulated` says also what the samples are of. Errors: device: no rate,
-/// no channel, a channel of an unknown quantity or with a scale that is no number; as read_transducer().
+/// Capabilities from a description; `simulated` also contains the source of the samples. Errors: device: no
+/// rate, no channel, a channel of an unknown quantity or with a scale that is not a number; as
+/// read_transducer().
 schema::Result<Capabilities> capabilities_of(const Description& description, std::string uri);
 
 }  // namespace tacto::firmware_host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values as the wire's fields hold them.
+// Converts values to fields of the wire.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace tacto::firmware_host {
 
-/// UTF-8, filled up with zeros; what is too long is cut before the character that does not fit whole.
+/// UTF-8, padded with zeros; a text that is too long is cut before the first character that does not fit.
 template <std::size_t kSize>
 void put_text(char (&field)[kSize], std::string_view text) {
   std::size_t size = std::min(text.size(), kSize - 1);
@@ -30,7 +30,7 @@ inline wire::Note note_of(wire::NoteKind kind, std::string_view text) {
   return note;
 }
 
-/// The core's limits are single precision: never above the transducer's.
+/// Single precision, rounded towards zero, so that the core's limit is never above the transducer's.
 inline float not_above(double limit) {
   const auto nearest = static_cast<float>(limit);
   return static_cast<double>(nearest) > limit ? std::nextafter(nearest, 0.0F) : nearest;
@@ -40,7 +40,7 @@ inline std::uint32_t millihertz(double rate_hz) {
   return static_cast<std::uint32_t>(std::llround(rate_hz * 1e3));
 }
 
-/// Messages that carry their place in a list.
+/// Sets the index in each message of a list.
 template <class Message>
 std::vector<Message> numbered(std::vector<Message> messages) {
   for (std::size_t i = 0; i < messages.size(); ++i) messages[i].index = static_cast<std::uint8_t>(i);

@@ -15,29 +15,28 @@ using wire::MessageType;
 FaultWords words_of(FaultCode code, std::uint32_t detail) {
   switch (code) {
     case FaultCode::none:
-      return {"nothing is wrong", ""};
+      return {"no fault", ""};
     case FaultCode::host_silent:
-      return {fmt::format("the device heard nothing from this computer for {} ticks", detail),
-              "see whether the computer stalls; a longer watchdog waits longer"};
+      return {fmt::format("the device received nothing from this computer for {} ticks", detail),
+              "check whether the computer stalls, or use a longer watchdog time"};
     case FaultCode::enable_open:
       return {"the hardware enable input is open", "close it, disarm and arm again"};
     case FaultCode::encoder_jump:
       return {fmt::format("the encoder jumped by {} counts in one tick", detail),
-              "check the encoder's cable and its mount, and whether the finger may go faster than the limit "
-              "(of the "
-              "daemon: most_speed_mps); then disarm and arm again"};
+              "check the encoder's cable and mount, and whether the finger can exceed the speed limit "
+              "(daemon: most_speed_mps); then disarm and arm again"};
     case FaultCode::drive_underrun:
-      return {fmt::format("the drive from this computer did not come for {} ticks", detail),
-              "send further ahead, or let the device close the loop"};
+      return {fmt::format("no drive from this computer arrived for {} ticks", detail),
+              "send the drive earlier, or let the device close the loop"};
     case FaultCode::not_a_number:
-      return {"the drive was no finite number", "check texture, gain and filters"};
+      return {"the drive was not a finite number", "check texture, gain and filters"};
     case FaultCode::converter:
       return {"a converter of the device failed", "check its supply and its cables"};
     case FaultCode::ring_full:
       return {fmt::format("the device could not send fast enough; {} records are lost", detail),
-              "a lower rate, or fewer channels"};
+              "use a lower rate or fewer channels"};
   }
-  return {fmt::format("the device reports fault {}, which is of a newer version", static_cast<int>(code)),
+  return {fmt::format("the device reports fault {} of a newer version", static_cast<int>(code)),
           "update tactograph"};
 }
 
@@ -55,25 +54,26 @@ FaultWords words_of(AnswerCode code, std::uint32_t detail) {
     case AnswerCode::wrong_state:
       return {fmt::format("the device is {}", to_string(static_cast<DriveState>(detail))), "disarm first"};
     case AnswerCode::too_large:
-      return {fmt::format("the device can hold {}", detail), ""};
+      return {fmt::format("the limit of the device is {}", detail), ""};
     case AnswerCode::check_failed:
-      return {"what arrived is not what was sent", "send it again"};
+      return {"the received data differ from the sent data", "send it again"};
     case AnswerCode::incomplete:
-      return {fmt::format("the device has {} samples of it", detail), "send the rest"};
+      return {fmt::format("the device received only {} samples", detail), "send the remaining samples"};
     case AnswerCode::no_limits:
       return {"the device has no limits yet", "set them before arming"};
     case AnswerCode::enable_open:
       return {"the hardware enable input is open", "close it"};
     case AnswerCode::wrong_version:
-      return {fmt::format("the device speaks version {} of the protocol", detail), "update the older side"};
+      return {fmt::format("the device uses version {} of the protocol", detail), "update the older side"};
   }
-  return {fmt::format("the device refuses, for reason {}", static_cast<int>(code)), "update tactograph"};
+  return {fmt::format("the device refused with the unknown reason {}", static_cast<int>(code)),
+          "update tactograph"};
 }
 
 std::string_view to_string(DriveState state) {
   constexpr std::string_view kWords[] = {"idle", "armed", "playing", "in fault"};
   const auto index = static_cast<std::size_t>(state);
-  return index < std::size(kWords) ? kWords[index] : "not greeted yet";
+  return index < std::size(kWords) ? kWords[index] : "not connected yet";
 }
 
 std::string_view to_string(MessageType type) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The protocol's numbers in words for people.
+// Messages for the numbers of the protocol.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace tacto::firmware_host {
 
-/// What happened, and what to do about it.
+/// A message and its remedy.
 struct FaultWords {
   std::string what, remedy;
 };
 
-/// "nothing was heard from the host for 1000 ticks". Codes of newer versions are named by their number.
+/// "nothing was heard from the host for 1000 ticks". Codes of newer versions are given by their number.
 FaultWords words_of(wire::FaultCode code, std::uint32_t detail);
 /// Why a command was refused.
 FaultWords words_of(wire::AnswerCode code, std::uint32_t detail);

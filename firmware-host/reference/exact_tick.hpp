@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tick kernel again, in double precision: what single precision costs is measured against it.
+// The tick kernel in double precision: the reference for the error of single precision.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace tacto::firmware_host {
 
-/// What a kernel is asked to play.
+/// The input of a kernel.
 struct TickSetup {
   wire::ProfileBegin scale;
   std::vector<float> profile;  ///< scale.samples of them
@@ -20,7 +20,7 @@ struct TickSetup {
 };
 
 /// drive = limits(envelope x sections(gain x profile(count))), as core::TickKernel states it, written from
-/// those formulas and not from its source: positions as doubles (to 2^-20 of a sample on 2^32 counts), fmod
+/// those formulas and not from its source: positions as doubles (to 2^-20 of a sample for 2^32 counts), fmod
 /// for the ends, the sections in direct form I. Slow; not for the tick.
 class ExactTick {
  public:

@@ -49,7 +49,7 @@ Result<void> ReplayDevice::start() {
   return {};
 }
 
-// A gap that stands before the next frame becomes an event; the next one bounds what may be read.
+// A gap before the next frame becomes an event; the following gap limits the number of frames.
 std::size_t ReplayDevice::until_gap(std::size_t frames) {
   const auto& gaps = recording_.header.gaps;
   for (; next_gap_ < gaps.size() && gaps[next_gap_].frame <= counts_.frames; ++next_gap_) {
@@ -88,12 +88,14 @@ Result<std::unique_ptr<Device>> open_replay_device(const std::string& uri, std::
   const bool paced = parameters.ends_with(kPaced);
   if (paced) parameters.remove_suffix(kPaced.size());
   if (parameters.empty())
-    return schema::fail(ErrorKind::usage, "names no recording", uri, "as replay:oak, or replay:oak,paced=1");
+    return schema::fail(ErrorKind::usage, "contains no recording", uri,
+                        "give for example replay:oak, or replay:oak,paced=1");
   auto recording = schema::open_recording(std::string(parameters));
   TACTO_TRY(recording);
   if (recording->header.format != schema::SampleFormat::pcm32)
-    return schema::fail(ErrorKind::unsuitable, "holds numbers of another program, not a converter's codes",
-                        uri, "only what a device recorded can be replayed as one");
+    return schema::fail(ErrorKind::unsuitable,
+                        "contains numbers of another program, not codes of a converter", uri,
+                        "only a recording of a device can be replayed");
   return std::make_unique<ReplayDevice>(uri, std::move(*recording), paced);
 }
 

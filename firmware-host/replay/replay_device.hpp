@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording as a device: its frames again, with its gaps.
+// A recording as a device: the same frames, with the same gaps.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace tacto::firmware_host {
 
-/// Gives the codes that a recording holds, in its channels and at its rate; then the stream has ended. A gap
-/// in the recording is a gap in the stream. Runs as fast as it can, or paced. Reads as it goes: memory does
-/// not grow with the recording.
+/// Returns the codes of a recording, with its channels and its rate; then the stream ends. A gap in the
+/// recording is a gap in the stream. Runs at full speed, or paced. Reads the file during the replay: memory
+/// does not depend on the length of the recording.
 class ReplayDevice final : public Device {
  public:
   ReplayDevice(std::string uri, schema::Recording recording, bool paced);
@@ -21,7 +21,7 @@ class ReplayDevice final : public Device {
   schema::Result<void> start() override;
   schema::Result<std::size_t> read(std::span<std::int32_t> interleaved) override;
   schema::Result<void> stop() override;
-  bool keeps_time() const override { return paced_; }
+  bool is_real_time() const override { return paced_; }
   StreamCounts counts() const override { return counts_; }
   StreamEvents take_events() override;
 
@@ -34,13 +34,14 @@ class ReplayDevice final : public Device {
   Capabilities capabilities_;
   std::optional<schema::WavReader> reader_;
   std::optional<Pacer> pacer_;
-  std::size_t next_gap_ = 0;  // of the recording's
+  std::size_t next_gap_ = 0;  // among the gaps of the recording
   StreamCounts counts_;
   StreamEvents events_;
 };
 
-/// `parameters` is what follows "replay:": a recording's stem or file, and ",paced=1" where wanted. Errors:
-/// as open_recording(); usage: no file; unsuitable: a recording of physical numbers, which no converter gave.
+/// `parameters` is the text after "replay:": a recording's stem or file, optionally with ",paced=1". Errors:
+/// as open_recording(); usage: no file; unsuitable: a recording of physical numbers, which are not converter
+/// codes.
 schema::Result<std::unique_ptr<Device>> open_replay_device(const std::string& uri,
                                                            std::string_view parameters);
 

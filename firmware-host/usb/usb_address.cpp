@@ -28,13 +28,14 @@ bool meant(const UsbName& name, const UsbAddress& address) {
 
 tl::unexpected<schema::Error> not_there(const std::vector<UsbName>& names, const UsbAddress& address) {
   if (names.empty())
-    return fail(ErrorKind::not_found, "no device is on USB", "device",
-                "plug it in and switch it on; 'tactograph scan' lists what is there, emulated devices too");
+    return fail(
+        ErrorKind::not_found, "no device was found on USB", "device",
+        "plug it in and switch it on; 'tactograph scan' lists available devices, including emulated ones");
   const bool by_serial = !address.serial.empty();
   return fail(ErrorKind::not_found,
-              by_serial ? fmt::format("no device on USB has the serial '{}'", address.serial)
-                        : fmt::format("no device is on USB port '{}'", address.port),
-              "device", fmt::format("there are: {}", fmt::join(uris_of(names), ", ")));
+              by_serial ? fmt::format("no device on USB has the serial number '{}'", address.serial)
+                        : fmt::format("no device was found on USB port '{}'", address.port),
+              "device", fmt::format("devices on USB: {}", fmt::join(uris_of(names), ", ")));
 }
 
 }  // namespace
@@ -45,8 +46,9 @@ Result<UsbAddress> parse_usb_address(std::string_view parameters) {
   const bool by_serial = parameters.starts_with(kSerialKey), by_port = parameters.starts_with(kPortKey);
   const std::string value(parameters.substr(by_serial ? kSerialKey.size() : by_port ? kPortKey.size() : 0));
   if ((!by_serial && !by_port) || value.empty() || value.find(',') != std::string::npos)
-    return fail(ErrorKind::usage, fmt::format("'{}' names no device on USB", parameters), "device",
-                "give usb: (the only one), usb:serial=XYZ or usb:port=1-2; 'tactograph scan' lists them");
+    return fail(
+        ErrorKind::usage, fmt::format("'{}' is not an address of a device on USB", parameters), "device",
+        "give usb: (if there is only one), usb:serial=XYZ or usb:port=1-2; 'tactograph scan' lists them");
   (by_serial ? address.serial : address.port) = value;
   return address;
 }
@@ -65,8 +67,8 @@ Result<std::size_t> choose_usb(const std::vector<UsbName>& names, const UsbAddre
   const auto found = std::find_if(names.begin(), names.end(), target);
   if (found == names.end()) return not_there(names, address);
   if (std::count_if(names.begin(), names.end(), target) > 1)
-    return fail(ErrorKind::usage, fmt::format("{} devices are on USB", names.size()), "device",
-                fmt::format("name one with -d: {}", fmt::join(uris_of(names), ", ")));
+    return fail(ErrorKind::usage, fmt::format("there are {} devices on USB", names.size()), "device",
+                fmt::format("choose one with -d: {}", fmt::join(uris_of(names), ", ")));
   return static_cast<std::size_t>(found - names.begin());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which device on USB is meant.
+// The address of a device on USB.
 #pragma once
 
 #include <string>
@@ -10,25 +10,26 @@
 
 namespace tacto::firmware_host {
 
-/// What follows "usb:". Both empty: the only one there is.
+/// The text after "usb:". Both empty: the only device.
 struct UsbAddress {
   std::string serial;
-  std::string port;  ///< bus, and the ports on the way to it, as the kernel names them: "1-2.4"
+  std::string port;  ///< bus and the ports up to the device, in the kernel's notation: "1-2.4"
 };
 
-/// "", "serial=XYZ" or "port=1-2.4"; a serial may hold any byte but the comma. Errors: usage.
+/// "", "serial=XYZ" or "port=1-2.4"; a serial may contain any byte except a comma. Errors: usage.
 schema::Result<UsbAddress> parse_usb_address(std::string_view parameters);
 
-/// A device as far as it is known before it is opened.
+/// The properties of a device that are known before it is opened.
 struct UsbName {
-  std::string serial;  ///< empty where it has none, or this user may not ask it
+  std::string serial;  ///< empty if it has none, or if this user may not read it
   std::string port;
 };
 
-/// The URI that tells `names[index]` from the others: by serial, or by port where that is no serial of one.
+/// The URI that identifies `names[index]`: by serial, or by port if the serial is missing or not unique.
 std::string usb_uri(const std::vector<UsbName>& names, std::size_t index);
 
-/// Which of `names` is meant. Errors: not_found: it is not there; usage: several are, naming them.
+/// The index of the device in `names`. Errors: not_found: it does not exist; usage: several match, with their
+/// names.
 schema::Result<std::size_t> choose_usb(const std::vector<UsbName>& names, const UsbAddress& address);
 
 }  // namespace tacto::firmware_host

@@ -12,11 +12,11 @@ using schema::Result;
 Result<std::shared_ptr<libusb_context>> begin_usb() {
   libusb_context* context = nullptr;
   if (const int code = libusb_init(&context); code != 0)
-    return usb_failure(code, "beginning with USB", "device");
-  return std::shared_ptr<libusb_context>(context, UsbGiveBack());
+    return usb_failure(code, "initialising USB", "device");
+  return std::shared_ptr<libusb_context>(context, UsbDeleter());
 }
 
-// The connection is made first: it keeps libusb's session for what is found.
+// The connection is created first, because it owns the libusb session of the found devices.
 Result<UsbConnection> UsbConnection::open(const UsbAddress& address) {
   auto context = begin_usb();
   TACTO_TRY(context);
@@ -32,7 +32,7 @@ Result<UsbConnection> UsbConnection::open(const UsbAddress& address) {
   return connection;
 }
 
-// Detaching a kernel's driver is asked for where the system can; where it can't, claiming says busy.
+// Detaches a kernel driver if the system supports it; otherwise claiming returns "busy".
 Result<void> UsbConnection::claim(const UsbFound& found) {
   interface_ = found.interface;
   libusb_device_handle* handle = nullptr;
@@ -44,7 +44,7 @@ Result<void> UsbConnection::claim(const UsbFound& found) {
   if (claimed != 0) return usb_failure(claimed, "claiming its interface", uri_);
   if (interface_.setting == 0) return {};
   const int set = libusb_set_interface_alt_setting(handle, interface_.number, interface_.setting);
-  if (set != 0) return usb_failure(set, "choosing its interface's setting", uri_);
+  if (set != 0) return usb_failure(set, "selecting the setting of its interface", uri_);
   return {};
 }
 

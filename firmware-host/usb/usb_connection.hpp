@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An opened device on USB, its interface claimed.
+// An open USB device with its interface claimed.
 #pragma once
 
 #include <memory>
@@ -9,13 +9,13 @@
 
 namespace tacto::firmware_host {
 
-/// A session with libusb. It looks at the bus when it begins, which takes milliseconds. Errors: device.
+/// A session with libusb. It scans the bus at the start, which takes milliseconds. Errors: device.
 schema::Result<std::shared_ptr<libusb_context>> begin_usb();
 
-/// One thread. Transfers on it must have ended before it does.
+/// For one thread. Its transfers must have ended before it is destroyed.
 class UsbConnection {
  public:
-  /// Errors: as choose_usb(); not_found: this user may not open it; device: another program has it, or it
+  /// Errors: as choose_usb(); not_found: this user may not open it; device: another program uses it, or it
   /// fails.
   static schema::Result<UsbConnection> open(const UsbAddress& address);
   UsbConnection(UsbConnection&&) = default;
@@ -24,9 +24,9 @@ class UsbConnection {
 
   libusb_device_handle* handle() const { return handle_.get(); }
   const UsbInterface& interface() const { return interface_; }
-  /// The URI that tells it from all others there were.
+  /// The URI that distinguishes it from all other devices at that time.
   const std::string& uri() const { return uri_; }
-  /// Lets transfers complete, until one has set `done` or the time is over.
+  /// Completes transfers until one has set `done` or the time is over.
   schema::Result<void> handle_events(double timeout_s, int& done) const;
 
  private:

@@ -11,12 +11,12 @@
 
 namespace tacto::firmware_host {
 
-/// `parameters` is what follows "usb:". Its capabilities name it by the URI that tells it from the others.
-/// Errors: as parse_usb_address(), UsbConnection::open(), WireDevice::open().
+/// `parameters` is the text after "usb:". Its capabilities contain the URI that distinguishes it from other
+/// devices. Errors: as parse_usb_address(), UsbConnection::open(), WireDevice::open().
 schema::Result<std::unique_ptr<Device>> open_usb_device(const std::string& uri, std::string_view parameters);
 
-/// The URI of each device of ours on USB, whether it can be opened or not. Errors: device: the bus can't be
-/// looked at.
+/// The URI of each of our devices on USB, even if it cannot be opened. Errors: device: the bus cannot be
+/// read.
 schema::Result<std::vector<std::string>> usb_uris();
 
 }  // namespace tacto::firmware_host

@@ -12,7 +12,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-constexpr int kMostPorts = 7;  // hubs on the way to a device, by USB 3.0's specification
+constexpr int kMostPorts = 7;  // number of hubs before a device, by the USB 3.0 specification
 
 std::string port_of(libusb_device* device) {
   std::uint8_t ports[kMostPorts];
@@ -22,7 +22,7 @@ std::string port_of(libusb_device* device) {
   return port;
 }
 
-// A serial that can't be read is none: opening the device will say why.
+// A serial that cannot be read is empty: opening the device will return the reason.
 std::string serial_of(libusb_device* device) {
   libusb_device_descriptor about{};
   libusb_device_handle* opened = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The devices of ours that are on USB.
+// Finds our devices on USB.
 #pragma once
 
 #include <vector>
@@ -16,8 +16,8 @@ struct UsbFound {
   UsbPointer<libusb_device> device;
 };
 
-/// Everything on USB with an interface of the wire, whatever its vendor, in the order of buses and ports.
-/// Asks each for its serial where this user may. Errors: device: the bus can't be looked at.
+/// Every USB device with an interface of the wire, of any vendor, in the order of buses and ports, with its
+/// serial if this user may read it. Errors: device: the bus cannot be read.
 schema::Result<std::vector<UsbFound>> find_usb(libusb_context* context);
 
 std::vector<UsbName> names_of(const std::vector<UsbFound>& found);

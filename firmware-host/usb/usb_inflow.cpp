@@ -18,12 +18,13 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kLongestDrain = std::chrono::seconds(2);
 constexpr double kDrainStepS = 0.01;
-constexpr auto kFirstPause = std::chrono::milliseconds(10);  // each is twice the one before: 0.3 s in all
+constexpr auto kFirstPause = std::chrono::milliseconds(10);  // each one doubles: 0.3 s in all
 
 std::string_view to_string(libusb_transfer_status status) {
   if (status == LIBUSB_TRANSFER_STALL) return "stalls";
-  if (status == LIBUSB_TRANSFER_NO_DEVICE) return "comes and goes";
-  return status == LIBUSB_TRANSFER_OVERFLOW ? "sends longer packets than it announced" : "is not understood";
+  if (status == LIBUSB_TRANSFER_NO_DEVICE) return "disconnects and reconnects";
+  return status == LIBUSB_TRANSFER_OVERFLOW ? "sends longer packets than it announced"
+                                            : "sends unreadable transfers";
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ UsbInflow::UsbInflow(const UsbConnection& connection)
   }
 }
 
-// libusb may still write to a transfer that has not come back: then it is left to it.
+// libusb may still write to a transfer that was not returned, so such a transfer is not freed.
 UsbInflow::~UsbInflow() {
   cancel_all();
   const auto latest = Clock::now() + kLongestDrain;
@@ -54,14 +55,14 @@ void UsbInflow::arrived(libusb_transfer* transfer) {
   static_cast<UsbInflow*>(transfer->user_data)->sort_in(transfer);
 }
 
-// A transfer that failed may have brought bytes before it did. One that was cancelled was so by us.
+// A failed transfer may have received bytes before the failure. Only this class cancels transfers.
 void UsbInflow::sort_in(libusb_transfer* transfer) {
   --under_way_;
   woken_ = 1;
   note(transfer->status);
   if (transfer->actual_length == 0) return idle_.push_back(transfer);
   full_.push_back(transfer);
-  troubles_in_a_row_ = 0;
+  consecutive_errors_ = 0;
 }
 
 void UsbInflow::note(libusb_transfer_status status) {
@@ -85,22 +86,22 @@ Result<void> UsbInflow::keep_going() {
   return {};
 }
 
-// Only while no transfer is under way: those that wait behind a stall would fail too. A device that another
-// program resets looks like one that is gone, until it is asked; one that is pulled out, for a while, like a
-// bad cable: hubs are slow to see it.
+// Only while no transfer is pending: those queued after a stall would fail, too. A device that was reset by
+// another program at first looks like an unplugged one, and an unplugged one like a bad cable, because hubs
+// detect it late.
 void UsbInflow::recover() {
   const auto trouble = *std::exchange(trouble_, std::nullopt);
   cancelled_ = false;
-  if (++troubles_in_a_row_ > kMostTroubles) return give_up(trouble);
+  if (++consecutive_errors_ > kMostTroubles) return give_up(trouble);
   if (trouble != LIBUSB_TRANSFER_STALL)
-    std::this_thread::sleep_for(kFirstPause * (1 << (troubles_in_a_row_ - 1)));
+    std::this_thread::sleep_for(kFirstPause * (1 << (consecutive_errors_ - 1)));
   const int cleared = libusb_clear_halt(connection_.handle(), connection_.interface().in);
   if (cleared == LIBUSB_ERROR_NO_DEVICE) end(usb_failure(cleared, "reading", connection_.uri()));
 }
 
 void UsbInflow::give_up(libusb_transfer_status trouble) {
   end(schema::fail(schema::ErrorKind::device,
-                   fmt::format("the device {}, {} times in a row", to_string(trouble), troubles_in_a_row_),
+                   fmt::format("the device {}, {} times in a row", to_string(trouble), consecutive_errors_),
                    connection_.uri(),
                    "unplug it and plug it in again; if that does not help, try another cable"));
 }

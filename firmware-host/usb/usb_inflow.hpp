@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bytes from a device on USB: many transfers under way at once, so that the device is always listened to.
+// Bytes from a device on USB: many transfers are pending at once, so that the device never waits.
 #pragma once
 
 #include <deque>
@@ -12,29 +12,30 @@
 
 namespace tacto::firmware_host {
 
-/// Transfers complete in libusb's event loop, which the caller runs; what they brought waits here, in order.
-/// After a stall, an overflow or an error on the cable all of them are taken back, the endpoint is cleared,
-/// and all begin again: bytes that were lost meanwhile are gaps for whoever reads frames. One thread.
+/// Transfers complete in libusb's event loop, which the caller runs; their bytes are queued here, in order.
+/// After a stall, an overflow or a cable error all transfers are cancelled, the endpoint is cleared, and all
+/// are submitted again; bytes that were lost in between are gaps for the reader of frames. For one thread.
 class UsbInflow {
  public:
   /// 1 MiB in all: 0.3 s of the fastest stream (100 kHz x 8 channels, 3.2 MB/s) or 64 bursts of a slow one
-  /// (0.2 s at 10 kHz) before the device has to wait. A transfer is one that the kernel need not split.
+  /// (0.2 s at 10 kHz) before the device has to wait. The kernel does not have to split a transfer of this
+  /// size.
   static constexpr std::size_t kTransfers = 64, kTransferBytes = 16384;
-  /// Troubles in a row, without a byte between them, before it gives up.
+  /// The number of consecutive errors, without a byte between them, that are tolerated.
   static constexpr int kMostTroubles = 5;
 
-  /// The connection outlives it.
+  /// The connection must outlive this object.
   explicit UsbInflow(const UsbConnection& connection);
   UsbInflow(const UsbInflow&) = delete;
   UsbInflow& operator=(const UsbInflow&) = delete;
-  /// Takes back all transfers and waits for them.
+  /// Cancels all transfers and waits for them.
   ~UsbInflow();
 
-  /// Puts under way what is idle, and recovers from trouble. Errors: device: gone, or troubled beyond
-  /// recovery; from then on, always.
+  /// Submits the idle transfers, and recovers from errors. Errors: device: gone, or not recoverable; from
+  /// then on at each call.
   schema::Result<void> keep_going();
   bool empty() const { return full_.empty(); }
-  /// Bytes of one transfer at most; gives their number.
+  /// Bytes of at most one transfer; returns their number.
   std::size_t take(std::span<std::uint8_t> bytes);
   /// Waits until a transfer has completed, or the time is over. Errors: device.
   schema::Result<void> wait(double timeout_s);
@@ -61,7 +62,7 @@ class UsbInflow {
   std::size_t under_way_ = 0;
   std::optional<libusb_transfer_status> trouble_;
   bool cancelled_ = false;
-  int troubles_in_a_row_ = 0;
+  int consecutive_errors_ = 0;
   std::optional<schema::Error> ended_;
   int woken_ = 0;
 };

@@ -19,7 +19,7 @@ bool is_bulk(const libusb_endpoint_descriptor& endpoint) {
   return (endpoint.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK) == LIBUSB_TRANSFER_TYPE_BULK;
 }
 
-// Endpoint 0 is nobody's bulk endpoint: a zero says that there is none.
+// Endpoint 0 is never a bulk endpoint, so that zero means "none".
 void take_endpoint(const libusb_endpoint_descriptor& endpoint, UsbInterface& found) {
   if (!is_bulk(endpoint)) return;
   const bool inwards = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_DIR_MASK) == LIBUSB_ENDPOINT_IN;

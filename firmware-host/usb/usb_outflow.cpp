@@ -46,7 +46,7 @@ Result<void> UsbOutflow::write(std::span<const std::uint8_t> bytes, double timeo
                   connection_.uri(), "unplug it and plug it in again");
     if (const auto cleared = clear(); !cleared) return cleared;
   }
-  return fail(ErrorKind::device, fmt::format("the device refused what it was sent, {} times", kSendAttempts),
+  return fail(ErrorKind::device, fmt::format("the device refused the sent data {} times", kSendAttempts),
               connection_.uri(), "unplug it and plug it in again");
 }
 
@@ -62,8 +62,8 @@ Result<void> UsbOutflow::send(double timeout_s) {
   return await_end();
 }
 
-// libusb ends each transfer at its timeout; the longest wait is for a kernel that does not. A program that
-// was held up itself looks once more before it says so.
+// libusb ends each transfer at its timeout; the longer wait is for a kernel that does not. If this program
+// was delayed, it checks once more before it reports an error.
 Result<void> UsbOutflow::await_end() {
   const auto begun = std::chrono::steady_clock::now();
   for (done_ = 0; under_way_;) {
@@ -74,7 +74,7 @@ Result<void> UsbOutflow::await_end() {
   return {};
 }
 
-// A transfer that was whole when its time was over was taken, however late this program looked.
+// A transfer that was complete at its timeout is a success, even if this program was delayed.
 bool UsbOutflow::sent_whole() const {
   const bool ended =
       transfer_->status == LIBUSB_TRANSFER_COMPLETED || transfer_->status == LIBUSB_TRANSFER_TIMED_OUT;

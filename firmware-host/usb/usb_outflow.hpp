@@ -9,19 +9,19 @@
 
 namespace tacto::firmware_host {
 
-/// A transfer ends with a short packet, or one of no bytes where its size is a multiple of a packet's. One
+/// A transfer ends with a short packet, or an empty one if its size is a multiple of the packet size. For one
 /// thread.
 class UsbOutflow {
  public:
-  /// The connection outlives it.
+  /// The connection must outlive this object.
   explicit UsbOutflow(const UsbConnection& connection);
   UsbOutflow(const UsbOutflow&) = delete;
   UsbOutflow& operator=(const UsbOutflow&) = delete;
   ~UsbOutflow();
 
-  /// Waits until the device has taken all bytes; other transfers complete meanwhile. What stalls or is cut
-  /// short is sent again, whole: the wire's decoder finds it behind what came of it before. Errors: device:
-  /// gone, stalls three times, or took it not within `timeout_s`.
+  /// Waits until the device has received all bytes; other transfers complete in the meantime. A transfer that
+  /// stalls or is truncated is sent again as a whole: the wire's decoder finds it after the incomplete one.
+  /// Errors: device: gone, three stalls, or not received within `timeout_s`.
   schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What libusb lends, given back.
+// Owning pointers for objects of libusb.
 #pragma once
 
 #include <libusb.h>
@@ -8,7 +8,7 @@
 
 namespace tacto::firmware_host {
 
-struct UsbGiveBack {
+struct UsbDeleter {
   void operator()(libusb_context* context) const { libusb_exit(context); }
   void operator()(libusb_device* device) const { libusb_unref_device(device); }
   void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
@@ -17,6 +17,6 @@ struct UsbGiveBack {
 };
 
 template <class Lent>
-using UsbPointer = std::unique_ptr<Lent, UsbGiveBack>;
+using UsbPointer = std::unique_ptr<Lent, UsbDeleter>;
 
 }  // namespace tacto::firmware_host

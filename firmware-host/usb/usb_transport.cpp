@@ -28,7 +28,7 @@ Result<std::size_t> UsbTransport::read(std::span<std::uint8_t> bytes, double tim
   }
 }
 
-// Listening goes on while it is spoken.
+// Received bytes are queued during writing, too.
 Result<void> UsbTransport::write(std::span<const std::uint8_t> bytes, double timeout_s) {
   if (const auto going = inflow_.keep_going(); !going) return going;
   return outflow_.write(bytes, timeout_s);

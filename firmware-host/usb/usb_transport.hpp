@@ -8,20 +8,19 @@
 
 namespace tacto::firmware_host {
 
-/// Everything happens in the caller's thread, within read() and write(); between calls the kernel goes on
-/// filling transfers (see UsbInflow for how long that lasts). Bytes that came before an error are given
-/// before the error is.
+/// All work is done in the caller's thread, within read() and write(); between calls the kernel continues to
+/// fill transfers (see UsbInflow for how long). Bytes received before an error are returned before the error.
 class UsbTransport final : public Transport {
  public:
   explicit UsbTransport(UsbConnection connection);
 
-  /// Errors, beside Transport's: device: the endpoint fails and does not recover.
+  /// Errors, besides those of Transport: device: the endpoint fails and does not recover.
   schema::Result<std::size_t> read(std::span<std::uint8_t> bytes, double timeout_s) override;
   schema::Result<void> write(std::span<const std::uint8_t> bytes, double timeout_s) override;
-  /// The steady clock's.
+  /// Of the steady clock.
   double now_s() override;
 
-  /// The URI that tells the device from others.
+  /// The URI that distinguishes the device from others.
   const std::string& uri() const { return connection_.uri(); }
 
  private:

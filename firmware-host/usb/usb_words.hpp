@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libusb's errors in words for people, with what to do.
+// Messages for libusb's errors, with the remedy.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace tacto::firmware_host {
 
-/// `code` is a libusb_error; `doing` what was tried, as "opening the device". Not permitted is not_found, as
-/// with files; all else is device.
+/// `code` is a libusb_error; `doing` is the operation, as in "opening the device". "Not permitted" becomes
+/// not_found, as for files; all others become device.
 tl::unexpected<schema::Error> usb_failure(int code, std::string_view doing, const std::string& where);
 
 }  // namespace tacto::firmware_host

@@ -21,49 +21,53 @@ using schema::Result;
 namespace {
 
 constexpr double kOfWhatLiesBeyondTheBand = std::numbers::sqrt2;
-constexpr double kAlikeError = 1.01;  // a hundredth less error is not worth another choice
-constexpr double kMostAsked = 0.1;    // what prepare() asks of an inverse, too
+constexpr double kAlikeError = 1.01;  // errors within a hundredth are equal
+constexpr double kMostAsked = 0.1;    // the largest error that prepare() accepts of an inverse, too
 
 using Choices = std::vector<TickChoice>;
 
 Result<void> check_budget(const TickBudget& budget) {
   if (!budget.by_error() && !(budget.error.most_error() > 0 && budget.error.most_error() <= kMostAsked))
-    return fail(ErrorKind::usage, fmt::format("an error of {}", percent(budget.error.most_error())),
-                "error budget", "above 0 and at most 10%");
+    return fail(ErrorKind::usage,
+                fmt::format("the largest error {} is out of range", percent(budget.error.most_error())),
+                "error budget", "choose above 0 and at most 10%");
   if (budget.max_tick_ns && !(*budget.max_tick_ns > 0))
-    return fail(ErrorKind::usage, "a tick that takes no time", "time budget", "a tick takes some 100ns");
+    return fail(ErrorKind::usage, "the time of a tick has to be above 0", "time budget",
+                "a tick takes about 100ns");
   return {};
 }
 
-// A hysteresis that stays, or whose inverse is only near, leaves what nobody computed.
+// If the hysteresis stays, or its inverse is approximate, a part of the error cannot be predicted.
 Result<void> check_hysteresis(const schema::Transducer& transducer, const PrepareOptions& options) {
   if (!transducer.hysteresis) return {};
   const auto refused = [](const char* what, const char* remedy) {
-    return fail(ErrorKind::unsuitable, fmt::format("no error can be promised: {}", what), "transducer",
+    return fail(ErrorKind::unsuitable, fmt::format("the error can't be predicted: {}", what), "transducer",
                 remedy);
   };
   if (!options.undo_hysteresis)
-    return refused("the bender's hysteresis is not undone", "play without --keep-hysteresis");
+    return refused("the bender's hysteresis is not inverted", "play without --keep-hysteresis");
   if (options.reconstruction != Reconstruction::none)
-    return refused("a filter behind the converter loses the corners that undo the hysteresis",
-                   "play without it, or without a budget");
+    return refused(
+        "the filter behind the converter removes the corners of the drive that invert the hysteresis",
+        "play without the filter, or without a budget");
   const auto play_operators =
       std::ranges::count_if(transducer.hysteresis->weights, [](double w) { return w > 0; });
   if (play_operators > static_cast<std::ptrdiff_t>(wire::kMaxPlays) + 1)
-    return refused("its hysteresis has more plays than the kernel undoes", "identify it with fewer");
+    return refused("its hysteresis has more play operators than the kernel can invert",
+                   "identify it with fewer operators");
   return {};
 }
 
-/// The readings that the table knows, in every density, and what each takes. Those that the memory has no
-/// room for are left out.
+/// The interpolations in the table with each density, and their cost. Those that need more memory than there
+/// is are left out.
 struct Readings {
   Choices choices;
-  std::size_t least_samples = 0;  ///< of any, in memory or not
+  std::size_t least_samples = 0;  ///< the fewest of all, whether they fit or not
 };
 
 Readings readings_of(std::span<const PlacedTexture> textures, const PrepareOptions& options,
                      double passes_to_hz, const schema::TradeTable& table, bool keep_reading) {
-  const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m);
+  const schema::SpaceSignal path = one_period(textures, options.ends, options.seam_m);
   const double highest_per_m = highest_spatial_frequency(path);
   Readings readings;
   for (const schema::MeasuredChoice& measured : table.at("reading")) {
@@ -123,7 +127,7 @@ tl::unexpected<schema::Error> no_room(const Readings& readings, const PrepareOpt
     return fail(ErrorKind::unsuitable, "has none of this program's interpolations",
                 "table of measured choices", "'tactograph trade --calibrate' measures them");
   return fail(ErrorKind::unsuitable,
-              fmt::format("the texture takes {} samples at least, there is room for {}",
+              fmt::format("the texture needs at least {} samples, the memory holds {}",
                           readings.least_samples, options.most_samples),
               "texture", ways_to_fit(options.interpolation));
 }
@@ -131,16 +135,19 @@ tl::unexpected<schema::Error> no_room(const Readings& readings, const PrepareOpt
 tl::unexpected<schema::Error> not_kept(const Choices& all, const TickBudget& budget) {
   if (const Choices slow = kept_by(all, budget, false); !slow.empty()) {
     const TickChoice best = best_of(slow, false);
-    return fail(ErrorKind::unsuitable,
-                fmt::format("no tick of {:.3g} ns or less keeps it: {:.3g} ns is the least ({})",
-                            *budget.max_tick_ns, best.tick_ns, words_of(best)),
-                "time budget", "allow that, more error, or a lower rate");
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format(
+            "no choice keeps the error budget within {:.3g} ns per tick: the fastest needs {:.3g} ns ({})",
+            *budget.max_tick_ns, best.tick_ns, words_of(best)),
+        "time budget", "allow this time or a larger error, or use a lower rate");
   }
   const TickChoice best = best_of(all, true);
-  return fail(ErrorKind::unsuitable,
-              fmt::format("nothing keeps {}: {} is the least ({}), as {}", percent(budget.error.most_error()),
-                          percent(best.error), words_of(best), limited_by(best)),
-              "error budget", fmt::format("ask for --max-error {} or more", percent_or_more(best.error)));
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("no choice has an error of at most {}: the smallest is {} ({}), because {}",
+                  percent(budget.error.most_error()), percent(best.error), words_of(best), limited_by(best)),
+      "error budget", fmt::format("use --max-error {} or more", percent_or_more(best.error)));
 }
 
 }  // namespace
@@ -175,8 +182,8 @@ Result<TickDecision> decide(std::span<const PlacedTexture> textures,
   TickDecision decision{best_of(kept, budget.by_error()), {}, found.origin, !budget.by_error()};
   decision.reasons = reasons_for(decision.chosen, all, budget);
   const double delay_s = decision.chosen.inverse.delay_s;
-  decision.reasons.push_back(
-      words_of_hand(wandering_error(textures, {}, options, delay_s), {}, delay_s + options.loop_delay_s));
+  decision.reasons.push_back(words_of_unsteady_speed(unsteady_speed_error(textures, {}, options, delay_s), {},
+                                                     delay_s + options.loop_delay_s));
   return decision;
 }
 

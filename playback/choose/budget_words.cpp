@@ -17,31 +17,31 @@ constexpr std::pair<std::string_view, wire::Interpolation> kInterpolations[] = {
     {"sinc", wire::Interpolation::sinc}};
 
 constexpr const char* kNotPromised =
-    "not promised: the encoder's steps, changes of speed while looking ahead, speeds beyond the greatest, a "
-    "texture's ends, a drive at its limits, and a finger or transducer that is not what the file says; a "
-    "tick's "
+    "not included: the encoder's steps, changes of speed during look-ahead, speeds beyond the maximum, a "
+    "texture's ends, a drive at its limits, a finger or transducer that differs from the file, and a tick's "
     "time on a device that closes the loop itself";
 
 std::string words_of_inverse(const InverseChoice& inverse) {
-  if (inverse.inverse == Inverse::gain) return "its gain alone";
+  if (inverse.inverse == Inverse::gain) return "gain only";
   if (inverse.inverse == Inverse::none) return "no inverse";
   return fmt::format("{} taps, {:g} ms", inverse.taps, 1e3 * inverse.delay_s);
 }
 
-// What the best of some others would have been.
+// The best of the other choices, compared with the chosen one.
 std::string verdict_on(const std::vector<TickChoice>& others, const TickChoice& chosen,
                        const TickBudget& budget) {
   std::vector<TickChoice> kept = others;
   std::erase_if(kept, [&](const TickChoice& other) {
     return other.error > (budget.by_error() ? chosen.error : budget.error.most_error());
   });
-  if (kept.empty()) return fmt::format("{} at best", percent(best_of(others, true).error));
+  if (kept.empty()) return fmt::format("an error of {} at best", percent(best_of(others, true).error));
   const TickChoice best = best_of(kept, false);
-  const std::string how = fmt::format("{:.3g} ns a tick, {:.3g} MB, {}", best.tick_ns,
+  const std::string how = fmt::format("{:.3g} ns per tick, {:.3g} MB, error {}", best.tick_ns,
                                       1e-6 * best.memory_bytes, percent(best.error));
   if (budget.max_tick_ns && best.tick_ns > *budget.max_tick_ns) return how + ": too slow";
-  if (best.tick_ns > chosen.tick_ns + kAlikeNs) return how + ": dearer";
-  return how + (best.memory_bytes > chosen.memory_bytes ? ": as dear, more memory" : ": as dear, more delay");
+  if (best.tick_ns > chosen.tick_ns + kAlikeNs) return how + ": more time per tick";
+  return how +
+         (best.memory_bytes > chosen.memory_bytes ? ": same time, more memory" : ": same time, more delay");
 }
 
 template <class Key>
@@ -77,8 +77,8 @@ void add_other_inverses(std::vector<std::string>& reasons, const TickChoice& cho
 }
 
 std::string asked_for(const TickBudget& budget) {
-  std::string asked = budget.by_error() ? "the least there is" : percent(budget.error.most_error());
-  if (budget.max_tick_ns) asked += fmt::format(", {:.3g} ns a tick", *budget.max_tick_ns);
+  std::string asked = budget.by_error() ? "the smallest possible" : percent(budget.error.most_error());
+  if (budget.max_tick_ns) asked += fmt::format(", {:.3g} ns per tick", *budget.max_tick_ns);
   return asked;
 }
 
@@ -100,11 +100,10 @@ std::string percent(double part) {
   return fmt::format("{:.3g} %", 100 * part);
 }
 
-std::string words_of_hand(double error, const WanderingHand& hand, double delay_s) {
+std::string words_of_unsteady_speed(double error, const UnsteadySpeed& hand, double delay_s) {
   return fmt::format(
-      "a hand that goes at {:g} mm/s and wanders by {} at {:g} Hz adds up to {:.2g} % (estimated, an "
-      "encoder's steps apart: the delay of "
-      "{:.2g} ms is looked ahead by)",
+      "a hand at {:g} mm/s whose speed varies by {} at {:g} Hz adds an error of up to {:.2g} % (estimated, "
+      "without the encoder's steps: look-ahead by the delay of {:.2g} ms)",
       1e3 * hand.speed_mps, percent(hand.part), hand.rate_hz, 100 * error, 1e3 * delay_s);
 }
 
@@ -114,24 +113,24 @@ std::string percent_or_more(double part) {
 }
 
 std::string words_of(const TickChoice& choice) {
-  return fmt::format("{}, {:.3g} samples a period, {}", to_string(choice.interpolation),
+  return fmt::format("{}, {:.3g} samples per period, {}", to_string(choice.interpolation),
                      choice.samples_per_period, words_of_inverse(choice.inverse));
 }
 
 std::string limited_by(const TickChoice& choice) {
   if (choice.inverse.error > 0.5 * choice.error)
-    return fmt::format("the inverse of the transducer leaves {}", percent(choice.inverse.error));
+    return fmt::format("the inverse of the transducer leaves an error of {}", percent(choice.inverse.error));
   if (choice.reading_error > 0.25 * choice.error)
-    return fmt::format("reading between samples leaves {}", percent(choice.reading_error));
-  return fmt::format("single precision leaves {}", percent(kKernelsOwnError));
+    return fmt::format("interpolation between samples leaves an error of {}", percent(choice.reading_error));
+  return fmt::format("single precision leaves an error of {}", percent(kKernelsOwnError));
 }
 
 std::vector<std::string> reasons_for(const TickChoice& chosen, const std::vector<TickChoice>& all,
                                      const TickBudget& budget) {
   std::vector<std::string> reasons{
-      fmt::format("{}: at most {} of error (asked: {}), {:.3g} ns a tick, {:.3g} MB", words_of(chosen),
+      fmt::format("{}: error at most {} (requested: {}), {:.3g} ns per tick, {:.3g} MB", words_of(chosen),
                   percent(chosen.error), asked_for(budget), chosen.tick_ns, 1e-6 * chosen.memory_bytes),
-      fmt::format("of the error the inverse leaves {}, reading {}, single precision {}",
+      fmt::format("parts of the error: inverse {}, interpolation {}, single precision {}",
                   percent(chosen.inverse.error),
                   percent(chosen.error - chosen.inverse.error - kKernelsOwnError),
                   percent(kKernelsOwnError))};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A budget's decision in words.
+// The decision of a budget in words.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "playback/choose/budget.hpp"
-#include "playback/choose/wandering_hand.hpp"
+#include "playback/choose/unsteady_speed.hpp"
 
 namespace tacto::playback {
 
-/// Of what is predicted: the kernel's rounding, -105 dB, and what a texture's finest content leaves out, -100
+/// Part of the predicted error: the kernel's rounding, -105 dB, and the finest content that is omitted, -100
 /// dB.
 inline constexpr double kKernelsOwnError = 1.6e-5;
 
-/// What a measurement of a tick tells apart.
+/// Resolution of the measured cost of a tick.
 inline constexpr double kAlikeNs = 1;
 
 /// "nearest", "linear", "hermite", "sinc": the names in a table of measured choices.
@@ -29,16 +29,16 @@ std::string percent(double part);
 /// Rounded up to two digits: "0.034%".
 std::string percent_or_more(double part);
 
-/// What most of a choice's error is of.
+/// The largest part of a choice's error, in words.
 std::string limited_by(const TickChoice& choice);
 
-/// What a hand that does not go evenly adds to the error.
-std::string words_of_hand(double error, const WanderingHand& hand, double delay_s);
+/// The error that a hand with changing speed adds, in words.
+std::string words_of_unsteady_speed(double error, const UnsteadySpeed& hand, double delay_s);
 
-/// The best of some, none of which is refused: by cost, or by error first. Precondition: there is one.
+/// The best of choices that all keep the budget: by cost, or by error first. Precondition: not empty.
 TickChoice best_of(std::vector<TickChoice> choices, bool most_exact);
 
-/// Why this one of all was chosen.
+/// Why this choice was made.
 std::vector<std::string> reasons_for(const TickChoice& chosen, const std::vector<TickChoice>& all,
                                      const TickBudget& budget);
 

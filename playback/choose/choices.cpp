@@ -10,7 +10,7 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kLetsGoAt = 0.8;  // of the force that a contact begins with
+constexpr double kContactOffPart = 0.8;  // of the force at which contact begins
 
 constexpr std::pair<std::string_view, Inverse> kInverses[] = {{"full", Inverse::full},
                                                               {"magnitude", Inverse::magnitude},
@@ -28,7 +28,7 @@ std::string word_in(const Table& table, Choice choice) {
   return {};
 }
 
-// Says in `wrong` what is no word.
+// Writes an unknown word to `wrong`.
 template <class Table, class Choice>
 void take_word(const Table& table, const std::optional<std::string>& word, Choice& choice,
                std::string& wrong) {
@@ -44,7 +44,7 @@ void take_numbers(PrepareOptions& options, const schema::PlaybackChoices& choice
   options.energy_window_s = choices.energy_window_s.value_or(options.energy_window_s);
   if (choices.contact_on_n) {
     options.contact_on_n = *choices.contact_on_n;
-    options.contact_off_n = kLetsGoAt * options.contact_on_n;
+    options.contact_off_n = kContactOffPart * options.contact_on_n;
   }
   options.contact_off_n = choices.contact_off_n.value_or(options.contact_off_n);
 }
@@ -67,26 +67,26 @@ schema::Result<PrepareOptions> with_choices(PrepareOptions options, const schema
   take_word(kHolds, choices.hold, options.hold, wrong);
   take_numbers(options, choices);
   if (wrong.empty()) return options;
-  return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is no choice of playback", wrong),
-                      "playback", "playback.schema.json says what there is");
+  return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is not a choice of playback", wrong),
+                      "playback", "playback.schema.json lists the choices");
 }
 
-schema::Result<void> check_meant(const schema::PlaybackChoices& said, const schema::PlaybackChoices& all) {
+schema::Result<void> check_consistent(const schema::PlaybackChoices& said,
+                                      const schema::PlaybackChoices& all) {
   const auto nothing = [](const char* what, const char* where, const char* remedy) {
     return schema::fail(schema::ErrorKind::usage, what, where, remedy);
   };
   if (said.cutoff_hz && all.reconstruction.value_or("none") == "none")
-    return nothing(
-        "a cut-off, and no filter that it is of", "--cutoff (cutoff_hz)",
-        "name the filter (--reconstruction butterworth3; \"reconstruction\" in playback), or leave "
-        "it out");
+    return nothing("a cut-off is given, but no filter", "--cutoff (cutoff_hz)",
+                   "name the filter (--reconstruction butterworth3; \"reconstruction\" in playback), or omit "
+                   "the cut-off");
   if (said.energy_window_s && !(all.energy_rms_v.value_or(0) > 0))
-    return nothing("a window of energy, and no limit that it is of", "--energy-window (energy_window_s)",
-                   "give the limit (--energy-limit; \"energy_rms_v\" in playback), or leave it out");
+    return nothing("an energy window is given, but no limit", "--energy-window (energy_window_s)",
+                   "give the limit (--energy-limit; \"energy_rms_v\" in playback), or omit the window");
   if (said.contact_off_n && !(all.contact_on_n.value_or(0) > 0))
-    return nothing("a force at which contact ends, and none at which it begins",
+    return nothing("a force is given at which contact ends, but none at which it begins",
                    "--contact-off (contact_off_n)",
-                   "give that one too (--contact; \"contact_on_n\" in playback), or leave it out");
+                   "give both (--contact; \"contact_on_n\" in playback), or neither");
   return {};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What users choose of how a texture is read, undone and held back, and the options that it becomes.
+// The user's choices of interpolation, inverse, limits and contact gate, and the options for them.
 #pragma once
 
 #include <string_view>
@@ -12,17 +12,18 @@ namespace tacto::playback {
 /// "full", "magnitude", "gain", "none".
 std::string_view to_string(Inverse inverse);
 
-/// The options with what was chosen; what was not stays. A contact without its lower threshold lets go at
-/// four fifths of the upper one: a finger's tremor at the threshold does not chatter. Errors: usage, for a
-/// word that there is none of, by its member.
+/// The options with the user's choices; the rest is not changed. Without a lower threshold, contact ends at
+/// four fifths of the upper one, so that a finger's tremor at the threshold does not switch it repeatedly.
+/// Errors: usage, for an unknown word, with its member.
 schema::Result<PrepareOptions> with_choices(PrepareOptions options, const schema::PlaybackChoices& choices);
 
-/// Whether what somebody said tells more of what is there: a cut-off of a filter, a window of an energy
-/// limit, a lower threshold of a contact. `all` is what was said, over what stands below it. Errors: usage,
-/// by option and member.
-schema::Result<void> check_meant(const schema::PlaybackChoices& said, const schema::PlaybackChoices& all);
+/// Checks that each detail belongs to something that is chosen: the cut-off of a filter, the window of an
+/// energy limit, the lower threshold of a contact gate. `said` is the request, `all` the request over its
+/// defaults. Errors: usage, with option and member.
+schema::Result<void> check_consistent(const schema::PlaybackChoices& said,
+                                      const schema::PlaybackChoices& all);
 
-/// All that these options come to, for files and reports: energy and contact only where there are such.
+/// The choices in these options, for files and reports; energy and contact only if they are used.
 schema::PlaybackChoices choices_in(const PrepareOptions& options);
 
 }  // namespace tacto::playback

@@ -17,7 +17,7 @@ InverseChoice judged_choice(const UndoneChain& undone, const PrepareOptions& opt
           largest_inverse_error(undone, filter)};
 }
 
-// A filter that ends before its delay has nothing to answer with.
+// The taps of a filter must extend beyond its delay.
 bool reaches_answer(std::uint16_t taps, double delay_s, double rate_hz) {
   return taps > 1.25 * delay_s * rate_hz;
 }

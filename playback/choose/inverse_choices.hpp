@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The filters that could undo a transducer, and what each leaves.
+// The inverse filters for a transducer, and the error of each.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace tacto::playback {
 
-/// A filter that prepare() would make, judged.
+/// A filter that prepare() would make, with its error.
 struct InverseChoice {
   Inverse inverse = Inverse::full;
   double delay_s = 0;
@@ -20,9 +20,9 @@ struct InverseChoice {
   PrepareOptions in(PrepareOptions options) const;
 };
 
-/// Every filter worth thinking of at this rate: full, of 8 to 128 taps and 0.5 to 4 ms (as far as the taps
-/// reach), and the gain alone. `keep_inverse`: only of the kind that options name. Designed and judged here,
-/// for this transducer, not taken from a table: some 0.2 s. By rising taps.
+/// All useful filters at this rate: full, of 8 to 128 taps and 0.5 to 4 ms (as far as the taps reach), and
+/// the gain alone. `keep_inverse`: only the kind in the options. They are designed and judged here for this
+/// transducer, not taken from a table, in some 0.2 s. In order of taps.
 std::vector<InverseChoice> inverse_choices(const schema::Transducer& transducer,
                                            const PrepareOptions& options, bool keep_inverse);
 

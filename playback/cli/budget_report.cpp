@@ -13,21 +13,22 @@ schema::Result<TickBudget> AskedBudget::budget() const {
                     {}};
   if (max_tick_s) budget.max_tick_ns = 1e9 * *max_tick_s;
   if (options.explain && !budget.asked())
-    return schema::fail(schema::ErrorKind::usage, "nothing was asked for that could be explained",
-                        "--explain", "add --quality, --max-error or --max-tick");
+    return schema::fail(schema::ErrorKind::usage, "there is no choice to explain", "--explain",
+                        "add --quality, --max-error or --max-tick");
   return budget;
 }
 
 void declare_tick_budget(CLI::App& app, AskedBudget& asked) {
   cli::declare_budget(app, asked.options, "interpolation, levels' density and the inverse's length");
-  cli::add_quantity(app, "--max-tick", asked.max_tick_s, schema::Dimension::time,
-                    "The CPU time that a tick may take, by the table; alone: what errs least within it");
+  cli::add_quantity(
+      app, "--max-tick", asked.max_tick_s, schema::Dimension::time,
+      "Largest CPU time per tick, by the table of measured choices; alone: the smallest error within it");
 }
 
 void add_decision(cli::Report& report, const TickDecision& decision, bool explain) {
   report.add("chosen", words_of(decision.chosen))
       .add(decision.promised ? "promised_error_percent" : "least_error_percent", 100 * decision.chosen.error)
-      .add("which_is", "at even speed and a true place; what else there is: --explain")
+      .add("which_is", "at constant speed and exact position; --explain lists further errors")
       .add("tick_s", 1e-9 * decision.chosen.tick_ns);
   if (!explain) return;
   std::vector<cli::Report> reasons;

@@ -34,13 +34,15 @@ void declare_path(CLI::App& app, PlaybackChoices& c, const std::string& of) {
 void declare_limits(CLI::App& app, PlaybackChoices& c, const std::string& of) {
   cli::add_quantity(
       app, "--energy-limit", c.energy_rms_v, Dimension::voltage,
-      of + "Turn the drive down where its RMS would pass this, at the amplifier's input; 0V: never");
+      of + "Largest RMS of the drive at the amplifier's input; beyond it the drive is reduced; 0V: no limit");
   cli::add_quantity(app, "--energy-window", c.energy_window_s, Dimension::time,
-                    of + "Window of that RMS (needs a limit); default: 1s");
-  cli::add_quantity(app, "--contact", c.contact_on_n, Dimension::force,
-                    of + "Drive only from this normal force on, by a device that reports it; 0N: always");
-  cli::add_quantity(app, "--contact-off", c.contact_off_n, Dimension::force,
-                    of + "And until it is below this (needs --contact); default: four fifths of it");
+                    of + "Time window of that RMS (needs --energy-limit); default: 1s");
+  cli::add_quantity(
+      app, "--contact", c.contact_on_n, Dimension::force,
+      of + "Normal force from which there is a drive (the device has to report it); 0N: always");
+  cli::add_quantity(
+      app, "--contact-off", c.contact_off_n, Dimension::force,
+      of + "Normal force below which the drive ends (needs --contact); default: 0.8 of --contact");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --interpolation, --inverse, --reconstruction and so on, alike in play, explain and ctl.
+// The options --interpolation, --inverse, --reconstruction and so on, the same in play, explain and ctl.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tacto::playback {
 
-/// `of_what` begins each help, as in "load: ". `choices` must outlive the parser.
+/// `of_what` is the beginning of each help text, as in "load: ". `choices` must outlive the parser.
 void declare_choices(CLI::App& app, schema::PlaybackChoices& choices, const std::string& of_what = "");
 
 }  // namespace tacto::playback

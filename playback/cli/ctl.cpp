@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "data-schema/command/stop_signals.hpp"
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
 #include "playback/cli/top_screen.hpp"
@@ -45,7 +45,7 @@ struct CtlOptions {
   schema::PlaybackChoices choices;
 };
 
-// What a field is for people and machines alike: its key says the unit.
+// A field has the same name for people and programs; it ends in the unit.
 void add_fields(Report& report, const ControlFields& fields) {
   for (const auto& [name, value] : fields) {
     if (name == "ok" || name == "id" || name == "event") continue;
@@ -58,7 +58,7 @@ void add_fields(Report& report, const ControlFields& fields) {
   }
 }
 
-// The daemon may run in another folder: what is here is named in full.
+// The daemon may run in another folder, so it gets the full path of an existing file.
 std::string full_name(const std::string& file) {
   std::error_code ignored;
   for (const char* ending : {"", ".texture.json", ".scene.json"})
@@ -70,29 +70,29 @@ std::string full_name(const std::string& file) {
 Result<double> gain_in(const std::string& text) {
   const auto gain = schema::parse_quantity(text, Dimension::none);
   if (gain) return *gain;
-  return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is no gain", text), "gain",
+  return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is not a gain", text), "gain",
                       "a factor, as in 0.5");
 }
 
 Result<void> check_taken(const CtlOptions& o) {
   const auto refuse = [&](const std::string& what, const std::string& who) {
-    return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' takes no '{}'", o.action, what),
+    return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' does not accept '{}'", o.action, what),
                         "command line", who);
   };
   const bool load = o.action == "load", gain = o.action == "gain";
-  if (!o.what.empty() && !load && !gain) return refuse(o.what, "only load and gain take an argument");
+  if (!o.what.empty() && !load && !gain) return refuse(o.what, "only load and gain have an argument");
   for (const auto& [option, given] : {std::pair{"--at", o.at_m.has_value()},
                                       {"--gain", o.gain_m_per_n.has_value()},
                                       {"--ends", o.ends.has_value()},
                                       {"--fade", o.fade_s.has_value()}})
-    if (given && !load) return refuse(option, "only load does");
+    if (given && !load) return refuse(option, "only load accepts it");
   if (!load && o.choices != schema::PlaybackChoices{})
-    return refuse("--interpolation or its like", "only load does");
-  if (o.save && !gain) return refuse("--save", "only gain does");
-  if (o.watch && o.action != "play") return refuse("--watch", "only play does");
+    return refuse("--interpolation or another playback choice", "only load accepts it");
+  if (o.save && !gain) return refuse("--save", "only gain accepts it");
+  if (o.watch && o.action != "play") return refuse("--watch", "only play accepts it");
   if (!o.time_s) return {};
   const bool stays = o.watch || o.action == "watch" || o.action == "top";
-  if (!stays) return refuse("--time", "only watch, top and play --watch do");
+  if (!stays) return refuse("--time", "only watch, top and play --watch accept it");
   if (!(*o.time_s >= 0)) return refuse("--time below 0", "a time, as in 10s");
   return {};
 }
@@ -116,7 +116,7 @@ Result<ControlRequest> request_of(const CtlOptions& o) {
   return request;
 }
 
-// A screen that shows the newest, or in a file or pipe one after the other.
+// On a terminal the screen shows the newest status; in a file or pipe they follow each other.
 void show_top(const ControlFields& fields) {
   winsize size{};
   if (isatty(STDOUT_FILENO) == 0)
@@ -133,7 +133,7 @@ void show_played(const ControlFields& status, std::string& before) {
   if (isatty(STDOUT_FILENO) != 0) return show_top(status);
   const std::string state = schema::control_text(status, "state"), why = schema::control_text(status, "why");
   if (state != std::exchange(before, state))
-    cli::talk(fmt::format("{}{}{}\n", state, why.empty() ? "" : ": ", why));
+    cli::write_message(fmt::format("{}{}{}\n", state, why.empty() ? "" : ": ", why));
 }
 
 void show_event(const schema::ControlReply& event, bool top) {
@@ -143,7 +143,7 @@ void show_event(const schema::ControlReply& event, bool top) {
   std::fflush(stdout);
 }
 
-// Events come as long as something is armed: how it stands without one is asked.
+// Events come only while the device is armed; otherwise the status is requested.
 Result<void> show_top_now(ControlConnection& connection) {
   ControlRequest request;
   request.verb = ControlVerb::status;
@@ -153,7 +153,7 @@ Result<void> show_top_now(ControlConnection& connection) {
   return {};
 }
 
-// Until it is interrupted, or the time is over: nothing can be asked meanwhile.
+// Runs until it is interrupted or the time is over. A connection that watches cannot send requests.
 Result<Report> watch(ControlConnection& connection, const CtlOptions& o) {
   const cli::StopSignals signals;
   const auto begun = std::chrono::steady_clock::now();
@@ -209,26 +209,27 @@ cli::Action declare_ctl(CLI::App& app) {
       ->type_name(cli::words_of({kCtlActions.begin(), kCtlActions.end()}))
       ->required();
   app.add_option("what", o.what, "load: a texture or scene; gain: a factor");
-  app.add_option("--socket", o.socket, "The daemon's")->capture_default_str();
-  cli::add_quantity(app, "--at", o.at_m, Dimension::length, "load of a texture: the place of its position 0");
+  app.add_option("--socket", o.socket, "Socket of the daemon")->capture_default_str();
+  cli::add_quantity(app, "--at", o.at_m, Dimension::length,
+                    "load of a texture: encoder position of its position 0");
   cli::add_quantity(app, "--gain", o.gain_m_per_n, Dimension::compliance,
                     "load of a texture: displacement for force");
   declare_ends(app, o.ends, "load: ");
   cli::add_quantity(app, "--fade", o.fade_s, Dimension::time,
-                    "load while one plays: how long the change takes, 50ms by default");
+                    "load during playback: duration of the change of texture; default: 50ms");
   declare_choices(app, o.choices, "load: ");
-  app.add_flag("--save", o.save, "gain: also into the file of the scene or texture, with who and when");
-  app.add_flag(
-      "--watch", o.watch,
-      "play: arm, play, and stay connected: the drive falls where this command ends, however it ends. "
-      "Ctrl-C stops");
-  cli::add_quantity(app, "--time", o.time_s, Dimension::time, "watch, top, play --watch: how long");
+  app.add_flag("--save", o.save,
+               "gain: also store it in the file of the scene or texture, with user and time");
+  app.add_flag("--watch", o.watch,
+               "play: arm, play and stay connected; the drive falls when this command ends, for any reason. "
+               "Ctrl-C stops");
+  cli::add_quantity(app, "--time", o.time_s, Dimension::time, "watch, top, play --watch: duration");
   return [options] { return run_ctl(*options); };
 }
 
 }  // namespace
 
-const cli::Verb kCtlVerb{"ctl", "Steer the daemon: load, arm, play, stop, gain, status, watch, top",
+const cli::Verb kCtlVerb{"ctl", "Control the daemon: load, arm, play, stop, gain, status, watch, top",
                          "tactograph ctl load oak --at 10mm\n"
                          "  tactograph ctl play --watch\n"
                          "  tactograph ctl arm && tactograph ctl play\n"

@@ -10,9 +10,8 @@ void declare_ends(CLI::App& app, std::optional<schema::TextureEnds>& ends, const
            ends = static_cast<schema::TextureEnds>(cli::choose("--ends", word, {"stop", "mirror", "loop"}));
          },
          of_what +
-             "Of a texture: what follows beyond its ends: nothing, the texture mirrored, or the texture "
-             "again "
-             "(loop: as it is where its end meets its beginning, else its last 1 mm fades into its first)")
+             "Beyond the ends of a texture: nothing (stop), its mirror image, or the texture again (loop: if "
+             "the end does not meet the beginning, the last 1 mm fades into the first)")
       ->type_name("stop|mirror|loop");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// --ends, alike in play, render, explain and ctl.
+// The option --ends, the same in play, render, explain and ctl.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace tacto::playback {
 
-/// `of_what` begins the help, as in "load: ". `ends` must outlive the parser.
+/// `of_what` is the beginning of the help text, as in "load: ". `ends` must outlive the parser.
 void declare_ends(CLI::App& app, std::optional<schema::TextureEnds>& ends, const std::string& of_what = "");
 
 }  // namespace tacto::playback

@@ -5,8 +5,7 @@
 
 #include "data-schema/command/output_options.hpp"
 #include "data-schema/report/choices_report.hpp"
-#include "data-schema/report/harmless.hpp"
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 #include "playback/cli/budget_report.hpp"
 #include "playback/cli/choice_options.hpp"
 #include "playback/cli/ends_option.hpp"
@@ -78,7 +77,7 @@ void add_guards(Report& report, const Prepared& made) {
   report.add("energy_limits", made.built.energy_limits).add("touch_gates", made.built.touch_gates);
 }
 
-// The kernel is one object of fixed size, whatever it plays; what it points at is the textures'.
+// The kernel has a fixed size; the memory to which it points is that of the textures.
 void add_costs(Report& report, const Prepared& made, double tick_ns, const schema::FoundTradeTable& table) {
   report.add("sample_bytes", made.built.sample_bytes).add("kernel_bytes", sizeof(core::TickKernel));
   report.add("tick_s", 1e-9 * tick_ns).add("tick_of_period_percent", 1e-7 * tick_ns * made.rate_hz);
@@ -109,7 +108,7 @@ Result<Report> explained(const ExplainOptions& o, const Program& program) {
   return report;
 }
 
-// The error is said as by verbs that stop there; the table is printed all the same.
+// The error is the same as of verbs that stop at it; the table is printed in addition.
 Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgram& asked,
                                       schema::Error refused) {
   const auto program = with_room_enough(asked);
@@ -118,7 +117,7 @@ Result<Report> explained_without_room(const ExplainOptions& o, const AskedProgra
   if (!report) return report;
   add_room(*report, program->prepared, asked.room());
   refused.remedy = add_ways_to_fit(*report, asked, *program);
-  cli::talk(fmt::format("tactograph: {}\n", cli::on_one_line(schema::message(refused))));
+  cli::write_message(fmt::format("tactograph: {}\n", cli::on_one_line(schema::message(refused))));
   return report->ends_with(refused.kind);
 }
 
@@ -144,12 +143,12 @@ cli::Action declare_explain(CLI::App& app) {
   cli::declare_unfit_transducer(app, o.program.unfit_transducer);
   cli::refuse_force(app);
   app.add_flag("--implausible", o.program.implausible,
-               "Take a transducer file whose numbers no transducer has (a mass of 1e-12 kg, say)");
-  cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
+               "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
+  cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
   cli::add_quantity(app, "--encoder-step", o.prepare.metres_per_count, Dimension::length,
-                    "One count of the encoder");
+                    "Length of one encoder count");
   app.add_option("--device-memory", o.device_memory,
-                 "Samples that the device holds; default: 2^24, the most that is ever prepared")
+                 "Samples that the device holds; default: 2^24, the largest number that is prepared")
       ->check(cli::from_one());
   declare_ends(app, o.program.ends);
   declare_choices(app, o.program.choices);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gain that a texture is played with, what its sign does, and whose it is.
+// The gain of a texture, the effect of its sign, and who set it.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace tacto::playback {
 
-/// `gain_m_per_n`, and `inverts_texture` of one below 0.
+/// Adds `gain_m_per_n`, and `inverts_texture` if it is below 0.
 inline void add_gain(cli::Report& report, double gain_m_per_n) {
   report.add("gain_m_per_n", gain_m_per_n);
   tell_inversion(gain_m_per_n, [&](const char* key, bool value) { report.add(key, value); });
 }
 
-/// `gain_set_by` and `gain_set_on` of the gain that a texture keeps; nothing of another.
+/// Adds `gain_set_by` and `gain_set_on` if the gain is stored with the texture.
 inline void add_kept_gain(cli::Report& report, const std::optional<schema::PlaybackGain>& kept) {
   if (!kept) return;
   report.add("gain_set_by", kept->who.empty() ? "unknown" : kept->who);

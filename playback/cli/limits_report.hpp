@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the limits took, as the verbs tell it.
+// What the limits removed, in the reports of the verbs.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,8 @@
 
 namespace tacto::playback {
 
-/// `removed_by_limits_db` and which limits acted in how many ticks; `removed_by_limits` none, or unknown.
+/// Adds `removed_by_limits_db` and in how many ticks each limit acted; or `removed_by_limits`: none, or
+/// unknown.
 void add_removed(cli::Report& report, const std::optional<LimitTally>& limits);
 
 }  // namespace tacto::playback

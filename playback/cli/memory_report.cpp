@@ -35,7 +35,7 @@ struct Way {
   bool fits = false;
 };
 
-// What does not come about for another reason is no way.
+// A way that fails for another reason than memory is not listed.
 void add_way(std::vector<Way>& ways, std::string way, const AskedProgram& asked) {
   const auto program = with_room_enough(asked);
   if (!program) return;
@@ -70,8 +70,8 @@ struct Beginning {
   std::size_t samples = 0;
 };
 
-// Found by halves, and prepared: a cut may be finer than what is cut, so its samples do not follow its
-// length.
+// By bisection, each cut prepared: a cut may have finer content than the whole, so the number of samples is
+// not proportional to the length.
 Beginning longest_beginning(const schema::Texture& texture, std::size_t room, const Program& program,
                             const PrepareOptions& options) {
   Beginning longest;
@@ -86,7 +86,7 @@ Beginning longest_beginning(const schema::Texture& texture, std::size_t room, co
   return longest;
 }
 
-// Whether any hundredth fits.
+// Returns whether at least a hundredth fits.
 bool add_beginning(std::vector<Way>& ways, const AskedProgram& asked, const Program& program,
                    const PrepareOptions& options, const char* how) {
   const auto texture = schema::read_texture(program.session.textures.front().file);
@@ -107,7 +107,7 @@ void add_beginnings(std::vector<Way>& ways, const AskedProgram& asked, const Pro
   add_beginning(ways, asked, program, options, ", by sinc (--interpolation sinc)");
 }
 
-// What lies between textures takes as much as they do.
+// The space between textures needs as many samples as a texture of that length.
 void add_alone(std::vector<Way>& ways, const AskedProgram& asked, const Program& program) {
   if (program.session.textures.size() < 2) return;
   std::vector<std::string> seen;
@@ -117,7 +117,7 @@ void add_alone(std::vector<Way>& ways, const AskedProgram& asked, const Program&
     AskedProgram alone = asked;
     alone.request.file = texture.file;
     alone.request.at_m = texture.at_m;
-    add_way(ways, "play by itself " + texture.file, alone);
+    add_way(ways, "play only " + texture.file, alone);
   }
 }
 
@@ -153,8 +153,8 @@ void add_room(Report& report, const Prepared& made, std::size_t device_samples) 
                          core::level_samples(made.scale, level), device_samples, sizeof(float)));
   items.push_back(item("samples of all levels", needed, device_samples, sizeof(float)));
   items.push_back(item("filter's taps", made.built.taps, wire::kMaxTaps, sizeof(float)));
-  items.push_back(
-      item("hysteresis's plays", made.built.play_operators, wire::kMaxPlays, sizeof(wire::HysteresisPlay)));
+  items.push_back(item("play operators of the hysteresis", made.built.play_operators, wire::kMaxPlays,
+                       sizeof(wire::HysteresisPlay)));
   items.push_back(item("sections", made.built.sections, wire::kMaxSections, sizeof(wire::Section)));
   report.add("memory", std::move(items));
 }
@@ -169,7 +169,7 @@ std::string add_ways_to_fit(Report& report, const AskedProgram& asked, const Pro
   report.add("ways_to_fit", rows_of(ways));
   const std::string fitting = words_of_fitting(ways);
   if (on_device) return fitting;
-  return "nothing that was tried fits, neither by sinc nor a part of it" +
+  return "no tested alternative fits on the device, neither sinc nor a part of the texture" +
          (fitting.empty() ? "" : "; " + fitting);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a program takes of a device's memory, and what would make it fit.
+// The memory that a program needs on a device, and what would make it fit.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tacto::playback {
 
-/// What a program was asked to be; `options.most_samples` is the device's room.
+/// The request for a program; `options.most_samples` is the device's memory.
 struct AskedProgram {
   ProgramRequest request;
   std::string transducer;
@@ -18,17 +18,17 @@ struct AskedProgram {
   std::size_t room() const { return options.most_samples; }
 };
 
-/// The same as if the device had room for 2^26 samples (256 MB), sixteen times what this computer's own loop
-/// takes. Errors: as make_program; where it is for another reason than for room, the same as without.
+/// The program for a device with memory for 2^26 samples (256 MB), sixteen times that of the loop on this
+/// computer. Errors: as make_program; if memory is not the cause, the same as without.
 schema::Result<Program> with_room_enough(const AskedProgram& asked);
 
-/// `device_samples`, `needed_samples`, `fits`, and `memory`: each item's bytes against its room on the
-/// device.
+/// Adds `device_samples`, `needed_samples`, `fits`, and `memory`: for each item its bytes and the device's
+/// memory for it.
 void add_room(cli::Report& report, const Prepared& made, std::size_t device_samples);
 
-/// `ways_to_fit`, each with the samples that it takes, as prepared: reading by sinc, the longest beginning of
-/// a texture that fits (to a hundredth of it; by sinc where no other does), each texture of a scene by
-/// itself, this computer's loop. Returns what to do, in words: those that fit, or that none does.
+/// Adds `ways_to_fit`, each with the number of samples, as prepared: interpolation by sinc, the longest
+/// beginning of a texture that fits (to a hundredth of it; by sinc if no other does), each texture of a scene
+/// by itself, the loop on this computer. Returns what to do, in words: the ways that fit, or that none does.
 std::string add_ways_to_fit(cli::Report& report, const AskedProgram& asked, const Program& program);
 
 }  // namespace tacto::playback

@@ -41,31 +41,32 @@ void declare_what(CLI::App& app, PlayOptions& o) {
   cli::declare_unfit_transducer(app, o.program.unfit_transducer);
   cli::refuse_force(app);
   app.add_flag("--implausible", o.program.implausible,
-               "Take a transducer file whose numbers no transducer has (a mass of 1e-12 kg, say)");
+               "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
   app.add_option("--finger-path", o.finger_path,
-                 "Where an emulated device's finger goes: CSV with the columns time_s,position_m, and how it "
-                 "presses where there is a column normal_force_n");
+                 "Path of an emulated device's finger: CSV with the columns time_s,position_m and optionally "
+                 "normal_force_n");
   cli::add_quantity(app, "--time", o.time_s, Dimension::time,
-                    "How long; default: as long as the finger's path, or 10 s");
+                    "Duration; default: that of the finger's path, or 10 s");
 }
 
 void declare_texture(CLI::App& app, PlayOptions& o) {
   cli::add_quantity(app, "--at", o.program.at_m, Dimension::length,
-                    "Of a texture: the place of its position 0 on the encoder's axis");
+                    "Of a texture: encoder position of its position 0");
   cli::add_quantity(app, "--gain", o.program.gain_m_per_n, Dimension::compliance,
                     "Of a texture: displacement for force; default: the gain in its file, or 1mm/N");
   declare_ends(app, o.program.ends);
 }
 
 void declare_loop(CLI::App& app, PlayOptions& o) {
-  cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Ticks of the drive");
+  cli::add_quantity(app, "--rate", o.prepare.rate_hz, Dimension::frequency, "Tick rate of the drive");
   cli::add_choice<bool>(app, "--loop", o.loop_here, {{"device", false}, {"host", true}},
-                        "Who closes it: the device, or this computer's real-time thread");
-  app.add_flag("!--no-look-ahead", o.prepare.look_ahead,
-               "Read the texture where the finger is, not where it will be when the inverse has answered");
+                        "What closes the loop: the device, or the real-time thread of this computer (host)");
+  app.add_flag(
+      "!--no-look-ahead", o.prepare.look_ahead,
+      "Read the texture at the finger's present position, without compensation of the inverse's delay");
   app.add_flag("!--keep-hysteresis", o.prepare.undo_hysteresis,
                "Do not invert the hysteresis of the transducer's file");
-  cli::add_quantity(app, "--onset", o.prepare.onset_s, Dimension::time, "In which the drive rises");
+  cli::add_quantity(app, "--onset", o.prepare.onset_s, Dimension::time, "Time in which the drive rises");
 }
 
 void add_played(Report& report, const PlayOutcome& outcome) {
@@ -128,8 +129,9 @@ cli::Action declare_play(CLI::App& app) {
   auto options = std::make_shared<PlayVerbOptions>();
   options->play.prepare.onset_s = 0.02;
   declare_what(app, options->play);
-  app.add_option("-o,--output", options->session,
-                 "The session: NAME.session; default: the texture's name and the time of day, here");
+  app.add_option(
+      "-o,--output", options->session,
+      "The session: NAME.session; default: the texture's name and the time of day, in this folder");
   declare_texture(app, options->play);
   declare_loop(app, options->play);
   declare_choices(app, options->play.program.choices);

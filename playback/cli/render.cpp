@@ -27,7 +27,7 @@ using schema::Result;
 
 namespace {
 
-/// Of a scene they go before what it says of itself.
+/// Named options have priority over those of a scene.
 struct NamedChoices {
   CLI::Option *inverse = nullptr, *interpolation = nullptr, *reconstruction = nullptr, *cutoff = nullptr,
               *hold = nullptr, *encoder_step = nullptr, *energy = nullptr, *energy_window = nullptr;
@@ -42,25 +42,25 @@ struct RenderVerbOptions {
   CLI::Option* engine = nullptr;
   NamedChoices named;
   std::optional<schema::PlaybackGain> kept_gain;
-  double signed_gain = 0;  ///< as reported; the signs of what is rendered are the textures' weights
+  double signed_gain = 0;  ///< as reported; the weights of the textures have the signs
 };
 
 void add_files(CLI::App& app, RenderVerbOptions& o) {
   app.add_option("what", o.what.file, "Texture or scene: its stem, NAME.texture.json, NAME.scene.json ...")
       ->required();
   app.add_option("--path", o.path,
-                 "Finger path: CSV with the columns time_s,position_m; between its points by monotone cubics")
+                 "Finger path: CSV with the columns time_s,position_m; interpolated by monotone cubics")
       ->required();
   app.add_option("--transducer", o.transducer, "Transducer: a preset or NAME.transducer.json")->required();
   cli::declare_unfit_transducer(app, o.what.unfit_transducer);
   app.add_flag("--implausible", o.what.implausible,
-               "Take a transducer file whose numbers no transducer has (a mass of 1e-12 kg, say)");
+               "Accept a transducer file with impossible numbers, for example a mass of 1e-12 kg");
   app.add_option("-o,--output", o.drive, "The drive: float WAV in volts at the amplifier's input")
       ->required();
   cli::declare_force(app, o.existing);
   app.add_option("--displacement", o.displacement,
-                 "Also write what the modelled tray does with that drive: float WAV in metres");
-  app.add_option("--wanted", o.target, "Also write the target displacement: float WAV in metres");
+                 "Also write the displacement of the modelled tray under that drive: float WAV in metres");
+  app.add_option("--target", o.target, "Also write the target displacement: float WAV in metres");
 }
 
 void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
@@ -69,8 +69,7 @@ void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
   cli::add_quantity(app, "--gain", verb.what.gain_m_per_n, Dimension::compliance,
                     "Of a texture: displacement for force; default: the gain in its file, or 1mm/N");
   cli::add_quantity(app, "--at", verb.what.at_m, Dimension::length,
-                    "Of a texture: the place of its position 0 on the path's axis; for a path in "
-                    "bench positions give the "
+                    "Of a texture: path position of its position 0; for a path in bench positions give the "
                     "source_origin_m that `info TEXTURE` prints");
   cli::add_quantity(app, "--low", o.band.low_hz, Dimension::frequency,
                     "Lowest frequency of the displacement");
@@ -78,26 +77,26 @@ void add_quantities(CLI::App& app, RenderVerbOptions& verb) {
                     "Highest frequency of the displacement");
   cli::add_quantity(
       app, "--onset", o.onset_s, Dimension::time,
-      "Fade of the force at either end of the path, for a finger that starts inside the texture (5ms "
-      "unless told); with --engine kernel the drive's onset, as in play (20ms)");
+      "Fade of the force at both ends of the path, for a finger that starts inside the texture; default: "
+      "5ms. With --engine kernel the drive's onset, as in play; default: 20ms");
 }
 
-// By the words of play. A path tells no normal force: there is no contact.
+// The same names as in play. A path has no normal force, so there is no contact.
 void add_kernel(CLI::App& app, RenderVerbOptions& verb) {
   RenderOptions& o = verb.render;
-  verb.budget.reading = verb.named.interpolation =
-      cli::add_choice<wire::Interpolation>(app, "--interpolation", o.interpolation,
-                                           {{"nearest", wire::Interpolation::nearest},
-                                            {"linear", wire::Interpolation::linear},
-                                            {"hermite", wire::Interpolation::hermite},
-                                            {"sinc", wire::Interpolation::sinc}},
-                                           "With --engine kernel: how it reads the texture between samples");
-  verb.named.energy =
-      cli::add_quantity(app, "--energy-limit", o.energy_rms_v, Dimension::voltage,
-                        "With --engine kernel: turn its drive down where its RMS would pass this; 0V: never");
-  verb.named.energy_window = cli::add_quantity(app, "--energy-window", o.energy_window_s, Dimension::time,
-                                               "Over which that RMS is taken")
-                                 ->needs(verb.named.energy);
+  verb.budget.reading = verb.named.interpolation = cli::add_choice<wire::Interpolation>(
+      app, "--interpolation", o.interpolation,
+      {{"nearest", wire::Interpolation::nearest},
+       {"linear", wire::Interpolation::linear},
+       {"hermite", wire::Interpolation::hermite},
+       {"sinc", wire::Interpolation::sinc}},
+      "With --engine kernel: interpolation between the texture's samples");
+  verb.named.energy = cli::add_quantity(
+      app, "--energy-limit", o.energy_rms_v, Dimension::voltage,
+      "With --engine kernel: largest RMS of the drive; beyond it the drive is reduced; 0V: no limit");
+  verb.named.energy_window =
+      cli::add_quantity(app, "--energy-window", o.energy_window_s, Dimension::time, "Time window of that RMS")
+          ->needs(verb.named.energy);
 }
 
 void add_model(CLI::App& app, RenderVerbOptions& verb) {
@@ -108,29 +107,29 @@ void add_model(CLI::App& app, RenderVerbOptions& verb) {
                                 {"magnitude", Inverse::magnitude},
                                 {"gain", Inverse::gain},
                                 {"none", Inverse::none}},
-                               "What of the transducer the drive undoes: amplitude and phase, amplitude, the "
-                               "gain at rest, or nothing");
+                               "What the drive inverts of the transducer: amplitude and phase, amplitude, "
+                               "the gain at rest, or nothing");
   verb.named.reconstruction = cli::add_choice<Reconstruction>(
       app, "--reconstruction", o.reconstruction,
       {{"none", Reconstruction::none}, {"butterworth3", Reconstruction::butterworth3}},
-      "Analog filter behind the converter, undone as well");
+      "Analog filter behind the converter, inverted as well");
   verb.named.cutoff = cli::add_quantity(app, "--cutoff", o.reconstruction_cutoff_hz, Dimension::frequency,
                                         "Cut-off of butterworth3")
                           ->needs(verb.named.reconstruction);
   verb.named.hold =
       cli::add_choice<Hold>(app, "--hold", o.hold, {{"none", Hold::none}, {"zero-order", Hold::zero_order}},
-                            "Whether the converter holds each sample until the next, undone as well");
+                            "Whether the converter holds each sample until the next, inverted as well");
   app.add_flag("!--keep-hysteresis", o.undo_hysteresis,
-               "Do not invert the hysteresis of the transducer's file (the kernel does)");
+               "Do not invert the hysteresis of the transducer's file (only --engine kernel inverts it)");
   verb.engine = cli::add_choice<Engine>(
       app, "--engine", o.engine, {{"reference", Engine::reference}, {"kernel", Engine::kernel}},
-      "Who computes the drive: the exact reference, or the tick kernel as it runs in real time");
+      "Engine that computes the drive: the exact reference, or the tick kernel as it runs in real time");
   verb.named.encoder_step = cli::add_quantity(app, "--encoder-step", o.encoder_step_m, Dimension::length,
-                                              "With --engine kernel: one count of its encoder");
+                                              "With --engine kernel: length of one encoder count");
   add_kernel(app, verb);
   cli::add_choice<OverLimit>(app, "--over-limit", o.over_limit,
                              {{"refuse", OverLimit::refuse}, {"clip", OverLimit::clip}},
-                             "What to do with a drive that passes a limit of the transducer");
+                             "What to do with a drive that exceeds a limit of the transducer");
   declare_tick_budget(app, verb.budget);
 }
 
@@ -157,7 +156,7 @@ void add_limits(Report& report, const Rendering& r) {
       .add("clipped_removed_db", r.clipping->removed_db);
 }
 
-// First away from the path's ends, where a step or the onset is most of the error.
+// The first error is the one without the path's ends, where a step or the onset is most of the error.
 void add_errors(Report& report, const Rendering& r) {
   if (r.interior_error_db)
     report.add("interior_displacement_error_db", *r.interior_error_db)
@@ -183,7 +182,7 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
   add_gain(report, o.signed_gain);
   add_kept_gain(report, o.kept_gain);
   report.add("drive_rms_v", schema::statistics_of(r.drive_v.values).rms())
-      .add("wanted_rms_m", schema::statistics_of(r.target_m.values).rms());
+      .add("target_rms_m", schema::statistics_of(r.target_m.values).rms());
   add_errors(report, r);
   report.add("delay_s", r.delay_s);
   if (o.render.budget.asked()) report.add("engine", r.engine == Engine::kernel ? "kernel" : "reference");
@@ -197,10 +196,10 @@ Report report_of(const RenderVerbOptions& o, const schema::Transducer& transduce
 void warn_of(const Rendering& r) {
   for (const std::string& warning : r.warnings) cli::warn(warning);
   if (!r.clipping) return;
-  cli::warn(fmt::format(
-      "the limits clipped {} samples: the peak is {:.1f} dB lower, what was removed is {:.1f} dB re "
-      "the whole drive",
-      r.clipping->samples, r.clipping->peak_reduced_db, r.clipping->removed_db));
+  cli::warn(
+      fmt::format("the limits clipped {} samples: the peak is {:.1f} dB lower, the removed part is {:.1f} dB "
+                  "re the whole drive",
+                  r.clipping->samples, r.clipping->peak_reduced_db, r.clipping->removed_db));
 }
 
 void warn_of_version(const std::string& name, const schema::Transducer& transducer) {
@@ -209,23 +208,22 @@ void warn_of_version(const std::string& name, const schema::Transducer& transduc
   if (!note.empty()) cli::warn(note);
 }
 
-// What the reference knows nothing of.
+// Options that the reference does not have.
 Result<void> check_kernels(const RenderVerbOptions& o) {
   if (o.engine->count() > 0 && o.render.engine == Engine::kernel) return {};
   for (const CLI::Option* named : {o.named.encoder_step, o.named.interpolation, o.named.energy})
     if (named->count() > 0)
-      return schema::fail(
-          schema::ErrorKind::usage, named->get_name() + " requires --engine kernel", {},
-          "the reference reads the texture exactly where the finger is, and has no energy limit");
+      return schema::fail(schema::ErrorKind::usage, named->get_name() + " requires --engine kernel", {},
+                          "the reference reads the texture at exact positions, and has no energy limit");
   return {};
 }
 
-// The signals' addresses serve as names only: nothing is rendered yet.
+// Nothing is rendered yet; the empty signals only stand for their files.
 Result<void> check_outputs(const RenderVerbOptions& o) {
   return check_signal_files(files_of(o, Rendering{}), o.existing);
 }
 
-// What a scene says of how it is to be played, where nobody named something else.
+// Uses the scene's choices where no option was named.
 Result<void> take_choices(RenderVerbOptions& o, const schema::PlaybackChoices& scene) {
   const auto played = with_choices({}, scene);
   TACTO_TRY(played);
@@ -247,7 +245,7 @@ Result<void> take_choices(RenderVerbOptions& o, const schema::PlaybackChoices& s
 }
 
 Result<Rendering> rendered(RenderVerbOptions& o, const schema::Transducer& transducer) {
-  const auto laid = lay_textures(o.what);
+  const auto laid = place_textures(o.what);
   TACTO_TRY(laid);
   TACTO_TRY(take_choices(o, laid->choices()));
   for (const std::string& note : laid->notes()) cli::warn(note);

@@ -18,7 +18,8 @@ struct ReplayVerbOptions {
   std::string session;
 };
 
-// Of a session that is not all there a "yes" would be too much, and a "no" wrong: it says up to where.
+// For an incomplete session neither "yes" nor "no" would be correct: the report states up to which tick it is
+// the same.
 void add_sameness(Report& report, const ReplayOutcome& outcome) {
   const bool yes = !outcome.first_difference;
   if (yes && outcome.damaged_at)
@@ -37,17 +38,17 @@ Result<Report> run_replay(const ReplayVerbOptions& o) {
   report.add("session", schema::session_path(o.session)).add("ticks_compared", outcome->ticks);
   add_sameness(report, *outcome);
   if (outcome->ending == schema::SessionEnding::unclosed)
-    cli::warn("the session was never closed: what is in it was compared");
+    cli::warn("the session was never closed: its stored part was compared");
   if (outcome->damaged_at) {
     cli::warn(
-        fmt::format("the session is damaged from byte {} on: what precedes it was compared, and may "
-                    "lack a command that stood behind",
+        fmt::format("the session is damaged from byte {} on: the part before it was compared; later commands "
+                    "may be missing in it",
                     *outcome->damaged_at));
     report.add("damaged_at_byte", *outcome->damaged_at).ends_with(schema::ErrorKind::malformed);
   }
   if (outcome->lost > 0) report.add("lost_ticks", outcome->lost);
   if (outcome->lost_at) {
-    cli::warn(fmt::format("ticks are missing from {} on: the drive after them can't be replayed",
+    cli::warn(fmt::format("ticks are missing from tick {} on: the drive after them can't be replayed",
                           *outcome->lost_at));
     report.add("lost_at_tick", *outcome->lost_at);
     if (!outcome->damaged_at) report.ends_with(schema::ErrorKind::unsuitable);
@@ -68,8 +69,8 @@ cli::Action declare_replay(CLI::App& app) {
 
 }  // namespace
 
-const cli::Verb kReplayVerb{"replay",
-                            "Compute a session's drive again, and report the first mismatch, to the bit",
-                            "tactograph replay first.session", declare_replay};
+const cli::Verb kReplayVerb{
+    "replay", "Compute a session's drive again, compare it to the bit, and report the first mismatch",
+    "tactograph replay first.session", declare_replay};
 
 }  // namespace tacto::playback

@@ -30,16 +30,11 @@ struct SessionVerbOptions {
 };
 
 constexpr std::string_view kStrokeColumns =
-    "stroke,from_s,to_s,from_m,to_m,predicted_rms_m,wanted_rms_m,predicted_error_db,predicted_over_wanted_db,"
+    "stroke,from_s,to_s,from_m,to_m,predicted_rms_m,target_rms_m,predicted_error_db,predicted_over_target_db,"
     "removed_by_limits_db,limited_ticks,energy_limited_ticks,gated_ticks,measured_rms_m,measured_error_db,"
-    "measured_over_wanted_db,measured_shift_s";
+    "measured_over_target_db,measured_shift_s";
 
-// Of older versions, which called predicted what they said was received.
-constexpr std::string_view kReceivedColumns =
-    "stroke,from_s,to_s,from_m,to_m,received_rms_m,wanted_rms_m,error_db,received_over_wanted_db,"
-    "removed_by_limits_db,limited_ticks,energy_limited_ticks,gated_ticks";
-
-// What is not known is left empty.
+// Unknown values are left empty.
 std::string stroke_line(std::uint64_t number, const PlayedStroke& s) {
   const auto cell = [](bool known, double value) { return known ? fmt::format("{:.9g}", value) : ""; };
   const bool judged = s.target_rms_m > 0, sensed = s.measured.has_value();
@@ -54,7 +49,7 @@ std::string stroke_line(std::uint64_t number, const PlayedStroke& s) {
 }
 
 bool is_stroke_table(std::string_view line) {
-  return line == kStrokeColumns || line == kReceivedColumns;
+  return line.starts_with("stroke,from_s,to_s,from_m,to_m,");  // other columns in older versions
 }
 
 /// The strokes as a table, written as they are found.
@@ -93,14 +88,14 @@ Report stroke_row(const PlayedStroke& stroke) {
   row.add("from_m", stroke.from_m).add("to_m", stroke.to_m);
   row.add("predicted_rms_m", stroke.predicted.rms_m);
   if (judged)
-    row.add("wanted_rms_m", stroke.target_rms_m)
+    row.add("target_rms_m", stroke.target_rms_m)
         .add("predicted_error_db", stroke.predicted.error_db)
-        .add("predicted_over_wanted_db", stroke.predicted.level_db);
+        .add("predicted_over_target_db", stroke.predicted.level_db);
   if (const auto& measured = stroke.measured) {
     row.add("measured_rms_m", measured->rms_m);
     if (judged)
       row.add("measured_error_db", measured->error_db)
-          .add("measured_over_wanted_db", measured->level_db)
+          .add("measured_over_target_db", measured->level_db)
           .add("measured_shift_s", measured->shift_s);
   }
   if (stroke.limits && stroke.limits->removed_any())
@@ -116,7 +111,7 @@ Result<void> check_outputs(const SessionVerbOptions& o) {
   for (auto file = all.begin(); file != all.end(); ++file)
     if (std::any_of(all.begin(), file, [&](const auto& other) { return schema::same_file(*file, other); }))
       return schema::fail(schema::ErrorKind::usage, fmt::format("'{}' is named twice", *file), "output",
-                          "give each table a file of its own");
+                          "give each table a different file");
   for (const std::string& output : o.outputs)
     if (auto free = check_session_output(output, o.existing); !free) return free;
   return o.strokes.empty() ? Result<void>{}
@@ -152,7 +147,7 @@ void warn_of(const StrokeReport& strokes) {
                           strokes.strokes.size(), strokes.stroke_count));
 }
 
-// States, faults, gains, changes of texture.
+// Adds states, faults, gains, changes of texture.
 Result<void> add_events(Report& report, const std::string& session) {
   auto reader = schema::SessionReader::open(session);
   TACTO_TRY(reader);
@@ -192,9 +187,8 @@ Result<Report> run_session(const SessionVerbOptions& o) {
 cli::Action declare_session(CLI::App& app) {
   auto options = std::make_shared<SessionVerbOptions>();
   app.add_option("session", options->session, "NAME.session")->required();
-  app.add_option("-o,--output", options->outputs,
-                 "Table of the ticks: .csv, .wav or .nc; may be given again");
-  app.add_option("--strokes", options->strokes, "Table of the strokes: .csv, a line each, however many");
+  app.add_option("-o,--output", options->outputs, "Table of the ticks: .csv, .wav or .nc; may be repeated");
+  app.add_option("--strokes", options->strokes, "Table of all strokes: .csv, one line per stroke");
   cli::declare_force(app, options->existing);
   return [options] { return run_session(*options); };
 }
@@ -202,8 +196,7 @@ cli::Action declare_session(CLI::App& app) {
 }  // namespace
 
 const cli::Verb kSessionVerb{
-    "session",
-    "Export a session; say of each stroke what the model predicts and what the tray's sensor measured",
+    "session", "Export a session; report the predicted and the measured displacement of each stroke",
     "tactograph session first -o first.csv -o first.nc", declare_session};
 
 }  // namespace tacto::playback

@@ -14,8 +14,8 @@ namespace {
 
 using schema::ControlFields;
 
-// The parts between the bounds that the status has, as bars: one sign is 2 %, and what is rare shows as a
-// dot.
+// Histogram of the lateness between the bounds of the status: one sign is 2 %; smaller parts above 0 show as
+// a dot.
 std::string lateness_bars(const ControlFields& fields) {
   std::string bars;
   double beyond_lower = 1;
@@ -46,7 +46,7 @@ std::string lateness_lines(const ControlFields& fields) {
                      1e3 * number("looked_ahead_s"));
 }
 
-// A limited tick is counted a little before it is told what was taken of it.
+// The count of limited ticks is known slightly earlier than what the limits removed.
 std::string words_of_taken(const ControlFields& fields) {
   if (const std::string unknown = schema::control_text(fields, "limits_took"); !unknown.empty())
     return unknown;
@@ -57,7 +57,7 @@ std::string words_of_taken(const ControlFields& fields) {
                      std::isnan(second_db) ? "nothing" : fmt::format("{:.1f} dB", second_db), all_db);
 }
 
-// Of the wished drive, as RMS; by stroke the command tells it.
+// RMS relative to the unlimited drive; `tactograph session` reports it for each stroke.
 std::string limits_line(const ControlFields& fields) {
   const std::string tells = schema::control_text(fields, "limits_in_db");
   if (tells.empty()) return {};
@@ -70,7 +70,7 @@ std::string top_screen(const ControlFields& fields) {
   const auto number = [&](std::string_view name) { return schema::control_number(fields, name); };
   std::string text;
   const auto out = std::back_inserter(text);
-  // `why` holds the fault, too, and from protocol 1.2 on what else changed the state.
+  // `why` contains the fault, and from protocol 1.2 on also other causes of a state.
   const std::string why = schema::control_text(fields, "why");
   fmt::format_to(out, "{:<8} {}\n", schema::control_text(fields, "state"),
                  why.empty() ? schema::control_text(fields, "fault") : why);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon's live figures as a screen of text.
+// The daemon's current figures as a screen of text.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace tacto::playback {
 
-/// Of a `status`: lines, what matters most first.
+/// The lines for a `status`, the most important first.
 std::string top_screen(const schema::ControlFields& fields);
 
-/// The lines that a terminal of so many rows has room for, each cut to its columns; the last one without its
-/// newline, so that nothing scrolls.
+/// The lines that fit into a terminal of so many rows, each cut to its columns; the last one without a
+/// newline, so that the terminal does not scroll.
 std::string clipped_to(const std::string& text, std::size_t rows, std::size_t columns);
 
 }  // namespace tacto::playback

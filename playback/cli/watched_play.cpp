@@ -17,7 +17,7 @@ using schema::ControlVerb;
 using schema::Result;
 
 constexpr int kBeatMs = 250;
-constexpr double kDeadManS = 2;  // eight beats: a busy computer delays some
+constexpr double kDeadManS = 2;  // eight heartbeats, because a busy computer delays some
 
 Result<ControlFields> asked(ControlConnection& connection, ControlVerb verb) {
   ControlRequest request;
@@ -32,7 +32,7 @@ bool says_while_connected(const ControlFields& armed) {
   });
 }
 
-// An older daemon passes over what it does not know, and would play on alone.
+// An older daemon ignores members that it does not have, and would not stop with this command.
 Result<void> arm_while_connected(ControlConnection& connection) {
   ControlRequest request;
   request.verb = ControlVerb::arm;
@@ -44,7 +44,7 @@ Result<void> arm_while_connected(ControlConnection& connection) {
   (void)asked(connection, ControlVerb::disarm);
   return schema::fail(
       schema::ErrorKind::unsupported_version,
-      "the daemon is older than version 1.2 of its protocol: it would play on without this command",
+      "the daemon's protocol is older than version 1.2: it would continue to play after this command",
       connection.socket(), "update it, or use 'ctl arm' and 'ctl play'");
 }
 
@@ -70,7 +70,7 @@ Result<Report> report_of_end(ControlConnection& connection) {
   return report;
 }
 
-// Each status that is asked for is a sign of life, too.
+// Each request for a status also shows that this client is alive.
 Result<void> watch_until_the_end(ControlConnection& connection, std::optional<double> time_s,
                                  const cli::StopSignals& signals,
                                  const std::function<void(const ControlFields&)>& show) {
@@ -84,7 +84,7 @@ Result<void> watch_until_the_end(ControlConnection& connection, std::optional<do
     TACTO_TRY(status);
     show(*status);
     if (!goes_on(*status)) return {};
-    // Nothing comes unasked: this waits, and a signal ends it.
+    // No events come: this only waits, and a signal ends it.
     TACTO_TRY(connection.next_event(kBeatMs));
   }
   TACTO_TRY(asked(connection, ControlVerb::stop));

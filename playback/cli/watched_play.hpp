@@ -10,10 +10,10 @@
 
 namespace tacto::playback {
 
-/// Arms so that the drive falls where this process goes away or stops (`while_connected`, `dead_man_s`),
-/// plays, and stays connected until it is interrupted, `time_s` is over, or the session ends in another way;
-/// then it stops the drive and disarms. `show` gets each status, four a second. Errors: as ask();
-/// unsupported: a daemon that knows no `while_connected`.
+/// Arms such that the drive falls if this process ends or stops (`while_connected`, `dead_man_s`), plays, and
+/// stays connected until it is interrupted, `time_s` is over, or the session ends in another way; then it
+/// stops the drive and disarms. `show` receives each status, four a second. Errors: as ask(); unsupported: a
+/// daemon without `while_connected`.
 schema::Result<cli::Report> watched_play(ControlConnection& connection, std::optional<double> time_s,
                                          const std::function<void(const schema::ControlFields&)>& show);
 

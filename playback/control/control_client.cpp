@@ -13,7 +13,7 @@ namespace tacto::playback {
 namespace {
 
 constexpr std::size_t kMostWaiting = std::size_t{256} * 1024;
-constexpr std::size_t kEventsWait = std::size_t{64} * 1024;  // beyond it, events are dropped
+constexpr std::size_t kEventsWait = std::size_t{64} * 1024;  // beyond this, events are dropped
 
 }  // namespace
 

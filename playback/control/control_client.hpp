@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One client of the control socket, as the server keeps it.
+// The server's state of one client of the control socket.
 #pragma once
 
 #include <chrono>
@@ -12,35 +12,35 @@
 
 namespace tacto::playback {
 
-/// A request whose answer comes later.
+/// A request that is answered later.
 struct LateRequest {
   std::string id;
-  std::vector<std::string> passed_over;  ///< of its members: not known
+  std::vector<std::string> passed_over;  ///< members of the request that are unknown
 };
 
-/// Buffers of bounded size around a connected socket that never waits. Closes it.
+/// Bounded buffers around a connected socket whose calls never block. The destructor closes the socket.
 class ControlClient {
  public:
   explicit ControlClient(int descriptor) : descriptor_(descriptor) {}
 
   int descriptor() const { return descriptor_.value(); }
-  /// Takes in what has come.
+  /// Reads the bytes that have arrived.
   void receive();
-  /// Nothing more comes: the client has closed its side, or is gone.
+  /// Whether no more bytes can come: the client has closed its side or has disconnected.
   bool silent() const { return silent_; }
-  /// The next whole line without its newline, if there is one.
+  /// Removes and returns the next whole line, without its newline, if there is one.
   std::optional<std::string> take_line();
   bool has_line() const;
-  /// All whole lines that are here; none is taken.
+  /// All whole lines in the buffer; they stay there.
   std::vector<std::string> waiting_lines() const;
-  /// Less than a longest line is here.
+  /// Whether the buffer holds less than the longest line.
   bool has_room() const;
-  /// More than a line may have, and still no end.
+  /// Whether the buffer holds a line that is too long, without its end.
   bool is_endless() const;
-  /// Sends as much as the socket takes; keeps the rest. False where the client is gone, or has not taken
-  /// 256 KB.
+  /// Sends as much as the socket accepts and keeps the rest. False if the client has disconnected, or more
+  /// than 256 KB are unsent.
   bool send(const std::string& line);
-  /// An event: dropped, and counted, where the client does not keep up.
+  /// As send(), for an event: it is dropped and counted if the client reads too slowly.
   bool send_event(const std::string& line);
   bool flush();
   bool wants_to_send() const { return !out_.empty(); }
@@ -49,20 +49,20 @@ class ControlClient {
 
   std::uint64_t id = 0;
   Time since{};                       ///< when it connected
-  bool by_tcp = false;                ///< it has to name the token
-  std::optional<std::uint32_t> user;  ///< who came by the Unix socket
+  bool by_tcp = false;                ///< it has to give the token
+  std::optional<std::uint32_t> user;  ///< of a client by the Unix socket
   bool greeted = false, watching = false;
-  bool unwelcome = false;         ///< it is disconnected once it is answered
-  bool gone = false;              ///< it is disconnected, and waits to be removed from the list
-  bool for_stop = false;          ///< it has a place that is kept for `stop` and `disarm`
-  std::optional<Time> leaves_at;  ///< then it is sent `last_line` and disconnected; it is not read until then
+  bool disconnect_after_answer = false;  ///< it is disconnected after its answer
+  bool gone = false;                     ///< it is disconnected and waits for its removal from the list
+  bool for_stop = false;                 ///< it has a place that is reserved for `stop` and `disarm`
+  std::optional<Time> leaves_at;         ///< time to send `last_line` and disconnect; not read until then
   std::string last_line;
-  std::uint64_t lines = 0;  ///< that came
+  std::uint64_t lines = 0;  ///< received
   std::uint64_t dropped_events = 0;
   std::optional<LateRequest> waits_for;
 
  private:
-  // Closes what it holds.
+  // Closes its file descriptor.
   class Descriptor {
    public:
     explicit Descriptor(int value) : value_(value) {}

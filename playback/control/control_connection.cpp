@@ -21,7 +21,7 @@ using schema::Result;
 namespace {
 
 constexpr int kAnswerMs = 10'000;
-constexpr int kLoadMs = 60'000;  // a texture of 100 mm takes a second to load, on a slow or busy machine many
+constexpr int kLoadMs = 60'000;  // a texture of 100 mm takes 1 s to load, on a slow or busy machine longer
 
 ControlRequest hello_request() {
   ControlRequest hello;
@@ -81,12 +81,13 @@ Result<std::optional<std::string>> ControlConnection::line(int timeout_ms) {
     if (poll(&waiting, 1, timeout_ms) <= 0) return std::optional<std::string>();
     char bytes[4096];
     const ssize_t got = recv(descriptor_, bytes, sizeof bytes, 0);
-    if (got <= 0) return fail(ErrorKind::device, "the daemon hung up", socket_, "see its journal");
+    if (got <= 0)
+      return fail(ErrorKind::device, "the daemon closed the connection", socket_, "see its journal");
     received_.append(bytes, static_cast<std::size_t>(got));
   }
 }
 
-// Who hangs up at once has said why: it is read also where nothing can be sent any more.
+// Errors are ignored: a server that disconnects at once has sent the reason, which is read next.
 void ControlConnection::say(const std::string& text) const {
   (void)::send(descriptor_, text.data(), text.size(), MSG_NOSIGNAL);
 }
@@ -94,7 +95,7 @@ void ControlConnection::say(const std::string& text) const {
 Result<ControlFields> ControlConnection::answer(int timeout_ms) {
   const auto text = line(timeout_ms);
   TACTO_TRY(text);
-  if (!*text) return fail(ErrorKind::device, "the daemon says nothing", socket_, "see its journal");
+  if (!*text) return fail(ErrorKind::device, "the daemon does not answer", socket_, "see its journal");
   auto reply = schema::parse_control_reply(**text);
   TACTO_TRY(reply);
   if (!reply->ok) return tl::unexpected(reply->error);

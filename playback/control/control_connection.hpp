@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A client's side of the control socket.
+// The client's side of the control socket.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,21 @@ namespace tacto::playback {
 
 class ControlConnection {
  public:
-  /// Connects and says hello. Errors: as connect_control_socket; unsupported_version; device: no answer.
+  /// Connects and sends hello. Errors: as connect_control_socket; unsupported_version; device: no answer.
   static schema::Result<ControlConnection> open(const std::string& socket);
-  /// Says hello and asks in one piece, and hangs up: for `stop` and `disarm`, which a daemon whose places are
-  /// all taken answers at once. Errors: as open() and ask().
+  /// Sends hello and one request together, and disconnects. For `stop` and `disarm`, which a daemon without
+  /// free places answers at once. Errors: as open() and ask().
   static schema::Result<schema::ControlFields> ask_at_once(const std::string& socket,
                                                            const schema::ControlRequest& request);
   ControlConnection(ControlConnection&& other) noexcept;
   ControlConnection& operator=(ControlConnection&& other) noexcept;
   ~ControlConnection();
 
-  /// Sends and waits, 10 s at most. Errors: the daemon's own; device: it hung up, or says nothing.
+  /// Sends a request and waits at most 10 s. Errors: those of the daemon; device: it disconnected or does not
+  /// answer.
   schema::Result<schema::ControlFields> ask(const schema::ControlRequest& request);
-  /// After `watch`: the next event; none where nothing came for `timeout_ms`, or a signal did. Errors:
-  /// device: it hung up; malformed: a line that is no event.
+  /// After `watch`: the next event; none after `timeout_ms` or a signal. Errors: device: the daemon
+  /// disconnected; malformed: a line that is not an event.
   schema::Result<std::optional<schema::ControlReply>> next_event(int timeout_ms);
   const schema::ControlFields& hello() const { return hello_; }
   const std::string& socket() const { return socket_; }

@@ -16,12 +16,12 @@ using schema::ControlVerb;
 using schema::ErrorKind;
 using schema::Result;
 
-constexpr int kLinesAtOnce = 2, kAcceptAtOnce = 128;  // few: between two serve() the device is looked after
+constexpr int kLinesAtOnce = 2, kAcceptAtOnce = 128;  // few, because the device is served between two serve()
 constexpr short kSomethingCame = POLLIN | POLLHUP | POLLERR;
 constexpr std::chrono::seconds kGreetsWithin{5}, kStopPlaceFor{5};
-constexpr std::ptrdiff_t kStopPlaces = 8;  // of each socket, and what came since the last serve()
+constexpr std::ptrdiff_t kStopPlaces = 8;  // per socket, beside clients accepted since the last serve()
 constexpr std::size_t kListening = 2;      // descriptors before the clients'
-constexpr std::size_t kMostEvents = 1000;  // between two serve(): ten a second are usual
+constexpr std::size_t kMostEvents = 1000;  // between two serve(); usual are ten a second
 
 const schema::Error kTooLong{ErrorKind::malformed,
                              fmt::format("a line has more than {} bytes", schema::kMostControlLine),
@@ -34,10 +34,10 @@ const schema::Error kUnknown{ErrorKind::usage, "by TCP the first request must be
                              "request",
                              R"(send {"request":"hello","version":"1.0","token":"..."}: the token is the )"
                              "first line of the file that tcp_token_file names"};
-const schema::Error kOnlyWatches{ErrorKind::usage, "who watches can't ask", "request",
+const schema::Error kOnlyWatches{ErrorKind::usage, "a connection that watches accepts no requests", "request",
                                  "open another connection"};
 
-// Of who waits for an answer more is looked at, for a `stop` may be in it.
+// A client that waits for an answer is still read, because a `stop` may follow.
 bool wants_more(const ControlClient& client) {
   if (client.silent() || client.leaves_at) return false;
   return (client.waits_for ? client.has_room() : !client.has_line());
@@ -47,11 +47,11 @@ bool stops(const ControlRequest& request) {
   return request.verb == ControlVerb::stop || request.verb == ControlVerb::disarm;
 }
 
-bool is_stranger(const ControlClient& client) {
+bool is_unauthenticated(const ControlClient& client) {
   return client.by_tcp && !client.greeted;
 }
 
-// Newer clients may say what we don't know; who misspelt something is told.
+// Newer clients may send unknown members. The answer names them, in case one was misspelt.
 schema::ControlFields with_passed_over(schema::ControlFields fields, const std::vector<std::string>& names) {
   if (!names.empty()) fields.emplace_back("passed_over", fmt::format("{}", fmt::join(names, ", ")));
   return fields;
@@ -79,7 +79,7 @@ ControlServer::~ControlServer() {
 schema::Error ControlServer::full() const {
   return {ErrorKind::unsuitable, fmt::format("{} clients are connected already", place_.most_clients),
           place_.path,
-          "close one, or raise most_clients in the configuration; stop and disarm are taken all the same"};
+          "close one, or raise most_clients in the configuration; stop and disarm are still accepted"};
 }
 
 void ControlServer::disconnect(ControlClient& client, const schema::Error& why) {
@@ -97,7 +97,8 @@ bool ControlServer::has_place(bool by_tcp) const {
   return taken(false) < place_.most_clients;
 }
 
-// Strangers by TCP are gone by then (let_go): this is for whoever came by the Unix socket and says nothing.
+// disconnect_expired() has disconnected silent clients by TCP already. This finds one by the Unix socket that
+// sent no hello.
 bool ControlServer::make_place(bool by_tcp) {
   if (has_place(by_tcp)) return true;
   const Time now = place_.now();
@@ -109,8 +110,8 @@ bool ControlServer::make_place(bool by_tcp) {
   return has_place(by_tcp);
 }
 
-// Everybody who has one was attended to at least once: what came after them may have their place. Who said
-// hello stays longer, for its `stop` follows.
+// Each client in a reserved place was served at least once, so newer ones may replace it. One that sent hello
+// stays longer, because its `stop` follows.
 void ControlServer::free_stop_places(bool by_tcp) {
   const auto keeps = [&](const ControlClient& one) {
     return !one.gone && one.for_stop && one.by_tcp == by_tcp;
@@ -123,7 +124,8 @@ void ControlServer::free_stop_places(bool by_tcp) {
   }
 }
 
-// Anybody on the machine may connect by TCP: so not to all places, and not for long without the token.
+// Any user of the machine may connect by TCP, so TCP gets only a part of the places, and only briefly without
+// a token.
 void ControlServer::accept_from(int listening, bool by_tcp) {
   for (int i = 0; i < kAcceptAtOnce; ++i) {
     const int accepted = accept4(listening, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
@@ -138,7 +140,7 @@ void ControlServer::accept_from(int listening, bool by_tcp) {
   }
 }
 
-// A right token goes before a wrong one that waits for its answer.
+// A client with the right token replaces one that waits for the answer to a wrong token.
 void ControlServer::leave_stop_place(ControlClient& client) {
   if (!has_place(client.by_tcp) && client.by_tcp) {
     const auto waiting = std::ranges::find_if(clients_, [](const ControlClient& one) {
@@ -149,11 +151,12 @@ void ControlServer::leave_stop_place(ControlClient& client) {
   client.for_stop = !has_place(client.by_tcp);
 }
 
-// Who is to be gone by now, and who finds a place among the others.
-void ControlServer::let_go() {
+// Disconnects clients whose time has ended, and gives free places to those in reserved places.
+void ControlServer::disconnect_expired() {
   const Time now = place_.now();
   for (ControlClient& one : clients_) {
-    if (is_stranger(one) && !one.leaves_at && now > one.since + kGreetsWithin) disconnect(one, kSilent);
+    if (is_unauthenticated(one) && !one.leaves_at && now > one.since + kGreetsWithin)
+      disconnect(one, kSilent);
     if (!one.gone && one.for_stop && now > one.since + kStopPlaceFor) disconnect(one, full());
     if (one.gone || !one.leaves_at || now < *one.leaves_at) continue;
     one.send(one.last_line);
@@ -164,11 +167,11 @@ void ControlServer::let_go() {
     if (one.for_stop) one.for_stop = !has_place(one.by_tcp);
 }
 
-// None where the request is one that this client may make.
+// Returns none if this client may make the request.
 std::optional<schema::Error> ControlServer::refusal_of(const ControlClient& client,
                                                        const Result<ControlRequest>& request) const {
   const bool greets = request && request->verb == ControlVerb::hello;
-  if (is_stranger(client)) {
+  if (is_unauthenticated(client)) {
     if (!request && request.error().kind == ErrorKind::unsupported_version) return request.error();
     if (!greets || !is_token(request->token, place_.loopback->token)) return kUnknown;
   }
@@ -179,21 +182,21 @@ std::optional<schema::Error> ControlServer::refusal_of(const ControlClient& clie
   return std::nullopt;
 }
 
-// None where the answer waits, as that to one wrong token of many does.
+// Returns none if the answer is delayed, as after many wrong tokens.
 std::optional<std::string> ControlServer::refuse(ControlClient& client, const std::string& line,
                                                  const ControlRequest* request) {
-  const bool wrong_token = is_stranger(client) && request != nullptr && !request->token.empty();
+  const bool wrong_token = is_unauthenticated(client) && request != nullptr && !request->token.empty();
   const auto wait = wrong_token ? wrong_tokens_.wait_of(place_.now()) : std::chrono::seconds(0);
   if (wait.count() > 0) {
     client.leaves_at = place_.now() + wait;
     client.last_line = line;
     return std::nullopt;
   }
-  client.unwelcome = is_stranger(client) || (client.for_stop && request != nullptr);
+  client.disconnect_after_answer = is_unauthenticated(client) || (client.for_stop && request != nullptr);
   return line;
 }
 
-// None where the answer comes later.
+// Returns none if the answer comes later.
 std::optional<std::string> ControlServer::answer_to(ControlClient& client, const std::string& line,
                                                     const Handler& handler) {
   std::string id;
@@ -242,15 +245,16 @@ bool ControlServer::answer_lines(ControlClient& client, const Handler& handler) 
     if (!line) break;
     const auto answer = answer_to(client, *line, handler);
     if (answer && !client.send(*answer)) return false;
-    if (client.unwelcome) return false;
+    if (client.disconnect_after_answer) return false;
   }
   if (!client.is_endless()) return true;
   client.send(schema::control_error_line("", kTooLong));
   return false;
 }
 
-// False where the client is to go. Who says no more is answered all the same, as far as he takes it. More is
-// received only once the lines that are here are answered: so little is kept of anybody.
+// Returns false if the client has to be removed. A client that has closed its side still gets its answers, as
+// far as it reads them. More bytes are received only after the lines in the buffer are answered, which bounds
+// the buffer.
 bool ControlServer::attend(ControlClient& client, short events, const Handler& handler) {
   if (client.gone) return false;
   if ((events & (POLLOUT | POLLHUP | POLLERR)) != 0 && !client.flush()) return false;
@@ -273,10 +277,10 @@ void ControlServer::attend_all(const std::vector<pollfd>& waiting, const Handler
   std::erase_if(clients_, [](const ControlClient& one) { return one.gone; });
 }
 
-LinesHeard ControlServer::heard_of(std::optional<std::uint64_t> client) const {
+LinesReceived ControlServer::lines_received(std::optional<std::uint64_t> client) const {
   if (!client) return {true, lines_};
   const auto found = std::ranges::find(clients_, *client, &ControlClient::id);
-  return found == clients_.end() ? LinesHeard{false, 0} : LinesHeard{true, found->lines};
+  return found == clients_.end() ? LinesReceived{false, 0} : LinesReceived{true, found->lines};
 }
 
 std::vector<pollfd> ControlServer::what_is_waited_for() const {
@@ -289,9 +293,9 @@ std::vector<pollfd> ControlServer::what_is_waited_for() const {
   return waiting;
 }
 
-// What a client has sent already, poll() knows nothing of.
+// poll() does not report lines that are in a buffer already.
 void ControlServer::serve(int timeout_ms, const Handler& handler) {
-  let_go();
+  disconnect_expired();
   std::vector<pollfd> waiting = what_is_waited_for();
   const bool ready = std::ranges::any_of(
       clients_, [](const ControlClient& one) { return one.has_line() && !one.waits_for && !one.leaves_at; });

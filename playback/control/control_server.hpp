@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The control socket: takes lines from clients, answers each, and tells watchers what happens (CONTROL.md).
+// The control socket: receives lines of clients, answers each, and sends events to watchers (CONTROL.md).
 #pragma once
 
 #include <poll.h>
@@ -20,57 +20,58 @@
 
 namespace tacto::playback {
 
-/// TCP on 127.0.0.1, for clients who have no Unix sockets.
+/// TCP on 127.0.0.1, for clients that cannot use Unix sockets.
 struct LoopbackPlace {
-  int port = 0;       ///< 0: a free one
-  std::string token;  ///< to be named in hello
+  int port = 0;       ///< 0: any free port
+  std::string token;  ///< expected in hello
 };
 
 struct SocketPlace {
   std::string path;
-  std::string group;      ///< whose members may connect; empty: only the daemon's user
-  int most_clients = 16;  ///< of whom at most half come by TCP
+  std::string group;      ///< its members may connect; empty: only the daemon's user
+  int most_clients = 16;  ///< at most half of them by TCP
   std::optional<LoopbackPlace> loopback;
   std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
 };
 
-/// Where all places are taken, whoever said no hello within 5 s of connecting is disconnected for the next
-/// client. Where that frees none, the next clients get one of a few places that are kept for `stop` and
-/// `disarm`, for 5 s at most; the one that has it longest makes room for another. Never waits for a client:
-/// neither for one who is silent in the middle of a line, nor for one who does not read. One thread.
+/// If all places are used, a client that sent no hello within 5 s of connecting is disconnected for the next
+/// one. If there is none, the next clients get one of a few places that are reserved for `stop` and `disarm`,
+/// for 5 s at most; the oldest of them makes room for another. The server never waits for a client, neither
+/// for the end of a line nor for one that does not read. For one thread.
 class ControlServer {
  public:
-  /// None: it comes later, by answer_late(); until then that client's next lines wait. One at a time.
+  /// None: answer_late() answers later; until then the next lines of that client wait. One such request at a
+  /// time.
   using Answer = std::optional<schema::Result<schema::ControlFields>>;
   using Handler = std::function<Answer(const schema::ControlRequest&)>;
 
-  /// A socket that a dead daemon left is replaced. Errors: usage: a path that no socket can have, a group
-  /// that does not exist; unsuitable: another daemon listens there; cannot_write.
+  /// Replaces a socket that a dead daemon left. Errors: usage: a path that is not possible for a socket, a
+  /// group that does not exist; unsuitable: another daemon listens there; cannot_write.
   static schema::Result<std::unique_ptr<ControlServer>> listen(const SocketPlace& place);
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
   ~ControlServer();
 
-  /// Waits at most `timeout_ms` for something to do, and does it; at most 2 lines of each client.
-  /// Who has more lines here gets them answered by the next serve(), which does not wait then.
+  /// Waits at most `timeout_ms` for something to do, and does it; answers at most 2 lines of each client. If
+  /// a client has more, the next serve() answers them without waiting.
   void serve(int timeout_ms, const Handler& handler);
-  /// To the client who waits for it, if he is still there.
+  /// Answers the client that waits for it, if it is still connected.
   void answer_late(const schema::Result<schema::ControlFields>& fields);
-  /// Whether a `stop` or `disarm` is among the lines of the client who waits: it must not wait with them.
+  /// Whether the lines of the waiting client contain a `stop` or `disarm`, which must not wait.
   bool stop_waits() const;
-  /// To all who watch, at the end of the next serve(): requests publish while clients are attended.
+  /// Sent to all watchers at the end of the next serve(), because requests publish while clients are served.
   void publish(std::string_view event, const schema::ControlFields& fields);
-  /// What came until now from one client, by the `client` of its requests; without one, from all that said
-  /// hello.
-  LinesHeard heard_of(std::optional<std::uint64_t> client) const;
-  /// 0 where nobody may come by TCP.
+  /// Lines received so far from one client, by the `client` of its requests; without one, from all clients
+  /// that sent hello.
+  LinesReceived lines_received(std::optional<std::uint64_t> client) const;
+  /// 0 if TCP is off.
   int tcp_port() const { return tcp_.port; }
   std::size_t clients() const { return clients_.size(); }
 
  private:
   using Time = ControlClient::Time;
   ControlServer(const SocketPlace& place, int descriptor) : place_(place), descriptor_(descriptor) {}
-  void let_go();
+  void disconnect_expired();
   void accept_from(int listening, bool by_tcp);
   bool has_place(bool by_tcp) const;
   bool make_place(bool by_tcp);
@@ -94,9 +95,9 @@ class ControlServer {
   int descriptor_;
   LoopbackSocket tcp_;
   WrongTokens wrong_tokens_;
-  std::vector<ControlClient> clients_;  // in the order in which they came
+  std::vector<ControlClient> clients_;  // in the order of connecting
   std::uint64_t last_id_ = 0;
-  std::uint64_t lines_ = 0;  // of those who said hello
+  std::uint64_t lines_ = 0;  // of clients that sent hello
   std::vector<std::string> events_;
 };
 

@@ -55,7 +55,7 @@ bool somebody_listens(const sockaddr_un& address) {
   return there;
 }
 
-// Only a socket is removed: never a file that somebody keeps under that name.
+// Removes only a socket, never another file of that name.
 void remove_stale(const std::string& path) {
   struct stat status {};
   if (lstat(path.c_str(), &status) == 0 && S_ISSOCK(status.st_mode)) unlink(path.c_str());
@@ -68,7 +68,7 @@ Result<gid_t> group_of(const std::string& name) {
               fmt::format("addgroup --system {}", name));
 }
 
-// Before it listens nobody can connect: there is no moment in which everybody may.
+// Called before the socket listens, so that at no time others may connect.
 Result<void> permit(const std::string& path, const std::string& group) {
   if (group.empty())
     return chmod(path.c_str(), kOwnerOnly) == 0 ? Result<void>()
@@ -88,7 +88,7 @@ Result<void> bind_and_listen(int descriptor, const sockaddr_un& address, const s
   const int why = errno;
   if (!bound)
     return fail(ErrorKind::cannot_write, "the socket can't be made: " + system_words(why), path,
-                why == EADDRINUSE ? "something else has that name: remove it, or name another socket"
+                why == EADDRINUSE ? "another file has that name: remove it, or name another socket"
                                   : "name a folder that the daemon's user may write in");
   if (const auto permitted = permit(path, group); !permitted) {
     unlink(path.c_str());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a client over TCP has to know: anybody on the machine may connect there.
+// The token of clients over TCP, to which any user of the machine may connect.
 #pragma once
 
 #include <chrono>
@@ -11,22 +11,22 @@
 
 namespace tacto::playback {
 
-/// The first line of a file that its owner alone may read: 16 to 200 characters without blanks. Errors:
+/// The first line of a file that only its owner may read: 16 to 200 characters without blanks. Errors:
 /// not_found; unsuitable: others may read it too, or it is too short; each with what to do.
 schema::Result<std::string> read_control_token(const std::string& path);
 
-/// Takes as long wherever the two begin to differ.
+/// Compares in a time that does not depend on the first difference.
 bool is_token(std::string_view said, std::string_view token);
 
-/// How long the answer to a wrong token waits: a second, after ten of them within a minute.
+/// The delay of the answer to a wrong token: a second, after ten of them within a minute.
 class WrongTokens {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  /// One more came at `now`.
+  /// Records a wrong token at `now` and returns the delay.
   std::chrono::seconds wait_of(Time now);
 
  private:
-  std::deque<Time> newest_;  // ten at most
+  std::deque<Time> newest_;  // at most ten
 };
 
 }  // namespace tacto::playback

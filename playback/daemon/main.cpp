@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactographd: plays textures on a device, steered over a socket. See playback/README.md and CONTROL.md.
+// tactographd: plays textures on a device, controlled over a socket. See playback/README.md and CONTROL.md.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "data-schema/base/standard_descriptors.hpp"
-#include "data-schema/report/talk.hpp"
+#include "data-schema/report/terminal.hpp"
 #include "data-schema/version.hpp"
 #include "playback/control/control_server.hpp"
 #include "playback/control/control_token.hpp"
@@ -31,12 +31,10 @@ using playback::ServiceManager;
 constexpr int kIdleMs = 100, kLoadingMs = 5;
 constexpr double kStepS = 2e-3;
 constexpr const char* kHelp =
-    "tactographd --config FILE\n\n"
-    "Plays textures on a device, steered by `tactograph ctl` or any client of its socket.\n"
-    "FILE is JSON, as data-schema/schemas/daemon.schema.json says: device, transducer, socket, sessions ...\n"
-    "It answers SIGTERM, SIGHUP (the terminal went) and Ctrl-C by ramping the drive to zero. Messages go to "
-    "stderr, which systemd "
-    "keeps.\n";
+    "tactographd --config FILE\n\nPlays textures on a device, controlled by `tactograph ctl` or any client "
+    "of its socket.\nFILE is JSON: device, transducer, socket, sessions ... (defined by "
+    "data-schema/schemas/daemon.schema.json).\nSIGTERM, SIGHUP (the terminal was closed) and Ctrl-C ramp the "
+    "drive to zero and end the daemon.\nMessages go to stderr; systemd stores them in its journal.\n";
 
 volatile std::sig_atomic_t stop_asked = 0;
 
@@ -44,7 +42,7 @@ void ask_to_stop(int) {
   stop_asked = 1;
 }
 
-// Whoever began it with nohup wants it to outlive the terminal.
+// After `nohup` the signal is ignored, so that the daemon continues when the terminal is closed.
 void stop_at_hangup(const struct sigaction& action) {
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
@@ -52,7 +50,7 @@ void stop_at_hangup(const struct sigaction& action) {
 }
 
 int failed(const schema::Error& error) {
-  cli::talk(fmt::format("tactographd: {}\n", schema::message(error)));
+  cli::write_message(fmt::format("tactographd: {}\n", schema::message(error)));
   return schema::exit_code(error.kind);
 }
 
@@ -60,22 +58,22 @@ double steady_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// A command or an event may be lost where no tick is.
+// If no ticks are lost, a command or an event is.
 std::string lost_words(double ticks) {
   return ticks > 0 ? fmt::format("{:.0f} ticks are", ticks) : "a command or event is";
 }
 
-// To the journal what changes; to watchers everything.
+// Changes of state go to the journal, all events to the watchers.
 void tell(ControlServer& server, const ServiceManager& manager, std::string_view event,
           const schema::ControlFields& fields) {
   server.publish(event, fields);
   if (event == "recorder")
-    cli::talk(fmt::format("tactographd: {} not in the session: {}\n",
-                          lost_words(schema::control_number(fields, "lost_ticks")),
-                          schema::control_text(fields, "why")));
+    cli::write_message(fmt::format("tactographd: {} not in the session: {}\n",
+                                   lost_words(schema::control_number(fields, "lost_ticks")),
+                                   schema::control_text(fields, "why")));
   if (event != "state") return;
   const std::string state = schema::control_text(fields, "state"), why = schema::control_text(fields, "why");
-  cli::talk(fmt::format("tactographd: {}{}{}\n", state, why.empty() ? "" : ": ", why));
+  cli::write_message(fmt::format("tactographd: {}{}{}\n", state, why.empty() ? "" : ": ", why));
   manager.tell("STATUS=" + state);
 }
 
@@ -87,14 +85,14 @@ void serve_until_asked(ControlServer& server, Service& service, ServiceManager& 
     server.serve(busy ? 0 : service.loading() ? kLoadingMs : kIdleMs, handle);
     if (server.stop_waits()) service.give_up_load();
     const double passed_s = steady_s() - std::exchange(served_s, steady_s());
-    service.stay(server.heard_of(service.stay_rules().client), passed_s);
+    service.stay(server.lines_received(service.stay_rules().client), passed_s);
     manager.feed_watchdog(steady_s());
   }
 }
 
-// What is still being prepared is wanted by nobody, and can't be interrupted.
+// A load in progress cannot be interrupted, and its result is no longer needed.
 void end_without_loading(std::unique_ptr<ControlServer>& server) {
-  server.reset();  // the socket goes
+  server.reset();  // removes the socket
   std::fflush(nullptr);
   std::_Exit(0);
 }
@@ -125,8 +123,8 @@ int run(const char* config_path) {
   };
   const auto service = Service::open(*config, publish);
   if (!service) return failed(service.error());
-  if (!playback::lock_memory()) cli::talk("tactographd: memory is not locked (LimitMEMLOCK)\n");
-  cli::talk(fmt::format("tactographd: ready on {}\n", places_of(**server, *config)));
+  if (!playback::lock_memory()) cli::write_message("tactographd: memory is not locked (LimitMEMLOCK)\n");
+  cli::write_message(fmt::format("tactographd: ready on {}\n", places_of(**server, *config)));
   manager.tell("READY=1");
   serve_until_asked(**server, **service, manager);
   manager.tell("STOPPING=1");

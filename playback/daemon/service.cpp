@@ -32,10 +32,10 @@ namespace {
 
 constexpr double kStatusEveryS = 0.1;
 constexpr double kReleaseS = 0.01;
-constexpr double kLeastSaved = 1e-6;  // of a gain: what is less, or more than its inverse, is a slip
+constexpr double kLeastSaved = 1e-6;  // of a gain; one below it, or above its inverse, is a mistake
 constexpr double kObeyedS = 0.2, kLookS = 0.01;  // a device's ticks come every 10 ms, and a ramp takes 20 ms
 
-// An emulated device that runs ahead of the clock would play to nobody.
+// An emulated device follows the clock, so that clients can watch and control it.
 std::string paced(const std::string& uri) {
   if (!uri.starts_with("sim:") || uri.find("paced=") != std::string::npos) return uri;
   return uri + (uri == "sim:" ? "paced=1" : ",paced=1");
@@ -98,7 +98,8 @@ Result<std::unique_ptr<Service>> Service::open(const schema::DaemonConfig& confi
   fs::create_directories(config.sessions, failed);
   if (failed) return fail(ErrorKind::cannot_write, "can't be made: " + failed.message(), config.sessions);
   if (!config.files.empty() && !fs::is_directory(config.files, failed))
-    return fail(ErrorKind::not_found, "there is no such folder", config.files, "name one in files, or none");
+    return fail(ErrorKind::not_found, "this folder does not exist", config.files,
+                "name an existing folder in files, or omit files");
   TACTO_TRY(schema::read_transducer(config.transducer));
   TACTO_TRY(service->connect());
   return service;
@@ -121,7 +122,7 @@ Result<void> Service::connect() {
   if (config_.loop == "host") {
     const HostLoopOptions loop{config_.rate_hz, config_.real_time_priority,
                                static_cast<std::uint16_t>(config_.watchdog_ms)};
-    auto here = close_loop_here(*device_.client, device_.uri, loop, player_options);
+    auto here = close_loop_on_host(*device_.client, device_.uri, loop, player_options);
     TACTO_TRY(here);
     here_ = std::move(*here);
   }
@@ -149,7 +150,7 @@ PrepareOptions Service::options() {
   return options;
 }
 
-// While one plays its filter stays, as the device has one for both.
+// During playback the filter cannot change, because the device has one filter for both textures.
 TickBudget Service::budget() const {
   TickBudget budget{config_.budget, config_.max_tick_ns, false, false, {}};
   if (player_->state() != PlayerState::idle) budget.filter = filter_;
@@ -166,7 +167,7 @@ Result<void> Service::may_begin(const char* what) const {
               load_request_.file, "wait for the answer to that load");
 }
 
-// A lost device may be back by the time somebody loads.
+// A lost device may be connected again, so a load searches for it.
 Result<void> Service::begin_load(const ControlRequest& request) {
   if (const auto may = may_begin("load"); !may) return may;
   if (player_->state() == PlayerState::lost)
@@ -226,16 +227,16 @@ Result<ControlFields> Service::arm(const ControlRequest& request) {
   TACTO_TRY(may_begin("arm"));
   const std::string path = next_session();
   TACTO_TRY(player_->arm(path));
-  told_lost_.reset();
+  reported_lost_.reset();
   if (here_) missed_before_ = here_.loop->status().missed_ticks;
-  lock_memory();  // also what came since the daemon began
+  lock_memory();  // includes memory allocated since the daemon's start
   stay_.begin(playback::stay_rules(request, config_.dead_man_s));
   ControlFields fields{{"state", std::string(to_string(player_->state()))}, {"session", path}};
   add_stay(fields, stay_.rules());
   return fields;
 }
 
-void Service::stay(const LinesHeard& heard, double passed_s) {
+void Service::stay(const LinesReceived& heard, double passed_s) {
   const PlayerState state = player_->state();
   if (state != PlayerState::armed && state != PlayerState::playing) return;
   const auto why = stay_.why_to_fall(heard, passed_s);
@@ -244,11 +245,11 @@ void Service::stay(const LinesHeard& heard, double passed_s) {
   (void)disarm(*why);
 }
 
-// When it begins, and how much it was in the end.
-void Service::tell_losses(const RecorderCounts& counts, bool last) {
+// Published when losses begin, and at the end with their total.
+void Service::report_losses(const RecorderCounts& counts, bool last) {
   const bool wrong = counts.lost() > 0 || !counts.failure.empty();
-  if (!wrong || (told_lost_ && (!last || *told_lost_ == counts.lost()))) return;
-  told_lost_ = counts.lost();
+  if (!wrong || (reported_lost_ && (!last || *reported_lost_ == counts.lost()))) return;
+  reported_lost_ = counts.lost();
   const double device_s = 1e-9 * static_cast<double>(player_->status().ticks.last().time_ns);
   publish_("recorder", {{"lost_ticks", static_cast<std::int64_t>(counts.lost())},
                         {"why", counts.failure.empty() ? "the queue to the disk was full" : counts.failure},
@@ -259,18 +260,20 @@ Result<ControlFields> Service::disarm(const std::string& why) {
   const bool recorded = player_->recorded().has_value();
   const auto disarmed = player_->disarm(why);
   if (disarmed) stay_.end();
-  if (recorded && !player_->recorded()) tell_losses(player_->last_session(), true);
+  if (recorded && !player_->recorded()) report_losses(player_->last_session(), true);
   return done(disarmed, PlayerState::idle);
 }
 
-// G_psi as it was felt to be right, with who and when: the gains that were loaded times the factor, however
-// often it is saved.
+// Stores G_psi with the user and the date: the gains that were loaded, times the factor. Saving again does
+// not multiply the factor again.
 Result<void> Service::save_gain(double factor, const std::string& who) {
   if (loaded_.empty())
-    return fail(ErrorKind::usage, "nothing is loaded that could keep a gain", {}, "load first");
+    return fail(ErrorKind::usage, "no texture or scene is loaded whose file could store the gain", {},
+                "load one first");
   if (!(std::abs(factor) >= kLeastSaved && std::abs(factor) <= 1 / kLeastSaved))
-    return fail(ErrorKind::usage, fmt::format("a gain of {:g} would lose the layers' own gains", factor),
-                loaded_, fmt::format("save one from {:g} to {:g}", kLeastSaved, 1 / kLeastSaved));
+    return fail(ErrorKind::usage,
+                fmt::format("with a factor of {:g} the layers' own gains could not be recovered", factor),
+                loaded_, fmt::format("save a factor from {:g} to {:g}", kLeastSaved, 1 / kLeastSaved));
   if (!scene_path_.empty()) return save_scene_gain(factor, who);
   return schema::write_playback_gain(alone_.file,
                                      {alone_.gain_m_per_n * factor, who, schema::creation_time()});
@@ -290,7 +293,7 @@ Result<void> Service::save_scene_gain(double factor, const std::string& who) {
   return written;
 }
 
-// What is refused changes nothing: neither the file nor what is felt.
+// A gain that is refused changes neither the file nor the playback.
 Result<ControlFields> Service::gain(const ControlRequest& request) {
   TACTO_TRY(player_->may_gain(*request.gain));
   if (request.save) TACTO_TRY(save_gain(*request.gain, request.asked_by));
@@ -302,7 +305,7 @@ Result<ControlFields> Service::gain(const ControlRequest& request) {
   return fields;
 }
 
-// The answer tells the state that the command led to, once the device's ticks show it.
+// The answer gives the new state, once the device's ticks report it.
 Result<ControlFields> Service::done(const Result<void>& result, PlayerState target) {
   TACTO_TRY(result);
   const double until_s = client().transport().now_s() + kObeyedS;
@@ -377,10 +380,10 @@ std::optional<Result<ControlFields>> Service::handle(const ControlRequest& reque
 bool Service::step(double timeout_s) {
   const PlayerState state = player_->state();
   if (state == PlayerState::idle || state == PlayerState::lost) return false;
-  (void)player_->step(timeout_s);  // a device that is gone is told as a state
+  (void)player_->step(timeout_s);  // a lost device is reported as a state
   if (const double now_s = client().transport().now_s(); now_s >= next_status_s_) {
     next_status_s_ = now_s + kStatusEveryS;
-    if (const auto counts = player_->recorded()) tell_losses(*counts, false);
+    if (const auto counts = player_->recorded()) report_losses(*counts, false);
     publish_("status", status());
   }
   return true;

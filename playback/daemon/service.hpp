@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tactographd does with each request.
+// Handles the requests to tactographd.
 #pragma once
 
 #include <memory>
@@ -16,30 +16,30 @@
 
 namespace tacto::playback {
 
-/// A device, a player and what is loaded. One thread.
+/// A device, its player and what is loaded. For one thread.
 class Service {
  public:
   using Publish = std::function<void(std::string_view event, const schema::ControlFields& fields)>;
 
-  /// Opens the device. Errors: as open_player_device, Player::make; usage, not_found: of the configuration's
-  /// transducer, finger path, or folder of sessions.
+  /// Opens the device. Errors: as open_player_device, Player::make; usage, not_found: for the transducer,
+  /// finger path or folder of sessions in the configuration.
   static schema::Result<std::unique_ptr<Service>> open(const schema::DaemonConfig& config, Publish publish);
 
-  /// None: the answer comes by finished_load(). Errors: of what was asked for, with what to do.
+  /// Returns none if the answer follows by finished_load(). Errors: of the request, with what to do.
   std::optional<schema::Result<schema::ControlFields>> handle(const schema::ControlRequest& request);
-  /// A `load` whose texture has been prepared meanwhile: its answer, once.
+  /// The answer to a `load` whose texture is now prepared; returned once.
   std::optional<schema::Result<schema::ControlFields>> finished_load();
-  /// Its answer is then an error, and what plays plays on.
+  /// Cancels a load: its answer is then an error, and the current playback continues.
   void give_up_load() { loader_.give_up(); }
-  /// A texture is being prepared, on another thread that can't be waited for.
+  /// Whether another thread prepares a texture; do not wait for it.
   bool loading() const { return loader_.busy(); }
-  /// Supervises for about `timeout_s`. False where nothing is under way, and nothing was waited for.
+  /// Supervises for about `timeout_s`. Returns false at once if there is nothing to supervise.
   bool step(double timeout_s);
-  /// Whose lines are counted for stay(): of one client, or of all.
+  /// Which lines stay() needs: those of one client, or of all.
   const StayRules& stay_rules() const { return stay_.rules(); }
-  /// Call after each serve(): where those who have to stay are gone, the drive falls and the session is
+  /// Call after each serve(): if the clients who have to stay have left, the drive falls and the session is
   /// closed.
-  void stay(const LinesHeard& heard, double passed_s);
+  void stay(const LinesReceived& heard, double passed_s);
   /// Ramps to zero and closes the session.
   void end();
   PlayerState state() const { return player_->state(); }
@@ -56,7 +56,7 @@ class Service {
   schema::Result<schema::ControlFields> gain(const schema::ControlRequest& request);
   schema::Result<void> save_gain(double factor, const std::string& who);
   schema::Result<void> save_scene_gain(double factor, const std::string& who);
-  void tell_losses(const RecorderCounts& counts, bool last);
+  void report_losses(const RecorderCounts& counts, bool last);
   schema::Result<schema::ControlFields> disarm(const std::string& why = {});
   schema::Result<schema::ControlFields> done(const schema::Result<void>& result, PlayerState target);
   schema::ControlFields hello() const;
@@ -69,22 +69,22 @@ class Service {
   schema::DaemonConfig config_;
   Publish publish_;
   PlayerDevice device_;
-  LoopHere here_;
-  std::uint64_t missed_before_ = 0;  // periods, by the loop here, before the session
+  HostLoopClient here_;
+  std::uint64_t missed_before_ = 0;  // periods that the loop on this computer missed before the session
   std::unique_ptr<Player> player_;
   ProgramLoader loader_;
-  schema::ControlRequest load_request_;  // that is being prepared
+  schema::ControlRequest load_request_;  // the request that is being prepared
   StayWatch stay_;
-  std::string why_;  // of the last change of state
+  std::string why_;  // reason of the last change of state
   std::string loaded_, scene_path_;
-  std::optional<InverseChoice> filter_;  // that a budget chose for what is loaded: a change keeps it
-  double passes_to_hz_ = 0;              // of what is loaded
-  double loaded_gain_m_per_n_ = 1;       // with its sign; 1 before a load: then the factor's sign is all
+  std::optional<InverseChoice> filter_;  // chosen by a budget for the loaded texture; a change keeps it
+  double passes_to_hz_ = 0;              // of the loaded texture
+  double loaded_gain_m_per_n_ = 1;  // with its sign; 1 before a load, so that the factor alone has the sign
   double loop_period_m_ = 0, loop_seam_m_ = 0;
-  schema::SessionTexture alone_;  // what is loaded, where it is no scene
-  double saved_gain_ = 1;         // that the scene's file holds, of the gains that were loaded
+  schema::SessionTexture alone_;  // the loaded texture, if it is not a scene
+  double saved_gain_ = 1;         // factor that is stored in the scene's file, of the gains that were loaded
   double next_status_s_ = 0;
-  std::optional<std::uint64_t> told_lost_;  // of the session; none where nothing went wrong
+  std::optional<std::uint64_t> reported_lost_;  // of the session; none if nothing was lost
 };
 
 }  // namespace tacto::playback

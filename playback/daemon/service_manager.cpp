@@ -34,7 +34,7 @@ void ServiceManager::tell(std::string_view assignment) const {
   if (descriptor_ < 0 || address_.size() >= sizeof address.sun_path) return;
   address.sun_family = AF_UNIX;
   std::memcpy(address.sun_path, address_.data(), address_.size());
-  if (address_.front() == '@') address.sun_path[0] = '\0';  // Linux's sockets without a file
+  if (address_.front() == '@') address.sun_path[0] = '\0';  // Linux's abstract sockets
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + address_.size());
   [[maybe_unused]] const auto told =
       sendto(descriptor_, assignment.data(), assignment.size(), MSG_DONTWAIT | MSG_NOSIGNAL,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What systemd wants to hear: a datagram to $NOTIFY_SOCKET (sd_notify(3)); nothing without it.
+// Notifies systemd: a datagram to $NOTIFY_SOCKET (sd_notify(3)); does nothing if it is not set.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ class ServiceManager {
   ServiceManager& operator=(const ServiceManager&) = delete;
   ~ServiceManager();
 
-  /// "READY=1", "STOPPING=1", "STATUS=playing oak".
+  /// `assignment`: "READY=1", "STOPPING=1", "STATUS=playing oak".
   void tell(std::string_view assignment) const;
-  /// As often as is asked for: at half the watchdog's time. Call it often.
+  /// Notifies the watchdog at half its time. Call often.
   void feed_watchdog(double now_s);
 
  private:

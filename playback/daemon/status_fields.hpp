@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a status says of ticks, recorder and loop, and who has to stay; names as in CONTROL.md.
+// The fields of a status about ticks, recorder, loop and the clients that have to stay; names as in
+// CONTROL.md.
 #pragma once
 
 #include "data-schema/control/control.hpp"
@@ -10,12 +11,12 @@
 
 namespace tacto::playback {
 
-/// `not_recorded`: ticks that did not get into the session, which are lost too.
+/// `not_recorded`: ticks that are missing in the session; they are counted as lost.
 void add_ticks(schema::ControlFields& fields, const TickView& view, std::uint64_t not_recorded);
-/// Where the device's flags tell that limits took something away: how much, in dB, live, or why it is not
-/// known; and the command that tells it by stroke.
+/// If the device's flags report limited ticks: what the limits removed, in dB, live, or why it is unknown;
+/// and the command that reports it for each stroke.
 void add_limits(schema::ControlFields& fields, const PlayerStatus& status);
-/// Who has to stay, where that was asked for.
+/// The clients that have to stay, if requested.
 void add_stay(schema::ControlFields& fields, const StayRules& rules);
 void add_recorder(schema::ControlFields& fields, const RecorderCounts& counts);
 void add_loop(schema::ControlFields& fields, const HostLoopStatus& loop);

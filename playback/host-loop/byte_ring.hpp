@@ -11,13 +11,13 @@
 
 namespace tacto::playback {
 
-/// One thread puts, another takes; neither waits. Safe in the tick.
+/// For one writing thread and one reading thread; neither waits. Safe in the tick.
 template <std::size_t kSize>
 class ByteRing {
   static_assert((kSize & (kSize - 1)) == 0);
 
  public:
-  /// Gives how many bytes found room.
+  /// Returns how many bytes had space.
   std::size_t put(std::span<const std::uint8_t> bytes) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     const std::size_t room = kSize - (head - tail_.load(std::memory_order_acquire));

@@ -11,16 +11,16 @@ namespace tacto::playback {
 namespace {
 
 constexpr double kMostBehindS = 0.02, kMostBeyondS = 2e-3, kWindowS = 0.5;
-constexpr float kMostDrift = 0.02F;  // of a period, each tick
-constexpr float kSpare = 0.5F;       // periods that are to lie ahead at least
+constexpr float kMostDrift = 0.02F;  // of a period, per tick
+constexpr float kSpare = 0.5F;       // periods between reading place and newest count, at least
 constexpr float kNone = std::numeric_limits<float>::max();
 
 std::int32_t periods_in(double time_s, double rate_hz) {
   return std::max(2, static_cast<std::int32_t>(time_s * rate_hz));
 }
 
-// A counter that passes 2^31 goes on.
-std::int32_t gone_on(std::int32_t count, std::int32_t way) {
+// A counter that passes 2^31 wraps around.
+std::int32_t wrapped_sum(std::int32_t count, std::int32_t way) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(way));
 }
 
@@ -44,7 +44,7 @@ void CountTrack::put(std::uint32_t period, std::int32_t count, std::int64_t made
   const std::int32_t before = kept(put_);
   const std::int64_t way = firmware_host::counts_between(before, count);
   for (std::uint32_t i = passed > kKept ? passed - kKept : 1; i < passed; ++i)
-    counts_[(put_ + i) % kKept].store(gone_on(before, static_cast<std::int32_t>(way * i / passed)),
+    counts_[(put_ + i) % kKept].store(wrapped_sum(before, static_cast<std::int32_t>(way * i / passed)),
                                       std::memory_order_relaxed);
   counts_[period % kKept].store(count, std::memory_order_relaxed);
   newest_ns_.store(made_ns, std::memory_order_relaxed);
@@ -59,17 +59,17 @@ CountTrack::Sight CountTrack::begin() noexcept {
   return {kept(at_), 0, newest_ns_.load(std::memory_order_relaxed) - reserve_ * period_ns_, true, at_, 0};
 }
 
-// A count stands for its middle.
+// The position of a count is the middle of its step.
 std::int32_t CountTrack::count_here(std::uint32_t newest) const noexcept {
   const auto beyond = static_cast<std::int32_t>(at_ - newest);
   const std::uint32_t from = beyond >= 0 ? newest - 1 : at_;
   const float along = part_ + static_cast<float>(beyond >= 0 ? beyond + 1 : 0);
   const auto way = static_cast<float>(firmware_host::counts_between(kept(from), kept(from + 1)));
-  return gone_on(kept(from), static_cast<std::int32_t>(std::floor(0.5F + along * way)));
+  return wrapped_sum(kept(from), static_cast<std::int32_t>(std::floor(0.5F + along * way)));
 }
 
-// What lies ahead when least does: too much is latency, and is taken back over the next window; where there
-// is too little, what comes late is waited for at once.
+// Controls the smallest lag within a window: a lag that is too large is latency, and the next window reduces
+// it; one that is too small is increased at once.
 void CountTrack::keep_near(float lag) noexcept {
   if (lag < 0) {
     part_ -= kMostDrift;

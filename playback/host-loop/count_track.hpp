@@ -8,34 +8,36 @@
 
 namespace tacto::playback {
 
-/// A device hands over its counts several at a time, and its clock is not this computer's: whoever took the
-/// last count each tick would feel a finger that stands and leaps. So each count keeps its period, and a tick
-/// goes on by one (also after ticks that were slept through), on a line between two counts, as close behind
-/// the newest one as never leaves it without (over half a second; it nears by at most 2 %, which no skin
-/// tells). Beyond the newest it goes on straight for 2 ms, then it stands. Where more than 20 ms lie ahead,
-/// as after a stall, it goes at once to where it begins: a reserve behind the newest. put() is for one
-/// thread, the rest for another; none locks, allocates or calls the system.
+/// A device sends its counts in groups, and by its own clock. A tick that used the newest count would get a
+/// position that stops and jumps. So each count is stored with its period, and each tick (also after missed
+/// ones) advances the reading place by one period, on a line between two counts. Its lag behind the newest
+/// count is the smallest with which it does not overtake that count within half a second; to reduce the lag
+/// the place moves at most 2 % faster, which is not perceptible. Beyond the newest count it continues on a
+/// straight line for 2 ms, then it stops. If the lag exceeds 20 ms, as after a stall, the place is set to a
+/// reserve behind the newest count. One thread calls put(), another one the rest; no function locks,
+/// allocates or calls the system.
 class CountTrack {
  public:
   explicit CountTrack(double rate_hz) noexcept;
-  /// How many periods come together, before which nothing lies ahead. Before see() and begin().
+  /// How many periods come as one group: the lag at the beginning. Call before see() and begin().
   void set_reserve(std::uint32_t periods) noexcept;
-  /// In their order; periods that are left out lie on a line. `made_ns`: when the device took it.
+  /// Call in the order of the periods; skipped periods are interpolated linearly. `made_ns`: when the device
+  /// sampled it.
   void put(std::uint32_t period, std::int32_t count, std::int64_t made_ns) noexcept;
 
-  /// What a tick sees.
+  /// The count that a tick uses.
   struct Sight {
     std::int32_t count = 0;
-    std::uint32_t passed = 0;  ///< periods since the sight before; 1 is usual
+    std::uint32_t passed = 0;  ///< periods since the see() before; usually 1
     std::int64_t made_ns = 0;
-    bool fresh = false;  ///< something came since
-    /// The count is that of this period and a part of the next one.
+    bool fresh = false;  ///< a new count came since then
+    /// The place in time: this period plus a fraction of the next one.
     std::uint32_t period = 0;
     float part = 0;
   };
-  /// Goes on by one period.
+  /// Advances by one period.
   Sight see() noexcept;
-  /// The count that a reserve lies behind the newest, from which the next see() goes on.
+  /// Sets the place to the reserve behind the newest count; see() continues from there.
   Sight begin() noexcept;
 
  private:
@@ -49,9 +51,9 @@ class CountTrack {
   std::array<std::atomic<std::int32_t>, kKept> counts_{};
   std::atomic<std::uint32_t> newest_{0};
   std::atomic<std::int64_t> newest_ns_{0};
-  std::uint32_t put_ = 0;  // the putter's
-  bool begun_ = false;     // the putter's
-  // The taker's.
+  std::uint32_t put_ = 0;  // of the thread that calls put()
+  bool begun_ = false;     // of the thread that calls put()
+  // Of the thread that calls see().
   std::int64_t period_ns_;
   std::int32_t most_behind_, most_beyond_, window_;
   std::uint32_t reserve_ = 0, at_ = 0, seen_ = 0;

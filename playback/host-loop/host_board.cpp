@@ -48,7 +48,8 @@ core::Hal HostBoard::hal() {
   return hal;
 }
 
-// As they came last, for the contact gate: where they stay away the counts do too, and the drive falls.
+// The newest codes, for the contact gate. If no new codes come, no new counts come either, and the drive
+// falls.
 bool HostBoard::read_codes(std::int32_t* codes) const noexcept {
   for (std::size_t i = 0; i < about_.channels.size(); ++i)
     codes[i] = codes_[i].load(std::memory_order_relaxed);
@@ -63,8 +64,8 @@ void HostBoard::rest(std::int64_t now_ns) noexcept {
   wants_drive_.store(ticking_, std::memory_order_release);
 }
 
-// A period that this thread slept through is as blind as one in which no count came, and so is one that the
-// device made and of which only a later count was taken.
+// Unseen periods are those in which no count came, those that this thread missed, and those of the device of
+// which only a later count was received.
 void HostBoard::look_at_count(std::int64_t late_ns) noexcept {
   const std::uint32_t slept = late_ns >= period_ns_ ? static_cast<std::uint32_t>(late_ns / period_ns_) : 0;
   const CountTrack::Sight sight = counts_.see();
@@ -76,13 +77,13 @@ void HostBoard::look_at_count(std::int64_t late_ns) noexcept {
   if (sight.fresh) age_ = 0;
 }
 
-// A drive that finds no room is not kept for later.
+// A drive for which the ring has no space is dropped.
 void HostBoard::tick(std::int64_t now_ns, std::int64_t late_ns) noexcept {
   now_ns_ = now_ns;
   constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
   const std::size_t slot = ticks_++ % kLatenesses;
   lateness_[slot].store(static_cast<std::int32_t>(std::min(late_ns, kMost)), std::memory_order_relaxed);
-  // Periods that were slept through are passed over: the tick belongs to the last of them.
+  // Missed periods are skipped: the tick belongs to the last of them.
   dues_[slot].store(now_ns - began_ns_ - late_ns % period_ns_, std::memory_order_relaxed);
   look_at_count(late_ns);
   sensor_.read_at(ticks_ - 1, read_period_, read_part_);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The firmware's core on this computer: its hardware is another thread, reached without locks.
+// The firmware's core on this computer. Another thread acts as its hardware; they exchange data without
+// locks.
 #pragma once
 
 #include <algorithm>
@@ -19,42 +20,42 @@
 
 namespace tacto::playback {
 
-/// What a tick wants driven, and when that was.
+/// The drive of a tick, and the tick's time.
 struct TimedDrive {
   std::int64_t time_ns = 0;
   float drive_v = 0;
-  std::int64_t reading_ns = 0;  ///< when the device took its count
+  std::int64_t reading_ns = 0;  ///< when the device sampled the count
 };
 
-/// tick() and rest() are the real-time thread's; inputs and outputs other threads'.
+/// The real-time thread calls tick() and rest(); other threads use the inputs and outputs.
 class HostBoard {
  public:
   static constexpr std::uint32_t kClockHz = 1'000'000'000;
 
-  /// Says of itself what the device said, but ticks at one rate.
+  /// Has the description of the device, but a single tick rate.
   HostBoard(const firmware_host::Description& device, double rate_hz);
   HostBoard(const HostBoard&) = delete;
   HostBoard& operator=(const HostBoard&) = delete;
 
   /// Safe in the tick: neither allocates, locks nor calls the system.
   void tick(std::int64_t now_ns, std::int64_t late_ns) noexcept;
-  /// Answers the player while nothing ticks.
+  /// Answers the player between runs.
   void rest(std::int64_t now_ns) noexcept;
   bool ticking() const noexcept { return ticking_; }
 
-  // From other threads.
-  /// Each count that the device made, in their order, by the device's period.
+  // For other threads.
+  /// Each count that the device sampled, in order, with the device's period.
   void put_count(std::uint32_t period, std::int32_t encoder, std::int64_t made_ns) noexcept {
     counts_.put(period, encoder, made_ns);
   }
-  /// Before anything ticks: as CountTrack::set_reserve().
+  /// Call before the first tick; see CountTrack::set_reserve().
   void set_reserve(std::uint32_t periods) noexcept { counts_.set_reserve(periods); }
-  /// Before put_count(): what the tray's sensor said in that period.
+  /// Call before put_count(): the code of the tray's sensor in that period.
   void put_sample(std::uint32_t period, std::int32_t code) noexcept { sensor_.put(period, code); }
-  /// What it said up to the count that a tick played: SensorTrack::take(). The player's thread.
+  /// The sensor's samples up to the count that a tick used: SensorTrack::take(). For the player's thread.
   void take_samples(std::uint64_t tick, SampleRun& into) { sensor_.take(tick, due_ns(tick), into); }
   void set_enabled(bool enabled) noexcept { enabled_.store(enabled, std::memory_order_release); }
-  /// Before put_count(): the codes of the device's channels in the same period.
+  /// Call before put_count(): the codes of the device's channels in the same period.
   void set_codes(std::span<const std::int32_t> codes) noexcept {
     for (std::size_t i = 0; i < std::min(codes.size(), codes_.size()); ++i)
       codes_[i].store(codes[i], std::memory_order_relaxed);
@@ -64,7 +65,7 @@ class HostBoard {
   ByteRing<262144>& to_player() noexcept { return to_player_; }
   core::Ring<TimedDrive, 1024>& drives() noexcept { return drives_; }
   bool wants_drive() const noexcept { return wants_drive_.load(std::memory_order_acquire); }
-  /// Of one of the last 16,384 ticks since arming.
+  /// For one of the last 16,384 ticks since arming.
   std::int32_t lateness_ns(std::uint64_t tick) const noexcept {
     return lateness_[tick % kLatenesses].load(std::memory_order_relaxed);
   }

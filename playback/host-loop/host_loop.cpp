@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 
+#include "data-schema/base/statistics.hpp"
 #include "firmware-host/link/awake_cores.hpp"
 #include "firmware-host/link/realtime_priority.hpp"
 #include "firmware-host/link/wire_fields.hpp"
@@ -22,12 +23,12 @@ using schema::Result;
 
 constexpr double kCarryS = 0.5e-3;
 constexpr std::int64_t kStaleNs = 20'000'000, kRestNs = 200'000;
-constexpr double kQueueS = 4e-3;  // of drives on the device: what the carrier's own sleep may take
+constexpr double kQueueS = 4e-3;  // drives queued on the device, for as long as the carrier thread may sleep
 constexpr float kDeviceReleaseS = 0.01F;
 constexpr int kLooks = 100;
 constexpr double kQueueShare = 0.2, kFollowS = 0.5, kMostLonger = 5e-3;
 
-// The player's cable: bytes in memory.
+// The player's transport: bytes in memory.
 class LoopTransport final : public firmware_host::Transport {
  public:
   explicit LoopTransport(HostBoard& board) : board_(board) {}
@@ -42,7 +43,7 @@ class LoopTransport final : public firmware_host::Transport {
     for (const double end_s = now_s() + timeout_s; !bytes.empty();) {
       bytes = bytes.subspan(board_.from_player().put(bytes));
       if (!bytes.empty() && now_s() >= end_s)
-        return fail(ErrorKind::device, "the real-time thread takes nothing", "host loop");
+        return fail(ErrorKind::device, "the real-time thread accepts no data", "host loop");
       if (!bytes.empty()) std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     return {};
@@ -53,16 +54,10 @@ class LoopTransport final : public firmware_host::Transport {
   HostBoard& board_;
 };
 
-std::int64_t median_of(std::vector<std::int64_t>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 Result<std::size_t> position_channel(const firmware_host::Description& about) {
   for (std::size_t i = 0; i < about.channels.size(); ++i)
     if (std::strcmp(about.channels[i].quantity, "position") == 0) return i;
-  return fail(ErrorKind::device, "the device streams no position", "host loop");
+  return fail(ErrorKind::device, "the device has no channel of the quantity position", "host loop");
 }
 
 }  // namespace
@@ -89,8 +84,8 @@ Result<std::unique_ptr<HostLoop>> HostLoop::begin(firmware_host::Client& device,
   return loop;
 }
 
-// A count waits for those that come with it and for one more, and twice for the carrier; then the device's
-// queue, and the cable there and back. Medians, for a computer may stall.
+// The delay is the sum of: a group of counts and one more period, two periods of the carrier, the device's
+// queue, and the round trip on the link. Medians, because a computer may stall.
 Result<void> HostLoop::measure_delay() {
   std::vector<std::int64_t> batches, trips;
   for (int i = 0; i < kLooks; ++i) {
@@ -103,10 +98,10 @@ Result<void> HostLoop::measure_delay() {
     TACTO_TRY(device_.heartbeat());
     trips.push_back(TickClock::now_ns() - asked_ns);
   }
-  const double batch = batches.empty() ? 0 : static_cast<double>(median_of(batches));
+  const double batch = batches.empty() ? 0 : static_cast<double>(schema::upper_median(std::span(batches)));
   board_->set_reserve(static_cast<std::uint32_t>(batch) + 1);
   delay_s_ = (batch + 1 + queue_target()) / options_.rate_hz + 2 * kCarryS +
-             1e-9 * static_cast<double>(median_of(trips));
+             1e-9 * static_cast<double>(schema::upper_median(std::span(trips)));
   return {};
 }
 
@@ -139,7 +134,7 @@ HostLoopStatus HostLoop::status() const {
   return status;
 }
 
-// The real-time thread. While nothing ticks it answers the player a thousand times a second.
+// The real-time thread. Between runs it answers the player every 0.2 ms.
 void HostLoop::tick_forever() {
   const firmware_host::RealtimePriority priority(options_.priority);
   real_time_.store(priority.granted());
@@ -176,7 +171,7 @@ void HostLoop::give_up(const std::string& why) {
   fault_ = why;
 }
 
-// The newest of them was taken just now, each other one a period before the next.
+// The newest count was sampled just now; each earlier one is a period older.
 void HostLoop::take_counts() {
   const std::size_t channels = device_.description().channels.size();
   const double period_ns = 1e9 / options_.rate_hz;
@@ -206,7 +201,7 @@ void HostLoop::take_faults() {
       give_up(firmware_host::words_of(fault.code, fault.detail).what);
 }
 
-// The device is armed while the loop is, and no longer.
+// The device is armed exactly while the loop is armed.
 void HostLoop::follow_arming() {
   const bool wanted = board_->wants_drive();
   if (wanted == armed_) return;
@@ -214,7 +209,7 @@ void HostLoop::follow_arming() {
   to_trim_ = to_pad_ = 0;
   last_drive_v_ = 0;
   while (board_->drives().front() != nullptr) board_->drives().pop();
-  sound_ = true;  // disarming ends a fault, here as on a device
+  sound_ = true;  // disarming clears a fault, as on a device
   if (!wanted) return (void)device_.command(wire::Disarm{});
   {
     const std::lock_guard lock(fault_mutex_);
@@ -255,13 +250,13 @@ void HostLoop::send_drives() {
   if (const auto sent = device_.send_drive(message); !sent) give_up(schema::message(sent.error()));
 }
 
-// Never more than a message takes.
+// At most what one message can hold.
 std::uint32_t HostLoop::queue_target() const {
   return std::clamp(static_cast<std::uint32_t>(kQueueS * options_.rate_hz), 4U, 200U);
 }
 
-// A queue that grows tells of a device whose clock is slower, or of a stall: the ticks follow it, within half
-// a percent, instead of leaving drives out.
+// A growing queue means that the device's clock is slower, or that there was a stall. The tick period follows
+// it, within half a percent, so that no drives have to be left out.
 void HostLoop::follow_queue(std::uint32_t queued) {
   queue_mean_ += kQueueShare * (queued - queue_mean_);
   const double part = (queue_mean_ - queue_target()) / options_.rate_hz / kFollowS;
@@ -269,7 +264,7 @@ void HostLoop::follow_queue(std::uint32_t queued) {
   longer_ns_.store(static_cast<std::int64_t>(longer), std::memory_order_relaxed);
 }
 
-// Feeds the device's watchdog, and sees how deep its queue is.
+// Resets the device's watchdog, and reads the length of its queue.
 void HostLoop::beat() {
   const std::int64_t now = TickClock::now_ns();
   if (now < next_beat_ns_) return;
@@ -278,7 +273,7 @@ void HostLoop::beat() {
   const auto pulse = device_.heartbeat();
   round_trip_ns_ = TickClock::now_ns() - asked_ns;
   if (!pulse) return give_up(schema::message(pulse.error()));
-  if (!armed_) enabled_ = pulse->enabled;  // no ticks tell it now
+  if (!armed_) enabled_ = pulse->enabled;  // there are no ticks now that report it
   if (!armed_) return;
   const std::uint32_t target = queue_target(), queued = pulse->drive_queued;
   queue_ns_ = static_cast<std::int64_t>(1e9 * queued / options_.rate_hz);
@@ -287,7 +282,7 @@ void HostLoop::beat() {
   if (queued < target / 4) to_pad_ = target - queued;
 }
 
-// Below the ticks, above all else: what comes late is felt late.
+// Priority below the ticks and above all else, because a late drive increases the latency.
 void HostLoop::carry_forever() {
   const firmware_host::RealtimePriority priority(options_.priority / 2);
   const std::int64_t silence_ns = std::int64_t{options_.watchdog_ms} * 1'000'000;
@@ -297,7 +292,7 @@ void HostLoop::carry_forever() {
     if (const auto came = device_.receive(kCarryS); !came) give_up(schema::message(came.error()));
     take_faults();
     take_counts();
-    if (TickClock::now_ns() - last_count_ns_ > silence_ns) give_up("the device gives no counts");
+    if (TickClock::now_ns() - last_count_ns_ > silence_ns) give_up("the device sends no counts");
     if (!sound_) board_->set_enabled(false);
     if (armed_ && sound_) send_drives();
     beat();

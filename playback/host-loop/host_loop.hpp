@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loop closed on this computer: a real-time thread that runs the firmware's core, and one that carries
-// counts and drive between it and the device.
+// The loop closed on this computer: a real-time thread runs the firmware's core, and a carrier thread moves
+// counts and drives between it and the device.
 #pragma once
 
 #include <atomic>
@@ -19,50 +19,51 @@ namespace tacto::playback {
 
 struct HostLoopOptions {
   double rate_hz = 2000;
-  int priority = 50;  ///< under SCHED_FIFO; 0: not asked for
+  int priority = 50;  ///< of SCHED_FIFO; 0: not requested
   std::uint16_t watchdog_ms = 100;
 };
 
-/// From the encoder's edge to the drive that it makes: the age of the count when its drive was sent, the way
-/// there and back, and the device's queue; of each drive that was sent.
+/// Latency from the encoder's edge to its drive: the age of the count when the drive was sent, the round
+/// trip, and the device's queue; over all drives that were sent.
 struct EdgeToDrive {
   double p50_s = 0, p99_s = 0;
 };
 
 struct HostLoopStatus {
-  double wake_p50_s = 0, wake_p99_s = 0, wake_p999_s = 0;  ///< behind the tick's time
-  double busy_p99_s = 0;                                   ///< of the tick's work
-  std::array<double, kLateBoundsS.size()> late_parts{};    ///< of the ticks, later than kLateBoundsS
+  double wake_p50_s = 0, wake_p99_s = 0, wake_p999_s = 0;  ///< after the tick's due time
+  double busy_p99_s = 0;                                   ///< duration of the tick's computation
+  std::array<double, kLateBoundsS.size()> late_parts{};    ///< parts of the ticks, later than kLateBoundsS
   EdgeToDrive latency;
-  double looked_ahead_s = 0;         ///< of it, by what is played
-  std::uint64_t missed_ticks = 0;    ///< periods that were slept through
-  std::uint64_t stale_drives = 0;    ///< that were not sent, for they were too old
+  double looked_ahead_s = 0;         ///< the part of it that the look-ahead compensates
+  std::uint64_t missed_ticks = 0;    ///< periods that were skipped
+  std::uint64_t stale_drives = 0;    ///< not sent because they were too old
   std::uint64_t trimmed_drives = 0;  ///< left out because the device's clock is slower
   bool real_time = false;            ///< SCHED_FIFO was granted
-  std::string device_fault;          ///< why the drive had to go; empty where nothing is wrong
+  std::string device_fault;          ///< why the drive had to fall; empty if there is no fault
 };
 
-/// A device as the player sees one (transport()), with this computer's kernel and the other device's encoder
-/// and output. The real-time thread takes counts from, and leaves drives in, places without locks; it calls
-/// the system only to sleep. The carrier sends each drive in its turn, within 20 ms or never, keeps the
-/// device's queue 4 ms deep, and turns a device that faults, or gives no counts for the watchdog's time, into
-/// an open enable input. A computer that stalls sends nothing: the device's own watchdog ramps to zero.
+/// Presents a device to the player (transport()), with the kernel on this computer and the encoder and output
+/// of the real device. The real-time thread exchanges counts and drives through lock-free buffers; it calls
+/// the system only to sleep. The carrier thread sends the drives in order, each within 20 ms or not at all,
+/// keeps the device's queue 4 ms long, and opens the enable input if the device faults, or sends no counts
+/// for the watchdog's time. A computer that stalls sends nothing: then the device's own watchdog ramps to
+/// zero.
 class HostLoop {
  public:
-  /// Begins both threads; the device streams its encoder from now on, and is armed only while the loop is.
-  /// The client is the carrier's until the end. Errors: device: no stream, no encoder.
+  /// Starts both threads. The device streams its encoder from now on; it is armed only while the loop is
+  /// armed. Only the carrier thread may use the client until the end. Errors: device: no stream, no encoder.
   static schema::Result<std::unique_ptr<HostLoop>> begin(firmware_host::Client& device,
                                                          const HostLoopOptions& options);
   HostLoop(const HostLoop&) = delete;
   HostLoop& operator=(const HostLoop&) = delete;
   ~HostLoop();
 
-  /// For a Client of its own: the player's.
+  /// For the player's own Client.
   std::unique_ptr<firmware_host::Transport> transport();
   HostBoard& board() { return *board_; }
   const HostBoard& board() const { return *board_; }
   HostLoopStatus status() const;
-  /// From the encoder's edge to the drive, as seen while the loop began: what a texture looks ahead by.
+  /// Delay from the encoder's edge to the drive, measured at the start: a texture looks ahead by it.
   double delay_s() const { return delay_s_; }
   EdgeToDrive latency() const { return {latency_.quantile_s(0.5), latency_.quantile_s(0.99)}; }
 
@@ -87,9 +88,9 @@ class HostLoop {
   std::unique_ptr<HostBoard> board_;
   TimeHistogram wake_, busy_, latency_;
   std::atomic<std::uint64_t> missed_{0}, stale_{0}, trimmed_{0};
-  std::atomic<std::int64_t> longer_ns_{0};  // each period of the ticks, to follow the device's clock
+  std::atomic<std::int64_t> longer_ns_{0};  // added to each tick period, to follow the device's clock
   std::atomic<bool> ending_{false}, real_time_{false};
-  // The carrier's.
+  // Of the carrier thread.
   std::vector<std::int32_t> codes_;
   std::int64_t last_count_ns_ = 0, next_beat_ns_ = 0;
   std::int64_t round_trip_ns_ = 0, queue_ns_ = 0;  // as of the last heartbeat

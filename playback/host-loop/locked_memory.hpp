@@ -6,8 +6,8 @@
 
 namespace tacto::playback {
 
-/// Locks what this process holds by now; what it takes later is locked by the next call. False where it may
-/// not (RLIMIT_MEMLOCK): then all works, but a tick may wait for the disk.
+/// Locks the memory that this process has now; memory allocated later is locked by the next call. Returns
+/// false if this is not permitted (RLIMIT_MEMLOCK): playback still works, but a tick may wait for the disk.
 inline bool lock_memory() noexcept {
   return mlockall(MCL_CURRENT) == 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of the tray's sensor, gathered for a session.
+// Collects the samples of the tray's sensor in blocks for a session.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace tacto::playback {
 
-/// Frames that follow each other in number and, within half a period, in time become one block. Not safe in
+/// Frames with consecutive numbers and, within half a period, consecutive times form one block. Not safe in
 /// the tick: it allocates.
 class SampleRun {
  public:
@@ -23,7 +23,7 @@ class SampleRun {
     if (run_.codes.empty()) run_.first_frame = frame, run_.time_ns = time_ns;
     run_.codes.push_back(code);
   }
-  /// Hands over what is there.
+  /// Sends the block to the sink.
   void flush() {
     if (!run_.codes.empty()) sink_(std::exchange(run_, {}));
   }

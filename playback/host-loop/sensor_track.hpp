@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tray's samples as a device made them, and when each was by the ticks of another clock.
+// The samples of the tray's sensor, with their times on the clock of the ticks.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace tacto::playback {
 
-/// Where a loop is closed on the host, a tick plays the count that the device took in one of its periods
-/// (CountTrack). A sample that the device took in the same period was taken at the same place of the finger,
-/// so it gets that tick's time; one between two ticks' periods lies between their times. put() is the
-/// carrier's, read_at() the real-time thread's, take() the player's; none of the first two locks, allocates
-/// or calls the system.
+/// If the loop is closed on the host, a tick plays the count that the device sampled in one of its periods
+/// (CountTrack). A sample of the same period belongs to the same place of the finger, so it gets that tick's
+/// time; one between the periods of two ticks gets a time between theirs. The carrier thread calls put(), the
+/// real-time thread read_at(), the player's thread take(); put() and read_at() do not lock, allocate or call
+/// the system.
 class SensorTrack {
  public:
   explicit SensorTrack(double rate_hz) : period_ns_(1e9 / rate_hz) {}
@@ -25,13 +25,13 @@ class SensorTrack {
   void put(std::uint32_t period, std::int32_t code) noexcept {
     codes_[period % kKept].store(tagged(period, static_cast<std::uint32_t>(code)), std::memory_order_release);
   }
-  /// A tick reads the count of `period` and a part of the next one.
+  /// Records that a tick used the count of `period` plus a fraction of the next one.
   void read_at(std::uint64_t tick, std::uint32_t period, float part) noexcept {
     places_[tick % kTicks].store(tagged(period, std::bit_cast<std::uint32_t>(part)),
                                  std::memory_order_release);
   }
-  /// The samples up to the period that this tick read, that are not given yet. One of the last 16,384 ticks,
-  /// in their order; tick 0 begins anew. What has not come from the device yet comes with a later tick.
+  /// Appends the samples up to the period that this tick used, each once. `tick`: one of the last 16,384, in
+  /// order; tick 0 starts again. Samples that the device has not sent yet are appended at a later tick.
   void take(std::uint64_t tick, std::int64_t due_ns, SampleRun& into) {
     const std::uint64_t place = places_[tick % kTicks].load(std::memory_order_acquire);
     const auto period = static_cast<std::uint32_t>(place >> 32);
@@ -40,7 +40,7 @@ class SensorTrack {
     for (; static_cast<std::int32_t>(period - next_) >= 0; ++next_) {
       const auto behind = static_cast<double>(period - next_);
       const auto code = code_of(next_);
-      if (!code && behind < kPatience) return;
+      if (!code && behind < kOverdueFactor) return;
       const double time_ns = static_cast<double>(due_ns) - (behind + part) * period_ns_;
       if (code) into.add(next_ - first_, std::llround(time_ns), *code);
     }
@@ -48,7 +48,7 @@ class SensorTrack {
 
  private:
   static constexpr std::uint32_t kKept = 4096, kTicks = 16384;
-  static constexpr double kPatience = 256;  // periods; the device's ring
+  static constexpr double kOverdueFactor = 256;  // periods; the size of the device's ring
   static std::uint64_t tagged(std::uint32_t tag, std::uint32_t value) noexcept {
     return std::uint64_t{tag} << 32 | value;
   }
@@ -61,7 +61,7 @@ class SensorTrack {
   double period_ns_;
   std::array<std::atomic<std::uint64_t>, kKept> codes_{};
   std::array<std::atomic<std::uint64_t>, kTicks> places_{};
-  std::uint32_t first_ = 0, next_ = 0;  // the player's
+  std::uint32_t first_ = 0, next_ = 0;  // of the player's thread
 };
 
 }  // namespace tacto::playback

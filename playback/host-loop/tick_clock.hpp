@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When the next tick is due: absolute time, slept for and then spun for.
+// When the next tick is due: absolute time, a sleep and then a busy wait.
 #pragma once
 
 #include <time.h>
@@ -9,10 +9,9 @@
 
 namespace tacto::playback {
 
-/// One period after the other by CLOCK_MONOTONIC, without drift. wait() sleeps until 50 us before the time,
-/// or 40 % of the period where that is less (so that the kernel's throttle of real-time threads, 95 %, is
-/// kept), and spins for the rest. A period that was slept through is passed over, never made up for. Safe in
-/// the tick: clock_nanosleep is its only system call.
+/// Periods by CLOCK_MONOTONIC, without drift. wait() sleeps until 50 us before the due time, or 40 % of the
+/// period if that is less (the kernel throttles real-time threads at 95 %), and waits busily for the rest. A
+/// missed period is skipped, never made up for. Safe in the tick: clock_nanosleep is its only system call.
 class TickClock {
  public:
   void begin(double rate_hz) noexcept {
@@ -22,7 +21,7 @@ class TickClock {
     due_ns_ = now_ns();
     longer_ns_ = 0;
   }
-  /// Waits for the next tick; gives how late it is. `missed` grows by the periods that were passed over.
+  /// Waits for the next tick; returns how late it is. `missed` grows by the number of skipped periods.
   std::int64_t wait(std::uint64_t& missed) noexcept {
     due_ns_ += period_ns_ + longer_ns_;
     std::int64_t now = now_ns();
@@ -37,7 +36,7 @@ class TickClock {
     return late_ns;
   }
   std::int64_t period_ns() const noexcept { return period_ns_; }
-  /// From now on each period is so much longer, much less than one: who follows another clock.
+  /// Adds this to each period from now on (much less than a period), to follow another clock.
   void lengthen(std::int64_t by_ns) noexcept { longer_ns_ = by_ns; }
   static std::int64_t now_ns() noexcept {
     timespec now{};

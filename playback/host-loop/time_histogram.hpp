@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long something took, how often: counted in the tick, read by anybody.
+// A histogram of durations: counted in the tick, read by any thread.
 #pragma once
 
 #include <algorithm>
@@ -11,19 +11,19 @@
 
 namespace tacto::playback {
 
-/// By which a status tells how late ticks were: the part beyond each.
+/// The status reports the part of the ticks that are later than each of these.
 inline constexpr std::array<double, 5> kLateBoundsS{10e-6, 50e-6, 100e-6, 500e-6, 1e-3};
-/// What a status calls the part beyond one of them: "late_over_10us_part".
+/// The name of that part in the status: "late_over_10us_part".
 std::string late_part_name(double bound_s);
 
-/// Eight buckets an octave from 16 ns to 4 s: a quantile is told within 12.5 %. Safe in the tick: one store.
+/// Eight buckets per octave from 16 ns to 4 s: a quantile is exact to 12.5 %. Safe in the tick: one store.
 class TimeHistogram {
  public:
   void add(std::int64_t ns) noexcept {
     std::atomic<std::uint64_t>& count = counts_[bucket(ns < 0 ? 0 : static_cast<std::uint64_t>(ns))];
     count.store(count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
-  /// The upper bound of the bucket in which the quantile lies, s; 0 where there is nothing.
+  /// The upper bound of the bucket that contains the quantile, s; 0 if the histogram is empty.
   double quantile_s(double part) const {
     std::uint64_t total = 0, below = 0;
     for (const auto& count : counts_) total += count.load(std::memory_order_relaxed);
@@ -33,7 +33,7 @@ class TimeHistogram {
     }
     return 0;
   }
-  /// The part that took longer than this, to a bucket; 0 where there is nothing.
+  /// The part that took longer than this, to the resolution of a bucket; 0 if the histogram is empty.
   double part_over(double seconds) const {
     std::uint64_t total = 0, over = 0;
     for (std::size_t i = 0; i < kBuckets; ++i) {

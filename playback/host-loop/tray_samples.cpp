@@ -11,7 +11,7 @@ namespace {
 
 using schema::Result;
 
-constexpr std::uint8_t kFramesOfMessage = 32;  // as many as the wire has
+constexpr std::uint8_t kFramesOfMessage = 32;  // the wire's largest number
 constexpr std::size_t kTypeOfFrame = 3;
 
 }  // namespace
@@ -52,7 +52,8 @@ Result<void> TraySamples::begin_stream() {
   return begun;
 }
 
-// The last message tells when its first frame was; the others are as far from it as their numbers say.
+// The last message gives the time of its first frame; the times of the others follow from their numbers and
+// the rate.
 void TraySamples::take() {
   if (!streams_ || !run_ || !client_.last_arrival()) return;
   const firmware_host::FrameArrival& told = *client_.last_arrival();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a device's sensor says of its driven tray while it plays, for the session.
+// What the sensor of the driven tray measures during a playback, for the session.
 #pragma once
 
 #include <cstddef>
@@ -13,30 +13,30 @@
 
 namespace tacto::playback {
 
-/// The first channel of displacement in m with a scale; none where the device does not report its tray.
+/// The first channel of displacement in m that has a scale; none if the device does not measure its tray.
 std::optional<std::size_t> tray_sensor_channel(const firmware_host::Description& about);
 
-/// Between begin() and end() samples go to the sink. From a device that closes the loop itself they are
-/// streamed (begin_stream() to end_stream()) and taken by take(); where this computer closes it, others give
-/// them to run(). One thread, the client's.
+/// Samples go to the sink between begin() and end(). A device that closes the loop itself streams them
+/// (begin_stream() to end_stream()), and take() reads them; if this computer closes the loop, SensorTrack
+/// adds them to run(). For one thread, that of the client.
 class TraySamples {
  public:
   explicit TraySamples(firmware_host::Client& client)
       : client_(client), channel_(tray_sensor_channel(client.description())) {}
 
-  /// Whether a command concerns the stream alone. Precondition: a whole frame.
+  /// Whether a command belongs to the stream only. Precondition: a whole frame.
   static bool streams(std::span<const std::uint8_t> frame);
-  /// As the device describes it, sampled with its ticks (WIRE.md: one clock).
+  /// The sensor as the device describes it, sampled with the ticks (WIRE.md: one clock).
   std::optional<schema::SessionSensor> sensor(double rate_hz) const;
 
   void begin(double rate_hz, SampleRun::Sink sink);
-  /// Behind arming, so that devices with and without a sensor tick alike. Errors: device.
+  /// Call after arming, so that devices with and without a sensor have the same ticks. Errors: device.
   schema::Result<void> begin_stream();
   void take();
-  /// Takes what is left. Errors: device.
+  /// Reads the remaining samples. Errors: device.
   schema::Result<void> end_stream();
   void end();
-  /// Null where there is no sensor, or no session.
+  /// Null if there is no sensor or no session.
   SampleRun* run() { return run_ ? &*run_ : nullptr; }
 
  private:

@@ -25,8 +25,8 @@ double kept_in_a_tick(double pole_hz, double rate_hz) {
 }
 
 std::complex<double> lead_response(const Chain& chain, double frequency_hz) {
-  if (!(chain.led_pole_hz > 0)) return 1;
-  const double a = kept_in_a_tick(chain.led_pole_hz, chain.sample_rate_hz);
+  if (!(chain.compensated_pole_hz > 0)) return 1;
+  const double a = kept_in_a_tick(chain.compensated_pole_hz, chain.sample_rate_hz);
   return (1.0 - std::polar(a, -2 * std::numbers::pi * frequency_hz / chain.sample_rate_hz)) / (1 - a);
 }
 

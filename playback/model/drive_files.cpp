@@ -24,16 +24,16 @@ Result<void> check_name(const std::string& path, schema::Existing existing) {
   return schema::check_wav_free(path, existing);
 }
 
-// What a 32-bit float can't hold it would keep as an infinity.
+// Larger values would become infinite in a 32-bit float.
 Result<void> check_storable(const SignalFile& file) {
   const auto& values = file.signal->values;
   const auto broken = std::ranges::find_if(
       values, [](double each) { return !(std::abs(each) <= std::numeric_limits<float>::max()); });
   if (broken == values.end()) return {};
   return fail(ErrorKind::unsuitable,
-              fmt::format("sample {} would be {:g}, which is no finite number of 32 bits",
+              fmt::format("sample {} would be {:g}, which is not a finite 32-bit number",
                           broken - values.begin(), *broken),
-              file.path, "correct the transducer's numbers, or take a smaller --gain");
+              file.path, "correct the transducer's numbers, or use a smaller --gain");
 }
 
 Result<void> write_one(schema::PendingFiles& pending, const SignalFile& file) {

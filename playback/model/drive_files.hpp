@@ -16,13 +16,13 @@ struct SignalFile {
   const schema::TimeSignal* signal = nullptr;
 };
 
-/// Before the work: names that end in .wav, all different, free where what exists is to be kept, none of them
-/// the data of a recording or texture (which has its NAME.json beside it). Errors: usage.
+/// Call before any computation. Checks that all names end in .wav and are different, that existing files may
+/// be replaced, and that none holds the data of a recording or texture (which has a NAME.json beside it).
+/// Errors: usage.
 schema::Result<void> check_signal_files(std::span<const SignalFile> files, schema::Existing existing);
 
-/// Writes all; they appear together or not at all. Errors: cannot_write; usage, for a rate that no header
-/// holds, or where a file that is to be kept has a name; unsuitable, for a sample that is no finite number
-/// of 32 bits.
+/// Writes all files or none. Errors: cannot_write; usage, for a rate that no header can hold, or an existing
+/// file that must not be replaced; unsuitable, for a sample that is not a finite 32-bit number.
 schema::Result<void> write_signal_files(std::span<const SignalFile> files, schema::Existing existing);
 
 }  // namespace tacto::playback

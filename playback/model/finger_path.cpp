@@ -44,7 +44,7 @@ schema::Result<void> check_finger_path(const FingerPath& path) {
       return fail(ErrorKind::unsuitable, "time or position is not a finite number",
                   fmt::format("path, knot {}", i));
     if (i > 0 && path.time_s[i] <= path.time_s[i - 1])
-      return fail(ErrorKind::unsuitable, "time does not grow", fmt::format("path, knot {}", i));
+      return fail(ErrorKind::unsuitable, "the time does not increase", fmt::format("path, knot {}", i));
   }
   return {};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the finger is and when: the path along which a texture is played.
+// The position of the finger against time: the path along which a texture is played.
 #pragma once
 
 #include <cstddef>
@@ -12,37 +12,37 @@
 
 namespace tacto::playback {
 
-/// Knots of a path, at least 2, all finite, time strictly increasing; both vectors of one length. Between
-/// knots the finger moves by piecewise cubic Hermite interpolation (PCHIP), which never overshoots a knot: a
-/// finger that stands still between two knots does.
+/// Knots of a path: at least 2, all finite, time strictly increasing; both vectors of the same length.
+/// Between knots the finger moves by piecewise cubic Hermite interpolation (PCHIP), which never overshoots a
+/// knot: between two equal positions the finger does not move.
 struct FingerPath {
   std::vector<double> time_s;
   std::vector<double> position_m;
-  std::vector<double> normal_force_n = {};  ///< with which it presses, even between knots; empty: not told
+  std::vector<double> normal_force_n = {};  ///< at each knot, linear between knots; empty: unknown
 
   double duration_s() const { return time_s.back() - time_s.front(); }
 };
 
-/// Reads a table whose first line names the columns; `time_s` and `position_m` are taken,
-/// and `normal_force_n` where there is one; others are left alone. Columns are parted by
-/// commas, or by semicolons or tabs: then numbers may have decimal commas. Errors: not_found; malformed, by
-/// line and column, for a missing column (with those that exist), a ragged row, text, NaN, infinity, time
-/// that does not grow, fewer than 2 rows.
+/// Reads the columns `time_s`, `position_m` and, if there is one, `normal_force_n` of a table whose first
+/// line names the columns; others are ignored. Columns are separated by commas, or by semicolons or tabs:
+/// then numbers may have decimal commas. Errors: not_found; malformed, with line and column, for a missing
+/// column (with those that exist), a row of another length, text, NaN, infinity, time that does not increase,
+/// fewer than 2 rows.
 schema::Result<FingerPath> read_finger_path(const std::string& file);
 
-/// The same from a text in memory; `name` stands for the file in errors.
+/// The same for a text in memory; errors give `name` as the file.
 schema::Result<FingerPath> parse_finger_path(std::string_view text, const std::string& name);
 
-/// One knot a sample. Precondition: at least 2 samples, of position in m.
+/// One knot per sample. Precondition: at least 2 samples of position in m.
 FingerPath finger_path_of(const schema::TimeSignal& position);
 
-/// Errors: unsuitable, by knot, where the path breaks what FingerPath promises.
+/// Errors: unsuitable, with the knot, if the path breaks the rules of FingerPath.
 schema::Result<void> check_finger_path(const FingerPath& path);
 
 /// Positions at first time + i / rate_hz, i = 0 ... samples - 1, by PCHIP. Precondition: a checked path.
 std::vector<double> positions_along(const FingerPath& path, double rate_hz, std::size_t samples);
 
-/// The greatest speed of the PCHIP path, exact: in each segment the speed is a parabola. m/s.
+/// The greatest speed of the PCHIP path, m/s. Exact: in each segment the speed is a parabola.
 double greatest_speed_mps(const FingerPath& path);
 
 }  // namespace tacto::playback

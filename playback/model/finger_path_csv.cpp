@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kColumns = {"time_s", "position_m", "normal_force_n"};
 constexpr std::size_t kNeeded = 2, kForce = 2;
-constexpr std::string_view kRemedy = "write a header line 'time_s,position_m', then one row a knot";
+constexpr std::string_view kRemedy = "write a header line 'time_s,position_m', then one row per knot";
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -48,7 +48,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-// Where columns are not parted by commas, a comma is a decimal mark as well as a point is.
+// If commas do not separate columns, both comma and point are decimal marks.
 char separator_of(std::string_view header) {
   if (header.find('\t') != std::string_view::npos) return '\t';
   return header.find(';') != std::string_view::npos ? ';' : ',';
@@ -69,8 +69,8 @@ struct Table {
   const std::string& name;
   char separator;
   std::vector<std::string_view> header;
-  std::array<std::size_t, kColumns.size()> column{};  // where they stand in the header
-  bool tells_force = false;
+  std::array<std::size_t, kColumns.size()> column{};  // their indices in the header
+  bool has_force = false;
 
   std::string place(std::size_t line, std::size_t which) const {
     return fmt::format("{}, line {}, column {} ({})", name, line, column[which] + 1, kColumns[which]);
@@ -79,13 +79,13 @@ struct Table {
 
 Result<Table> read_header(std::string_view line, const std::string& name) {
   if (std::ranges::any_of(line, [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
-    return fail(ErrorKind::malformed, "this is no table: its first line holds binary data", name,
+    return fail(ErrorKind::malformed, "this is not a table: its first line contains binary data", name,
                 "a path is a CSV with the columns time_s,position_m");
   const char separator = separator_of(line);
   Table table{name, separator, split(line, separator), {}, false};
   for (std::size_t which = 0; which < kColumns.size(); ++which) {
     const auto found = std::ranges::find(table.header, kColumns[which]);
-    if (which == kForce) table.tells_force = found != table.header.end();
+    if (which == kForce) table.has_force = found != table.header.end();
     if (which < kNeeded && found == table.header.end())
       return fail(
           ErrorKind::malformed,
@@ -101,7 +101,7 @@ Result<double> cell(const Table& table, const std::vector<std::string_view>& fie
   const std::string_view text = fields[table.column[which]];
   const auto value = number_in(text, table.separator);
   if (!value)
-    return fail(ErrorKind::malformed, fmt::format("'{}' is no number", text), table.place(line, which));
+    return fail(ErrorKind::malformed, fmt::format("'{}' is not a number", text), table.place(line, which));
   if (!std::isfinite(*value))
     return fail(ErrorKind::malformed, fmt::format("'{}' is not finite", text), table.place(line, which));
   return *value;
@@ -119,11 +119,11 @@ Result<void> add_row(FingerPath& path, const Table& table, std::string_view text
   TACTO_TRY(position_m);
   if (!path.time_s.empty() && *time_s <= path.time_s.back())
     return fail(ErrorKind::malformed,
-                fmt::format("time does not grow: {} s after {} s", *time_s, path.time_s.back()),
+                fmt::format("the time does not increase: {} s after {} s", *time_s, path.time_s.back()),
                 table.place(line, 0), "each row must be later than the one before");
   path.time_s.push_back(*time_s);
   path.position_m.push_back(*position_m);
-  if (!table.tells_force) return {};
+  if (!table.has_force) return {};
   const auto force_n = cell(table, fields, line, kForce);
   TACTO_TRY(force_n);
   path.normal_force_n.push_back(*force_n);
@@ -141,7 +141,7 @@ Result<FingerPath> parse_finger_path(std::string_view text, const std::string& n
   for (std::size_t i = 1; i < lines.size(); ++i) TACTO_TRY(add_row(path, *table, lines[i], i + 1));
   if (path.time_s.size() < 2)
     return fail(ErrorKind::malformed,
-                fmt::format("a path needs at least 2 rows, here are {}", path.time_s.size()), name,
+                fmt::format("a path needs at least 2 rows, this one has {}", path.time_s.size()), name,
                 std::string(kRemedy));
   return path;
 }

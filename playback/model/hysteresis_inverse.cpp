@@ -14,8 +14,8 @@ struct Play {
   double threshold_v = 0, weight = 0;
 };
 
-// What is lost is the corner between the two: its size is the weights' product over their sum, times how far
-// they are apart.
+// Merging loses the corner between the two: its size is the product of the weights over their sum, times the
+// distance of the thresholds.
 double merging_loss(const Play& a, const Play& b) {
   const double sum = a.weight + b.weight;
   return sum > 0 ? a.weight * b.weight / sum * (b.threshold_v - a.threshold_v) : 0;
@@ -37,7 +37,7 @@ void merge_nearest(std::vector<Play>& play_operators) {
   play_operators.erase(play_operators.begin() + static_cast<std::ptrdiff_t>(best) + 1);
 }
 
-// The operator's sum once its input has gone to v.
+// The sum of the operators after the input has moved to v.
 double moved_plays(const schema::Hysteresis& hysteresis, double v, std::span<double> play_operators) {
   double sum = 0;
   for (std::size_t i = 0; i < play_operators.size(); ++i) {

@@ -6,19 +6,18 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kAnyway = 1.1;  // beyond the last frequencies: no resonance hides in a tenth
+constexpr double kMargin = 1.1;  // margin beyond the identified frequencies, too narrow for a resonance
 
 }  // namespace
 
 std::optional<std::string> beyond_identified(const schema::Transducer& transducer,
                                              const spatial::Band& band) {
   const auto& found = transducer.identification;
-  if (!found || (band.low_hz * kAnyway >= found->low_hz && band.high_hz <= kAnyway * found->high_hz))
+  if (!found || (band.low_hz * kMargin >= found->low_hz && band.high_hz <= kMargin * found->high_hz))
     return std::nullopt;
   return fmt::format(
-      "transducer '{}' was identified from {:.4g} to {:.4g} Hz, the drive goes from {:.4g} to {:.4g} Hz: "
-      "beyond "
-      "that its model is a guess; identify it over that band, or narrow the drive's (--low, --high of "
+      "transducer '{}' was identified from {:.4g} to {:.4g} Hz, the drive goes from {:.4g} to {:.4g} Hz: its "
+      "model is extrapolated; identify it over the drive's band, or narrow that band (--low, --high of "
       "render)",
       transducer.name, found->low_hz, found->high_hz, band.low_hz, band.high_hz);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a transducer is used where somebody measured it.
+// Whether a transducer is used at frequencies at which it was measured.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace tacto::playback {
 
-/// A warning where the drive's band reaches more than a tenth beyond the frequencies over which the
-/// transducer's file was identified: there its model is what the fit extrapolates. None of a file that tells
-/// nothing of its identification.
+/// A warning if the drive's band exceeds by more than a tenth the frequencies over which the transducer's
+/// file was identified, because there the model is extrapolated. None if the file has no data of its
+/// identification.
 std::optional<std::string> beyond_identified(const schema::Transducer& transducer, const spatial::Band& band);
 
 }  // namespace tacto::playback

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the limits took away, told and not hidden.
+// Counts the ticks that the limits changed, and how much of the drive they removed.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace tacto::playback {
 
-/// Fed every tick's output. noexcept and without allocation: safe in the tick.
+/// Call for each tick's output. noexcept and without allocation: safe in the tick.
 class LimitTally {
  public:
   void add(const core::TickOutput& output) noexcept {
@@ -20,15 +20,15 @@ class LimitTally {
     energy_ += (output.flags & wire::kTickEnergyLimited) != 0;
     gated_ += (output.flags & wire::kTickGated) != 0;
     const double unlimited_v = output.unlimited_v, removed_v = unlimited_v - output.drive_v;
-    wished_v2_ += unlimited_v * unlimited_v;
+    unlimited_v2_ += unlimited_v * unlimited_v;
     removed_v2_ += removed_v * removed_v;
   }
-  /// Of other ticks.
+  /// Adds the sums of other ticks.
   void add(const LimitTally& other) noexcept {
     ticks_ += other.ticks_;
     amplitude_ += other.amplitude_, slew_ += other.slew_, energy_ += other.energy_;
     gated_ += other.gated_;
-    wished_v2_ += other.wished_v2_, removed_v2_ += other.removed_v2_;
+    unlimited_v2_ += other.unlimited_v2_, removed_v2_ += other.removed_v2_;
   }
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t amplitude_limited() const { return amplitude_; }
@@ -36,15 +36,16 @@ class LimitTally {
   std::uint64_t energy_limited() const { return energy_; }
   std::uint64_t gated() const { return gated_; }
   bool removed_any() const { return removed_v2_ > 0; }
-  /// RMS of what amplitude, slew and energy took away, re RMS of the wished drive; at least -300.
+  /// RMS of what amplitude, slew and energy limits removed, re RMS of the unlimited drive; at least -300.
   double removed_db() const {
-    return wished_v2_ > 0 && removed_v2_ > 0 ? std::max(10 * std::log10(removed_v2_ / wished_v2_), -300.0)
-                                             : -300.0;
+    return unlimited_v2_ > 0 && removed_v2_ > 0
+               ? std::max(10 * std::log10(removed_v2_ / unlimited_v2_), -300.0)
+               : -300.0;
   }
 
  private:
   std::uint64_t ticks_ = 0, amplitude_ = 0, slew_ = 0, energy_ = 0, gated_ = 0;
-  double wished_v2_ = 0, removed_v2_ = 0;
+  double unlimited_v2_ = 0, removed_v2_ = 0;
 };
 
 }  // namespace tacto::playback

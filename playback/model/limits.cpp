@@ -15,7 +15,7 @@ void raise(Peak& peak, double value, double time_s) {
   peak.time_s = time_s;
 }
 
-// Rounded down in the fourth digit, so that the gain that a message names does fit.
+// Rounded down in the fourth digit, so that the gain in a message does fit.
 double rounded_down(double value) {
   if (!(value > 0)) return 0;
   const double digit = std::pow(10, std::floor(std::log10(value)) - 3);
@@ -55,7 +55,7 @@ double proportional_fit(const Peaks& peaks, double gain_m_per_n) {
 tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n, bool may_clip) {
   const std::string fits =
       fitting_m_per_n > 0 ? fmt::format("the largest gain that fits is {:.4g}mm/N", 1e3 * fitting_m_per_n)
-                          : "take a smaller --gain";
+                          : "use a smaller --gain";
   return schema::fail(schema::ErrorKind::unsuitable,
                       fmt::format("the {} reaches {:.4g} {}, its limit is {:.4g} {}", peak.name, peak.value,
                                   peak.unit, peak.limit, peak.unit),

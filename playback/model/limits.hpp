@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The transducer's limits: how much of them a drive uses, and a drive held within them.
+// The transducer's limits: how much of them a drive uses, and how to clip a drive to them.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace tacto::playback {
 
-/// The greatest magnitude of something, when it is, and how much is allowed.
+/// The greatest magnitude of a quantity, its time, and its limit.
 struct Peak {
   std::string_view name;  ///< "drive", "displacement", "slew"
   std::string_view unit;
@@ -24,7 +24,7 @@ struct Peak {
 
 struct Peaks {
   Peak drive_v, slew_v_per_s, displacement_m;
-  /// The one that uses most of its limit.
+  /// The peak that uses most of its limit.
   const Peak& tightest() const;
   bool fit() const { return tightest().used() <= 1; }
 };
@@ -32,24 +32,24 @@ struct Peaks {
 /// What follows a drive's last sample.
 enum class AfterDrive { rest, more };
 
-/// Of samples at rate_hz; slew is the step between neighbours, from rest before the first one and to what
-/// follows the last one included, times the rate.
+/// For samples at rate_hz. Slew is the step between neighbours times the rate, including the step from rest
+/// to the first sample and that from the last one to what follows.
 Peaks peaks_of(std::span<const double> drive_v, std::span<const double> displacement_m, double rate_hz,
                const schema::Transducer& transducer, AfterDrive after = AfterDrive::rest);
 
-/// Errors: unsuitable, where a limit is passed: by which peak, at what time, and the largest gain that fits.
+/// Errors: unsuitable, if a limit is exceeded: which peak, at what time, and the largest gain that fits.
 schema::Result<void> check_limits(const Peaks& peaks, double gain_m_per_n);
 
-/// The gain at which the tightest just fits, where all is proportional to it: gain / used, rounded down in
-/// the fourth digit.
+/// The gain at which the tightest peak just fits if all peaks are proportional to it: gain / used, rounded
+/// down in the fourth digit.
 double proportional_fit(const Peaks& peaks, double gain_m_per_n);
 
-/// What check_limits() says of one peak, with the gain that fits (0: none is known), and that clipping would
-/// help where it would.
+/// The error of check_limits() for one peak, with the gain that fits (0: none is known); `may_clip` adds the
+/// hint to clip.
 tl::unexpected<schema::Error> limit_passed(const Peak& peak, double fitting_m_per_n, bool may_clip);
 
-/// Holds every sample within drive_limit_v, then every step, from rest on, within slew_limit_v_per_s. Gives
-/// the number of samples that it changed.
+/// Clips each sample to drive_limit_v, then each step, beginning from rest, to slew_limit_v_per_s. Returns
+/// the number of samples changed.
 std::size_t clip_drive(std::vector<double>& drive_v, double rate_hz, const schema::Transducer& transducer);
 
 }  // namespace tacto::playback

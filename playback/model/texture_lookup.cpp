@@ -26,8 +26,8 @@ double TextureLookup::operator()(double position_m) const {
   return interpolated(along_m / signal_.pitch_m) * fade(std::min(along_m, signal_.length_m() - along_m));
 }
 
-// (8 (y[+1] - y[-1]) - (y[+2] - y[-2])) / 12, times the pitch. Beyond the ends, where all is faded, the last
-// samples go on.
+// (8 (y[+1] - y[-1]) - (y[+2] - y[-2])) / 12, times the pitch. Beyond the ends, which are faded, the end
+// sample is repeated.
 double TextureLookup::slope(std::size_t i) const {
   const auto& y = signal_.values;
   const std::size_t last = y.size() - 1;

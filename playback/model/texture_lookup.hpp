@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The texture under the finger: its value at any position of the bench.
+// The value of the texture at any position of the bench.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 
 namespace tacto::playback {
 
-/// A texture laid so that its first sample is at `at_m`, read between samples by cubic Hermite interpolation;
+/// A texture placed with its first sample at `at_m`, and interpolated by cubic Hermite polynomials whose
 /// slopes are central differences of fourth order. Error for a sinusoid of spatial frequency k: at most
 /// 0.0026 w^4 + 0.0032 w^5 of its amplitude, w = 2 pi k pitch: -132 dB at 15 /mm on a 1 um grid, -88 dB at 50
 /// /mm.
 ///
 /// Ends: stop. Outside, the value is zero; inside, the last fade_m() before each end fade by a raised cosine,
-/// so that a finger which runs off the texture feels no step.
+/// so that there is no step at the ends.
 class TextureLookup {
  public:
   /// At least 2 samples. Keeps a reference: the signal must outlive it.

@@ -21,12 +21,12 @@ constexpr auto kWriteEvery = std::chrono::milliseconds(20);
 constexpr auto kSyncEvery = std::chrono::milliseconds(100);
 constexpr auto kRoomAgain = std::chrono::microseconds(200);
 constexpr std::size_t kBatch = 4096;
-constexpr std::int64_t kMostBlockNs = 4'000'000'000;               // a block counts 32 bits of ns
+constexpr std::int64_t kMostBlockNs = 4'000'000'000;               // a block stores times in 32 bits, ns
 constexpr std::int64_t kFirstBlock = 8192;                         // bytes
 constexpr std::size_t kMostSamplesWaiting = std::size_t{1} << 18;  // 1 MB; 13 s at 20 kHz
-constexpr std::size_t kMostOwed = 1000;  // disjoint losses; later ones are only counted
+constexpr std::size_t kMostOwed = 1000;  // separate losses; later ones are only counted
 
-// Whether a tick may stand in the block that begins with another: without a hole, and not for too long.
+// Whether a tick can be in the same block: consecutive, and within the longest time of a block.
 bool follows(const SessionTick& next, const std::vector<SessionTick>& batch) {
   return batch.empty() ||
          (next.tick == batch.back().tick + 1 && next.time_ns - batch.front().time_ns < kMostBlockNs);
@@ -56,7 +56,7 @@ Result<void> FlightRecorder::write_beginning() {
 
 Result<void> FlightRecorder::start() {
   if (auto begun = write_beginning(); !begun) {
-    begun.error().remedy = "make room there, or let the session be elsewhere";
+    begun.error().remedy = "free space there, or write the session to another place";
     return begun;
   }
   thread_ = std::thread([this] { run(); });
@@ -85,11 +85,11 @@ void FlightRecorder::tick(const SessionTick& tick) noexcept {
   }
   *place = tick;
   queue_.push();
-  if (missing_ > 0) confess();
+  if (missing_ > 0) record_loss();
 }
 
-// There is room again: say what is missing before it.
-void FlightRecorder::confess() {
+// The queue has space again, so the loss can be recorded.
+void FlightRecorder::record_loss() {
   const std::lock_guard lock(notes_mutex_);
   notes_.losses.push_back({missing_from_, std::exchange(missing_, 0), SessionLoss::Why::recorder});
 }
@@ -133,13 +133,14 @@ void FlightRecorder::failed(const schema::Error& error) {
   failure_ = error;
 }
 
-void FlightRecorder::owe(const SessionLoss& loss) {
-  const bool goes_on = !owed_.empty() && owed_.back().why == loss.why &&
-                       owed_.back().first_tick + owed_.back().count == loss.first_tick;
+void FlightRecorder::queue_loss(const SessionLoss& loss) {
+  const bool goes_on =
+      !unwritten_losses_.empty() && unwritten_losses_.back().why == loss.why &&
+      unwritten_losses_.back().first_tick + unwritten_losses_.back().count == loss.first_tick;
   if (goes_on) {
-    owed_.back().count += loss.count;
-  } else if (owed_.size() < kMostOwed) {
-    owed_.push_back(loss);
+    unwritten_losses_.back().count += loss.count;
+  } else if (unwritten_losses_.size() < kMostOwed) {
+    unwritten_losses_.push_back(loss);
   }
 }
 
@@ -149,7 +150,7 @@ void FlightRecorder::write_run(std::span<const SessionTick> ticks) {
     failed(done.error());
     if (limits_ != nullptr) limits_->lose("ticks");
     disk_lost_.fetch_add(ticks.size());
-    owe({ticks.front().tick, ticks.size(), SessionLoss::Why::disk});
+    queue_loss({ticks.front().tick, ticks.size(), SessionLoss::Why::disk});
     disk_full_ = true;
     return;
   }
@@ -158,7 +159,7 @@ void FlightRecorder::write_run(std::span<const SessionTick> ticks) {
   for (const SessionTick& tick : ticks) late_.fetch_add((tick.flags & wire::kTickLate) != 0);
 }
 
-// A block holds ticks that follow each other.
+// A block contains consecutive ticks.
 void FlightRecorder::write_ticks(std::uint32_t most) {
   while (most > 0) {
     batch_.clear();
@@ -174,8 +175,8 @@ void FlightRecorder::write_ticks(std::uint32_t most) {
   }
 }
 
-// What was sent before a tick stands before it: of the ticks only those that were here before the notes were
-// taken are written after them.
+// A command is written before the ticks that follow it. So only ticks that were in the queue before the notes
+// were read are written after these.
 void FlightRecorder::write_queued() {
   const std::uint32_t here = queue_.size();
   write_notes();
@@ -188,7 +189,7 @@ void FlightRecorder::write_notes() {
     const std::lock_guard lock(notes_mutex_);
     notes = std::exchange(notes_, {});
   }
-  for (const SessionLoss& loss : notes.losses) owe(loss);
+  for (const SessionLoss& loss : notes.losses) queue_loss(loss);
   const auto put = [&](const auto& note) {
     constexpr bool kSteers = std::is_same_v<std::decay_t<decltype(note)>, schema::SessionCommand>;
     const auto done = writer_.add(note);
@@ -200,13 +201,13 @@ void FlightRecorder::write_notes() {
   for (const auto& command : notes.commands) std::visit(put, command);
   for (const auto& event : notes.events) put(event);
   for (const auto& samples : notes.samples) put(samples);
-  if (!disk_full_) write_owed();  // what is held back for losses is for all of them
+  if (!disk_full_) write_losses();  // the reserved space is for all losses
 }
 
-void FlightRecorder::write_owed() {
-  while (!owed_.empty()) {
-    if (const auto done = writer_.add(owed_.front()); !done) return failed(done.error());
-    owed_.erase(owed_.begin());
+void FlightRecorder::write_losses() {
+  while (!unwritten_losses_.empty()) {
+    if (const auto done = writer_.add(unwritten_losses_.front()); !done) return failed(done.error());
+    unwritten_losses_.erase(unwritten_losses_.begin());
   }
 }
 
@@ -230,9 +231,9 @@ void FlightRecorder::discard() {
 
 Result<void> FlightRecorder::close() {
   stop();
-  if (missing_ > 0) confess();
+  if (missing_ > 0) record_loss();
   write_queued();
-  write_owed();  // also what just found no room
+  write_losses();  // includes ticks for which there was no space just now
   if (limits_ != nullptr) limits_->end();
   return writer_.close(
       {written_.load(), queue_lost_.load() + disk_lost_.load() + link_lost_.load(), late_.load()});

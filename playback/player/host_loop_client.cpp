@@ -14,9 +14,10 @@ std::string words_of(const EdgeToDrive& latency) {
 
 }  // namespace
 
-schema::Result<LoopHere> close_loop_here(firmware_host::Client& device, const std::string& uri,
-                                         const HostLoopOptions& loop_options, PlayerOptions& options) {
-  LoopHere here;
+schema::Result<HostLoopClient> close_loop_on_host(firmware_host::Client& device, const std::string& uri,
+                                                  const HostLoopOptions& loop_options,
+                                                  PlayerOptions& options) {
+  HostLoopClient here;
   auto loop = HostLoop::begin(device, loop_options);
   TACTO_TRY(loop);
   here.loop = std::move(*loop);

@@ -22,14 +22,14 @@ std::optional<double> db_of(const LimitTally& tally) {
 
 LiveLimits::LiveLimits(const schema::SessionHeader& header, std::size_t profile_samples)
     : rate_hz_(header.rate_hz),
-      tells_touch_(tells_touch(header)),
+      tells_touch_(reports_contact(header)),
       board_(std::make_unique<SessionBoard>(header, BoardLimits::lifted, profile_samples)) {}
 
 void LiveLimits::give_up(std::string why) {
   board_.reset();
   waiting_.clear();
   const std::lock_guard lock(mutex_);
-  told_ = {{}, {}, std::move(why)};
+  reported_ = {{}, {}, std::move(why)};
 }
 
 void LiveLimits::hear(const SessionCommand& command) {
@@ -42,9 +42,9 @@ void LiveLimits::hear(const SessionCommand& command) {
 
 void LiveLimits::obey(const SessionCommand& command) {
   if (!board_) return;
-  const auto answer = board_->say_frame(command.frame);
+  const auto answer = board_->send_frame(command.frame);
   if (answer && answer->code == wire::AnswerCode::ok) return;
-  give_up(fmt::format("{} is refused here", firmware_host::to_string(type_of(command))));
+  give_up(fmt::format("{} is refused by the computed kernel", firmware_host::to_string(type_of(command))));
 }
 
 void LiveLimits::take(std::span<const SessionTick> ticks) {
@@ -77,7 +77,7 @@ void LiveLimits::play(const SessionTick& tick) {
   if (beats_.beats_before(tick.tick)) board_->say(wire::Heartbeat{});
   const float unlimited_v = board_->tick(tick);
   limited_ = limited_ || (tick.flags & kEveryLimit) != 0;
-  if (!limited_ && unlimited_v != tick.drive_v) return give_up("the device computes another drive");
+  if (!limited_ && unlimited_v != tick.drive_v) return give_up("the device computes a different drive");
   count(tick, unlimited_v);
 }
 
@@ -100,12 +100,12 @@ void LiveLimits::tell() {
   LimitTally second;
   for (const LimitTally& part : parts_) second.add(part);
   const std::lock_guard lock(mutex_);
-  told_ = {db_of(whole_), db_of(second), {}};
+  reported_ = {db_of(whole_), db_of(second), {}};
 }
 
 LimitsTook LiveLimits::told() const {
   const std::lock_guard lock(mutex_);
-  return told_;
+  return reported_;
 }
 
 }  // namespace tacto::playback

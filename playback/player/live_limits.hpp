@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the limits take away in a play that goes on.
+// What the limits remove during a playback.
 #pragma once
 
 #include <array>
@@ -16,33 +16,35 @@
 
 namespace tacto::playback {
 
-/// RMS of wished - delivered drive re RMS of the wished one, dB, as LimitTally tells it of a session. None
-/// where the limits took nothing of these ticks.
+/// RMS of unlimited - delivered drive re RMS of the unlimited drive, dB, as LimitTally computes it for a
+/// session. None if the limits removed nothing in these ticks.
 struct LimitsTook {
   std::optional<double> db;              ///< since arming
-  std::optional<double> last_second_db;  ///< of the newest second that is known: 0.9 to 1 s of ticks
-  std::string unknown;                   ///< why it is not known from some tick on; then both are none
+  std::optional<double> last_second_db;  ///< of the newest known second: 0.9 to 1 s of ticks
+  std::string unknown;                   ///< why it is unknown from some tick on; then both are none
 };
 
-/// A device tells the drive and flags, not what its kernel wished. So a second device of the same core, whose
-/// limits are lifted, is given the same commands and counts as they are recorded (session_limits.hpp has the
-/// definition, and does the same of a session; the figures agree). It follows the ticks by the device's
-/// watchdog: only then it is known that the host was not too silent.
-/// Not known: from ticks or commands on that are missing, in the file too; of a contact gate whose ticks do
-/// not tell the touch (before protocol 1.2); where the second device does otherwise than the first one before
-/// a limit was reached, or refuses a command. One thread calls hear(), take() and end(), which allocate:
-/// never the tick's. told() is for any.
+/// A device reports its drive and flags, not the kernel's drive before the limits. So a second device of the
+/// same core, without limits, gets the same commands and counts while they are recorded (session_limits.hpp
+/// has the definition, and does the same for a session; the figures agree). It follows the ticks with a delay
+/// of the device's watchdog time, because only then it is known that the host was not silent for too long.
+/// Unknown: from missing ticks or commands on, also those missing in the file; for a contact gate whose ticks
+/// do not report contact (before protocol 1.2); if the drive of the second device differs before a limit was
+/// reached, or it refuses a command. One thread calls hear(), take() and end(), which allocate, so not that
+/// of the tick. Any thread may call told().
 class LiveLimits {
  public:
-  /// `profile_samples`: as many as the device holds.
+  /// `profile_samples`: the number that the device holds.
   LiveLimits(const schema::SessionHeader& header, std::size_t profile_samples);
 
-  /// In the order of the session, before the ticks that took it. Precondition: its frame is_frame().
+  /// Call in the order of the session, before the ticks that received the command. Precondition: its frame
+  /// is_frame().
   void hear(const schema::SessionCommand& command);
   void take(std::span<const schema::SessionTick> ticks);
-  /// Something of the session did not get into its file: from now on nothing is known, as of the file.
+  /// A part of the session is missing in its file: from now on the figures are unknown, as they are from the
+  /// file.
   void lose(const std::string& what);
-  /// No tick comes any more: tells of all that came. The second device is gone then.
+  /// Call after the last tick: evaluates the remaining ticks, and removes the second device.
   void end();
   LimitsTook told() const;
 
@@ -57,7 +59,7 @@ class LiveLimits {
 
   double rate_hz_;
   bool tells_touch_;
-  std::unique_ptr<SessionBoard> board_;  // none once it is over
+  std::unique_ptr<SessionBoard> board_;  // none after the end
   SessionCommands commands_;
   HostBeats beats_;
   std::deque<schema::SessionTick> waiting_;
@@ -65,9 +67,9 @@ class LiveLimits {
   bool limited_ = false;
   LimitTally whole_;
   std::array<LimitTally, kParts> parts_;
-  std::uint64_t part_ = 0;  // that is being filled, of all since arming
+  std::uint64_t part_ = 0;  // index since arming of the part that is being filled
   mutable std::mutex mutex_;
-  LimitsTook told_;
+  LimitsTook reported_;
 };
 
 }  // namespace tacto::playback

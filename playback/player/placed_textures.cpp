@@ -13,7 +13,7 @@
 #include "data-schema/scene/newer_version.hpp"
 #include "data-schema/texture/texture_wav.hpp"
 #include "playback/player/served_folder.hpp"
-#include "playback/render/played_ends.hpp"
+#include "playback/render/loop_seam.hpp"
 
 namespace tacto::playback {
 
@@ -24,10 +24,10 @@ using schema::TextureLayer;
 
 namespace {
 
-constexpr double kUsualGain = 1e-3;  // of a texture that nobody gave one: a fingertip has about 1e3 N/m
-constexpr double kMostPathSamples = 1 << 24;  // 168 m at 10 um; as many as all levels together may have
+constexpr double kUsualGain = 1e-3;           // default; a fingertip has about 1e3 N/m
+constexpr double kMostPathSamples = 1 << 24;  // 168 m at 10 um; the limit of all levels together
 
-// What was asked for, else what the texture keeps, else the usual.
+// The requested gain, else that of the texture, else the default.
 Result<schema::Scene> scene_of_texture(const ProgramRequest& request,
                                        std::optional<schema::PlaybackGain>& kept_gain) {
   if (!request.gain_m_per_n) {
@@ -46,19 +46,19 @@ Result<schema::Scene> scene_of(const ProgramRequest& request,
                                std::optional<schema::PlaybackGain>& kept_gain) {
   if (!names_a_scene(request.file)) return scene_of_texture(request, kept_gain);
   if (request.at_m || request.gain_m_per_n || request.ends)
-    return fail(ErrorKind::usage, "a scene has its own places, gains and ends of textures", request.file,
+    return fail(ErrorKind::usage, "a scene defines the places, gains and ends of its textures", request.file,
                 "change the scene, or name a texture");
   return schema::read_scene(request.file);
 }
 
-// What a newer version limits must not be played without.
+// A limit of a newer version must not be ignored.
 Result<void> check_choices(const schema::Scene& scene) {
   if (scene.playback.extra_json.empty()) return {};
   return fail(
       ErrorKind::unsuitable,
       fmt::format("is of version {}, and its playback has members that are unknown to this program: {}",
                   scene.newer_version, scene.playback.extra_json),
-      "scene#/playback", "play it with a newer tactograph, or take that out");
+      "scene#/playback", "play it with a newer tactograph, or remove them");
 }
 
 }  // namespace
@@ -107,13 +107,14 @@ double PlacedTextures::end_m() const {
   return end;
 }
 
-/// Reads them into one.
+/// Reads the textures into a PlacedTextures.
 class TextureReader {
  public:
   explicit TextureReader(PlacedTextures& laid) : laid_(laid) {}
 
   Result<void> read(const schema::Scene& scene) {
-    if (const auto known = check_choices(scene); !known) return known;
+    TACTO_TRY(schema::check_only_tray(scene, laid_.scene_path_));
+    TACTO_TRY(check_choices(scene));
     laid_.choices_ = scene.playback;
     note(schema::note_of_newer_version(laid_.scene_path_, scene));
     for (const schema::Layer& layer : scene.layers) {
@@ -122,7 +123,8 @@ class TextureReader {
     }
     if (const auto near = check_reach(); !near) return near;
     if (laid_.gain() == 0)
-      return fail(ErrorKind::unsuitable, "every gain is 0", laid_.scene_path_, "give one a gain");
+      return fail(ErrorKind::unsuitable, "every gain is 0", laid_.scene_path_,
+                  "set a gain of at least one layer");
     return {};
   }
   void keep_gain(std::optional<schema::PlaybackGain> gain) { laid_.kept_gain_ = std::move(gain); }
@@ -152,7 +154,7 @@ class TextureReader {
   void note(std::string words) {
     if (!words.empty()) laid_.notes_.push_back(std::move(words));
   }
-  // Before memory is taken for all that lies between the textures.
+  // Called before memory is allocated for the space between the textures.
   Result<void> check_reach() const {
     double pitch_m = laid_.texture(0).signal.pitch_m, start_m = laid_.layers_.front().at_m, end_m = start_m;
     for (std::size_t i = 0; i < laid_.layers_.size(); ++i) {
@@ -163,10 +165,10 @@ class TextureReader {
       if (reach_m / pitch_m <= kMostPathSamples) continue;
       const std::string layer = fmt::format("{}#/layers/{}/at_m", laid_.scene_path_, i);
       return fail(ErrorKind::unsuitable,
-                  fmt::format("the textures reach over {:g} m, at a pitch of {:g} um: over {:.0f} samples",
+                  fmt::format("the textures span {:g} m at a pitch of {:g} um: more than {:.0f} samples",
                               reach_m, 1e6 * pitch_m, kMostPathSamples),
                   laid_.scene_path_.empty() ? laid_.rows_[i].file : layer,
-                  "lay them closer, or play a shorter part");
+                  "place them closer together, or play a shorter part");
     }
     return {};
   }
@@ -174,7 +176,7 @@ class TextureReader {
   PlacedTextures& laid_;
 };
 
-Result<PlacedTextures> lay_textures(const ProgramRequest& asked) {
+Result<PlacedTextures> place_textures(const ProgramRequest& asked) {
   ProgramRequest request = asked;
   if (asked.only_in) {
     auto served = served_file(*asked.only_in, asked.file);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The textures that a request names, read and laid where they are to be felt.
+// Reads the textures of a request and places them.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +14,24 @@ namespace tacto::playback {
 
 class PlacedTextures {
  public:
-  /// For prepare(): weights are the layers' parts of gain_m_per_n(), with their signs. They point into this.
+  /// For prepare(): the weights are the layers' gains relative to gain(), with their signs. The result points
+  /// into this.
   std::vector<PlacedTexture> placed() const;
-  /// The greatest of all, without sign: the gain that they share.
+  /// The greatest gain without sign; it is common to all layers.
   double gain() const;
   /// The same, with its sign.
   double signed_gain() const;
   Ends ends() const;
   double start_m() const;
   double end_m() const;
-  /// What a session says of each.
+  /// The textures as they are written into a session.
   const std::vector<schema::SessionTexture>& rows() const { return rows_; }
   std::size_t file_count() const { return files_.size(); }
-  const std::string& scene_path() const { return scene_path_; }  ///< empty for a texture by itself
-  /// The texture's own gain, where it is played with that.
+  const std::string& scene_path() const { return scene_path_; }  ///< empty for a single texture
+  /// The gain stored with the texture, if that is used.
   const std::optional<schema::PlaybackGain>& kept_gain() const { return kept_gain_; }
   const schema::PlaybackChoices& choices() const { return choices_; }  ///< the scene's
-  /// What to tell the user: which files are of a newer minor version.
+  /// Notes for the user: which files are of a newer minor version.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -41,7 +42,7 @@ class PlacedTextures {
   };
   const schema::Texture& texture(std::size_t layer) const { return files_.at(stems_[layer]).texture; }
 
-  std::map<std::string, File> files_;  // by stem: layers that share one share it here
+  std::map<std::string, File> files_;  // by stem; layers with the same file share it
   std::vector<schema::TextureLayer> layers_;
   std::vector<schema::SessionTexture> rows_;  // of the layers
   std::vector<std::string> stems_;
@@ -51,14 +52,15 @@ class PlacedTextures {
   std::vector<std::string> notes_;
 };
 
-/// From the root on: a session is read in other folders too.
+/// An absolute path, because a session may be read from another folder.
 std::string full_path(const std::string& path);
 
-/// Whether a name means a scene; else it means a texture.
+/// Whether a name is that of a scene; otherwise it is a texture.
 bool names_a_scene(const std::string& file);
 
 /// Errors: as read_texture, read_scene, served_file; usage: a place, gain or ends for a scene; unsuitable: a
-/// scene of several textures whose ends are not `stop`, that reach over 2^24 samples, or without any gain.
-schema::Result<PlacedTextures> lay_textures(const ProgramRequest& request);
+/// scene of several textures whose ends are not `stop`, that reach over 2^24 samples, without any gain, or
+/// with force patches.
+schema::Result<PlacedTextures> place_textures(const ProgramRequest& request);
 
 }  // namespace tacto::playback

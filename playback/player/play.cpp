@@ -21,7 +21,7 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-constexpr int kUsualPriority = 50;  // as the daemon's
+constexpr int kUsualPriority = 50;  // as in the daemon
 constexpr double kUsualS = 10, kPlayStepS = 0.01, kReleaseWaitS = 0.05;
 
 double time_of(const PlayOptions& options, const std::optional<FingerScript>& script) {
@@ -31,19 +31,20 @@ double time_of(const PlayOptions& options, const std::optional<FingerScript>& sc
 
 Result<void> check_play_options(const PlayOptions& options) {
   if (options.time_s && !(*options.time_s > 0))
-    return fail(ErrorKind::usage, fmt::format("a time of {:g} s", *options.time_s), {}, "a time above 0 s");
+    return fail(ErrorKind::usage, fmt::format("the time {:g} s is not above 0", *options.time_s), {},
+                "give a time above 0 s");
   return schema::check_stem(schema::stem_of("/" + options.session, ".session").substr(1));
 }
 
 Result<std::string> transducer_for(const PlayOptions& options, const firmware_host::Capabilities& about) {
   if (!options.transducer.empty()) return options.transducer;
   if (about.transducer) return about.transducer->name;
-  return fail(ErrorKind::usage, "the device does not say which transducer it has", about.uri,
+  return fail(ErrorKind::usage, "the device does not report its transducer", about.uri,
               "name it with --transducer");
 }
 
-Result<Program> program_for(const PlayOptions& options, const PlayerDevice& device, const LoopHere& here,
-                            double metres_per_count) {
+Result<Program> program_for(const PlayOptions& options, const PlayerDevice& device,
+                            const HostLoopClient& here, double metres_per_count) {
   const auto transducer = transducer_for(options, device.device->capabilities());
   TACTO_TRY(transducer);
   PrepareOptions prepare = options.prepare;
@@ -69,16 +70,16 @@ Result<void> run_until(Player& player, const PlayTime& time, const std::function
   return {};
 }
 
-// Where this computer closes the loop, the path begins now and reaches the tray later, by the delay of the
-// loop.
-PlayTime begin_path(const Player& player, const PlayerDevice& device, const LoopHere& here, double time_s) {
+// If this computer closes the loop, the path begins now and reaches the tray after the loop's delay.
+PlayTime begin_path(const Player& player, const PlayerDevice& device, const HostLoopClient& here,
+                    double time_s) {
   if (!device.begin_path) return {0, time_s};
   device.begin_path();
   const double from_s = player.armed_s() + (here ? here.loop->delay_s() : 0);
   return {from_s, from_s + time_s};
 }
 
-// The ramp is part of the session.
+// The ramp is recorded in the session.
 Result<void> ramp_down(Player& player) {
   if (const auto stopped = player.stop(); !stopped) return stopped;
   const double until_s = player.armed_s() + kReleaseWaitS;
@@ -103,10 +104,10 @@ PlayOutcome outcome_of(const Program& program) {
   return outcome;
 }
 
-// What is played on, from the device to the player.
+// The device, loop and player of one playback.
 struct Playing {
   PlayerDevice& device;
-  const LoopHere& here;
+  const HostLoopClient& here;
   Player& player;
 };
 
@@ -131,17 +132,19 @@ void tell_limits(const std::string& session, PlayOutcome& outcome) {
   if (!tally) outcome.notes.push_back(schema::message(tally.error()));
 }
 
-// Time that runs as fast as it can has no real-time thread that could keep up with it.
-Result<LoopHere> loop_of(const PlayOptions& options, PlayerDevice& device, PlayerOptions& player_options) {
-  if (!options.loop_here) return LoopHere{};
-  if (!device.device->keeps_time())
-    return fail(ErrorKind::usage, "this computer closes no loop on a device that keeps no time", device.uri,
-                "add paced=1 (-d sim:paced=1)");
+// The loop needs a device that keeps time: emulated time as fast as possible is too fast for a real-time
+// thread.
+Result<HostLoopClient> loop_of(const PlayOptions& options, PlayerDevice& device,
+                               PlayerOptions& player_options) {
+  if (!options.loop_here) return HostLoopClient{};
+  if (!device.device->is_real_time())
+    return fail(ErrorKind::usage, "the loop on this computer needs a device that runs in real time",
+                device.uri, "add paced=1 (-d sim:paced=1)");
   const HostLoopOptions loop{options.prepare.rate_hz, kUsualPriority, options.prepare.watchdog_ms};
-  return close_loop_here(*device.client, device.uri, loop, player_options);
+  return close_loop_on_host(*device.client, device.uri, loop, player_options);
 }
 
-LoopedHere looped_by(const HostLoop& loop) {
+HostLoopFigures looped_by(const HostLoop& loop) {
   return {loop.latency(), loop.delay_s(), loop.status().missed_ticks};
 }
 
@@ -152,14 +155,14 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   TACTO_TRY(check_play_options(options));
   auto script = read_finger_script(options.finger_path, false);
   TACTO_TRY(script);
-  // The emulated finger moves from the stream's beginning on; here that is before the loop's delay is
-  // measured.
+  // The emulated finger moves from the stream's beginning on. With this computer's loop that is before the
+  // loop's delay is measured, so the finger waits.
   if (*script) (*script)->waits = options.loop_here;
   auto device = open_player_device(options.device_uri, *script);
   TACTO_TRY(device);
   PlayerOptions player_options;
-  // In emulated time nobody waits, so nothing may be lost.
-  player_options.full_queue = device->device->keeps_time() ? FullQueue::lose : FullQueue::wait;
+  // Emulated time can wait, so nothing may be lost.
+  player_options.full_queue = device->device->is_real_time() ? FullQueue::lose : FullQueue::wait;
   const auto here = loop_of(options, *device, player_options);
   TACTO_TRY(here);
   const auto player = Player::make(*here ? *here->client : *device->client, device->uri, player_options);
@@ -167,7 +170,7 @@ Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bo
   auto program = program_for(options, *device, *here, (*player)->metres_per_count());
   TACTO_TRY(program);
   PlayOutcome outcome = outcome_of(*program);
-  const Feelable what = feelable(*program);
+  const PlayableRange what = playable_range(*program);
   outcome.device = device->uri;
   outcome.simulated = firmware_host::simulated_device(device->client->description());
   outcome.asked_s = time_of(options, *script);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plays once, from opening the device to the closed session, without a daemon.
+// One playback without a daemon, from opening the device to the closed session.
 #pragma once
 
 #include <functional>
@@ -16,22 +16,22 @@ struct PlayOptions {
   std::string device_uri;
   std::string transducer;        ///< empty: the device's own
   std::string finger_path;       ///< CSV, for an emulated device; empty: its own finger
-  std::optional<double> time_s;  ///< unless told as long as the finger's path, or 10 s
+  std::optional<double> time_s;  ///< default: as long as the finger's path, or 10 s
   double gain = 1;
   bool loop_here = false;  ///< closed by this computer, on a device that keeps time
-  PrepareOptions prepare;  ///< rate, inverse, delay ...; gain, ends, encoder and limits are filled in
+  PrepareOptions prepare;  ///< rate, inverse, delay ...; gain, ends, encoder and limits are set later
   std::string session;     ///< its file
 };
 
-/// Of a loop that this computer closed.
-struct LoopedHere {
+/// Figures of a loop on this computer.
+struct HostLoopFigures {
   EdgeToDrive latency;
-  double looked_ahead_s = 0;  ///< of it, by what was played
+  double looked_ahead_s = 0;  ///< the part that the look-ahead compensates
   std::uint64_t missed_ticks = 0;
 };
 
 struct PlayOutcome {
-  PlayerStatus status;  ///< as it was before the device was disarmed
+  PlayerStatus status;  ///< before the device was disarmed
   RecorderCounts recorder;
   std::string device, simulated;
   double asked_s = 0;
@@ -39,17 +39,16 @@ struct PlayOutcome {
   double loop_period_m = 0, loop_seam_m = 0;  ///< of a looped texture
   std::vector<std::string> notes;
   std::optional<TickDecision> decision;           ///< of the program's budget
-  schema::PlaybackChoices choices;                ///< with which it was played
-  double gain_m_per_n = 0;                        ///< the largest of its textures
-  std::optional<schema::PlaybackGain> kept_gain;  ///< the texture's own, where it was played with that
-  std::optional<LimitTally> limits;               ///< of the session; none: not known, `notes` say why
-  std::optional<LoopedHere> looped;
+  schema::PlaybackChoices choices;                ///< the choices used
+  double gain_m_per_n = 0;                        ///< the largest of the textures' gains
+  std::optional<schema::PlaybackGain> kept_gain;  ///< the gain stored with the texture, if that was used
+  std::optional<LimitTally> limits;               ///< of the session; none: unknown, `notes` say why
+  std::optional<HostLoopFigures> looped;
 };
 
-/// Emulated devices play as fast as they can, or paced; `stop_asked` ends it early, by a ramp. A fault ends
-/// it too, and is in the outcome. Errors: usage, for a loop that
-/// this computer is to close on a device that keeps no time; as open_player_device, close_loop_here,
-/// make_program, Player.
+/// Emulated devices play as fast as possible, or paced; `stop_asked` ends the playback early, by a ramp. A
+/// fault ends it too, and is in the outcome. Errors: usage, if this computer is to close the loop of a device
+/// that does not keep time; as open_player_device, close_loop_on_host, make_program, Player.
 schema::Result<PlayOutcome> play_once(const PlayOptions& options, const std::function<bool()>& stop_asked,
                                       const std::function<void(double)>& progress = {});
 

@@ -25,8 +25,8 @@ using schema::Result;
 namespace {
 
 constexpr double kIdleWaitS = 1, kIdleStepS = 0.01;
-constexpr double kLongestFadeS = 10;  // the wire's
-constexpr double kBehindS = 0.05;     // how far the device may be ahead of the ticks that have come
+constexpr double kLongestFadeS = 10;  // limit of the wire
+constexpr double kBehindS = 0.05;     // how far the device may be ahead of the ticks received
 
 std::int64_t steady_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -45,17 +45,17 @@ Result<double> encoder_step(const firmware_host::Description& about, const std::
   for (const wire::Channel& channel : about.channels)
     if (std::strcmp(channel.quantity, "position") == 0 && std::isfinite(channel.scale) && channel.scale != 0)
       return channel.scale;
-  return fail(ErrorKind::device, "the device does not say what its encoder counts", uri,
-              "it lacks a channel of the quantity position");
+  return fail(ErrorKind::device, "the device does not report its encoder step", uri,
+              "it has no channel of the quantity position");
 }
 
-// A device reports no file names: the program adds them.
+// A device reports no file names, so they are added here.
 schema::Error naming(schema::Error error, const Program& program) {
   error.where = fmt::format("{}, on {}", program.name(), error.where);
   return error;
 }
 
-// By a factor on the program's gains.
+// Checks the displacement at a factor on the program's gains.
 Result<void> within_reach(const Program& program, double peak_m, double factor) {
   const schema::Transducer& transducer = program.session.transducer;
   auto near = check_displacement(peak_m, factor, program.prepared.gain_m_per_n, transducer);
@@ -94,13 +94,13 @@ Result<void> Player::require(bool allowed, const char* what, const char* remedy)
   return fail(ErrorKind::usage, why, uri_, remedy);
 }
 
-// Every command that the device obeys is part of the session, but for those of the samples' stream.
+// Each command that the device accepted is part of the session, except for those of the samples' stream.
 void Player::keep(std::span<const std::uint8_t> frame) {
   if (TraySamples::streams(frame)) return;
   if (recorder_) recorder_->command({view_.expected(), steady_ns(), {frame.begin(), frame.end()}});
 }
 
-// A command to a running drive: what it answers, and what the device has said meanwhile.
+// Sends a command during playback, and processes the ticks and faults that came before its answer.
 template <class Message>
 Result<void> Player::steer(const Message& message) {
   const auto done = client_.command(message);
@@ -130,17 +130,17 @@ Result<void> Player::load(Program program, double fade_s) {
 
 Result<void> Player::may_change(const Program& program, double fade_s) const {
   if (!(fade_s >= 0 && fade_s <= kLongestFadeS))
-    return fail(ErrorKind::usage, fmt::format("a fade of {:g} s", fade_s), uri_, "0 s to 10 s");
+    return fail(ErrorKind::usage, fmt::format("the fade is {:g} s", fade_s), uri_, "use 0 s to 10 s");
   if (view_.expected() < faded_at_)
     return fail(ErrorKind::usage, "the last change of texture has not ended", uri_, "load again later");
   return check_texture_change(program_->prepared, program.prepared,
                               client_.description().welcome.profile_samples);
 }
 
-// The device's gain stays what it is, so that a gain that comes later is a factor of the same.
+// The device's gain is not changed, so that a later gain is a factor of the same value.
 Result<void> Player::change(Program program, double fade_s) {
   TACTO_TRY(may_change(program, fade_s));
-  const schema::SessionProgram& brought = program.session;  // of a header, what a change brings
+  const schema::SessionProgram& brought = program.session;  // a change uses only this part of the header
   recorder_->change({view_.expected(), steady_ns(), brought});
   const auto done = upload_change(client_, program.prepared, device_gain_m_per_n_, fade_s);
   take_ticks();
@@ -186,7 +186,7 @@ Result<void> Player::arm(const std::string& session_path) {
   TACTO_TRY(require(state_ == PlayerState::idle, "arm", "disarm first"));
   TACTO_TRY(require(loaded(), "arm", "load a texture or scene first"));
   TACTO_TRY(may_gain(gain_));
-  // Another program may have been killed in mid-play: the device is then still on its way to rest.
+  // If another program was killed during playback, the device may still ramp down.
   TACTO_TRY(wait_for_idle());
   TACTO_TRY(begin_session(session_path));
   fault_.clear();
@@ -197,7 +197,7 @@ Result<void> Player::arm(const std::string& session_path) {
   const wire::Arm arm{wire::DriveSource::profile, firmware_host::millihertz(program_->prepared.rate_hz)};
   auto done = upload(client_, program_->prepared);
   if (done) done = client_.command(device_gain());
-  client_.take_ticks();  // of an earlier run, be it another program's that was killed
+  client_.take_ticks();  // ticks of an earlier run, possibly of another program
   if (done) done = recorder_->start();
   if (done) done = client_.command(arm);
   if (!done) {
@@ -223,13 +223,13 @@ Result<void> Player::play() {
 
 Result<void> Player::stop(const std::string& why) {
   const bool may = state_ != PlayerState::idle && state_ != PlayerState::lost;
-  TACTO_TRY(require(may, "stop", "nothing plays"));
+  TACTO_TRY(require(may, "stop", "nothing is playing"));
   stopped_because_ = why;
   return steer(wire::Stop{});
 }
 
 Result<void> Player::may_gain(double gain) const {
-  if (!std::isfinite(gain)) return fail(ErrorKind::usage, "the gain is no finite number", uri_);
+  if (!std::isfinite(gain)) return fail(ErrorKind::usage, "the gain is not a finite number", uri_);
   if (!program_) return {};
   const bool fades = recorder_ != nullptr && view_.expected() < faded_at_;
   const double peak_m = std::max(program_->tray_peak_m, fades ? leaving_peak_m_ : 0);
@@ -262,7 +262,7 @@ Result<void> Player::wait_for_idle() {
 
 Result<void> Player::disarm(const std::string& why) {
   if (state_ == PlayerState::idle) return {};
-  TACTO_TRY(require(state_ != PlayerState::lost, "disarm", "the device is gone"));
+  TACTO_TRY(require(state_ != PlayerState::lost, "disarm", "the device does not answer"));
   auto done = steer(wire::Disarm{});
   if (done) done = wait_for_idle();
   if (done) done = tray_.end_stream();
@@ -271,7 +271,7 @@ Result<void> Player::disarm(const std::string& why) {
   return end_session();
 }
 
-// A device that closes the loop itself reads the encoder and drives in one tick.
+// A device that closes the loop itself reads the encoder and sets the drive in the same tick.
 std::string Player::latency_words() const {
   if (options_.latency) return options_.latency();
   return fmt::format("from the encoder's edge to the drive: the device's own tick, at most {:g} ms",
@@ -342,7 +342,7 @@ void Player::take(const wire::Ticks& message) {
   }
 }
 
-// Ticks of a run that has ended may still arrive: they are passed over.
+// Ticks of an earlier run may still arrive: they are ignored.
 void Player::take_ticks() {
   tray_.take();
   for (const wire::Ticks& message : client_.take_ticks()) {
@@ -358,7 +358,7 @@ void Player::take_faults() {
   for (const wire::Fault& fault : client_.take_faults()) {
     const firmware_host::FaultWords words = firmware_host::words_of(fault.code, fault.detail);
     if (!recorder_) continue;
-    // A converter that fails ends the stream of samples; the drive goes on.
+    // A converter that fails ends the stream of samples; the drive continues.
     if (fault.code == wire::FaultCode::ring_full || fault.code == wire::FaultCode::converter) {
       recorder_->event({view_.expected(), steady_ns(), words.what});
       continue;
@@ -368,11 +368,11 @@ void Player::take_faults() {
   }
 }
 
-// Late ticks play what the finger felt too late: beyond a limit, not at all.
+// The drive of a late tick is late at the finger. Too many late ticks are a fault.
 void Player::watch_lateness() {
   if (state_ != PlayerState::playing || view_.late_part() <= options_.most_late) return;
   fault_ = fmt::format(
-      "{:.0f} % of the ticks of a second were late (fewer programs beside this one, or a lower rate)",
+      "{:.0f} % of the ticks of a second were late (run fewer other programs, or use a lower rate)",
       100 * view_.late_part());
   (void)steer(wire::Stop{});
   enter(PlayerState::fault, fault_);
@@ -384,7 +384,7 @@ void Player::enter(PlayerState state, const std::string& why) {
   if (state == PlayerState::lost) fault_ = why;
   const std::string words = fmt::format("{}{}{}", to_string(state), why.empty() ? "" : ": ", why);
   if (recorder_) recorder_->event({view_.expected(), steady_ns(), words});
-  // Before the first tick has come the heartbeat's answer knows the time.
+  // Before the first tick, the time is that of the heartbeat's answer.
   const double device_s = view_.ticks() > 0 ? 1e-9 * static_cast<double>(view_.last().time_ns) : pulse_s_;
   if (listener_) listener_(state, why, device_s);
 }

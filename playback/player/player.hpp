@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plays on a device that closes the loop: uploads, arms, steers, supervises, records. The device may be on
-// USB, emulated, or the host's own real-time loop: it is spoken to alike.
+// Plays on a device that closes the loop: uploads, arms, controls, supervises, records. A device on USB, an
+// emulated one and the host's own real-time loop have the same interface.
 #pragma once
 
 #include <functional>
@@ -17,9 +17,9 @@
 namespace tacto::playback {
 
 /// idle: no output. armed: ticking, the drive at zero. playing. fault: the drive has been ramped to zero,
-/// until disarm. lost: the device does not answer any more (its own watchdog has ramped it to zero).
+/// until disarm. lost: the device no longer answers (its own watchdog has ramped the drive to zero).
 ///   idle -> armed by arm; armed -> playing by play; playing -> armed by stop; armed, playing, fault -> idle
-///   by disarm; armed, playing -> fault by the device (its words in PlayerStatus::fault) or by too many late
+///   by disarm; armed, playing -> fault by the device (message in PlayerStatus::fault) or by too many late
 ///   ticks; any -> lost by a device that does not answer.
 enum class PlayerState { idle, armed, playing, fault, lost };
 std::string_view to_string(PlayerState state);
@@ -27,81 +27,81 @@ std::string_view to_string(PlayerState state);
 struct PlayerOptions {
   FullQueue full_queue = FullQueue::lose;
   double heartbeat_s = 0.025;
-  double most_late = 0.2;       ///< part of the ticks within a second; more of them is a fault
-  std::string loop = "device";  ///< who closes it, for the session
+  double most_late = 0.2;       ///< part of the ticks within a second; a larger part is a fault
+  std::string loop = "device";  ///< where it is closed, for the session
   bool tell_limits = false;     ///< live, by a second kernel on the recorder's thread (live_limits.hpp)
-  /// How late a tick was, where somebody measures it.
+  /// How late a tick was, if it is measured.
   std::function<std::int32_t(std::uint64_t tick)> lateness_ns;
-  /// When a tick was due, by the device's clock, where somebody knows it better than its message.
+  /// When a tick was due, by the device's clock, if this is more precise than the time in its message.
   std::function<std::int64_t(std::uint64_t tick)> due_ns;
-  /// Hands over what the tray's sensor said up to a tick, where somebody else takes the device's samples.
+  /// Appends the samples of the tray's sensor up to a tick, if the host loop reads the device's samples.
   std::function<void(std::uint64_t tick, SampleRun& into)> measured;
-  /// From the encoder's edge to the drive, in words, as it was measured until now: for the session.
+  /// The measured latency from the encoder's edge to the drive, in words, for the session.
   std::function<std::string()> latency;
 };
 
 struct PlayerStatus {
   PlayerState state = PlayerState::idle;
-  std::string fault;  ///< why, and what to do; empty where nothing is wrong
+  std::string fault;  ///< cause, and what to do; empty if there is no fault
   double gain = 1;
   TickView ticks;  ///< since arming
   std::optional<RecorderCounts> recorder;
-  LimitsTook limits;        ///< since arming, where it is asked for
-  std::string session;      ///< file being written, or written last
+  LimitsTook limits;        ///< since arming, if requested
+  std::string session;      ///< file being written, or the last one
   double round_trip_s = 0;  ///< of the last heartbeat
 };
 
 inline constexpr double kUsualFadeS = 0.05;  ///< of a change of texture
 
-/// One thread, which also owns the client. Every call ends within the client's timeouts. What cannot be done
-/// in the state that it is in is refused (usage), with what to do first.
+/// For one thread, which also uses the client. Every call returns within the client's timeouts. A call that
+/// is not possible in the current state is refused (usage), with what to do first.
 class Player {
  public:
-  /// Told of every change of state, with words.
+  /// Called at each change of state, with its cause.
   using Listener = std::function<void(PlayerState state, const std::string& why, double device_s)>;
 
-  /// The client outlives it. Errors: device: no output, or no encoder whose step it tells.
+  /// The client must outlive the player. Errors: device: no output, or no encoder with a known step.
   static schema::Result<std::unique_ptr<Player>> make(firmware_host::Client& client, std::string uri,
                                                       const PlayerOptions& options);
   ~Player();
 
-  /// The encoder's step, m a count.
+  /// The encoder's step, m per count.
   double metres_per_count() const { return metres_per_count_; }
   void listen(Listener listener) { listener_ = std::move(listener); }
 
-  /// In idle: kept for arm(), which uploads it. Armed or playing: the texture changes to it, over `fade_s` (0
-  /// to 10 s); gain() goes on from what it is. Errors: as check_upload(), in idle; usage, in another state,
-  /// while an earlier change still fades, or for another fade; unsuitable, where the tray would go beyond its
-  /// limit; as of check_texture_change(); device. After an error the texture that played plays on.
+  /// In idle: stores the program for arm(), which uploads it. Armed or playing: cross-fades to its texture
+  /// over `fade_s` (0 to 10 s); gain() is not changed. Errors: as check_upload(), in idle; usage, in another
+  /// state, while an earlier change still fades, or for another fade; unsuitable, if the tray would exceed
+  /// its limit; as of check_texture_change(); device. After an error the current texture continues.
   schema::Result<void> load(Program program, double fade_s = kUsualFadeS);
-  /// Whether it may be loaded in this state. Errors: usage.
+  /// Whether load() is possible in this state. Errors: usage.
   schema::Result<void> may_load() const;
   bool loaded() const { return program_.has_value(); }
-  /// Begins a session (never over a file that is there), and arms once its header and upload are on the disk.
-  /// In idle, loaded. Errors: usage; device; cannot_write. After one there is no session.
+  /// Begins a session (never over an existing file), and arms when its header and upload are on the disk.
+  /// Only in idle, with a program. Errors: usage; device; cannot_write. After an error there is no session.
   schema::Result<void> arm(const std::string& session_path);
   schema::Result<void> play();
-  /// `why`, where given, is published with the state that follows.
+  /// `why`, if given, is published with the next state.
   schema::Result<void> stop(const std::string& why = {});
   /// At any time; kept for the next session. Errors: as may_gain; device.
   schema::Result<void> gain(double gain);
-  /// Errors: usage, for a gain that is no number; unsuitable, for one that would move the tray beyond its
+  /// Errors: usage, for a gain that is not finite; unsuitable, for one at which the tray would exceed its
   /// limit, with the largest that fits.
   schema::Result<void> may_gain(double gain) const;
   /// Ramps to zero, waits for idle (a second at most), and closes the session; `why` as in stop(). Errors:
   /// device; cannot_write.
   schema::Result<void> disarm(const std::string& why = {});
 
-  /// Takes in what the device says, waiting at most `timeout_s` for it, and keeps it alive. An error (the
-  /// device is gone) is told once; from then on the state is lost.
+  /// Receives the device's messages, waiting at most `timeout_s`, and resets its watchdog. An error (the
+  /// device is lost) is returned once; from then on the state is lost.
   schema::Result<void> step(double timeout_s);
 
   PlayerState state() const { return state_; }
-  /// Counts of the session that is being written; none where none is.
+  /// Counts of the session that is being written, if there is one.
   std::optional<RecorderCounts> recorded() const {
     return recorder_ ? std::optional(recorder_->counts()) : std::nullopt;
   }
-  /// Counts of the session that was closed last.
+  /// Counts of the last session that was closed.
   const RecorderCounts& last_session() const { return last_session_; }
   PlayerStatus status() const;
   /// Seconds of ticks since arming, by the device's clock.
@@ -136,16 +136,16 @@ class Player {
   double metres_per_count_ = 0;
   Listener listener_;
   std::optional<Program> program_;
-  std::unique_ptr<LiveLimits> limits_;  // where they are told; before the recorder, which speaks to it
+  std::unique_ptr<LiveLimits> limits_;  // if requested; declared before the recorder, which uses it
   std::unique_ptr<FlightRecorder> recorder_;
   std::string session_path_;
   RecorderCounts last_session_;
   PlayerState state_ = PlayerState::idle;
   std::string fault_, stopped_because_;
   double gain_ = 1;
-  double leaving_peak_m_ = 0;       // of the tray, by the texture that the last change left
-  double device_gain_m_per_n_ = 0;  // that gain_ is a factor of; since arming
-  std::uint64_t faded_at_ = 0;      // the tick by which the last change is through
+  double leaving_peak_m_ = 0;       // of the tray, by the texture before the last change
+  double device_gain_m_per_n_ = 0;  // gain_ is a factor of it; since arming
+  std::uint64_t faded_at_ = 0;      // the tick at which the last change is complete
   TickView view_;
   TraySamples tray_;
   double pulse_s_ = 0;  // the device's clock at the last heartbeat

@@ -36,14 +36,14 @@ std::string lock_path(const std::string& device_name) {
   return (usual ? "/run/lock/tactograph-" : "/tmp/tactograph-") + name.substr(0, 100) + ".lock";
 }
 
-// Nearer than encoders count.
+// Below the step of encoders.
 constexpr double kMeetM = 1e-6;
 
 bool ends_where_it_began(const FingerPath& path) {
   return std::abs(path.position_m.back() - path.position_m.front()) < kMeetM;
 }
 
-// Positions along a path at any time: the knots alone are kept, for a path may last for hours.
+// Positions along a path at any time; only the knots are stored, because a path may last for hours.
 class Script {
  public:
   explicit Script(const FingerScript& script)
@@ -52,13 +52,13 @@ class Script {
         knots_(std::make_shared<const Knots>(script.path)) {}
 
   double operator()(double time_s) const { return knots_->curve(on_path(time_s)); }
-  /// Precondition: the path tells it.
+  /// Precondition: the path has a normal force.
   double force_n(double time_s) const {
     const FingerPath& path = knots_->path;
     const double at_s = on_path(time_s);
     const auto next = std::ranges::upper_bound(path.time_s, at_s);
     if (next == path.time_s.end()) return path.normal_force_n.back();
-    const auto i = static_cast<std::size_t>(next - path.time_s.begin());  // above 0: the first is not later
+    const auto i = static_cast<std::size_t>(next - path.time_s.begin());  // above 0, since at_s >= time_s[0]
     const double part = (at_s - path.time_s[i - 1]) / (path.time_s[i] - path.time_s[i - 1]);
     return std::lerp(path.normal_force_n[i - 1], path.normal_force_n[i], part);
   }
@@ -132,7 +132,7 @@ Result<DeviceLock> DeviceLock::take(const std::string& device_name) {
   if (opened < 0) opened = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kForAll);
   if (opened < 0)
     return fail(ErrorKind::cannot_write, fmt::format("the lock can't be made: {}", std::strerror(errno)),
-                path, "see who owns it and its folder");
+                path, "check the owner of this file and of its folder");
   [[maybe_unused]] const int shared = fchmod(opened, kForAll);
   if (flock(opened, LOCK_EX | LOCK_NB) == 0) return DeviceLock(opened);
   ::close(opened);
@@ -156,7 +156,7 @@ Result<PlayerDevice> open_player_device(const std::string& uri, const std::optio
     return fail(ErrorKind::unsuitable, "nothing can be played on a replay", uri, "play on sim: or usb:");
   const firmware_host::Capabilities& about = device->capabilities();
   PlayerDevice player{std::move(device), client, about.uri, {}, std::move(opened->begin_path)};
-  if (uri.starts_with(kSimScheme)) return player;  // an emulation of this process alone
+  if (uri.starts_with(kSimScheme)) return player;  // only this process can use the emulation
   auto lock = DeviceLock::take(about.simulated.empty() ? about.serial : about.uri);
   TACTO_TRY(lock);
   player.lock = std::move(*lock);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The device that is played on, opened and held for this process alone.
+// Opens the device for a playback and locks it for this process.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace tacto::playback {
 
-/// A lock that other programs of ours respect, and that goes with this process however it ends.
+/// A lock against the other programs of this project; it ends with the process, even if that is killed.
 class DeviceLock {
  public:
   /// Errors: unsuitable: another program plays on the device.
@@ -28,16 +28,16 @@ class DeviceLock {
   int descriptor_ = -1;
 };
 
-/// What an emulated device's finger does.
+/// The movement of an emulated device's finger.
 struct FingerScript {
   FingerPath path;
-  /// Over and over: from its beginning where its end meets that (within 1 um), else there and back. Not
-  /// repeated it rests at the end.
+  /// Repeat the path: from its beginning if its end meets that (within 1 um), else back and forth. Otherwise
+  /// the finger rests at the end.
   bool repeated = false;
-  bool waits = false;  ///< at its beginning, until PlayerDevice::begin_path()
+  bool waits = false;  ///< wait at the beginning until PlayerDevice::begin_path()
 };
 
-/// The script of a finger path's CSV; none where no file is named. Errors: as read_finger_path.
+/// The script of a finger path's CSV; none if no file is named. Errors: as read_finger_path.
 schema::Result<std::optional<FingerScript>> read_finger_script(const std::string& file, bool repeated);
 
 struct PlayerDevice {
@@ -45,12 +45,12 @@ struct PlayerDevice {
   firmware_host::Client* client = nullptr;
   std::string uri;
   DeviceLock lock;
-  std::function<void()> begin_path;  ///< of a script that waits; from any thread
+  std::function<void()> begin_path;  ///< starts a script that waits; from any thread
 };
 
-/// Opens by URI (see open_device), and locks what other programs could open too. A script is for `sim:`
-/// alone. Errors: as open_device; unsuitable: a device that nothing can be played on (a replay), a script for
-/// a real one; another program plays on it.
+/// Opens by URI (see open_device), and locks a device that other programs could open too. A script is for
+/// `sim:` only. Errors: as open_device; unsuitable: a device without playback (a replay), a script for a real
+/// one; another program plays on it.
 schema::Result<PlayerDevice> open_player_device(const std::string& uri,
                                                 const std::optional<FingerScript>& script);
 

@@ -21,7 +21,7 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-constexpr double kLongestOnsetS = 10;  // the wire's
+constexpr double kLongestOnsetS = 10;  // limit of the wire
 
 std::string transducer_sum(const std::string& name) {
   for (const std::string& path : {name, name + ".transducer.json"})
@@ -43,7 +43,7 @@ void describe(schema::SessionHeader& session, const Prepared& prepared, const Pr
   session.high_hz = prepared.passes_to_hz;
 }
 
-// What the budget chooses goes into the options.
+// Writes the choice of the budget into the options.
 Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& textures,
                                             const schema::Transducer& transducer, const TickBudget& budget,
                                             PrepareOptions& options) {
@@ -56,7 +56,7 @@ Result<std::optional<TickDecision>> decided(const std::vector<PlacedTexture>& te
   return std::move(*decision);
 }
 
-// Before what prepare() notes.
+// Adds notes before those of prepare().
 void add_notes(Program& program, const PlacedTextures& laid, const std::string& transducer) {
   const schema::Transducer& read = program.session.transducer;
   std::vector<std::string> first = laid.notes();
@@ -75,24 +75,24 @@ void name_files(Program& program, const PlacedTextures& laid) {
   program.session.scene_sha256 = schema::sha256_of_file(program.scene_path).value_or("");
 }
 
-// What the device would refuse by numbers of its own.
+// The device would refuse it with the same limit.
 Result<void> check_onset(const PrepareOptions& options) {
   if (options.onset_s <= kLongestOnsetS) return {};
-  return fail(
-      ErrorKind::usage, fmt::format("an onset of {:g} s", options.onset_s), {},
-      fmt::format("0 s to {:g} s (--onset, or onset_s in the daemon's configuration)", kLongestOnsetS));
+  return fail(ErrorKind::usage, fmt::format("an onset of {:g} s is out of range", options.onset_s), {},
+              fmt::format("choose from 0 s to {:g} s (--onset, or onset_s in the daemon's configuration)",
+                          kLongestOnsetS));
 }
 
-// Farther away the kernel reads zero.
+// Beyond it the kernel reads zero.
 Result<void> check_place(const PlacedTextures& laid, double farthest_m) {
   const double at_m = std::max(std::abs(laid.start_m()), std::abs(laid.end_m()));
   if (at_m < farthest_m) return {};
   return fail(ErrorKind::usage, fmt::format("is up to {:g} m from the encoder's zero", at_m),
               laid.rows().front().file,
-              fmt::format("lay it within {:.4g} m (--at, or at_m in the scene)", farthest_m));
+              fmt::format("place it within {:.4g} m (--at, or at_m in the scene)", farthest_m));
 }
 
-// Of a texture by itself the file is known; of several, the scene.
+// An error of a single texture names its file, one of several textures the scene.
 schema::Error naming_the_file(schema::Error error, const PlacedTextures& laid,
                               const std::string& scene_path) {
   if (laid.rows().size() == 1 && error.where.starts_with("texture"))
@@ -101,7 +101,7 @@ schema::Error naming_the_file(schema::Error error, const PlacedTextures& laid,
   return error;
 }
 
-// What was named stays, whatever else would be cheaper.
+// Choices that were named are kept, even if others are cheaper.
 TickBudget budget_of(const ProgramRequest& request, const schema::PlaybackChoices& choices) {
   TickBudget budget = request.budget;
   budget.keep_inverse = budget.keep_inverse || choices.inverse.has_value();
@@ -109,11 +109,11 @@ TickBudget budget_of(const ProgramRequest& request, const schema::PlaybackChoice
   return budget;
 }
 
-// A request is held to what it means; a scene or configuration may say more, for those who name what it is
-// of.
+// A request must be consistent by itself. A scene or a configuration may have details for a choice that only
+// some requests name.
 Result<PrepareOptions> options_of(const ProgramRequest& request, const schema::PlaybackChoices& choices,
                                   const PrepareOptions& options) {
-  TACTO_TRY(check_meant(request.choices, choices));
+  TACTO_TRY(check_consistent(request.choices, choices));
   return with_choices(options, choices);
 }
 
@@ -144,7 +144,7 @@ Result<void> prepare_placed(Program& program, const PlacedTextures& laid, const 
 Result<Program> make_program(const ProgramRequest& request, const std::string& transducer_name,
                              PrepareOptions options) {
   Program program;
-  const auto laid = lay_textures(request);
+  const auto laid = place_textures(request);
   TACTO_TRY(laid);
   program.kept_gain = laid->kept_gain();
   program.scene_path = laid->scene_path();

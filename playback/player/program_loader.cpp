@@ -17,10 +17,10 @@ using schema::Result;
 Result<Program> made_within_memory(const ProgramLoader::Make& make) try {
   return make();
 } catch (const std::bad_alloc&) {
-  return fail(ErrorKind::unsuitable, "takes more memory than there is", "load", "play a shorter part");
+  return fail(ErrorKind::unsuitable, "needs more memory than is available", "load", "play a shorter part");
 }
 
-// Some three to one, so that it is made in the end on a busy machine too.
+// Lowers the priority to about a third, so that a load still ends on a busy machine.
 void step_back(pid_t thread) {
   constexpr int kNice = 5;
   setpriority(PRIO_PROCESS, static_cast<id_t>(thread), kNice);
@@ -79,7 +79,7 @@ std::optional<Result<Program>> ProgramLoader::take() {
   target_ = false;
   next_.reset();
   if (given_up_)
-    return fail(ErrorKind::usage, "the load was given up, for a stop came", "load", "load again");
+    return fail(ErrorKind::usage, "the load was cancelled by stop or disarm", "load", "load again");
   std::optional<Result<Program>> result = std::move(work_->result);
   forget();
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes a program beside whoever plays.
+// Prepares a program in parallel to a playback.
 #pragma once
 
 #include <sys/types.h>
@@ -14,9 +14,9 @@
 
 namespace tacto::playback {
 
-/// One program at a time, on a thread of its own that nobody has to wait for: a long texture takes seconds,
-/// and can't be interrupted. What is begun after one that was given up follows once that one's thread is
-/// done, so that memory holds one at a time. One thread calls.
+/// Prepares one program at a time, on a thread of its own for which no caller has to wait: a long texture
+/// takes seconds, and cannot be interrupted. A program requested after one that was cancelled follows when
+/// that thread has ended, so that only one is in memory. For one calling thread.
 class ProgramLoader {
  public:
   using Make = std::function<schema::Result<Program>()>;
@@ -24,23 +24,22 @@ class ProgramLoader {
   ProgramLoader() = default;
   ProgramLoader(const ProgramLoader&) = delete;
   ProgramLoader& operator=(const ProgramLoader&) = delete;
-  /// Leaves a thread that is still at work to itself: the process is to end without it (std::_Exit).
+  /// Detaches a thread that still works: the process has to end without it (std::_Exit).
   ~ProgramLoader();
 
-  /// Whether something plays meanwhile, that comes first.
+  /// Whether there is a playback meanwhile, which has priority.
   enum class Beside { nothing, playing };
 
-  /// `make` owns all that it uses. Precondition: !wanted().
+  /// `make` owns all data that it uses. Precondition: !target().
   void begin(Make make, Beside beside);
-  /// Something is being made, be it for nobody any more.
+  /// Whether a program is being made, even if it was cancelled.
   bool busy() const;
-  /// Somebody waits for what take() is to give.
+  /// Whether a caller waits for the result of take().
   bool target() const { return target_; }
-  /// What is being made is nobody's any more: take() gives an error at once, and its thread steps back behind
-  /// what may play from now on.
+  /// Cancels: take() returns an error at once, and the thread gets a lower priority than a later playback.
   void give_up();
-  /// What came of it, once; none while it is being made, or where nothing was. Errors: of `make`; unsuitable:
-  /// no memory for it; usage: it was given up.
+  /// The result, once; none while the program is being made, or if there was none. Errors: of `make`;
+  /// unsuitable: not enough memory for it; usage: it was cancelled.
   std::optional<schema::Result<Program>> take();
 
  private:

@@ -22,7 +22,7 @@ bool stays_below(const fs::path& name) {
   return name.is_relative() && std::ranges::find(name, fs::path("..")) == name.end();
 }
 
-// With every link followed. A name that changes after this is somebody's who may write into the folder.
+// All links are followed. Only a user with write access to the folder could change a name after this.
 bool is_within(const fs::path& folder, const fs::path& path) {
   std::error_code failed;
   const fs::path real = fs::canonical(path, failed);
@@ -35,14 +35,14 @@ bool serves_texture(const fs::path& folder, const std::string& name) {
   const std::string sidecar = schema::stem_of(name, ".texture") + ".texture.json";
   if (!is_within(folder, sidecar)) return false;
   const auto wav = schema::texture_wav(name);
-  return !wav || is_within(folder, wav->path);  // a sidecar that can't be read has an error of its own
+  return !wav || is_within(folder, wav->path);  // a sidecar that cannot be read gives an error later
 }
 
 bool serves_scene(const fs::path& folder, const std::string& name) {
   const std::string path = schema::scene_path(name);
   if (!is_within(folder, path)) return false;
   const auto scene = schema::read_scene(path);
-  if (!scene) return true;  // its error is the file's own
+  if (!scene) return true;  // the error is that of the file
   return std::ranges::all_of(scene->layers, [&](const schema::Layer& layer) {
     return layer.visit([&](const schema::TextureLayer& texture) {
       return serves_texture(folder, schema::texture_in_scene(path, texture.texture));
@@ -54,7 +54,7 @@ bool serves_scene(const fs::path& folder, const std::string& name) {
 
 Result<std::string> served_file(const std::string& folder, const std::string& file) {
   if (folder.empty())
-    return fail(ErrorKind::unsuitable, "clients over TCP may load nothing here", "load",
+    return fail(ErrorKind::unsuitable, "clients over TCP may not load any file", "load",
                 "name the folder that they may load from: files, in the daemon's configuration");
   const std::string path = (fs::path(folder) / file).string();
   const bool served =

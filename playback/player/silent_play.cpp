@@ -14,30 +14,30 @@ std::string from_to(double from_m, double to_m) {
   return fmt::format("from {} to {}", length_for_people(from_m), length_for_people(to_m));
 }
 
-std::string reason(const TickView& ticks, const Feelable& what) {
+std::string reason(const TickView& ticks, const PlayableRange& what) {
   const double from_m = ticks.least_position_m(), to_m = ticks.greatest_position_m();
   if (what.contact_on_n > 0 && ticks.gated() > 0)
-    return fmt::format("the finger did not press with the {:g} N from which on there is a drive (--contact)",
+    return fmt::format("the normal force stayed below the {:g} N at which the drive begins (--contact)",
                        what.contact_on_n);
   if (what.stops && (to_m < what.start_m || from_m > what.end_m))
-    return fmt::format("the finger went {}, and the texture is {} (--at, or at_m in the scene)",
+    return fmt::format("the finger moved {}, the texture is {} (--at, or at_m in the scene)",
                        from_to(from_m, to_m), from_to(what.start_m, what.end_m));
   if (from_m > what.reach_m || to_m < -what.reach_m)
     return fmt::format(
-        "the finger went {}, and farther than {:.4g} m from the encoder's zero nothing is read (begin "
+        "the finger moved {}; farther than {:.4g} m from the encoder's zero no texture is read (begin "
         "nearer)",
         from_to(from_m, to_m), what.reach_m);
-  return fmt::format("the finger went {}", from_to(from_m, to_m));
+  return fmt::format("the finger moved {}", from_to(from_m, to_m));
 }
 
 }  // namespace
 
-Feelable feelable(const Program& program) {
+PlayableRange playable_range(const Program& program) {
   return {program.start_m, program.start_m + program.length_m, program.options.ends == Ends::stop,
           program.options.contact_on_n, program.reach_m};
 }
 
-std::optional<std::string> note_of_silence(const TickView& ticks, const Feelable& what) {
+std::optional<std::string> note_of_silence(const TickView& ticks, const PlayableRange& what) {
   if (ticks.ticks() == 0 || ticks.drive_peak_v() > 0) return std::nullopt;
   return "nothing was played, the drive stayed at 0 V: " + reason(ticks, what);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Why a play was felt nowhere.
+// The reason why a playback had no drive.
 #pragma once
 
 #include <cmath>
@@ -11,18 +11,18 @@
 
 namespace tacto::playback {
 
-/// What a program says of where and when it can be felt.
-struct Feelable {
+/// Where and under which conditions a program has a drive.
+struct PlayableRange {
   double start_m = 0, end_m = 0;
-  bool stops = true;          ///< at its ends
-  double contact_on_n = 0;    ///< 0: always
+  bool stops = true;          ///< no drive beyond its ends
+  double contact_on_n = 0;    ///< 0: no contact gate
   double reach_m = INFINITY;  ///< from the encoder's zero
 };
 
-Feelable feelable(const Program& program);
+PlayableRange playable_range(const Program& program);
 
-/// A sentence where ticks were played and none of them had a drive: by the gate, by the finger's way, or for
-/// a reason that neither tells; none where something was felt.
-std::optional<std::string> note_of_silence(const TickView& ticks, const Feelable& what);
+/// A sentence if ticks were played and all had a drive of zero: because of the gate, of the finger's path, or
+/// for another reason; none if there was a drive.
+std::optional<std::string> note_of_silence(const TickView& ticks, const PlayableRange& what);
 
 }  // namespace tacto::playback

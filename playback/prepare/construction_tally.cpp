@@ -11,7 +11,7 @@ namespace {
 LeftOut levels_left_out(const Prepared& prepared) {
   const double coarsest_per_m = prepared.finest_per_m * std::exp2(-0.5 * (prepared.scale.levels - 1));
   return {fmt::format("{} of {} levels", wire::kMaxLevels - prepared.scale.levels, wire::kMaxLevels),
-          fmt::format("nothing finer than {:.4g} /mm is there, nothing faster than {:.3g} m/s comes",
+          fmt::format("no content is finer than {:.4g} /mm, no finger faster than {:.3g} m/s is expected",
                       1e-3 * prepared.finest_per_m, prepared.passes_to_hz / coarsest_per_m)};
 }
 
@@ -24,16 +24,17 @@ std::vector<LeftOut> left_out_of(const Prepared& prepared) {
     if (count == 0) left_out.push_back({part, because});
   };
   tell(built.seams, "a loop's seam",
-       prepared.loop_period_m > 0 ? "the texture's end meets its beginning" : "nothing loops");
+       prepared.loop_period_m > 0 ? "the texture's end meets its beginning" : "the texture is not a loop");
   if (built.levels < wire::kMaxLevels) left_out.push_back(levels_left_out(prepared));
-  tell(built.filters, "a filter that undoes the transducer", "its gain alone, or no inverse, was asked for");
-  tell(built.hysteresis, "plays that undo a hysteresis", "the transducer's file has none, or it is kept");
-  tell(built.sections, "recursive sections", "only an undone hysteresis needs one");
-  tell(built.energy_limits, "an energy limit", "none is named");
-  tell(built.touch_gates, "a touch gate", "no normal force is asked for");
+  tell(built.filters, "a filter that inverts the transducer", "only its gain, or no inverse, was requested");
+  tell(built.hysteresis, "play operators that invert a hysteresis",
+       "the transducer's file has no hysteresis, or it is not inverted");
+  tell(built.sections, "recursive sections", "only the inverse of a hysteresis needs them");
+  tell(built.energy_limits, "an energy limit", "no limit was requested");
+  tell(built.touch_gates, "a touch gate", "no contact force was requested");
   tell(built.following, "looking ahead and the timing of edges", "turned off");
   left_out.push_back(
-      {"a texture besides those named", "only one that is loaded while this plays takes room beside them"});
+      {"memory for another texture", "only a texture that is loaded during playback needs it"});
   return left_out;
 }
 

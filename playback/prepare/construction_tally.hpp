@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was built to play something, counted where it is built.
+// Counts what was built for a playback, at the places that build it.
 #pragma once
 
 #include <cstddef>
@@ -8,17 +8,17 @@
 
 namespace tacto::playback {
 
-/// Each counter goes up where the thing is made: what a scene does not name stays at 0.
+/// The counters of what a scene does not name stay at 0.
 struct ConstructionTally {
   std::size_t texture_files = 0;    ///< read
   std::size_t textures_placed = 0;  ///< on the encoder's axis
   std::size_t seams = 0;            ///< of loops, faded
   std::size_t levels = 0;           ///< transformed
   std::size_t sample_bytes = 0;     ///< of all levels
-  std::size_t filters = 0;          ///< solved for by least squares; a gain alone is none
-  std::size_t taps = 0;             ///< with a gain's one
+  std::size_t filters = 0;          ///< by least squares; a gain alone is none
+  std::size_t taps = 0;             ///< including the single one of a gain
   std::size_t hysteresis = 0;       ///< operators inverted
-  std::size_t play_operators = 0;   ///< of them
+  std::size_t play_operators = 0;   ///< of the inverted hysteresis
   std::size_t sections = 0;         ///< recursive
   std::size_t energy_limits = 0;
   std::size_t touch_gates = 0;
@@ -27,7 +27,7 @@ struct ConstructionTally {
 
 struct Prepared;
 
-/// What was not built, and why.
+/// A part that was not built, and why.
 struct LeftOut {
   std::string part, because;
 };

@@ -28,7 +28,7 @@ struct Peak {
   double at_hz = 0, most = 0;
 };
 
-// Of a sharp resonance the top lies between the grid's places.
+// The peak of a sharp resonance is between the points of the grid.
 template <class Response>
 Peak highest_peak(double highest_hz, const Response& response) {
   constexpr int kRounds = 6, kPlaces = 8;
@@ -48,13 +48,13 @@ Peak tray_response(const Prepared& prepared, const schema::Transducer& transduce
                    const PrepareOptions& options) {
   Chain chain{transducer, options.reconstruction, options.reconstruction_cutoff_hz, options.hold,
               prepared.rate_hz};
-  if (!prepared.sections.empty()) chain.led_pole_hz = schema::actuator_pole_hz(transducer);
+  if (!prepared.sections.empty()) chain.compensated_pole_hz = schema::actuator_pole_hz(transducer);
   const double highest_hz = std::min(prepared.stops_at_hz, prepared.rate_hz / 2);
   return highest_peak(
       highest_hz, [&](double f) { return std::abs(chain_response(chain, f)) * taps_response(prepared, f); });
 }
 
-// Rounded down in the fourth digit, so that what a message names does fit.
+// Rounded down in the fourth digit, so that the value in a message does fit.
 double fitting(double value) {
   const double digit = std::pow(10, std::floor(std::log10(value)) - 3);
   return std::floor(value / digit) * digit;
@@ -75,8 +75,8 @@ std::string rate_as_cause(const Prepared& prepared, const schema::Transducer& tr
   if (prepared.passes_to_hz >= options.band.high_hz || at_hz <= prepared.passes_to_hz) return {};
   const double whole_at_hz = options.band.high_hz * prepared.rate_hz / prepared.passes_to_hz;
   return fmt::format(
-      "; it would go that far at {:.4g} Hz, above the band, which ends at {:.4g} Hz because {:g} ticks a "
-      "second are too few: from {:g} on (--rate; rate_hz in the configuration) it is whole",
+      "; this would happen at {:.4g} Hz, above the band, which ends at {:.4g} Hz at {:g} ticks per second: "
+      "from {:g} on (--rate; rate_hz in the configuration) the band is complete",
       at_hz, prepared.passes_to_hz, prepared.rate_hz, whole_at_hz);
 }
 
@@ -86,7 +86,7 @@ schema::Result<void> check_displacement(double peak_m, double factor, double gai
   if (!(reached_m > kSinglePrecision * limit_m)) return {};
   const double most = fitting(limit_m / peak_m);
   return schema::fail(schema::ErrorKind::unsuitable,
-                      fmt::format("the tray could go as far as {}, at worst; its limit is {}",
+                      fmt::format("the tray's displacement could reach {}, its limit is {}",
                                   schema::for_people(reached_m, schema::Dimension::length),
                                   schema::for_people(limit_m, schema::Dimension::length)),
                       transducer.name,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The transducer's limit of displacement, where nobody knows the finger's path beforehand.
+// Checks the transducer's displacement limit when the finger's path is not known in advance.
 #pragma once
 
 #include <string>
@@ -8,21 +8,21 @@
 
 namespace tacto::playback {
 
-/// The furthest that the tray goes under a program that was prepared so, m, at its own gain: gain x the
-/// largest sample of any level x the largest |chain x inverse| from 0 Hz to where nothing is played. What is
-/// played fades, ramps and cross-fades between such values only. An upper bound for every frequency by
-/// itself; two parts of a texture that the inverse shifts against each other (magnitude, gain) may add up to
-/// more. It knows the transducer's model, and neither hysteresis that is kept nor what limits take away.
+/// The largest displacement of the tray under this program, m, at its own gain: gain x the largest sample of
+/// any level x the largest |chain x inverse| from 0 Hz to stops_at_hz. Fades and ramps of the playback stay
+/// between such values. An upper bound for each frequency; two components that the inverse shifts against
+/// each other (magnitude, gain) may add up to more. Uses the transducer's linear model, without uncompensated
+/// hysteresis and without limits.
 double tray_peak_m(const Prepared& prepared, const schema::Transducer& transducer,
                    const PrepareOptions& options);
 
-/// Whether the tray stays within the transducer's displacement_limit_m at `factor` times the program's own
-/// gain. Errors: unsuitable, with the largest factor and gain that fit.
+/// Checks that the tray stays within the transducer's displacement_limit_m at `factor` times the program's
+/// own gain. Errors: unsuitable, with the largest factor and gain that fit.
 schema::Result<void> check_displacement(double peak_m, double factor, double gain_m_per_n,
                                         const schema::Transducer& transducer);
 
-/// What to add to the remedy where the rate cuts the band and the tray goes farthest above its end, where the
-/// inverse is no longer held to anything: a resonance may lie there. Else empty.
+/// An addition to the remedy if the rate cuts the band and the largest displacement is above its end, where
+/// the inverse is not constrained: a resonance may be there. Otherwise empty.
 std::string rate_as_cause(const Prepared& prepared, const schema::Transducer& transducer,
                           const PrepareOptions& options);
 

@@ -19,7 +19,7 @@ constexpr double kBelowBandWeight = 0.3;
 constexpr double kBeyondBandWeight = 1e-3;
 constexpr double kBandMargin = 1.01;
 constexpr double kFirstPenalty = 1e-9, kLeastRaisedPenalty = 1e-8;
-constexpr double kAim = 0.95;  // of the gain's bound
+constexpr double kAim = 0.95;  // of the largest permitted gain
 constexpr double kRidge = 1e-12;
 constexpr int kMostLawsonRounds = 80;
 
@@ -41,7 +41,7 @@ class Designer {
       turns_.push_back(std::polar(1.0, -std::numbers::pi * static_cast<double>(i) / kGrid));
   }
 
-  /// Of the normalised chain.
+  /// For the normalised chain.
   std::vector<double> taps() {
     const double wished = 4 * std::ceil(kFilterS * rate_hz_ / 4);
     count_ =
@@ -90,7 +90,7 @@ class Designer {
     return sum;
   }
 
-  // The normal equations: symmetric and Toeplitz.
+  // Solves the normal equations, which are symmetric and Toeplitz.
   std::vector<double> solved() {
     ++solutions_;
     std::vector<double> row(count_), right(count_);
@@ -108,7 +108,7 @@ class Designer {
     return solve_toeplitz(row, right);
   }
 
-  // False where the gain is within its bound.
+  // Returns false if the gain is within its limit.
   bool raise_penalties(const std::vector<double>& taps) {
     const double bound = std::pow(10, design_.most_gain_db / 20), aim = kAim * bound;
     bool beyond = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tick kernel run offline, along a finger's path.
+// Runs the tick kernel offline, along a finger's path.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,17 @@
 namespace tacto::playback {
 
 struct KernelDrive {
-  std::vector<double> drive_v;  ///< as single precision has it, one a tick
+  std::vector<double> drive_v;  ///< single precision, one per tick
   LimitTally tally;
 };
 
-/// The drive of `ticks` ticks from the path's first time on. The encoder counts what lies below the finger
-/// (floor), by metres_per_count, from origin_count at origin_m; the drive is asked for from the first tick
-/// on.
+/// The drive of `ticks` ticks from the path's first time on. The encoder counts in steps of metres_per_count,
+/// rounded down, with origin_count at origin_m; the drive is on from the first tick.
 KernelDrive kernel_drive(const Prepared& prepared, const FingerPath& path, const PrepareOptions& options,
                          std::size_t ticks);
 
-/// The same at another gain, with no limit of amplitude or slew (an energy limit stays): what they are asked
-/// to hold, V.
+/// The same at another gain, without limits of amplitude and slew (an energy limit stays): the drive before
+/// these limits, V.
 std::vector<double> unlimited_drive(const Prepared& prepared, double gain_m_per_n, const FingerPath& path,
                                     const PrepareOptions& options, std::size_t ticks);
 

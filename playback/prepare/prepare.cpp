@@ -26,28 +26,27 @@ using schema::Result;
 namespace {
 
 constexpr double kLeastRateHz = 100, kMostRateHz = 100e3;
-// core::half_octaves() may say 0.02 too much: levels are chosen that much finer.
+// core::half_octaves() may be 0.02 too large, so levels are chosen that much finer.
 constexpr double kSpeedMargin = 1.01;
 constexpr double kMostSamplesPerCount = 1024;
 constexpr double kQ32 = 4294967296.0;
 constexpr double kMostEnergyV = 1000, kLongestWindowS = 3600, kMostContactN = 100;
 
-// The device asks the same, by numbers of its own.
+// The device checks the same with its own limits.
 Result<void> check_guards(const PrepareOptions& o) {
   const auto wrong = [](const char* what, const char* remedy) {
     return fail(ErrorKind::usage, what, {}, remedy);
   };
   if (!(o.energy_rms_v >= 0 && o.energy_rms_v <= kMostEnergyV))
-    return wrong("an energy limit beyond 0 to 1000 V", "an RMS of the drive; 0V turns it off");
+    return wrong("the energy limit is outside 0 to 1000 V", "an RMS of the drive; 0V turns it off");
   if (!(o.energy_window_s > 0 && o.energy_window_s <= kLongestWindowS))
-    return wrong("a window of energy beyond 0 to 3600 s", "1s is usual");
+    return wrong("the energy window is outside 0 to 3600 s", "1s is usual");
   if (!(o.contact_on_n >= 0 && o.contact_on_n <= kMostContactN))
-    return wrong("a contact's normal force beyond 0 to 100 N",
+    return wrong("the contact force is outside 0 to 100 N",
                  "a finger presses with 0.1 to 3 N; 0N turns it off");
   if (o.contact_on_n > 0 && !(o.contact_off_n >= 0 && o.contact_off_n <= o.contact_on_n))
-    return wrong(
-        "a contact that ends above the force that it begins with",
-        "let it end (--contact-off, contact_off_n) at or below where it begins (--contact, contact_on_n)");
+    return wrong("contact ends at a larger force than it begins",
+                 "choose --contact-off (contact_off_n) at most --contact (contact_on_n)");
   return {};
 }
 
@@ -56,23 +55,24 @@ Result<void> check_prepare_options(const PrepareOptions& o) {
     return fail(ErrorKind::usage, std::move(what), {}, std::move(remedy));
   };
   if (!(o.rate_hz >= kLeastRateHz && o.rate_hz <= kMostRateHz))
-    return wrong(fmt::format("ticks at {:g} Hz", o.rate_hz), "100Hz to 100kHz; the paper's is 2kHz");
+    return wrong(fmt::format("a tick rate of {:g} Hz is out of range", o.rate_hz),
+                 "choose from 100Hz to 100kHz; the paper's is 2kHz");
   if (!(o.metres_per_count > 0 && o.metres_per_count < 1))
     return wrong("the encoder's step is not above 0", "give the length of one count");
   if (!(o.gain_m_per_n >= 0 && o.gain_m_per_n <= 1))
-    return wrong("the gain is not between 0 and 1 m/N", "a fingertip asks for about 1mm/N");
+    return wrong("the gain is not between 0 and 1 m/N", "a fingertip needs about 1mm/N");
   if (!(o.band.low_hz > 0 && o.band.low_hz < o.band.high_hz && o.band.high_hz < kMostRateHz))
     return wrong("the band is empty or reaches 0 Hz", "0 < low < high");
-  if (!(o.delay_s >= 0 && o.delay_s <= 0.02)) return wrong("a delay beyond 0 to 20 ms", "2ms is usual");
+  if (!(o.delay_s >= 0 && o.delay_s <= 0.02)) return wrong("the delay is outside 0 to 20 ms", "2ms is usual");
   if (!(o.samples_per_period == 0 || (o.samples_per_period > 2 && o.samples_per_period <= 1000)))
-    return wrong("samples a period beyond 2 to 1000", "16 are usual");
+    return wrong("the samples per period are outside 2 to 1000", "16 are usual");
   if (o.inverse_taps > wire::kMaxTaps)
-    return wrong(fmt::format("{} taps, the kernel has room for {}", o.inverse_taps, wire::kMaxTaps),
-                 "take fewer");
+    return wrong(fmt::format("{} taps were requested, the kernel holds {}", o.inverse_taps, wire::kMaxTaps),
+                 "use fewer");
   if (!(o.max_speed_mps > 0 && o.max_speed_mps <= 10))
-    return wrong("a largest speed beyond 0 to 10 m/s", "a finger goes at up to 0.5 m/s");
+    return wrong("the largest speed is outside 0 to 10 m/s", "a finger moves at up to 0.5 m/s");
   if (!(o.onset_s >= 0 && o.release_s >= 0 && o.seam_m >= 0 && std::isfinite(o.onset_s + o.release_s)))
-    return wrong("an onset, release or seam below 0", "0 turns each off");
+    return wrong("an onset, release or seam is below 0", "0 turns each off");
   if (!(o.reconstruction_cutoff_hz > 0 && o.reconstruction_cutoff_hz <= kMostRateHz))
     return wrong("the reconstruction filter's cut-off is not above 0", "the paper's is 600Hz");
   if (!std::isfinite(o.origin_m)) return wrong("the origin is not finite", "give a length");
@@ -87,7 +87,8 @@ Result<void> check_placed(std::span<const PlacedTexture> textures, const Prepare
       return fail(ErrorKind::usage, "a texture's place or weight is not finite", "scene");
   }
   if (textures.size() > 1 && options.ends != Ends::stop)
-    return fail(ErrorKind::usage, "several textures can't be looped or mirrored", "scene", "let them stop");
+    return fail(ErrorKind::usage, "several textures can't be looped or mirrored", "scene",
+                "use the ends stop");
   return {};
 }
 
@@ -96,7 +97,7 @@ Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, co
   const std::size_t size = pyramid_size(path, shape);
   if (size > o.most_samples)
     return fail(ErrorKind::unsuitable,
-                fmt::format("the texture takes {} samples in {} levels, there is room for {}", size,
+                fmt::format("the texture needs {} samples in {} levels, the memory holds {}", size,
                             shape.levels, o.most_samples),
                 "texture", ways_to_fit(o.interpolation));
   Pyramid pyramid = make_pyramid(path, shape);
@@ -112,15 +113,15 @@ Result<void> fill_levels(Prepared& prepared, const schema::SpaceSignal& path, co
   return {};
 }
 
-// Textures far apart are one profile, with what lies between them.
+// Textures that are far apart form one profile, with the space between them.
 std::string words_of_way_between(std::span<const PlacedTexture> textures) {
   double own_m = 0;
   for (const PlacedTexture& placed : textures) own_m += placed.texture->signal.length_m();
-  const double bare_m = way_between(textures);
+  const double bare_m = uncovered_length_m(textures);
   if (bare_m < own_m) return {};
   return fmt::format(
-      "{} between the textures take as many samples as textures do: nearer together, or in "
-      "scenes of their own, they take less",
+      "{} between the textures need as many samples as a texture: place them closer together, or in separate "
+      "scenes",
       schema::length_for_people(bare_m));
 }
 
@@ -138,7 +139,7 @@ Result<void> lay_on_counts(Prepared& prepared, double first_m, const PrepareOpti
                 "a texture this fine needs a finer encoder");
   scale.samples_per_count_q32 = static_cast<std::uint64_t>(std::llround(per_count * kQ32));
   scale.origin_count = o.origin_count;
-  // Without timing of the edges, the middle of the count is the best guess.
+  // Without timing of the edges, the middle of the count is the best estimate.
   const double at_origin =
       (o.origin_m - first_m) / prepared.pitch_m + (o.between_counts ? 0 : 0.5 * per_count);
   scale.at_origin_q32 = std::llround(at_origin * kQ32);
@@ -151,7 +152,7 @@ bool shapes_chain(Inverse inverse) {
   return inverse == Inverse::full || inverse == Inverse::magnitude;
 }
 
-// The highest of the usual rates below this one at which the same inverse works: there its taps last longer.
+// The highest usual rate below this one at which the same inverse works, because its taps cover more time.
 std::optional<double> rate_that_works(const schema::Transducer& transducer, PrepareOptions o) {
   const double asked_hz = o.rate_hz;
   for (const double rate_hz : {50e3, 40e3, 20e3, 10e3}) {
@@ -171,25 +172,23 @@ Result<void> fail_by_rate(const InverseFilter& filter, const PrepareOptions& o, 
               "rate", fmt::format("play at {:g} kHz, or with --inverse gain", 1e-3 * works_hz));
 }
 
-// The rate may be too high for the kernel's taps, or the transducer's model one that no bounded inverse
-// undoes.
+// Either the rate is too high for the kernel's taps, or no bounded inverse exists for the transducer's model.
 Result<void> check_inverse(const InverseFilter& filter, const schema::Transducer& transducer,
                            const PrepareOptions& o, const spatial::Band& band) {
   if (!shapes_chain(o.inverse) || filter.error_db <= kMostInverseErrorDb) return {};
   if (const auto works_hz = rate_that_works(transducer, o)) return fail_by_rate(filter, o, *works_hz);
-  return fail(
-      ErrorKind::unsuitable,
-      fmt::format("over {:g} to {:.4g} Hz its inverse, within 20 dB of gain, leaves an error of {:.1f} dB of "
-                  "the target",
-                  band.low_hz, band.high_hz, filter.error_db),
-      "transducer", "check its resonance, damping and pole; or play with --inverse gain");
+  return fail(ErrorKind::unsuitable,
+              fmt::format("from {:g} to {:.4g} Hz its inverse, limited to 20 dB of gain, leaves an error of "
+                          "{:.1f} dB of the target",
+                          band.low_hz, band.high_hz, filter.error_db),
+              "transducer", "check its resonance, damping and pole; or play with --inverse gain");
 }
 
 Result<void> undo_chain(Prepared& prepared, const schema::Transducer& transducer, const UndoneChain& undone,
                         const PrepareOptions& o) {
   if (undoes_hysteresis(transducer, o)) {
     prepared.play_operators = inverse_of(*transducer.hysteresis);
-    prepared.sections = {pole_lead(undone.chain.led_pole_hz, o.rate_hz)};
+    prepared.sections = {pole_lead(undone.chain.compensated_pole_hz, o.rate_hz)};
     ++prepared.built.hysteresis;
     prepared.built.play_operators = prepared.play_operators.count;
     prepared.built.sections = prepared.sections.size();
@@ -223,7 +222,7 @@ wire::Limits limits_of(const schema::Transducer& t, const PrepareOptions& o) {
           static_cast<std::uint16_t>(std::clamp(counts, 10.0, 65535.0))};
 }
 
-// Only those that are named.
+// Adds only the limits that are requested.
 void add_guards(Prepared& prepared, const PrepareOptions& o) {
   if (o.energy_rms_v > 0) {
     prepared.energy_rms_v = static_cast<float>(o.energy_rms_v);
@@ -247,7 +246,7 @@ Prepared settled(const schema::Transducer& transducer, const UndoneChain& undone
   prepared.stops_at_hz = undone.stops_at_hz;
   if (prepared.passes_to_hz < o.band.high_hz)
     prepared.notes.push_back(
-        fmt::format("at {:g} ticks a second the band ends at {:.4g} Hz", o.rate_hz, prepared.passes_to_hz));
+        fmt::format("at {:g} ticks per second the band ends at {:.4g} Hz", o.rate_hz, prepared.passes_to_hz));
   if (auto beyond = beyond_identified(transducer, undone.band)) prepared.notes.push_back(std::move(*beyond));
   return prepared;
 }
@@ -274,9 +273,8 @@ core::KernelSetup Prepared::setup() const {
 std::string ways_to_fit(wire::Interpolation interpolation) {
   const bool sparse = interpolation == wire::Interpolation::sinc;
   return fmt::format(
-      "play a shorter part{}, or, where the device closes the loop, let the host (--loop host; \"loop\": "
-      "\"host\" "
-      "in the daemon's configuration)",
+      "play a shorter part{}, or close the loop on the host (--loop host; \"loop\": \"host\" in the daemon's "
+      "configuration)",
       sparse ? "" : ", interpolate by sinc (--interpolation sinc; \"interpolation\" in playback)");
 }
 
@@ -290,7 +288,7 @@ Result<Prepared> prepare(std::span<const PlacedTexture> textures, const schema::
   TACTO_TRY(check_prepare(textures, options));
   const UndoneChain undone = undone_chain(transducer, options);
   Prepared prepared = settled(transducer, undone, options);
-  const schema::SpaceSignal path = laid_out(textures, options.ends, options.seam_m, prepared.built);
+  const schema::SpaceSignal path = one_period(textures, options.ends, options.seam_m, prepared.built);
   if (options.ends == Ends::loop) tell_loop(prepared, textures.front().texture->signal, path);
   const std::string between = words_of_way_between(textures);
   if (!between.empty()) prepared.notes.push_back(between);

@@ -14,7 +14,7 @@ namespace {
 using Ends = wire::ProfileEnds;
 
 constexpr double kMostPaddingM = 20e-3;
-constexpr double kMostDrift = 2e-5;  // 1.3e-4 of what is played there
+constexpr double kMostDrift = 2e-5;  // of a period: 2 pi times that, 1.3e-4 of the amplitude
 
 std::size_t continued_size(const schema::SpaceSignal& signal, Ends ends) {
   const std::size_t size = signal.values.size();
@@ -33,20 +33,20 @@ std::vector<double> continued(const schema::SpaceSignal& signal, Ends ends) {
   return values;
 }
 
-/// The grid of the first level over the whole period, and how much of it is kept.
+/// The grid of the first level over the whole period, and the number of samples kept.
 struct LevelGrid {
   std::size_t period = 0, kept = 0;
   double pitch_m = 0;
 };
 
-// By how much of the finest period the last place is off, where a count is rounded to 2^-32 samples.
+// The error of the last place in finest periods if a count is rounded to 2^-32 samples.
 double drift_of(std::size_t period, double period_m, double length_m, const PyramidShape& shape) {
   const double per_count = std::ldexp(shape.metres_per_count * static_cast<double>(period) / period_m, 32);
   if (!(per_count > 0)) return 0;
   return std::abs(std::round(per_count) / per_count - 1) * length_m * shape.finest_per_m;
 }
 
-// Of an encoder so fine that a count is few parts of a sample, a few samples more may hit it.
+// If a count of a fine encoder is a small part of a sample, a few more samples may reduce its rounding.
 std::size_t steps_that_fit(std::size_t least, std::size_t step, double period_m, double length_m,
                            const PyramidShape& shape) {
   const std::size_t fast = spatial::fast_length(least);
@@ -63,7 +63,7 @@ std::size_t steps_that_fit(std::size_t least, std::size_t step, double period_m,
 
 LevelGrid first_grid(const schema::SpaceSignal& signal, const PyramidShape& shape) {
   const double period_m = static_cast<double>(continued_size(signal, shape.ends)) * signal.pitch_m;
-  // Of a mirror half the period has whole steps on every level, too.
+  // In a mirror, half the period has a whole number of steps on each level, too.
   const std::size_t step = std::size_t{shape.ends == Ends::mirror ? 2U : 1U} << ((shape.levels - 1) / 2);
   const double wished = period_m * shape.finest_per_m * shape.samples_per_period / static_cast<double>(step);
   const auto steps = static_cast<std::size_t>(std::ceil(std::max(wished, 8.0)));

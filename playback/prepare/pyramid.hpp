@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Copies of a texture with less and less detail.
+// The levels of a texture: copies with less and less detail.
 #pragma once
 
 #include <cstddef>
@@ -10,35 +10,34 @@
 
 namespace tacto::playback {
 
-/// A level falls to nothing between what it passes and this many times that.
+/// A level falls to zero between its edge and this many times its edge.
 inline constexpr double kStopOverPass = 1.25;
 
 struct PyramidShape {
   wire::ProfileEnds ends = wire::ProfileEnds::stop;
   int levels = 1;
-  double finest_per_m = 0;         ///< that the first level passes
+  double finest_per_m = 0;         ///< passed by the first level
   double samples_per_period = 16;  ///< of the finest
-  double metres_per_count = 0;     ///< of the encoder that reads it; 0: not known
+  double metres_per_count = 0;     ///< of the encoder that reads it; 0: unknown
 };
 
-/// Samples of all levels, one after the other, as core::Profile reads them.
+/// Samples of all levels, one after the other, in the order of core::Profile.
 struct Pyramid {
   std::vector<float> samples;
   std::size_t first_level_samples = 0;
-  double pitch_m = 0;      ///< of the first level, whose first sample is the signal's
-  std::size_t levels = 0;  ///< as they were made
+  double pitch_m = 0;      ///< of the first level, which begins at the signal's first sample
+  std::size_t levels = 0;  ///< number of levels made
 };
 
-/// How many samples it will have.
+/// The number of samples of make_pyramid().
 std::size_t pyramid_size(const schema::SpaceSignal& signal, const PyramidShape& shape);
 
-/// Level n passes up to finest / 2^(n/2) whole, falls by a raised cosine to nothing at kStopOverPass times
-/// that, and lies on a grid 2^floor(n/2) times as wide as the first: by Fourier transform of the signal as it
-/// is continued beyond its ends (loop: periodic; mirror: even; stop: zeros, as many as there are samples up
-/// to 20 mm). The grid is such that a count, which the wire keeps to 2^-32 of a sample, errs by less than
-/// 2e-5 of the finest period over the whole signal, or as little as up to a sixteenth more samples can. The
-/// error of a level against its band is that of rounding to float. Precondition: at least 2 samples, 0 <
-/// finest.
+/// Level n passes up to finest / 2^(n/2) unchanged, falls by a raised cosine to zero at kStopOverPass times
+/// that, and is on a grid 2^floor(n/2) times as wide as the first: by Fourier transform of the signal,
+/// continued beyond its ends (loop: periodic; mirror: even; stop: zeros, as many as there are samples up to
+/// 20 mm). A count, which the wire rounds to 2^-32 of a sample, errs over the whole signal by less than 2e-5
+/// of the finest period, or as little as up to a sixteenth more samples permit. The error of a level within
+/// its band is that of rounding to float. Precondition: at least 2 samples, 0 < finest.
 Pyramid make_pyramid(const schema::SpaceSignal& signal, const PyramidShape& shape);
 
 }  // namespace tacto::playback

@@ -14,7 +14,7 @@ double samples_per_period(const PrepareOptions& options) {
 
 PyramidShape pyramid_shape(double highest_per_m, double passes_to_hz, const PrepareOptions& o) {
   PyramidShape shape{o.ends, 1, 0, samples_per_period(o), o.metres_per_count};
-  const double per_m = passes_to_hz / o.max_speed_mps;  // what passes at the greatest speed
+  const double per_m = passes_to_hz / o.max_speed_mps;  // passes at the greatest speed
   const double coarsest = std::exp2(0.5 * (wire::kMaxLevels - 1)) * per_m;
   shape.finest_per_m = std::min(std::max(highest_per_m, per_m), coarsest);
   const double steps = std::ceil(2 * std::log2(shape.finest_per_m / per_m));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which levels a texture needs, and how densely they are sampled.
+// Which levels a texture needs, and their sample density.
 #pragma once
 
 #include "playback/prepare/prepare.hpp"
@@ -7,12 +7,12 @@
 
 namespace tacto::playback {
 
-/// Of the finest content, as options say or as usual for their interpolation: 16 for hermite, 6 for sinc, 64
-/// for linear and nearest.
+/// For the finest content; the option, or the interpolation's default: 16 for hermite, 6 for sinc, 64 for
+/// linear and nearest.
 double samples_per_period(const PrepareOptions& options);
 
-/// Levels from what the texture holds (highest_per_m, highest_spatial_frequency() of it) down to what passes
-/// at the greatest speed (passes_to_hz / max_speed_mps), at most kMaxLevels.
+/// Levels from the texture's highest frequency (highest_per_m, its highest_spatial_frequency()) down to the
+/// one that passes at the greatest speed (passes_to_hz / max_speed_mps), at most kMaxLevels.
 PyramidShape pyramid_shape(double highest_per_m, double passes_to_hz, const PrepareOptions& options);
 
 }  // namespace tacto::playback

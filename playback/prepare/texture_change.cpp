@@ -41,16 +41,17 @@ bool same_limits(const Prepared& a, const Prepared& b) {
 Result<void> check_texture_change(const Prepared& playing, const Prepared& next,
                                   std::uint32_t profile_samples) {
   if (playing.rate_millihertz() != next.rate_millihertz())
-    return can_not_change(
-        fmt::format("the texture is for {:g} ticks a second, {:g} run", next.rate_hz, playing.rate_hz));
+    return can_not_change(fmt::format("the texture is for {:g} ticks per second, the device runs at {:g}",
+                                      next.rate_hz, playing.rate_hz));
   if (playing.taps != next.taps || !same_plays(playing.play_operators, next.play_operators) ||
       !same_tracker(playing.tracker, next.tracker))
-    return can_not_change("the texture is for another transducer, filter or encoder than the one that plays");
-  if (!same_limits(playing, next)) return can_not_change("the texture's limits are not those that hold");
+    return can_not_change("the texture is for another transducer, filter or encoder than the playing one");
+  if (!same_limits(playing, next))
+    return can_not_change("the texture's limits differ from those of the playing one");
   const std::size_t room = profile_samples - std::min<std::size_t>(profile_samples, playing.samples.size());
   if (next.samples.size() > room)
     return can_not_change(
-        fmt::format("the texture takes {} samples, beside the one that plays there is room for {}",
+        fmt::format("the texture needs {} samples, the memory beside the playing one holds {}",
                     next.samples.size(), room));
   return {};
 }

@@ -15,7 +15,7 @@ using schema::Result;
 Result<void> check_playable(const schema::Texture& texture) {
   if (texture.unit != "N")
     return fail(ErrorKind::unsuitable,
-                fmt::format("the texture holds {} in {}", texture.quantity, texture.unit), "texture",
+                fmt::format("the texture contains {} in {}", texture.quantity, texture.unit), "texture",
                 "only force in N can be played");
   if (texture.signal.values.size() < 2 || !(texture.signal.pitch_m > 0))
     return fail(ErrorKind::unsuitable, "the texture has fewer than 2 samples", "texture");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a texture can be played at all.
+// Checks whether a texture can be played.
 #pragma once
 
 #include "data-schema/base/error.hpp"
@@ -7,8 +7,8 @@
 
 namespace tacto::playback {
 
-/// Errors: unsuitable, for a texture that isn't force in N, has fewer than 2 samples, or one (by number) that
-/// is no finite number.
+/// Errors: unsuitable, for a texture that is not force in N, has fewer than 2 samples, or one (by number)
+/// that is not finite.
 schema::Result<void> check_playable(const schema::Texture& texture);
 
 }  // namespace tacto::playback

@@ -12,10 +12,10 @@
 namespace tacto::playback {
 namespace {
 
-// What the coarsest copies ring beyond an end: 2 mm of a copy up to 1 /mm leave -60 dB.
+// The ringing of the coarsest levels beyond an end: 2 mm of a level up to 1 /mm leave -60 dB.
 constexpr double kMarginM = 2e-3;
-// An extreme of what is sampled 20 times a period and more is missed by 5 %; what is sampled more coarsely
-// comes again within so many samples.
+// The largest step of content sampled 20 times per period or more is found to 5 %; that of content sampled
+// less densely recurs within kLeastNeighbours samples.
 constexpr double kAsNeighbours = 1.05;
 constexpr std::size_t kLeastNeighbours = 64, kLeastLoop = 8;
 
@@ -46,7 +46,7 @@ double largest_step(std::span<const double> values) {
   return largest_of(steps_of(values));
 }
 
-// `near` samples at either end are the neighbours; all were rounded to 32-bit float.
+// The steps are compared with those of `near` samples at each end; all values were rounded to 32-bit float.
 bool end_meets_beginning(std::span<const double> values, std::size_t near) {
   const auto head = values.first(near), tail = values.last(near);
   const std::array wrap{tail[near - 2], tail[near - 1], head[0], head[1]};
@@ -97,8 +97,8 @@ schema::SpaceSignal looped(schema::SpaceSignal signal, double seam_m) {
   return signal;
 }
 
-schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m,
-                             ConstructionTally& built) {
+schema::SpaceSignal one_period(std::span<const PlacedTexture> textures, Ends ends, double seam_m,
+                               ConstructionTally& built) {
   if (ends == Ends::stop) return beside_each_other(textures, built);
   ++built.textures_placed;
   const PlacedTexture& placed = textures.front();
@@ -108,12 +108,12 @@ schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends,
   return looped(scaled_texture(placed), cut_m);
 }
 
-schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m) {
+schema::SpaceSignal one_period(std::span<const PlacedTexture> textures, Ends ends, double seam_m) {
   ConstructionTally uncounted;
-  return laid_out(textures, ends, seam_m, uncounted);
+  return one_period(textures, ends, seam_m, uncounted);
 }
 
-double way_between(std::span<const PlacedTexture> textures) {
+double uncovered_length_m(std::span<const PlacedTexture> textures) {
   std::vector<const PlacedTexture*> along;
   for (const PlacedTexture& placed : textures) along.push_back(&placed);
   std::ranges::sort(along, {}, &PlacedTexture::at_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Textures laid on the encoder's axis as one.
+// Places textures on the encoder's axis as one signal.
 #pragma once
 
 #include <span>
@@ -9,26 +9,26 @@
 
 namespace tacto::playback {
 
-/// How much of a looped texture's end fades into its beginning, m: 0 where the end meets the beginning as it
-/// is, else seam_m, to whole samples and at most half the texture. It meets where, from the last sample to
-/// the first, neither the step in value nor the step in slope (second difference) is larger than the largest
-/// ones between neighbours within seam_m (at least 64 samples) of the ends; a twentieth more and what
-/// rounding to 32-bit float makes are allowed. The first sample follows the last
-/// one a pitch later: it is not to be there twice.
+/// The length of a looped texture's end that fades into its beginning, m: 0 if the end meets the beginning as
+/// it is, else seam_m, rounded to whole samples and at most half the texture. It meets if, from the last
+/// sample to the first, neither the step in value nor the step in slope (second difference) is larger than
+/// the largest one between neighbours within seam_m (at least 64 samples) of the ends; a twentieth more and
+/// the rounding to 32-bit float are allowed. The first sample follows the last one after a pitch, so it must
+/// not be there twice.
 double seam_of_loop(const schema::SpaceSignal& signal, double seam_m);
-/// One period: without its last seam_m, which fades into the first by a raised cosine.
+/// One period: the last seam_m are removed and fade into the first by a raised cosine.
 schema::SpaceSignal looped(schema::SpaceSignal signal, double seam_m);
 
-/// One period, or all there is, of what the finger meets; its origin_m is on the encoder's axis.
-/// stop: a margin of zeros about textures that fade at their ends (TextureLookup), on the finest grid among
-/// them, added where they lie over each other. loop: looped() by seam_of_loop().
-/// mirror: as it is.
-schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m);
-/// The same, counted.
-schema::SpaceSignal laid_out(std::span<const PlacedTexture> textures, Ends ends, double seam_m,
-                             ConstructionTally& built);
+/// One period, or the whole, of the signal under the finger; its origin_m is on the encoder's axis. stop:
+/// textures that fade at their ends (TextureLookup), with a margin of zeros, on the finest grid among them,
+/// added where they overlap. loop: looped() by seam_of_loop(). mirror: unchanged.
+schema::SpaceSignal one_period(std::span<const PlacedTexture> textures, Ends ends, double seam_m);
+/// The same; counts what it builds.
+schema::SpaceSignal one_period(std::span<const PlacedTexture> textures, Ends ends, double seam_m,
+                               ConstructionTally& built);
 
-/// m, between the first texture and the last, that none of them covers: laid_out() samples it as well.
-double way_between(std::span<const PlacedTexture> textures);
+/// The length between the first and the last texture that no texture covers, m; one_period() samples it as
+/// well.
+double uncovered_length_m(std::span<const PlacedTexture> textures);
 
 }  // namespace tacto::playback

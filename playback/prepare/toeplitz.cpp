@@ -7,7 +7,7 @@
 namespace tacto::playback {
 namespace {
 
-/// L of A = L L^T, row after row.
+/// L of A = L L^T, row by row.
 std::vector<double> factor(std::span<const double> row) {
   const std::size_t n = row.size();
   std::vector<double> lower(n * n);

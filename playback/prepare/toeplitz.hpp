@@ -7,9 +7,9 @@
 
 namespace tacto::playback {
 
-/// x of sum_j row[|i - j|] x_j = right_i, by Cholesky's factorisation of the whole matrix (n^3 / 6:
-/// Levinson's n^2 loses digits where the condition is 1e10, as a filter's is). Positive definite; equal
-/// sizes.
+/// Solves sum_j row[|i - j|] x_j = right_i by Cholesky factorisation of the whole matrix (n^3 / 6).
+/// Levinson's algorithm (n^2) loses digits at a condition of 1e10, which is usual for a filter. Positive
+/// definite; equal sizes.
 std::vector<double> solve_toeplitz(std::span<const double> row, std::span<const double> right);
 
 }  // namespace tacto::playback

@@ -12,8 +12,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Between two levels, half an octave apart each, content reaches twice the band's edge before it is faded
-// out.
+// During the fade between two levels, each half an octave apart, content up to twice the band's edge is
+// present.
 constexpr double kStopOverBand = 2 * kStopOverPass;
 
 Complex response_at(const std::vector<float>& taps, double radians_per_tick) {
@@ -31,7 +31,8 @@ bool undoes_hysteresis(const schema::Transducer& transducer, const PrepareOption
 
 UndoneChain undone_chain(const schema::Transducer& transducer, const PrepareOptions& o) {
   UndoneChain undone{{transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz}, {}, 0};
-  if (undoes_hysteresis(transducer, o)) undone.chain.led_pole_hz = schema::actuator_pole_hz(transducer);
+  if (undoes_hysteresis(transducer, o))
+    undone.chain.compensated_pole_hz = schema::actuator_pole_hz(transducer);
   const double passes_to_hz = std::min(o.band.high_hz, o.rate_hz / (1 + kStopOverBand));
   undone.band = {std::min(o.band.low_hz, 0.5 * passes_to_hz), passes_to_hz};
   undone.stops_at_hz = kStopOverBand * passes_to_hz;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The chain as a kernel with these options meets it: over which band it is undone, and how well.
+// The chain of a kernel with these options: the band in which it is inverted, and the error.
 #pragma once
 
 #include "playback/prepare/inverse_filter.hpp"
@@ -9,21 +9,22 @@ namespace tacto::playback {
 
 struct UndoneChain {
   Chain chain;
-  spatial::Band band;      ///< that is kept whole; its upper edge falls at rates below 2 kHz
-  double stops_at_hz = 0;  ///< beyond, nothing is played
+  spatial::Band band;      ///< passed unchanged; its upper edge falls at rates below 2 kHz
+  double stops_at_hz = 0;  ///< nothing is played beyond it
 };
 
-/// Hysteresis that the plays undo leaves a pole for a section (hysteresis_inverse.hpp).
+/// If play operators invert the hysteresis, a section compensates the remaining pole
+/// (hysteresis_inverse.hpp).
 UndoneChain undone_chain(const schema::Transducer& transducer, const PrepareOptions& options);
 
-/// Whether plays undo the bender's hysteresis.
+/// Whether play operators invert the bender's hysteresis.
 bool undoes_hysteresis(const schema::Transducer& transducer, const PrepareOptions& options);
 
-/// The filter that options ask for: inverse, delay_s, inverse_taps.
+/// The filter for the options inverse, delay_s, inverse_taps.
 InverseFilter inverse_of(const UndoneChain& undone, const PrepareOptions& options);
 
-/// The largest |chain filter - exp(-2 pi i f delay)| in the band, every hertz, in amplitude and phase
-/// whatever the filter was made for: no sound in the band errs by more, re itself.
+/// The largest |chain filter - exp(-2 pi i f delay)| in the band, in steps of 1 Hz, in amplitude and phase
+/// for every kind of filter: an upper bound of the relative error of any signal in the band.
 double largest_inverse_error(const UndoneChain& undone, const InverseFilter& filter);
 
 }  // namespace tacto::playback

@@ -21,14 +21,14 @@ Result<void> check_room(const Client& client, const Prepared& prepared) {
   const wire::Welcome& device = client.description().welcome;
   if ((device.features & wire::kFeatureTextures) == 0)
     return fail(ErrorKind::device,
-                fmt::format("'{}' (firmware {}) plays no textures by itself: its protocol is {}.{}",
+                fmt::format("'{}' (firmware {}) can't play textures itself: its protocol is {}.{}",
                             device.name, device.firmware, device.major, device.minor),
                 client.where(),
-                "update its firmware, or let the host close the loop (--loop host; \"loop\": \"host\" in the "
+                "update its firmware, or close the loop on the host (--loop host; \"loop\": \"host\" in the "
                 "daemon's configuration)");
   if (prepared.samples.size() > device.profile_samples)
     return fail(ErrorKind::unsuitable,
-                fmt::format("the texture takes {} samples, '{}' holds {}", prepared.samples.size(),
+                fmt::format("the texture needs {} samples, '{}' holds {}", prepared.samples.size(),
                             device.name, device.profile_samples),
                 client.where(), ways_to_fit(prepared.scale.interpolation));
   return check_rate(client, prepared.rate_hz);
@@ -81,12 +81,12 @@ Result<void> send_filters(Client& client, const Prepared& prepared) {
   return client.command(filters);
 }
 
-// A device that knows nothing of it is asked only for what is needed.
+// Fails only if the playback needs the inverse of a hysteresis and the device's firmware does not have it.
 Result<void> check_hysteresis(const Client& client, const Prepared& prepared) {
   const wire::Welcome& device = client.description().welcome;
   if (prepared.play_operators.count == 0 || (device.features & wire::kFeatureHysteresis) != 0) return {};
   return fail(ErrorKind::device,
-              fmt::format("'{}' (firmware {}) does not undo hysteresis", device.name, device.firmware),
+              fmt::format("'{}' (firmware {}) does not invert hysteresis", device.name, device.firmware),
               client.where(), "update its firmware, or play without (--keep-hysteresis)");
 }
 
@@ -100,7 +100,7 @@ const wire::Channel* force_channel(const Client& client) {
 Result<void> check_contact(const Client& client, const Prepared& prepared) {
   if (!(prepared.gate_on_n > 0) || force_channel(client) != nullptr) return {};
   return fail(ErrorKind::unsuitable,
-              fmt::format("'{}' reports no normal force, by which the drive could be gated",
+              fmt::format("'{}' reports no normal force, which the contact gate needs",
                           client.description().welcome.name),
               client.where(), "play without (--contact 0N; \"contact_on_n\": 0 in playback)");
 }
@@ -138,9 +138,9 @@ Result<void> check_rate(const Client& client, double rate_hz) {
   if (rate_millihertz >= device.least_rate_millihertz && rate_millihertz <= device.most_rate_millihertz)
     return {};
   return fail(ErrorKind::unsuitable,
-              fmt::format("'{}' ticks at {:g} to {:g} Hz, not at {:g} Hz", device.name,
+              fmt::format("'{}' supports {:g} to {:g} ticks per second, not {:g}", device.name,
                           1e-3 * device.least_rate_millihertz, 1e-3 * device.most_rate_millihertz, rate_hz),
-              client.where(), "ask for a rate of these");
+              client.where(), "choose a rate in this range");
 }
 
 Result<void> check_upload(const Client& client, const Prepared& prepared) {
@@ -166,7 +166,7 @@ Result<void> upload_change(Client& client, const Prepared& prepared, double devi
                            double fade_s) {
   const double times = prepared.gain_m_per_n / device_gain_m_per_n;
   if (!std::isfinite(times))
-    return fail(ErrorKind::unsuitable, "plays with a gain of 0, which no texture can be scaled to",
+    return fail(ErrorKind::unsuitable, "plays with a gain of 0, to which no texture can be scaled",
                 client.where(), "disarm, and load it again");
   if (auto sent = send_levels(client, prepared, times); !sent) return sent;
   if (auto sent = send_tracking(client, prepared); !sent) return sent;

@@ -27,8 +27,8 @@ std::vector<double> in_band(const std::vector<double>& values, const PaddedSpect
   return signal_of(spectrum);
 }
 
-// What is wanted has been through the band's skirts, and so has what the reference plays of it; the kernel
-// plays all that there is.
+// The target is filtered to the band with skirts, and so is the reference's displacement; the kernel's is
+// not.
 std::vector<double> error_of(const Rendering& rendering, const PaddedSpectrum& target,
                              const spatial::Band& band) {
   const auto &modelled_m = rendering.modelled_m.values, &target_m = rendering.target_m.values;

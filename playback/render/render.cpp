@@ -12,12 +12,12 @@
 #include "playback/model/spatial_content.hpp"
 #include "playback/prepare/texture_check.hpp"
 #include "playback/prepare/texture_layout.hpp"
-#include "playback/render/felt_path.hpp"
 #include "playback/render/kept_error.hpp"
 #include "playback/render/reference/exact_drive.hpp"
 #include "playback/render/reference/exact_target.hpp"
 #include "playback/render/render_job.hpp"
 #include "playback/render/render_kernel.hpp"
+#include "playback/render/texture_path.hpp"
 
 namespace tacto::playback {
 
@@ -27,9 +27,9 @@ using schema::Result;
 
 namespace {
 
-// Beyond this the padded transforms alone take over a gigabyte.
+// Beyond this the padded transforms alone need over a gigabyte.
 constexpr double kMostSamples = 1 << 24;
-// A thousand times the compliance of a fingertip: more is a slip of the unit.
+// A thousand times the compliance of a fingertip; a larger gain is a mistake in the unit.
 constexpr double kLargestGain = 1;
 
 double level_db(double ratio) {
@@ -44,9 +44,9 @@ Result<void> check_options(const RenderOptions& o) {
     return wrong("the band is empty or reaches 0 Hz", "0 < --low < --high");
   if (!(o.rate_hz > 2 * o.band.high_hz && std::isfinite(o.rate_hz)))
     return wrong(fmt::format("a rate of {:g} Hz can't hold a band up to {:g} Hz", o.rate_hz, o.band.high_hz),
-                 fmt::format("take a --rate above {:g}Hz", 2 * o.band.high_hz));
+                 fmt::format("use a --rate above {:g}Hz", 2 * o.band.high_hz));
   if (!(o.gain_m_per_n > 0 && o.gain_m_per_n <= kLargestGain))
-    return wrong("the gain is not between 0 and 1 m/N", "a fingertip asks for about 1mm/N");
+    return wrong("the gain is not between 0 and 1 m/N", "a fingertip needs about 1mm/N");
   if (!std::isfinite(o.at_m)) return wrong("the texture's place is not finite", "give --at a length");
   if (const double onset_s = o.onset_s.value_or(0); !(onset_s >= 0 && std::isfinite(onset_s)))
     return wrong("the onset is below 0", "0s turns it off");
@@ -62,7 +62,7 @@ Result<void> check_length(const FingerPath& path, const RenderOptions& options) 
     return fail(ErrorKind::unsuitable,
                 fmt::format("the path takes {:.4g} s, one period of {:g} Hz is longer", path.duration_s(),
                             options.band.low_hz),
-                "path", "take a longer path, or a higher --low");
+                "path", "use a longer path, or a higher --low");
   if (path.duration_s() * options.rate_hz > kMostSamples)
     return fail(ErrorKind::unsuitable,
                 fmt::format("the path of {:.4g} s is too long to render at once", path.duration_s()), "path",
@@ -74,8 +74,8 @@ Result<void> check_textures(std::span<const PlacedTexture> textures, Ends ends) 
   for (const PlacedTexture& placed : textures)
     if (auto sound = check_playable(*placed.texture); !sound) return sound;
   if (textures.size() > 1 && ends != Ends::stop)
-    return fail(ErrorKind::unsuitable, "one of several textures can't go on beyond its ends", "ends",
-                "let them stop");
+    return fail(ErrorKind::unsuitable, "several textures can't be looped or mirrored", "ends",
+                "use --ends stop");
   return {};
 }
 
@@ -124,13 +124,13 @@ double error_db(const Rendering& rendering, const PaddedSpectrum& target, const 
 
 void warn_of_folding(Rendering& rendering, const ReadingGrid& grid, const spatial::Band& band) {
   const double safe_hz = grid.reading_rate_hz() - band.high_hz;
-  rendering.warnings.push_back(fmt::format(
-      "the path is too long to read the texture's finest content at full speed: what is finer than "
-      "{:.4g} /mm may fold into the band at {:.4g} mm/s",
-      1e-3 * safe_hz / rendering.max_speed_mps, 1e3 * rendering.max_speed_mps));
+  rendering.warnings.push_back(
+      fmt::format("the path is too long to read the texture's finest content at full speed: content finer "
+                  "than {:.4g} /mm may alias into the band at {:.4g} mm/s",
+                  1e-3 * safe_hz / rendering.max_speed_mps, 1e3 * rendering.max_speed_mps));
 }
 
-void tell_loop_of(Rendering& rendering, const schema::SpaceSignal& whole) {
+void add_loop_of(Rendering& rendering, const schema::SpaceSignal& whole) {
   rendering.loop_seam_m = seam_of_loop(whole, PrepareOptions{}.seam_m);
   rendering.loop_period_m = static_cast<double>(whole.values.size()) * whole.pitch_m - rendering.loop_seam_m;
 }
@@ -145,7 +145,7 @@ Rendering described(std::span<const PlacedTexture> textures, const FingerPath& p
     rendering.texture_highest_per_m =
         std::max(rendering.texture_highest_per_m, highest_spatial_frequency(placed.texture->signal));
   rendering.onset_s = std::min(options.onset_s.value_or(usual_onset_s), path.duration_s() / 4);
-  if (options.ends == Ends::loop) tell_loop_of(rendering, textures.front().texture->signal);
+  if (options.ends == Ends::loop) add_loop_of(rendering, textures.front().texture->signal);
   return rendering;
 }
 
@@ -153,7 +153,7 @@ Chain chain_of(const schema::Transducer& transducer, const RenderOptions& o) {
   return {transducer, o.reconstruction, o.reconstruction_cutoff_hz, o.hold, o.rate_hz};
 }
 
-// Both engines, offline: the kernel's error is measured against what the reference computes anyway.
+// The kernel's error is measured against the reference, so offline the reference is computed in any case.
 Engine engine_for(const RenderOptions& o, const schema::Transducer& transducer,
                   std::vector<std::string>& reasons) {
   if (!o.budget.asked() || o.keep_engine) return o.engine;
@@ -162,17 +162,17 @@ Engine engine_for(const RenderOptions& o, const schema::Transducer& transducer,
     return Engine::kernel;
   }
   if (transducer.hysteresis && o.undo_hysteresis) {
-    reasons.emplace_back("the kernel: the reference does not undo the bender's hysteresis");
+    reasons.emplace_back("the kernel: the reference does not invert the bender's hysteresis");
     return Engine::kernel;
   }
   reasons.emplace_back(
-      "the reference: exact, and cheaper offline than the kernel, whose error would be measured against it");
+      "the reference: exact, and faster offline than the kernel, whose error would be measured against it");
   return Engine::reference;
 }
 
 Result<void> check_engine(Engine engine, const RenderOptions& o) {
   if (engine == Engine::kernel || !(o.budget.keep_reading || o.energy_rms_v > 0)) return {};
-  return fail(ErrorKind::usage, "the reference reads the texture exactly, and has no energy limit",
+  return fail(ErrorKind::usage, "the reference reads the texture at exact positions, and has no energy limit",
               o.budget.keep_reading ? "--interpolation" : "--energy-limit", "add --engine kernel");
 }
 
@@ -191,7 +191,7 @@ Result<void> drive_by(Engine engine, Rendering& rendering, const RenderJob& job)
   return {};
 }
 
-// The error, where it is more than what was asked.
+// The error, if it exceeds the budget.
 std::optional<double> missed_error(const Rendering& rendering, const RenderJob& job) {
   if (job.options.budget.by_error()) return std::nullopt;
   const double error = error_between_ends(rendering, job.target, job.options.band);
@@ -199,28 +199,29 @@ std::optional<double> missed_error(const Rendering& rendering, const RenderJob& 
 }
 
 std::string words_of_miss(double error, const RenderOptions& o) {
-  return fmt::format("error is {:.3g} % between the path's ends, asked: {:.3g} %", 100 * error,
+  return fmt::format("error is {:.3g} % between the path's ends, requested: {:.3g} %", 100 * error,
                      100 * o.budget.error.most_error());
 }
 
-// Whether the encoder's step is to blame is tried: with a tenth of it.
+// Tests by a tenth of the encoder's step whether that step causes the error.
 std::string ways_for_kernel(const Rendering& missed, RenderJob job) {
   job.options.encoder_step_m /= 10;
   Rendering finer = missed;
   if (!check_counts(job.path, job.options) || !drive_by(Engine::kernel, finer, job))
-    return "allow more, or leave --engine and --max-tick away";
+    return "allow a larger error, or omit --engine and --max-tick";
   if (!missed_error(finer, job))
-    return fmt::format("--encoder-step {:.4g}um keeps it; or allow more", 1e6 * job.options.encoder_step_m);
+    return fmt::format("use --encoder-step {:.4g}um, or allow a larger error",
+                       1e6 * job.options.encoder_step_m);
   return fmt::format(
-      "allow more, or leave --engine and --max-tick away: with a tenth of --encoder-step it is {:.3g} %",
+      "allow a larger error, or omit --engine and --max-tick: with a tenth of --encoder-step it is {:.3g} %",
       100 * error_between_ends(finer, job.target, job.options.band));
 }
 
 std::string ways_for_reference(const RenderJob& job) {
   if (job.chain.transducer.hysteresis)
-    return "allow more, or let the kernel undo the bender's hysteresis: leave --engine and --keep-hysteresis "
-           "away";
-  return "allow more, or name less: --inverse full, a smaller --gain within the limits";
+    return "allow a larger error, or let the kernel invert the hysteresis: omit --engine and "
+           "--keep-hysteresis";
+  return "allow a larger error, or use --inverse full, or a smaller --gain that keeps the limits";
 }
 
 Result<void> refuse_miss(double error, const Rendering& rendering, const RenderJob& job) {
@@ -231,27 +232,27 @@ Result<void> refuse_miss(double error, const Rendering& rendering, const RenderJ
               rendering.engine == Engine::kernel ? ways_for_kernel(rendering, job) : ways_for_reference(job));
 }
 
-// A choice's promise is of even speed and true places: what the path and the encoder add is told where it is
-// more than all of it.
+// The predicted error holds for constant speed and exact positions. A warning reports what the path and the
+// encoder add to it.
 void warn_beyond_promise(Rendering& rendering, const RenderJob& job) {
   if (!rendering.decision) return;
   const double error = error_between_ends(rendering, job.target, job.options.band);
   const double promised = rendering.decision->chosen.error;
   if (!(error > promised)) return;
   rendering.warnings.push_back(
-      fmt::format("the rendering errs by {:.3g} % between the path's ends: of that the choice's {:.3g} % are "
-                  "promised, the rest is what the encoder's step of {:.4g} um and changes of speed add",
+      fmt::format("the rendering has an error of {:.3g} % between the path's ends: {:.3g} % are predicted "
+                  "for the choice, the encoder's step of {:.4g} um and changes of speed add the rest",
                   100 * error, 100 * promised, 1e6 * job.options.encoder_step_m));
 }
 
-// Of a hysteresis or an energy limit the reference knows nothing: it can't take over, nor from a kernel that
-// was named.
+// The reference has no inverse of a hysteresis and no energy limit: then it cannot replace the kernel, nor if
+// the kernel was named.
 Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
   auto missed = missed_error(rendering, job);
   const bool stays =
       job.options.keep_engine || job.chain.transducer.hysteresis || job.options.energy_rms_v > 0;
   if (missed && !std::isnan(*missed) && rendering.engine == Engine::kernel && !stays) {
-    rendering.warnings.push_back("the reference takes over: the kernel's " +
+    rendering.warnings.push_back("the reference replaces the kernel: the kernel's " +
                                  words_of_miss(*missed, job.options));
     rendering.clipping.reset();
     rendering.removed_db.reset();
@@ -265,14 +266,14 @@ Result<void> keep_budget(Rendering& rendering, const RenderJob& job) {
   return {};
 }
 
-// The kernel's own notes tell of the band.
+// The kernel's notes include the warning about the band.
 void warn_of_model(Rendering& rendering, const schema::Transducer& transducer, const spatial::Band& band,
                    Engine engine) {
   if (engine == Engine::kernel) return;
   if (auto beyond = beyond_identified(transducer, band)) rendering.warnings.push_back(std::move(*beyond));
   if (transducer.hysteresis)
     rendering.warnings.push_back(
-        "the reference undoes the linear model alone: the bender's hysteresis stays (--engine kernel undoes "
+        "the reference inverts only the linear model, not the bender's hysteresis (--engine kernel inverts "
         "it)");
 }
 
@@ -291,17 +292,17 @@ Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPa
   if (engine == Engine::kernel) TACTO_TRY(check_counts(path, options));
   Rendering rendering = described(textures, path, options, engine);
   rendering.reasons = std::move(reasons);
-  const auto felt = FeltPath::make(textures, path, options.ends);
-  TACTO_TRY(felt);
+  const auto texture_path = TexturePath::make(textures, path, options.ends);
+  TACTO_TRY(texture_path);
   const double finest_hz = rendering.texture_highest_per_m * rendering.max_speed_mps;
   const auto grid = reading_grid(path.duration_s(), options.rate_hz, options.band, finest_hz);
-  rendering.samples_outside = felt->count_outside(grid);
-  if (rendering.samples_outside == grid.samples) return felt->never_met();
+  rendering.samples_outside = texture_path->count_outside(grid);
+  if (rendering.samples_outside == grid.samples) return texture_path->outside_textures();
   if (grid.capped) warn_of_folding(rendering, grid, options.band);
   rendering.reading_rate_hz = grid.reading_rate_hz();
-  rendering.fade_m = felt->fade_m();
+  rendering.fade_m = texture_path->fade_m();
   report(0.1);
-  const auto target = felt->target(grid, options.band, options.gain_m_per_n, rendering.onset_s);
+  const auto target = texture_path->target(grid, options.band, options.gain_m_per_n, rendering.onset_s);
   report(0.8);
   warn_of_model(rendering, transducer, options.band, engine);
   const RenderJob job{textures, path, target, chain_of(transducer, options), options};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A texture played along a finger's path, offline: the drive that makes the tray move as the texture asks.
+// Renders a texture along a finger's path, offline: the drive with which the tray follows the target.
 #pragma once
 
 #include <functional>
@@ -21,21 +21,21 @@
 
 namespace tacto::playback {
 
-/// What to do with a drive that passes a limit of the transducer.
+/// What to do with a drive that exceeds a limit of the transducer.
 enum class OverLimit { refuse, clip };
 
-/// Who computes the drive: the slow exact reference, or the kernel that runs in real time.
+/// The engine: the slow exact reference, or the kernel that runs in real time.
 enum class Engine { reference, kernel };
 
-/// Unless told. The kernel's, as `play` has it, is the drive's own: in less its slew is what the device would
-/// cut.
+/// Default onsets. The kernel's, as in `play`, is an envelope of the drive: if it were shorter, the device
+/// would limit the slew.
 inline constexpr double kReferenceOnsetS = 0.005, kKernelOnsetS = 0.02;
 
 struct RenderOptions {
   double rate_hz = 10e3;       ///< of the drive; Wiertlewski 2011 records at 10 kHz
   double gain_m_per_n = 1e-3;  ///< G_psi: displacement for force. A fingertip has about 1e3 N/m
-  double at_m = 0;             ///< of one texture: where its position 0 lies on the path's axis
-  Ends ends = Ends::stop;      ///< what lies beyond it, of one texture
+  double at_m = 0;             ///< of a single texture: place of its position 0 on the path's axis
+  Ends ends = Ends::stop;      ///< beyond a single texture
   spatial::Band band;          ///< of the displacement
   Inverse inverse = Inverse::full;
   Reconstruction reconstruction = Reconstruction::none;
@@ -46,73 +46,72 @@ struct RenderOptions {
   double encoder_step_m = 1e-6;                                      ///< of the kernel's encoder
   wire::Interpolation interpolation = wire::Interpolation::hermite;  ///< the kernel's
   double energy_rms_v = 0, energy_window_s = 1;                      ///< the kernel's; 0: no such limit
-  bool undo_hysteresis = true;  ///< by the kernel, of a transducer that says what hysteresis it has
-  TickBudget budget;            ///< what the rendering has to keep, see render()
-  bool keep_engine = false;     ///< the engine was named: it stays
-  /// Fade at the ends of the path, at most a quarter of it; kReferenceOnsetS or kKernelOnsetS unless told.
-  /// The reference's is a raised cosine of the force at either end, the kernel's its drive's onset: nothing
-  /// starts with a jump where the finger starts inside the texture. What is left is the ringing of the band's
-  /// edges: on a real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3
-  /// of it.
+  bool undo_hysteresis = true;  ///< by the kernel, if the transducer's file has a hysteresis
+  TickBudget budget;            ///< what the rendering has to keep; see render()
+  bool keep_engine = false;     ///< the engine was named and is not changed
+  /// Fade at the ends of the path, at most a quarter of it; default kReferenceOnsetS or kKernelOnsetS. The
+  /// reference fades the force by a raised cosine at each end, the kernel has the onset of its drive, so that
+  /// there is no step if the finger starts inside the texture. The rest is the ringing of the band's edges:
+  /// on a real finger's texture the drive starts below 0.3 of its RMS, without an onset at up to 1.3 of it.
   std::optional<double> onset_s;
 };
 
-/// What the limits took away from a clipped drive.
+/// What the limits removed from a clipped drive.
 struct Clipping {
-  std::size_t samples = 0;     ///< drive samples that differ by more than 1e-6 of the wished peak
-  double peak_reduced_db = 0;  ///< wished peak drive over the clipped one
-  double removed_db = 0;       ///< RMS of what was removed, re RMS of the wished drive
+  std::size_t samples = 0;     ///< drive samples changed by more than 1e-6 of the unlimited peak
+  double peak_reduced_db = 0;  ///< unlimited peak drive over the clipped one
+  double removed_db = 0;       ///< RMS of the removed part, re RMS of the unlimited drive
 };
 
 struct Rendering {
   schema::TimeSignal drive_v;     ///< rounded to 32-bit float, as it is stored and played
   schema::TimeSignal target_m;    ///< gain x force along the path, in the band (keep_band)
   schema::TimeSignal modelled_m;  ///< drive_v through the transducer's model and hysteresis, all frequencies
-  double error_db = 0;  ///< RMS of modelled - wanted in the band, re RMS of wanted; from drive_v as it is
-  /// The same without the path's ends (error_between_ends), left_out_at_ends_s of each; none where nothing is
-  /// wanted in between.
+  double error_db = 0;  ///< RMS of modelled - target in the band, re RMS of the target; from drive_v
+  /// The same without the path's ends (error_between_ends), left_out_at_ends_s at each end; none if the
+  /// target is zero in between.
   std::optional<double> interior_error_db;
-  /// Of the displacement behind the wanted one. The reference has none, its inverse is applied to spectra;
-  /// the kernel looks ahead by what its filter takes.
+  /// Delay of the displacement relative to the target. The reference has none, as it applies its inverse to
+  /// spectra; the kernel compensates its filter's delay by looking ahead.
   double delay_s = 0;
-  Peaks peaks;  ///< of the drive and the modelled displacement, against the limits
+  Peaks peaks;  ///< of the drive and the modelled displacement, with their limits
   std::optional<Clipping> clipping;
-  std::size_t samples_outside = 0;  ///< of the drive, where the finger is beside the texture
+  std::size_t samples_outside = 0;  ///< of the drive, with the finger outside the texture
   double max_speed_mps = 0;
-  double highest_passed_per_m = 0;   ///< band.high_hz / max_speed: finer content is out of the band there
+  double highest_passed_per_m = 0;  ///< band.high_hz / max_speed: finer content leaves the band at that speed
   double texture_highest_per_m = 0;  ///< highest_spatial_frequency() of the texture
   double reading_rate_hz = 0;        ///< at which the texture was read along the path
   double fade_m = 0;                 ///< TextureLookup::fade_m
-  double loop_period_m = 0;          ///< after which a looped texture begins again; 0: no loop
-  double loop_seam_m = 0;            ///< of its end, what fades into its beginning (seam_of_loop)
+  double loop_period_m = 0;          ///< period of a looped texture; 0: no loop
+  double loop_seam_m = 0;            ///< the part of its end that fades into its beginning (seam_of_loop)
   double onset_s = 0;                ///< as used
   std::vector<std::string> warnings;
   Engine engine = Engine::reference;     ///< that made the drive
-  std::vector<std::string> reasons;      ///< why it was chosen, where a budget asked for it
+  std::vector<std::string> reasons;      ///< why it was chosen, if a budget asked for it
   std::optional<TickDecision> decision;  ///< of the kernel's budget
-  /// Of the kernel's drive: turned down to hold its RMS, and what all limits took away, re the drive's RMS;
-  /// none: nothing.
+  /// For the kernel's drive: samples reduced to keep the RMS limit; and the RMS of what all limits removed,
+  /// re the drive's RMS; none: nothing was removed.
   std::uint64_t energy_limited_samples = 0;
   std::optional<double> removed_db;
 };
 
-/// Renders in double precision, or (engine) by the tick kernel, as it would run: single precision, position
-/// from an encoder, limits held. All signals share the path's time axis. `progress` hears 0 to 1.
+/// Renders in double precision, or (engine) with the tick kernel as it would run: single precision, position
+/// from an encoder, with limits. All signals have the path's time axis. `progress` receives 0 to 1.
 ///
-/// A budget is kept as measured, by error_between_ends(): the reference is exact, and cheaper than the
-/// kernel, whose error is measured against it, so it is taken unless the engine is named, max_tick_ns asks
-/// for ticks, or a hysteresis is to be undone. The kernel's reading and inverse are decide()'s; where its
-/// measured error is beyond the asked one (the finger's encoder, its turns), the reference takes over, with a
-/// warning; a kernel that was named stays, and the error is refused.
+/// The budget applies to the measured error, error_between_ends(). The reference is exact, and cheaper than
+/// the kernel, whose error is measured against it. So the reference is used unless the engine is named,
+/// max_tick_ns is given, or a hysteresis has to be inverted. decide() chooses the kernel's interpolation and
+/// inverse. If the kernel's measured error exceeds the budget (because of the encoder or changes of
+/// direction), the reference replaces it, with a warning; a kernel that was named is refused.
 ///
-/// Several textures add up, each times its weight. Beyond its ends one may be looped or mirrored, as
-/// prepare() does it: then it is known to within 2^24 samples of the path.
+/// Several textures are added, each times its weight. A single texture may be looped or mirrored beyond its
+/// ends, as in prepare(), up to 2^24 samples along the path.
 ///
 /// Errors: usage, for options out of range (rate <= 2 band.high_hz, 0 < low < high, gain, onset not finite);
-/// unsuitable, for a texture that isn't force in N, a path that check_finger_path() refuses, that never meets
-/// the texture, that is shorter than one period of the band's lowest frequency or too long to render at once,
-/// for ends of several textures that are not stop, for displacement or drive beyond a limit (see
-/// check_limits), for an error that is not kept; and as decide(). Not for the tick: allocates, and plans
+/// unsuitable, for a texture that is not force in N, a path that check_finger_path() refuses, that never
+/// reaches the texture, that is shorter than one period of the band's lowest frequency or too long to render
+/// at once, for ends other than stop with several textures, for displacement or drive beyond a limit (see
+/// check_limits), for an error beyond the budget; and as decide(). Not for the tick: allocates, and plans
 /// Fourier transforms. Source: Wiertlewski, Lozada, Hayward 2011, equations (5), (6) inverted in the
 /// frequency domain.
 schema::Result<Rendering> render(std::span<const PlacedTexture> textures, const FingerPath& path,

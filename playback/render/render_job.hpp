@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One rendering as its engines see it.
+// The input of one rendering, for both engines.
 #pragma once
 
 #include <span>
@@ -12,7 +12,6 @@
 
 namespace tacto::playback {
 
-/// What both engines are given.
 struct RenderJob {
   std::span<const PlacedTexture> textures;
   const FingerPath& path;

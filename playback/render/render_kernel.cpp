@@ -39,7 +39,7 @@ PrepareOptions kernel_options(const RenderOptions& o, double onset_s) {
   return options;
 }
 
-// What the budget chooses goes into the options.
+// Writes the choice of the budget into the options.
 Result<void> decide_kernel(Rendering& rendering, const RenderJob& job, PrepareOptions& options) {
   const TickBudget& budget = job.options.budget;
   if (!budget.asked()) return {};
@@ -58,18 +58,18 @@ struct KernelRun {
   const PrepareOptions& options;
   const RenderJob& job;
 
-  // Of what the limits were asked to hold.
+  // Peaks of the unlimited drive.
   Peaks asked_at(double gain_m_per_n) const {
     const auto drive_v = unlimited_drive(prepared, gain_m_per_n, job.path, options, job.target.samples);
-    Peaks peaks = moved_by(drive_v, job.target, job.chain).peaks;
+    Peaks peaks = modelled_from(drive_v, job.target, job.chain).peaks;
     peaks.slew_v_per_s =
         peaks_of(drive_v, {}, options.rate_hz, job.chain.transducer, AfterDrive::more).slew_v_per_s;
     return peaks;
   }
 };
 
-// An energy limit and a hysteresis are not proportional to the gain: what a proportion names is tried. 0:
-// none was found.
+// With an energy limit or a hysteresis the peaks are not proportional to the gain, so each proportional
+// estimate is tested. Returns 0 if none fits.
 double fitting_gain(const KernelRun& run, Peaks peaks) {
   double gain_m_per_n = run.job.options.gain_m_per_n;
   for (int tries = 0; tries < kMostGains && gain_m_per_n > 0; ++tries) {
@@ -90,11 +90,11 @@ tl::unexpected<schema::Error> refuse_displacement(const KernelRun& run, const Pe
   return limit_passed(displacement_m, fitting_gain(run, asked), false);
 }
 
-// What was cut is told; nobody clips the displacement.
+// Reports what was clipped; a displacement beyond its limit is refused, because nothing clips it.
 Result<ExactDrive> within_limits(Rendering& rendering, const KernelRun& run, const KernelDrive& drive) {
   const auto clipped =
       static_cast<std::size_t>(std::max(drive.tally.amplitude_limited(), drive.tally.slew_limited()));
-  ExactDrive moved = moved_by(drive.drive_v, run.job.target, run.job.chain);
+  ExactDrive moved = modelled_from(drive.drive_v, run.job.target, run.job.chain);
   const bool too_far = moved.peaks.displacement_m.used() > 1;
   if (clipped > 0 && run.job.options.over_limit == OverLimit::refuse) return refuse_cut(run, !too_far);
   if (too_far) return refuse_displacement(run, moved.peaks.displacement_m);
@@ -110,31 +110,30 @@ double farthest_of(const FingerPath& path) {
   return farthest_m;
 }
 
-// Of a texture with several samples a count it reads less far than it counts.
+// With several samples per count the reading range is smaller than the counting range.
 Result<void> check_read(const Prepared& prepared, const FingerPath& path, const PrepareOptions& options) {
   const double farthest_m = farthest_of(path);
   const double reach_m = options.metres_per_count * core::reach_counts(prepared.scale);
   if (farthest_m <= reach_m) return {};
   return fail(
       ErrorKind::unsuitable,
-      fmt::format("the path goes to {:.4g} m, and the kernel reads the texture as far as {:.4g} m from "
-                  "the encoder's zero",
-                  farthest_m, reach_m),
-      "--path", "lay path and texture (--at) nearer to it, or render with --engine reference");
+      fmt::format(
+          "the path reaches {:.4g} m, the kernel reads the texture up to {:.4g} m from the encoder's zero",
+          farthest_m, reach_m),
+      "--path", "place path and texture (--at) nearer to it, or render with --engine reference");
 }
 
 }  // namespace
 
-// Beyond that the kernel is silent (core/profile.cpp).
+// Beyond that count the kernel's output is zero (core/profile.cpp).
 Result<void> check_counts(const FingerPath& path, const RenderOptions& o) {
   constexpr double kFarthestCount = 1 << 29;
   const double farthest_m = farthest_of(path);
   if (farthest_m / o.encoder_step_m < kFarthestCount) return {};
-  return fail(
-      ErrorKind::unsuitable,
-      fmt::format("the path goes to {:.4g} m, which is over 2^29 of the encoder's counts", farthest_m),
-      "--encoder-step",
-      fmt::format("{:.3g} nm and more reach as far", std::ceil(1e9 * farthest_m / kFarthestCount * 1.01)));
+  return fail(ErrorKind::unsuitable,
+              fmt::format("the path reaches {:.4g} m, which is more than 2^29 encoder counts", farthest_m),
+              "--encoder-step",
+              fmt::format("use {:.3g} nm or more", std::ceil(1e9 * farthest_m / kFarthestCount * 1.01)));
 }
 
 Result<ExactDrive> kernels_drive(Rendering& rendering, const RenderJob& job) {

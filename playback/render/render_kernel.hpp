@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernel's half of render().
+// The part of render() that uses the kernel.
 #pragma once
 
 #include "data-schema/base/error.hpp"
@@ -8,14 +8,14 @@
 
 namespace tacto::playback {
 
-/// Errors: unsuitable, for a path that goes beyond what the kernel's encoder counts.
+/// Errors: unsuitable, for a path beyond the range of the kernel's encoder.
 schema::Result<void> check_counts(const FingerPath& path, const RenderOptions& options);
 
-/// The kernel's drive along the job's path, and what it moves; tells in `rendering` what its limits took and
-/// what its budget chose. Errors: as prepare(), decide(); unsuitable, for a drive that its limits cut (unless
-/// over_limit allows it) or that moves the tray beyond its own: by which peak, when, and the largest gain
-/// that fits. The kernel holds no displacement: that is never clipped. The drive's end is no step to rest:
-/// whoever plays goes on.
+/// The kernel's drive along the job's path, and the displacement; writes to `rendering` what the limits
+/// removed and what the budget chose. Errors: as prepare(), decide(); unsuitable, for a drive that its limits
+/// clip (unless over_limit allows it) or a displacement beyond its limit: which peak, when, and the largest
+/// gain that fits. The kernel does not limit displacement, so that is never clipped. The end of the drive is
+/// not counted as a step to rest, because a playback continues.
 schema::Result<ExactDrive> kernels_drive(Rendering& rendering, const RenderJob& job);
 
 }  // namespace tacto::playback

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kReplayClockHz = 1'000'000;
 
-// No drive comes near them, and their ratio takes nothing of the time that a release may take.
+// No drive reaches them, and their ratio does not shorten the longest possible release.
 constexpr float kNoDriveLimitV = 1e12F, kNoSlewLimitVPerS = 1e30F;
 
 template <class Message>
@@ -22,8 +22,8 @@ std::vector<std::uint8_t> frame_of(const Message& message) {
   return frame;
 }
 
-// Which channel it was, and in which units, did its work when the device decided: its ticks say what came of
-// it. So the gate is given a force of one newton, or of none.
+// The device has decided with its channel and units, and its ticks report the decision. So the gate of the
+// replay gets a force of one newton or none.
 wire::Contact as_decided(const wire::Contact& contact) {
   const float threshold = contact.on_n > 0 ? 0.5F : 0;
   return {0, {}, threshold, threshold, 1, 0};
@@ -44,7 +44,7 @@ bool is_frame(std::span<const std::uint8_t> bytes) {
          header.length <= wire::kMaxPayload && bytes.size() == around + header.length;
 }
 
-bool tells_touch(const schema::SessionHeader& header) {
+bool reports_contact(const schema::SessionHeader& header) {
   const std::string& protocol = header.device_protocol;
   return !protocol.empty() && protocol != "1.0" && protocol != "1.1";
 }
@@ -104,7 +104,7 @@ core::Hal SessionBoard::hal() {
   return hal;
 }
 
-// Of what the core says, only answers matter.
+// Of the core's messages only answers are needed.
 void SessionBoard::listen() {
   std::size_t at = 0;
   wire::Frame frame;
@@ -131,8 +131,8 @@ std::vector<std::uint8_t> SessionBoard::as_replayed(std::span<const std::uint8_t
   return {frame.begin(), frame.end()};
 }
 
-// Each frame gets the next sequence number: the core drops what it has heard before.
-std::optional<wire::Answer> SessionBoard::say_frame(std::span<const std::uint8_t> frame) {
+// Each frame gets the next sequence number, because the core drops repeated ones.
+std::optional<wire::Answer> SessionBoard::send_frame(std::span<const std::uint8_t> frame) {
   std::vector<std::uint8_t> sealed = as_replayed(frame);
   const wire::FrameHeader header{
       wire::kProtocolMajor, sealed[3],
@@ -145,7 +145,7 @@ std::optional<wire::Answer> SessionBoard::say_frame(std::span<const std::uint8_t
   return answer_;
 }
 
-// How long it was is not recorded, but what came of it is: blindness, a jump that was one, or nothing.
+// The number of unseen periods is not recorded. Its effect is: a blind tick, a jump (fault), or nothing.
 std::uint32_t SessionBoard::unseen_in(const schema::SessionTick& recorded) const {
   if ((recorded.flags & wire::kTickBlind) != 0) return UINT32_MAX;
   const bool fault = (recorded.flags & wire::kTickFault) != 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A board whose inputs are a session's, around the firmware's own core.
+// The firmware's own core on a board whose inputs come from a session.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace tacto::playback {
 /// Whether these bytes are one whole frame.
 bool is_frame(std::span<const std::uint8_t> bytes);
 
-/// The message in a frame, where it is one of its kind. Precondition: is_frame().
+/// The message in a frame, if it is of this type. Precondition: is_frame().
 template <class Message>
 std::optional<Message> message_in_frame(std::span<const std::uint8_t> frame) {
   Message message;
@@ -32,16 +32,16 @@ inline wire::MessageType type_of(const schema::SessionCommand& command) {
   return static_cast<wire::MessageType>(command.frame[3]);
 }
 
-/// Whether ticks say that the finger touches: from protocol 1.2 on. Older sessions do not name the protocol.
-bool tells_touch(const schema::SessionHeader& header);
+/// Whether the ticks report contact: from protocol 1.2 on. Older sessions do not name the protocol.
+bool reports_contact(const schema::SessionHeader& header);
 
-/// Whether amplitude, slew and energy hold the drive, or let through what the kernel wishes.
+/// Whether the limits of amplitude, slew and energy act as recorded, or not at all.
 enum class BoardLimits { recorded, lifted };
 
 inline constexpr std::size_t kMostProfileSamples = std::size_t{1}
-                                                   << 24;  // as much as prepare() makes at most
+                                                   << 24;  // the largest number that prepare() makes
 
-/// Encoder, enable input and touch are as told; the drive is kept.
+/// Encoder, enable input and contact are those of the recorded tick; the drive is stored.
 class SessionBoard {
  public:
   explicit SessionBoard(const schema::SessionHeader& header, BoardLimits limits = BoardLimits::recorded,
@@ -49,17 +49,17 @@ class SessionBoard {
   SessionBoard(const SessionBoard&) = delete;
   SessionBoard& operator=(const SessionBoard&) = delete;
 
-  /// Before arming: where the encoder is.
+  /// Sets the encoder before arming.
   void rest_at(std::int32_t encoder) { encoder_ = encoder; }
-  /// Hands a frame to the core; gives its answer, none where there was none. Precondition: is_frame().
-  std::optional<wire::Answer> say_frame(std::span<const std::uint8_t> frame);
+  /// Gives a frame to the core; returns its answer, if there is one. Precondition: is_frame().
+  std::optional<wire::Answer> send_frame(std::span<const std::uint8_t> frame);
   template <class Message>
   std::optional<wire::Answer> say(const Message& message) {
     std::uint8_t frame[wire::kMaxFrame];
     const std::size_t size = wire::encode_frame(message, 0, frame, sizeof frame);
-    return say_frame(std::span<const std::uint8_t>(frame, size));
+    return send_frame(std::span<const std::uint8_t>(frame, size));
   }
-  /// One tick; the drive of it.
+  /// Runs one tick; returns its drive.
   float tick(const schema::SessionTick& recorded);
 
  private:
@@ -80,7 +80,7 @@ class SessionBoard {
   std::uint32_t sequence_ = 0;
   std::int32_t encoder_ = 0;
   std::uint32_t unseen_ = 0;
-  wire::Channel force_;  // of the finger: 1 N where it touches
+  wire::Channel force_;  // of the finger: 1 N in contact
   std::int32_t touching_ = 0;
   bool enabled_ = true;
   float drive_v_ = 0;

@@ -24,8 +24,8 @@ Result<SessionColumns> read_session_columns(const std::string& name) {
   const auto overview = session_overview(name);
   TACTO_TRY(overview);
   if (overview->ticks > kMostColumnTicks)
-    return fail(ErrorKind::unsuitable, fmt::format("has over {} ticks", kMostColumnTicks), overview->path,
-                "`tactograph session` judges and exports it, whatever its length");
+    return fail(ErrorKind::unsuitable, fmt::format("has more than {} ticks", kMostColumnTicks),
+                overview->path, "`tactograph session` judges and exports sessions of any length");
   SessionColumns columns;
   columns.header = overview->header;
   columns.lost_at = overview->lost_at;

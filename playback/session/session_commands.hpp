@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which tick took which command: what a play that is computed again has to hear, and when.
+// Which tick received which command, so that a replay can repeat the commands at the same ticks.
 #pragma once
 
 #include <cstdint>
@@ -12,42 +12,42 @@
 
 namespace tacto::playback {
 
-/// A session's commands for a device that is given its ticks. The upload goes in at once; arming waits for
-/// the first tick, steering for the tick that counts it in its flags. What is uploaded after arming goes in
-/// right before the change that is to it: then the device is known to have taken it. What no change is to did
-/// nothing.
+/// Gives a session's commands to a device that is replayed tick by tick. The upload is given at once; arming
+/// waits for the first tick, a steering command for the tick whose flags count it. An upload after arming is
+/// given directly before the change that uses it, because then the device certainly had it. An upload that no
+/// change uses has no effect.
 class SessionCommands {
  public:
   using Obey = std::function<void(const schema::SessionCommand& command)>;
 
-  /// In the order of the session, each before the ticks that took it. Precondition: its frame is_frame().
+  /// Call in the order of the session, before the ticks that received the command. Precondition: its frame
+  /// is_frame().
   void hand(const schema::SessionCommand& command, const Obey& obey);
-  /// What this tick has taken since the one before it. Ticks from 0 on, without a hole.
+  /// Gives the commands that were received since the previous tick. Ticks from 0 on, none missing.
   void before(const schema::SessionTick& tick, const Obey& obey);
 
  private:
   struct Steering {
-    std::vector<schema::SessionCommand> upload;  // that belongs to it
+    std::vector<schema::SessionCommand> upload;  // the upload for this command
     schema::SessionCommand command;
   };
   std::optional<schema::SessionCommand> arming_;
   std::deque<Steering> waiting_;
-  std::vector<schema::SessionCommand> next_;  // what was uploaded since, for a change to come
+  std::vector<schema::SessionCommand> next_;  // upload since then, for the next change
   std::uint8_t steered_ = 0;
 };
 
-/// When a host is heard that plays a session again: always in time, but before the first tick in fault, where
-/// it is as silent as it was. Whatever the fault's cause: a silence that ends in the same tick changes
-/// nothing about another one.
+/// The heartbeats of the host in a replay: always in time, except before the first tick in fault, where the
+/// host is silent for the watchdog's time. This holds for every cause of the fault: a silence that ends in
+/// the same tick does not change another cause.
 class HostBeats {
  public:
-  /// The device's watchdog stands in one of the commands.
+  /// One of the commands contains the time of the device's watchdog.
   void see(const schema::SessionCommand& command, double rate_hz);
   void see(const schema::SessionTick& tick);
-  /// Whether it beats before this tick, the first fault of the whole session seen.
+  /// Whether there is a heartbeat before this tick. Call after see() of the session's first fault.
   bool beats_before(std::uint64_t tick) const;
-  /// So many ticks from a tick on have to be seen before it is known whether the host beats before it; none
-  /// once there was a fault.
+  /// How many ticks after a tick have to be seen before beats_before() of it is known; 0 after a fault.
   std::uint64_t looks_ahead() const { return fault_ == kNever ? watchdog_ticks_ + 1 : 0; }
 
  private:

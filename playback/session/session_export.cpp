@@ -25,7 +25,7 @@ constexpr std::string_view kColumns =
     "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s,energy_limited,gated,"
     "touching,gain,device_time_s,measured_m";
 
-// With which a table begins in every version.
+// Tables of all versions begin with these columns.
 constexpr std::string_view kOldestColumns =
     "tick,time_s,encoder_count,position_m,drive_v,playing,fault,late,limited,lateness_s";
 
@@ -78,17 +78,17 @@ Result<std::string> write_csv(const std::string& session, const std::string& tem
              : fail(ErrorKind::cannot_write, "can't be written", temporary, "is the disk full?");
 }
 
-// What a WAV would hold of periods without a tick: at most as much as of the others, or half an hour.
+// A WAV has samples for periods without a tick: at most as many as there are ticks, or half an hour.
 Result<void> check_even(const SessionOverview& overview) {
   const auto most = std::max(overview.ticks, static_cast<std::uint64_t>(1800 * overview.header.rate_hz));
   if (overview.lost_at)
-    return fail(ErrorKind::unsuitable,
-                fmt::format("ticks are missing from {} on, which a WAV can't show", *overview.lost_at),
-                overview.path, "export CSV or netCDF, which carry the time");
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format("ticks are missing from tick {} on, which a WAV can't represent", *overview.lost_at),
+        overview.path, "export CSV or netCDF, which carry the time");
   if (overview.missing_periods > most)
     return fail(ErrorKind::unsuitable,
-                fmt::format("{} periods passed without a tick, beside {} ticks: most of the WAV would be "
-                            "made up",
+                fmt::format("{} periods have no tick, {} have one: most of the WAV would be interpolated",
                             overview.missing_periods, overview.ticks),
                 overview.path, "export CSV or netCDF, which carry the time");
   return {};
@@ -98,8 +98,7 @@ std::string words_of_missing(const SessionOverview& overview, std::uint64_t unme
   std::string words;
   if (overview.missing_periods > 0)
     words = fmt::format(
-        "{} ticks were never made, for the computer stood still: the WAV goes straight from one neighbour to "
-        "the other",
+        "{} periods have no tick because the computer stopped: the WAV interpolates linearly over them",
         overview.missing_periods);
   if (unmeasured > 0)
     words +=
@@ -108,7 +107,7 @@ std::string words_of_missing(const SessionOverview& overview, std::uint64_t unme
   return words;
 }
 
-// Frames are written in blocks; the first failure stays.
+// Writes frames in blocks; after a failure it stops and keeps the error.
 class FrameWriter {
  public:
   FrameWriter(schema::WavWriter& wav, const SessionOverview& overview) : wav_(wav) {
@@ -126,7 +125,7 @@ class FrameWriter {
   }
 
  private:
-  // Where there is no sample, the last one stays.
+  // If there is no sample, the last one is repeated.
   double measured_m(const SessionRow& row) {
     const auto measured_m = sensor_->at(row.device_time_s);
     unmeasured_ += !measured_m;
@@ -164,7 +163,7 @@ Result<std::string> write_wav(const std::string& session, const std::string& tem
 
 std::vector<schema::SessionTurn> named_turns(const RowMaker& maker, double rate_hz) {
   std::vector<schema::SessionTurn> turns;
-  for (const TextureTurn& turn : maker.turns())
+  for (const TextureChange& turn : maker.turns())
     turns.push_back({turn.time_s, turn.fade_ticks / rate_hz,
                      turn.brings ? turn.brings->textures : std::vector<schema::SessionTexture>()});
   return turns;
@@ -211,7 +210,7 @@ Result<void> check_table(const std::string& file, schema::Existing existing) {
 Result<void> check_netcdf(const std::string& file, schema::Existing existing) {
   if (!schema::is_file(file) || schema::is_session_netcdf(file))
     return schema::check_output_free(file, existing);
-  return fail(ErrorKind::usage, "holds something else, and would be lost", file,
+  return fail(ErrorKind::usage, "has other content, which would be overwritten", file,
               "choose another name, or remove it first");
 }
 
@@ -228,8 +227,8 @@ constexpr Format kFormats[] = {{".csv", check_table, write_csv},
 Result<const Format*> format_of(const std::string& file) {
   for (const Format& format : kFormats)
     if (file.ends_with(format.ending)) return &format;
-  return fail(ErrorKind::usage, fmt::format("'{}' is no format that a session can be exported to", file),
-              "output", "name a file that ends in .csv, .wav or .nc");
+  return fail(ErrorKind::usage, fmt::format("a session can't be exported to '{}'", file), "output",
+              "name a file that ends in .csv, .wav or .nc");
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ Result<void> hear_ticks(const std::string& session, std::uint64_t from, const Ti
 
 tl::unexpected<schema::Error> not_known(const std::string& why, const std::string& session) {
   return fail(ErrorKind::unsuitable, "the effect of the limits is not known: " + why,
-              schema::session_path(session), "`tactograph replay` says more");
+              schema::session_path(session), "`tactograph replay` gives details");
 }
 
 }  // namespace
@@ -69,8 +69,8 @@ core::TickOutput limited_tick(float drive_v, float unlimited_v, std::uint32_t fl
   return output;
 }
 
-Result<void> hear_wishes(const std::string& session, const WishListener& listener,
-                         const std::function<void(double)>& progress) {
+Result<void> read_unlimited(const std::string& session, const UnlimitedListener& listener,
+                            const std::function<void(double)>& progress) {
   const auto seen = flags_in(session);
   TACTO_TRY(seen);
   if (!seen->whole) return not_known("ticks are missing", session);
@@ -80,17 +80,16 @@ Result<void> hear_wishes(const std::string& session, const WishListener& listene
   const auto outcome = replay_session(session, progress, listener);
   TACTO_TRY(outcome);
   if (!outcome->first_difference) return {};
-  return not_known(
-      fmt::format("the replayed drive is another one from tick {} on", outcome->first_difference->tick),
-      session);
+  return not_known(fmt::format("the replayed drive differs from tick {} on", outcome->first_difference->tick),
+                   session);
 }
 
-Result<std::optional<schema::Error>> hear_every_wish(
+Result<std::optional<schema::Error>> read_unlimited_where_known(
     const std::string& session,
     const std::function<void(const SessionTick& tick, std::optional<float> unlimited_v)>& listener,
     const std::function<void(double)>& progress) {
   std::uint64_t heard = 0;
-  const auto wishes = hear_wishes(
+  const auto wishes = read_unlimited(
       session, [&](const SessionTick& tick, float unlimited_v) { ++heard, listener(tick, unlimited_v); },
       progress);
   if (wishes) return std::optional<schema::Error>();
@@ -102,7 +101,7 @@ Result<std::optional<schema::Error>> hear_every_wish(
 
 Result<LimitTally> tally_session(const std::string& session) {
   LimitTally tally;
-  const auto heard = hear_wishes(session, [&](const SessionTick& tick, float unlimited_v) {
+  const auto heard = read_unlimited(session, [&](const SessionTick& tick, float unlimited_v) {
     tally.add(limited_tick(tick.drive_v, unlimited_v, tick.flags));
   });
   return heard ? Result<LimitTally>(tally) : schema::forward_error(heard);

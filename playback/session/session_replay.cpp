@@ -21,7 +21,7 @@ using schema::Result;
 using schema::SessionCommand;
 using schema::SessionTick;
 
-// What has to be known of the whole before its first tick.
+// What a replay needs to know of the whole session before its first tick.
 struct Overview {
   HostBeats beats;
   bool gated = false;  // by contact
@@ -29,7 +29,7 @@ struct Overview {
   schema::SessionEnding ending = schema::SessionEnding::unread;
   std::optional<std::uint64_t> damaged_at;
   UploadWatch upload;
-  bool ticks = false;  // it holds some
+  bool ticks = false;  // whether there are any
 };
 
 Result<Overview> overview_of(const std::string& name) {
@@ -47,7 +47,7 @@ Result<Overview> overview_of(const std::string& name) {
     if (command == nullptr) continue;
     seen.upload.see(*command);
     if (!is_frame(command->frame))
-      return fail(ErrorKind::malformed, "a command in it is no frame of the wire", reader->path());
+      return fail(ErrorKind::malformed, "a command in it is not a frame of the wire", reader->path());
     seen.beats.see(*command, reader->header().rate_hz);
     if (const auto contact = message_in_frame<wire::Contact>(command->frame)) seen.gated = contact->on_n > 0;
   }
@@ -58,7 +58,7 @@ Result<Overview> overview_of(const std::string& name) {
 
 class SessionPlayer {
  public:
-  SessionPlayer(const schema::SessionHeader& header, const HostBeats& beats, const WishListener& wishes)
+  SessionPlayer(const schema::SessionHeader& header, const HostBeats& beats, const UnlimitedListener& wishes)
       : board_(header), beats_(beats), wishes_(wishes) {
     if (wishes_) unlimited_ = std::make_unique<SessionBoard>(header, BoardLimits::lifted);
   }
@@ -78,8 +78,8 @@ class SessionPlayer {
  private:
   void obey(const SessionCommand& command) {
     if (refused_) return;
-    const auto answer = board_.say_frame(command.frame);
-    if (unlimited_) unlimited_->say_frame(command.frame);
+    const auto answer = board_.send_frame(command.frame);
+    if (unlimited_) unlimited_->send_frame(command.frame);
     if (answer && answer->code == wire::AnswerCode::ok) return;
     const auto words = answer ? firmware_host::words_of(answer->code, answer->detail).what : "no answer";
     refused_ = fmt::format("{} is refused: {}", firmware_host::to_string(type_of(command)), words);
@@ -97,9 +97,9 @@ class SessionPlayer {
     const bool beats = beats_.beats_before(tick.tick);
     if (beats) board_.say(wire::Heartbeat{});
     compare(tick, board_.tick(tick));
-    if (unlimited_) tell_wish(tick, beats);
+    if (unlimited_) report_unlimited(tick, beats);
   }
-  void tell_wish(const SessionTick& tick, bool beats) {
+  void report_unlimited(const SessionTick& tick, bool beats) {
     if (beats) unlimited_->say(wire::Heartbeat{});
     const float unlimited_v = unlimited_->tick(tick);
     if (!outcome_.first_difference) wishes_(tick, unlimited_v);
@@ -111,17 +111,17 @@ class SessionPlayer {
   }
 
   SessionBoard board_;
-  std::unique_ptr<SessionBoard> unlimited_;  // where somebody asks for its drive
+  std::unique_ptr<SessionBoard> unlimited_;  // if the caller needs its drive
   HostBeats beats_;
-  const WishListener& wishes_;
+  const UnlimitedListener& wishes_;
   SessionCommands commands_;
   SessionCommands::Obey obey_ = [this](const SessionCommand& command) { obey(command); };
   std::optional<std::string> refused_;
   ReplayOutcome outcome_;
 };
 
-// Commands stand in the file where they were sent; a tick that took one may stand before it by what was on
-// its way. They are few: all are read first.
+// A command is stored at its time of sending; a tick that received it may be stored earlier, because ticks
+// are delayed on the link. There are few commands, so all are read first.
 Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) {
   auto reader = schema::SessionReader::open(name);
   TACTO_TRY(reader);
@@ -130,26 +130,27 @@ Result<void> hand_over_commands(const std::string& name, SessionPlayer& player) 
   return {};
 }
 
-// A damaged file may lack what stood behind the damage.
+// In a damaged file a part of the upload may be behind the damage.
 Result<void> check_replayable(const Overview& seen, const schema::SessionReader& reader) {
   const std::string missing = seen.upload.missing();
   if (!missing.empty() && seen.ticks && !seen.damaged_at)
-    return fail(ErrorKind::unsuitable,
-                fmt::format("lacks {}: the disk did not take it (was it full?), and without it the drive "
-                            "can't be computed again",
-                            missing),
-                reader.path(), "the ticks that are in it can be exported: tactograph session");
-  if (!seen.gated || tells_touch(reader.header())) return {};
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format(
+            "lacks {}: it could not be written (was the disk full?), so the drive can't be computed again",
+            missing),
+        reader.path(), "tactograph session can export its ticks");
+  if (!seen.gated || reports_contact(reader.header())) return {};
   return fail(ErrorKind::unsuitable,
-              "was gated by contact, and its ticks do not say when the finger touched: its drive can't be "
+              "was played with a contact gate whose state its ticks do not contain: its drive can't be "
               "computed again",
-              reader.path(), "play anew, on firmware of protocol 1.2 or newer");
+              reader.path(), "play again, with firmware of protocol 1.2 or newer");
 }
 
 }  // namespace
 
 Result<ReplayOutcome> replay_session(const std::string& name, const std::function<void(double)>& progress,
-                                     const WishListener& wishes) {
+                                     const UnlimitedListener& wishes) {
   const auto seen = overview_of(name);
   TACTO_TRY(seen);
   auto reader = schema::SessionReader::open(name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plays a session again, on the firmware's own core, and compares drive with drive.
+// Replays a session on the firmware's own core, and compares the drives.
 #pragma once
 
 #include <functional>
@@ -19,35 +19,34 @@ struct Difference {
 struct ReplayOutcome {
   std::uint64_t ticks = 0;  ///< compared
   std::optional<Difference> first_difference;
-  /// Ticks that are missing in the session: what comes after them can't be replayed, for the filters' past is
-  /// not known.
+  /// The first tick that is missing in the session: what follows cannot be replayed, because the state of the
+  /// filters is unknown.
   std::optional<std::uint64_t> lost_at;
-  std::uint64_t lost = 0;  ///< ticks that are missing, by the session's own words
+  std::uint64_t lost = 0;  ///< missing ticks, as the session states
   schema::SessionEnding ending = schema::SessionEnding::unread;
-  /// The byte from which on the file is damaged: what comes after it was not read.
+  /// Offset of the first damaged byte; nothing is read from there on.
   std::optional<std::uint64_t> damaged_at;
 
-  /// All of it is there, and the same.
+  /// Whether the session is complete and the drives are equal.
   bool same() const { return !first_difference && !lost_at && !damaged_at; }
 };
 
-/// Hears of each tick that was replayed alike what the kernel wished before amplitude, slew and energy were
-/// held, V.
-using WishListener = std::function<void(const schema::SessionTick& tick, float unlimited_v)>;
+/// Receives, for each tick that was replayed with the same drive, the kernel's drive before the limits of
+/// amplitude, slew and energy, V.
+using UnlimitedListener = std::function<void(const schema::SessionTick& tick, float unlimited_v)>;
 
-/// The recorded commands go to a device of this program's core in the ticks that took them, the recorded
-/// counts to its encoder (a texture that it changes to, in the tick of the change); its drive has to be the
-/// recorded one to the bit. A fault is met again where its
-/// cause is in the ticks (enable input, jump, no number) or in the silence of the host. Of a contact gate the
-/// ticks tell what it decided, not the force. Nothing but the session is read. Errors: unsuitable, where
-/// there are no ticks, where a part of what is sent up to arming is not in it, or where a contact gated a
-/// session whose ticks do not tell (before protocol 1.2); malformed, where a command in it is no frame;
-/// unsuitable, where the core refuses one, with its reason. `progress` hears fractions; `wishes` costs the
-/// same again: a second device, without limits, is given the same. It comes to rest a little sooner where the
-/// slew held the other one, at most drive limit / slew limit, and then takes a count that was unseen so much
-/// sooner.
+/// A device with this program's core receives the recorded commands at the ticks that received them, and the
+/// recorded counts as its encoder (the upload of a change of texture, in the tick of the change). Its drive
+/// has to equal the recorded one to the bit. A fault is reproduced if its cause is in the ticks (enable
+/// input, jump, not a number) or is the host's silence. For a contact gate the ticks contain its decision,
+/// not the force. Only the session is read. Errors: unsuitable, if there are no ticks, if a part of what is
+/// sent up to arming is missing, or if a contact gated a session whose ticks do not report it (before
+/// protocol 1.2); malformed, if a command in it is not a frame; unsuitable, if the core refuses one, with its
+/// reason. `progress` receives fractions; `wishes` doubles the cost, because a second device, without limits,
+/// is replayed too. This one comes to rest a little earlier if the slew limit delayed the other, by at most
+/// drive limit / slew limit, and then accepts a count that was unseen that much earlier.
 schema::Result<ReplayOutcome> replay_session(const std::string& name,
                                              const std::function<void(double)>& progress = {},
-                                             const WishListener& wishes = {});
+                                             const UnlimitedListener& wishes = {});
 
 }  // namespace tacto::playback

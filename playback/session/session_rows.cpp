@@ -24,9 +24,9 @@ using schema::Result;
 using schema::SessionTick;
 
 constexpr std::uint32_t kPlaysBlind = wire::kTickBlind | wire::kTickPlaying;
-constexpr std::size_t kMostTexturesKept = 65536;  // of all changes: a file may hold any number
+constexpr std::size_t kMostTexturesKept = 65536;  // of all changes; a file may name any number
 
-// Each command that steers, in their order.
+// Collects the steering commands in order.
 class SteeringSteps {
  public:
   SteeringSteps(double textures_gain, double rate_hz) : textures_gain_(textures_gain), rate_hz_(rate_hz) {}
@@ -60,10 +60,10 @@ class SteeringSteps {
     const auto gain = message_in_frame<wire::Gain>(command.frame);
     return gain ? std::optional(gain->gain / textures_gain_) : std::nullopt;
   }
-  std::optional<TextureTurn> turn_of(const schema::SessionCommand& command) {
+  std::optional<TextureChange> turn_of(const schema::SessionCommand& command) {
     const auto change = message_in_frame<wire::Change>(command.frame);
     if (!change) return std::nullopt;
-    TextureTurn turn{0, change->fade_s * rate_hz_, std::exchange(next_, std::nullopt), 0, next_reach_};
+    TextureChange turn{0, change->fade_s * rate_hz_, std::exchange(next_, std::nullopt), 0, next_reach_};
     textures_ += turn.brings ? turn.brings->textures.size() : 0;
     if (textures_ > kMostTexturesKept) turn.brings.reset();
     return turn;
@@ -74,11 +74,11 @@ class SteeringSteps {
   bool armed_ = false;
   ProfileReach reach_, next_reach_;
   std::vector<SteeringStep> steps_;
-  std::optional<schema::SessionProgram> next_;  // what the next change brings
+  std::optional<schema::SessionProgram> next_;  // the textures of the next change
   std::size_t textures_ = 0;
 };
 
-// The greatest of the textures' gains is the one that the device knows; the others are parts of it.
+// The device has the greatest of the textures' gains; the others are relative to it.
 double shared_gain(const schema::SessionHeader& header) {
   double most = 0;
   for (const schema::SessionTexture& texture : header.textures)
@@ -86,8 +86,8 @@ double shared_gain(const schema::SessionHeader& header) {
   return most == 0 ? 1 : most;
 }
 
-// How many periods passed without a tick. Times in a message are counted on by the rate: half a period is no
-// gap.
+// Number of periods without a tick. Times in a message are extrapolated by the rate, so half a period is not
+// a gap.
 std::uint64_t periods_between(double from_s, double to_s, double rate_hz) {
   const double periods = (to_s - from_s) * rate_hz;
   return periods > 1.5 ? static_cast<std::uint64_t>(std::min(std::round(periods) - 1, 1e15)) : 0;
@@ -101,15 +101,15 @@ double seconds_since(std::int64_t first_ns, std::int64_t time_ns) {
   return 1e-9 * static_cast<double>(time_ns - first_ns);
 }
 
-// Takes blocks in, one overload a kind.
+// Reads the blocks, one overload for each type.
 class Surveyor {
  public:
   Surveyor(const schema::SessionHeader& header, SessionOverview& overview)
       : seen_(overview), steps_(shared_gain(header), header.rate_hz) {
     seen_.header = header;
   }
-  void operator()(const schema::SessionLoss& loss) { told_lost_ += loss.count; }
-  void operator()(const schema::SessionEnd& end) { told_lost_ = end.lost_ticks; }
+  void operator()(const schema::SessionLoss& loss) { reported_lost_ += loss.count; }
+  void operator()(const schema::SessionEnd& end) { reported_lost_ = end.lost_ticks; }
   void operator()(const schema::SessionCommand& command) {
     steps_.see(command);
     upload_.see(command);
@@ -125,8 +125,8 @@ class Surveyor {
     next_tick_ = ticks.back().tick + 1;
   }
   void finish() {
-    if (told_lost_ > seen_.lost && !seen_.lost_at) seen_.lost_at = next_tick_;
-    seen_.lost = std::max(seen_.lost, told_lost_);
+    if (reported_lost_ > seen_.lost && !seen_.lost_at) seen_.lost_at = next_tick_;
+    seen_.lost = std::max(seen_.lost, reported_lost_);
     seen_.look_ahead_ticks = steps_.look_ahead_ticks();
     seen_.onset_s = steps_.limits().onset_s, seen_.release_s = steps_.limits().release_s;
     seen_.reach = steps_.reach();
@@ -154,7 +154,7 @@ class Surveyor {
   SteeringSteps steps_;
   UploadWatch upload_;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
-  std::uint64_t told_lost_ = 0, next_tick_ = 0;
+  std::uint64_t reported_lost_ = 0, next_tick_ = 0;
 };
 
 }  // namespace
@@ -176,9 +176,9 @@ std::function<void(double)> part_of(const std::function<void(double)>& whole, do
 }
 
 schema::Error no_ticks_in(const std::string& path, const std::optional<std::uint64_t>& damaged_at) {
-  if (!damaged_at) return {ErrorKind::unsuitable, "holds no ticks", path, ""};
+  if (!damaged_at) return {ErrorKind::unsuitable, "has no ticks", path, ""};
   return {ErrorKind::malformed, fmt::format("is damaged from byte {} on, before its first tick", *damaged_at),
-          path, "bring the right file back"};
+          path, "restore the original file"};
 }
 
 Result<SessionOverview> session_overview(const std::string& name,
@@ -199,8 +199,8 @@ Result<SessionOverview> session_overview(const std::string& name,
   return overview;
 }
 
-RowMaker::RowMaker(const SessionOverview& overview, std::uint64_t most_put_in)
-    : overview_(overview), most_put_in_(most_put_in), gain_(overview.header.initial_gain) {}
+RowMaker::RowMaker(const SessionOverview& overview, std::uint64_t most_filled)
+    : overview_(overview), most_put_in_(most_filled), gain_(overview.header.initial_gain) {}
 
 void RowMaker::begin_at(const SessionTick& tick) {
   first_ns_ = tick.time_ns;
@@ -223,7 +223,7 @@ SessionRow RowMaker::row_of(const SessionTick& tick) const {
   return row;
 }
 
-// Of a stop that is not put in whole, the rows next to either side keep their times.
+// If a stop is not filled completely, the rows next to it keep their times.
 double RowMaker::time_between(double to_s, std::uint64_t i, std::uint64_t periods,
                               std::uint64_t missing) const {
   const double from_s = last_.time_s, rate_hz = overview_.header.rate_hz;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session row by row, in memory that its length has no part in.
+// A session row by row; memory does not depend on its length.
 #pragma once
 
 #include <cstddef>
@@ -13,82 +13,84 @@
 
 namespace tacto::playback {
 
-/// The encoder counts in which a device reads a texture; elsewhere its drive is zero (core::reach_counts).
+/// The range of encoder counts in which a device reads a texture; outside its drive is zero
+/// (core::reach_counts).
 struct ProfileReach {
   std::int32_t origin_count = 0;
-  std::int64_t counts = INT64_MAX;  ///< to either side; older sessions may not say
+  std::int64_t counts = INT64_MAX;  ///< to each side; older sessions do not state it
 
   bool holds(std::int32_t encoder) const;
 };
 
 /// A change of texture.
-struct TextureTurn {
-  std::uint64_t row = 0;                         ///< the first that another texture is in
-  double fade_ticks = 0;                         ///< over which it comes in (core::TexturePlayer)
-  std::optional<schema::SessionProgram> brings;  ///< none: the session does not say, as older ones
+struct TextureChange {
+  std::uint64_t row = 0;                         ///< the first that contains the new texture
+  double fade_ticks = 0;                         ///< duration of the fade (core::TexturePlayer)
+  std::optional<schema::SessionProgram> brings;  ///< none: an older session, which does not name it
   double time_s = 0;                             ///< of that row
   ProfileReach reach = {};
 };
 
-/// A command that steers, in the order of the session.
+/// A steering command, in the order of the session.
 struct SteeringStep {
-  std::optional<double> gain;       ///< the factor on the textures' own gains, where it is a gain
-  std::optional<TextureTurn> turn;  ///< where it is a change, its row yet to be found
+  std::optional<double> gain;         ///< factor of the textures' own gains, if the command is a gain
+  std::optional<TextureChange> turn;  ///< if it is a change of texture; its row is found later
 };
 
-/// What has to be known of a session before its first row.
+/// What a reader of rows needs to know of the whole session.
 struct SessionOverview {
   schema::SessionHeader header;
   std::string path;
   std::vector<SteeringStep> steps;
-  ProfileReach reach;                ///< of the textures that it begins with
-  double look_ahead_ticks = 0;       ///< the drive is of where the finger will be then
-  float onset_s = 0, release_s = 0;  ///< in which it rises and falls
+  ProfileReach reach;                ///< of the first textures
+  double look_ahead_ticks = 0;       ///< the drive belongs to the finger's place this much later
+  float onset_s = 0, release_s = 0;  ///< of the envelope
   std::uint64_t ticks = 0;
   std::optional<std::uint64_t> lost_at;  ///< the first tick that is missing
-  std::uint64_t lost = 0;                ///< also after the last one
+  std::uint64_t lost = 0;                ///< includes those after the last tick
   std::string not_uploaded;              ///< UploadWatch::missing
-  /// The byte from which on the file is damaged; what comes after it is not read.
+  /// Offset of the first damaged byte; nothing is read from there on.
   std::optional<std::uint64_t> damaged_at;
-  bool closed = false;  ///< by its last block; else its writer is still at it, or was killed
-  /// A computer that closes the loop may stand still: then periods pass without a tick, as the times tell.
+  bool closed = false;  ///< has its last block; otherwise it is still being written, or its writer was killed
+  /// If a computer closes the loop and stalls, periods pass without a tick; the times show them.
   std::uint64_t missing_periods = 0;
-  std::size_t stops = 0;          ///< stretches of over 10 ms of them
-  std::uint64_t blind_ticks = 0;  ///< that play, in which no count had come for 10 ms
+  std::size_t stops = 0;          ///< sections of over 10 ms of them
+  std::uint64_t blind_ticks = 0;  ///< ticks that play without a new count for 10 ms
 };
 
-/// Reads all of it once. `progress` hears fractions. Errors: as SessionReader::open; no_ticks_in.
+/// Reads the whole session once. `progress` receives fractions. Errors: as SessionReader::open; no_ticks_in.
 schema::Result<SessionOverview> session_overview(const std::string& name,
                                                  const std::function<void(double)>& progress = {});
 
-/// What to say of a session without a tick: unsuitable; malformed where it is damaged, from a byte on.
+/// The error for a session without ticks: unsuitable; malformed, with the byte, if it is damaged.
 schema::Error no_ticks_in(const std::string& path, const std::optional<std::uint64_t>& damaged_at);
 
 struct SessionRow {
   std::uint64_t tick = 0;
   double time_s = 0;         ///< since the first tick, by the device's clock
-  double device_time_s = 0;  ///< what that clock says
-  double position_m = 0;     ///< the middle of the encoder's count, which may have passed 2^31
+  double device_time_s = 0;  ///< time of that clock
+  double position_m = 0;     ///< the middle of the encoder's count; continues beyond 2^31
   double drive_v = 0;
-  double gain = 1;  ///< factor on the textures' own gains
+  double gain = 1;  ///< factor of the textures' own gains
   std::uint32_t flags = 0;
   std::int32_t encoder = 0;
   std::uint32_t turns = 0;  ///< changes of texture up to this row
-  bool put_in = false;      ///< no tick: a period that passed without one
+  bool put_in = false;      ///< not a tick: fills a period without one
 };
 
-/// Makes rows of ticks. Periods that passed without a tick are left out, or put in: place, drive and time on
-/// a line between the neighbours, of a stop over 10 ms as not playing, and of one stop at most so many.
+/// Makes rows from ticks. Periods without a tick are omitted or filled: place, drive and time are
+/// interpolated linearly between the neighbours. A stop over 10 ms is filled as not playing, and with at most
+/// `most_filled` rows.
 class RowMaker {
  public:
   using Sink = std::function<void(const SessionRow&)>;
-  /// The overview stays where it is.
-  explicit RowMaker(const SessionOverview& overview, std::uint64_t most_put_in = 0);
+  /// The overview must outlive this.
+  explicit RowMaker(const SessionOverview& overview, std::uint64_t most_filled = 0);
 
-  /// Rows up to this tick's, in their order.
+  /// Passes on the rows up to this tick's, in order.
   void take(const schema::SessionTick& tick, const Sink& sink);
   /// Changes of texture so far.
-  const std::vector<TextureTurn>& turns() const { return turns_; }
+  const std::vector<TextureChange>& turns() const { return turns_; }
   std::uint64_t rows() const { return rows_; }
 
  private:
@@ -102,22 +104,22 @@ class RowMaker {
   const SessionOverview& overview_;
   std::uint64_t most_put_in_, rows_ = 0;
   std::int64_t first_ns_ = 0;
-  std::int64_t count_ = 0;  // the encoder's, its turns of 2^32 counted
+  std::int64_t count_ = 0;  // the encoder's count, continued beyond 2^31
   SessionRow last_;
   double gain_;
   std::uint8_t taken_ = 0;
   std::size_t next_step_ = 0;
-  std::vector<TextureTurn> turns_;
+  std::vector<TextureChange> turns_;
 };
 
-/// Every row of a session, into `sink`. Errors: as SessionReader::open.
+/// Passes each row of a session to `sink`. Errors: as SessionReader::open.
 schema::Result<void> read_rows(RowMaker& maker, const std::string& name, const RowMaker::Sink& sink,
                                const std::function<void(double)>& progress = {});
 
-/// How far a reader has come, 0 to 1.
+/// The fraction of the file that was read, 0 to 1.
 double part_read(const schema::SessionReader& reader);
 
-/// What hears of a whole hears of a part of it, which goes from `from` to `to`.
+/// A progress function for a part of the whole, mapped to the range `from` to `to`.
 std::function<void(double)> part_of(const std::function<void(double)>& whole, double from, double to);
 
 }  // namespace tacto::playback

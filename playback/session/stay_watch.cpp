@@ -25,7 +25,7 @@ void StayWatch::begin(const StayRules& rules) {
   rules_ = rules;
 }
 
-std::optional<std::string> StayWatch::why_to_fall(const LinesHeard& heard, double passed_s) {
+std::optional<std::string> StayWatch::why_to_fall(const LinesReceived& heard, double passed_s) {
   if (rules_.client && !heard.connected) return "the client that armed has closed its connection";
   if (!rules_.dead_man_s) return std::nullopt;
   silent_s_ = heard.lines == lines_ ? silent_s_ + std::min(passed_s, kLongestStepS) : 0;

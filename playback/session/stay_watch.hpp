@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether those who have to stay while something is armed are still there (CONTROL.md, "Who has to stay").
+// Checks whether the clients that have to stay while the device is armed still do (CONTROL.md, "Who has to
+// stay").
 #pragma once
 
 #include <cstdint>
@@ -10,31 +11,32 @@
 
 namespace tacto::playback {
 
-/// What one client, or all of them, were heard to say.
-struct LinesHeard {
-  bool connected = true;    ///< the client; of all of them always true
-  std::uint64_t lines = 0;  ///< that came until now, whatever they say
+/// What was received from one client, or from all.
+struct LinesReceived {
+  bool connected = true;    ///< whether the client is connected; always true for all clients
+  std::uint64_t lines = 0;  ///< received until now, whatever their content
 };
 
-/// What holds while something is armed.
+/// The conditions while the device is armed.
 struct StayRules {
-  std::optional<std::uint64_t> client;  ///< `while_connected`: who armed; none: nobody has to stay connected
-  std::optional<double> dead_man_s;     ///< longest time without a line: of `client`, else of any client
+  std::optional<std::uint64_t> client;  ///< with `while_connected`: the client that armed
+  std::optional<double> dead_man_s;     ///< longest time without a line, of `client` or else of any client
 };
 
-/// What `arm` asks for, with the time that the configuration has: the shorter one holds.
+/// The rules that `arm` requests; of its time and the configuration's the shorter one applies.
 StayRules stay_rules(const schema::ControlRequest& arm, std::optional<double> configured_s);
 
-/// Silence is counted in steps of at most 0.1 s, a loop's longest: while the daemon itself waits for a device
-/// or is stopped, lines wait unread, and that is not the client's silence. One thread.
+/// Time without lines is counted in steps of at most 0.1 s, the longest step of the daemon's loop: while the
+/// daemon waits for a device or is stopped, lines stay unread, and that time does not count as the client's
+/// silence. For one thread.
 class StayWatch {
  public:
   void begin(const StayRules& rules);
   void end() { *this = {}; }
   const StayRules& rules() const { return rules_; }
-  /// Call after the lines that came were taken in; `passed_s` since the last call. Why the drive has to fall,
-  /// where it has to.
-  std::optional<std::string> why_to_fall(const LinesHeard& heard, double passed_s);
+  /// Call after the received lines were read, with the time since the last call. Returns why the drive has to
+  /// fall, if it does.
+  std::optional<std::string> why_to_fall(const LinesReceived& heard, double passed_s);
 
  private:
   StayRules rules_;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the ticks of a run look like from outside: the last one, counts, the finger's speed, the drive's
-// level.
+// Figures from the ticks of a run: the last tick, counts, the finger's speed, the drive's level.
 #pragma once
 
 #include <array>
@@ -10,12 +9,12 @@
 
 namespace tacto::playback {
 
-/// Takes ticks one by one; no allocation.
+/// Receives ticks one by one; does not allocate.
 class TickView {
  public:
-  /// Begins anew.
+  /// Resets all figures.
   void begin(double rate_hz, double metres_per_count);
-  /// In order.
+  /// Call in the order of the ticks.
   void take(const schema::SessionTick& tick);
   void take_loss(std::uint64_t count) { lost_ += count; }
 
@@ -24,25 +23,26 @@ class TickView {
   std::uint64_t lost() const { return lost_; }
   std::uint64_t late() const { return late_; }
   std::uint64_t limited() const { return limited_; }
-  /// Turned down to hold the drive's RMS.
+  /// Ticks whose drive was reduced to keep its RMS limit.
   std::uint64_t energy_limited() const { return energy_limited_; }
-  /// While playing, in which the drive was held back because the finger does not touch, or did not just now.
+  /// Ticks during playback in which the contact gate reduced the drive: no contact, or contact began or ended
+  /// just now.
   std::uint64_t gated() const { return gated_; }
-  /// In which the drive fell because no count came.
+  /// Ticks in which the drive fell because no count came.
   std::uint64_t blind() const { return blind_; }
-  /// Of the last whole second: the part of the ticks that were late.
+  /// The part of the ticks in the last whole second that were late.
   double late_part() const { return late_part_; }
   const schema::SessionTick& last() const { return last_; }
-  /// In play; what was lost counts as not played.
+  /// Time in play; lost ticks count as not played.
   double playing_s() const { return static_cast<double>(playing_) / rate_hz_; }
   double span_s() const { return static_cast<double>(expected_) / rate_hz_; }
   double position_m() const { return metres_per_count_ * static_cast<double>(count_); }
-  /// The farthest places of all, before and behind.
+  /// The smallest and the greatest position so far.
   double least_position_m() const { return metres_per_count_ * static_cast<double>(least_); }
   double greatest_position_m() const { return metres_per_count_ * static_cast<double>(greatest_); }
-  /// Over the last 20 ms; + as the encoder counts up.
+  /// Over the last 20 ms; positive as the encoder counts up.
   double speed_mps() const;
-  /// Over the last 100 ms, about.
+  /// Over about the last 100 ms.
   double drive_rms_v() const;
   double drive_peak_v() const { return peak_v_; }
 
@@ -53,7 +53,7 @@ class TickView {
   std::uint64_t energy_limited_ = 0, gated_ = 0, playing_ = 0;
   std::uint64_t second_from_ = 0, late_before_ = 0;
   double late_part_ = 0, mean_square_ = 0, share_ = 0, peak_v_ = 0;
-  std::int64_t count_ = 0, least_ = INT64_MAX, greatest_ = INT64_MIN;  // a counter that passes 2^31 goes on
+  std::int64_t count_ = 0, least_ = INT64_MAX, greatest_ = INT64_MIN;  // continue beyond 2^31
   schema::SessionTick last_;
   std::array<std::int32_t, kPlaces> counts_{};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a session's upload is all there: a disk that was full while it was sent may have taken a part.
+// Checks whether a session's upload is complete: if the disk was full, a part may be missing.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace tacto::playback {
 
-/// Takes all commands of a session in their order.
+/// Receives all commands of a session in order.
 class UploadWatch {
  public:
-  /// What is no frame is passed over.
+  /// Ignores bytes that are not a frame.
   void see(const schema::SessionCommand& command);
-  /// What is not in the session of all that is sent up to arming, in words; empty where nothing is missing.
+  /// Which parts of the data sent up to arming are missing, in words; empty if none.
   std::string missing() const;
 
  private:

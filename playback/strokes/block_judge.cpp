@@ -7,7 +7,7 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kMostBlockRows = 1 << 19;  // whatever the rate
+constexpr double kMostBlockRows = 1 << 19;  // at any rate
 
 std::size_t rows_in(double seconds, double rate_hz) {
   return static_cast<std::size_t>(std::clamp(std::ceil(seconds * rate_hz), 1.0, kMostBlockRows));
@@ -15,7 +15,7 @@ std::size_t rows_in(double seconds, double rate_hz) {
 
 }  // namespace
 
-// What lies on the other side of a stop that is longer than what is around a block has no part in it.
+// Rows beyond a stop that is longer than the rows around a block have no influence on it.
 BlockJudge::BlockJudge(const SessionOverview& overview, const JudgedBlocks& blocks,
                        std::function<void(const StrokeSums&)> found)
     : overview_(overview),
@@ -30,27 +30,27 @@ BlockJudge::BlockJudge(const SessionOverview& overview, const JudgedBlocks& bloc
 void BlockJudge::take(const schema::SessionTick& tick, std::optional<float> unlimited_v) {
   maker_.take(tick, [&](const SessionRow& row) {
     rows_.push_back(follower_.next(row, maker_.turns()));
-    wished_v_.push_back(unlimited_v);
+    unlimited_v_.push_back(unlimited_v);
     if (rows_.size() == judged_ + block_rows_ + around_rows_) judge(block_rows_);
   });
 }
 
-void BlockJudge::finish(LastWay last) {
+void BlockJudge::finish(LastStroke last) {
   judge(rows_.size() - judged_);
-  if (last == LastWay::whole) strokes_.end();
+  if (last == LastStroke::whole) strokes_.end();
 }
 
 void BlockJudge::judge(std::size_t rows) {
-  const SessionWanted target = target_.target_in(rows_);
+  const SessionTarget target = target_.target_in(rows_);
   const auto predicted_m = predicted_displacement_m(overview_.header, rows_);
   const auto measured = measured_ ? std::optional(measured_->in(rows_)) : std::nullopt;
   for (std::size_t i = judged_; i < judged_ + rows; ++i)
     strokes_.add({first_row_ + i, rows_[i].row, target.displacement_m[i], predicted_m[i], !target.unknown[i],
-                  measured ? measured->at(i) : std::nullopt, wished_v_[i]});
+                  measured ? measured->at(i) : std::nullopt, unlimited_v_[i]});
   judged_ += rows;
   const std::size_t done = judged_ - std::min(judged_, around_rows_);
   rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(done));
-  wished_v_.erase(wished_v_.begin(), wished_v_.begin() + static_cast<std::ptrdiff_t>(done));
+  unlimited_v_.erase(unlimited_v_.begin(), unlimited_v_.begin() + static_cast<std::ptrdiff_t>(done));
   judged_ -= done, first_row_ += done;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Judges a session block by block: what was wanted, predicted and measured in each row, into the strokes.
+// Judges a session block by block: the target, the predicted and the measured value of each row, summed over
+// strokes.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +16,19 @@
 
 namespace tacto::playback {
 
-/// Whether the way that the finger is on in the last row is known to its end.
-enum class LastWay { whole, cut };
+/// Whether the stroke of the last row is complete.
+enum class LastStroke { whole, cut };
 
 class BlockJudge {
  public:
-  /// The overview stays where it is.
+  /// The overview must outlive this.
   BlockJudge(const SessionOverview& overview, const JudgedBlocks& blocks,
              std::function<void(const StrokeSums&)> found);
 
-  /// Ticks in their order; `wished_v` before the limits, where it is known.
+  /// Call for the ticks in order; `unlimited_v`: the drive before the limits, if known.
   void take(const schema::SessionTick& tick, std::optional<float> unlimited_v);
-  /// After the last one. Precondition: there was one.
-  void finish(LastWay last);
+  /// Call after the last tick. Precondition: there was one.
+  void finish(LastStroke last);
   std::vector<std::string> notes() const { return target_.notes(maker_.turns()); }
   const StrokeFinder& strokes() const { return strokes_; }
 
@@ -38,13 +39,13 @@ class BlockJudge {
   std::size_t block_rows_, around_rows_;
   RowMaker maker_;
   RowFollower follower_;
-  WantedReader target_;
-  std::optional<MeasuredReader> measured_;  // of a session that holds samples
+  TargetReader target_;
+  std::optional<MeasuredReader> measured_;  // if the session has samples of a sensor
   StrokeFinder strokes_;
   std::vector<JudgedRow> rows_;
-  std::vector<std::optional<float>> wished_v_;
-  std::size_t judged_ = 0;       // of rows_: what is around the next block
-  std::uint64_t first_row_ = 0;  // of rows_, in the session
+  std::vector<std::optional<float>> unlimited_v_;
+  std::size_t judged_ = 0;       // of rows_; kept as surroundings of the next block
+  std::uint64_t first_row_ = 0;  // index of rows_[0] in the session
 };
 
 }  // namespace tacto::playback

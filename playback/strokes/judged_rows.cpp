@@ -13,7 +13,7 @@
 namespace tacto::playback {
 namespace {
 
-// Older sessions tell of no filter behind the converter. Words of a newer version: as if there was none.
+// Older sessions name no filter after the converter. Unknown names of a newer version are read as none.
 Chain chain_of(const schema::SessionHeader& header) {
   const PrepareOptions played = with_choices({}, header.choices).value_or(PrepareOptions{});
   return {header.transducer, played.reconstruction, played.reconstruction_cutoff_hz, played.hold,
@@ -22,7 +22,7 @@ Chain chain_of(const schema::SessionHeader& header) {
 
 }  // namespace
 
-// The first row of a play has a step of the envelope in it: of 20 ms at 1 kHz that is 0.7 %.
+// In the first row of a playback the envelope has made one step: 0.7 % if it lasts 20 ms, at 1 kHz.
 bool begins_at_rest(std::span<const JudgedRow> rows) {
   return rows.front().envelope < 0.01;
 }
@@ -39,8 +39,8 @@ RowFollower::RowFollower(const SessionOverview& overview) : gain_(overview.heade
   envelope_.set(overview.onset_s * rate_hz, overview.release_s * rate_hz);
 }
 
-// The kernel raises the drive while it plays and sees; a row that was put in is no tick.
-JudgedRow RowFollower::next(const SessionRow& row, std::span<const TextureTurn> turns) {
+// As in the kernel, the envelope rises while it plays and counts come. A filled row is not a tick.
+JudgedRow RowFollower::next(const SessionRow& row, std::span<const TextureChange> turns) {
   constexpr std::uint32_t kSeen = wire::kTickPlaying | wire::kTickBlind;
   if (!row.put_in) weight_ = envelope_.step((row.flags & kSeen) == wire::kTickPlaying);
   return {row, mix_.next(row, turns), gain_.next(row), double{weight_},
@@ -63,7 +63,7 @@ std::vector<double> predicted_displacement_m(const schema::SessionHeader& header
   std::ranges::transform(rows, drive_v.begin(), &JudgedRow::linear_drive_v);
   auto drive = spectrum_of(drive_v, header.rate_hz, grid.period);
   keep_band(drive, band);
-  // A drive that was made elsewhere is felt later than the tick that it was made in.
+  // The drive reaches the device later than its tick by the delay of the loop.
   return signal_of(through(drive, [&](double f) {
     return chain_response(chain, f) * std::polar(1.0, -2 * std::numbers::pi * f * header.loop_delay_s);
   }));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of a session with what those before them leave in each: any stretch of them can be judged by itself.
+// Rows of a session with the state left by earlier rows, so that any section of them can be judged alone.
 #pragma once
 
 #include <optional>
@@ -16,22 +16,22 @@ struct JudgedRow {
   SessionRow row;
   MixRow mix;
   double followed_gain = 1;
-  double envelope = 1;  ///< of the drive, by which it rises and falls
-  /// What the linear model is given: the drive, through the bender's hysteresis where it has one.
+  double envelope = 1;  ///< of the drive
+  /// The input of the linear model: the drive, or its equivalent through the bender's hysteresis.
   double linear_drive_v = 0;
 };
 
-/// Whether the drive has not risen in the first of them, and has fallen in the last: beside them, too, the
-/// tray stands still then. Precondition: not empty.
+/// Whether the drive is zero before the first row, and after the last: then the tray rests there.
+/// Precondition: not empty.
 bool begins_at_rest(std::span<const JudgedRow> rows);
 bool ends_at_rest(std::span<const JudgedRow> rows);
 
-/// Takes all rows of a session in their order.
+/// Receives all rows of a session in order.
 class RowFollower {
  public:
   explicit RowFollower(const SessionOverview& overview);
-  /// `turns` are the changes so far (RowMaker::turns).
-  JudgedRow next(const SessionRow& row, std::span<const TextureTurn> turns);
+  /// `turns` are the changes of texture so far (RowMaker::turns).
+  JudgedRow next(const SessionRow& row, std::span<const TextureChange> turns);
 
  private:
   MixFollower mix_;
@@ -41,12 +41,12 @@ class RowFollower {
   std::optional<LinearDrive> bender_;
 };
 
-/// By how much a slow change of the drive itself arrives later at the tray: the phase delay of actuator,
-/// filter and hold at the band's lower edge, and of a loop closed on the host the way to the device.
+/// The delay from the drive to the tray for a slow change: the phase delay of actuator, filter and hold at
+/// the band's lower edge, and the way to the device if the loop is closed on the host.
 double drive_delay_s(const schema::SessionHeader& header);
 
-/// What the model makes of the recorded drive, in the session's band: displacement in m, one a row. Before
-/// and after the rows the drive is zero.
+/// The model's displacement for the recorded drive, in the session's band: m, one per row. Before and after
+/// the rows the drive is zero.
 std::vector<double> predicted_displacement_m(const schema::SessionHeader& header,
                                              std::span<const JudgedRow> rows);
 

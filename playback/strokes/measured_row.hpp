@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tray's sensor measured at a row of a session, and a little before and after it.
+// The displacement measured by the tray's sensor at a row of a session, and shortly before and after it.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace tacto::playback {
 
-/// Shifts in time at which a row has its measured displacement, 1/12 ms apart, 1 ms either way: twice what a
-/// sensor of 200 Hz is late by at 500 Hz (0.5 ms), and what fidelity's 50 um are at 50 mm/s.
+/// Shifts in time for which a row has its measured displacement: 1/12 ms apart, 1 ms either way. That is
+/// twice the delay of a sensor of 200 Hz at 500 Hz (0.5 ms), and corresponds to fidelity's 50 um at 50 mm/s.
 inline constexpr std::size_t kMeasuredShifts = 25, kUnshifted = 12;
 inline constexpr double kMeasuredShiftStepS = 1e-3 / 12;
 

@@ -11,15 +11,15 @@ namespace {
 
 constexpr double kReadingsAPeriod = 32;                        // of the band's upper edge
 constexpr double kRingsS = 0.3;                                // a period of the lower edge's skirt, 3 Hz
-constexpr double kRestS = 0.05;                                // around the play the tray is at rest
+constexpr double kRestS = 0.05;                                // around the playback, with the tray at rest
 constexpr double kShiftAroundS = 2e-3;                         // twice the greatest shift
-constexpr std::uint64_t kMostFilled = std::uint64_t{1} << 22;  // frames; numbers of a damaged file
+constexpr std::uint64_t kMostFilled = std::uint64_t{1} << 22;  // frames; limits the numbers of a damaged file
 
 double time_of(const JudgedRow& row) {
   return row.row.device_time_s;
 }
 
-// Rows within a ringing's time of what is missing are not known.
+// Rows closer to missing samples than the ringing of the filter are unknown.
 void forget_near(const std::pair<double, double>& missing_s, std::span<const JudgedRow> rows,
                  std::vector<bool>& known) {
   const auto from = std::ranges::lower_bound(rows, missing_s.first - kRingsS, {}, time_of);
@@ -27,7 +27,7 @@ void forget_near(const std::pair<double, double>& missing_s, std::span<const Jud
   for (auto row = from; row < to; ++row) known[static_cast<std::size_t>(row - rows.begin())] = false;
 }
 
-// On lines between the times of frames, at rest beside them.
+// The index of the frame at each row's time, linear between frames and constant beside them.
 std::vector<double> frames_at(std::span<const JudgedRow> rows, const std::vector<double>& time_s) {
   std::vector<double> at(rows.size());
   std::size_t next = 0;
@@ -44,8 +44,7 @@ std::vector<double> frames_at(std::span<const JudgedRow> rows, const std::vector
 
 }  // namespace
 
-// Catmull and Rom's cubic; the same weights at each shift that is a whole number of readings away would do,
-// but shifts are not.
+// Catmull-Rom spline. Its weights differ for each shift, because a shift is not a whole number of readings.
 std::optional<MeasuredRow> MeasuredStretch::at(std::size_t row) const {
   if (!known_[row]) return std::nullopt;
   const double last = static_cast<double>(fine_m_.size()) - 1;
@@ -105,7 +104,7 @@ MeasuredStretch MeasuredReader::in(std::span<const JudgedRow> rows) {
   for (const auto& missing_s : frames.missing_s) forget_near(missing_s, rows, stretch.known_);
   const double rate_hz = header_.sensor->rate_hz;
   const spatial::Band band{header_.low_hz, header_.high_hz};
-  Rests rests;  // where the sensor says that it stands
+  Rests rests;  // where the tray is at rest
   if (begins_at_rest(rows)) rests.start = frames.displacement_m.front();
   if (ends_at_rest(rows)) rests.end = frames.displacement_m.back();
   ReadingGrid grid = reading_grid(static_cast<double>(frames.time_s.size() - 1) / rate_hz, rate_hz, band, 0);

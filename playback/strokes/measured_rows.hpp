@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tray's sensor measured in a session, at the times of its rows.
+// The displacement measured by the tray's sensor, at the times of a session's rows.
 #pragma once
 
 #include <optional>
@@ -13,34 +13,35 @@
 
 namespace tacto::playback {
 
-/// The measured displacement in a stretch of rows.
+/// The measured displacement in a section of rows.
 class MeasuredStretch {
  public:
-  /// None where samples are missing within 0.3 s: so long rings the band's lower edge.
+  /// None if samples are missing within 0.3 s, because the filter of the band's lower edge rings that long.
   std::optional<MeasuredRow> at(std::size_t row) const;
 
  private:
   friend class MeasuredReader;
-  std::vector<double> fine_m_;   // in the band, between the frames
-  std::vector<double> at_fine_;  // of each row: an index of fine_m_
+  std::vector<double> fine_m_;   // in the band, interpolated between the frames
+  std::vector<double> at_fine_;  // of each row: its index in fine_m_
   std::vector<bool> known_;      // of each row
   double fine_rate_hz_ = 0;
 };
 
-/// Reads the samples beside the rows, each once: memory is that of a stretch. The sensor's frames are cut to
-/// the session's band as what was wanted is (keep_band); missing ones lie on a line. They are read at the
-/// rows' times, both by the ticks' clock, from 32 readings a period of the band's upper edge (by Fourier
-/// interpolation) with the cubic of Catmull and Rom, whose error there is (2 pi / 32)^4 / 48: -90 dB.
+/// Reads the samples in parallel to the rows, each once; memory is that of a section. The sensor's frames are
+/// filtered to the session's band as the target is (keep_band); missing ones are interpolated linearly. They
+/// are evaluated at the rows' times, both on the ticks' clock: by Fourier interpolation to 32 readings per
+/// period of the band's upper edge, and between these by a Catmull-Rom spline, whose error is (2 pi / 32)^4 /
+/// 48: -90 dB.
 class MeasuredReader {
  public:
-  /// None where the session's header names no sensor. The overview stays where it is.
+  /// None if the session's header names no sensor. The overview must outlive this.
   static std::optional<MeasuredReader> open(const SessionOverview& overview);
 
-  /// Of consecutive rows, at least one; those of the next call begin no earlier.
+  /// For consecutive rows, at least one; the rows of the next call must not begin earlier.
   MeasuredStretch in(std::span<const JudgedRow> rows);
 
  private:
-  // Without a hole; between which times frames were missing.
+  // Frames without gaps, and the times between which frames were missing.
   struct Filled {
     std::vector<double> time_s, displacement_m;
     std::vector<std::pair<double, double>> missing_s;

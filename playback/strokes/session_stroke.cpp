@@ -16,7 +16,7 @@ using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
-constexpr double kAroundS = 5;  // as JudgedBlocks
+constexpr double kAroundS = 5;  // s, as in JudgedBlocks
 constexpr std::uint64_t kMostStrokeRows = std::uint64_t{1} << 22;
 
 std::uint64_t rows_around(const schema::SessionHeader& header) {
@@ -55,19 +55,18 @@ Result<Found> find_stroke(const std::string& name, const SessionOverview& overvi
 
 Result<void> check_found(const Found& found, std::uint64_t asked, const std::string& session) {
   if (found.strokes == 0)
-    return fail(ErrorKind::unsuitable, "holds no stroke of 5 mm while it plays", session);
+    return fail(ErrorKind::unsuitable, "has no stroke of at least 5 mm during playback", session);
   if (found.chosen == 0)
     return fail(ErrorKind::usage, fmt::format("has {} strokes, and no stroke {}", found.strokes, asked),
                 session);
   if (found.sums.rows > kMostStrokeRows)
-    return fail(
-        ErrorKind::unsuitable,
-        fmt::format("its stroke {} goes on for {} ticks without a turn", found.chosen, found.sums.rows),
-        session, fmt::format("name one of at most {} ticks", kMostStrokeRows));
+    return fail(ErrorKind::unsuitable,
+                fmt::format("its stroke {} has {} ticks without a reversal", found.chosen, found.sums.rows),
+                session, fmt::format("choose a stroke of at most {} ticks", kMostStrokeRows));
   return {};
 }
 
-// With what is around it.
+// The rows of the stroke with those around it.
 Result<std::vector<JudgedRow>> rows_of(const std::string& name, const StrokeSums& sums, SessionStroke& of,
                                        const std::function<void(double)>& progress) {
   const std::uint64_t around = rows_around(of.overview.header);
@@ -106,7 +105,7 @@ Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t
   TACTO_TRY(overview);
   if (overview->lost_at)
     return fail(ErrorKind::unsuitable, fmt::format("{} ticks are missing", overview->lost), name,
-                "compare a session that is whole");
+                "use a session without missing ticks");
   const auto found = find_stroke(name, *overview, stroke, part_of(progress, 1. / 3, 2. / 3));
   TACTO_TRY(found);
   TACTO_TRY(check_found(*found, stroke, name));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One stroke of a session, and what is predicted of it.
+// One stroke of a session, and its predicted displacement.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@
 namespace tacto::playback {
 
 struct SessionStroke {
-  SessionOverview overview;         ///< of the session that it is of
-  std::vector<TextureTurn> turns;   ///< of the session
-  std::uint64_t stroke = 0;         ///< 1-based
-  std::uint64_t strokes = 0;        ///< of so many
-  std::uint64_t first_row = 0;      ///< in the session
-  std::vector<SessionRow> rows;     ///< of the stroke, one a period
-  std::vector<double> predicted_m;  ///< in each (predicted_displacement_m, with 5 s around them)
+  SessionOverview overview;          ///< of its session
+  std::vector<TextureChange> turns;  ///< of the session
+  std::uint64_t stroke = 0;          ///< 1-based
+  std::uint64_t strokes = 0;         ///< number of strokes in the session
+  std::uint64_t first_row = 0;       ///< in the session
+  std::vector<SessionRow> rows;      ///< of the stroke, one per period
+  std::vector<double> predicted_m;   ///< at each row (predicted_displacement_m, with 5 s around)
 };
 
-/// `stroke` is 1-based; 0 takes the longest way. The session is read row by row; a stroke is held in memory.
-/// Errors: as session_overview; usage: no such stroke; unsuitable: none of 5 mm, ticks missing, a stroke of
-/// over 2^22 ticks (7 min at 10 kHz). `progress` hears fractions.
+/// `stroke` is 1-based; 0 selects the longest stroke. The session is read row by row; one stroke is held in
+/// memory. Errors: as session_overview; usage: no such stroke; unsuitable: no stroke of 5 mm, ticks missing,
+/// a stroke of over 2^22 ticks (7 min at 10 kHz). `progress` receives fractions.
 schema::Result<SessionStroke> read_session_stroke(const std::string& name, std::uint64_t stroke,
                                                   const std::function<void(double)>& progress = {});
 

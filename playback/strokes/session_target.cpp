@@ -8,7 +8,7 @@
 
 #include "data-schema/texture/texture_wav.hpp"
 #include "playback/model/spatial_content.hpp"
-#include "playback/render/played_ends.hpp"
+#include "playback/render/loop_seam.hpp"
 #include "playback/render/reference/exact_target.hpp"
 
 namespace tacto::playback {
@@ -19,8 +19,8 @@ using schema::fail;
 using schema::Result;
 using schema::SessionTexture;
 
-// Where the count changes the finger is between the two, half a tick ago; until the next change it goes on
-// from there. The counts themselves are a staircase, which nobody wanted to be felt.
+// At a change of the count the finger is between both counts, half a tick earlier; these points are the knots
+// of its path. The counts themselves form a staircase, which is not a part of the target.
 FingerPath path_of(std::span<const JudgedRow> rows, double rate_hz) {
   const auto x = [&](std::size_t i) { return rows[i].row.position_m; };
   FingerPath path{{0}, {x(0)}};
@@ -40,7 +40,7 @@ Result<schema::Texture> same_texture(const SessionTexture& played) {
   if (!texture) return texture;
   const auto wav = schema::texture_wav(played.file);
   if (wav && wav->sha256 == played.sha256) return texture;
-  return fail(ErrorKind::unsuitable, "is not what was played any more", played.file);
+  return fail(ErrorKind::unsuitable, "has changed since it was played", played.file);
 }
 
 TextureMix mix_of(std::span<const JudgedRow> rows, const std::vector<bool>& known) {
@@ -49,8 +49,8 @@ TextureMix mix_of(std::span<const JudgedRow> rows, const std::vector<bool>& know
   return texture_mix(mix, known);
 }
 
-// What a row's drive is of is felt later.
-std::vector<bool> felt(const std::vector<bool>& driven, double look_ahead_ticks) {
+// Marks also the rows that follow within the look-ahead, because they contain the drive of these rows.
+std::vector<bool> at_finger(const std::vector<bool>& driven, double look_ahead_ticks) {
   const auto delay = static_cast<std::size_t>(std::ceil(look_ahead_ticks));
   std::vector<bool> unknown = driven;
   for (std::size_t row = 0; row < driven.size(); ++row)
@@ -61,10 +61,10 @@ std::vector<bool> felt(const std::vector<bool>& driven, double look_ahead_ticks)
 
 }  // namespace
 
-// A part that begins or ends between two rows goes evenly.
-class WantedReader::PartOfReadings {
+// The part of a set is linear between two rows.
+class TargetReader::PartOfReadings {
  public:
-  /// Delays in rows: of what is read for a tick, and of what weights its drive.
+  /// Delays in rows: `delay_rows` of the texture that is read for a tick, `drive_delay_rows` of its envelope.
   PartOfReadings(const MixedSet& set, std::span<const JudgedRow> rows, double delay_rows,
                  double drive_delay_rows, double per_row)
       : set_(set),
@@ -73,15 +73,16 @@ class WantedReader::PartOfReadings {
         drive_delay_rows_(drive_delay_rows),
         per_row_(per_row) {}
 
-  /// Readings outside [first, last) have no part of it.
+  /// Readings outside [first, last) do not contain the set.
   std::size_t first() const { return set_.first == 0 ? 0 : reading_of(static_cast<double>(set_.first) - 1); }
   std::size_t last(std::size_t readings) const {
     const std::size_t end = set_.first + set_.part.size();
     return end == rows_.size() ? readings : std::min(readings, reading_of(static_cast<double>(end) + 1));
   }
   double operator()(std::size_t reading) const {
-    const double felt = static_cast<double>(reading) / per_row_, row = std::max(0.0, felt - delay_rows_);
-    return envelope(std::max(0.0, felt - drive_delay_rows_)) *
+    const double finger_rows = static_cast<double>(reading) / per_row_,
+                 row = std::max(0.0, finger_rows - delay_rows_);
+    return envelope(std::max(0.0, finger_rows - drive_delay_rows_)) *
            between(row, [this](std::size_t i) { return in_row(i); });
   }
 
@@ -91,7 +92,7 @@ class WantedReader::PartOfReadings {
     const auto whole = static_cast<std::size_t>(row);
     return std::lerp(value(whole), value(whole + 1), row - std::floor(row));
   }
-  // The kernel weights the drive itself, behind the filter that looks ahead.
+  // The kernel applies the envelope to the drive itself, after the filter for which it looks ahead.
   double envelope(double row) const {
     return between(row, [this](std::size_t i) { return rows_[std::min(i, rows_.size() - 1)].envelope; });
   }
@@ -109,7 +110,7 @@ class WantedReader::PartOfReadings {
   double delay_rows_, drive_delay_rows_, per_row_;
 };
 
-WantedReader::WantedReader(const SessionOverview& overview) : overview_(overview) {
+TargetReader::TargetReader(const SessionOverview& overview) : overview_(overview) {
   sets_.push_back(&overview.header.textures);
   reaches_.push_back(overview.reach);
   for (const SteeringStep& step : overview.steps) {
@@ -119,10 +120,10 @@ WantedReader::WantedReader(const SessionOverview& overview) : overview_(overview
   }
   set_notes_.resize(sets_.size());
   std::map<Key, std::string> faults;
-  for (std::size_t set = 0; set < sets_.size(); ++set) known_.push_back(look_at(set, faults));
+  for (std::size_t set = 0; set < sets_.size(); ++set) known_.push_back(check_device(set, faults));
 }
 
-bool WantedReader::look_at(std::size_t set, std::map<Key, std::string>& faults) {
+bool TargetReader::check_device(std::size_t set, std::map<Key, std::string>& faults) {
   if (sets_[set] == nullptr) return false;
   for (const SessionTexture& played : *sets_[set]) {
     const auto [seen, first] = faults.try_emplace({played.file, played.sha256});
@@ -134,12 +135,12 @@ bool WantedReader::look_at(std::size_t set, std::map<Key, std::string>& faults) 
   return set_notes_[set].empty();
 }
 
-void WantedReader::note(std::string words) {
+void TargetReader::note(std::string words) {
   if (std::ranges::find(notes_, words) == notes_.end()) notes_.push_back(std::move(words));
 }
 
-// Told once of those that are not named and follow each other.
-std::vector<std::string> WantedReader::notes(std::span<const TextureTurn> turns) const {
+// Consecutive changes without names give one note.
+std::vector<std::string> TargetReader::notes(std::span<const TextureChange> turns) const {
   std::vector<std::string> all;
   const auto add = [&](const std::string& words) {
     if (std::ranges::find(all, words) == all.end()) all.push_back(words);
@@ -153,14 +154,14 @@ std::vector<std::string> WantedReader::notes(std::span<const TextureTurn> turns)
     for (const std::string& words : set_notes_[set]) add(words);
     const bool follows_another = set > 1 && !turns[set - 2].brings;
     if (sets_[set] == nullptr && !follows_another)
-      add(fmt::format("the texture changes at {:.3f} s: strokes that reach beyond are not judged{}",
+      add(fmt::format("the texture changes at {:.3f} s: strokes that end later are not judged{}",
                       turns[set - 1].time_s, is_named_again_after(set)));
   }
   for (const std::string& words : notes_) add(words);
   return all;
 }
 
-Result<const ReadAgain*> WantedReader::read_again(const SessionTexture& played) {
+Result<const ReadAgain*> TargetReader::read_again(const SessionTexture& played) {
   const Key key{played.file, played.sha256};
   auto at = kept_.find(key);
   if (at == kept_.end()) {
@@ -173,12 +174,12 @@ Result<const ReadAgain*> WantedReader::read_again(const SessionTexture& played) 
   return &at->second;
 }
 
-void WantedReader::forget_unused() {
+void TargetReader::forget_unused() {
   for (auto at = kept_.begin(); at != kept_.end();)
     at = std::exchange(at->second.used, false) ? std::next(at) : kept_.erase(at);
 }
 
-double WantedReader::finest_in(const TextureMix& mix, bool& sound) {
+double TargetReader::finest_in(const TextureMix& mix, bool& sound) {
   double finest_per_m = 0;
   for (std::size_t set = 0; set < mix.sets.size(); ++set) {
     if (mix.sets[set].part.empty()) continue;
@@ -192,10 +193,10 @@ double WantedReader::finest_in(const TextureMix& mix, bool& sound) {
   return finest_per_m;
 }
 
-bool WantedReader::add(const SessionTexture& played, const PartOfReadings& part,
+bool TargetReader::add(const SessionTexture& played, const PartOfReadings& part,
                        std::span<const double> places, std::span<double> readings) {
   const auto texture = read_again(played);
-  if (!texture) return false;  // finest_in() has told
+  if (!texture) return false;  // finest_in() has reported the error
   const auto [nearest, farthest] = std::ranges::minmax(places);
   const auto signal = as_played((*texture)->texture, played.at_m, {ends_of(played.ends), played.seam_m},
                                 nearest, farthest, played.file);
@@ -206,7 +207,7 @@ bool WantedReader::add(const SessionTexture& played, const PartOfReadings& part,
   return true;
 }
 
-std::vector<double> WantedReader::mixed(std::span<const JudgedRow> rows, const TextureMix& mix,
+std::vector<double> TargetReader::mixed(std::span<const JudgedRow> rows, const TextureMix& mix,
                                         const ReadingGrid& grid, const FingerPath& path, bool& sound) {
   const std::vector<double> places = reading_places(path, grid);
   std::vector<double> readings(places.size(), 0.0);
@@ -220,14 +221,14 @@ std::vector<double> WantedReader::mixed(std::span<const JudgedRow> rows, const T
   return readings;
 }
 
-bool WantedReader::reaches(const JudgedRow& row) const {
+bool TargetReader::reaches(const JudgedRow& row) const {
   const bool fades = row.mix.leaving_part > 0;
   return reaches_[row.mix.playing].holds(row.row.encoder) &&
          (!fades || reaches_[row.mix.leaving].holds(row.row.encoder));
 }
 
-// A loop goes on for ever as a scene says it, and as a device has it as far as its numbers reach.
-std::vector<bool> WantedReader::driven_by_unknown(std::span<const JudgedRow> rows, const TextureMix& mix) {
+// A loop is endless in the scene; in a device it ends at the range of its numbers.
+std::vector<bool> TargetReader::driven_by_unknown(std::span<const JudgedRow> rows, const TextureMix& mix) {
   std::vector<bool> unknown = mix.unknown;
   const JudgedRow* beyond = nullptr;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -239,15 +240,15 @@ std::vector<bool> WantedReader::driven_by_unknown(std::span<const JudgedRow> row
   return unknown;
 }
 
-void WantedReader::note_reach(const ProfileReach& reach) {
+void TargetReader::note_reach(const ProfileReach& reach) {
   const double reach_m = std::abs(overview_.header.metres_per_count) * static_cast<double>(reach.counts);
-  note(fmt::format(
-      "the finger went farther than {:.4g} m from the encoder's zero, where the device reads no texture any "
-      "more and its drive is 0 V: strokes there are not judged",
-      reach_m));
+  note(
+      fmt::format("the finger moved farther than {:.4g} m from the encoder's zero, where the device reads no "
+                  "texture and its drive is 0 V: strokes there are not judged",
+                  reach_m));
 }
 
-SessionWanted WantedReader::target_in(std::span<const JudgedRow> rows) {
+SessionTarget TargetReader::target_in(std::span<const JudgedRow> rows) {
   const schema::SessionHeader& header = overview_.header;
   const TextureMix mix = mix_of(rows, known_);
   const FingerPath path = path_of(rows, header.rate_hz);
@@ -260,8 +261,8 @@ SessionWanted WantedReader::target_in(std::span<const JudgedRow> rows) {
   if (begins_at_rest(rows)) rests.start = 0;
   if (ends_at_rest(rows)) rests.end = 0;
   forget_unused();
-  SessionWanted target{signal_of(target_of_readings(std::move(readings), grid, band, 0, rests)),
-                       felt(driven_by_unknown(rows, mix), overview_.look_ahead_ticks)};
+  SessionTarget target{signal_of(target_of_readings(std::move(readings), grid, band, 0, rests)),
+                       at_finger(driven_by_unknown(rows, mix), overview_.look_ahead_ticks)};
   target.displacement_m.resize(rows.size());
   if (!sound) target.unknown.assign(rows.size(), true);
   return target;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session's finger was to receive.
+// The target displacement of a session.
 #pragma once
 
 #include <map>
@@ -15,33 +15,33 @@
 
 namespace tacto::playback {
 
-struct SessionWanted {
-  std::vector<double> displacement_m;  ///< one a row, in the session's band
-  /// A row: a texture that is not known had a part in what was felt, or the finger was where the device reads
-  /// none any more.
+struct SessionTarget {
+  std::vector<double> displacement_m;  ///< one per row, in the session's band
+  /// Whether a texture that is unknown has a part in the row, or the finger was outside the range that the
+  /// device reads.
   std::vector<bool> unknown;
 };
 
-/// A texture that was played, read again.
+/// A texture of the session, read from its file again.
 struct ReadAgain {
   schema::Texture texture;
   double finest_per_m = 0;
-  bool used = false;  ///< in the last stretch
+  bool used = false;  ///< in the last section
 };
 
 /// Gain x textures along the path between the recorded counts (monotone cubics through the places where the
-/// count changed), read exactly (reference/wanted.hpp). Gain and changes of texture are those that the kernel
-/// follows and fades (texture_mix.hpp), felt when the drive that looked ahead is: look_ahead_ticks later. It
-/// rises and falls as the drive does (core/envelope.hpp).
-class WantedReader {
+/// count changed), read exactly (render/reference/exact_target.hpp). Gain and changes of texture follow the
+/// kernel's ramps and fades (texture_mix.hpp), and are delayed like the drive that looked ahead: by
+/// look_ahead_ticks. The envelope is that of the drive (core/envelope.hpp).
+class TargetReader {
  public:
-  /// Reads each texture that the session names once, to know which are there. The overview stays where it is.
-  explicit WantedReader(const SessionOverview& overview);
+  /// Reads each texture of the session once, to find those that exist. The overview must outlive this.
+  explicit TargetReader(const SessionOverview& overview);
 
-  /// In consecutive rows of one rate, at least one. Holds the textures of this stretch in memory.
-  SessionWanted target_in(std::span<const JudgedRow> rows);
-  /// Of textures that are not known, and why; `turns` are the changes of all rows.
-  std::vector<std::string> notes(std::span<const TextureTurn> turns) const;
+  /// For consecutive rows of one rate, at least one. Holds the textures of this section in memory.
+  SessionTarget target_in(std::span<const JudgedRow> rows);
+  /// Which textures are unknown, and why; `turns` are the changes of all rows.
+  std::vector<std::string> notes(std::span<const TextureChange> turns) const;
 
  private:
   using Textures = std::vector<schema::SessionTexture>;
@@ -49,7 +49,7 @@ class WantedReader {
 
   class PartOfReadings;
 
-  bool look_at(std::size_t set, std::map<Key, std::string>& faults);
+  bool check_device(std::size_t set, std::map<Key, std::string>& faults);
   schema::Result<const ReadAgain*> read_again(const schema::SessionTexture& played);
   double finest_in(const TextureMix& mix, bool& sound);
   bool add(const schema::SessionTexture& played, const PartOfReadings& part, std::span<const double> places,
@@ -63,7 +63,7 @@ class WantedReader {
   void note_reach(const ProfileReach& reach);
 
   const SessionOverview& overview_;
-  std::vector<const Textures*> sets_;  // none: the session does not say
+  std::vector<const Textures*> sets_;  // none: the session does not name them
   std::vector<bool> known_;
   std::vector<ProfileReach> reaches_;  // of the sets
   std::vector<std::vector<std::string>> set_notes_;

@@ -10,7 +10,7 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kTurnM = 0.2e-3;  // a finger that goes back by less has not turned
+constexpr double kTurnM = 0.2e-3;  // a shorter way back is not a turn
 
 double square(double value) {
   return value * value;
@@ -25,7 +25,7 @@ double way_m(const StrokeRow& from, const StrokeRow& to) {
 void StrokeSums::add(const StrokeRow& r) {
   if (rows++ == 0) first = r;
   last = r;
-  wanted_m2 += square(r.target_m);
+  target_m2 += square(r.target_m);
   predicted_m2 += square(r.predicted_m);
   difference_m2 += square(r.predicted_m - r.target_m);
   const std::uint32_t flags = r.row.flags;
@@ -33,7 +33,7 @@ void StrokeSums::add(const StrokeRow& r) {
   energy_limited_ticks += (flags & wire::kTickEnergyLimited) != 0;
   gated_ticks += (flags & wire::kTickGated) != 0;
   known = known && r.known;
-  wishes_known = wishes_known && r.unlimited_v;
+  unlimited_known = unlimited_known && r.unlimited_v;
   add_measured(r);
   if (r.unlimited_v && !r.row.put_in)
     limits.add(limited_tick(static_cast<float>(r.row.drive_v), *r.unlimited_v, flags));
@@ -51,10 +51,10 @@ void StrokeSums::add(const StrokeSums& later) {
   if (later.rows == 0) return;
   rows += later.rows;
   last = later.last;
-  wanted_m2 += later.wanted_m2, predicted_m2 += later.predicted_m2, difference_m2 += later.difference_m2;
+  target_m2 += later.target_m2, predicted_m2 += later.predicted_m2, difference_m2 += later.difference_m2;
   limited_ticks += later.limited_ticks, energy_limited_ticks += later.energy_limited_ticks;
   gated_ticks += later.gated_ticks;
-  known = known && later.known, wishes_known = wishes_known && later.wishes_known;
+  known = known && later.known, unlimited_known = unlimited_known && later.unlimited_known;
   measured_known = measured_known && later.measured_known;
   measured_m2 += later.measured_m2;
   for (std::size_t i = 0; i < kMeasuredShifts; ++i)

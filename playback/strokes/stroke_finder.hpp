@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strokes of a session found row by row, and what is summed over each: none is too long.
+// Finds the strokes of a session row by row, and sums over each, so that memory does not depend on their
+// length.
 #pragma once
 
 #include <array>
@@ -14,23 +15,23 @@
 
 namespace tacto::playback {
 
-/// What a row adds to its stroke.
+/// The contribution of a row to its stroke.
 struct StrokeRow {
   std::uint64_t index = 0;  ///< in the session
   SessionRow row;
   double target_m = 0, predicted_m = 0;
-  bool known = true;  ///< what was wanted
+  bool known = true;  ///< the target
   std::optional<MeasuredRow> measured;
-  std::optional<float> unlimited_v;  ///< before the limits; none: not known
+  std::optional<float> unlimited_v;  ///< before the limits; none: unknown
 };
 
-/// Over consecutive rows.
+/// Sums over consecutive rows.
 struct StrokeSums {
   StrokeRow first, last;
   std::uint64_t rows = 0;
-  double wanted_m2 = 0, predicted_m2 = 0, difference_m2 = 0;
+  double target_m2 = 0, predicted_m2 = 0, difference_m2 = 0;
   std::uint64_t limited_ticks = 0, energy_limited_ticks = 0, gated_ticks = 0;
-  bool known = true, wishes_known = true, measured_known = true;  ///< of every row
+  bool known = true, unlimited_known = true, measured_known = true;  ///< true for every row
   double measured_m2 = 0;
   std::array<double, kMeasuredShifts> measured_difference_m2{};  ///< at each shift
   LimitTally limits;                                             ///< of the ticks among them
@@ -44,20 +45,20 @@ struct StrokeSums {
 
 inline constexpr double kShortestStrokeM = 5e-3;
 
-/// A stroke is one way of the finger without turning (a finger that goes back by less than 0.2 mm has not
-/// turned), while playing, at least 5 mm long: the farthest place so far in a direction ends it once the
-/// finger has gone back from there. It is found then. A blind tick, in which the finger's place is not known,
-/// ends it too, and none begins before the next that sees.
+/// A stroke is a movement of the finger without turning (a way back below 0.2 mm is not a turn), during
+/// playback, at least 5 mm long. It ends at the farthest place in its direction, and is found when the finger
+/// has gone back from there. A blind tick, in which the finger's place is unknown, ends it too, and the next
+/// one begins at a tick with a known place.
 class StrokeFinder {
  public:
   explicit StrokeFinder(std::function<void(const StrokeSums&)> found) : found_(std::move(found)) {}
-  /// Rows in their order.
+  /// Call for the rows in order.
   void add(const StrokeRow& row);
-  /// After the last one.
+  /// Call after the last row.
   void end();
-  /// Rows in which something was played.
+  /// Number of rows during playback.
   std::uint64_t played() const { return played_; }
-  /// The longest way without turning that ended, whether it was a stroke or too short.
+  /// The longest movement without turning that has ended, even if it was too short for a stroke.
   double longest_way_m() const { return longest_way_m_; }
 
  private:
@@ -65,8 +66,8 @@ class StrokeFinder {
   void turn();
 
   std::function<void(const StrokeSums&)> found_;
-  StrokeSums so_far_;  // to the farthest place; before there is a direction, the row that it starts in
-  StrokeSums since_;   // from there on
+  StrokeSums so_far_;  // to the farthest place; while there is no direction, the first row
+  StrokeSums since_;   // after that place
   int direction_ = 0;
   bool begun_ = false;
   std::uint64_t played_ = 0;

@@ -17,19 +17,19 @@ namespace {
 
 using schema::Result;
 
-// What the band's filters leave beside a texture is no wish.
-constexpr double kLeastWantedM = 1e-12;
+// Below it the target is only the residue of the band's filters outside a texture.
+constexpr double kLeastTargetM = 1e-12;
 
-bool nothing_was_wanted(const StrokeSums& sums) {
-  return sums.known && sums.wanted_m2 < kLeastWantedM * kLeastWantedM * static_cast<double>(sums.rows);
+bool target_is_zero(const StrokeSums& sums) {
+  return sums.known && sums.target_m2 < kLeastTargetM * kLeastTargetM * static_cast<double>(sums.rows);
 }
 
 double over_db(double value_m, double of_m) {
   return 20 * std::log10(value_m / of_m);
 }
 
-// The polynomial through the five values around the least, at `u` steps from the middle one: for what is
-// sampled 24 times a period of 500 Hz it errs by less than 2e-6 of what is measured (Lagrange).
+// The polynomial through the five values around the minimum, at `u` steps from the middle one: its error for
+// a signal sampled 24 times per period of 500 Hz is below 2e-6 of the measured value (Lagrange).
 double between_five(std::span<const double, 5> e, double u) {
   double sum = 0;
   constexpr std::array<double, 5> kAt = {-2, -1, 0, 1, 2};
@@ -46,7 +46,7 @@ struct LeastError {
   double shift = 0, difference_m2 = 0;  // in steps from the first
 };
 
-// To a hundredth of a step: the rest of 1 us is -52 dB of 500 Hz at most.
+// To a hundredth of a step: the remaining 1 us gives at most -52 dB at 500 Hz.
 LeastError least_error(const std::array<double, kMeasuredShifts>& difference_m2) {
   constexpr int kParts = 100;
   const auto least = std::ranges::min_element(difference_m2) - difference_m2.begin();
@@ -82,8 +82,8 @@ PlayedStroke stroke_of(const StrokeSums& sums) {
   stroke.limited_ticks = sums.limited_ticks;
   stroke.energy_limited_ticks = sums.energy_limited_ticks;
   stroke.gated_ticks = sums.gated_ticks;
-  if (sums.wishes_known) stroke.limits = sums.limits;
-  if (sums.known && !nothing_was_wanted(sums)) stroke.target_rms_m = rms(sums.wanted_m2);
+  if (sums.unlimited_known) stroke.limits = sums.limits;
+  if (sums.known && !target_is_zero(sums)) stroke.target_rms_m = rms(sums.target_m2);
   stroke.measured = measured_of(sums, stroke.target_rms_m);
   if (stroke.target_rms_m == 0) return stroke;
   stroke.predicted.error_db = over_db(rms(sums.difference_m2), stroke.target_rms_m);
@@ -93,22 +93,22 @@ PlayedStroke stroke_of(const StrokeSums& sums) {
 
 std::string note_of_stops(const SessionOverview& overview) {
   return fmt::format(
-      "{} ticks were never made, for the computer stood still; {} stops were longer than 10 ms: "
-      "strokes end there",
+      "{} periods have no tick because the computer stopped; {} stops were longer than 10 ms: strokes end "
+      "there",
       overview.missing_periods, overview.stops);
 }
 
 std::string note_of_loss(const SessionOverview& overview) {
   return fmt::format(
-      "{} ticks are missing, from tick {} on: only strokes that end before it are judged, for what "
-      "the device knew after it is not known",
+      "{} ticks are missing, from tick {} on: only strokes that end before it are judged, because the "
+      "device's later state is unknown",
       overview.lost, *overview.lost_at);
 }
 
 std::string note_of_blindness(const SessionOverview& overview) {
   return fmt::format(
-      "in {} ticks no count of the encoder had come for 10 ms, and the drive fell: strokes end there, "
-      "and the way until the next count is not judged",
+      "in {} ticks no encoder count had come for 10 ms, and the drive fell: strokes end there, and the "
+      "motion until the next count is not judged",
       overview.blind_ticks);
 }
 
@@ -120,12 +120,12 @@ StrokeReport begun_report(const SessionOverview& overview) {
     report.notes.emplace_back("the session was never closed: the figures are of the part that was stored");
   if (report.damaged)
     report.notes.push_back(
-        fmt::format("{} is damaged from byte {} on: what comes after it is not in the report", overview.path,
+        fmt::format("{} is damaged from byte {} on: the part after it is not in the report", overview.path,
                     *overview.damaged_at));
   if (!overview.not_uploaded.empty() && !report.damaged)
     report.notes.push_back(
-        fmt::format("{} lacks {}: the disk did not take it (was it full?), and `replay` can't "
-                    "compute its drive again",
+        fmt::format("{} lacks {}: it could not be written (was the disk full?), so `replay` can't compute "
+                    "its drive again",
                     overview.path, overview.not_uploaded));
   if (overview.lost_at)
     report.notes.push_back(note_of_loss(overview));
@@ -135,13 +135,13 @@ StrokeReport begun_report(const SessionOverview& overview) {
   return report;
 }
 
-// No stroke is an answer, too, but not without its reason.
+// If there is no stroke, the report states the reason.
 std::string note_of_none(const StrokeFinder& strokes, bool lost) {
   if (lost) return "no stroke ends before it";
   if (strokes.played() == 0) return "nothing was played: there is no stroke to judge";
   const double longest_m = strokes.longest_way_m();
   return fmt::format(
-      "no stroke: the finger's longest way without turning, while playing, is {}, and a stroke is at least "
+      "no stroke: the finger's longest motion in one direction during playback is {}, a stroke is at least "
       "{}",
       longest_m > 0 ? schema::length_for_people(longest_m) : "under 0.2 mm",
       schema::length_for_people(kShortestStrokeM));
@@ -149,15 +149,15 @@ std::string note_of_none(const StrokeFinder& strokes, bool lost) {
 
 std::string note_of_unwanted(std::uint64_t unwanted, std::uint64_t all) {
   return fmt::format(
-      "in {} of {} strokes the target is zero: no texture of the session is where the finger went, or "
-      "the textures there cancel each other, so there is no target RMS and no error",
+      "in {} of {} strokes the target is zero (no texture there, or textures that cancel each other): they "
+      "have no target RMS and no error",
       unwanted, all);
 }
 
 std::string note_of_unmeasured(std::uint64_t unmeasured, std::uint64_t all) {
   return fmt::format(
-      "in {} of {} strokes samples of the tray's sensor are missing (within 0.3 s of them): these have no "
-      "measured figures",
+      "{} of {} strokes have no measured figures, because samples of the tray's sensor are missing within "
+      "0.3 s of them",
       unmeasured, all);
 }
 
@@ -179,7 +179,7 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
   LimitTally whole;
   std::uint64_t unwanted = 0, unmeasured = 0;
   BlockJudge judge(*overview, blocks, [&](const StrokeSums& sums) {
-    unwanted += nothing_was_wanted(sums);
+    unwanted += target_is_zero(sums);
     unmeasured += !sums.measured_known;
     keep_stroke(stroke_of(sums), listener, report);
   });
@@ -187,9 +187,9 @@ Result<StrokeReport> report_strokes(const std::string& name, const StrokeListene
     if (unlimited_v) whole.add(limited_tick(tick.drive_v, *unlimited_v, tick.flags));
     if (tick.tick < end) judge.take(tick, unlimited_v);
   };
-  const auto unknown = hear_every_wish(name, each, part_of(listener.progress, 0.1, 1));
+  const auto unknown = read_unlimited_where_known(name, each, part_of(listener.progress, 0.1, 1));
   TACTO_TRY(unknown);
-  judge.finish(overview->lost_at ? LastWay::cut : LastWay::whole);
+  judge.finish(overview->lost_at ? LastStroke::cut : LastStroke::whole);
   const auto notes = report.stroke_count > 0 ? judge.notes() : std::vector<std::string>();
   report.notes.insert(report.notes.end(), notes.begin(), notes.end());
   if (report.stroke_count == 0)

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kGainS = 0.01;  // core::TickInput::gain
 
-// What stands in for each set: itself, or the last known one before it; none before the first known.
-std::vector<std::ptrdiff_t> stand_ins(const std::vector<bool>& known) {
+// The replacement of each set: itself, or the last known set before it; none before the first known one.
+std::vector<std::ptrdiff_t> replacements(const std::vector<bool>& known) {
   std::vector<std::ptrdiff_t> all;
   std::ptrdiff_t last = -1;
   for (std::size_t set = 0; set < known.size(); ++set)
@@ -21,7 +21,7 @@ std::vector<std::ptrdiff_t> stand_ins(const std::vector<bool>& known) {
 
 class MixWriter {
  public:
-  explicit MixWriter(const std::vector<bool>& known) : known_(known), stands_in_(stand_ins(known)) {
+  explicit MixWriter(const std::vector<bool>& known) : known_(known), replacement_(replacements(known)) {
     mix_.sets.resize(known.size());
   }
   void add_row(const MixRow& row) {
@@ -34,8 +34,8 @@ class MixWriter {
 
  private:
   void add(std::size_t of, float part) {
-    if (stands_in_[of] < 0) return;
-    MixedSet& set = mix_.sets[static_cast<std::size_t>(stands_in_[of])];
+    if (replacement_[of] < 0) return;
+    MixedSet& set = mix_.sets[static_cast<std::size_t>(replacement_[of])];
     const std::size_t row = mix_.unknown.size();
     if (set.part.empty()) set.first = row;
     if (set.first + set.part.size() > row)
@@ -44,13 +44,13 @@ class MixWriter {
       set.part.push_back(part);
   }
   const std::vector<bool>& known_;
-  std::vector<std::ptrdiff_t> stands_in_;
+  std::vector<std::ptrdiff_t> replacement_;
   TextureMix mix_;
 };
 
 }  // namespace
 
-MixRow MixFollower::next(const SessionRow& row, std::span<const TextureTurn> turns) {
+MixRow MixFollower::next(const SessionRow& row, std::span<const TextureChange> turns) {
   if (std::exchange(begun_, true) && !row.put_in) fade_ = std::max(0.0F, fade_ - step_);
   while (playing_ < row.turns) {
     const double fade_ticks = turns[playing_].fade_ticks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which textures a session's drive was of in each row, and how much of each.
+// The textures in a session's drive in each row, and the part of each.
 #pragma once
 
 #include <span>
@@ -9,26 +9,27 @@
 
 namespace tacto::playback {
 
-/// Set 0 is the header's, set n what the n-th change brought. The rest of a row is of the one that plays.
+/// Set 0 is that of the header, set n that of the n-th change. The remaining part of a row is that of
+/// `playing`.
 struct MixRow {
   std::uint32_t playing = 0, leaving = 0;
   float leaving_part = 0;
 };
 
-/// Row by row as core::TexturePlayer fades: w = u^2 (3 - 2 u), a second change beginning from what is nearer;
-/// a row that was put in is no tick.
+/// The cross-fade of core::TexturePlayer row by row: w = u^2 (3 - 2 u). A second change begins from the
+/// texture with the larger part. A filled row is not a tick.
 class MixFollower {
  public:
-  /// Of the next row; `turns` are the changes so far (RowMaker::turns).
-  MixRow next(const SessionRow& row, std::span<const TextureTurn> turns);
+  /// For the next row; `turns` are the changes so far (RowMaker::turns).
+  MixRow next(const SessionRow& row, std::span<const TextureChange> turns);
 
  private:
   std::uint32_t playing_ = 0, leaving_ = 0;
-  float fade_ = 0, step_ = 0;  // single precision, as there
+  float fade_ = 0, step_ = 0;  // single precision, as in core::TexturePlayer
   bool begun_ = false;
 };
 
-/// The factor on the textures' gains as the kernel follows it: evenly to a new one, within 10 ms.
+/// The factor of the textures' gains with the kernel's ramp: linear, within 10 ms.
 class GainFollower {
  public:
   explicit GainFollower(double rate_hz);
@@ -39,7 +40,7 @@ class GainFollower {
   bool begun_ = false;
 };
 
-/// A set of textures in consecutive rows: parts of the whole, 0 to 1, all sets' together 1.
+/// A set of textures in consecutive rows: its parts, 0 to 1; the parts of all sets add up to 1.
 struct MixedSet {
   std::size_t first = 0;
   std::vector<float> part;
@@ -47,11 +48,11 @@ struct MixedSet {
 
 struct TextureMix {
   std::vector<MixedSet> sets;
-  std::vector<bool> unknown;  ///< a row: what is not known had a part in it
+  std::vector<bool> unknown;  ///< per row: whether an unknown set has a part in it
 };
 
-/// In the place of a set that is not `known` the last known one goes on: its rows are unknown, those beside
-/// them do not end in a step. Precondition: known.size() is above every set of the rows.
+/// An unknown set is replaced by the last known one: its rows are marked unknown, and rows beside them get no
+/// step. Precondition: known.size() is above every set of the rows.
 TextureMix texture_mix(std::span<const MixRow> rows, const std::vector<bool>& known);
 
 }  // namespace tacto::playback

@@ -18,10 +18,10 @@ using schema::ErrorKind;
 using schema::PeakVerdict;
 using schema::Result;
 
-// Likelihood ratio to "neither" from which on a hypothesis is said to fit.
+// A hypothesis fits from this likelihood ratio to "neither" on.
 constexpr double kFits = 3;
 
-// A peak that is called or given up, with its vibrations in the textures where it was found.
+// A peak that is classified or left undecided, with its vibrations in the textures where it was found.
 struct Call {
   PeakVerdict verdict = PeakVerdict::undecided;
   double confidence = 0;
@@ -42,7 +42,7 @@ std::vector<Candidate> open_candidates(const SpeedHypotheses& hypotheses) {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < hypotheses.strokes().size(); ++i)
     for (std::size_t v = 0; v < hypotheses.strokes()[i].vibrations.size(); ++v)
-      if (!hypotheses.spoken_for({i, v})) candidates.push_back({{i, v}, hypotheses.evidence({i, v})});
+      if (!hypotheses.is_used({i, v})) candidates.push_back({{i, v}, hypotheses.evidence({i, v})});
   return candidates;
 }
 
@@ -55,21 +55,22 @@ std::vector<Call> called(SpeedHypotheses& hypotheses, double confidence_needed) 
     const PeakVerdict verdict = surest->spatial() ? PeakVerdict::spatial : PeakVerdict::temporal;
     calls.push_back(
         {verdict, surest->confidence(), surest->evidence, hypotheses.same(surest->id, surest->spatial())});
-    for (const VibrationId member : calls.back().members) hypotheses.speak_for(member);
+    for (const VibrationId member : calls.back().members) hypotheses.mark_used(member);
   }
 }
 
-// What is left, the surest first; what is likely to be one peak in several textures is shown as one.
+// Adds the remaining candidates, highest confidence first. Candidates that are probably one peak in several
+// textures become one peak.
 void add_undecided(SpeedHypotheses& hypotheses, std::vector<Call>& calls) {
   auto candidates = open_candidates(hypotheses);
   std::ranges::sort(candidates, std::greater(), &Candidate::confidence);
   for (const Candidate& candidate : candidates) {
-    if (hypotheses.spoken_for(candidate.id)) continue;
+    if (hypotheses.is_used(candidate.id)) continue;
     std::vector<VibrationId> members{candidate.id};
     if (std::max(candidate.evidence.spatial, candidate.evidence.temporal) > kFits)
       members = hypotheses.same(candidate.id, candidate.spatial());
     calls.push_back({PeakVerdict::undecided, candidate.confidence(), candidate.evidence, members});
-    for (const VibrationId member : members) hypotheses.speak_for(member);
+    for (const VibrationId member : members) hypotheses.mark_used(member);
   }
 }
 
@@ -78,12 +79,12 @@ std::string reason_of(const Call& call) {
   if (call.verdict != PeakVerdict::undecided) return {};
   const bool spatial = call.evidence.spatial >= call.evidence.temporal;
   if (!(spatial ? call.evidence.spatial_tested : call.evidence.temporal_tested)) return "outside_band";
-  if (!call.evidence.told_apart) return "speed_ratio";
+  if (!call.evidence.resolved) return "speed_ratio";
   if (call.evidence.best_detection < kUnlikelySeen) return "signal_to_noise";
   return call.evidence.spatial > kFits && call.evidence.temporal > kFits ? "both_fit" : "neither_fits";
 }
 
-// Mean weighted by certainty.
+// Mean weighted by the inverse variance.
 double weighted_mean(const SpeedHypotheses& hypotheses, const Call& call, double Vibration::*value,
                      double Vibration::*sigma) {
   double sum = 0, weights = 0;
@@ -115,8 +116,8 @@ CertifiedPeak peak_of(const SpeedHypotheses& hypotheses, const Call& call) {
   return peak;
 }
 
-// Where the peak lies in one stroke: the surface's keep k, time's keep f; an undecided one is shown as in the
-// stroke where it was found.
+// Sets the peak's frequencies in one stroke: a spatial peak keeps k, a temporal one keeps f. An undecided one
+// keeps the values of the stroke where it was found.
 void place(CertifiedPeak& peak, const SpeedHypotheses& hypotheses, const Call& call, double speed_mps) {
   const Vibration& first = hypotheses.at(call.members.front());
   if (call.verdict == PeakVerdict::spatial) {
@@ -158,14 +159,15 @@ Certificate seen_from(std::size_t stroke, const SpeedHypotheses& hypotheses, con
 Result<void> check(std::span<const TextureAtSpeed> textures, const CertificateOptions& options) {
   if (textures.size() < 2)
     return schema::fail(ErrorKind::usage,
-                        "a certificate takes two textures or more, made at different speeds", "textures");
+                        "a certificate needs at least two textures, recorded at different speeds",
+                        "textures");
   if (!(options.confidence > 0.5 && options.confidence < 1))
-    return schema::fail(ErrorKind::usage, "the confidence must lie above 0.5 and below 1", "confidence",
-                        "0.95 is usual");
+    return schema::fail(ErrorKind::usage, "the confidence must be above 0.5 and below 1", "confidence",
+                        "0.95 is the default");
   for (const TextureAtSpeed& each : textures)
     if (each.texture->unit != textures.front().texture->unit)
       return schema::fail(ErrorKind::unsuitable,
-                          fmt::format("its unit is not that of {}", textures.front().name), each.name);
+                          fmt::format("its unit differs from that of {}", textures.front().name), each.name);
   return {};
 }
 
@@ -179,13 +181,13 @@ Result<std::vector<StrokeLines>> lines_of(std::span<const TextureAtSpeed> textur
   return strokes;
 }
 
-// The smallest ratio that tells anything: at the highest frequency that a texture knows.
+// Requires the smallest useful speed ratio, which is that at the highest frequency of the valid bands.
 Result<void> check_ratio(const std::vector<StrokeLines>& strokes, double ratio) {
   double least = INFINITY, highest_per_m = 0, resolution_per_m = 0;
   for (const StrokeLines& stroke : strokes) {
     if (!(stroke.space.high() > stroke.space.low()))
       return schema::fail(ErrorKind::unsuitable, "its valid band is too narrow for a spectrum", stroke.name,
-                          "make it from a stretch of steadier speed");
+                          "make it from a stretch with a steadier speed");
     const double needed = 1 / (1 - stroke.space.resolution() / stroke.space.high());
     if (needed < least) {
       least = needed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph certify: which peaks of textures made at different speeds are the surface's.
+// tactograph certify: which peaks of textures made at different speeds belong to the surface.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,15 +48,15 @@ Result<void> check_stored(const std::vector<NamedTexture>& files) {
   if (made == files.end()) return {};
   return schema::fail(schema::ErrorKind::unsuitable,
                       "is a stroke of a recording: there is no texture to store in", made->path,
-                      "make textures with 'tactograph spatial' first, or only look with --dry-run");
+                      "make textures with 'tactograph spatial' first, or use --dry-run");
 }
 
 Result<void> check_uncertified(const std::vector<NamedTexture>& files, schema::Existing existing) {
   const auto certified = [](const NamedTexture& file) { return file.texture.certificate.has_value(); };
   const auto found = std::ranges::find_if(files, certified);
   if (found == files.end() || existing == schema::Existing::replace) return {};
-  return schema::fail(schema::ErrorKind::usage, "holds a certificate already, and it is not overwritten",
-                      found->path, "replace it with --force, or only look with --dry-run");
+  return schema::fail(schema::ErrorKind::usage, "already contains a certificate, which is not overwritten",
+                      found->path, "replace it with --force, or use --dry-run");
 }
 
 Result<void> check_storable(const std::vector<NamedTexture>& files, schema::Existing existing) {
@@ -116,16 +116,17 @@ Result<Report> run_certify(const CertifyOptions& options) {
 
 cli::Action declare_certify(CLI::App& app) {
   auto options = std::make_shared<CertifyOptions>();
-  app.add_option("TEXTURE", options->names,
-                 std::string("Two or more of one surface, made at different speeds. ") + kTextureInputs)
+  app.add_option(
+         "TEXTURE", options->names,
+         std::string("Two or more textures of one surface, recorded at different speeds. ") + kTextureInputs)
       ->required();
   app.add_option("--confidence", options->certificate.confidence,
-                 "Probability from which on a peak is called, above 0.5 and below 1")
+                 "Probability from which a peak is classified, above 0.5 and below 1")
       ->capture_default_str();
   app.add_flag_callback(
       "--force", [options] { options->existing = schema::Existing::replace; },
-      "Replace a certificate that a texture holds already");
-  app.add_flag("--dry-run", options->dry, "Only say; store nothing in the textures");
+      "Replace the certificate that a texture already contains");
+  app.add_flag("--dry-run", options->dry, "Print the result only; do not store it in the textures");
   return [options] { return run_certify(*options); };
 }
 
@@ -133,7 +134,7 @@ cli::Action declare_certify(CLI::App& app) {
 
 const cli::Verb kCertifyVerb{
     "certify",
-    "Separate the surface's peaks from those in time (mains, resonances), by strokes at different speeds",
+    "Separate peaks of the surface from those in time (mains, resonances) by strokes at different speeds",
     "tactograph certify oak-slow oak-fast", declare_certify};
 
 }  // namespace tacto::spatial

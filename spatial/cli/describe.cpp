@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph describe: textures in a few numbers each, as a table.
+// tactograph describe: each texture in a few numbers, as a table.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ Result<schema::DescriptionFile> described(const std::vector<NamedTexture>& files
   schema::DescriptionFile all;
   for (const NamedTexture& file : files) {
     auto description = describe(file.texture, options);
-    if (!description) return said_of(file, description);
+    if (!description) return with_file(file, description);
     description->texture = file.name;
     all.textures.push_back(std::move(*description));
   }
@@ -62,7 +62,7 @@ Report row_of(const Description& each) {
   return row;
 }
 
-// One row a band, one column a texture would grow too wide for people; files have that form.
+// One row per band: one column per texture would be too wide for a terminal; files have that form.
 std::vector<Report> band_rows(const schema::DescriptionFile& file) {
   std::vector<Report> rows;
   for (const Description& each : file.textures)
@@ -106,10 +106,10 @@ cli::Action declare_describe(CLI::App& app) {
   auto options = std::make_shared<DescribeOptions>();
   app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output,
-                 "What to write, one row a texture: .csv, .json, or NAME (NAME.descriptions.json)");
+                 "Output file, one row per texture: .csv, .json, or NAME (NAME.descriptions.json)");
   cli::declare_force(app, options->existing);
   cli::add_quantity(app, "--window", options->description.window_m, schema::Dimension::length,
-                    "Window of the spectrum [a quarter of the texture, or 8 of its longest wavelengths]");
+                    "Window of the spectrum [a quarter of the texture, or 8 times its longest wavelength]");
   return [options] { return run_describe(*options); };
 }
 

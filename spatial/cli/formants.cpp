@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph formants: the ridges of textures' spatial spectrograms, as a table.
+// tactograph formants: the ridges of the spatial spectrograms of textures, as a table.
 #include "spatial/features/formants.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ struct FormantsOptions {
 
 Result<schema::FormantTable> table_of(const NamedTexture& file, const FormantsOptions& options) {
   auto spectrogram = spatial_spectrogram(file.texture, options.spectrogram);
-  if (!spectrogram) return said_of(file, spectrogram);
+  if (!spectrogram) return with_file(file, spectrogram);
   spectrogram->name = file.name;
   return formant_table(*spectrogram, options.formants);
 }
@@ -97,13 +97,13 @@ Result<Report> run_formants(const FormantsOptions& options) {
 cli::Action declare_formants(CLI::App& app) {
   auto options = std::make_shared<FormantsOptions>();
   app.add_option("TEXTURE", options->names, kTextureInputs)->required();
-  app.add_option("-o,--output", options->output, "What to write: NAME (NAME.formants.json), .json or .csv");
+  app.add_option("-o,--output", options->output, "Output file: NAME (NAME.formants.json), .json or .csv");
   cli::declare_force(app, options->existing);
   declare_spectrogram(app, options->spectrogram);
   cli::add_quantity(app, "--prominence", options->formants.start_db, Dimension::level,
-                    "Least height of a formant over its background, at its highest point");
-  cli::add_quantity(app, "--go-on", options->formants.go_on_db, Dimension::level,
-                    "Least height of each of its points");
+                    "Minimum level of a formant above its background, at its highest point");
+  cli::add_quantity(app, "--go-on", options->formants.continue_db, Dimension::level,
+                    "Minimum level of each of its points above the background");
   cli::add_quantity(app, "--shortest", options->formants.shortest_m, Dimension::length,
                     "Shortest formant [half a window]");
   cli::add_quantity(app, "--bridge", options->formants.bridge_m, Dimension::length,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph sheet: many textures on one page, at one scale.
+// tactograph sheet: many textures on one page, with common scales.
 #include "spatial/picture/sheet_figure.hpp"
 
 #include <fmt/format.h>
@@ -45,12 +45,12 @@ struct Drawn {
 
 Result<Drawn> drawn(const NamedTexture& file, const SheetOptions& options) {
   auto spectrogram = spatial_spectrogram(file.texture, options.spectrogram);
-  if (!spectrogram) return said_of(file, spectrogram);
+  if (!spectrogram) return with_file(file, spectrogram);
   spectrogram->name = file.name;
   Drawn made{std::move(*spectrogram), {}};
   if (!options.formants) return made;
   auto formants = find_formants(made.spectrogram);
-  if (!formants) return said_of(file, formants);
+  if (!formants) return with_file(file, formants);
   made.formants = std::move(*formants);
   return made;
 }
@@ -122,8 +122,8 @@ Result<void> check_pages(const SheetOptions& options, std::size_t textures) {
 
 Result<void> check_options(const SheetOptions& options) {
   if (options.output.ends_with(".png") || options.output.ends_with(".svg")) return {};
-  return schema::fail(ErrorKind::usage, "pictures are not written in this format", options.output,
-                      "take .png or .svg");
+  return schema::fail(ErrorKind::usage, "this picture format is not supported", options.output,
+                      "use .png or .svg");
 }
 
 Result<Report> run_sheet(const SheetOptions& options) {
@@ -147,19 +147,19 @@ cli::Action declare_sheet(CLI::App& app) {
   auto options = std::make_shared<SheetOptions>();
   app.add_option("TEXTURE", options->names, kTextureInputs)->required();
   app.add_option("-o,--output", options->output,
-                 "The sheet, .png or .svg; over 24 textures make SHEET-01 and on")
+                 "Output file, .png or .svg; more than 24 textures make SHEET-01, SHEET-02 ...")
       ->required();
   cli::declare_force(app, options->existing);
   app.add_option("--title", options->title, "Title of the sheet")->capture_default_str();
-  app.add_option("--columns", options->columns, "Textures side by side [chosen, at most 4]")
+  app.add_option("--columns", options->columns, "Textures side by side [automatic, at most 4]")
       ->check(CLI::Range(1, 12));
   app.add_flag("--formants", options->formants, "Draw the formants");
   declare_spectrogram(app, options->spectrogram);
   cli::add_quantity(app, "--min-frequency", options->picture.min_frequency_per_m,
                     Dimension::spatial_frequency,
-                    "Lower end of the frequency axis [0.7 of the lowest valid band, else 0.1/mm]");
+                    "Lower end of the frequency axis [0.7 of the lowest valid frequency, else 0.1/mm]");
   cli::add_quantity(app, "--dynamic-range", options->picture.dynamic_range_db, Dimension::level,
-                    "Levels from the darkest to the brightest colour");
+                    "Range of levels from the darkest to the brightest colour");
   return [options] { return run_sheet(*options); };
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph spatial: a recording's strokes to textures, force against position.
+// tactograph spatial: makes textures, force against position, of a recording's strokes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tactograph spectrogram: textures to pictures and tables of their spatial spectrum.
+// tactograph spectrogram: pictures and tables of the spatial spectra of textures.
 #include <fmt/format.h>
 
 #include <memory>
@@ -33,7 +33,7 @@ struct SpectrogramVerbOptions {
   schema::Existing existing = schema::Existing::keep;
   SpectrogramOptions spectrogram;
   SpectrogramPictureOptions picture;
-  std::optional<Resolution> resolution;  // where it is named
+  std::optional<Resolution> resolution;  // if the user named one
   cli::BudgetOptions chosen_by;
   bool compress = false;
   bool formants = false;
@@ -41,7 +41,7 @@ struct SpectrogramVerbOptions {
 
 using FormantLists = std::vector<std::vector<schema::Formant>>;
 
-// Empty lists where they are not asked for.
+// Empty lists if formants are not requested.
 Result<FormantLists> formants_of(const SpectrogramRun& run, bool target) {
   FormantLists lists(run.spectrograms().size());
   for (std::size_t i = 0; target && i < lists.size(); ++i) {
@@ -120,18 +120,18 @@ Report report_of(const SpectrogramRun& run, double lowest_per_m, const Spectrogr
 Result<void> check_options(const SpectrogramVerbOptions& options) {
   const auto& lowest = options.picture.min_frequency_per_m;
   if (lowest && !(*lowest > 0 && *lowest < options.spectrogram.max_frequency_per_m))
-    return schema::fail(ErrorKind::usage, "the minimum frequency must lie between 0 and the maximum",
+    return schema::fail(ErrorKind::usage, "the minimum frequency must be between 0 and the maximum",
                         "--min-frequency");
   if (!(options.picture.dynamic_range_db > 0))
     return schema::fail(ErrorKind::usage, "the dynamic range must be above 0 dB", "--dynamic-range",
-                        "60dB is usual");
+                        "60dB is the default");
   if (options.formants && options.spectrogram.scaling != schema::Scaling::density)
-    return schema::fail(ErrorKind::usage, "formants are found in densities", "--formants",
-                        "leave --scaling amplitude away, or --formants");
+    return schema::fail(ErrorKind::usage, "formants are computed from densities, not from amplitudes",
+                        "--formants", "omit --scaling amplitude or --formants");
   return check_outputs(options.outputs, options.existing);
 }
 
-// What --explain says of the choice.
+// The report of --explain about the choice.
 Report explained(const ResolutionChoice& taken, const std::vector<ResolutionChoice>& all,
                  const schema::FoundTradeTable& found) {
   std::vector<Report> rows;
@@ -144,17 +144,16 @@ Report explained(const ResolutionChoice& taken, const std::vector<ResolutionChoi
   return Report()
       .add("by_table", found.origin)
       .add("counts",
-           "|X - exact X| re the largest |X|; window, hop and padding say what is asked for, and are "
-           "never chosen")
+           "|X - exact X| re the largest |X|; window, hop and padding define the result and are not chosen")
       .add("tried", std::move(rows));
 }
 
-// The resolution by the budget, where there is one and none was named.
+// Chooses the resolution by the budget, if there is a budget and no resolution was named.
 Result<std::optional<Report>> choose_resolution(SpectrogramVerbOptions& options) {
   if (options.resolution) options.spectrogram.resolution = *options.resolution;
   const schema::Budget& budget = options.chosen_by.budget;
   if (!budget.asked() && options.chosen_by.explain)
-    return schema::fail(ErrorKind::usage, "there is nothing to explain: nothing was chosen", "--explain",
+    return schema::fail(ErrorKind::usage, "--explain needs a choice by --quality or --max-error", "--explain",
                         "add --quality or --max-error");
   if (!budget.asked()) return std::nullopt;
   const auto found = schema::find_trade_table();
@@ -177,7 +176,7 @@ Result<Report> run_spectrogram(SpectrogramVerbOptions options) {
   SpectrogramFiles files;
   TACTO_TRY(files.open(options.outputs, inputs->several(), options.compress));
   if (options.formants && !files.has_pictures())
-    return schema::fail(ErrorKind::usage, "formants are drawn on a picture, and none is asked for",
+    return schema::fail(ErrorKind::usage, "formants are drawn in a picture, and no picture was requested",
                         "--formants", "add -o NAME.png, or list them with 'tactograph formants'");
   SpectrogramRun run(options.spectrogram, options.picture.min_frequency_per_m, files, files.has_pictures());
   TACTO_TRY(run.transform(*inputs));
@@ -200,15 +199,15 @@ void declare_windows(CLI::App& app, SpectrogramVerbOptions& verb) {
                     "Length of a window with the zeros after it [the next power of two in samples]");
   cli::add_choice<Detrend>(app, "--detrend", options.detrend,
                            {{"constant", Detrend::constant}, {"none", Detrend::none}},
-                           "Take each window's mean off first (constant), or not (none)");
+                           "Subtract the mean of each window first (constant), or not (none)");
   cli::add_choice<schema::Scaling>(
       app, "--scaling", options.scaling,
       {{"density", schema::Scaling::density}, {"amplitude", schema::Scaling::amplitude}},
-      "Power spectral density (unit^2 mm), or the amplitude (unit) that a sine would have");
-  cli::add_choice<std::optional<Resolution>>(
-      app, "--resolution", verb.resolution, {{"auto", Resolution::automatic}, {"whole", Resolution::whole}},
-      "Transform on the coarsest grid that keeps the bins (auto), or on the texture's (whole) [auto, or by "
-      "--quality]");
+      "Power spectral density (unit^2 mm), or the amplitude of a sine (unit)");
+  cli::add_choice<std::optional<Resolution>>(app, "--resolution", verb.resolution,
+                                             {{"auto", Resolution::automatic}, {"whole", Resolution::whole}},
+                                             "Use the coarsest grid that keeps the bins (auto), or the "
+                                             "texture's grid (whole) [auto, or by --quality]");
   cli::declare_budget(app, verb.chosen_by, "the resolution");
 }
 
@@ -216,21 +215,21 @@ void declare_options(CLI::App& app, SpectrogramVerbOptions& options) {
   app.add_option("TEXTURE", options.names, std::string(kTextureInputs) + "; several share one output")
       ->required();
   app.add_option("-o,--output", options.outputs,
-                 "What to write: .png, .svg, .nc (netCDF-4) or .csv; may be repeated")
+                 "Output file: .png, .svg, .nc (netCDF-4) or .csv; may be repeated")
       ->required()
       ->allow_extra_args(false);
   cli::declare_force(app, options.existing);
   declare_windows(app, options);
   cli::add_quantity(app, "--max-frequency", options.spectrogram.max_frequency_per_m,
                     Dimension::spatial_frequency, "Highest spatial frequency that is kept");
-  cli::add_quantity(
-      app, "--min-frequency", options.picture.min_frequency_per_m, Dimension::spatial_frequency,
-      "Lower end of the picture's axis and of the band that is summed up [0.7 of the texture's valid "
-      "band, else 0.1/mm]");
+  cli::add_quantity(app, "--min-frequency", options.picture.min_frequency_per_m, Dimension::spatial_frequency,
+                    "Lower end of the picture's axis and of the band of the RMS [0.7 of the lowest valid "
+                    "frequency, else 0.1/mm]");
   cli::add_quantity(app, "--dynamic-range", options.picture.dynamic_range_db, Dimension::level,
-                    "Levels from the darkest to the brightest colour");
+                    "Range of levels from the darkest to the brightest colour");
   app.add_flag("--formants", options.formants, "Draw the formants ('tactograph formants' lists them)");
-  app.add_flag("--compress", options.compress, "Deflate the cells of a .nc: slower, and hardly smaller");
+  app.add_flag("--compress", options.compress,
+               "Compress the cells of a .nc file: slower, and only slightly smaller");
 }
 
 cli::Action declare_spectrogram_verb(CLI::App& app) {

@@ -22,12 +22,13 @@ class SpectrogramFiles {
   /// Whether a figure is needed.
   bool has_pictures() const { return !pictures_.empty(); }
 
-  /// To every table and netCDF file; as of SpectrogramWriter.
+  /// Calls SpectrogramWriter::begin() of every table and netCDF file.
   schema::Result<void> begin(const schema::SpectrogramHeader& header);
   schema::Result<void> rows(std::size_t first, std::span<const float> cells);
 
-  /// Ends all files, draws the pictures (`figure` may be null where there are none) and lets all appear.
-  /// Errors: of the writers and the figure; cannot_write; usage, where a file that is to be kept has a name.
+  /// Ends all files, draws the pictures (`figure` may be null if there are none) and renames all files
+  /// together. Errors: of the writers and the figure; cannot_write; usage, if a file that must not be
+  /// replaced has the name.
   schema::Result<void> finish(const Figure* figure, schema::Existing existing);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The options of a spectrogram that several verbs share.
+// The spectrogram options that several verbs have in common.
 #pragma once
 
 #include "data-schema/command/verb.hpp"
@@ -13,7 +13,7 @@ inline void declare_spectrogram(CLI::App& app, SpectrogramOptions& options) {
   cli::add_quantity(app, "--window", options.window_m, Dimension::length, "Length of the Blackman window");
   cli::add_quantity(app, "--hop", options.hop_m, Dimension::length, "Distance from one window to the next");
   cli::add_quantity(app, "--max-frequency", options.max_frequency_per_m, Dimension::spatial_frequency,
-                    "Highest spatial frequency that is looked at");
+                    "Highest spatial frequency that is analysed");
 }
 
 }  // namespace tacto::spatial

@@ -20,10 +20,10 @@ using schema::SpectrogramHeader;
 void warn_of_odd_options(const SpectrogramOptions& options, double pitch_m) {
   if (options.hop_m > options.window_m)
     cli::warn(
-        fmt::format("the hop of {} is longer than the window of {}: the parts between windows are left out",
+        fmt::format("the hop of {} is longer than the window of {}: the parts between windows are ignored",
                     schema::length_for_people(options.hop_m), schema::length_for_people(options.window_m)));
   if (options.max_frequency_per_m > 0.5 / pitch_m)
-    cli::warn(fmt::format("a grid of {} holds no frequencies above {}", schema::length_for_people(pitch_m),
+    cli::warn(fmt::format("a grid of {} contains no frequencies above {}", schema::length_for_people(pitch_m),
                           schema::for_people(0.5 / pitch_m, Dimension::spatial_frequency)));
 }
 
@@ -31,10 +31,10 @@ void warn_if_little_is_seen(const NamedTexture& texture, const SpectrogramHeader
   const double length_m = texture.texture.signal.length_m();
   const double seen_m = header.position_m.back() - header.position_m.front();
   if (seen_m < 0.25 * length_m)
-    cli::warn(fmt::format(
-        "{}: is hardly longer than the window, so the spectrogram covers only {} of {}; a shorter "
-        "--window shows more",
-        texture.path, schema::length_for_people(seen_m), schema::length_for_people(length_m)));
+    cli::warn(
+        fmt::format("{}: is only slightly longer than the window, so the spectrogram covers only {} of {}; "
+                    "use a shorter --window",
+                    texture.path, schema::length_for_people(seen_m), schema::length_for_people(length_m)));
 }
 
 template <class T>
@@ -54,7 +54,7 @@ Result<void> SpectrogramRun::transform(TextureInputs& inputs) {
     if (!*texture) break;
     if (auto taken = take(std::move(**texture)); !taken) return taken;
   }
-  if (lines_.empty()) return schema::fail(ErrorKind::unsuitable, "there is no texture among the files named");
+  if (lines_.empty()) return schema::fail(ErrorKind::unsuitable, "none of the given files is a texture");
   return {};
 }
 
@@ -76,7 +76,7 @@ Result<void> SpectrogramRun::take(NamedTexture texture) {
   return {};
 }
 
-// Most textures of a run are about as long as the first.
+// The number of rows is estimated from the first texture, because most others are about as long.
 Result<void> SpectrogramRun::prepare(const NamedTexture& first) {
   const auto& signal = first.texture.signal;
   const auto shape = frame_shape(options_, signal.pitch_m);
@@ -98,12 +98,12 @@ Result<void> SpectrogramRun::check_alike(const NamedTexture& other) const {
         ErrorKind::unsuitable,
         fmt::format("has a grid of {}, but {} has {}", schema::length_for_people(texture.signal.pitch_m),
                     first_path_, schema::length_for_people(pitch_m)),
-        other.path, "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
+        other.path, "make one spectrogram of each, or make textures with equal grids ('spatial --grid')");
   if (texture.quantity != first_->quantity || texture.unit != first_->unit)
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("holds {}, but {} holds {}", texture.quantity, first_path_, first_->quantity), other.path,
-        "make a spectrogram of each alone");
+        fmt::format("contains {}, but {} contains {}", texture.quantity, first_path_, first_->quantity),
+        other.path, "make one spectrogram of each");
   return {};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run of 'tactograph spectrogram': texture after texture through one maker into all files.
+// A run of 'tactograph spectrogram': computes texture after texture with one maker and writes all files.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,7 @@
 
 namespace tacto::spatial {
 
-/// Remembers of each spectrogram a few numbers only; all of it, and its texture, where `keep` says so
-/// (pictures).
+/// Stores only a few numbers of each spectrogram; with `keep` (for pictures) also all of it, and its texture.
 class SpectrogramRun {
  public:
   struct Line {
@@ -26,16 +25,16 @@ class SpectrogramRun {
     SpectrogramTally tally;
   };
 
-  /// `lowest_per_m`: lower end of the band that the lines are summed up over; unless told, of what is shown.
+  /// `lowest_per_m`: lower limit of the band over which the lines are summed. Default: that of the pictures.
   SpectrogramRun(const SpectrogramOptions& options, std::optional<double> lowest_per_m,
                  SpectrogramFiles& files, bool keep)
       : options_(options), asked_lowest_per_m_(lowest_per_m), files_(files), keep_(keep) {}
 
-  /// Errors: of the inputs, the maker and the files; unsuitable, naming both, for a texture on another grid
-  /// or of another quantity than the first.
+  /// Errors: of the inputs, the maker and the files; unsuitable, with both names, for a texture with another
+  /// pitch or quantity than the first.
   schema::Result<void> transform(TextureInputs& inputs);
 
-  /// After transform(): one for each texture, and what they share.
+  /// After transform(): one line for each texture, and their common values.
   const std::vector<Line>& lines() const { return lines_; }
   const schema::SpectrogramHeader& first() const { return *first_; }
   const Decimation& decimation() const { return maker_->decimation(); }

@@ -16,7 +16,7 @@ bool is_table(std::string_view line) {
   return line.starts_with("texture,from_mm,to_mm,") || line.starts_with("texture,quantity,length_mm,");
 }
 
-// A table of the same kind may be replaced; what was recorded or made may not.
+// A table of the same kind may be replaced, but not a recording, a texture or another file.
 schema::Result<void> check_kind(const std::string& path) {
   using schema::FileKind;
   std::error_code ignored;
@@ -25,8 +25,8 @@ schema::Result<void> check_kind(const std::string& path) {
   const auto kind = there ? std::optional(there->front().kind) : std::nullopt;
   if (kind == FileKind::formants || kind == FileKind::descriptions) return {};
   return schema::fail(schema::ErrorKind::usage,
-                      kind ? fmt::format("is a {}, and would be lost", schema::kind_name(*kind))
-                           : "holds something else, and would be lost",
+                      kind ? fmt::format("is a {} and is not overwritten", schema::kind_name(*kind))
+                           : "has other contents and is not overwritten",
                       path, "choose another name");
 }
 

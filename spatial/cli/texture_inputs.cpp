@@ -28,11 +28,10 @@ std::string name_of(const std::string& path, std::string_view suffix) {
 
 void warn_of_version(const std::string& path, const std::string& version) {
   if (!version.empty())
-    cli::warn(
-        fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", path, version));
+    cli::warn(fmt::format("{}: has the newer version {}; its unknown members are ignored", path, version));
 }
 
-// The number N of "STEM-N.texture.json", two digits or more.
+// The number N in "STEM-N.texture.json", two digits or more.
 std::optional<int> number_of(const std::string& file, const std::string& stem) {
   constexpr std::string_view kEnding = ".texture.json";
   if (!file.starts_with(stem + "-") || !file.ends_with(kEnding)) return std::nullopt;
@@ -44,7 +43,7 @@ std::optional<int> number_of(const std::string& file, const std::string& stem) {
   return number;
 }
 
-// What 'tactograph spatial' made of a recording of several strokes, by their numbers.
+// The textures that 'tactograph spatial' made of a recording of several strokes, by their numbers.
 std::vector<StoredFile> numbered_textures(const std::string& name) {
   const fs::path stem(name);
   std::map<int, std::string> found;
@@ -81,8 +80,8 @@ Result<TextureInputs> TextureInputs::find(const std::vector<std::string>& names,
   TextureInputs inputs(options);
   for (const std::string& name : names) TACTO_TRY(inputs.add(name, names.size() == 1));
   if (inputs.inputs_.empty())
-    return schema::fail(ErrorKind::unsuitable, "there is no texture among the files named");
-  // Opened now, so that it is known how many textures it makes.
+    return schema::fail(ErrorKind::unsuitable, "none of the given files is a texture");
+  // opened now, because the number of its textures has to be known
   TACTO_TRY(inputs.open_if_recording());
   return inputs;
 }
@@ -117,7 +116,7 @@ void TextureInputs::add(const StoredFile& file) {
   if (named_.insert(schema::canonical_path(file.path)).second) inputs_.push_back(file);
 }
 
-// Moves a recording whose turn it is from the inputs to its strokes.
+// If the next input is a recording, moves it from the inputs to its strokes.
 Result<void> TextureInputs::open_if_recording() {
   if (!strokes_.empty() || inputs_.empty() || inputs_.front().kind != FileKind::recording) return {};
   const std::string path = inputs_.front().path;
@@ -134,7 +133,7 @@ Result<void> TextureInputs::open_if_recording() {
   const auto& strokes = maker_->record().strokes();
   if (strokes.empty())
     return schema::fail(ErrorKind::unsuitable, "no stroke was found", path,
-                        "make a texture of a stretch with 'tactograph spatial --from --to'");
+                        "make a texture of a selected time range with 'tactograph spatial --from --to'");
   const std::string name = name_of(path, "");
   int number = 0;
   for (const Stroke& stroke : strokes) {
@@ -144,10 +143,11 @@ Result<void> TextureInputs::open_if_recording() {
   }
   const std::size_t up = strokes.size() - strokes_.size();
   if (strokes_.empty())
-    return schema::fail(ErrorKind::unsuitable, "the finger is up in every stroke", path,
-                        "'tactograph spatial --finger-up' makes textures of them all the same");
+    return schema::fail(ErrorKind::unsuitable, "the finger does not touch the surface in any stroke", path,
+                        "'tactograph spatial --finger-up' makes textures of them nevertheless");
   if (up > 0)
-    cli::warn(fmt::format("{}: in {} of {} strokes the finger is up; left out", path, up, strokes.size()));
+    cli::warn(fmt::format("{}: in {} of {} strokes the finger does not touch the surface; they are excluded",
+                          path, up, strokes.size()));
   return {};
 }
 
@@ -160,9 +160,9 @@ Result<std::optional<NamedTexture>> TextureInputs::next_stroke() {
       made_ = true;
       return NamedTexture{stroke.name, stroke.name, std::move(*texture)};
     }
-    const bool last_hope = strokes_.empty() && !made_;
-    if (texture.error().kind != ErrorKind::unsuitable || last_hope) return schema::forward_error(texture);
-    cli::warn(fmt::format("{} makes no texture: {}", stroke.name, schema::message(texture.error())));
+    const bool is_last = strokes_.empty() && !made_;
+    if (texture.error().kind != ErrorKind::unsuitable || is_last) return schema::forward_error(texture);
+    cli::warn(fmt::format("{}: no texture was made: {}", stroke.name, schema::message(texture.error())));
   }
   return std::nullopt;
 }
@@ -172,7 +172,7 @@ Result<std::optional<NamedTexture>> TextureInputs::next() {
   if (!strokes_.empty()) {
     auto texture = next_stroke();
     if (!texture || *texture) return texture;
-    return next();  // the strokes that were left made none
+    return next();  // none of the remaining strokes made a texture
   }
   if (inputs_.empty()) return std::nullopt;
   auto texture = read_texture(inputs_.front().path);
@@ -192,9 +192,9 @@ Result<std::vector<NamedTexture>> open_textures(const std::vector<std::string>& 
     const schema::Texture& first = all.empty() ? (*next)->texture : all.front().texture;
     if ((*next)->texture.quantity != first.quantity || (*next)->texture.unit != first.unit)
       return schema::fail(ErrorKind::unsuitable,
-                          fmt::format("holds {}, but {} holds {}", (*next)->texture.quantity,
+                          fmt::format("contains {}, but {} contains {}", (*next)->texture.quantity,
                                       all.front().path, first.quantity),
-                          (*next)->path, "take textures of one quantity at a time");
+                          (*next)->path, "use textures of one quantity");
     all.push_back(std::move(**next));
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The textures that the user named: read from their files, or made from a recording's strokes, one at a time.
+// The textures that the user named: read from files, or made of a recording's strokes, one at a time.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@
 
 namespace tacto::spatial {
 
-/// What the names on a command line may stand for, as its help says it.
+/// What a name on the command line may refer to, for the help.
 inline constexpr const char* kTextureInputs =
-    "Textures, or recordings of which each stroke becomes one, by stem or file. NAME means NAME-01, "
-    "NAME-02 ... where there is no texture NAME";
+    "Textures, or recordings (each stroke becomes a texture), by stem or file. If there is no texture NAME, "
+    "NAME means NAME-01, NAME-02 ...";
 
-/// `path` for messages, `name` for titles and reports. `stored`: path is that of its sidecar, not a stroke's
-/// name.
+/// `path` is for messages, `name` for titles and reports. `stored`: the path is that of the sidecar, not a
+/// stroke's name.
 struct NamedTexture {
   std::string path, name;
   schema::Texture texture;
@@ -32,18 +32,18 @@ struct NamedTexture {
 /// Holds one recording at a time.
 class TextureInputs {
  public:
-  /// A name stands for a texture; else for NAME-01, NAME-02 ...; else for a recording, whose strokes become
-  /// textures as by 'tactograph spatial' (`options`). Among several names, other kinds are passed over with a
-  /// warning. Errors: not_found, unsuitable, malformed; of opening a recording that is named first.
+  /// A name refers to a texture, else to NAME-01, NAME-02 ..., else to a recording whose strokes become
+  /// textures as in 'tactograph spatial' (`options`). Among several names, files of other kinds are skipped
+  /// with a warning. Errors: not_found, unsuitable, malformed; of opening a recording that is named first.
   static schema::Result<TextureInputs> find(const std::vector<std::string>& names,
                                             const TextureOptions& options);
 
-  /// Whether more than one texture may come, and about how many.
+  /// Whether more than one texture is expected, and about how many.
   bool several() const { return expected() > 1; }
   std::size_t expected() const { return inputs_.size() + strokes_.size(); }
 
-  /// The next texture, or nothing at the end. A stroke among several that makes no texture is passed over
-  /// with a warning. Errors: of reading and making.
+  /// The next texture, or nothing at the end. If one of several strokes makes no texture, it is skipped with
+  /// a warning. Errors: of reading and making.
   schema::Result<std::optional<NamedTexture>> next();
 
  private:
@@ -60,20 +60,20 @@ class TextureInputs {
   };
 
   TextureOptions options_;
-  std::deque<schema::StoredFile> inputs_;  // still to come
-  std::set<std::string> named_;            // so far, by canonical paths: a file by two spellings comes once
-  std::optional<TextureMaker> maker_;      // of the recording whose turn it is
-  std::deque<NumberedStroke> strokes_;     // of that recording, still to come
-  bool made_ = false;                      // a texture, of that recording
+  std::deque<schema::StoredFile> inputs_;  // not yet read
+  std::set<std::string> named_;  // canonical paths so far, so that a file with two spellings is used once
+  std::optional<TextureMaker> maker_;   // of the current recording
+  std::deque<NumberedStroke> strokes_;  // of that recording, not yet made
+  bool made_ = false;                   // whether that recording has made a texture
 };
 
-/// All of them at once, of one quantity and unit. Errors: of find() and next(); unsuitable, where they
-/// differ.
+/// All of them at once; they must have one quantity and unit. Errors: of find() and next(); unsuitable, if
+/// they differ.
 schema::Result<std::vector<NamedTexture>> open_textures(const std::vector<std::string>& names);
 
-/// What a library said of a texture, with its file.
+/// The error of a library about a texture, with the texture's file.
 template <class T>
-tl::unexpected<schema::Error> said_of(const NamedTexture& input, const schema::Result<T>& failed) {
+tl::unexpected<schema::Error> with_file(const NamedTexture& input, const schema::Result<T>& failed) {
   schema::Error error = failed.error();
   if (error.kind == schema::ErrorKind::unsuitable)
     error.where = error.where.empty() ? input.path : input.path + ": " + error.where;

@@ -30,7 +30,8 @@ BandPoint valid_band_of(const Texture& texture) {
   return band_throughout(texture.valid_band);
 }
 
-// Long enough to tell the lowest band from its neighbours, as short as steadies the estimate.
+// Long enough to separate the lowest band from its neighbours, and not longer, so that many windows are
+// averaged.
 double usual_window_m(const Texture& texture, double low_per_m) {
   constexpr double kWavelengths = 8;
   const double length_m = static_cast<double>(texture.signal.values.size()) * texture.signal.pitch_m;
@@ -50,9 +51,9 @@ Result<std::size_t> window_samples(const Texture& texture, const DescriptionOpti
     return static_cast<std::size_t>(std::llround(samples));
   return schema::fail(
       ErrorKind::usage,
-      fmt::format("a window of {} can't be used", schema::for_people(target * pitch_m, Dimension::length)),
+      fmt::format("a window of {} cannot be used", schema::for_people(target * pitch_m, Dimension::length)),
       "window",
-      fmt::format("take {} to {} (the texture)",
+      fmt::format("use {} to {} (the length of the texture)",
                   schema::for_people(kShortestWelchWindow * pitch_m, Dimension::length),
                   schema::for_people(static_cast<double>(have) * pitch_m, Dimension::length)));
 }
@@ -68,7 +69,7 @@ std::vector<ThirdOctaveBand> bands_of(const WelchSpectrum& spectrum, double low_
   return bands;
 }
 
-// Weighted least squares; see the header.
+// Weighted least squares; the formula is in the header.
 double slope_of(const std::vector<ThirdOctaveBand>& bands, double low_per_m, double high_per_m) {
   if (!(high_per_m >= 2 * low_per_m)) return NAN;
   double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
@@ -126,8 +127,9 @@ Result<Description> describe(const Texture& texture, const DescriptionOptions& o
   description.low_per_m = std::max(valid.low_per_m, 1.5 / description.window_m);
   description.high_per_m = std::min(valid.high_per_m, 0.5 / texture.signal.pitch_m);
   if (!(description.low_per_m < description.high_per_m))
-    return schema::fail(ErrorKind::unsuitable, "no band is valid along the steady part of the texture",
-                        "texture", "make it from a stretch of steadier speed, or take a longer --window");
+    return schema::fail(ErrorKind::unsuitable,
+                        "no frequency band is valid along the whole part at steady speed", "texture",
+                        "make it from a stretch with a steadier speed, or use a longer --window");
   add_spectrum(description, WelchSpectrum(part.texture.signal.values, texture.signal.pitch_m, *window));
   return description;
 }

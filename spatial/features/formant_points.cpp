@@ -11,10 +11,11 @@ namespace {
 
 using schema::Spectrogram;
 
-// A peak stands so much above the lowest cell within so many of the unpadded window's bins on both sides.
+// A peak exceeds the lowest cell within this many bins of the unpadded window, on each side, by at least
+// this.
 constexpr double kValley_db = 6;
 constexpr double kValleyReach = 4;
-// What lies further under the row's strongest cell may be a side lobe of Blackman's window (-58 dB).
+// A peak further below the row's strongest cell may be a side lobe of the Blackman window (-58 dB).
 constexpr double kPointLeakage_db = 55;
 
 double level(double density) {
@@ -36,8 +37,8 @@ class RowPeaks {
            density(bin + 1) > 0;
   }
 
-  // A side that is not known for that far tells nothing.
-  bool stands_alone(std::size_t bin) const {
+  // A side whose known cells end before that is not tested.
+  bool is_isolated(std::size_t bin) const {
     const double enough = density(bin) * std::pow(10, -kValley_db / 10);
     const bool below = bin < known_.first + valley_bins_ || lowest(bin - valley_bins_, bin) < enough;
     return below && (bin + valley_bins_ >= known_.end || lowest(bin + 1, bin + valley_bins_ + 1) < enough);
@@ -63,7 +64,8 @@ class RowPeaks {
     return most;
   }
 
-  // Bins from the peak's bin to where the level crosses; to the spectrum's end where it doesn't.
+  // Distance in bins from the peak to where the level crosses the target; to the end of the spectrum if it
+  // does not.
   double half_power(std::size_t bin, int way, double target_db) const {
     double inner = level(density(bin));
     for (std::size_t steps = 1; bin + steps < spectrogram_.bins && (way > 0 || steps <= bin); ++steps) {
@@ -94,7 +96,7 @@ std::vector<RidgePoint> ridge_points(const Spectrogram& spectrogram, std::size_t
     const auto [offset, level_db] = parabolic_peak(level(peaks.density(bin - 1)), level(peaks.density(bin)),
                                                    level(peaks.density(bin + 1)));
     const double prominence_db = level_db - level(background.at(row, bin));
-    if (!(prominence_db >= least_prominence_db) || !peaks.stands_alone(bin)) continue;
+    if (!(prominence_db >= least_prominence_db) || !peaks.is_isolated(bin)) continue;
     points.push_back({row, (static_cast<double>(bin) + offset) * spectrogram.frequency_step_per_m,
                       std::pow(10, level_db / 10), prominence_db, peaks.width_per_m(bin, level_db)});
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The peaks of one row of a spectrogram that stand out of its background.
+// The peaks of one row of a spectrogram that exceed its background.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ struct RidgePoint {
   double width_per_m = 0;    ///< between its half-power points
 };
 
-/// By growing frequency. The maximum of three bins is placed by a parabola through their levels.
+/// Sorted by frequency. A parabola through the levels of three bins gives the position of the maximum.
 std::vector<RidgePoint> ridge_points(const schema::Spectrogram& spectrogram, std::size_t row, BinRange known,
                                      const SpectrogramBackground& background, double least_prominence_db);
 

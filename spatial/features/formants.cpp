@@ -18,24 +18,23 @@ using schema::Formant;
 using schema::Result;
 using schema::Spectrogram;
 
-// Half the amplitude: what is left of a line where the window's middle meets its end.
+// Half the amplitude: the level of a line whose end is at the window's middle.
 constexpr double kEnd_db = 6.0206;
 
 Result<void> check(const Spectrogram& spectrogram, const FormantOptions& options) {
-  if (!std::isfinite(options.start_db) || !std::isfinite(options.go_on_db) ||
-      options.go_on_db > options.start_db)
+  if (!std::isfinite(options.start_db) || !std::isfinite(options.continue_db) ||
+      options.continue_db > options.start_db)
     return schema::fail(ErrorKind::usage,
-                        "a ridge starts at a prominence no lower than that at which it goes on", "formants",
-                        "13 and 8 dB are usual");
+                        "the prominence at which a ridge starts must not be below that at which it continues",
+                        "formants", "the defaults are 13 and 8 dB");
   for (const auto& length_m : {options.shortest_m, options.bridge_m})
     if (length_m && !(std::isfinite(*length_m) && *length_m >= 0))
       return schema::fail(ErrorKind::usage, "a length must be 0 or more", "formants");
   if (spectrogram.scaling != schema::Scaling::density)
-    return schema::fail(ErrorKind::unsuitable, "formants are found in densities, not in amplitudes",
+    return schema::fail(ErrorKind::unsuitable, "formants are computed from densities, not from amplitudes",
                         spectrogram.name);
   if (spectrogram.position_m.empty() || spectrogram.bins < 3)
-    return schema::fail(ErrorKind::unsuitable, "the spectrogram has nothing to find formants in",
-                        spectrogram.name);
+    return schema::fail(ErrorKind::unsuitable, "the spectrogram is too small for formants", spectrogram.name);
   return {};
 }
 
@@ -46,7 +45,7 @@ std::vector<Ridge> all_ridges(const Spectrogram& spectrogram, const FormantOptio
   RidgeTracker tracker(resolution_per_m(spectrogram) / 2,
                        static_cast<std::size_t>(std::lround(bridge_m / spectrogram.hop_m)));
   for (std::size_t row = 0; row < known.size(); ++row)
-    tracker.add_row(row, ridge_points(spectrogram, row, known[row], background, options.go_on_db));
+    tracker.add_row(row, ridge_points(spectrogram, row, known[row], background, options.continue_db));
   return tracker.finish();
 }
 
@@ -54,8 +53,8 @@ double level_of(const RidgePoint& point) {
   return 10 * std::log10(point.density);
 }
 
-// How many points from the ridge's beginning lie more than 6 dB under the strongest within a window from
-// there.
+// Number of points at the ridge's beginning that are more than 6 dB below the strongest point within a window
+// from there.
 template <class Iterator>
 std::ptrdiff_t faint_points(Iterator begin, Iterator end, std::size_t window_rows) {
   const auto away = [&](const RidgePoint& p) {
@@ -151,7 +150,7 @@ Result<schema::FormantTable> formant_table(const Spectrogram& spectrogram, const
                               spectrogram.hop_m,
                               resolution_per_m(spectrogram),
                               options.start_db,
-                              options.go_on_db,
+                              options.continue_db,
                               spectrogram.simulated,
                               std::move(*formants)};
 }

@@ -40,15 +40,15 @@ void RidgeTracker::end_stale(std::size_t row) {
 
 void RidgeTracker::add_row(std::size_t row, const std::vector<RidgePoint>& points) {
   end_stale(row);
-  std::vector<bool> ridge_taken(open_.size(), false);
-  std::vector<bool> point_taken(points.size(), false);
+  std::vector<bool> ridge_used(open_.size(), false);
+  std::vector<bool> point_used(points.size(), false);
   for (const Pair& pair : near_pairs(open_, points, tolerance_per_m_)) {
-    if (ridge_taken[pair.ridge] || point_taken[pair.point]) continue;
-    ridge_taken[pair.ridge] = point_taken[pair.point] = true;
+    if (ridge_used[pair.ridge] || point_used[pair.point]) continue;
+    ridge_used[pair.ridge] = point_used[pair.point] = true;
     open_[pair.ridge].push_back(points[pair.point]);
   }
   for (std::size_t p = 0; p < points.size(); ++p)
-    if (!point_taken[p]) open_.push_back({points[p]});
+    if (!point_used[p]) open_.push_back({points[p]});
 }
 
 std::vector<Ridge> RidgeTracker::finish() {

@@ -10,13 +10,13 @@ namespace tacto::spatial {
 
 using Ridge = std::vector<RidgePoint>;
 
-/// Takes rows in order. A point goes on with the ridge whose last frequency is nearest, nearest pairs first,
-/// at most `tolerance_per_m` away; a ridge without a point for more than `bridge_rows` rows has ended.
+/// Input: rows in order. A point continues the ridge whose last frequency is nearest, nearest pairs first, at
+/// most `tolerance_per_m` away. A ridge without a point for more than `bridge_rows` rows ends.
 class RidgeTracker {
  public:
   RidgeTracker(double tolerance_per_m, std::size_t bridge_rows);
   void add_row(std::size_t row, const std::vector<RidgePoint>& points);
-  /// Ends all ridges and gives them.
+  /// Ends all ridges and returns them.
   std::vector<Ridge> finish();
 
  private:

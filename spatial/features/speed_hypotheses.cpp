@@ -9,13 +9,13 @@ namespace tacto::spatial {
 namespace {
 
 constexpr double kScaleOfPositions = 1e-3;  // of k: encoders and rulers
-constexpr double kScaleOfSpeeds = 3e-3;    // of f: the band's breakpoints tell the speed to 1 % at each place
+constexpr double kScaleOfSpeeds = 3e-3;    // of f: the band's breakpoints give the speed to 1 % at each place
 constexpr double kAmplitudeSpread_db = 6;  // from stroke to stroke: load, place, contact
-constexpr double kSurest = 0.95;           // a line may be absent for reasons that nobody modelled
-constexpr double kNear = 3;                // standard deviations within which a line is the one predicted
+constexpr double kMaxDetection = 0.95;     // a line may be absent for reasons outside the model
+constexpr double kNear = 3;                // standard deviations within which a line matches the prediction
 constexpr double kLobe = 1.2;              // resolutions within which a line hides a weaker one
-constexpr double kMostOfUnevenness = 3;    // nats
-constexpr double kSharpness_db = 3;        // standard deviation of how much sharper a line is found
+constexpr double kMaxUnevennessEvidence = 3;  // nats
+constexpr double kSharpness_db = 3;           // standard deviation of a line's gain in prominence
 
 double normal_density(double distance, double sigma) {
   const double z = distance / sigma;
@@ -26,7 +26,7 @@ double normal_share(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
-// Log likelihood ratio of spatial over temporal from how sharp the vibration is in either domain.
+// Log likelihood ratio of spatial over temporal, from the vibration's prominence over position and over time.
 double unevenness_evidence(const StrokeLines& stroke, const Vibration& vibration) {
   const auto cost_db = [&](double smear, double resolution) {
     return 10 * std::log10(std::hypot(1, smear / resolution));
@@ -44,7 +44,7 @@ double unevenness_evidence(const StrokeLines& stroke, const Vibration& vibration
   const double off_temporal = sharper_db - if_temporal_db, off_spatial = sharper_db - if_spatial_db;
   const double nats =
       (off_temporal * off_temporal - off_spatial * off_spatial) / (2 * kSharpness_db * kSharpness_db);
-  return std::clamp(nats, -kMostOfUnevenness, kMostOfUnevenness);
+  return std::clamp(nats, -kMaxUnevennessEvidence, kMaxUnevennessEvidence);
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ namespace {
 
 double detection(const LineSpectrum& spectrum, double power, double frequency) {
   const double over_db = spectrum.prominence_db(power, frequency) - spectrum.needed_db();
-  return kSurest * normal_share(over_db / kAmplitudeSpread_db);
+  return kMaxDetection * normal_share(over_db / kAmplitudeSpread_db);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ double SpeedHypotheses::likelihood(std::size_t stroke, const Prediction& predict
   for (std::size_t m = 0; m < there.lines().size(); ++m) {
     const SpectralLine& line = there.lines()[m];
     const bool hides = prediction.off(line) < kLobe * there.resolution() && line.power > prediction.power / 4;
-    if (prediction.meets(line) ? spoken_for(owner(stroke, prediction.spatial, m)) : hides) return 1;
+    if (prediction.meets(line) ? is_used(owner(stroke, prediction.spatial, m)) : hides) return 1;
     matches += normal_density(prediction.off(line), prediction.sigma_to(line)) / clutter;
   }
   const double seen = detection(there, prediction.power, prediction.frequency);
@@ -122,7 +122,7 @@ SpeedEvidence SpeedHypotheses::evidence(VibrationId id) const {
     const double ratio = other.speed_mps / own.speed_mps;
     evidence.speed_ratio = std::max({evidence.speed_ratio, ratio, 1 / ratio});
     const double apart_per_m = std::abs(in_space.frequency - in_time.frequency / other.speed_mps);
-    evidence.told_apart |= apart_per_m >= other.space.resolution();
+    evidence.resolved |= apart_per_m >= other.space.resolution();
     if (k_known)
       evidence.best_detection =
           std::max(evidence.best_detection, detection(other.space, in_space.power, in_space.frequency));
@@ -145,7 +145,7 @@ std::vector<VibrationId> SpeedHypotheses::same(VibrationId id, bool spatial) con
         std::ranges::min_element(lines, {}, [&](const SpectralLine& l) { return prediction.off(l); });
     if (nearest == lines.end() || !prediction.meets(*nearest)) continue;
     const VibrationId other = owner(j, spatial, static_cast<std::size_t>(nearest - lines.begin()));
-    if (!spoken_for(other)) members.push_back(other);
+    if (!is_used(other)) members.push_back(other);
   }
   return members;
 }

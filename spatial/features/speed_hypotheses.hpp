@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How likely a vibration is to be the surface's, or time's, seen from textures made at other speeds.
+// The likelihood that a vibration is spatial (the surface) or temporal, from textures made at other speeds.
 #pragma once
 
 #include <span>
@@ -14,31 +14,31 @@ struct VibrationId {
   std::size_t stroke = 0, vibration = 0;
 };
 
-/// What speaks for one vibration's two hypotheses.
+/// The evidence for the two hypotheses about one vibration.
 struct SpeedEvidence {
   double spatial = 1, temporal = 1;  ///< likelihood ratios to "neither"
-  double best_detection = 0;         ///< highest chance of seeing it elsewhere, were it there
-  double speed_ratio = 1;            ///< largest to a stroke that knows the place of one of the predictions
-  /// Whether another stroke knows the place where either hypothesis puts it.
+  double best_detection = 0;         ///< highest probability of detection in another stroke
+  double speed_ratio = 1;            ///< largest to a stroke whose valid band contains a prediction
+  /// Whether the prediction of each hypothesis is in the valid band of another stroke.
   bool spatial_tested = false, temporal_tested = false;
-  bool told_apart = false;  ///< in some stroke the predictions lie a resolution apart
+  bool resolved = false;  ///< in some stroke the predictions are at least a resolution apart
 
   double confidence_spatial() const { return spatial / (spatial + temporal + 1); }
   double confidence_temporal() const { return temporal / (spatial + temporal + 1); }
 };
 
-/// Formulas: certificate.hpp. Vibrations can be spoken for, after which they are no evidence for others.
+/// Formulas: certificate.hpp. A vibration that was marked with mark_used() is no longer evidence for others.
 class SpeedHypotheses {
  public:
   explicit SpeedHypotheses(std::vector<StrokeLines> strokes);
 
   const std::vector<StrokeLines>& strokes() const { return strokes_; }
   const Vibration& at(VibrationId id) const { return strokes_[id.stroke].vibrations[id.vibration]; }
-  bool spoken_for(VibrationId id) const { return spoken_for_[id.stroke][id.vibration]; }
-  void speak_for(VibrationId id) { spoken_for_[id.stroke][id.vibration] = true; }
+  bool is_used(VibrationId id) const { return spoken_for_[id.stroke][id.vibration]; }
+  void mark_used(VibrationId id) { spoken_for_[id.stroke][id.vibration] = true; }
 
   SpeedEvidence evidence(VibrationId id) const;
-  /// The vibrations of all strokes that are this one, itself among them, if it is the surface's (or time's).
+  /// The matching vibrations of all strokes, `id` included, under the spatial (or temporal) hypothesis.
   std::vector<VibrationId> same(VibrationId id, bool spatial) const;
 
  private:

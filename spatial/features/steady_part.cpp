@@ -22,7 +22,7 @@ double median_high(const std::vector<BandPoint>& bands) {
   return median_of(highs);
 }
 
-// The speed's factor is that of either limit; the upper one is never 0.
+// The speed's factor is the factor of either limit; the upper limit is never 0.
 bool steady(const BandPoint& band, double usual_high_per_m) {
   const double factor = band.high_per_m / usual_high_per_m;
   return factor <= kSteadyFactor && factor >= 1 / kSteadyFactor;

@@ -18,7 +18,7 @@ using schema::Texture;
 
 constexpr double kOversampling = 8;
 
-// Seconds a metre at each breakpoint; linear between them, as the band is.
+// Seconds per metre at each breakpoint; linear between them, like the band.
 struct Slowness {
   std::vector<double> position_m, s_per_m;
 };
@@ -88,7 +88,7 @@ std::vector<double> resampled(const Texture& texture, const std::vector<double>&
   return result;
 }
 
-// The nearest line that is not taken, at most `reach` away.
+// The nearest unused line, at most `reach` away.
 std::optional<std::size_t> nearest(const std::vector<SpectralLine>& lines, const std::vector<bool>& taken,
                                    double frequency, double reach) {
   std::optional<std::size_t> best;
@@ -126,7 +126,7 @@ void join_time(Vibration& vibration, const StrokeLines& stroke, std::size_t m) {
   vibration.needed_db = stroke.time.needed_db();
 }
 
-// The strongest first, so that a line takes the counterpart that is its own.
+// Strongest first, so that a strong line is paired before a weak line can use its counterpart.
 std::vector<std::size_t> by_strength(const std::vector<SpectralLine>& lines) {
   std::vector<std::size_t> order(lines.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -157,7 +157,7 @@ void join_lines(StrokeLines& stroke) {
   }
 }
 
-// In Hz: what the filter passed.
+// In Hz: the pass band of the filter.
 schema::BandPoint band_hz(const Texture& texture, double mean_speed_mps) {
   return {0, texture.source.low_hz, highest_hz(texture, mean_speed_mps)};
 }
@@ -172,8 +172,8 @@ schema::BandPoint band_per_m(const Texture& texture) {
 Result<TimeCourse> time_course(const Texture& texture) {
   const Slowness slowness = slowness_of(texture);
   if (slowness.s_per_m.empty())
-    return schema::fail(ErrorKind::unsuitable, "nothing says how fast it was recorded", "texture",
-                        "make it from a recording with 'tactograph spatial'");
+    return schema::fail(ErrorKind::unsuitable, "it does not contain the speed at which it was recorded",
+                        "texture", "make it from a recording with 'tactograph spatial'");
   const auto times = times_of(texture, slowness);
   TimeCourse course;
   course.mean_speed_mps = texture.signal.length_m() / times.back();

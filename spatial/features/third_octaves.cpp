@@ -9,7 +9,7 @@ namespace {
 
 using schema::ThirdOctaveBand;
 
-// IEC 61260-1:2014, 5.2 and 5.5: G^(1/6) to each side of the middle, with G = 10^(3/10).
+// IEC 61260-1:2014, 5.2 and 5.5: a factor G^(1/6) on each side of the middle, with G = 10^(3/10).
 const double kHalfBand = std::pow(10, 0.05);
 constexpr double kReference_per_m = 1000;
 
@@ -22,7 +22,7 @@ ThirdOctaveBand whole_band(int number) {
   return band;
 }
 
-// The edge of band n is 10^((n - 0.5) / 10): the band in which a frequency lies.
+// The band that contains a frequency; the lower edge of band n is 10^((n - 0.5) / 10).
 int band_of(double frequency_per_m) {
   return static_cast<int>(std::lround(10 * std::log10(frequency_per_m / kReference_per_m)));
 }

@@ -18,9 +18,9 @@ using schema::Result;
 Result<TextureNeed> need_of(const SpatialOptions& options, const TextureOptions& target,
                             const TouchRecord& record, const std::vector<StrokeJob>& jobs) {
   if (target.filter.method != FilterMethod::fourier || target.space)
-    return schema::fail(ErrorKind::usage, "an error can only be promised of a band that ends",
+    return schema::fail(ErrorKind::usage, "an error can be guaranteed only for a band with an upper limit",
                         options.chosen_by.budget.max_error ? "--max-error" : "--quality",
-                        "leave --filter and --band-in away, or name --method and --grid yourself");
+                        "omit --filter and --band-in, or give --method and --grid");
   const double rate_hz = record.header().sample_rate_hz;
   TextureNeed need{rate_hz, target.filter.passed(rate_hz).high_hz, 1e300, options.method, options.pitch_m};
   for (const StrokeJob& job : jobs)
@@ -43,16 +43,15 @@ std::string asked(const schema::Budget& budget) {
   return budget.most_exact() ? "the most exact" : fmt::format("at most {:g} %", 100 * budget.most_error());
 }
 
-// The promise is of the force behind the band-pass, so what this takes is told by itself, as measured.
-std::string counts_not(double lowest_hz, const BandShare& share) {
+// The promise is about the force behind the band-pass, so what the band-pass removes is reported separately,
+// as measured.
+std::string excluded_text(double lowest_hz, const BandShare& share) {
   return fmt::format(
-      "what the band-pass itself removes: in this recording's worst stroke {:.3g} % of the RMS of what "
-      "passes, "
-      "{:.3g} % in its middle half (what lies outside of the band: drift, slow friction, the force's steps "
-      "where the finger sets out and stops); what lies within {:.2g} s beyond the record's ends, which is "
-      "unknown; the encoder's rounding and noise; a speed that comes and goes within {:g} frames; slower "
-      "places "
-      "(the valid band says how far they reach)",
+      "the part that the band-pass removes: in the worst stroke of this recording {:.3g} % of the RMS of the "
+      "part that passes, {:.3g} % in the middle half of the stroke (drift, slow friction, the steps of the "
+      "force where the finger starts and stops); the unknown signal within {:.2g} s beyond the ends of the "
+      "record; rounding and noise of the encoder; changes of speed within {:g} frames; slower places (see "
+      "the valid band)",
       100 * share.whole, 100 * share.inside, kBandKernelPeriods / lowest_hz, kSteadyFrames);
 }
 
@@ -67,13 +66,13 @@ void explain(Report& report, const TextureChoices& choices, const TextureNeed& n
              const BandShare& share, const schema::FoundTradeTable& found) {
   report.add("by_table", found.origin);
   report.add("counts",
-             fmt::format("what method and grid lose of {:g} Hz and below, read between the grid's points, "
-                         "where the finger goes at {} or more",
+             fmt::format("error of method and grid up to {:g} Hz, interpolated between the points of the "
+                         "grid, where the speed is {} or more",
                          need.highest_hz,
                          schema::for_people(kPromisedSpeed * need.slowest_mps, schema::Dimension::speed)));
   report.add("band_pass_took_percent", 100 * share.whole)
       .add("band_pass_took_inside_percent", 100 * share.inside);
-  report.add("counts_not", counts_not(lowest_hz, share));
+  report.add("counts_not", excluded_text(lowest_hz, share));
   std::vector<Report> rows;
   for (const TextureChoice& choice : choices.tried) rows.push_back(row_of(choice, choices.taken));
   report.add("tried", std::move(rows));
@@ -99,7 +98,8 @@ Result<ChosenTexture> choose_texture(const SpatialOptions& options, const Textur
   chosen.report.add("method", std::string(name_of(choices->taken.method)))
       .add("promised_error_percent", 100 * choices->taken.error)
       .add("asked_error", asked(budget))
-      .add("promise_is", "against the force behind the same band-pass; what that takes: --explain");
+      .add("promise_is",
+           "relative to the force after the same band-pass; --explain reports what the band-pass removes");
   if (!options.chosen_by.explain) return chosen;
   const auto share = share_of(target, record, jobs);
   TACTO_TRY(share);

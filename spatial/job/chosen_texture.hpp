@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `spatial --quality` and `--max-error`: method and grid by what was measured, and the words for --explain.
+// `spatial --quality` and `--max-error`: choice of method and grid from measured errors, and the report of
+// --explain.
 #pragma once
 
 #include <vector>
@@ -13,12 +14,12 @@
 namespace tacto::spatial {
 
 struct ChosenTexture {
-  TextureOptions options;  ///< with method and grid in place
-  cli::Report report;      ///< what was chosen; with --explain what else was tried, and by which table
+  TextureOptions options;  ///< including method and grid
+  cli::Report report;      ///< the choice; with --explain also the alternatives and the table
 };
 
-/// Errors: usage, for a band that does not end; unsuitable, where no choice keeps the promise; of reading the
-/// table of measured choices.
+/// Errors: usage, for a band without an upper limit; unsuitable, if no choice keeps the budget; of reading
+/// the table of measured choices.
 schema::Result<ChosenTexture> choose_texture(const SpatialOptions& options, const TextureOptions& target,
                                              const TouchRecord& record, const std::vector<StrokeJob>& jobs);
 

@@ -14,7 +14,7 @@ using schema::Result;
 
 namespace {
 
-// Shifts a texture so that it agrees best with the strokes before it.
+// Shifts a texture for the best agreement with the strokes before it.
 class Aligner {
  public:
   Aligner(TextureMaker& maker, const SpatialOptions& options, std::vector<std::string>& warnings)
@@ -31,7 +31,7 @@ class Aligner {
     stroke.correlation = found.correlation;
     if (!found.found) {
       warnings_.push_back(fmt::format(
-          "stroke {} agrees with those before it nowhere within {}: it is averaged without a shift",
+          "stroke {} correlates with those before it at no shift within {}: it is averaged without a shift",
           job.number, schema::for_people(options_.align_range_m, schema::Dimension::length)));
       return texture;
     }
@@ -45,7 +45,7 @@ class Aligner {
   std::vector<std::string>& warnings_;
 };
 
-// Of one recording the file's `source` names it.
+// `named`: whether the stroke stores its recording. In a mean of one recording the file's `source` does.
 Result<void> add_named_stroke(TextureMaker& maker, const StrokeJob& job, const Aligner& aligner, bool named,
                               TextureAverager& averager) {
   auto made = maker.make(job.stroke, job.number);

@@ -28,7 +28,8 @@ struct Sorted {
   std::vector<std::string> recordings, skipped;
 };
 
-// A name that stands for no recording is skipped; one that stands for nothing is left to fail by itself.
+// Names of files of another kind are skipped; a name without a file is kept, so that it fails with its own
+// message.
 Sorted sorted(const std::vector<std::string>& names) {
   Sorted result;
   for (const std::string& name : names) {
@@ -42,7 +43,7 @@ Sorted sorted(const std::vector<std::string>& names) {
   return result;
 }
 
-// Works on the recordings, `jobs` at a time; outcomes come in the order of their names.
+// Processes the recordings, `jobs` at a time; the outcomes are in the order of their names.
 class Batch {
  public:
   Batch(const SpatialOptions& options, const std::vector<std::string>& names,
@@ -107,15 +108,15 @@ Report report_of(const std::vector<SpatialOutcome>& outcomes, const std::vector<
 Result<Report> spatial_batch(const SpatialOptions& options) {
   const Sorted files = sorted(options.recordings);
   if (!files.skipped.empty())
-    cli::warn(fmt::format("skipped, no recordings: {}", fmt::join(files.skipped, ", ")));
+    cli::warn(fmt::format("skipped because they are not recordings: {}", fmt::join(files.skipped, ", ")));
   if (files.recordings.empty())
-    return schema::fail(ErrorKind::unsuitable, "there is no recording among the files");
-  if (asks_for_takes(options)) return spatial_takes(options, files.recordings);
+    return schema::fail(ErrorKind::unsuitable, "none of the given files is a recording");
+  if (averages_recordings(options)) return spatial_takes(options, files.recordings);
   const auto stems = texture_stems(files.recordings, options.output);
   TACTO_TRY(stems);
   Batch batch(options, files.recordings, *stems);
   const auto& outcomes = batch.run();
-  // Of all recordings together: a folder of them may have one warning of a kind each.
+  // Collected over all recordings, so that one warning of a kind can summarise a whole folder.
   std::vector<cli::Warning> warnings;
   for (const SpatialOutcome& outcome : outcomes)
     warnings.insert(warnings.end(), outcome.warnings.begin(), outcome.warnings.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tactograph spatial` on many recordings, some at a time.
+// `tactograph spatial` for many recordings, some of them in parallel.
 #pragma once
 
 #include "data-schema/report/report.hpp"
@@ -7,9 +7,9 @@
 
 namespace tacto::spatial {
 
-/// Files of other kinds are skipped and named; a recording that fails does not stop the others, is named at
-/// the end, and its exit code is the process's (the first one's, of several). Errors: usage, of names;
-/// unsuitable, where there is no recording among the files.
+/// Files of other kinds are skipped and reported. A recording that fails does not stop the others. It is
+/// reported at the end, and the process has its exit code (the first one's, of several). Errors: usage, of
+/// names; unsuitable, if there is no recording among the files.
 schema::Result<cli::Report> spatial_batch(const SpatialOptions& options);
 
 }  // namespace tacto::spatial

@@ -23,8 +23,8 @@ Result<Edge> parse_band(const std::string& text, Dimension dimension) {
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos)
     return schema::fail(
-        ErrorKind::usage, "is neither 'off' nor two frequencies", where_of_band(text),
-        dimension == Dimension::frequency ? "write it like 15Hz..500Hz" : "write it like 0.5/mm..10/mm");
+        ErrorKind::usage, "is neither 'off' nor a pair of frequencies", where_of_band(text),
+        dimension == Dimension::frequency ? "write it as 15Hz..500Hz" : "write it as 0.5/mm..10/mm");
   const auto end = [&](const std::string& words) -> Result<double> {
     auto value = schema::parse_quantity(words, dimension);
     if (!value) value.error().where = where_of_band(text);
@@ -34,33 +34,33 @@ Result<Edge> parse_band(const std::string& text, Dimension dimension) {
   TACTO_TRY(low);
   TACTO_TRY(high);
   if (*low < *high) return Edge{*low, *high};
-  return schema::fail(ErrorKind::usage, "does not rise", where_of_band(text), "write the lower end first");
+  return schema::fail(ErrorKind::usage, "the limits of the band do not increase", where_of_band(text),
+                      "write the lower end first");
 }
 
 Result<SpaceFilter> space_filter(const SpatialOptions& options) {
   const TimeFilter& filter = options.texture.filter;
   if (options.band.empty())
-    return schema::fail(ErrorKind::usage, "--band-in space has no band of its own", {},
-                        "say it with --band, like 0.5/mm..10/mm");
+    return schema::fail(ErrorKind::usage, "--band-in space has no default band", {},
+                        "give it with --band, as 0.5/mm..10/mm");
   const auto band = parse_band(options.band, Dimension::spatial_frequency);
   TACTO_TRY(band);
   return SpaceFilter{filter.method, band->low, band->high, filter.edges, filter.order};
 }
 
 void declare_stretch(CLI::App& app, SpatialOptions& options) {
-  auto* stroke = app.add_option("--stroke", options.stroke, "Only this stroke of those found, from 1");
+  auto* stroke = app.add_option("--stroke", options.stroke, "Only the stroke of this number, from 1");
   auto* from = cli::add_quantity(app, "--from", options.from_s, Dimension::time,
-                                 "Only the stretch from this time on (default: the recording's start)");
+                                 "Start of the time range (default: start of the recording)");
   auto* to = cli::add_quantity(app, "--to", options.to_s, Dimension::time,
-                               "Only the stretch up to this time (default: the recording's end)");
+                               "End of the time range (default: end of the recording)");
   stroke->excludes(from)->excludes(to);
   app.add_flag("--finger-up", options.finger_up,
-               "Textures of strokes with the finger up, too (by the normal force)");
-  app.add_flag("--list", options.list, "Only list the strokes found; write nothing");
-  auto* average =
-      app.add_flag("--average", options.average,
-                   "The mean of all strokes of a direction, and their standard deviation; of several "
-                   "recordings one mean where -o names it, else one of each");
+               "Include strokes in which, by the normal force, the finger does not touch the surface");
+  app.add_flag("--list", options.list, "Only list the strokes; write no file");
+  auto* average = app.add_flag("--average", options.average,
+                               "Mean of all strokes of a direction, and their standard deviation; of several "
+                               "recordings one mean if -o is a name, else one of each");
   average->excludes(stroke)->excludes(from)->excludes(to);
 }
 
@@ -69,22 +69,21 @@ void declare_average(CLI::App& app, SpatialOptions& options) {
       ->needs("--average");
   cli::add_choice<Align>(
       app, "--align", options.align, {{"position", Align::position}, {"correlation", Align::correlation}},
-      "Average strokes by their position on the bench, or each shifted to agree best with those before")
+      "Align strokes by their position on the bench, or by best correlation with those before")
       ->needs("--average");
   cli::add_quantity(app, "--align-range", options.align_range_m, Dimension::length,
-                    "The largest shift that --align correlation tries")
+                    "Largest shift of --align correlation")
       ->needs("--average");
 }
 
 void declare_filter(CLI::App& app, SpatialOptions& options) {
   TimeFilter& filter = options.texture.filter;
-  auto* band =
-      app.add_option("--band", options.band, "Frequencies that pass, LOW..HIGH, or off (default 15Hz..500Hz)")
-          ->type_name("LOW..HIGH");
-  auto* band_in = cli::add_choice<BandIn>(
-      app, "--band-in", options.band_in, {{"time", BandIn::time}, {"space", BandIn::space}},
-      "Where the band-pass is: over time, before, or along position, after, "
-      "with --band in cycles per length");
+  auto* band = app.add_option("--band", options.band, "Pass band, LOW..HIGH, or off (default 15Hz..500Hz)")
+                   ->type_name("LOW..HIGH");
+  auto* band_in = cli::add_choice<BandIn>(app, "--band-in", options.band_in,
+                                          {{"time", BandIn::time}, {"space", BandIn::space}},
+                                          "Band-pass over time, before resampling, or along position, after "
+                                          "it (then --band is in cycles per length)");
   auto* low = cli::add_quantity(app, "--low", options.low_hz, Dimension::frequency,
                                 "Lowest frequency that passes (default 15Hz)");
   auto* high = cli::add_quantity(app, "--high", options.high_hz, Dimension::frequency,
@@ -95,11 +94,11 @@ void declare_filter(CLI::App& app, SpatialOptions& options) {
                                 {{"fourier", FilterMethod::fourier},
                                  {"butterworth", FilterMethod::butterworth},
                                  {"none", FilterMethod::none}},
-                                "fourier truncates the spectrum, butterworth runs forwards and backwards");
-  app.add_option("--order", filter.order, "Order of the Butterworth filter, before it is run both ways")
+                                "fourier truncates the spectrum; butterworth filters forwards and backwards");
+  app.add_option("--order", filter.order, "Order of the Butterworth filter; two passes double it")
       ->check(CLI::Range(1, 20));
   cli::add_choice<Edges>(app, "--edges", filter.edges, {{"treated", Edges::treated}, {"none", Edges::none}},
-                         "treated keeps the record's ends from ringing, none is the plain filter");
+                         "treated avoids ringing at the ends of the record; none is the plain filter");
 }
 
 }  // namespace
@@ -108,37 +107,36 @@ void declare_spatial(CLI::App& app, SpatialOptions& options) {
   app.add_option("recording", options.recordings, "Recordings, by name or file")->required();
   app.add_option(
       "-o,--output", options.output,
-      "Name of the texture; of several strokes, NAME-01 and on (default: the recording's). A folder, "
-      "or a name with {} for the recording's, where there are several recordings");
+      "Name of the texture; of several strokes, NAME-01, NAME-02 ... (default: name of the recording). For "
+      "several recordings a folder, or a name in which {} stands for the name of the recording");
   cli::declare_force(app, options.existing);
-  app.add_option("--jobs", options.jobs, "Recordings worked on at a time")
+  app.add_option("--jobs", options.jobs, "Number of recordings processed at the same time")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   app.add_option("--channel", options.texture.channel,
-                 "The channel that becomes the texture [tangential_force, else the only one that can]");
+                 "Channel of the texture [tangential_force, else the only suitable one]");
   declare_stretch(app, options);
   declare_average(app, options);
   declare_filter(app, options);
   cli::add_quantity(app, "--grid", options.pitch_m, Dimension::length,
-                    "Distance of the texture's samples [1um, or by --quality]");
+                    "Distance between samples of the texture [1um, or by --quality]");
   cli::add_choice<std::optional<ResampleMethod>>(
       app, "--method", options.method,
       {{"hermite", ResampleMethod::hermite},
        {"linear", ResampleMethod::linear},
        {"swapped", ResampleMethod::swapped},
        {"sinc", ResampleMethod::sinc}},
-      "How values go to space: monotone cubics and their true inverse, straight lines, cubics with "
-      "the axes swapped, or a windowed sinc at the true inverse (exact to 3e-7 up to 0.3 of the "
-      "recording's rate, ten times the work; the cubics keep nine tenths up to 0.24 of it) [hermite, or by "
-      "--quality]");
+      "Resampling: monotone cubics with their true inverse, straight lines, cubics with exchanged axes, or a "
+      "windowed sinc at the true inverse (error 3e-7 up to 0.3 of the sample rate, ten times slower; cubics "
+      "pass 90 % up to 0.24 of the rate) [hermite, or by --quality]");
   cli::declare_budget(app, options.chosen_by, "method and grid");
-  cli::add_choice<Equalise>(
-      app, "--equalise", options.texture.equalise,
-      {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
-      "Divide by the transducer's sensor response; auto: a tangential force, where the recording names one");
+  cli::add_choice<Equalise>(app, "--equalise", options.texture.equalise,
+                            {{"auto", Equalise::automatic}, {"on", Equalise::on}, {"off", Equalise::off}},
+                            "Divide by the response of the transducer's sensor; auto: if the channel is a "
+                            "tangential force and the recording contains a transducer");
 }
 
-// --band, --low and --high, --filter none: all say the same thing, the filter.
+// --band, --low and --high, and --filter none are alternatives for the filter.
 Result<TextureOptions> texture_options(const SpatialOptions& options) {
   TextureOptions texture = options.texture;
   texture.method = options.method.value_or(texture.method);

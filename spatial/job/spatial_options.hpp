@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `tactograph spatial` is asked for.
+// The options of `tactograph spatial`.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct SpatialOptions {
   std::vector<std::string> recordings;
   std::string output;
   TextureOptions texture;
-  std::optional<ResampleMethod> method;  ///< where they are named
+  std::optional<ResampleMethod> method;  ///< if they are named
   std::optional<double> pitch_m;
   cli::BudgetOptions chosen_by;
   std::string band;
@@ -37,7 +37,7 @@ struct SpatialOptions {
 /// Declares the options on the verb's parser; `options` must outlive it.
 void declare_spatial(CLI::App& app, SpatialOptions& options);
 
-/// The options of textures, with --band, --low and --high read. Errors: usage.
+/// The options for textures, from --band, --low and --high, too. Errors: usage.
 schema::Result<TextureOptions> texture_options(const SpatialOptions& options);
 
 }  // namespace tacto::spatial

@@ -21,7 +21,7 @@ using cli::Report;
 using schema::ErrorKind;
 using schema::Result;
 
-// One recording on its way.
+// The state of one recording's processing.
 class Run {
  public:
   Run(const SpatialOptions& options, std::string stem, const std::function<void(double)>& progress,
@@ -77,31 +77,32 @@ Result<std::vector<StrokeJob>> Run::one_job(const Result<Stroke>& stroke, int nu
 void Run::warn_of_short_runs(const TouchRecord& record) {
   if (record.short_runs() == 0) return;
   warn(fmt::format(
-      "{}: {} shorter than 5 % of the longest stroke {} no texture; --from and --to make one of it",
+      "{}: {} shorter than 5 % of the longest stroke {} no texture; select one with --from and --to",
       record.where(), record.short_runs() == 1 ? "a run" : fmt::format("{} runs", record.short_runs()),
       record.short_runs() == 1 ? "makes" : "make"));
 }
 
-// What lies after a jump lies elsewhere on the bench than what was before it.
+// Positions after a jump do not match those before it on the bench.
 void Run::warn_of_jumps(const TouchRecord& record) {
   const auto& jumps = record.jumps();
   if (jumps.empty()) return;
   const auto& largest =
       *std::ranges::max_element(jumps, {}, [](const PositionJump& jump) { return std::abs(jump.step_m); });
   warn(fmt::format(
-      "{}: {}{}; places before and after differ by that", record.where(), record.refusal(largest).what,
+      "{}: {}{}; positions before and after it differ by that step", record.where(),
+      record.refusal(largest).what,
       jumps.size() == 1 ? "" : fmt::format(" ({} such jumps; this is the largest)", jumps.size())));
 }
 
-// Leaves out the strokes with the finger up, and says so.
+// Removes the strokes with the finger up, with a warning.
 std::vector<StrokeJob> Run::down_only(const TouchRecord& record, std::vector<StrokeJob> jobs) {
   std::vector<int> up;
   for (const StrokeJob& job : jobs)
     if (job.stroke.finger_up) up.push_back(job.number);
   if (up.empty() || options_.finger_up) return jobs;
   warn(
-      fmt::format("{}: finger up in stroke{} {} (normal force below {}): no texture of {}; --finger-up or "
-                  "--stroke N makes it",
+      fmt::format("{}: the finger does not touch in stroke{} {} (normal force below {}): no texture of {}; "
+                  "use --finger-up or --stroke N",
                   record.where(), up.size() == 1 ? "" : "s", fmt::join(up, ", "),
                   why_finger_up(*record.finger_up_below_n()), up.size() == 1 ? "it" : "them"));
   std::erase_if(jobs, [](const StrokeJob& job) { return job.stroke.finger_up; });
@@ -114,13 +115,13 @@ Result<std::vector<StrokeJob>> Run::found_strokes(const TouchRecord& record) {
     all.push_back({stroke, static_cast<int>(all.size()) + 1, stem_});
   if (all.empty())
     return schema::fail(ErrorKind::unsuitable, "no stroke was found", record.where(),
-                        "ask for a stretch with --from and --to");
+                        "select a time range with --from and --to");
   warn_of_short_runs(record);
   warn_of_jumps(record);
   std::vector<StrokeJob> jobs = down_only(record, std::move(all));
   if (jobs.empty())
-    return schema::fail(ErrorKind::unsuitable, "in all strokes the finger was up", record.where(),
-                        "--finger-up makes textures all the same");
+    return schema::fail(ErrorKind::unsuitable, "the finger does not touch the surface in any stroke",
+                        record.where(), "--finger-up makes textures nevertheless");
   if (jobs.size() > 1)
     for (StrokeJob& job : jobs) job.stem = fmt::format("{}-{:02}", stem_, job.number);
   return jobs;
@@ -139,8 +140,9 @@ Result<void> Run::check_names(const std::vector<std::string>& stems) {
     if (auto free = schema::check_texture_free(stem, options_.existing); !free) return free;
   const auto others = other_textures(stem_, stems);
   if (!others.empty())
-    warn(fmt::format("{} {} beside, of another run: {}", others.size() == 1 ? "a texture" : "textures",
-                     others.size() == 1 ? "lies" : "lie", fmt::join(others, ", ")));
+    warn(fmt::format("{} of another run {} in the same folder: {}",
+                     others.size() == 1 ? "a texture" : "textures", others.size() == 1 ? "is" : "are",
+                     fmt::join(others, ", ")));
   return {};
 }
 
@@ -149,7 +151,7 @@ void Run::warn_of(const std::string& what, const schema::Texture& texture) {
     warnings_.push_back({what, warning.text, warning.kind, warning.size});
 }
 
-// Among several strokes found, one that makes no texture is passed over with a warning.
+// If there are several strokes, one that makes no texture is skipped with a warning.
 Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& jobs) {
   std::vector<std::string> stems;
   for (const StrokeJob& job : jobs) stems.push_back(job.stem);
@@ -157,7 +159,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
   schema::PendingFiles pending;
   std::vector<Report> rows;
   std::optional<Report> head;
-  std::optional<schema::Error> first;  // why a stroke makes no texture
+  std::optional<schema::Error> first;  // the reason why a stroke makes no texture
   for (const StrokeJob& job : jobs) {
     const auto texture = maker.make(job.stroke, job.number);
     if (!texture && (jobs.size() == 1 || texture.error().kind != ErrorKind::unsuitable))
@@ -165,7 +167,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
     if (!texture) {
       first = first.value_or(texture.error());
       warnings_.push_back({fmt::format("stroke {}", job.number),
-                           "makes no texture: " + schema::message(texture.error()), "no texture"});
+                           "no texture was made: " + schema::message(texture.error()), "no texture"});
       continue;
     }
     TACTO_TRY(schema::add_texture(pending, job.stem, *texture));
@@ -175,7 +177,7 @@ Result<Report> Run::textures(TextureMaker& maker, const std::vector<StrokeJob>& 
     progress_(static_cast<double>(&job - jobs.data() + 1) / static_cast<double>(jobs.size()));
   }
   if (!head) {
-    first->what = "none of the strokes found makes a texture; of the first, " + first->what;
+    first->what = "no stroke makes a texture; reason for the first: " + first->what;
     return tl::unexpected(*first);
   }
   TACTO_TRY(pending.commit(options_.existing));
@@ -208,18 +210,18 @@ Result<Report> Run::averages(TextureMaker& maker, const std::vector<StrokeJob>& 
   }
   if (!head)
     return schema::fail(ErrorKind::unsuitable, "no two strokes can be averaged", maker.record().where(),
-                        "the warnings say why");
+                        "the warnings give the reasons");
   TACTO_TRY(pending.commit(options_.existing));
   head->add("averages", std::move(rows));
   return std::move(*head);
 }
 
-// By the budget, where there is one.
+// Chooses by the budget, if there is one.
 Result<ChosenTexture> Run::texture_choice(const TextureOptions& target, const TouchRecord& record,
                                           const std::vector<StrokeJob>& jobs) {
   if (options_.chosen_by.budget.asked()) return choose_texture(options_, target, record, jobs);
   if (options_.chosen_by.explain)
-    return schema::fail(ErrorKind::usage, "there is nothing to explain: nothing was chosen", "--explain",
+    return schema::fail(ErrorKind::usage, "--explain needs a choice by --quality or --max-error", "--explain",
                         "add --quality or --max-error");
   return ChosenTexture{target, {}};
 }
@@ -228,8 +230,8 @@ Result<TouchRecord> Run::opened(const std::string& name, const TextureOptions& t
   const auto recording = schema::open_recording(name);
   TACTO_TRY(recording);
   if (const std::string& version = recording->header.newer_version; !version.empty())
-    warn(fmt::format("{}: is of the newer version {}; what is unknown in it is left alone", name, version));
-  // A texture says of which samples it was made.
+    warn(fmt::format("{}: has the newer version {}; its unknown members are ignored", name, version));
+  // A texture stores the checksum of the recording's samples, so it has to be correct.
   TACTO_TRY(schema::check_samples_sum(*recording));
   auto record = TouchRecord::open(*recording, target.channel);
   if (!record) return record;
@@ -272,7 +274,7 @@ Result<Report> Run::on(const std::string& name) {
   TACTO_TRY(choice);
   auto maker = ready(std::move(*record), choice->options);
   if (!maker) {
-    warnings_.resize(said);  // what was said of strokes that nothing comes of
+    warnings_.resize(said);  // discard warnings about strokes that make no texture
     return schema::forward_error(maker);
   }
   auto report = options_.average ? averages(*maker, *chosen) : textures(*maker, *chosen);

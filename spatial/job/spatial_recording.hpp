@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `tactograph spatial` on one recording: which strokes, their textures or mean, written together, reported.
+// `tactograph spatial` for one recording: selects strokes, makes their textures or mean, writes them
+// together, reports.
 #pragma once
 
 #include <functional>
@@ -14,14 +15,14 @@
 
 namespace tacto::spatial {
 
-/// What became of a recording; `warnings` are for people, in order. Made without printing, so that several
-/// recordings can be worked on side by side.
+/// The result for a recording; `warnings` are texts for users, in order. Nothing is printed, so that several
+/// recordings can be processed in parallel.
 struct SpatialOutcome {
   schema::Result<cli::Report> report = cli::Report{};
   std::vector<cli::Warning> warnings;
 };
 
-/// One recording of several: ready to make textures of the strokes that are asked for.
+/// One recording of several, open, with its selected strokes.
 struct Take {
   TextureMaker maker;
   std::vector<StrokeJob> jobs;
@@ -31,8 +32,9 @@ struct Take {
 schema::Result<Take> open_take(const SpatialOptions& options, const std::string& recording,
                                std::vector<std::string>& warnings);
 
-/// `stem` names the textures; `progress` hears fractions from 0 to 1. All textures of a recording appear
-/// together, or none. Errors: of opening, making and writing; usage, where a texture is there already.
+/// `stem` is the name of the textures; `progress` is called with fractions from 0 to 1. All textures of a
+/// recording appear together, or none. Errors: of opening, making and writing; usage, if a texture exists
+/// already.
 SpatialOutcome spatial_recording(const SpatialOptions& options, const std::string& recording,
                                  const std::string& stem, const std::function<void(double)>& progress);
 

@@ -13,7 +13,7 @@ namespace {
 
 using cli::Report;
 
-// The ending that a unit gives a key.
+// The suffix of a report's key for a unit.
 std::string ending_of(const std::string& unit) {
   static const std::map<std::string, std::string> kEndings = {
       {"N", "_n"}, {"m", "_m"}, {"m/s", "_mps"}, {"m/s^2", "_mps2"}, {"V", "_v"}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `tactograph spatial` reports of a recording, its strokes and textures.
+// The report of `tactograph spatial` about a recording, its strokes and textures.
 #pragma once
 
 #include <string>
@@ -12,16 +12,16 @@
 
 namespace tacto::spatial {
 
-/// The position's quantum and noise, wraps of its counter, and what tells the finger up.
+/// The position's quantum and noise, wraps of its counter, and the force below which the finger is up.
 void add_position(cli::Report& report, const TouchRecord& record);
 
-/// A stroke: where, how fast, how hard, finger up or down.
+/// A stroke: positions, speed, normal force, finger up or down.
 cli::Report stroke_row(const TouchRecord& record, const StrokeJob& job);
 
-/// Where its position steps as no finger does.
+/// The jumps of the position.
 std::vector<cli::Report> jump_rows(const TouchRecord& record);
 
-/// What all textures of a recording have in common; `texture` is one of them.
+/// The common values of all textures of a recording; `texture` is one of them.
 cli::Report head_of(const TouchRecord& record, const schema::Texture& texture);
 
 cli::Report texture_row(const TouchRecord& record, const StrokeJob& job, const schema::Texture& texture);

@@ -45,13 +45,13 @@ class Takes {
   std::vector<std::string> warnings_;
 };
 
-// All warnings of a recording name it.
+// All warnings of a recording contain its name.
 Result<void> Takes::add(const std::string& recording, const std::function<void(double)>& progress) {
   warnings_.clear();
   auto take = open_take(options_, recording, warnings_);
   if (!take && take.error().kind != ErrorKind::unsuitable) return schema::forward_error(take);
   std::size_t strokes = 0;
-  if (!take) warnings_.push_back("left out: " + schema::message(take.error()));
+  if (!take) warnings_.push_back("excluded: " + schema::message(take.error()));
   if (take)
     for (const AverageGroup& group : average_groups(take->jobs, options_.both_ways, "")) {
       const bool backward = !options_.both_ways && group.jobs.front().stroke.direction < 0;
@@ -91,26 +91,27 @@ Result<Report> Takes::finish() {
   }
   if (rows.empty())
     return schema::fail(ErrorKind::unsuitable, "no two strokes of these recordings can be averaged", stem_,
-                        "the warnings say why; --list shows the places of strokes");
+                        "the warnings give the reasons; --list shows the positions of the strokes");
   TACTO_TRY(pending.commit(options_.existing));
   return Report().add("takes", std::move(takes_)).add("averages", std::move(rows));
 }
 
 Result<void> check_options(const SpatialOptions& options) {
   if (!options.chosen_by.budget.asked() && !options.chosen_by.explain) return {};
-  return schema::fail(ErrorKind::usage, "nothing is chosen for the mean of several recordings", "--quality",
-                      "name --method and --grid");
+  return schema::fail(ErrorKind::usage,
+                      "--quality, --max-error and --explain do not apply to the mean of several recordings",
+                      "--quality", "give --method and --grid");
 }
 
 }  // namespace
 
-bool asks_for_takes(const SpatialOptions& options) {
+bool averages_recordings(const SpatialOptions& options) {
   return options.average && !options.list && names_one_texture(options.output);
 }
 
 Result<Report> spatial_takes(const SpatialOptions& options, const std::vector<std::string>& recordings) {
   TACTO_TRY(check_options(options));
-  const auto each = texture_stems(recordings, "");  // that no recording is named twice
+  const auto each = texture_stems(recordings, "");  // an error if a recording is named twice
   TACTO_TRY(each);
   const auto stem = texture_stems({recordings.front()}, options.output);
   TACTO_TRY(stem);

@@ -10,13 +10,13 @@
 
 namespace tacto::spatial {
 
-/// Whether the options ask for one mean over all recordings: --average, and -o is a plain name, neither a
-/// folder nor with {} in it, which name a mean of each recording.
-bool asks_for_takes(const SpatialOptions& options);
+/// Whether the options request one mean over all recordings: --average, and -o is a plain name. A folder or a
+/// name with {} requests one mean per recording.
+bool averages_recordings(const SpatialOptions& options);
 
-/// Aligns as within one recording: by position on the bench, which the takes must share, or by correlation
-/// with those before. A recording of which nothing can be averaged is left out with a warning. Errors: usage,
-/// of names; of reading; unsuitable, where fewer than two strokes are left.
+/// Aligns as within one recording: by position on the bench, which the takes must have in common, or by
+/// correlation with the strokes before. A recording without a usable stroke is left out with a warning.
+/// Errors: usage, of names; of reading; unsuitable, if fewer than two strokes remain.
 schema::Result<cli::Report> spatial_takes(const SpatialOptions& options,
                                           const std::vector<std::string>& recordings);
 

@@ -11,7 +11,7 @@ namespace tacto::spatial {
 struct StrokeJob {
   Stroke stroke;
   int number = 0;    ///< 0 for a stretch
-  std::string stem;  ///< the texture's
+  std::string stem;  ///< of the texture
 };
 
 }  // namespace tacto::spatial

@@ -32,7 +32,7 @@ std::string texture_stem(const std::string& recording, const std::string& output
   return schema::stem_of(named, ".texture");
 }
 
-// What follows NAME in NAME-01 or NAME-forward.
+// The part after NAME in NAME-01 or NAME-forward.
 bool is_ending(std::string_view ending) {
   if (ending.empty() || ending == "-forward" || ending == "-backward") return true;
   return ending.size() > 2 && ending.front() == '-' &&
@@ -54,13 +54,13 @@ schema::Result<std::vector<std::string>> texture_stems(const std::vector<std::st
         named.emplace(schema::canonical_path(schema::stem_of(recording, "")), recording);
     if (!fresh)
       return schema::fail(schema::ErrorKind::usage, fmt::format("is the same recording as {}", same->second),
-                          recording, "name it once");
+                          recording, "give it once");
     stems.push_back(texture_stem(recording, output));
     if (!taken.emplace(schema::canonical_path(stems.back()), recording).second)
-      return schema::fail(schema::ErrorKind::usage,
-                          fmt::format("the textures of several recordings would be named {}", stems.back()),
-                          {},
-                          "give -o a folder, or a name with {} in it, which is replaced by the recording's");
+      return schema::fail(
+          schema::ErrorKind::usage,
+          fmt::format("the textures of several recordings would be named {}", stems.back()), {},
+          "give -o a folder, or a name with {}, which is replaced by the name of the recording");
   }
   return stems;
 }

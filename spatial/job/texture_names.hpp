@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The names of textures: from -o and a recording, and which others lie under the same name.
+// The names of textures, from -o and a recording, and other files with the same stem.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace tacto::spatial {
 
-/// The stem for each recording's textures: its own without `output`; in the folder that `output` is; with its
-/// name for the {} in `output`; else `output`, for one recording. Errors: usage, where several recordings
-/// would get one name, or one is named twice.
+/// The stem for each recording's textures. Without `output` it is the recording's own; a folder is put in
+/// front of it; {} in `output` is replaced by it; otherwise the stem is `output`, for one recording. Errors:
+/// usage, if several recordings would have one stem, or one is named twice.
 schema::Result<std::vector<std::string>> texture_stems(const std::vector<std::string>& recordings,
                                                        const std::string& output);
 
-/// Whether `output` is the name of one texture: not empty, no folder, and without {}.
+/// Whether `output` is the name of one texture: not empty, not a folder, and without {}.
 bool names_one_texture(const std::string& output);
 
 /// Files of textures STEM, STEM-NUMBER, STEM-forward and STEM-backward that are not among `made`.

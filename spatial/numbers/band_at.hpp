@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The band that a texture knows at one place.
+// The valid band of a texture at one position.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace tacto::spatial {
 
-/// The band at a position, straight between its breakpoints and level beyond them. Precondition: a
-/// breakpoint.
+/// The band at a position, linear between its breakpoints and constant beyond them. Precondition: at least
+/// one breakpoint.
 schema::BandPoint band_at(std::span<const schema::BandPoint> band, double position_m);
 
 }  // namespace tacto::spatial

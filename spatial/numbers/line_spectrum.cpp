@@ -15,8 +15,8 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kNoiseBandwidth = 1.7268;   // bins, of a Blackman window (Harris 1978, table 1)
-constexpr double kIndependent = 0.4;         // of a window: Blackman windows that far apart hardly correlate
+constexpr double kNoiseBandwidth = 1.7268;  // bins, of a Blackman window (Harris 1978, table 1)
+constexpr double kIndependent = 0.4;  // of a window: Blackman windows that far apart are almost uncorrelated
 constexpr double kGuard = 3.5, kReach = 16;  // unpadded bins
 constexpr std::size_t kFewestCells = 8;
 constexpr double kOneIn10000 = 3.719;  // quantile of the normal distribution
@@ -27,7 +27,8 @@ double blackman_at(double part) {
   return 0.42 - 0.5 * std::cos(phase) + 0.08 * std::cos(2 * phase);
 }
 
-// Of a sum of n exponential variables over its mean (Wilson and Hilferty 1931, with 2 n degrees of freedom).
+// Quantile of a sum of n exponential variables over its mean (Wilson and Hilferty 1931, with 2 n degrees of
+// freedom).
 double gamma_quantile(double looks, double normal_quantile) {
   return std::pow(1 - 1 / (9 * looks) + normal_quantile / (3 * std::sqrt(looks)), 3);
 }
@@ -36,7 +37,7 @@ double level_of(double power) {
   return 10 * std::log10(power);
 }
 
-// Means of Blackman windows' periodograms, one-sided density.
+// Mean of the periodograms of Blackman windows, one-sided density.
 class MeanSpectrum {
  public:
   MeanSpectrum(std::span<const double> values, double pitch, std::size_t window, std::size_t hop)
@@ -68,7 +69,7 @@ class MeanSpectrum {
   std::vector<std::complex<double>> spectrum_;
 };
 
-// The exponent a of f^a through a spectrum's bins first to last, at places even in the logarithm.
+// The exponent a of f^a, fitted to the bins first to last at equidistant places of log f.
 double exponent_of(const std::vector<double>& mean, std::size_t first, std::size_t last) {
   constexpr int kPlaces = 64;
   std::vector<double> x;

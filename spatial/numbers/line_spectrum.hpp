@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lines of one mean spectrum: where they lie, how surely, and how far above what is around them.
+// The lines of one mean spectrum: their frequencies, the uncertainty of these, and their prominence over the
+// background.
 #pragma once
 
 #include <span>
@@ -7,7 +8,7 @@
 
 namespace tacto::spatial {
 
-/// A line: a peak of a mean spectrum that stands out of noise.
+/// A line: a peak of a mean spectrum that exceeds the noise.
 struct SpectralLine {
   double frequency = 0;      ///< 1/m or Hz
   double sigma = 0;          ///< its standard deviation
@@ -16,29 +17,30 @@ struct SpectralLine {
 };
 
 /// Mean spectrum of evenly spaced values over position or time: Blackman windows of half the values, hops of
-/// an eighth of a window, zero padded to twice their length at least (Welch 1967). Its background at each bin
-/// is the median of the bins between 3.5 and 16 unpadded bins away, after a power law has been taken off,
-/// brought from median to mean for the number of independent windows (Wilson and Hilferty 1931).
+/// an eighth of a window, zero padded to at least twice their length (Welch 1967). The background at each bin
+/// is the median of the bins between 3.5 and 16 unpadded bins away, after a power law has been removed. It is
+/// converted from median to mean for the number of independent windows (Wilson and Hilferty 1931).
 class LineSpectrum {
  public:
-  /// Between `low` and `high`, in 1/unit of `pitch`, but for a resolution at both ends: where a band-pass
-  /// ends, every slope has a maximum. Precondition: at least kFewestValues values, all finite.
+  /// Lines are searched between `low` and `high`, in 1/unit of `pitch`, except for one resolution at both
+  /// ends: at the edge of a band-pass every slope has a maximum. Precondition: at least kFewestValues values,
+  /// all finite.
   LineSpectrum(std::span<const double> values, double pitch, double low, double high);
 
   static constexpr std::size_t kFewestValues = 64;
 
-  /// By growing frequency; all reach needed_db(). The standard deviation of a frequency is the Cramer-Rao
+  /// Sorted by frequency; all reach needed_db(). The standard deviation of a frequency is the Cramer-Rao
   /// bound of a sine in white noise, times 1.8 for the window, or a tenth of the half-power width, whichever
-  /// is more.
+  /// is larger.
   const std::vector<SpectralLine>& lines() const { return lines_; }
   /// Prominence that noise alone reaches in one cell of 10,000.
   double needed_db() const { return needed_db_; }
-  /// Lines closer than this melt into one: 1.7268 / window (Harris 1978).
+  /// Lines closer than this are not resolved: 1.7268 / window (Harris 1978).
   double resolution() const { return resolution_; }
   double low() const { return low_; }
   double high() const { return high_; }
   bool knows(double frequency) const { return low_ <= frequency && frequency <= high_; }
-  /// What a sine of this power would have at a frequency; -infinity where the background is not known.
+  /// The prominence of a sine of this power at a frequency; -infinity where the background is not known.
   double prominence_db(double power, double frequency) const;
   /// Lines per unit of frequency around a frequency: those within an octave to each side, and one more.
   double clutter(double frequency) const;

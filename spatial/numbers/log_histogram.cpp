@@ -9,7 +9,7 @@
 namespace tacto::spatial {
 namespace {
 
-// The exponent and the first 6 bits of the mantissa of a double are its bin, without a logarithm.
+// The exponent and the first 6 bits of a double's mantissa are its bin, so no logarithm is computed.
 constexpr int kMantissaBits = 6, kShift = 52 - kMantissaBits;
 constexpr double kSmallest = 0x1p-80, kLargest = 0x1p40;
 constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(kSmallest) >> kShift;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How numbers of any size are spread, in little memory: bins a sixty-fourth of an octave wide.
+// A histogram of magnitudes in little memory: bins a sixty-fourth of an octave wide.
 #pragma once
 
 #include <cstddef>
@@ -8,17 +8,18 @@
 
 namespace tacto::spatial {
 
-/// Fed number by number with sizes (>= 0) from 2^-80 to 2^40; smaller ones count as 0. 1.1 % from edge to
-/// edge of a bin; what it gives is the mean of a bin's numbers, so those of a grid come back as they were.
+/// Input: numbers (>= 0) from 2^-80 to 2^40, one by one; smaller ones count as 0. A bin is 1.1 % wide. A
+/// result is the mean of the numbers in its bin, so numbers that are multiples of a step are returned
+/// exactly.
 class LogHistogram {
  public:
   LogHistogram();
   void add(double size);
-  /// Half of the numbers are smaller; 0 where there are none. Error: 1.1 %.
+  /// Half of the numbers are smaller; 0 if there are none. Error: 1.1 %.
   double median() const;
-  /// Half of their sum comes from smaller numbers; 0 where there are none. Error: 1.1 %.
+  /// Half of the sum of all numbers comes from smaller ones; 0 if there are none. Error: 1.1 %.
   double median_by_sum() const;
-  /// The smallest number in the bins above `limit`; infinity where there is none.
+  /// The smallest number in the bins above `limit`; infinity if there is none.
   double smallest_above(double limit) const;
   std::uint64_t count_above(double limit) const;
   std::uint64_t count() const { return zeros_ + above_zero(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where between its samples a peak lies.
+// The position of a peak between samples.
 #pragma once
 
 namespace tacto::spatial {
@@ -9,9 +9,9 @@ struct ParabolicPeak {
   double value = 0;
 };
 
-/// Top of the parabola through three values at -1, 0 and 1, of which the middle one is the largest. For
-/// levels of a Blackman window's main lobe, two bins padded to each of its own, the offset is right to 0.002
-/// of a bin.
+/// Vertex of the parabola through three values at -1, 0 and 1, of which the middle one is the largest. For
+/// levels in the main lobe of a Blackman window with zero padding to twice its length, the error of the
+/// offset is 0.002 bins.
 inline ParabolicPeak parabolic_peak(double before, double middle, double after) {
   const double curve = before - 2 * middle + after;
   if (!(curve < 0)) return {0, middle};

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <limits>
 
+#include "data-schema/base/statistics.hpp"
+
 namespace tacto::spatial {
 
 template <class Value>
 double median_of(std::vector<Value>& values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return static_cast<double>(*middle);
+  return static_cast<double>(schema::upper_median(std::span(values)));
 }
 
 template double median_of(std::vector<float>& values);

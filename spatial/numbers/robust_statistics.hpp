@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Middle values and lines that a few outliers do not move.
+// Medians and regression lines that are robust against outliers.
 #pragma once
 
 #include <span>
@@ -7,12 +7,13 @@
 
 namespace tacto::spatial {
 
-/// The middle value, of an even number the upper of the two; reorders the values. NaN where there is none.
+/// The median; of an even number of values the upper one of the two. Reorders the values. NaN if there are
+/// none.
 template <class Value>
 double median_of(std::vector<Value>& values);
 
-/// Slope of a line through points: the median of the slopes between all pairs (Theil 1950, Sen 1968). 0 where
-/// no two points differ in x. Precondition: x and y of equal size. Cost: the square of their number.
+/// Slope of a line through points: the median of the slopes between all pairs (Theil 1950, Sen 1968). 0 if no
+/// two points differ in x. Precondition: x and y of equal size. Cost: the square of their number.
 double robust_slope(std::span<const double> x, std::span<const double> y);
 
 }  // namespace tacto::spatial

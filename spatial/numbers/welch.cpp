@@ -40,7 +40,7 @@ WelchSpectrum::WelchSpectrum(std::span<const double> values, double pitch, std::
   const double power = std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
   const double scale = pitch / (power * static_cast<double>(windows_));
   for (std::size_t k = 0; k < density_.size(); ++k)
-    density_[k] *= scale * (k == 0 || 2 * k == window ? 1 : 2);  // these have no twin at negative frequencies
+    density_[k] *= scale * (k == 0 || 2 * k == window ? 1 : 2);  // no counterpart at negative frequencies
 }
 
 double WelchSpectrum::integral(double from, double to, bool weighted) const {

@@ -11,20 +11,20 @@ namespace tacto::spatial {
 
 inline constexpr std::size_t kShortestWelchWindow = 8;
 
-/// One-sided density of evenly spaced values, each window without its mean, as scipy.signal.welch(x, 1 /
-/// pitch, 'hann', W) gives it. What follows the last whole window is not seen.
+/// One-sided density of evenly spaced values, each window without its mean, the same as scipy.signal.welch(x,
+/// 1 / pitch, 'hann', W). Values after the last whole window are not used.
 class WelchSpectrum {
  public:
   /// Precondition: kShortestWelchWindow <= window <= values.size(). `pitch` in metres or seconds.
   WelchSpectrum(std::span<const double> values, double pitch, std::size_t window);
 
-  /// unit^2 per unit of frequency, one a bin.
+  /// unit^2 per unit of frequency, one value per bin.
   const std::vector<double>& density() const { return density_; }
   double step() const { return step_; }
-  /// How many windows were averaged.
+  /// Number of averaged windows.
   std::size_t windows() const { return windows_; }
 
-  /// Integrals of S and of k S, the density being constant within half a bin of each bin. Precondition: 0 <=
+  /// Integrals of S and of k S; the density is constant within half a bin of each bin. Precondition: 0 <=
   /// from <= to <= half the sampling frequency.
   double power(double from, double to) const { return integral(from, to, false); }
   double moment(double from, double to) const { return integral(from, to, true); }

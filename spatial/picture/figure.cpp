@@ -15,15 +15,15 @@ using schema::Result;
 
 namespace {
 
-// Cairo's image surfaces end there.
+// The size limit of Cairo's image surfaces.
 constexpr double kMostPixels = 32767;
 
 Result<std::string> encoded(const Figure& figure, PictureFormat format) {
   const Size page = figure.page();
   if (std::max(page.width, page.height) * kPixelsPerPoint > kMostPixels)
     return schema::fail(ErrorKind::unsuitable,
-                        fmt::format("a page {:g} points high is too large", page.height), "picture",
-                        "draw fewer things on one page");
+                        fmt::format("a page with a height of {:g} points is too large", page.height),
+                        "picture", "draw fewer things on one page");
   Canvas canvas(format, page);
   TACTO_TRY(figure.draw(canvas));
   return canvas.encode();
@@ -50,7 +50,7 @@ Result<std::string> to_page_svg(const Figure& figure) {
 Result<std::string> encode_as(const std::string& path, const Figure& figure) {
   if (ends_in(path, ".png")) return to_png(figure);
   if (ends_in(path, ".svg")) return to_svg(figure);
-  return schema::fail(ErrorKind::usage, "pictures are not written in this format", path, "take .png or .svg");
+  return schema::fail(ErrorKind::usage, "this picture format is not supported", path, "use .png or .svg");
 }
 
 Result<void> add_figure(schema::PendingFiles& files, const std::string& path, const Figure& figure) {

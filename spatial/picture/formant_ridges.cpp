@@ -24,7 +24,7 @@ bool within(const Box& inner, const Box& outer) {
          inner.bottom() <= outer.bottom();
 }
 
-// Above its ridge's strongest point, or beneath it; not over another label.
+// Places each label above its ridge's strongest point, or below it, where it does not overlap another label.
 class Labels {
  public:
   Labels(Canvas& canvas, const Box& area) : canvas_(canvas), area_(area) {}

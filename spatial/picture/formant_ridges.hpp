@@ -10,12 +10,12 @@
 
 namespace tacto::spatial {
 
-/// Within `area`, a part of the spectrogram's box; axes in mm and 1/mm. The strongest `labels` of them carry
-/// their mean frequency, where it finds room. Formants are drawn in the order given.
+/// Within `area`, a part of the spectrogram's box; axes in mm and 1/mm. The strongest `labels` of them have
+/// their mean frequency as a label, if there is space. Formants are drawn in the given order.
 void draw_formants(Canvas& canvas, const Box& area, std::span<const schema::Formant> formants,
                    const Axis& position, const Axis& frequency, std::size_t labels);
 
-/// One ridge through points of the page, as in the picture: for the legend.
+/// One ridge through points of the page, in the same style: for the legend.
 void draw_ridge(Canvas& canvas, std::span<const Point> points);
 
 }  // namespace tacto::spatial

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The key to a spectrogram's colours.
+// The colour bar of a spectrogram.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tacto::spatial {
 
-/// A bar from the darkest colour at its bottom to the brightest, with an axis of levels at its right.
+/// A bar from the darkest colour at the bottom to the brightest, with an axis of levels on the right.
 void draw_level_bar(Canvas& canvas, const Box& bar, const LevelRange& levels, const std::string& caption);
 
 }  // namespace tacto::spatial

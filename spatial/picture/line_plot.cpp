@@ -54,7 +54,7 @@ Result<Extents> extents_of(const LineFigure& figure) {
   return extents;
 }
 
-// Above the plot: heading, then the legend in as many rows as it needs. No curve is ever under it.
+// Above the plot: heading, then the legend in as many rows as necessary, so that it never covers a curve.
 struct PlotHead {
   struct Entry {
     std::size_t series;
@@ -135,8 +135,8 @@ bool boxes_overlap(const Box& a, const Box& b) {
   return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
 }
 
-// Marks, and as many of their labels as find room in the plot beside all marks and the labels before them.
-// Curves pass below a label.
+// Marks and their labels. A label is left out if there is no space for it beside all marks and the labels
+// before it. Curves are drawn below labels.
 class Marks {
  public:
   Marks(Canvas& canvas, const Axis& x_axis, const Axis& y_axis, const Box& box)
@@ -149,16 +149,17 @@ class Marks {
       const Point at{x_axis_.place(series.x[i]), y_axis_.place(series.y[i])};
       taken_.push_back({at.x - kHalf, at.y - kHalf, 2 * kHalf, 2 * kHalf});
       canvas_.fill(taken_.back(), series.colour);
-      if (i < series.labels.size() && !series.labels[i].empty()) asked_.push_back({at, series.labels[i]});
+      if (i < series.labels.size() && !series.labels[i].empty())
+        pending_labels_.push_back({at, series.labels[i]});
     }
   }
-  /// Once all marks are drawn.
+  /// Precondition: all marks are drawn.
   void label() {
-    for (const auto& [at, text] : asked_) label(at, text);
+    for (const auto& [at, text] : pending_labels_) label(at, text);
   }
 
  private:
-  // Above and below, to the right and to the left, then straight above and below.
+  // Tries the places above and below, right and left of the mark, then directly above and below.
   void label(Point at, const std::string& text) {
     const Size size = canvas_.text_size(text, kStyle);
     const double right = at.x + kBeside, left = at.x - kBeside - size.width, middle = at.x - size.width / 2;
@@ -189,7 +190,7 @@ class Marks {
   const Axis &x_axis_, &y_axis_;
   const Box& box_;
   std::vector<Box> taken_;
-  std::vector<Asked> asked_;
+  std::vector<Asked> pending_labels_;
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves over one axis, with a legend: what was wanted against what came, over time or position.
+// Curves on common axes, with a legend, e.g. target and result over time or position.
 #pragma once
 
 #include <string>
@@ -10,32 +10,31 @@
 
 namespace tacto::spatial {
 
-/// One curve, in the units that the axes' labels name. A value that is not finite interrupts it.
+/// One curve, in the units of the axes' labels. A value that is not finite interrupts it.
 struct Series {
   std::string name;  ///< for the legend; empty: not in it
   std::vector<double> x, y;
   Colour colour;
   double width = 1;
   bool dashed = false;
-  bool marks = false;  ///< a mark at each point, in place of a curve
-  std::vector<std::string> labels =
-      {};  ///< beside the marks, where there is room; as many as points, or fewer
+  bool marks = false;                    ///< a mark at each point instead of a curve
+  std::vector<std::string> labels = {};  ///< beside the marks, if there is space; at most as many as points
 };
 
-/// Colours that stay apart for colour-blind people and in grey (Okabe and Ito 2008): blue, vermilion, green,
-/// ...
+/// Colours that colour-blind people can distinguish, also in grey (Okabe and Ito 2008): blue, vermilion,
+/// green, ...
 Colour series_colour(std::size_t index);
 
 struct LineFigure : Figure {
   std::string title, subtitle;
   std::string x_label, y_label;  ///< with units: "position (mm)"
-  std::string simulated;         ///< by what, where it is simulated: said in the picture
+  std::string simulated;         ///< the source of simulated data, for the badge
   std::vector<Series> series;
   AxisScale x_scale = AxisScale::linear;
-  Size size{700, 320};  ///< with a title and a badge on one line; longer ones make the page higher
+  Size size{700, 320};  ///< with title and badge on one line each; longer ones make the page higher
 
   Size page() const override;
-  /// Errors: unsuitable, where no series has a finite point, or x and y differ in length.
+  /// Errors: unsuitable, if no series has a finite point, or x and y differ in length.
   schema::Result<void> draw(Canvas& canvas) const override;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A contact sheet: many textures side by side at one scale of position, value, frequency and colour.
+// A contact sheet: many textures side by side with common scales of position, value, frequency and colour.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace tacto::spatial {
 
-/// What all cells of all pages share, so that shades and heights can be compared.
+/// The common scales of all cells of all pages, so that shades and heights can be compared.
 struct SheetScales {
   double length_mm = 1;                   ///< of the longest texture
   double low_value = -1, high_value = 1;  ///< in the textures' unit
@@ -22,15 +22,16 @@ struct SheetScales {
   LevelRange levels;
 };
 
-/// Errors: unsuitable, where units differ or there is hardly a frequency to show. Precondition: a panel.
+/// Errors: unsuitable, if units differ or there is hardly a frequency to show. Precondition: at least one
+/// panel.
 schema::Result<SheetScales> sheet_scales(std::span<const SpectrogramPanel> panels,
                                          const SpectrogramPictureOptions& options);
 
-/// One page: value against position over the spectrogram, per texture, with name and speed. What the
-/// recording could not know is hatched; simulated textures say so.
+/// One page: for each texture value against position above the spectrogram, with name and speed. What the
+/// recording could not determine is hatched; simulated textures are labelled.
 class SheetFigure : public Figure {
  public:
-  /// `columns` 0: chosen. Precondition: 1 to kCellsOfAPage panels.
+  /// `columns` 0: automatic. Precondition: 1 to kCellsOfAPage panels.
   SheetFigure(std::vector<SpectrogramPanel> panels, const SheetScales& scales, const std::string& title,
               std::size_t columns = 0);
 

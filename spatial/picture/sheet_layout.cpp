@@ -10,12 +10,12 @@ namespace tacto::spatial {
 namespace {
 
 constexpr double kSheetMargin = 14;
-constexpr double kLeft = 58, kRight = 82, kBottom = 46;  // room for axes and the bar
+constexpr double kLeft = 58, kRight = 82, kBottom = 46;  // space for axes and the bar
 constexpr double kSheetTitle = 30, kTraceHeight = 46, kGap = 5, kHeat = 120;
 constexpr double kBetweenColumns = 14, kBetweenRows = 12;
 constexpr double kRow = kSheetTitle + kTraceHeight + kGap + kHeat;
 
-// One column of a lone texture is wide; four fit side by side on a page.
+// A single column is wide; four columns fit on a page.
 double cell_width(std::size_t columns) {
   return columns == 1 ? 440 : columns == 2 ? 300 : 226;
 }

@@ -42,11 +42,11 @@ double SpectrogramFigure::lowest_per_m() const {
 Result<void> SpectrogramFigure::check() const {
   if (!(std::isfinite(options_.dynamic_range_db) && options_.dynamic_range_db > 0))
     return schema::fail(ErrorKind::usage, "the dynamic range must be above 0 dB", "dynamic range",
-                        "60dB is usual");
+                        "60dB is the default");
   for (const auto& panel : panels_)
     if (panel.spectrogram->unit != panels_.front().spectrogram->unit)
       return schema::fail(ErrorKind::unsuitable, "its unit differs from the first texture's",
-                          panel.spectrogram->name, "draw textures of one quantity on a page");
+                          panel.spectrogram->name, "draw only textures of one quantity on a page");
   if (!(lowest_per_m() > 0))
     return schema::fail(ErrorKind::usage, "the minimum frequency must be above 0", "minimum frequency",
                         "the axis is logarithmic");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture of textures: force against position, under it the spectrogram with a logarithmic axis, its mean
-// at the side; several textures one under the other, on the same axes and at one colour scale.
+// The picture of textures: force against position, below it the spectrogram with a logarithmic axis, and its
+// mean beside it. Several textures are below each other, with common axes and colour scale.
 #pragma once
 
 #include <optional>
@@ -28,9 +28,9 @@ struct SpectrogramPanel {
 };
 
 struct SpectrogramPictureOptions {
-  /// Lower end of the frequency axis; unless told, a little under the lowest valid band, else 0.1/mm.
+  /// Lower limit of the frequency axis. Default: a little below the lowest valid band, or 0.1/mm without one.
   std::optional<double> min_frequency_per_m;
-  /// From the darkest to the brightest colour.
+  /// Difference between the levels of the brightest and the darkest colour.
   double dynamic_range_db = 60;
 };
 
@@ -40,18 +40,18 @@ class SpectrogramFigure : public Figure {
   explicit SpectrogramFigure(std::vector<SpectrogramPanel> panels, SpectrogramPictureOptions options = {});
 
   Size page() const override;
-  /// Errors: usage (dynamic range not above 0, minimum frequency not under the maximum); unsuitable (textures
+  /// Errors: usage (dynamic range not above 0, minimum frequency not below the maximum); unsuitable (textures
   /// of different units, hardly any frequency bins).
   schema::Result<void> draw(Canvas& canvas) const override;
 
-  /// The shared axes as panel `panel` has them on the page, in mm and 1/mm, and the shared colour scale.
+  /// The common axes at the place of panel `panel` on the page, in mm and 1/mm, and the common colour scale.
   Axis positions(std::size_t panel) const;
   Axis frequencies(std::size_t panel) const;
   LevelRange levels() const;
-  /// Ends of the frequency axis.
+  /// Limits of the frequency axis.
   double lowest_per_m() const;
   double highest_per_m() const;
-  /// Whether it can be drawn; errors as of draw().
+  /// Whether it can be drawn. Errors: as of draw().
   schema::Result<void> check() const;
   PanelLayout layout(std::size_t panel) const { return panel_layout(panel, heading_heights_); }
 

@@ -26,18 +26,18 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
-// A profile's own table may well begin with its position, but has no column at a spatial frequency.
+// The table of a profile may also begin with the position, but it has no column of a spatial frequency.
 bool is_spectrogram_table(std::string_view line) {
   const bool begins = line.starts_with("position_mm,") || line.starts_with("stroke,position_mm,");
   return begins && line.find("/mm,") != std::string_view::npos;
 }
 
-// An empty one is nobody's.
+// An empty file may be replaced.
 Result<void> check_netcdf_kind(const std::string& path) {
   std::error_code ignored;
   const auto size = std::filesystem::file_size(path, ignored);
   if (ignored || size == 0 || schema::is_spectrogram_nc(path)) return {};
-  return schema::fail(ErrorKind::usage, "holds something else, and would be lost", path,
+  return schema::fail(ErrorKind::usage, "has other contents and is not overwritten", path,
                       "choose another name, or remove it first");
 }
 
@@ -46,9 +46,9 @@ Result<void> check_output(const std::string& path, std::span<const std::string> 
   const std::string extension = extension_of(path);
   if (std::ranges::find(kExtensions, extension) == kExtensions.end())
     return schema::fail(ErrorKind::usage,
-                        extension.empty() ? "the name has no extension to say what to write"
-                                          : "'" + extension + "' is not a form of a spectrogram",
-                        path, "take .png, .svg, .nc or .csv");
+                        extension.empty() ? "the name has no extension, which selects the format"
+                                          : "'" + extension + "' is not a format for spectrograms",
+                        path, "use .png, .svg, .nc or .csv");
   if (std::ranges::any_of(earlier, [&](const std::string& other) { return schema::same_file(path, other); }))
     return schema::fail(ErrorKind::usage, "is named twice", path, "give each output a name of its own");
   if (extension == ".csv") return schema::check_table_free(path, existing, is_spectrogram_table);
@@ -66,7 +66,7 @@ OutputForm form_of(const std::string& path) {
 }
 
 Result<void> check_outputs(std::span<const std::string> paths, schema::Existing existing) {
-  PendingFiles trial;  // never committed: its empty files prove that the folders take them, and vanish
+  PendingFiles trial;  // never committed: only tests that the folders are writable
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (auto checked = check_output(paths[i], paths.first(i), existing); !checked) return checked;
     TACTO_TRY(trial.add(paths[i]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In what form a spectrogram is written: by each path's extension, .png, .svg, .nc, .csv.
+// The format in which a spectrogram is written, by each path's extension: .png, .svg, .nc, .csv.
 #pragma once
 
 #include <span>
@@ -15,8 +15,8 @@ enum class OutputForm { picture, netcdf, table };
 /// Precondition: check_outputs() accepted the path.
 OutputForm form_of(const std::string& path);
 
-/// Before any work is done: whether each path has a known extension, is named once, is free or holds a
-/// spectrogram that may be replaced, and can be written. Errors: usage; cannot_write.
+/// Checks before any work is done that each path has a known extension, is named once, is free or is a
+/// spectrogram that may be replaced, and is writable. Errors: usage; cannot_write.
 schema::Result<void> check_outputs(std::span<const std::string> paths, schema::Existing existing);
 
 }  // namespace tacto::spatial

@@ -42,7 +42,7 @@ std::vector<Tick> without_labels(std::vector<Tick> ticks) {
   return ticks;
 }
 
-// The wavelength 1/k runs against the frequency k on the same place of the page.
+// The wavelength 1/k decreases while the frequency k increases along the same side.
 Axis wavelength_axis(const Axis& frequency) {
   return {AxisScale::logarithmic, 1 / frequency.high, 1 / frequency.low, frequency.at_high, frequency.at_low};
 }
@@ -78,7 +78,7 @@ void PanelPainter::paint_trace() {
     canvas.polyline(piece, {kTrace, 0.6});
   canvas.release();
   if (shown.beyond > 0)
-    canvas.text({layout.trace.right() - 4, layout.trace.y + 3}, beyond_words(shown, unit.text),
+    canvas.text({layout.trace.right() - 4, layout.trace.y + 3}, out_of_range_text(shown, unit.text),
                 {.size = 8.5, .colour = kGreyInk, .align_x = 1, .align_y = 0});
   canvas.frame(layout.trace, {});
   draw_axis(canvas, layout.trace, Side::left, axis, ticks);
@@ -142,7 +142,7 @@ void PanelPainter::paint_bar() {
   draw_level_bar(canvas, layout.bar, levels, fmt::format("power spectral density (dB re {})", unit));
 }
 
-// The key to lines and greys, in the corner that the plots leave free.
+// The legend of lines and greys, in the corner that the plots leave free.
 void PanelPainter::paint_notes() {
   const TextStyle style{.size = 9.5, .colour = kGreyInk, .align_y = 0.5};
   const Box& box = layout.notes;

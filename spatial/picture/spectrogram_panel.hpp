@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Paints one texture's panel of a spectrogram figure.
+// Draws one texture's panel of a spectrogram figure.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@
 
 namespace tacto::spatial {
 
-/// What is needed for it, and the steps. Axes in mm and 1/mm, placed on the panel's spectrogram.
+/// The inputs and steps of the drawing. Axes in mm and 1/mm, placed on the panel's spectrogram.
 struct PanelPainter {
   Canvas& canvas;
   const schema::Texture& texture;
@@ -39,10 +39,10 @@ struct PanelPainter {
   void paint_notes();
 };
 
-/// Name, surface, method and, of simulated data, by what they were made.
+/// Name, surface, method and, for simulated data, their source.
 Heading panel_heading(const schema::Texture& texture, const schema::Spectrogram& spectrogram);
 
-/// Window, hop, bins, speed, direction and band in a line.
+/// Window, hop, bins, speed, direction and band in one line.
 std::string method_facts(const schema::Texture& texture, const schema::Spectrogram& spectrogram);
 
 }  // namespace tacto::spatial

@@ -7,7 +7,7 @@
 namespace tacto::spatial {
 namespace {
 
-// Samples of one column, as they come.
+// The samples of one column, in order.
 class Column {
  public:
   Column(std::vector<Point>& out, double columns_per_point) : out_(out), per_point_(columns_per_point) {}

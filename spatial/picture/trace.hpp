@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A curve with any number of samples as one that a page can hold.
+// Reduces a curve with any number of samples to the resolution of a page.
 #pragma once
 
 #include <functional>
@@ -11,12 +11,12 @@
 
 namespace tacto::spatial {
 
-/// Pixels of a page: how finely curves are kept, columns a point.
+/// Resolution of curves, in columns per point: that of a PNG's pixels.
 inline constexpr double kColumnsPerPoint = 2;
 
-/// The curve through (x[i], y[i]) on the page, in pieces that end where a value is not finite. Of all samples
-/// that fall in one pixel column the first, smallest, largest and last are kept, so that it looks as if all
-/// were drawn. Precondition: x and y of equal size.
+/// The curve through (x[i], y[i]) on the page, in pieces that end at values that are not finite. Of all
+/// samples in one pixel column the first, smallest, largest and last are kept, so that the curve looks as
+/// with all samples. Precondition: x and y of equal size.
 std::vector<std::vector<Point>> trace(std::span<const double> x, std::span<const double> y,
                                       const Axis& x_axis, const Axis& y_axis,
                                       double columns_per_point = kColumnsPerPoint);

@@ -14,7 +14,8 @@ using schema::BandPoint;
 
 namespace {
 
-// A standing finger's band is infinitely high: everything is outside it.
+// Clamped to the axis, because the band of a resting finger has infinite limits; everything is then outside
+// it.
 double place_of(const Axis& frequency, double per_m) {
   return frequency.place(std::clamp(1e-3 * per_m, frequency.low, frequency.high));
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows on a spectrogram what the recording could know: its band's limits, and hatching over what lies
-// outside.
+// Draws the valid band on a spectrogram: its limits, and hatching outside.
 #pragma once
 
 #include <span>
@@ -13,7 +12,7 @@ namespace tacto::spatial {
 
 inline const Pen kBandPen{{1, 1, 1, 0.9}, 0.75, true};
 
-/// Draws over `area`, a part of the spectrogram's box. Axes in mm and 1/mm.
+/// Draws on `area`, a part of the spectrogram's box. Axes in mm and 1/mm.
 void draw_valid_band(Canvas& canvas, const Box& area, std::span<const schema::BandPoint> band,
                      const Axis& position, const Axis& frequency);
 

@@ -7,7 +7,7 @@
 namespace tacto::spatial::reference {
 namespace {
 
-// cos and sin of 2 pi m / n for all m, so that the sums take no sines.
+// cos and sin of 2 pi m / n for all m, so that the sums compute no sines.
 struct Circle {
   explicit Circle(std::size_t n) : cosine(n), sine(n) {
     for (std::size_t m = 0; m < n; ++m) {
@@ -28,7 +28,8 @@ void add_frequency(std::span<const double> values, const Circle& circle, std::si
     real += values[i] * circle.cosine[k * i % n];
     imaginary += values[i] * circle.sine[k * i % n];
   }
-  // Every frequency but 0 and half the rate has a twin of its own size.
+  // Each frequency except 0 and half the rate has a counterpart of the same amplitude at the negative
+  // frequency.
   const long double weight = (k == 0 || 2 * k == n ? 1.0L : 2.0L) / static_cast<long double>(n);
   for (std::size_t i = 0; i < n; ++i)
     sum[i] += weight * (real * circle.cosine[k * i % n] + imaginary * circle.sine[k * i % n]);

@@ -9,8 +9,9 @@
 
 namespace tacto::spatial::reference {
 
-/// What fourier_filter gives with Edges::none and no gain: each frequency of the record that lies in the
-/// band, summed directly. Takes size x (frequencies in the band) steps: for records of some thousand samples.
+/// The result of fourier_filter with Edges::none and no gain: each frequency of the record that is in the
+/// band, summed directly. Cost: size x (frequencies in the band) steps, so for records of some thousand
+/// samples.
 std::vector<double> exact_band_pass(std::span<const double> values, double sample_rate_hz, Band band);
 
 }  // namespace tacto::spatial::reference

@@ -17,7 +17,7 @@ ExactHermite::ExactHermite(std::span<const double> t, std::span<const double> x)
   assert(t.size() == x.size() && t.size() >= 2);
 }
 
-// The rules of Fritsch and Butland 1984, with SciPy's at the ends.
+// The slopes of Fritsch and Butland 1984, with those of SciPy at the ends.
 long double ExactHermite::slope(std::size_t i) const {
   const auto width = [&](std::size_t k) { return t_[k + 1] - t_[k]; };
   const auto secant = [&](std::size_t k) { return (x_[k + 1] - x_[k]) / width(k); };
@@ -40,7 +40,7 @@ long double ExactHermite::value(long double t) const {
   const auto above = std::upper_bound(t_.begin() + 1, t_.end() - 1, t);
   const auto i = static_cast<std::size_t>(above - t_.begin()) - 1;
   const long double h = t_[i + 1] - t_[i], u = (t - t_[i]) / h, v = 1 - u;
-  // The four Hermite polynomials as textbooks write them.
+  // The four Hermite polynomials in their textbook form.
   return x_[i] * (1 + 2 * u) * v * v + x_[i + 1] * u * u * (3 - 2 * u) + h * slope(i) * u * v * v -
          h * slope(i + 1) * u * u * v;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slow exact references in extended precision, against which the library states its errors.
+// Slow references in extended precision, against which the errors of the library are measured.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@ namespace tacto::spatial::reference {
 /// The monotone cubic through knots (t, x), in long double, with its inverse by bisection alone.
 class ExactHermite {
  public:
-  /// t strictly increasing, at least 2 knots; x too where the inverse is asked for.
+  /// Precondition: t strictly increasing, at least 2 knots; x strictly increasing too if inverse() is called.
   ExactHermite(std::span<const double> t, std::span<const double> x);
   long double value(long double t) const;
-  /// Halves its bracket 120 times: to the last bit of t.
+  /// 120 bisection steps: exact to the last bit of t.
   long double inverse(long double x) const;
 
  private:

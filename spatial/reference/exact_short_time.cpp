@@ -17,7 +17,7 @@ std::vector<Complex> roots_of_unity(std::size_t length) {
   return roots;
 }
 
-// Of x[0], x[stride], x[2 stride] ...; `roots` are those of the whole length.
+// Transform of x[0], x[stride], x[2 stride] ...; `roots` are those of the whole length.
 std::vector<Complex> transform(const long double* x, std::size_t stride, std::span<const Complex> roots) {
   const std::size_t length = roots.size() / stride;
   std::vector<Complex> result(length);

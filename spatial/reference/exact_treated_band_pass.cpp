@@ -46,7 +46,7 @@ Line fit(const std::vector<Real>& values, std::size_t count) {
   return {(y - slope * x) / n, slope};
 }
 
-// What comes beyond the first of `values`, counted outwards.
+// The continuation before the first of `values`, from the record outwards.
 std::vector<Real> outwards(const std::vector<Real>& values, std::size_t padding, std::size_t baseline) {
   const Line line = fit(values, baseline);
   std::vector<Real> beyond;

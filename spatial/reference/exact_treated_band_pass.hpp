@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The treated Fourier band-pass by its definition, in extended precision.
+// The Fourier band-pass with treated ends by its definition, in extended precision.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,10 @@
 
 namespace tacto::spatial::reference {
 
-/// The filter of BlockFourierFilter, summed directly at the record's own rate: the record goes on beyond its
-/// ends for 8 periods of `lowest_hz` (mirrored about a baseline over 2, tapered to the end's level), then
-/// stays level; the kernel ends at `reach_s`. Each value takes 2 reach_s sample_rate_hz steps.
+/// The filter of BlockFourierFilter, summed directly at the record's own rate: the record continues beyond
+/// its ends for 8 periods of `lowest_hz` (mirrored about a baseline over 2 periods, tapered to the end's
+/// level), then at a constant level; the kernel ends at `reach_s`. Each value costs 2 reach_s sample_rate_hz
+/// steps.
 class ExactTreatedBandPass {
  public:
   ExactTreatedBandPass(std::span<const double> values, double sample_rate_hz, Band band, double lowest_hz,
@@ -21,7 +22,7 @@ class ExactTreatedBandPass {
 
  private:
   std::vector<long double> kernel_;    // taps 0, 1, ...
-  std::vector<long double> extended_;  // level beyond its ends
+  std::vector<long double> extended_;  // constant beyond its ends
   std::size_t padding_;
 };
 

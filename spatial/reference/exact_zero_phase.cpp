@@ -14,7 +14,7 @@ using Real = long double;
 using Complex = std::complex<Real>;
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-// Direct form I, as textbooks write it: what went in and out before.
+// Direct form I in its textbook notation: state is the previous inputs and outputs.
 void run(std::span<const ExactSection> sections, std::vector<Real>& values) {
   Real level = values.front();
   for (const ExactSection& s : sections) {

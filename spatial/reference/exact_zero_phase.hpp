@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Butterworth band-pass run forwards and backwards, in extended precision from its design on.
+// The Butterworth band-pass, designed and run forwards and backwards in extended precision.
 #pragma once
 
 #include <span>
@@ -18,7 +18,7 @@ struct ExactSection {
 /// The band-pass of butterworth_band_pass(), designed in long double; order 1 ... 20.
 std::vector<ExactSection> exact_butterworth(int order, Band band, double sample_rate_hz);
 
-/// The same numbers as they are.
+/// The same coefficients in long double.
 std::vector<ExactSection> widened(std::span<const Section> sections);
 
 /// filter_zero_phase() in long double; padding < size.

@@ -15,10 +15,10 @@ using schema::ErrorKind;
 using schema::Result;
 
 constexpr double kBytesPerSample = 4;
-// The monotone cubics are not linear: a mixture can err by a little more than the sine at its upper edge (1 %
-// in 700 draws of spatial_budget_test).
+// The monotone cubics are not linear: the error of a mixture can exceed that of the sine at its upper edge by
+// a little (1 % in 700 draws of spatial_budget_test).
 constexpr double kMargin = 1.1;
-constexpr double kMostAskedOfTexture = 0.1;
+constexpr double kMaxTextureError = 0.1;
 constexpr std::array kMethods = {ResampleMethod::linear, ResampleMethod::hermite, ResampleMethod::swapped,
                                  ResampleMethod::sinc};
 
@@ -26,7 +26,7 @@ Result<schema::MeasuredChoice> measured(const schema::TradeTable& table, const c
                                         std::string_view name) {
   for (const schema::MeasuredChoice& choice : table.choices)
     if (choice.stage == stage && choice.name == name && !choice.errors.empty()) return choice;
-  return schema::fail(ErrorKind::unsuitable, fmt::format("says nothing of {} by {}", stage, name),
+  return schema::fail(ErrorKind::unsuitable, fmt::format("contains no errors for {} by {}", stage, name),
                       "the table of measured choices", "measure again with 'tactograph trade --calibrate'");
 }
 
@@ -68,9 +68,10 @@ Result<std::vector<TextureChoice>> tried_for(const schema::TradeTable& table, co
 
 Result<TextureChoices> choose_texture(const schema::TradeTable& table, const TextureNeed& need,
                                       const schema::Budget& budget) {
-  if (budget.max_error && !(*budget.max_error > 0 && *budget.max_error <= kMostAskedOfTexture))
-    return schema::fail(ErrorKind::usage, fmt::format("an error of {:g} %", 100 * *budget.max_error),
-                        "--max-error", "above 0 and at most 10%");
+  if (budget.max_error && !(*budget.max_error > 0 && *budget.max_error <= kMaxTextureError))
+    return schema::fail(ErrorKind::usage,
+                        fmt::format("an error of {:g} % is not possible", 100 * *budget.max_error),
+                        "--max-error", "use a value above 0 and at most 10%");
   auto tried = tried_for(table, need);
   TACTO_TRY(tried);
   const auto least = std::ranges::min_element(*tried, {}, &TextureChoice::error);
@@ -79,11 +80,11 @@ Result<TextureChoices> choose_texture(const schema::TradeTable& table, const Tex
   if (taken == tried->end())
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("no {} keeps the error under {:.3g} %: the least is {:.3g} %, by {} on a grid of {}",
-                    need.method || need.pitch_m ? "choice beside what was named" : "choice",
+        fmt::format("no {} keeps the error below {:.3g} %: the smallest is {:.3g} %, by {} on a grid of {}",
+                    need.method || need.pitch_m ? "choice with the given options" : "choice",
                     100 * budget.most_error(), 100 * least->error, name_of(least->method),
                     schema::length_for_people(least->pitch_m)),
-        {}, "ask for less, lower the band's upper edge, or record at a higher rate");
+        {}, "allow a larger error, lower the upper edge of the band, or record at a higher rate");
   return TextureChoices{*taken, *tried};
 }
 
@@ -111,9 +112,9 @@ Result<ResolutionChoice> choose_resolution(const schema::TradeTable& table, std:
   if (taken != choices->end()) return *taken;
   return schema::fail(
       ErrorKind::unsuitable,
-      fmt::format("no way of computing it keeps the error under {:.3g} %: single precision leaves {:.2g} %",
+      fmt::format("no method keeps the error below {:.3g} %: single precision leaves {:.2g} %",
                   100 * budget.most_error(), 100 * least->error),
-      {}, "ask for less");
+      {}, "allow a larger error");
 }
 
 }  // namespace tacto::spatial

@@ -24,7 +24,8 @@ void narrow(KnownBand& common, const KnownBand& other) {
 
 }  // namespace
 
-// Between breakpoints the limits are straight, so their extremes lie at breakpoints or at the stretch's ends.
+// The limits are linear between breakpoints, so their extremes are at breakpoints or at the ends of the
+// interval.
 KnownBand band_along(std::span<const BandPoint> band, double from_m, double to_m) {
   KnownBand common = limits_at(band, from_m);
   narrow(common, limits_at(band, to_m));

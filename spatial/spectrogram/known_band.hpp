@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which cells of a spectrogram the recording could know: from the band in which its texture is valid.
+// The known cells of a spectrogram, from the valid band of its texture.
 #pragma once
 
 #include <span>
@@ -10,19 +10,19 @@
 
 namespace tacto::spatial {
 
-/// The middle of a Blackman window that carries 90 % of the power it passes, as a part of its length
-/// (integral of w^2; 0.39178).
+/// The middle part of a Blackman window that has 90 % of its power, relative to its length (integral of w^2;
+/// 0.39178).
 inline constexpr double kKnownPart = 0.392;
 
-/// The band that is valid all along [from_m, to_m]: the highest of the low limits and the lowest of the high
-/// ones, k = f / v being straight between breakpoints and level beyond them. low_per_m > high_per_m where
-/// there is none. Precondition: `band` is not empty and its positions grow.
+/// The band that is valid in all of [from_m, to_m]: the highest of the low limits and the lowest of the high
+/// ones. k = f / v is linear between breakpoints and constant beyond them. low_per_m > high_per_m if there is
+/// no such band. Precondition: `band` is not empty and its positions increase.
 schema::KnownBand band_along(std::span<const schema::BandPoint> band, double from_m, double to_m);
 
-/// For each window's centre the band that is valid throughout the middle of the window (kKnownPart). Every
-/// part of the window that is left unknown together weighs at most a tenth of it, so what is called known was
-/// measured to within 0.5 dB of power; asking it of the whole window would call a stroke's ends unknown for
-/// samples that the window all but leaves out. Empty where `band` is.
+/// For each window's centre the band that is valid in the whole middle part of the window (kKnownPart). The
+/// unknown parts of the window then have at most a tenth of its power, so known cells are measured to within
+/// 0.5 dB of power. If the whole window were required, the ends of a stroke would be unknown because of
+/// samples that the window almost excludes. Empty if `band` is.
 std::vector<schema::KnownBand> known_bands(std::span<const schema::BandPoint> band,
                                            std::span<const double> centre_m, double window_m);
 

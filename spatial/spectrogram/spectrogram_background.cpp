@@ -25,7 +25,7 @@ std::size_t at_least_one(double count) {
   return static_cast<std::size_t>(std::max(1.0, std::round(count)));
 }
 
-// Frequencies evenly spread in the logarithm, so that the slope isn't that of the many high bins.
+// Bins evenly spaced in the logarithm, so that the many high bins do not dominate the slope.
 std::vector<std::size_t> spread_bins(std::size_t first, std::size_t end) {
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < kTrendPoints; ++i) {
@@ -38,7 +38,7 @@ std::vector<std::size_t> spread_bins(std::size_t first, std::size_t end) {
   return bins;
 }
 
-// The exponent a of k^a through the mean spectrum.
+// The exponent a of k^a, fitted to the mean spectrum.
 double exponent_of(const Spectrogram& spectrogram, std::span<const BinRange> known) {
   BinRange widest{spectrogram.bins, 0};
   for (const BinRange& row : known) {
@@ -88,7 +88,7 @@ void SpectrogramBackground::whiten_row(const Spectrogram& spectrogram, std::size
   cells_.assign(cells.begin() + static_cast<std::ptrdiff_t>(known.first),
                 cells.begin() + static_cast<std::ptrdiff_t>(known.end));
   row_gain_.push_back(median_of(cells_));
-  // Silence has no background to stand out of.
+  // A row of zeros has no background, so none of its bins is used.
   if (!(row_gain_[row] > 0)) known.end = known.first;
   for (std::size_t bin = known.first; bin < known.end; ++bin)
     cells[bin] = static_cast<float>(static_cast<double>(cells[bin]) / row_gain_[row]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The background of a spectrogram, over which a peak stands out: what noise alone would show there.
+// The background of a spectrogram: the level that noise alone would have in each cell.
 #pragma once
 
 #include <span>
@@ -11,16 +11,15 @@
 namespace tacto::spatial {
 
 /// The expected density of a cell without the line in it, by ordered statistics of its neighbours (Rohling
-/// 1983, IEEE Trans. AES 19(4)): the median of the known cells that lie within 1.5 windows along position and
-/// between 3.5 and 16 of the unpadded window's bins (1 / window) away in frequency, over ln 2, as cells of
-/// noise are distributed exponentially. Before that each cell is divided by what its row and its frequency
-/// have in common with others: a power law k^a through the mean spectrum (Theil and Sen's robust slope), and
-/// its row's median.
+/// 1983, IEEE Trans. AES 19(4)): the median of the known cells that are within 1.5 windows along position and
+/// between 3.5 and 16 bins of the unpadded window (1 / window) away in frequency, over ln 2, because cells of
+/// noise have an exponential distribution. Before that, each cell is divided by a power law k^a fitted to the
+/// mean spectrum (Theil and Sen's robust slope), and by the median of its row.
 class SpectrogramBackground {
  public:
-  /// Precondition: one range a row.
+  /// Precondition: one range per row.
   SpectrogramBackground(const schema::Spectrogram& spectrogram, std::span<const BinRange> known);
-  /// unit^2 m; NaN where too few neighbours are known to say.
+  /// unit^2 m; NaN if too few neighbours are known.
   double at(std::size_t row, std::size_t bin) const;
 
  private:
@@ -33,7 +32,7 @@ class SpectrogramBackground {
   std::vector<double> row_gain_;  // by row
   std::vector<float> whitened_;
   std::size_t rows_ = 0, bins_ = 0;
-  std::size_t rows_apart_ = 1, bins_apart_ = 1;  // of the lattice on which it is known
+  std::size_t rows_apart_ = 1, bins_apart_ = 1;  // of the lattice on which it is computed
   std::size_t lattice_bins_ = 0;
   std::vector<double> lattice_;
   std::vector<float> cells_;

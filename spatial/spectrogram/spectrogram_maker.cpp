@@ -21,16 +21,16 @@ using schema::Scaling;
 using schema::SpectrogramHeader;
 using schema::Texture;
 
-// Files hold unit^2 mm: a thousand times the number.
+// The largest cell: files hold unit^2 mm, a thousand times this number.
 constexpr float kLargestCell = 3e35F;
 
-// Rounded down to three digits, so that the length that is suggested does fit.
+// Rounded down to three digits, so that a window of the suggested length fits.
 double rounded_down(double length_m) {
   const double digit = std::pow(10.0, std::floor(std::log10(length_m)) - 2);
   return std::floor(length_m / digit * (1 + 1e-12)) * digit;
 }
 
-// The factor on X whose square is the cell (density), or whose size is it (amplitude); of one-sided bins.
+// The factor on X, for one-sided bins: density = (factor |X|)^2, amplitude = factor |X|.
 double gain_of(Scaling scaling, std::span<const double> window, double pitch_m) {
   if (scaling == Scaling::amplitude) return 2 / std::accumulate(window.begin(), window.end(), 0.0);
   return std::sqrt(2 * pitch_m / std::inner_product(window.begin(), window.end(), window.begin(), 0.0));
@@ -58,7 +58,7 @@ Result<void> check_length(const Texture& texture, std::size_t window) {
       "texture",
       signal.values.size() < kShortestWindow
           ? "it is too short for any window"
-          : fmt::format("a window of {} would fit", schema::length_for_people(rounded_down(have_m))));
+          : fmt::format("use a window of {} or less", schema::length_for_people(rounded_down(have_m))));
 }
 
 Result<void> check_finite(const Texture& texture) {
@@ -76,20 +76,20 @@ Result<void> check_pitch(const Texture& texture, double pitch_m) {
       ErrorKind::unsuitable,
       fmt::format("has a grid of {}, not {}", schema::length_for_people(texture.signal.pitch_m),
                   schema::length_for_people(pitch_m)),
-      "texture", "make a spectrogram of each alone, or textures on one grid ('spatial --grid')");
+      "texture", "make one spectrogram of each, or make textures with equal grids ('spatial --grid')");
 }
 
 constexpr double kFaintest = 1e-12;
-constexpr const char* kTakeAmplitudes =
-    "'tactograph spectrogram --scaling amplitude' can show it; or import the recording in a fitting unit";
+constexpr const char* kUseAmplitudes =
+    "use 'tactograph spectrogram --scaling amplitude', or import the recording in a suitable unit";
 
 Result<void> check_cells(std::span<const float> cells) {
   if (std::ranges::all_of(cells, [](float cell) { return cell <= kLargestCell; })) return {};
   return schema::fail(ErrorKind::unsuitable, "its densities do not fit single precision", "texture",
-                      kTakeAmplitudes);
+                      kUseAmplitudes);
 }
 
-// Densities are squares: in single precision those of the faintest forces would all be zero.
+// Densities are squares: for very small forces all of them would be zero in single precision.
 Result<void> check_faintness(const Texture& texture, Scaling scaling) {
   if (scaling == Scaling::amplitude) return {};
   double largest = 0;
@@ -99,7 +99,7 @@ Result<void> check_faintness(const Texture& texture, Scaling scaling) {
       ErrorKind::unsuitable,
       fmt::format("its largest value is {:.3g} {}, whose densities do not fit single precision", largest,
                   texture.unit),
-      "texture", kTakeAmplitudes);
+      "texture", kUseAmplitudes);
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ Result<SpectrogramHeader> SpectrogramMaker::describe(const Texture& texture) con
   return header;
 }
 
-// Zero and half the sampling frequency have no twin at negative frequencies.
+// Zero and half the sampling frequency have no counterpart at negative frequencies.
 void SpectrogramMaker::finish(std::span<float> row, int exponent) const {
   row.front() *= options_.scaling == Scaling::density ? 0.5F : 0.25F;
   if (2 * (shape_.bins - 1) == shape_.padded)

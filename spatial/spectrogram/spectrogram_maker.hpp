@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Spectrograms row by row, for any number of textures on one grid, through one set of buffers.
+// Spectrograms row by row, for any number of textures with one pitch, with one set of buffers.
 #pragma once
 
 #include <functional>
@@ -14,29 +14,30 @@
 
 namespace tacto::spatial {
 
-/// Takes some whole rows, by growing position, from row `first` on: cells by the spectrogram's scaling,
-/// `bins` a row. The span is valid during the call.
+/// Receives some whole rows, by increasing position, from row `first` on: cells in the spectrogram's scaling,
+/// `bins` per row. The span is valid during the call.
 using CellSink = std::function<schema::Result<void>(std::size_t first, std::span<const float> cells)>;
 
-/// Prepared once, then used for texture after texture; its memory does not grow with their length. Not shared
+/// Prepared once, then used for texture after texture; its memory does not depend on their length. Not shared
 /// between threads; not safe in the tick.
 class SpectrogramMaker {
  public:
-  /// `rows` of all textures are expected, about: it decides how well FFTW plans. Errors: of frame_shape().
+  /// `rows` is the approximate number of rows of all textures; the effort of FFTW's planning depends on it.
+  /// Errors: of frame_shape().
   static schema::Result<SpectrogramMaker> prepare(const SpectrogramOptions& options, double pitch_m,
                                                   std::size_t rows);
 
   const FrameShape& shape() const { return shape_; }
-  /// The grid it works on, and why it is the whole one where that was not asked for.
+  /// The decimation in use, and the reason for full resolution if it was not requested.
   const Decimation& decimation() const { return decimation_; }
 
-  /// All that is said of the texture's spectrogram; the caller fills in `name`. Errors: unsuitable (another
-  /// grid than prepared for; shorter than the window, saying what would fit; a value that is not finite, by
-  /// sample).
+  /// The header of the texture's spectrogram; the caller sets `name`. Errors: unsuitable (a pitch other than
+  /// that of prepare(); shorter than the window, with the length that would fit; a value that is not finite,
+  /// with its sample).
   schema::Result<schema::SpectrogramHeader> describe(const schema::Texture& texture) const;
 
-  /// The cells of a texture that describe() accepts. Errors: the sink's; unsuitable, where a density does not
-  /// fit single precision.
+  /// Makes the cells of a texture that describe() accepts. Errors: the sink's; unsuitable, if a density does
+  /// not fit single precision.
   schema::Result<void> make(const schema::Texture& texture, const CellSink& sink);
 
  private:
@@ -50,7 +51,7 @@ class SpectrogramMaker {
   Decimation decimation_;
   double pitch_m_;
   ShortTimeTransform transform_;
-  std::vector<float> cells_;  // as many rows as go to the sink at once
+  std::vector<float> cells_;  // as many rows as are given to the sink at once
 };
 
 }  // namespace tacto::spatial

@@ -16,7 +16,7 @@ namespace {
 using schema::ErrorKind;
 using schema::Result;
 
-// A length in samples, and the range that it must lie in; `least` names its lower end for people.
+// A length in samples with its allowed range; `least` is the text for the lower limit in messages.
 struct Asked {
   const char* what;
   const char* where;
@@ -25,7 +25,7 @@ struct Asked {
   std::string least_name;
 };
 
-// NaN lies in no range.
+// NaN is in no range, so it is an error, too.
 Result<std::size_t> samples_of(const Asked& asked, double pitch_m) {
   const double samples = asked.length_m / pitch_m;
   const auto least = static_cast<double>(asked.least), most = static_cast<double>(kLongestTransform);
@@ -33,13 +33,13 @@ Result<std::size_t> samples_of(const Asked& asked, double pitch_m) {
     return std::clamp(static_cast<std::size_t>(std::llround(samples)), asked.least, kLongestTransform);
   return schema::fail(
       ErrorKind::usage,
-      fmt::format("{} of {} can't be used", asked.what, schema::length_for_people(asked.length_m)),
+      fmt::format("{} of {} cannot be used", asked.what, schema::length_for_people(asked.length_m)),
       asked.where,
-      fmt::format("take {} ({}) to {} (2^24 samples)", schema::length_for_people(least * pitch_m),
+      fmt::format("use {} ({}) to {} (2^24 samples)", schema::length_for_people(least * pitch_m),
                   asked.least_name, schema::length_for_people(most * pitch_m)));
 }
 
-// A bin that lies on the limit is kept in spite of rounding.
+// Rounding does not exclude a bin at the limit.
 std::size_t bins_to(double frequency_per_m, std::size_t padded, double pitch_m) {
   const double last = frequency_per_m * static_cast<double>(padded) * pitch_m * (1 + 1e-12);
   return 1 +
@@ -66,7 +66,7 @@ Result<FrameShape> frame_shape(const SpectrogramOptions& options, double pitch_m
   }
   if (!(options.max_frequency_per_m > 0))
     return schema::fail(ErrorKind::usage, "the maximum frequency must be above 0", "maximum frequency",
-                        "15/mm is usual");
+                        "15/mm is the default");
   shape.bins = bins_to(options.max_frequency_per_m, shape.padded, pitch_m);
   return shape;
 }

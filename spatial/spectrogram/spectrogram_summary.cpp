@@ -25,7 +25,7 @@ std::size_t first_bin(const SpectrogramHeader& spectrogram, double min_frequency
   return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(spectrogram.bins - 1)));
 }
 
-// (sum w)^2 pitch / sum w^2 is 1 over the window's noise bandwidth.
+// The factor (sum w)^2 pitch / sum w^2 is 1 over the window's noise bandwidth.
 double power_of(const SpectrogramHeader& spectrogram, std::size_t bin, double cell) {
   if (spectrogram.scaling == Scaling::density) return cell;
   const bool alone = bin == 0 || 2 * bin == spectrogram.padded_samples;

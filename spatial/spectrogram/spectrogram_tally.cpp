@@ -8,7 +8,7 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr std::size_t kLanes = 8;  // sums and maxima side by side
+constexpr std::size_t kLanes = 8;  // independent sums and maxima, for vector instructions
 
 struct SumAndMaximum {
   double sum = 0;  // of cells, or of their squares
@@ -37,9 +37,9 @@ SumAndMaximum sum_and_maximum(std::span<const float> cells) {
 
 SpectrogramTally::SpectrogramTally(const schema::SpectrogramHeader& header, double settled_per_m)
     : header_(header),
-      settled_(first_bin(header, settled_per_m)),
-      low_powers_(settled_, 0.0),
-      low_peaks_(settled_) {
+      first_merged_bin_(first_bin(header, settled_per_m)),
+      low_powers_(first_merged_bin_, 0.0),
+      low_peaks_(first_merged_bin_) {
   header_.known.clear();
 }
 
@@ -53,33 +53,34 @@ void SpectrogramTally::add_low(std::size_t row, std::span<const float> cells) {
 void SpectrogramTally::add_high(std::size_t row, std::span<const float> cells) {
   const bool squares = header_.scaling == schema::Scaling::amplitude;
   const auto [sum, maximum] = squares ? sum_and_maximum<true>(cells) : sum_and_maximum<false>(cells);
-  high_power_ += squares ? sum * power_of(header_, settled_, 1) : sum;
+  high_power_ += squares ? sum * power_of(header_, first_merged_bin_, 1) : sum;
   if (maximum <= high_peak_.cell) return;
   const auto found = std::ranges::find(cells, maximum);
-  high_peak_ = {maximum, row, settled_ + static_cast<std::size_t>(found - cells.begin())};
+  high_peak_ = {maximum, row, first_merged_bin_ + static_cast<std::size_t>(found - cells.begin())};
 }
 
 void SpectrogramTally::add(std::size_t first, std::span<const float> cells) {
   for (std::size_t at = 0; at < cells.size(); at += header_.bins) {
     const auto row = cells.subspan(at, header_.bins);
-    add_low(first + at / header_.bins, row.first(settled_));
-    add_high(first + at / header_.bins, row.subspan(settled_));
+    add_low(first + at / header_.bins, row.first(first_merged_bin_));
+    add_high(first + at / header_.bins, row.subspan(first_merged_bin_));
     ++rows_;
   }
 }
 
 SpectralPeak SpectrogramTally::strongest_peak(double min_frequency_per_m) const {
   const std::size_t first = first_bin(header_, min_frequency_per_m);
-  assert(first <= settled_ && rows_ > 0);
+  assert(first <= first_merged_bin_ && rows_ > 0);
   Peak best = high_peak_;
-  for (std::size_t k = first; k < settled_; ++k)
+  for (std::size_t k = first; k < first_merged_bin_; ++k)
     if (low_peaks_[k].cell > best.cell) best = low_peaks_[k];
   return {header_.position_m[best.row], header_.frequency_per_m(best.bin), static_cast<double>(best.cell)};
 }
 
 double SpectrogramTally::band_rms(double min_frequency_per_m) const {
   double sum = high_power_;
-  for (std::size_t k = first_bin(header_, min_frequency_per_m); k < settled_; ++k) sum += low_powers_[k];
+  for (std::size_t k = first_bin(header_, min_frequency_per_m); k < first_merged_bin_; ++k)
+    sum += low_powers_[k];
   return std::sqrt(sum / static_cast<double>(rows_) * header_.frequency_step_per_m);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The few numbers that sum up a spectrogram, gathered while its rows go by.
+// Summary values of a spectrogram, accumulated row by row.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@
 
 namespace tacto::spatial {
 
-/// Strongest peak and RMS above a frequency that need not be known before the rows have gone: any at or under
-/// `settled_per_m` may be asked for. Bins from there on are kept as one, so its size does not grow with the
+/// Strongest peak and RMS above a frequency that may be chosen after the rows were added: any at or below
+/// `settled_per_m`. All bins from there on share one sum, so the size does not depend on that of the
 /// spectrogram.
 class SpectrogramTally {
  public:
   SpectrogramTally(const schema::SpectrogramHeader& header, double settled_per_m);
 
-  /// Whole rows by growing position, from row `first` on.
+  /// Whole rows by increasing position, from row `first` on.
   void add(std::size_t first, std::span<const float> cells);
 
   /// As strongest_peak() and band_rms() of spectrogram_summary.hpp. Precondition: a row was added.
@@ -34,10 +34,10 @@ class SpectrogramTally {
   void add_high(std::size_t row, std::span<const float> cells);
 
   schema::SpectrogramHeader header_;
-  std::size_t settled_, rows_ = 0;
-  std::vector<double> low_powers_;  // sums over rows, one a bin under settled_
+  std::size_t first_merged_bin_, rows_ = 0;
+  std::vector<double> low_powers_;  // sums over rows, one per bin below first_merged_bin_
   std::vector<Peak> low_peaks_;
-  double high_power_ = 0;  // of all bins from settled_ on
+  double high_power_ = 0;  // of all bins from first_merged_bin_ on
   Peak high_peak_;
 };
 

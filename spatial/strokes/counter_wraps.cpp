@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<int, 3> kBits = {16, 24, 32};
 constexpr double kStepsOff = 2;    // a finger does not double its speed within a sample
-constexpr double kCountsOff = 16;  // a resting encoder's dither, and a start from rest
+constexpr double kCountsOff = 16;  // dither of a resting encoder, and a start from rest
 constexpr double kSmallestJump = 0x1p15;
 
 double turn_of(int bits) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counters of 16, 24 or 32 bits that ran over: where, and how many counts to add from there on.
+// Overflows of counters of 16, 24 or 32 bits: the frame of each, and the counts to add from there on.
 #pragma once
 
 #include <array>
@@ -11,37 +11,38 @@
 
 namespace tacto::spatial {
 
-/// From `frame` on `turns` x 2^bits counts are added to what is stored.
+/// From `frame` on, `turns` x 2^bits counts are added to the stored value.
 struct CounterTurn {
   std::size_t frame = 0;
   int turns = 0;
 };
 
-/// The wraps of a counter, by frame; `bits` is 0 where it never wrapped.
+/// The wraps of a counter, sorted by frame; `bits` is 0 if it never wrapped.
 struct CounterWraps {
   int bits = 0;
   std::vector<CounterTurn> turns;
-  /// What to add to the counts of values that begin at frame `first`.
+  /// Adds the missing counts to values that begin at frame `first`.
   void unwrap(std::size_t first, std::span<double> counts) const;
-  /// How often it wrapped within [begin, end).
+  /// Number of wraps within [begin, end).
   std::size_t count_in(std::size_t begin, std::size_t end) const;
 };
 
-/// Finds wraps in stored numbers that come in order. A wrap is a step that misses 2^16, 2^24 or 2^32 whole
-/// counts by no more than what the finger's steps before and after it tell (twice the larger one, and 16
-/// counts; over a gap times its missing frames), in a record that nowhere spans as many counts. A counter
-/// that was set to 0 by hand is none, nor is a jump of numbers that are no whole counts.
+/// Finds wraps in the stored numbers of a record, which are added in order. A wrap is a step of 2^16, 2^24 or
+/// 2^32 whole counts within a tolerance that follows from the finger's steps before and after it: twice the
+/// larger one and 16 counts, over a gap multiplied by its missing frames. The whole record must span fewer
+/// counts than that. A counter that was set to 0 by hand is not a wrap, nor is a jump between numbers that
+/// are not whole.
 class CounterWrapFinder {
  public:
   explicit CounterWrapFinder(std::span<const schema::Gap> gaps) : gaps_(gaps) {}
   void add(std::span<const double> counts);
-  /// After the last of them, once.
+  /// After the last add(), once.
   CounterWraps finish();
   double lowest() const { return lowest_; }
   double highest() const { return highest_; }
 
  private:
-  // A step of counts into frame `frame`, with the steps on both sides known.
+  // Tests a step of counts into frame `frame`; `before` and `after` are the steps on both sides.
   void judge(double before, double step, double after, std::size_t frame);
   std::uint64_t missing_before(std::size_t frame) const;
 

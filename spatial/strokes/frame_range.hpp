@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames of a record, and positions read from any place of it.
+// Frames of a record, and a function that reads values from any place of it.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,13 @@ struct FrameRange {
   bool contains(const FrameRange& other) const { return begin <= other.begin && other.end <= end; }
 };
 
-/// Gives values of a record from frame `first` on, as many as `out` has.
+/// Reads out.size() values of a record from frame `first` on.
 using ReadFrames = std::function<schema::Result<void>(std::size_t first, std::span<double> out)>;
 
-/// How much of a record is held in memory at a time, unless a stroke is longer.
+/// Number of frames that are in memory at a time, unless a stroke is longer.
 inline constexpr std::size_t kChunkFrames = 32768;
 
-/// Calls work(part) for parts of `frames` of kChunkFrames at most, in order, until one fails.
+/// Calls work(part) for parts of `frames` of at most kChunkFrames, in order, until one fails.
 template <class Work>
 schema::Result<void> chunk_by_chunk(FrameRange frames, const Work& work) {
   for (std::size_t begin = frames.begin; begin < frames.end; begin += kChunkFrames)

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLeastCreep = 1e-3;
 
-// Samples [first, last] that are given one level.
+// Samples [first, last] with one common level.
 struct Block {
   double level;
   std::size_t first, last;
@@ -20,7 +20,7 @@ struct Block {
 };
 
 void pool(Block& into, const Block& next) {
-  // Equal levels stay what they are to the bit.
+  // Equal levels are not averaged, so that they stay the same to the bit.
   if (into.level != next.level)
     into.level = (into.level * into.count() + next.level * next.count()) / (into.count() + next.count());
   into.last = next.last;
@@ -41,19 +41,19 @@ std::vector<Block> pooled(std::span<const double> way_m) {
   return blocks;
 }
 
-// How far block i may creep: what its rounding hides, and no further than its neighbours. Where no quantum
-// shows, it stands still in truth and moves only so much that it can be inverted.
-double room_of(std::span<const Block> blocks, std::size_t i, double quantum_m) {
+// The largest creep of block i: what its rounding can hide, and no further than its neighbours. A position
+// without a quantum really rests, so it moves only as far as the inversion requires.
+double largest_creep(std::span<const Block> blocks, std::size_t i, double quantum_m) {
   double gap = std::numeric_limits<double>::infinity();
   if (i > 0) gap = std::min(gap, blocks[i].level - blocks[i - 1].level);
   if (i + 1 < blocks.size()) gap = std::min(gap, blocks[i + 1].level - blocks[i].level);
   return quantum_m > 0 ? std::min(gap, quantum_m) : kLeastCreep * gap;
 }
 
-// An even motion of one quantum in n samples, seen in n samples, spans (1 - 1/n) quanta: half of it to each
-// side.
+// Uniform motion by one quantum in n samples spans (1 - 1/n) quanta between the first and the last of them;
+// half of that to each side.
 double half_creep(std::span<const Block> blocks, std::size_t i, double quantum_m) {
-  return room_of(blocks, i, quantum_m) / 2 * (1 - 1 / blocks[i].count());
+  return largest_creep(blocks, i, quantum_m) / 2 * (1 - 1 / blocks[i].count());
 }
 
 void add_knot(MonotonePath& path, std::size_t sample, double way_m) {
@@ -63,7 +63,7 @@ void add_knot(MonotonePath& path, std::size_t sample, double way_m) {
 
 void add_block(MonotonePath& path, const Block& block, double half) {
   add_knot(path, block.first, block.level - half);
-  // Where the creep is below what a double resolves there, one knot stands for the block.
+  // A creep below the resolution of a double gives one knot for the block.
   if (block.level + half > block.level - half) add_knot(path, block.last, block.level + half);
 }
 
@@ -78,7 +78,7 @@ bool grows(std::span<const double> way_m) {
   return std::ranges::adjacent_find(way_m, std::greater_equal()) == way_m.end();
 }
 
-// The mean over `half` samples to both sides, fewer towards the ends.
+// The mean over `half` samples on each side, fewer near the ends.
 std::vector<double> averaged(std::span<const double> values, std::size_t half) {
   const std::size_t n = values.size();
   std::vector<double> sums(n + 1, 0.0), means(n);

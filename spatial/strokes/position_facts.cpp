@@ -9,10 +9,10 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kRounding = 1e-12;  // what two roundings of doubles may differ by, and more
-constexpr double kEven = 0.01;       // of the moving samples: fewer changes of step are turns, not a grid
+constexpr double kRounding = 1e-12;  // upper limit of the difference between two roundings of doubles
+constexpr double kEven = 0.01;       // of the moving samples: fewer changes of step are reversals, not a grid
 constexpr double kLongestLag_s = 1e-3;
-constexpr std::size_t kEvery = 7;  // samples; enough of them for a median, and no factor of a usual rate
+constexpr std::size_t kEvery = 7;  // samples; enough values for a median, and not a factor of usual rates
 const double kSigmaOfMedian = 1 / (0.6745 * std::sqrt(70.0));
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a record's positions can tell: the step of their grid, their noise, how fast the finger travels.
+// Properties of a record's positions: the step of their grid, their noise, and the speed of travel.
 #pragma once
 
 #include <algorithm>
@@ -13,34 +13,35 @@
 namespace tacto::spatial {
 
 struct PositionFacts {
-  /// The step of the positions' grid, as of an encoder; 0 where none shows, as of a nominal position. m.
+  /// The step of the positions' grid, e.g. of an encoder; 0 if there is none, e.g. for a nominal position. m.
   double quantum_m = 0;
-  /// Standard deviation of their noise where that is over a quantum, as of an LVDT; else 0. m.
+  /// Standard deviation of their noise if it is more than a quantum, e.g. of an LVDT; otherwise 0. m.
   double noise_m = 0;
-  /// The speed at which half of the whole way was gone, over 20 ms: pauses, however long, weigh nothing. m/s.
+  /// The speed, over 20 ms, below which half of the distance was travelled; pauses of any length have no
+  /// weight. m/s.
   double travelling_mps = 0;
 
-  /// What two positions must differ by, so that the finger has moved for certain: the quantum, or the
-  /// difference that two noisy readings leave 1 time in 10. m.
+  /// The difference of two positions that proves a movement of the finger: the quantum, or the difference
+  /// that two noisy readings exceed 1 time in 10. m.
   double resolution_m() const { return std::max(quantum_m, 2.4 * noise_m); }
 };
 
-/// Learns quantum and noise from stretches of positions; their order is free.
+/// Estimates quantum and noise from stretches of positions, in any order.
 class PositionSteps {
  public:
   explicit PositionSteps(double sample_rate_hz);
-  /// Learns from the first `count` of the positions; kAhead more show how they go on, where there are so
-  /// many.
+  /// Adds the first `count` of the positions. The span has kAhead more positions after them, if the stretch
+  /// has so many.
   void add(std::span<const double> position_m, std::size_t count);
   static constexpr std::size_t kAhead = 32;
 
-  /// The smallest change from one step to the next, above rounding (1e-12 of `furthest_m`, the largest
-  /// position). 0 where over 99 % of the steps of the moving finger are equal.
+  /// The smallest change from one step to the next that exceeds rounding (1e-12 of `furthest_m`, the largest
+  /// position). 0 if over 99 % of the steps of the moving finger are equal.
   double quantum_m(double furthest_m) const;
-  /// From fourth differences, in which the finger's own motion all but cancels (under 10 nm at 3 Hz and 40
-  /// mm), over up to 1 ms, so that noise after a low-pass is seen too: median / 0.6745 / sqrt(70), exact for
-  /// white Gaussian noise. 0 where it is not above `quantum_m`, whose rounding
-  /// looks the same, nor above the rounding of doubles.
+  /// From fourth differences, in which the finger's own motion almost cancels (below 10 nm at 3 Hz and 40
+  /// mm), with lags up to 1 ms, so that noise after a low-pass is found too: median / 0.6745 / sqrt(70),
+  /// exact for white Gaussian noise. 0 unless it exceeds `quantum_m`, whose rounding has the same effect, and
+  /// the rounding of doubles.
   double noise_m(double quantum_m, double furthest_m) const;
 
  private:
@@ -50,7 +51,8 @@ class PositionSteps {
   std::array<LogHistogram, kLags.size()> bends_;
 };
 
-/// `pieces` lie between gaps, `furthest_m` is the largest |position|. Reads all twice. Errors: of reading.
+/// `pieces` are between gaps, `furthest_m` is the largest |position|. Reads all frames twice. Errors: of
+/// reading.
 schema::Result<PositionFacts> position_facts(const ReadFrames& read, std::span<const FrameRange> pieces,
                                              double sample_rate_hz, double furthest_m);
 

@@ -14,7 +14,7 @@ constexpr double kLongestHold_s = 0.05;
 constexpr double kOfMedianStep = 20;
 constexpr double kRare = 0.01;
 
-// Calls visit(frame, step) for each frame of a piece but its first.
+// Calls visit(frame, step) for each frame of a piece except the first.
 template <class Visit>
 schema::Result<void> visit_steps(const ReadFrames& read, FrameRange piece, const Visit& visit) {
   std::vector<double> positions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps of a position that no finger makes: an encoder that lost its count, a cable, a torn frame.
+// Steps of a position that are too fast for a finger: an encoder that lost its count, a cable, a torn frame.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,22 @@
 
 namespace tacto::spatial {
 
-/// The position of `frame` lies `step_m` from that of the frame before.
+/// The position of `frame` differs by `step_m` from that of the frame before.
 struct PositionJump {
   std::size_t frame = 0;
   double step_m = 0;
 };
 
-/// The jumps within the pieces, by time. A step is one where it takes 10 m/s, ten times the fastest stroke
-/// that this program is made for, since the position last changed (a slow encoder's position is held; 50 ms
-/// at most), and is over 20 times the median step of the moving finger. Where over 1 % of the steps are like
-/// that there are none: so the position goes. Reads all once, twice more where a step may be a jump. Errors:
-/// of reading.
+/// The jumps within the pieces, by time. A step is a jump if it exceeds 10 m/s since the position last
+/// changed (a slow encoder's position is held; at most 50 ms), ten times the fastest stroke that this program
+/// is made for, and exceeds 20 times the median step of the moving finger. If over 1 % of the steps are like
+/// that, they are the normal behaviour of this position, and there are no jumps. Reads all frames once, and
+/// twice more if a step may be a jump. Errors: of reading.
 schema::Result<std::vector<PositionJump>> find_position_jumps(const ReadFrames& read,
                                                               std::span<const FrameRange> pieces,
                                                               double sample_rate_hz);
 
-/// The pieces, each cut before the frames that jump.
+/// The pieces, each cut before the frames with a jump.
 std::vector<FrameRange> pieces_between_jumps(std::span<const FrameRange> pieces,
                                              std::span<const PositionJump> jumps);
 

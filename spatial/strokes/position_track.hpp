@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the finger was, frame by frame, in a record of any length; counters that ran over are put right.
+// The finger's position, frame by frame, in a record of any length; overflows of counters are corrected.
 #pragma once
 
 #include <vector>
@@ -11,11 +11,11 @@
 
 namespace tacto::spatial {
 
-/// Reads stretches of the position. Holds what is short (1e6 frames, 8 MB) in memory, no more of the rest
-/// than is asked for. The source must outlive it.
+/// Reads stretches of the position. A short record (1e6 frames, 8 MB) is held in memory; of a longer one only
+/// what was requested. The source must outlive it.
 class PositionTrack {
  public:
-  /// Reads all of it once, for the wraps of its counter. Errors: of reading.
+  /// Reads the whole record once, to find the wraps of its counter. Errors: of reading.
   static schema::Result<PositionTrack> open(TouchSource& source, std::size_t frames,
                                             std::span<const schema::Gap> gaps);
 
@@ -24,7 +24,7 @@ class PositionTrack {
   schema::Result<std::vector<double>> read(FrameRange frames) const;
 
   bool moves() const { return moves_; }
-  double furthest_m() const { return furthest_m_; }  ///< the largest |position| stored: what rounding is of
+  double furthest_m() const { return furthest_m_; }  ///< largest stored |position|, for rounding
   const CounterWraps& wraps() const { return wraps_; }
 
  private:

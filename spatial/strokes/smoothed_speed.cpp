@@ -8,7 +8,7 @@
 namespace tacto::spatial {
 namespace {
 
-// Half of it on each side of a sample: short against a stroke's start and stop (about 0.1 s by hand or
+// Half of it on each side of a sample: short compared with a stroke's start and stop (about 0.1 s by hand or
 // motor).
 constexpr double kShortestWindow_s = 0.02;
 constexpr double kLongestWindow_s = 0.5;

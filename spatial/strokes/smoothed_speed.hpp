@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The finger's speed from positions that are quantised or noisy: differences over a window, not from sample
-// to sample.
+// The finger's speed from quantised or noisy positions: differences over a window instead of from sample to
+// sample.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,18 @@
 namespace tacto::spatial {
 
 /// Speed at each sample, in m/s with its sign: the difference over `window` samples around it (>= 2; rounded
-/// down to even), over what there is of them at the ends. Error from a quantum q: q / (window /
-/// sample_rate_hz) at most. At least 2 positions, in m.
+/// down to even), over fewer at the ends. Largest error from a quantum q: q / (window / sample_rate_hz).
+/// Precondition: at least 2 positions, in m.
 std::vector<double> smoothed_speed(std::span<const double> position_m, double sample_rate_hz,
                                    std::size_t window);
 
-/// The window that brings an error of `resolution_m` under 10 % of `speed_mps`: 20 ms, or 10 resolutions at
-/// that speed where that is longer, 0.5 s at most. In samples, at least 2.
+/// The window for which an error of `resolution_m` is below 10 % of `speed_mps`: 20 ms, or the time of 10
+/// resolutions at that speed if that is longer, at most 0.5 s. In samples, at least 2.
 std::size_t speed_window(double resolution_m, double speed_mps, double sample_rate_hz);
 
 /// Calls visit(frame, speed_mps, position_m) for the frames `within` a stretch without gaps, in order; the
-/// speeds are those of smoothed_speed() over the whole stretch. Holds a chunk and a window in memory. Errors:
-/// of reading.
+/// speeds are those of smoothed_speed() over the whole stretch. Memory: a chunk and a window. Errors: of
+/// reading.
 template <class Visit>
 schema::Result<void> visit_speeds(const ReadFrames& read, FrameRange stretch, FrameRange within,
                                   double sample_rate_hz, std::size_t window, const Visit& visit) {

@@ -10,16 +10,16 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kPauseS = 0.1;              // a finger that sticks lets go sooner
+constexpr double kPauseS = 0.1;              // a finger that sticks slips before that
 constexpr double kSlowest = 0.1;             // of the stroke's own travelling speed: it starts and ends there
-constexpr double kUnderWay = 0.5;            // what a stroke reaches somewhere
+constexpr double kReachedShare = 0.5;        // share of it that a stroke reaches at least once
 constexpr double kRest = 1e-4;               // of the record's travelling speed: creep of a resting stage
-constexpr double kRestResolutions = 3;       // a window: dither of a resting encoder, 5 sigma of noise
-constexpr double kSlowestFinger_mps = 1e-3;  // the slowest that is looked for by a longer window
+constexpr double kRestResolutions = 3;       // per window: dither of a resting encoder, 5 sigma of noise
+constexpr double kSlowestFinger_mps = 1e-3;  // the slowest speed that the longer window searches for
 constexpr double kShortestOfLongest = 0.05;
 constexpr double kShortestResolutions = 20;
-constexpr double kShortestRun = 3;  // resolutions: what a slip between two sticks goes, and dither does not
-constexpr double kWayBack = 0.05;   // of the way before or after: a rebound, not a reversal
+constexpr double kShortestRun = 3;  // resolutions: longer than dither, shorter than a slip between two sticks
+constexpr double kReboundShare = 0.05;  // of the distance before or after: a rebound, not a reversal
 
 using Strokes = std::vector<Stroke>;
 
@@ -60,8 +60,8 @@ double longest_of(const Strokes& strokes) {
   return longest_m;
 }
 
-// Runs in `range` whose speed lies above the threshold, each in one direction and `shortest_m` long, and the
-// largest speed of each.
+// Runs in `range` with a speed above the threshold, each in one direction and at least `shortest_m` long, and
+// the largest speed of each.
 schema::Result<Strokes> Search::runs_above(FrameRange range, double threshold_mps, double shortest_m,
                                            std::vector<double>* fastest_mps) const {
   Strokes runs;
@@ -91,7 +91,7 @@ schema::Result<Strokes> Search::runs_above(FrameRange range, double threshold_mp
   return runs;
 }
 
-// Whether a run is the same stroke as the i-th, after a pause, or after a short way back behind it.
+// Whether a run continues the i-th stroke, after a pause or after a short movement back.
 bool Search::goes_on(const Strokes& strokes, std::size_t i, const Stroke& run) const {
   return strokes[i].direction == run.direction && run.frames.begin - strokes[i].frames.end < pause();
 }
@@ -102,7 +102,7 @@ Strokes Search::joined(const Strokes& runs) const {
     const std::size_t n = result.size();
     const bool back =
         n >= 2 && goes_on(result, n - 2, run) &&
-        result[n - 1].advance_m() < kWayBack * std::max(result[n - 2].advance_m(), run.advance_m());
+        result[n - 1].advance_m() < kReboundShare * std::max(result[n - 2].advance_m(), run.advance_m());
     if (back) result.pop_back();
     if (back || (n >= 1 && goes_on(result, n - 1, run))) {
       result.back().frames.end = run.frames.end;
@@ -121,7 +121,7 @@ schema::Result<double> Search::own_speed(FrameRange range) const {
   return speeds.median_by_sum();
 }
 
-// The parts of a run that are strokes by the run's own speed.
+// The parts of a run that are strokes, by thresholds from the run's own speed.
 schema::Result<void> Search::append_strokes(const Stroke& run, Strokes& strokes) const {
   const auto own_mps = own_speed(run.frames);
   TACTO_TRY(own_mps);
@@ -134,7 +134,7 @@ schema::Result<void> Search::append_strokes(const Stroke& run, Strokes& strokes)
     double fastest = 0;
     for (; p < parts->size() && (*parts)[p].frames.end <= part.frames.end; ++p)
       if ((*parts)[p].direction == part.direction) fastest = std::max(fastest, fastest_mps[p]);
-    if (part.direction == run.direction && fastest > kUnderWay * *own_mps) strokes.push_back(part);
+    if (part.direction == run.direction && fastest > kReachedShare * *own_mps) strokes.push_back(part);
   }
   return {};
 }
@@ -150,7 +150,7 @@ schema::Result<Strokes> Search::strokes() const {
   return found;
 }
 
-// What of a stretch lies between the strokes that were found in it, a pause away from them.
+// The parts of a stretch between its strokes, a pause away from them.
 std::vector<FrameRange> between(FrameRange stretch, const Strokes& strokes, std::size_t pause) {
   std::vector<FrameRange> rest;
   std::size_t begin = stretch.begin;
@@ -162,8 +162,8 @@ std::vector<FrameRange> between(FrameRange stretch, const Strokes& strokes, std:
   return rest;
 }
 
-// With the window that fits the record's travelling speed, then, where that hides a slow finger, with the
-// window that shows it.
+// Searches with the window for the record's travelling speed. If a slow finger is not visible with it, the
+// parts between strokes are searched again with a longer window.
 schema::Result<Strokes> strokes_in(const ReadFrames& read, FrameRange piece, double sample_rate_hz,
                                    const PositionFacts& facts) {
   const double resolution_m = facts.resolution_m();

@@ -16,15 +16,15 @@ namespace {
 
 using schema::ErrorKind;
 
-// What a finger may go back within a stretch and still be said to go one way: a few counts, or its elastic
-// rebound.
+// The largest movement back in a stretch that still counts as one direction: a few counts, or the finger's
+// elastic rebound.
 constexpr double kBackwardQuanta = 4;
-constexpr double kBackwardSigmas = 10;  // the noise of the furthest forward and the furthest back of 1e6
+constexpr double kBackwardSigmas = 10;  // noise between the largest and the smallest of 1e6 values
 constexpr double kBackwardOfWay = 0.002;
-// Less is dither, or the creep of a resting finger.
+// A shorter movement is dither, or the creep of a resting finger.
 constexpr double kShortestTravelResolutions = 20;
 constexpr double kNearJump_s = 0.1;  // the pause that ends a stroke
-// Half a sample period belongs to its frame: a time that was written with few digits still names it.
+// A frame includes half a sample period on each side, so that a time with few digits still selects it.
 constexpr double kWithinFrame = 0.5;
 
 std::string seconds(double s) {
@@ -55,8 +55,8 @@ schema::Result<void> TouchRecord::survey() {
   TACTO_TRY(track);
   track_ = std::move(*track);
   if (!track_->moves())
-    return schema::fail(ErrorKind::unsuitable, "the position never moves", where_,
-                        "a texture needs a finger that strokes; is this the right position channel?");
+    return schema::fail(ErrorKind::unsuitable, "the position does not change", where_,
+                        "a texture needs a moving finger; check that this is the right position channel");
   pieces_ = pieces_between_gaps(header_.frames, header_.gaps);
   const ReadFrames read = [this](std::size_t first, std::span<double> out) {
     return track_->read(first, out);
@@ -81,7 +81,8 @@ schema::Result<void> TouchRecord::survey() {
   return {};
 }
 
-// A stroke that ends or begins where the position jumps went on there, or came from there.
+// Marks strokes that begin or end near a jump of the position: the finger moved on there, so they are not
+// complete.
 void TouchRecord::mark_cut_strokes() {
   const auto near = static_cast<std::size_t>(kNearJump_s * header_.sample_rate_hz) + 1;
   for (Stroke& stroke : strokes_)
@@ -92,11 +93,10 @@ void TouchRecord::mark_cut_strokes() {
 
 schema::Error TouchRecord::refusal(const PositionJump& jump) const {
   return {ErrorKind::unsuitable,
-          fmt::format("the position jumps by {} from sample {} to sample {}, at {}, as no finger does",
+          fmt::format("the position jumps by {} from sample {} to sample {}, at {}: too fast for a finger",
                       schema::length_for_people(jump.step_m), jump.frame - 1, jump.frame,
                       seconds(schema::frame_time_s(header_, jump.frame))),
-          where_,
-          "look at the encoder and its cable; --from and --to make a texture of what lies before or after"};
+          where_, "check the encoder and its cable; select the part before or after with --from and --to"};
 }
 
 // Sets the stroke's mean normal force.
@@ -136,7 +136,7 @@ std::string TouchRecord::list_of_strokes() const {
   for (std::size_t i = 0; i < strokes_.size(); ++i)
     lines.push_back(
         fmt::format("{}: {} to {}", i + 1, seconds(from_s(strokes_[i])), seconds(to_s(strokes_[i]))));
-  return lines.empty() ? "no stroke was found" : fmt::format("there are {}", fmt::join(lines, ", "));
+  return lines.empty() ? "no stroke was found" : fmt::format("the strokes are {}", fmt::join(lines, ", "));
 }
 
 schema::Result<Stroke> TouchRecord::stroke(int number) const {
@@ -151,15 +151,15 @@ schema::Result<FrameRange> TouchRecord::frames_between(double from_s, double to_
   const double slack_s = kWithinFrame / header_.sample_rate_hz;
   const double first_s = schema::frame_time_s(header_, 0), last_s = schema::frame_time_s(header_, frames - 1);
   if (!(from_s < to_s))
-    return schema::fail(
-        ErrorKind::usage,
-        fmt::format("the stretch ends at {}, not after its start at {}", seconds(to_s), seconds(from_s)),
-        where_);
+    return schema::fail(ErrorKind::usage,
+                        fmt::format("the time range ends at {}, which is not after its start at {}",
+                                    seconds(to_s), seconds(from_s)),
+                        where_);
   if (from_s < first_s - slack_s || to_s > last_s + 3 * slack_s)
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("the stretch {} to {} reaches out of the recording", seconds(from_s), seconds(to_s)),
-        where_, fmt::format("it lasts from {} to {}", seconds(first_s), seconds(last_s)));
+        fmt::format("the time range {} to {} is not within the recording", seconds(from_s), seconds(to_s)),
+        where_, fmt::format("the recording is from {} to {}", seconds(first_s), seconds(last_s)));
   const auto first_from = [&](double time_s) {
     const auto frame_numbers = std::views::iota(std::size_t{0}, frames);
     const auto time_of = [&](std::size_t frame) { return schema::frame_time_s(header_, frame); };
@@ -172,9 +172,9 @@ schema::Result<void> TouchRecord::check_gapless(FrameRange frames) const {
   for (const schema::Gap& gap : header_.gaps)
     if (gap.frame > frames.begin && gap.frame < frames.end)
       return schema::fail(ErrorKind::unsuitable,
-                          fmt::format("{} frames are missing at {}, inside the stretch", gap.count,
+                          fmt::format("{} frames are missing at {}, inside the time range", gap.count,
                                       seconds(schema::frame_time_s(header_, gap.frame))),
-                          where_, "ask for a stretch before or after them");
+                          where_, "select a time range before or after them");
   return {};
 }
 
@@ -183,7 +183,7 @@ schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
   TACTO_TRY(read);
   const std::vector<double>& positions = *read;
   if (positions.size() < 2 || positions.front() == positions.back())
-    return schema::fail(ErrorKind::unsuitable, "the finger gets nowhere in the stretch", where_,
+    return schema::fail(ErrorKind::unsuitable, "the finger does not advance in the time range", where_,
                         list_of_strokes());
   const double advance_m = std::abs(positions.back() - positions.front());
   const int direction = positions.back() > positions.front() ? 1 : -1;
@@ -192,14 +192,14 @@ schema::Result<Stroke> TouchRecord::directed(FrameRange frames) const {
   if (backward_m > std::max(unseen_m, kBackwardOfWay * advance_m))
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("the finger turns round in the stretch, by {}", schema::length_for_people(backward_m)),
+        fmt::format("the finger reverses in the time range, by {}", schema::length_for_people(backward_m)),
         where_, list_of_strokes());
   if (advance_m < kShortestTravelResolutions * facts_.resolution_m())
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("the finger all but rests in the stretch: it gets {} far, and its "
-                    "position is known to {}",
-                    schema::length_for_people(advance_m), schema::length_for_people(facts_.resolution_m())),
+        fmt::format(
+            "the finger hardly moves in the time range: by {}, and the resolution of its position is {}",
+            schema::length_for_people(advance_m), schema::length_for_people(facts_.resolution_m())),
         where_, list_of_strokes());
   Stroke stroke{frames, direction, positions.front(), positions.back(), {}, false};
   TACTO_TRY(weigh(stroke));

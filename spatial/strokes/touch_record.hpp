@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording as the spatial rooms see it: where the finger was, and its strokes.
+// A recording as position of the finger and strokes: the input of `spatial`.
 #pragma once
 
 #include <memory>
@@ -19,15 +19,15 @@
 
 namespace tacto::spatial {
 
-/// Knows a record of any length by its strokes, and reads the rest when it is asked for: little memory, and
-/// not shared between threads.
+/// Holds the strokes of a record of any length and reads the rest on demand, so it needs little memory. Not
+/// shared between threads.
 class TouchRecord {
  public:
-  /// Reads the position (six times, once more for each stroke), finds the strokes, and where there is a
-  /// normal force tells those with the finger up. `channel` (by name) is what is to become a texture. Errors:
+  /// Reads the position (six times, once more for each stroke), finds the strokes and, if there is a normal
+  /// force, the strokes with the finger up. `channel` (by name) is what is to become a texture. Errors:
   /// unsuitable, without such a channel, without a position or with one that never moves; of reading.
   static schema::Result<TouchRecord> open(const schema::Recording& recording, const std::string& channel);
-  /// From any source; `where` names it in messages.
+  /// From any source; `where` is its name in messages.
   static schema::Result<TouchRecord> open(std::unique_ptr<TouchSource> source, schema::RecordingHeader header,
                                           std::string where);
 
@@ -39,13 +39,13 @@ class TouchRecord {
   const CounterWraps& counter_wraps() const { return track_->wraps(); }
   PositionError position_error() const { return {facts_.quantum_m, facts_.noise_m}; }
 
-  /// Strokes by time; may be none.
+  /// Strokes by time; may be empty.
   const std::vector<Stroke>& strokes() const { return strokes_; }
-  /// Runs that are no strokes for being shorter than 5 % of the longest.
+  /// Number of runs that are not strokes because they are shorter than 5 % of the longest.
   std::size_t short_runs() const { return short_runs_; }
-  /// What tells the finger up; absent without a normal force.
+  /// The force below which the finger is up; absent without a normal force.
   std::optional<double> finger_up_below_n() const { return up_below_n_; }
-  /// Where the position steps as no finger does.
+  /// The steps of the position that are too fast for a finger.
   const std::vector<PositionJump>& jumps() const { return jumps_; }
   /// "the position jumps by 1 m from sample 3999 to 4000, at 0.4 s ..."
   schema::Error refusal(const PositionJump& jump) const;
@@ -60,11 +60,11 @@ class TouchRecord {
   double mean_speed_mps(const Stroke& stroke) const;
   std::optional<double> mean_normal_force_n(const Stroke& stroke) const { return stroke.force_n; }
 
-  /// The stroke of a 1-based number. Errors: unsuitable, with those there are.
+  /// The stroke with a number from 1 on. Errors: unsuitable, with the numbers that exist.
   schema::Result<Stroke> stroke(int number) const;
-  /// All frames from one time to another, both included. Errors: usage, where they do not rise;
-  /// unsuitable, outside of the recording, with a gap or a jump inside, or where the finger turns round,
-  /// stays where it is, or moves by less than 20 resolutions of its position; of reading.
+  /// All frames from one time to another, both included. Errors: usage, if the times do not increase;
+  /// unsuitable, outside the recording, with a gap or a jump inside, or if the finger reverses, rests, or
+  /// moves by less than 20 resolutions of its position; of reading.
   schema::Result<Stroke> stretch(double from_s, double to_s) const;
 
  private:

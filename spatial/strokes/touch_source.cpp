@@ -59,10 +59,10 @@ schema::Result<std::size_t> value_channel(const schema::Recording& recording, co
   if (found.size() == 1) return found.front();
   if (found.empty())
     return schema::fail(ErrorKind::unsuitable,
-                        fmt::format("has no channel that can be a texture, only {}", names_of(header)),
+                        fmt::format("has no channel that can become a texture, only {}", names_of(header)),
                         recording.stem, "import it with --channel tangential_force=COLUMN*SCALE");
   return schema::fail(ErrorKind::unsuitable,
-                      fmt::format("has no tangential_force, and {} channels that can be a texture: {}",
+                      fmt::format("has no tangential_force, but {} channels that can become a texture: {}",
                                   found.size(), list_of(header, found)),
                       recording.stem,
                       fmt::format("choose one, as in --channel {}", header.channels[found.front()].name));

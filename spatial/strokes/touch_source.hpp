@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the frames of a touch come from: a recording on disk, or anything else that can be read from any
-// place.
+// The source of the frames of a touch: a recording on disk, or anything else with random access.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +11,18 @@
 
 namespace tacto::spatial {
 
-/// What the spatial rooms take from a record: where the finger was, what is made a texture, how hard it
-/// pressed.
+/// The channels of a record that `spatial` uses: the finger's position, the value that becomes a texture, and
+/// the normal force.
 enum class Track { position, value, normal_force };
 
 /// A record of any length, read stretch by stretch. Not shared between threads.
 class TouchSource {
  public:
   virtual ~TouchSource() = default;
-  /// Null where the record has no such channel; the position and the value are always there.
+  /// Null if the record has no such channel; position and value always exist.
   virtual const schema::Channel* channel(Track track) const = 0;
-  /// Stored numbers from frame `first` on, as many as `out` has; physical = stored x scale + offset of the
-  /// channel. Precondition: there are such frames, and such a channel. Errors: of reading.
+  /// Reads out.size() stored numbers from frame `first` on; physical = stored x scale + offset of the
+  /// channel. Precondition: the frames and the channel exist. Errors: of reading.
   virtual schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) = 0;
 
   /// The same in SI units.
@@ -35,10 +34,10 @@ class TouchSource {
   }
 };
 
-/// A recording on disk; `value` names the channel that is made a texture. Empty: tangential_force, else the
-/// one channel that can be a texture (a force along the surface, an acceleration, a displacement, a height, a
-/// signal). Errors: unsuitable, without such a channel, with several, or without a position; of opening the
-/// file.
+/// A recording on disk; `value` names the channel that becomes a texture. Empty: tangential_force, otherwise
+/// the only channel that can become a texture (a force along the surface, an acceleration, a displacement, a
+/// height, a signal). Errors: unsuitable, without such a channel, with several, or without a position; of
+/// opening the file.
 schema::Result<std::unique_ptr<TouchSource>> open_touch_source(const schema::Recording& recording,
                                                                const std::string& value);
 

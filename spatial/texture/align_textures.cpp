@@ -12,7 +12,7 @@
 namespace tacto::spatial {
 namespace {
 
-// Below it two textures share less than a tenth of their power: they agree by chance.
+// Below this, two textures share less than a tenth of their power, so that agreement may be chance.
 constexpr double kLeastCorrelation = 0.3;
 
 using Index = std::ptrdiff_t;
@@ -26,7 +26,7 @@ Spectrum spectrum_of(RealFft& fft, std::span<const double> values) {
   return spectrum;
 }
 
-// sum_i a[i] b[i + m] at index m, of negative m at the end.
+// sum_i a[i] b[i + m] at index m; negative m are at the end.
 std::vector<double> products(std::span<const double> a, std::span<const double> b) {
   RealFft fft(fast_length(a.size() + b.size()));
   const Spectrum of_a = spectrum_of(fft, a);
@@ -43,7 +43,7 @@ std::vector<double> running_energy(std::span<const double> values) {
   return energy;
 }
 
-// Correlation of a[i] and b[i + m] over what overlaps.
+// Correlation of a[i] and b[i + m] over their overlap.
 class Correlation {
  public:
   Correlation(std::span<const double> a, std::span<const double> b)

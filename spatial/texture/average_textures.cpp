@@ -16,7 +16,7 @@ namespace {
 using schema::ErrorKind;
 
 constexpr double kBandSpacing_m = 1e-4;
-constexpr double kFurthestAway = 10;  // lengths of the first: another place, or a broken position
+constexpr double kFurthestAway = 10;  // lengths of the first: another place, or a wrong position
 
 std::int64_t whole(double value) {
   return static_cast<std::int64_t>(std::llround(value));
@@ -28,19 +28,20 @@ schema::Result<void> TextureAverager::check(const schema::Texture& texture, std:
   if (strokes_.empty()) return {};
   if (texture.signal.pitch_m != model_.signal.pitch_m || texture.quantity != model_.quantity ||
       texture.unit != model_.unit)
-    return schema::fail(ErrorKind::unsuitable, "strokes of different grids or quantities have no mean");
+    return schema::fail(ErrorKind::unsuitable,
+                        "strokes with different grids or quantities cannot be averaged");
   const auto reach = static_cast<std::int64_t>(kFurthestAway * static_cast<double>(cells_.size()));
   if (first < first_ - reach || first > first_ + static_cast<std::int64_t>(cells_.size()) + reach)
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("stroke {} is {} from the others", texture.source.stroke,
+        fmt::format("stroke {} is {} away from the others", texture.source.stroke,
                     schema::for_people(static_cast<double>(std::abs(first - first_)) * model_.signal.pitch_m,
                                        schema::Dimension::length)),
-        {}, "average strokes over one place; --stroke N makes a texture of this one");
+        {}, "average strokes over the same place; --stroke N makes a texture of this one");
   return {};
 }
 
-// Makes room for `size` cells from `first` on.
+// Extends the cells to `size` cells from `first` on.
 void TextureAverager::cover(std::int64_t first, std::size_t size) {
   if (cells_.empty()) first_ = first;
   if (first < first_) {
@@ -50,7 +51,7 @@ void TextureAverager::cover(std::int64_t first, std::size_t size) {
   cells_.resize(std::max(cells_.size(), static_cast<std::size_t>(first - first_) + size));
 }
 
-// Keeps what this stroke knows as well.
+// Reduces the common band to what is valid in this stroke, too.
 void TextureAverager::narrow_band(const schema::Texture& texture) {
   if (texture.valid_band.empty()) return;
   const double origin_m = texture.source_origin_m;
@@ -63,8 +64,9 @@ void TextureAverager::narrow_band(const schema::Texture& texture) {
   }
 }
 
-// Takes may differ in whose finger was on what; several recordings are named by the strokes.
-void TextureAverager::keep_what_all_say(const schema::Texture& texture) {
+// Keeps the text members that are the same in all textures; recordings may differ in subject, finger and
+// surface.
+void TextureAverager::keep_common_members(const schema::Texture& texture) {
   const auto keep = [](std::string& kept, const std::string& said) {
     if (kept != said) kept.clear();
   };
@@ -88,7 +90,7 @@ schema::Result<void> TextureAverager::add(const schema::Texture& texture,
     model_.signal.values.clear();
     model_.source.stroke = 0;
   }
-  keep_what_all_say(texture);
+  keep_common_members(texture);
   cover(first, texture.signal.values.size());
   auto* cell = &cells_[static_cast<std::size_t>(first - first_)];
   for (const double value : texture.signal.values) {
@@ -138,7 +140,7 @@ std::vector<schema::StrokeCount> TextureAverager::counts(Stretch stretch) const 
   return counts;
 }
 
-// Where no band is common to all, one of no width.
+// Where no band is common to all strokes, the result is a band of zero width.
 std::vector<schema::BandPoint> TextureAverager::band(double origin_m, double length_m) const {
   std::vector<schema::BandPoint> all, points;
   for (const auto& [at, common] : band_)
@@ -168,11 +170,12 @@ schema::Texture TextureAverager::described() const {
 
 schema::Result<schema::Texture> TextureAverager::finish(const std::string& align) const {
   if (strokes_.size() < 2)
-    return schema::fail(ErrorKind::unsuitable, fmt::format("{} stroke makes no mean", strokes_.size()));
+    return schema::fail(ErrorKind::unsuitable,
+                        fmt::format("a mean needs at least 2 strokes, there is {}", strokes_.size()));
   const Stretch stretch = well_covered();
   if (stretch.end - stretch.begin < 2)
     return schema::fail(ErrorKind::unsuitable, "the strokes do not overlap", {},
-                        "half of them must overlap; --list shows their places");
+                        "at least half of them must overlap; --list shows their positions");
   schema::Texture texture = described();
   texture.average = schema::TextureAverage{align, {}, strokes_, counts(stretch)};
   for (std::size_t i = stretch.begin; i < stretch.end; ++i) {

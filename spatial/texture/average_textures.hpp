@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mean of several strokes over one place, and how much they differ.
+// The mean of several strokes over one place, and their standard deviation.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,23 @@
 
 namespace tacto::spatial {
 
-/// Takes textures one by one, of one recording or several, holds sums only (24 bytes a sample of what they
-/// cover).
+/// Input: textures one by one, of one recording or several. Holds only sums (24 bytes per sample of the
+/// covered range).
 class TextureAverager {
  public:
-  /// A texture that lies on the common grid, and how it was shifted onto it. Errors: unsuitable, where its
-  /// pitch, quantity or unit differ from the first one's, or where it lies over 10 lengths of the first away.
+  /// Adds a texture that is on the common grid; `stroke` has the shift with which it was made. Errors:
+  /// unsuitable, if its pitch, quantity or unit differ from the first one's, or if it is more than 10 lengths
+  /// of the first away.
   schema::Result<void> add(const schema::Texture& texture, const schema::AveragedStroke& stroke);
 
   std::size_t strokes() const { return strokes_.size(); }
-  /// The mean so far, of what was covered at all, from first() pitches on the bench on.
+  /// The mean so far over the whole covered range, from first() pitches on the bench on.
   std::vector<double> mean() const;
   double first() const { return static_cast<double>(first_); }
 
-  /// Mean and standard deviation (over n - 1) where at least half of the strokes, and 2, were; the longest
-  /// stretch of that. The valid band is what all strokes know there. Errors: unsuitable, for fewer than 2
-  /// strokes, or where no 2 of them overlap.
+  /// Mean and standard deviation (over n - 1) of the longest stretch that at least half of the strokes, and
+  /// 2, cover. The valid band is the one common to all strokes there. Errors: unsuitable, for fewer than 2
+  /// strokes, or if no 2 of them overlap.
   schema::Result<schema::Texture> finish(const std::string& align) const;
 
  private:
@@ -45,10 +46,10 @@ class TextureAverager {
   Stretch well_covered() const;
   std::vector<schema::StrokeCount> counts(Stretch stretch) const;
   std::vector<schema::BandPoint> band(double origin_m, double length_m) const;
-  void keep_what_all_say(const schema::Texture& texture);
+  void keep_common_members(const schema::Texture& texture);
   schema::Texture described() const;
 
-  schema::Texture model_;   // of all strokes, without values
+  schema::Texture model_;   // members common to all strokes, without values
   std::int64_t first_ = 0;  // of cells_, in pitches on the bench
   std::vector<Cell> cells_;
   std::vector<schema::AveragedStroke> strokes_;

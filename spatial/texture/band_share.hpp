@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the band-pass in time takes of a recording: how far what it lets pass is from what was recorded.
+// The difference between the recording and what the band-pass in time passes of it.
 #pragma once
 
 #include <span>
@@ -10,15 +10,14 @@
 
 namespace tacto::spatial {
 
-/// RMS of the recorded values less the filtered ones, about its mean, re the RMS of the filtered ones in the
-/// same frames; each the largest of any stroke.
+/// RMS of the recorded values minus the filtered ones, about its mean, over the RMS of the filtered ones in
+/// the same frames; each is the largest of all strokes.
 struct BandShare {
-  double whole = 0;  ///< in all frames of a stroke
-  double inside =
-      0;  ///< in their middle half: the force's steps where a finger sets out and stops are outside
+  double whole = 0;   ///< in all frames of a stroke
+  double inside = 0;  ///< in their middle half, without the steps of the force at start and stop
 };
 
-/// Without an equaliser. Filters once what lies between two gaps. Errors: unsuitable, where frames are
+/// Without an equaliser. Each stretch between two gaps is filtered once. Errors: unsuitable, if frames are
 /// missing inside a stroke; of check(filter, sample_rate_hz); of reading.
 schema::Result<BandShare> band_share(const TouchRecord& record, const TimeFilter& filter,
                                      std::span<const Stroke> strokes);

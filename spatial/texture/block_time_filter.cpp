@@ -16,7 +16,7 @@ namespace tacto::spatial {
 class BlockTimeFilter::Stage {
  public:
   virtual ~Stage() = default;
-  /// Both append to `out`; after finish() the stage is as new.
+  /// Both append to `out`; finish() also resets the stage.
   virtual void push(std::span<const double> values, std::vector<double>& out) = 0;
   virtual void finish(std::vector<double>& out) = 0;
   virtual void reset() = 0;
@@ -27,7 +27,7 @@ namespace {
 using Stage = BlockTimeFilter::Stage;
 using Stages = std::vector<std::unique_ptr<Stage>>;
 
-// A filter that is fed in chunks itself.
+// A filter that itself processes chunks.
 template <class Filter>
 class Fed final : public Stage {
  public:
@@ -41,7 +41,7 @@ class Fed final : public Stage {
   Filter filter_;
 };
 
-// Plain truncation, which needs all of a stretch.
+// Plain truncation, which transforms a whole stretch at once.
 class Held final : public Stage {
  public:
   Held(double sample_rate_hz, Band band, SpectralGain gain)
@@ -118,8 +118,8 @@ schema::Result<void> BlockTimeFilter::push(std::span<const double> values, std::
     const auto index = taken_ + static_cast<std::size_t>(odd - values.begin());
     reset();
     return schema::fail(schema::ErrorKind::unsuitable,
-                        fmt::format("value {} of the stretch is not a finite number", index), {},
-                        "repair the recording, or cut the stretch there");
+                        fmt::format("value {} of the time range is not a finite number", index), {},
+                        "repair the recording, or end the time range before it");
   }
   taken_ += values.size();
   for (std::size_t i = 0; i + 1 < stages_.size(); ++i) {

@@ -21,9 +21,10 @@ schema::Result<void> FilteredTrack::begin(FrameRange piece) {
   return {};
 }
 
-void FilteredTrack::forget_before(std::size_t frame) {
+void FilteredTrack::drop_before(std::size_t frame) {
   const std::size_t gone = std::min(frame - kept_from_, kept_.size());
-  if (2 * gone < kept_.size()) return;  // moving what stays costs no more than it took to make
+  if (2 * gone < kept_.size())
+    return;  // erase half at least, so that moving the rest costs no more than computing it
   kept_.erase(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(gone));
   kept_from_ += gone;
 }
@@ -46,14 +47,14 @@ schema::Result<std::span<const double>> FilteredTrack::values(FrameRange piece, 
   assert(piece.contains(frames));
   const bool goes_on = stream_ && piece.begin == piece_.begin && frames.begin >= kept_from_;
   if (!goes_on) TACTO_TRY(begin(piece));
-  forget_before(frames.begin);
+  drop_before(frames.begin);
   while (kept_from_ + kept_.size() < frames.end) {
     assert(next_ <= piece_.end);
     if (auto done = advance(); !done) {
       stream_.reset();
       return schema::forward_error(done);
     }
-    forget_before(frames.begin);
+    drop_before(frames.begin);
   }
   return std::span<const double>(kept_).subspan(frames.begin - kept_from_, frames.size());
 }

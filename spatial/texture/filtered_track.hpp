@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A record's values after the band-pass in time, of the strokes that are asked for only.
+// The values of a record after the band-pass in time, only for the requested strokes.
 #pragma once
 
 #include <optional>
@@ -12,19 +12,20 @@
 
 namespace tacto::spatial {
 
-/// Filters what lies between two gaps, as one, and holds what is asked for. Stretches that come by time are
-/// the fast way: one that begins before the last begins its piece again. The source must outlive it.
+/// Filters each stretch between two gaps as a whole and holds only the requested frames. Requests ordered by
+/// time are fast; a request before the last one filters its piece again from the beginning. The source must
+/// outlive it.
 class FilteredTrack {
  public:
   FilteredTrack(TouchSource& source, double sample_rate_hz, const TimeFilter& filter, SpectralGain equaliser);
 
-  /// Filtered values of `frames`, which lie in `piece`, a stretch between two gaps; good until the next call.
-  /// Errors: of check(filter, sample_rate_hz); of reading.
+  /// Filtered values of `frames`, which are inside `piece`, a stretch between two gaps; valid until the next
+  /// call. Errors: of check(filter, sample_rate_hz); of reading.
   schema::Result<std::span<const double>> values(FrameRange piece, FrameRange frames);
 
  private:
   schema::Result<void> begin(FrameRange piece);
-  void forget_before(std::size_t frame);
+  void drop_before(std::size_t frame);
   schema::Result<void> advance();
 
   TouchSource* source_;

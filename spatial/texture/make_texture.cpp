@@ -10,25 +10,19 @@
 
 #include "data-schema/base/creation_time.hpp"
 #include "data-schema/base/quantity.hpp"
+#include "data-schema/base/statistics.hpp"
 #include "data-schema/transducer/transducer_plausible.hpp"
 #include "data-schema/version.hpp"
 #include "spatial/dsp/resample/thinned.hpp"
 #include "spatial/strokes/smoothed_speed.hpp"
-#include "spatial/texture/equaliser.hpp"
 
 namespace tacto::spatial {
 namespace {
 
 using schema::ErrorKind;
 
-constexpr double kSlowPart = 0.25;   // of the median speed
-constexpr double kMostFiner = 4096;  // 1 um of a grid of 4 mm
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
+constexpr double kSlowPart = 0.25;  // of the median speed
+constexpr double kMaxFiner = 4096;  // 1 um of a grid of 4 mm
 
 }  // namespace
 
@@ -65,20 +59,19 @@ schema::Result<void> TextureMaker::choose_equaliser() {
   const schema::RecordingHeader& header = record_.header();
   if (options_.equalise == Equalise::off) return {};
   if (options_.equalise == Equalise::on && !header.transducer)
-    return schema::fail(ErrorKind::unsuitable, "names no transducer, so there is no response to divide by",
-                        record_.where(), "leave --equalise away");
+    return schema::fail(ErrorKind::unsuitable, "contains no transducer, so there is no response to divide by",
+                        record_.where(), "omit --equalise");
   const bool of_transducer = record_.channel().quantity == "tangential_force";
   if (options_.equalise == Equalise::on && !of_transducer)
-    return schema::fail(ErrorKind::unsuitable,
-                        record_.channel().name +
-                            " did not pass through the transducer, whose response says "
-                            "nothing of it",
-                        record_.where(), "leave --equalise away, or take tangential_force");
+    return schema::fail(
+        ErrorKind::unsuitable,
+        record_.channel().name + " was not measured with the transducer, so its response does not apply",
+        record_.where(), "omit --equalise, or use tangential_force");
   if (!header.transducer || !of_transducer) return {};
   const auto plausible = schema::check_plausible(*header.transducer, record_.where() + "#/transducer");
   if (!plausible)
     return schema::fail(ErrorKind::unsuitable, plausible.error().what, plausible.error().where,
-                        "correct it, or leave the response in with --equalise off");
+                        "correct it, or do not divide by the response (--equalise off)");
   equaliser_ = equaliser(*header.transducer);
   return {};
 }
@@ -90,7 +83,7 @@ schema::Result<void> TextureMaker::check_duration(const Stroke& stroke) const {
   return schema::fail(ErrorKind::unsuitable,
                       fmt::format("the stroke at {:.4g} s lasts {:.3g} s, less than one period of {:g} Hz",
                                   record_.from_s(stroke), duration_s, low_hz),
-                      record_.where(), "raise --low, or turn the band off with --band off");
+                      record_.where(), "use a higher --low, or --band off");
 }
 
 schema::Result<MonotonePath> TextureMaker::path_of(const Stroke& stroke, double shift_m) const {
@@ -98,7 +91,7 @@ schema::Result<MonotonePath> TextureMaker::path_of(const Stroke& stroke, double 
   TACTO_TRY(positions);
   MonotonePath path = monotone_path(*positions, stroke.direction, record_.position_error());
   if (path.way_m.empty())
-    return schema::fail(ErrorKind::unsuitable, "the finger gets nowhere in the stroke", record_.where());
+    return schema::fail(ErrorKind::unsuitable, "the finger does not advance in the stroke", record_.where());
   if (shift_m != 0)
     for (double& way_m : path.way_m) way_m += stroke.direction * shift_m;
   return path;
@@ -110,7 +103,7 @@ schema::Result<std::vector<double>> TextureMaker::resampled(const Stroke& stroke
   const auto piece = std::ranges::find_if(record_.pieces(), holds);
   if (piece == record_.pieces().end())
     return schema::fail(ErrorKind::unsuitable, "frames are missing inside the stroke", record_.where());
-  // Beyond the stroke's ends, so that S_f is there what it is in the whole signal.
+  // Includes a margin beyond the stroke's ends, so that S_f is the same there as in the whole signal.
   const std::size_t margin = margin_of(options_.method);
   const std::size_t before = std::min(margin, stroke.frames.begin - piece->begin);
   const FrameRange frames{stroke.frames.begin - before, std::min(stroke.frames.end + margin, piece->end)};
@@ -140,7 +133,8 @@ Band TextureMaker::kept_band() const {
   return band;
 }
 
-// Samples that far apart would fold what lies beyond half a cycle a sample onto what they can hold.
+// Resampling directly to a coarse grid would alias content above half a cycle per sample, so it is done on a
+// finer one.
 schema::Result<std::vector<double>> TextureMaker::on_grid(const Stroke& stroke, const MonotonePath& path,
                                                           const SpaceGrid& grid, std::size_t finer) {
   const auto times = static_cast<double>(finer);
@@ -151,7 +145,7 @@ schema::Result<std::vector<double>> TextureMaker::on_grid(const Stroke& stroke, 
   return options_.space ? filter_in_space(*values, grid.pitch_m, *options_.space) : values;
 }
 
-// A finger that all but rests has its band at frequencies that no grid holds: what came out would be noise.
+// A finger that almost rests has its band at frequencies above those of any grid; the result would be noise.
 schema::Result<void> TextureMaker::check_band(double usual_mps) const {
   const Band band = options_.filter.passed(record_.header().sample_rate_hz);
   const double highest_per_m = 1 / (2 * options_.pitch_m);
@@ -161,13 +155,13 @@ schema::Result<void> TextureMaker::check_band(double usual_mps) const {
   };
   return schema::fail(
       ErrorKind::unsuitable,
-      fmt::format("the finger all but rests: at {} the band from {:g} Hz on lies above {}, and a grid of {} "
-                  "ends at {}",
-                  text(usual_mps, schema::Dimension::speed), band.low_hz,
-                  text(band.low_hz / usual_mps, schema::Dimension::spatial_frequency),
-                  text(options_.pitch_m, schema::Dimension::length),
-                  text(highest_per_m, schema::Dimension::spatial_frequency)),
-      record_.where(), "ask for a stretch in which it moves; --list shows the strokes");
+      fmt::format(
+          "the finger is too slow: at {} the band from {:g} Hz begins at {}, and a grid of {} ends at {}",
+          text(usual_mps, schema::Dimension::speed), band.low_hz,
+          text(band.low_hz / usual_mps, schema::Dimension::spatial_frequency),
+          text(options_.pitch_m, schema::Dimension::length),
+          text(highest_per_m, schema::Dimension::spatial_frequency)),
+      record_.where(), "select a time range in which it moves; --list shows the strokes");
 }
 
 schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int number, double shift_m) {
@@ -178,7 +172,8 @@ schema::Result<schema::Texture> TextureMaker::make(const Stroke& stroke, int num
   const auto grid = grid_along(*path, stroke.direction, options_.pitch_m);
   TACTO_TRY(grid);
   const SpeedProfile profile = profile_of(stroke, *path, *grid);
-  const double usual_mps = median(profile.speed_mps);
+  auto speeds_mps = profile.speed_mps;
+  const double usual_mps = schema::upper_median(std::span(speeds_mps));
   TACTO_TRY(check_band(usual_mps));
   const std::size_t finer = finer_grid(
       options_.pitch_m, options_.filter.passed(record_.header().sample_rate_hz).high_hz, usual_mps);
@@ -255,7 +250,7 @@ void TextureMaker::describe(schema::Texture& texture, const Stroke& stroke, int 
 
 std::size_t finer_grid(double pitch_m, double highest_hz, double usual_mps) {
   const double times = std::ceil(2 * pitch_m * highest_hz / (kSlowPart * usual_mps));
-  return static_cast<std::size_t>(std::clamp(times, 1.0, kMostFiner));
+  return static_cast<std::size_t>(std::clamp(times, 1.0, kMaxFiner));
 }
 
 double rms_of(const schema::Texture& texture) {

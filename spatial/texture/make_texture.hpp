@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a recording to textures: band-pass in time, path made invertible, resampled to space, described.
+// From a recording to textures: band-pass in time, path made invertible, resampled to space, with metadata.
 #pragma once
 
 #include <optional>
@@ -19,38 +19,38 @@
 
 namespace tacto::spatial {
 
-/// Whether to divide by the sensor's response. automatic: where the recording names its transducer and the
+/// Whether to divide by the sensor's response. automatic: if the recording names its transducer and the
 /// channel is a tangential force.
 enum class Equalise { automatic, on, off };
 
 struct TextureOptions {
-  std::string channel;  ///< empty: tangential_force, else the only one that can be a texture
+  std::string channel;  ///< empty: tangential_force, otherwise the only one that can become a texture
   TimeFilter filter;
-  /// Where it is set, the band is in space: the filter is run along position on each texture, none in time.
+  /// If set, the band is in space: each texture is filtered along position, and nothing in time.
   std::optional<SpaceFilter> space;
   Equalise equalise = Equalise::automatic;
   double pitch_m = 1e-6;
   ResampleMethod method = ResampleMethod::hermite;
 };
 
-/// Makes the textures of one recording, of any length in little memory: it holds a stroke, not the recording.
-/// Not shared between threads.
+/// Makes the textures of one recording of any length; it holds a stroke, not the recording, in memory. Not
+/// shared between threads.
 class TextureMaker {
  public:
   /// Errors: of TouchRecord::open; unsuitable (a filter that does not fit the rate, equalising without a
-  /// transducer, or a channel that is no tangential force); usage (a pitch that is not above 0).
+  /// transducer, or a channel that is not a tangential force); usage (a pitch that is not above 0).
   static schema::Result<TextureMaker> open(const schema::Recording& recording, const TextureOptions& options);
-  /// Of a record that is open; options.channel is not read.
+  /// Of an open record; options.channel is not used.
   static schema::Result<TextureMaker> open(TouchRecord record, const TextureOptions& options);
 
   const TouchRecord& record() const { return record_; }
 
-  /// The texture of a stroke or stretch of record(). All between two gaps is filtered, then the stroke is
-  /// resampled; strokes by time are the fast way. Its position 0 is a multiple of the pitch on the bench.
-  /// `number` is kept as the stroke's, 0 for a stretch. `shift_m` is added to its positions on the bench.
-  /// Errors: unsuitable, for a stroke that a jump of the position cuts off, for one shorter than one period
-  /// of the lowest frequency, for one so slow that its whole band lies beyond what the grid can hold, and of
-  /// grid_along(); of reading.
+  /// The texture of a stroke or stretch of record(). The whole piece between two gaps is filtered, then the
+  /// stroke is resampled; strokes ordered by time are fast. Position 0 is a multiple of the pitch on the
+  /// bench. `number` is stored as the stroke's number, 0 for a stretch. `shift_m` is added to its positions
+  /// on the bench. Errors: unsuitable, for a stroke that a jump of the position cuts, for one shorter than
+  /// one period of the lowest frequency, for one so slow that its whole band is above the highest frequency
+  /// of the grid, and of grid_along(); of reading.
   schema::Result<schema::Texture> make(const Stroke& stroke, int number, double shift_m = 0);
 
  private:
@@ -77,8 +77,8 @@ class TextureMaker {
   Resampler resampler_;
 };
 
-/// How many times finer than the texture's a grid is resampled on, before it is thinned: to hold what lies up
-/// to `highest_hz` where the finger goes at a quarter of its usual speed. At its stops no grid does.
+/// The factor by which the grid for resampling is finer than the texture's, before it is thinned: it holds
+/// content up to `highest_hz` at a quarter of the finger's usual speed. At stops no grid does.
 std::size_t finer_grid(double pitch_m, double highest_hz, double usual_mps);
 
 /// Root of the mean square of a texture's values, in their unit.

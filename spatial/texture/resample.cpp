@@ -17,11 +17,11 @@ namespace tacto::spatial {
 namespace {
 
 constexpr double kMostSamples = 1e9;
-// A position that lies on the grid is on it, whatever its rounding. In pitches.
+// A position within this distance of a grid point is on it, in spite of rounding. In pitches.
 constexpr double kOnGrid = 1e-6;
 constexpr std::size_t kPiece = 2048;
 
-// When the finger was at positions that grow.
+// The times at which the finger was at increasing positions.
 using Times = std::function<void(std::span<const double> way, std::span<double> sample)>;
 using Value = std::function<double(double sample)>;
 
@@ -112,7 +112,7 @@ double kept_hz(ResampleMethod method, double sample_rate_hz) {
 }
 
 std::size_t margin_of(ResampleMethod method) {
-  // A slope of the monotone cubic reaches one sample beyond the next.
+  // The monotone cubic's slope at the next sample depends on one sample more.
   return method == ResampleMethod::sinc ? WindowedSinc::kReach : 2;
 }
 
@@ -123,15 +123,15 @@ schema::Result<SpaceGrid> grid_along(const MonotonePath& path, int direction, do
   if (last - first < 1)
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("the stroke's {} lie between two points of the grid of {}",
+        fmt::format("the stroke of {} is between two points of the grid of {}",
                     schema::length_for_people(high_m - low_m), schema::length_for_people(pitch_m)),
-        {}, "choose a finer --grid");
+        {}, "use a finer --grid");
   if (last - first >= kMostSamples)
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("a grid of {} on {} is more than 1e9 samples", schema::length_for_people(pitch_m),
+        fmt::format("a grid of {} on {} needs more than 1e9 samples", schema::length_for_people(pitch_m),
                     schema::length_for_people(high_m - low_m)),
-        {}, "choose a coarser --grid");
+        {}, "use a coarser --grid");
   return SpaceGrid{pitch_m, first, static_cast<std::size_t>(last - first) + 1};
 }
 
@@ -142,7 +142,7 @@ Resampler::Resampler(ResampleMethod method) : method_(method) {
 void Resampler::operator()(const MonotonePath& path, int direction, const SpaceGrid& grid,
                            std::span<const double> values, std::size_t margin, std::span<double> out) {
   assert(out.size() == grid.count && (direction == 1 || direction == -1));
-  // A backward stroke meets the grid from its far end.
+  // A backward stroke reaches the grid's last point first.
   const double first = direction > 0 ? grid.first : -(grid.first + static_cast<double>(grid.count - 1));
   const EvenPlaces places{first, grid.pitch_m, grid.count};
   if (method_ == ResampleMethod::hermite)

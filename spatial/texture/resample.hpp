@@ -17,14 +17,14 @@
 
 namespace tacto::spatial {
 
-/// How values are taken to space. Error: RMS re that of the force, for a surface of one line every 0.4 mm, or
-/// every 0.1 mm (125 and 500 Hz), under a finger of 50 mm/s whose speed wavers by a tenth, at 10 kHz and with
-/// exact positions (resample_test asserts it). Cost: re hermite, at 5 values of the grid a sample
-/// (hermite_bench). Where positions are rounded, swapped differs from hermite as well: it is the PCHIP of
-/// another function (4e-6 of the RMS on the bare-finger recording).
+/// The method of resampling to space. Error: RMS relative to that of the force, for a surface of one line
+/// every 0.4 mm, or every 0.1 mm (125 and 500 Hz), under a finger of 50 mm/s whose speed varies by a tenth,
+/// at 10 kHz and with exact positions (asserted by resample_test). Cost: relative to hermite, at 5 values of
+/// the grid per sample (hermite_bench). If positions are rounded, swapped differs from hermite, too, because
+/// it is the PCHIP of another function (4e-6 of the RMS on the bare-finger recording).
 enum class ResampleMethod {
   hermite,  ///< monotone cubics, true inverse of S_x. Error 1.1e-4, 3.2e-3: the monotone cubic flattens peaks
-  linear,   ///< straight lines both ways, as numpy.interp. Error 5.8e-4, 9.2e-3. Cost 1.5
+  linear,   ///< straight lines for both, as numpy.interp. Error 5.8e-4, 9.2e-3. Cost 1.5
   swapped,  ///< PCHIP of time over position, then of force over time. Error as hermite. Cost 3
   sinc,     ///< windowed sinc of 32 samples at the true inverse's time. Error 3.1e-7, 3e-7. Cost 10
 };
@@ -32,13 +32,13 @@ enum class ResampleMethod {
 /// "hermite", "linear", "swapped", "sinc".
 std::string_view name_of(ResampleMethod method);
 
-/// The highest frequency of which a method leaves nine tenths of the amplitude, Hz: 0.24 of the sample rate
-/// with the cubics, 0.178 with straight lines (sinc^2), 0.45 with the windowed sinc (resample_test). What is
-/// missing above it has become images beside it.
+/// The highest frequency, Hz, at which a method keeps nine tenths of the amplitude: 0.24 of the sample rate
+/// with the cubics, 0.178 with straight lines (sinc^2), 0.45 with the windowed sinc (resample_test). Above
+/// it, the missing part has become images at other frequencies.
 double kept_hz(ResampleMethod method, double sample_rate_hz);
 
-/// Samples beyond each end of a path that a method looks at: with so many as margin its values at the ends
-/// are those of the whole signal.
+/// Samples beyond each end of a path that a method uses: with this margin its values at the ends are those of
+/// the whole signal.
 std::size_t margin_of(ResampleMethod method);
 
 /// Positions (first + i) pitch_m on the bench, i = 0 ... count - 1.
@@ -50,25 +50,25 @@ struct SpaceGrid {
   double position_m(std::size_t i) const { return (first + static_cast<double>(i)) * pitch_m; }
 };
 
-/// The multiples of the pitch that the path covers. Errors: unsuitable, where it covers none but one, and for
-/// more than 1e9 samples.
+/// The multiples of the pitch that the path covers. Errors: unsuitable, for fewer than two of them and for
+/// more than 1e9.
 schema::Result<SpaceGrid> grid_along(const MonotonePath& path, int direction, double pitch_m);
 
-/// Takes stroke after stroke to space and keeps its scratch between them. Not shared between threads.
+/// Resamples stroke after stroke to space and keeps its buffers between them. Not shared between threads.
 class Resampler {
  public:
   explicit Resampler(ResampleMethod method = ResampleMethod::hermite);
 
-  /// Values at the grid's positions, by growing position; out.size() = grid.count. values[i] belongs to
-  /// sample i - margin of the path's time, and they cover the path; at least 2. Beyond them each method goes
-  /// on as its kernel does. The path has at least 2 knots.
+  /// Values at the grid's positions, by increasing position; out.size() = grid.count. values[i] belongs to
+  /// sample i - margin of the path's time; there are at least 2 and they cover the path. Beyond them each
+  /// method extrapolates as its kernel does. The path has at least 2 knots.
   void operator()(const MonotonePath& path, int direction, const SpaceGrid& grid,
                   std::span<const double> values, std::size_t margin, std::span<double> out);
 
  private:
   ResampleMethod method_;
   HermiteResampler hermite_;
-  std::unique_ptr<const WindowedSinc> sinc_;  // only where it is the method: it holds a table
+  std::unique_ptr<const WindowedSinc> sinc_;  // only for that method, because it holds a table
 };
 
 /// The same for one stroke.

@@ -15,22 +15,22 @@ std::string per_mm(double per_m) {
 schema::Result<void> check(const SpaceFilter& filter, double pitch_m, std::size_t count) {
   const auto [method, low_per_m, high_per_m, edges, order] = filter;
   if (!(low_per_m >= 0 && low_per_m < high_per_m))
-    return schema::fail(ErrorKind::unsuitable, fmt::format("the band {} to {} does not rise",
+    return schema::fail(ErrorKind::unsuitable, fmt::format("the limits of the band {} to {} do not increase",
                                                            per_mm(low_per_m), per_mm(high_per_m)));
   if (high_per_m > 0.5 / pitch_m)
     return schema::fail(
         ErrorKind::unsuitable,
-        fmt::format("the band reaches to {}, the grid only to {}", per_mm(high_per_m), per_mm(0.5 / pitch_m)),
-        {}, "choose a lower band, or a finer --grid");
+        fmt::format("the band ends at {}, but the grid at {}", per_mm(high_per_m), per_mm(0.5 / pitch_m)), {},
+        "use a lower band, or a finer --grid");
   if (static_cast<double>(count) * pitch_m * low_per_m < 1 && low_per_m > 0)
     return schema::fail(ErrorKind::unsuitable,
-                        fmt::format("{:.4g} mm of texture are less than one period of {}",
+                        fmt::format("the texture of {:.4g} mm is shorter than one period of {}",
                                     static_cast<double>(count) * pitch_m * 1e3, per_mm(low_per_m)),
-                        {}, "raise the band's lower end");
+                        {}, "use a higher lower end of the band");
   return {};
 }
 
-// The kernels count in samples: a rate per metre is as good as one per second.
+// The kernels count in samples, so a rate per metre can replace one per second.
 TimeFilter in_samples(const SpaceFilter& filter) {
   return {filter.method, {filter.low_per_m, filter.high_per_m}, filter.edges, filter.order};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a user should know of a texture before trusting it.
+// Warnings about the quality of a texture.
 #pragma once
 
 #include <string>
@@ -10,22 +10,22 @@
 
 namespace tacto::spatial {
 
-/// `kind` and `size` tell alike warnings of many textures together, and which of them is the worst.
+/// Warnings of many textures are grouped by `kind`; `size` selects the worst of them.
 struct TextureWarning {
   std::string text;
   const char* kind = "";
   double size = 0;
 };
 
-/// One each: positions that conditioning had to move further than their quantum, one more (a count that
-/// flickers) and 6 standard deviations of their noise explain (the finger went back); a band whose upper end
-/// lies, at the mean speed, beyond what the grid can hold; a counter that ran over.
+/// At most one of each kind: conditioning moved positions by more than two quanta (a count may flicker) and 6
+/// standard deviations of their noise explain (the finger moved backwards); the band's upper limit, at the
+/// mean speed, is above the highest frequency of the grid; a counter overflowed.
 std::vector<TextureWarning> texture_warnings(const schema::Texture& texture);
 
-/// Which channel was chosen where the options name none and there is no tangential_force; else empty.
+/// The chosen channel, if the options name none and there is no tangential_force; otherwise empty.
 std::string channel_note(const TextureOptions& options, const TouchRecord& record);
 
-/// Where a method loses part of the band that a recording of this rate is asked for; empty where it does not.
+/// The loss, if a method loses part of the requested band at this rate; otherwise empty.
 std::string rate_warning(const TextureOptions& options, double sample_rate_hz);
 
 }  // namespace tacto::spatial

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "spatial/dsp/filter/butterworth.hpp"
 #include "spatial/texture/block_time_filter.hpp"
 
@@ -42,16 +44,27 @@ schema::Result<void> check(const TimeFilter& filter, double sample_rate_hz) {
   const auto [low_hz, high_hz] = filter.band;
   if (filter.method == FilterMethod::none) return {};
   if (!(low_hz >= 0 && low_hz < high_hz))
-    return schema::fail(ErrorKind::unsuitable,
-                        fmt::format("the band {:g} Hz to {:g} Hz does not rise", low_hz, high_hz));
+    return schema::fail(
+        ErrorKind::unsuitable,
+        fmt::format("the limits of the band {:g} Hz to {:g} Hz do not increase", low_hz, high_hz));
   if (high_hz > sample_rate_hz / 2)
-    return schema::fail(ErrorKind::unsuitable,
-                        fmt::format("the band reaches to {:g} Hz, the recording only to {:g} Hz", high_hz,
-                                    sample_rate_hz / 2),
-                        {}, "choose a band under half the sample rate, or --band off");
+    return schema::fail(
+        ErrorKind::unsuitable,
+        fmt::format("the band ends at {:g} Hz, but the recording at {:g} Hz", high_hz, sample_rate_hz / 2),
+        {}, "use a band below half the sample rate, or --band off");
   if (filter.method == FilterMethod::fourier) return {};
   const auto sections = butterworth_band_pass(filter.order, filter.band, sample_rate_hz);
   return sections ? schema::Result<void>{} : schema::forward_error(sections);
+}
+
+SpectralGain equaliser(const schema::Transducer& transducer) {
+  const double newtons_per_volt = schema::nominal_newtons_per_volt(transducer);
+  return [transducer, newtons_per_volt](double frequency_hz) -> std::complex<double> {
+    const std::complex<double> seen = schema::sensor_response(transducer, frequency_hz) * newtons_per_volt;
+    const double size = std::abs(seen);
+    if (size == 0) return 0;
+    return size * kMostEqualiserGain >= 1 ? 1.0 / seen : std::conj(seen) / size * kMostEqualiserGain;
+  };
 }
 
 schema::Result<std::vector<double>> filter_in_time(std::span<const double> values, double sample_rate_hz,

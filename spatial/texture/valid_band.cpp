@@ -11,16 +11,16 @@ namespace {
 constexpr double kSpacing_m = 1e-4;
 constexpr double kTolerance = 0.01;
 constexpr std::size_t kLongestLine =
-    200;  // points between two that are kept: bounds the search for the next one
-// Keeps k = f / v finite where a double cannot tell the creep of a long stop from standing still.
+    200;  // points between two that are kept: limits the search for the next one
+// Keeps k = f / v finite where the creep of a long stop is below the resolution of a double.
 constexpr double kSlowest_mps = 1e-12;
 
-constexpr double kTellingResolutions = 100;
+constexpr double kMinResolutions = 100;
 constexpr double kLongest_s = 0.1;
 
-// Whether a straight line in k = f / v from point i to point j tells those between.
-bool line_tells(const SpeedProfile& profile, const std::vector<double>& speed_mps, std::size_t i,
-                std::size_t j) {
+// Whether linear interpolation of k = f / v between points i and j is accurate for all points between them.
+bool is_linear(const SpeedProfile& profile, const std::vector<double>& speed_mps, std::size_t i,
+               std::size_t j) {
   const auto slowness = [&](std::size_t p) { return 1 / speed_mps[p]; };
   const double from_m = profile.position_m[i], length_m = profile.position_m[j] - from_m;
   for (std::size_t p = i + 1; p < j; ++p) {
@@ -31,8 +31,8 @@ bool line_tells(const SpeedProfile& profile, const std::vector<double>& speed_mp
   return true;
 }
 
-bool lines_tell(const SpeedProfile& profile, std::size_t i, std::size_t j) {
-  return line_tells(profile, profile.speed_mps, i, j) && line_tells(profile, profile.fastest_mps, i, j);
+bool both_linear(const SpeedProfile& profile, std::size_t i, std::size_t j) {
+  return is_linear(profile, profile.speed_mps, i, j) && is_linear(profile, profile.fastest_mps, i, j);
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ bool lines_tell(const SpeedProfile& profile, std::size_t i, std::size_t j) {
 SpeedWindows speed_windows(double resolution_m, double least, Band band, double sample_rate_hz) {
   const double half_period = std::min(0.5 / band.low_hz, kLongest_s) * sample_rate_hz;  // infinite at 0 Hz
   const double period = std::min(sample_rate_hz / band.high_hz, least);
-  return {std::max(least, half_period), std::max(period, 2.0), kTellingResolutions * resolution_m};
+  return {std::max(least, half_period), std::max(period, 2.0), kMinResolutions * resolution_m};
 }
 
 LocalSpeed::LocalSpeed(const MonotonePath& path, double sample_rate_hz, const SpeedWindows& windows)
@@ -66,7 +66,7 @@ double LocalSpeed::fastest_at(double way_m) const {
   const double fastest = at(way_m);
   for (double window = windows_.shortest; window < windows_.longest; window *= 2) {
     const Advance part = around(sample, window);
-    if (part.way_m >= windows_.telling_m)
+    if (part.way_m >= windows_.min_distance_m)
       return std::max(fastest, part.way_m / part.samples * sample_rate_hz_);
   }
   return fastest;
@@ -107,7 +107,7 @@ std::vector<schema::BandPoint> valid_band(const SpeedProfile& profile, Band band
   const std::size_t last = profile.position_m.size() - 1;
   for (std::size_t i = 0; i < last;) {
     std::size_t j = i + 1;
-    while (j < last && j - i < kLongestLine && lines_tell(profile, i, j + 1)) ++j;
+    while (j < last && j - i < kLongestLine && both_linear(profile, i, j + 1)) ++j;
     points.push_back(point(j));
     i = j;
   }

@@ -10,12 +10,13 @@ import soundfile
 from scipy import signal
 
 import tacto
+from measured import measured, not_measured
 
 PITCH = 10e-6
 
 
 def write_texture(stem, values, pitch=PITCH, **more):
-    """A texture by hand: the sidecar's checksum is the WAV's."""
+    """Writes a texture by hand; the sidecar's checksum is the WAV's."""
     import hashlib
     path = pathlib.Path(f"{stem}.texture.wav")
     soundfile.write(path, np.asarray(values, dtype=np.float32), round(1 / pitch), subtype="FLOAT", format="WAV")
@@ -25,7 +26,7 @@ def write_texture(stem, values, pitch=PITCH, **more):
 
 
 def make_template():
-    """What a sidecar has beside the samples: from one that the command made."""
+    """The other members of a sidecar, taken from one that the command made."""
     global TEMPLATE
     tacto.run("record", "-d", "sim:surface=A,speed=50mm/s,seed=77", "--strokes", "1", "-o", "model", "--no-calibration")
     tacto.run("spatial", "model", "-o", "model")
@@ -89,7 +90,7 @@ def files_come_together():
     assert stored["details"]["level_db"] == report["level_db"] and stored["kind"] == "results"
     tacto.run("compare", "a", "b", "-o", "ab.html", "-o", "ab.results.json", "--force")  # both are replaced
     _, said = tacto.run("compare", "a", "b", "-o", "a.texture.json", code=2)
-    assert "would be lost" in said
+    assert "not overwritten" in said
     tacto.run("compare", "a", "b", "-o", "ab.txt", code=2)
 
 
@@ -144,7 +145,7 @@ def a_session_is_held_against_its_texture():
     assert found["verdict"] == "same" and found["point_by_point"] and abs(found["gain"] - 1) < 0.05
     write_texture("other", pair()[1])
     _, said = tacto.run("compare", "first.session", "other", code=5)
-    assert "is not what the session played" in said
+    assert "is not the texture that the session played" in said
 
 
 def bad_input_is_refused():
@@ -160,12 +161,12 @@ def bad_input_is_refused():
     _, said = tacto.run("compare", "a", "heights", code=5)
     assert "height" in said and "tangential_force" in said, said
     write_texture("short", b[:40])
-    assert "fewest" in tacto.run("compare", "a", "short", code=5)[1]
+    assert "at least" in tacto.run("compare", "a", "short", code=5)[1]
     write_texture("slow", b, valid_band=[{"position_m": 0, "low_per_m": 10, "high_per_m": 90}])
     assert "no band in common" in tacto.run("compare", "a", "slow", code=5)[1]
     write_texture("coarse", signal.resample_poly(a, 2, 5), pitch=25e-6)
     _, said = tacto.run("compare", "a", "coarse")
-    assert "onto the coarser one" in said, said
+    assert "on the coarser one" in said, said
     tacto.run("compare", "a", "nothing", code=3)
     tacto.run("compare", "a", code=2)
     tacto.run("compare", "a", "a", "--tolerance", "2", code=2)
@@ -174,23 +175,26 @@ def bad_input_is_refused():
 
 def real_fingers_verdicts():
     if not tacto.BARE_FINGER.exists():
-        print("skipped: no real data")
+        not_measured("compare_command.*", "no real data")
         return
     tacto.run(*tacto.IMPORT_BARE_FINGER)
     for name, start, end in [("first", 4.55, 5.2), ("second", 5.2, 5.85), ("rough", 5.95, 6.85), ("down", 4.55, 6.85), ("up", 0.3, 2.3)]:
         tacto.run("spatial", "finger", "-o", name, "--from", f"{start}s", "--to", f"{end}s", "--force")
-    def verdict(a, b):
+    def verdict(a, b, figures=("level_db", "shape_db")):
         found = tacto.run_json("compare", a, b)
         print(f"{a} against {b}: {found['verdict']}: {found['because']}")
+        for figure in figures:
+            measured(f"compare_command.{a}_{b}.{figure}", found[figure])
         return found["verdict"]
-    assert verdict("first", "second") == "same", "both lie before the plate gets rougher at 5.9 s"
+    all_figures = ("level_db", "level_low_db", "level_high_db", "shape_db", "shape_chance_db")
+    assert verdict("first", "second", all_figures) == "same", "both lie before the plate gets rougher at 5.9 s"
     assert verdict("first", "rough") == "different" and verdict("second", "rough") == "different"
     assert verdict("down", "up") == "different"
     x, values, side = tacto.texture("down")
     global TEMPLATE
     TEMPLATE = side
     write_texture("gain", 2 * values, pitch=side["pitch_m"])
-    assert verdict("down", "gain") == "louder" and verdict("gain", "down") == "quieter"
+    assert verdict("down", "gain", ()) == "louder" and verdict("gain", "down", ()) == "quieter"
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ inline schema::Texture made_texture(double pitch_m, std::size_t samples,
 }
 
 /// Band-limited noise as a sum of `lines` cosines of random phase from `low` to `high` 1/m, RMS 1: the same
-/// at any pitch, and between samples.
+/// surface with any pitch, also between samples.
 class RandomSurface {
  public:
   RandomSurface(unsigned seed, double low, double high, int lines = 400)

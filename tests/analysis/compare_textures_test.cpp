@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparisons with a closed form: gain, shift, noise of known power, grids; and what is refused.
+// Comparisons with a closed form: gain, shift, noise of known power, grids; and refusals.
 #include "tests/analysis/compare_textures.hpp"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "analysis/compare/band_sums.hpp"
 #include "analysis/compare/compare.hpp"
@@ -25,7 +27,7 @@ const BandComparison& band_at(const Comparison& comparison, double frequency_per
   throw std::out_of_range("no such band");
 }
 
-// B = g A: every figure follows, to rounding.
+// B = g A: all figures are known, to rounding.
 TEST(Compare, AGainIsALevelAndNothingElse) {
   const auto sine = [](double x) { return 0.02 * std::sin(2 * std::numbers::pi * 2000 * x); };
   const auto a = made_texture(10e-6, 8000, sine);
@@ -56,7 +58,7 @@ TEST(Compare, GainsGiveTheVerdict) {
   EXPECT_LT(*compare(a, scaled(a, -2), no_formants())->gain, -1.99) << "upside down";
 }
 
-// Moved by half a millimetre, within windows of 50 mm: coherent, and the gain may well be below 0.
+// A shift of half a millimetre in windows of 50 mm: coherent, and the gain may be negative.
 TEST(Compare, AShiftIsNotUpsideDown) {
   const RandomSurface surface(3, 300, 1100);
   const auto moved = [&](double by_m) {
@@ -69,11 +71,11 @@ TEST(Compare, AShiftIsNotUpsideDown) {
     return notes;
   };
   for (const double by_m : {0.2e-3, 0.5e-3, 1e-3, 1.5e-3}) {
-    EXPECT_EQ(said(moved(by_m)).find("upside down"), std::string::npos) << by_m;
-    // The highest wave is 0.9 mm long: moved by 0.2 mm most of it still lies on itself.
+    EXPECT_EQ(said(moved(by_m)).find("inverted sign"), std::string::npos) << by_m;
+    // The shortest wave is 0.9 mm long; after a shift of 0.2 mm the textures still overlap mostly.
     EXPECT_EQ(said(moved(by_m)).find("--align correlation") == std::string::npos, by_m < 0.3e-3) << by_m;
   }
-  EXPECT_NE(said(scaled(moved(0), -1.3)).find("upside down"), std::string::npos);
+  EXPECT_NE(said(scaled(moved(0), -1.3)).find("inverted sign"), std::string::npos);
   EXPECT_EQ(said(moved(0)), "");
 }
 
@@ -90,7 +92,7 @@ TEST(Compare, NoiseOfKnownPowerIsErrorAndLostCoherence) {
     // 1e5 independent cells: powers to 0.5 %, 4 standard deviations.
     EXPECT_NEAR(*found->error_db, 10 * std::log10(ratio), 0.06) << ratio;
     EXPECT_NEAR(*found->residual_db, 10 * std::log10(ratio / (1 + ratio)), 0.08) << ratio;
-    // Coherence of n segments is biased by (1 - c)^2 / n, and the mean over 1000 bins is far steadier.
+    // Coherence of n segments has a bias of (1 - c)^2 / n; the mean over 1000 bins scatters much less.
     EXPECT_NEAR(*found->coherence, 1 / (1 + ratio), 0.01) << ratio;
     EXPECT_TRUE(found->point_by_point);
   }
@@ -138,7 +140,7 @@ TEST(Compare, PlacesComeFromTheBench) {
   EXPECT_EQ(found->pair.aligned, "place");
   EXPECT_NEAR(found->pair.a_from_m, 7e-3, 1e-9);
   EXPECT_LT(*found->error_db, -200);
-  b.source_origin_m = 0.15;  // hardly anything in common there
+  b.source_origin_m = 0.15;  // hardly any common places
   const auto from_start = compare(a, b, no_formants());
   EXPECT_EQ(from_start->pair.aligned, "start");
   EXPECT_FALSE(from_start->notes.empty());
@@ -160,7 +162,7 @@ TEST(Compare, GridsOfDifferentPitchMeetOnTheCoarserOne) {
   }
 }
 
-// What lies above the coarse grid's frequency must not fold into the band.
+// Frequencies above the coarse grid's limit must not alias into the band.
 TEST(Compare, NothingFoldsOntoTheCoarserGrid) {
   const RandomSurface low(8, 300, 5000), high(9, 30000, 35000);
   const auto coarse = made_texture(25e-6, 2400, low);
@@ -244,7 +246,7 @@ TEST(ComparePage, NeedsNothingBesideItAndEscapesNames) {
     EXPECT_EQ(page->compare(at, 10, "src=\"data:"), 0);
 }
 
-// Of both, one after the other.
+// The progress covers the spectrograms of both textures.
 TEST(Compare, WhoWaitsHearsHowFarItIs) {
   const auto a = made_texture(10e-6, 8000, [](double x) { return 0.02 * std::sin(12000 * x); });
   std::vector<double> heard;

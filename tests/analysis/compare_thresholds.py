@@ -25,7 +25,7 @@ def segments(x, window):
 
 
 def local_mean(v, most):
-    """Over `most` to each side, over fewer near the ends so that it stays symmetric."""
+    """Running mean over `most` values to each side; near the ends over fewer, so that it stays symmetric."""
     sums, k = np.concatenate([[0], np.cumsum(v)]), np.arange(len(v))
     reach = np.minimum(most, np.minimum(k, len(v) - 1 - k))
     return (sums[k + reach + 1] - sums[k - reach]) / (2 * reach + 1)
@@ -54,7 +54,7 @@ def level_of(a, b, width):
 
 
 def jackknife(levels):
-    """Variance of what was computed from all segments but one, in the mean over all bands."""
+    """Jackknife variance of values computed from all segments but one, mean over all bands."""
     n = len(levels)
     return (n - 1) / n * np.mean(np.sum((levels - levels.mean(0))**2, 0))
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How often the verdict is right, over many draws; and each branch of its rule.
+// How often the verdict is right, over many draws; and each of its rules.
 #include <gtest/gtest.h>
 
 #include "analysis/compare/compare.hpp"
 #include "spatial/texture/make_texture.hpp"
 #include "tests/analysis/compare_textures.hpp"
+#include "tests/measured.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -18,7 +19,7 @@ Verdict judged(const schema::Texture& a, const schema::Texture& b, PairAlign ali
   return found->verdict;
 }
 
-// One-pole low-pass: another shape.
+// A one-pole low-pass changes the shape of the spectrum.
 schema::Texture smoothed(schema::Texture texture, double part) {
   double state = 0;
   for (double& value : texture.signal.values) value = state += part * (value - state);
@@ -37,8 +38,10 @@ TEST(CompareVerdict, TwoPiecesOfOneKindAreSeldomCalledDifferent) {
     same += likeness == Likeness::same;
     wrong += likeness != Likeness::same && likeness != Likeness::undecided;
   }
-  // Bands and lines call 5 % of such pairs different, that is 10 of 200 and a standard deviation of 3.1; by
-  // third octaves and by level hardly any is (compare_narrow_test has the rates).
+  tacto::measured("compare_verdict.one_kind_wrong", wrong);
+  tacto::measured("compare_verdict.one_kind_same", same);
+  // 5 % of such pairs are called different by bands and lines, that is 10 of 200 with a standard deviation of
+  // 3.1; hardly any by third octaves and by level (compare_narrow_test has the rates).
   EXPECT_LE(wrong, 19);
   EXPECT_GE(same, kPairs * 8 / 10);
 }
@@ -51,6 +54,8 @@ TEST(CompareVerdict, OtherShapesAndLevelsAreFound) {
     different += judged(a, smoothed(b, 0.3)).likeness == Likeness::different;
     louder += judged(a, scaled(b, 2)).likeness == Likeness::louder;
   }
+  tacto::measured("compare_verdict.other_shapes_found_percent", 100.0 * different / kPairs);
+  tacto::measured("compare_verdict.other_levels_found_percent", 100.0 * louder / kPairs);
   EXPECT_GE(different, kPairs * 95 / 100);
   EXPECT_GE(louder, kPairs * 95 / 100);
 }
@@ -72,7 +77,7 @@ TEST(CompareVerdict, AThousandTimesIsAskedAboutAsAUnit) {
   EXPECT_EQ(notes_of(a, scaled(smoothed(a, 0.1), 1000)).find("unit"), std::string::npos);
 }
 
-// The interval of the level holds the truth 90 times in 100.
+// The interval of the level contains the true level in 90 of 100 pairs.
 TEST(CompareVerdict, IntervalCovers) {
   constexpr int kPairs = 300;
   int covered = 0;
@@ -82,7 +87,8 @@ TEST(CompareVerdict, IntervalCovers) {
     const auto found = compare(white_texture(5000 + 2 * i, 3000), white_texture(5001 + 2 * i, 3000), options);
     covered += found->evidence.level_low_db <= 0 && 0 <= found->evidence.level_high_db;
   }
-  // Binomial: 0.9 +- 0.017; the bands' logarithms and 15 segments leave some more.
+  tacto::measured("compare_verdict.level_covered_percent", 100.0 * covered / kPairs);
+  // Binomial: 0.9 +- 0.017; the rest of the tolerance is for the bands' logarithms and for only 15 segments.
   EXPECT_NEAR(covered / static_cast<double>(kPairs), 0.9, 0.05);
 }
 
@@ -97,7 +103,7 @@ TEST(CompareVerdict, SaysWhenItCannotTell) {
   auto narrow = a;
   narrow.valid_band = {{0, 1000, 1400}};
   EXPECT_NE(judged(narrow, b).because.find("too little in common"), std::string::npos);
-  // A texture whose parts differ wildly among themselves tells nothing finer.
+  // If the parts of a texture differ strongly from each other, small differences are not detectable.
   auto uneven = b;
   for (std::size_t i = 0; i < kLength; ++i)
     uneven.signal.values[i] *= std::pow(10, 1.2 * std::sin(static_cast<double>(i) / 450));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The closed loop on the emulated device: as good as the kernel is where the tray is the model, worse by what
-// it has beside it, and honest about what limits take.
+// Fidelity on the emulated device: as good as the kernel if the tray is the model, worse by each effect
+// beyond the model, with the losses by the limits reported.
 #include "analysis/fidelity/fidelity.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 class FidelityOfATexture : public testing::Test {
  protected:
-  // 0.3 to 6 /mm: 15 to 310 Hz at 51.7 mm/s, a speed of no whole number of counts a tick.
+  // 0.3 to 6 /mm: 15 to 310 Hz at 51.7 mm/s, a speed with a fractional number of counts per tick.
   void SetUp() override {
     const RandomSurface surface(4, 300, 6000, 100);
     ASSERT_TRUE(schema::write_texture(folder_ / "made",
@@ -43,8 +43,8 @@ class FidelityOfATexture : public testing::Test {
   FidelityOptions options_;
 };
 
-// playback's own table (tests/playback/fidelity_table.py, row b at its median speed): -61 dB; other textures
-// and the ends of a short one are worth 7 dB.
+// Reference: playback's table (tests/playback/fidelity_table.py, row b at its median speed): -61 dB; other
+// textures and the ends of a short one may cost 7 dB.
 TEST_F(FidelityOfATexture, RowsAreInTheOrderOfWhatTheTrayHasBesideTheModel) {
   const Fidelity found = measured();
   ASSERT_EQ(found.speeds.size(), 1U);
@@ -53,7 +53,8 @@ TEST_F(FidelityOfATexture, RowsAreInTheOrderOfWhatTheTrayHasBesideTheModel) {
   EXPECT_LT(ideal_db, -54);
   EXPECT_GT(ideal_db, -75);
   EXPECT_NEAR(row(found, "ideal").level_db, 0, 0.01);
-  // The sensor's low-pass of 5 kHz takes 0.5 % at 500 Hz: -46 dB and less; beside -11 dB it is nothing.
+  // The sensor's low-pass of 5 kHz removes 0.5 % at 500 Hz: -46 dB at most, which is negligible beside -11
+  // dB.
   EXPECT_GT(*row(found, "ideal").rerecorded_db, ideal_db);
   EXPECT_LT(*row(found, "ideal").rerecorded_db, -46);
   EXPECT_NEAR(*row(found, "all").rerecorded_db, row(found, "all").error_db, 0.5);
@@ -62,7 +63,8 @@ TEST_F(FidelityOfATexture, RowsAreInTheOrderOfWhatTheTrayHasBesideTheModel) {
   EXPECT_GT(row(found, "finger").error_db, ideal_db + 10);
   EXPECT_GT(row(found, "hysteresis").error_db, ideal_db + 30);
   EXPECT_GT(row(found, "all").error_db, ideal_db + 30);
-  // A small swing sees the gain 1 - 2 x 0.16 to 1/32 (BenderHysteresis): -3.3 dB; a larger one more of it.
+  // A small swing has a gain of 1 - 2 x 0.16, within 1/32 (BenderHysteresis): -3.3 dB; a larger swing has a
+  // larger gain.
   EXPECT_GT(row(found, "hysteresis").level_db, -3.5);
   EXPECT_LT(row(found, "hysteresis").level_db, -1);
   const FidelitySpeed& speed = found.speeds.front();
@@ -102,7 +104,7 @@ TEST_F(FidelityOfATexture, TheBandTakesWhatIsTooFast) {
       << "of an even spectrum";
 }
 
-// What a texture does not know throughout is played all the same, and counts.
+// Parts outside of the valid band are played, too, and count.
 TEST_F(FidelityOfATexture, TheBandIsToldOfAllThatIsPlayed) {
   options_.play.device_uri = "sim:seed=4711,hysteresis=0.1";
   options_.speeds_mps = {0.2};
@@ -115,8 +117,8 @@ TEST_F(FidelityOfATexture, TheBandIsToldOfAllThatIsPlayed) {
   EXPECT_NEAR(found.speeds.front().band_kept_percent, 100 * (2500.0 - 300) / (6000 - 300), 4);
 }
 
-// At 50 mm/s 15-500 Hz are 300-10000 /m. On 40 mm a transform tells lines 25 /m apart, and a window of a
-// quarter of it 100 /m: lines half a bin beside an edge are in or out all the same.
+// At 50 mm/s 15-500 Hz are 300-10000 /m. With 40 mm a transform resolves lines 25 /m apart, and a window of a
+// quarter of it 100 /m; still, lines half a bin beside an edge must be inside or outside.
 TEST(BandKept, CountsALineBesideAnEdgeAsAWhole) {
   const auto kept = [](double line_per_m, double beside_per_m) {
     const auto texture = made_texture(5e-6, 8000, [&](double x) {
@@ -126,7 +128,8 @@ TEST(BandKept, CountsALineBesideAnEdgeAsAWhole) {
     return band_kept_percent(texture, 50e-3, {15, 500});
   };
   constexpr double kWithin_per_m = 3000, kBeyond_per_m = 20e3;
-  // Hann's sidelobes of the other line, 100 bins away, and of a line's own image below 0: far less than 1 %.
+  // Hann's sidelobes of the other line, 100 bins away, and of a line's own negative frequency: far less than
+  // 1 %.
   for (const double out_per_m : {180.0, 250.0, 290.0, 297.0, 10'003.0, 10'010.0}) {
     EXPECT_NEAR(kept(out_per_m, kBeyond_per_m), 0, 0.5) << out_per_m;
     EXPECT_NEAR(kept(out_per_m, kWithin_per_m), 50, 0.5) << out_per_m;
@@ -135,7 +138,7 @@ TEST(BandKept, CountsALineBesideAnEdgeAsAWhole) {
     EXPECT_NEAR(kept(in_per_m, kWithin_per_m), 100, 0.5) << in_per_m;
 }
 
-// The share is one of power, along a texture that grows: 1 in the band for 4 beyond it at each place.
+// The share is one of power, along a texture whose amplitude grows: at each place 1 in the band to 4 outside.
 TEST(BandKept, IsAShareOfThePowerWhereLinesGrow) {
   const auto texture = made_texture(5e-6, 8000, [](double x) {
     const auto line = [x](double per_m) { return std::sin(2 * std::numbers::pi * per_m * x); };
@@ -154,7 +157,7 @@ TEST_F(FidelityOfATexture, PageSaysSimulatedAtEveryFigure) {
   EXPECT_EQ(said, found.speeds.front().rows.size());
   for (const auto& figure : fidelity_figures(found))
     EXPECT_TRUE(figure.value.find("simulated") != figure.value.npos ||
-                figure.name.find("taken") != figure.name.npos);
+                figure.name.find("removed") != figure.name.npos);
   EXPECT_EQ(page->find("http"), page->npos);
 }
 
@@ -175,8 +178,7 @@ TEST_F(FidelityOfATexture, RefusesWhatCannotBePlayed) {
   ASSERT_FALSE(endless);
   EXPECT_EQ(endless.error().kind, schema::ErrorKind::unsuitable);
   EXPECT_NE(endless.error().what.find("4e+04 s"), std::string::npos) << endless.error().what;
-  // 39.995 mm in the 500 s that 1e7 samples at 20 kHz are, less 2 s around them; a thousandth more for
-  // rounding.
+  // 39.995 mm in 500 s (1e7 samples at 20 kHz) less 2 s; a thousandth more for rounding.
   EXPECT_NE(endless.error().remedy.find("80.39 um/s or more"), std::string::npos) << endless.error().remedy;
   options_.speeds_mps = {0.05};
   options_.play.device_uri = "sim:nonsense=1";

@@ -33,7 +33,7 @@ std::size_t count_of(std::string_view words, std::string_view text) {
   return count;
 }
 
-// A header comes with its cell: neither can be declared alone.
+// A column needs its header and its cell: neither can be declared alone.
 static_assert(std::is_constructible_v<Column<int>, std::string, std::string (*)(const int&)>);
 static_assert(!std::is_constructible_v<Column<int>, std::string>);
 static_assert(!std::is_constructible_v<Column<int>, std::string (*)(const int&)>);
@@ -64,13 +64,13 @@ TEST(Html, LongTablesFoldAndLongWordsWrap) {
   const std::string table =
       html_table(std::vector<std::string>{std::string(60, 'x')}, {{"a", [](const auto& x) { return x; }}});
   EXPECT_NE(table.find("<td class=\"long text\""), std::string::npos);
-  // Nothing is cut or kept on one line: a value outside the screen would be hidden.
+  // Long values wrap; a value outside of the screen would be hidden.
   const std::string page = html_document("t", "");
   EXPECT_EQ(page.find("nowrap"), std::string::npos);
   EXPECT_EQ(page.find("overflow-x"), std::string::npos);
 }
 
-// Each value stands under its own header: the gain was shown under "wanted", which hid every header after it.
+// Each value is in the column of its header. The gain was once shown under "wanted".
 TEST(DemoPage, EachValueHasItsHeader) {
   DemoSurface surface;
   surface.surface = "A";

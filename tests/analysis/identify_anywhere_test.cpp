@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plants far from any preset, the closed form with noise: no false minimum, and none called a misfit more
-// often than the tests' own level.
+// Plants far from any preset, in closed form with noise: no false minimum, and no more misfits than the level
+// of the tests.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -13,10 +13,10 @@
 namespace tacto::analysis {
 namespace {
 
-const int kDraws = draws(1000, 50);
+const int kAnywhereDraws = draws(1000, 50);
 
-// Written out, so that no preset's number gets in.
-struct Plant {
+// All parameters are set, so that no preset's value is used.
+struct AnywherePlant {
   double gain = 20e-6, resonance_hz = 547.7, damping = 0.45, pole_hz = 62;
   Direction direction = Direction::actuator;
 
@@ -32,13 +32,13 @@ double drawn(double low, double high, std::mt19937_64& random) {
   return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
 }
 
-Plant any_plant(Direction direction, std::mt19937_64& random) {
+AnywherePlant any_plant(Direction direction, std::mt19937_64& random) {
   const double gain = direction == Direction::actuator ? 20e-6 : 25;
   return {gain * drawn(0.5, 2, random), drawn(200, 900, random), drawn(0.001, 2, random),
           drawn(20, 300, random), direction};
 }
 
-BodeData table_of(const Plant& plant, double sigma, bool noise_column, std::mt19937_64& random) {
+BodeData table_of(const AnywherePlant& plant, double sigma, bool noise_column, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   BodeData data;
   data.direction = plant.direction;
@@ -61,7 +61,7 @@ double left_by(const BodeData& data, Response response) {
   return sum;
 }
 
-struct Tally {
+struct AnywhereTally {
   int misfits = 0, oscillating = 0;
   int gain = 0, resonance = 0, damping = 0, pole = 0;  // covered
 };
@@ -71,8 +71,8 @@ bool covers(const ResponseFit& fit, std::size_t parameter, double truth) {
   return p.low <= truth && truth <= p.high;
 }
 
-// Of three real poles no response tells which is which: there only what is left speaks.
-void count(const Plant& plant, const ResponseFit& fit, Tally& tally) {
+// With three real poles no response determines which is which: only the residual is compared.
+void count(const AnywherePlant& plant, const ResponseFit& fit, AnywhereTally& tally) {
   tally.misfits += fit.misfit.found;
   if (!fit.claims_intervals() || plant.damping >= 0.9) return;
   ++tally.oscillating;
@@ -94,23 +94,23 @@ class IdentifyAnywhere : public testing::TestWithParam<Tables> {};
 TEST_P(IdentifyAnywhere, FindsTheLeastMinimumAndCallsNoPlantAMisfit) {
   std::mt19937_64 random(2028);
   const schema::Transducer base = schema::read_transducer("wiertlewski2011").value();
-  Tally tally;
-  for (int draw = 0; draw < kDraws; ++draw) {
-    const Plant plant = any_plant(GetParam().direction, random);
+  AnywhereTally tally;
+  for (int draw = 0; draw < kAnywhereDraws; ++draw) {
+    const AnywherePlant plant = any_plant(GetParam().direction, random);
     const BodeData data =
         table_of(plant, plant.gain * drawn(3e-4, 3e-3, random), GetParam().noise_column, random);
     const ModelChoice choice{.direction = plant.direction};
     ASSERT_TRUE(check_bode(data) && check_units(data, choice, base) && check_phases(data, choice, base));
     const ResponseFit fit = fit_response(data, choice, base);
     EXPECT_TRUE(fit.converged) << fit.ended;
-    // A fit that leaves more than the truth does has missed the least minimum; none can be held to less.
+    // A fit with a larger residual than the truth has missed the global minimum.
     EXPECT_LE(left_by(fit.data, [&](auto i) { return fit.modelled[i]; }),
               left_by(fit.data, [&](auto i) { return plant.at(data.frequency_hz[i]); }))
         << plant.resonance_hz << " Hz, " << plant.damping << ", " << plant.pole_hz << " Hz";
     count(plant, fit, tally);
   }
   EXPECT_LE(tally.misfits, GetParam().most_misfits);
-  std::printf("  misfits: %d of %d\n", tally.misfits, kDraws);
+  std::printf("  misfits: %d of %d\n", tally.misfits, kAnywhereDraws);
   // 95 % +- 3.5 standard deviations of some 890 draws (0.73 %).
   for (const int covered : {tally.gain, tally.resonance, tally.damping, tally.pole}) {
     const double percent = 100.0 * covered / tally.oscillating;
@@ -119,8 +119,8 @@ TEST_P(IdentifyAnywhere, FindsTheLeastMinimumAndCallsNoPlantAMisfit) {
   }
 }
 
-// Where the noise is known three tests of misfit_of() at 5 in 10,000 each: 1.5 of 1,000 expected, more than 8
-// in 2e-4 of runs; else two: 1 expected, more than 6 in 8e-5 (binomial).
+// With known noise, misfit_of() makes three tests at 5 in 10,000 each: 1.5 of 1,000 expected, more than 8 in
+// 2e-4 of runs; otherwise two: 1 expected, more than 6 in 8e-5 (binomial).
 INSTANTIATE_TEST_SUITE_P(Tables, IdentifyAnywhere,
                          testing::Values(Tables{"ActuatorWithNoise", Direction::actuator, true, 8},
                                          Tables{"ActuatorWithoutNoise", Direction::actuator, false, 6},

@@ -13,13 +13,14 @@ import numpy as np
 from scipy import optimize
 
 import tacto
+from measured import key_part, measured
 
 RNG = np.random.default_rng(5)
 SWEEP = ["--frequencies", "24", "--low", "20Hz"]
 
 
 def response(f, gain=20e-6, resonance=547.7, damping=0.096, pole=143.0):
-    """Wiertlewski 2011, equations (5), (6), in the four numbers a response depends on."""
+    """Wiertlewski 2011, equations (5), (6), in the four numbers that determine a response."""
     r = f / resonance
     return gain / ((1 + 1j * f / pole) * (1 - r**2 + 2j * damping * r))
 
@@ -36,7 +37,7 @@ def values(report):
 
 
 def table_one_comes_back():
-    """The emulated device's own sweep gives Table I, and every other verb takes the file."""
+    """A sweep of the emulated device gives Table I, and every other verb accepts the file."""
     said = tacto.run_json("identify", "-d", "sim:tray_sensor=on", "-o", "bench", "--picture", "bench.svg", "--results", "bench.results.json")
     assert "fits" == said["verdict"], said
     for key, truth, tolerance in [("mass_kg", 6.8e-3, 2e-3), ("damping_n_s_per_m", 4.49, 5e-3),
@@ -64,7 +65,7 @@ def table_one_comes_back():
 
 
 def interval_is_visible(words, row):
-    """Value, low and high as they are, to a twentieth of half the interval: its two digits."""
+    """Value, low and high are exact to a twentieth of half the interval: two digits of it."""
     told = [float(word) for word in re.fullmatch(r"(\S+) \((\S+) to (\S+)\)", words).groups()]
     half = (row["high_of_95"] - row["low_of_95"]) / 2
     for number, key in zip(told, ("value", "low_of_95", "high_of_95")):
@@ -72,21 +73,21 @@ def interval_is_visible(words, row):
 
 
 def results_hold_what_was_found(said):
-    """Figures and curves outlive the terminal, and `report` draws them."""
+    """The results contain figures and curves, and `report` draws them."""
     assert tacto.run_json("validate", "bench.results.json")["valid"] is True
     stored = json.load(open("bench.results.json"))
     figures = {row["name"]: row["value"] for row in stored["figures"]}
     found = values(said)["resonance_hz"]
     interval_is_visible(figures["resonance_hz, 95 %"], found)
-    assert "reported 500, by Table I 547.7" in figures["the paper against itself: resonance_hz"], figures
+    assert "reported 500, by Table I 547.7" in figures["contradiction of the paper: resonance_hz"], figures
     assert "not separately identifiable" in figures and "condition number" in figures and stored["details"]["parameters"] == said["parameters"]
     curves = {picture["title"]: [curve["name"] for curve in picture["curves"]] for picture in stored["pictures"]}
     assert curves == {"Amplitude": ["data", "model", "95 % band", "", "inverse"], "Phase": ["data", "model", "inverse"],
                       "Residuals": ["amplitude", "phase"]}, curves
     tacto.run("report", ".", "-o", "page.html")
     page = pathlib.Path("page.html").read_text()
-    assert "the paper against itself" in page and "not separately identifiable" in page
-    assert all(f"the paper against itself: {key}" in page for key in ("r_squared_actuator", "r_squared_sensor", "finger_at_resonance_db", "reconstruction_filter_at_500hz_db", "stretch_factors"))
+    assert "contradiction of the paper" in page and "not separately identifiable" in page
+    assert all(f"contradiction of the paper: {key}" in page for key in ("r_squared_actuator", "r_squared_sensor", "finger_at_resonance_db", "reconstruction_filter_at_500hz_db", "stretch_factors"))
     for beside, name in ((["--results", "tray.results.json"], "tray"), (["--picture", "plots/tray.svg"], "plots/tray"), ([], "NAME")):
         words = tacto.run("identify", "-d", "sim:tray_sensor=on", *beside, code=2)[1]
         assert f"add -o {name} for {name}.transducer.json" in words and " ".join(beside) in words and not pathlib.Path("tray.results.json").exists(), words
@@ -120,7 +121,7 @@ def scipy_finds_the_same():
     for i, key in enumerate(["gain_m_per_v", "resonance_hz", "damping_ratio", "pole_hz"]):
         row, value = found[key], np.exp(oracle.x[i])
         assert abs(row["value"] / value - 1) < 1e-6, (key, row["value"], value)
-        # The table holds 12 digits; SciPy's Jacobian is of two points.
+        # The table has 12 digits; SciPy's Jacobian uses two points.
         assert abs(np.log(row["high_of_95"] / row["low_of_95"]) / (2 * 1.959964 * errors[i]) - 1) < 1e-3, key
 
 
@@ -156,7 +157,7 @@ def hysteresis_is_written():
 
 
 def loop_table(name, drive, times=1.0):
-    """Displacement by an operator of three plays, 20 um/V, 2 nm of noise."""
+    """Displacement by an operator of three play operators, 20 um/V, 2 nm of noise."""
     x = np.zeros(len(drive))
     for weight, r in [(0.8, 0), (0.15, 1), (0.1, 2)]:
         y = 0.0
@@ -174,7 +175,7 @@ def loops_are_held_to_what_a_sweep_is():
     said = tacto.run_json("identify", "loop.csv", "--method", "loop", "-o", "loop", "--picture", "loop.svg", "--results", "loop.results.json")
     assert "% open" in json.load(open("loop.results.json"))["figures"][5]["value"]
     assert said["verdict"] == "fits" and "<svg" in pathlib.Path("loop.svg").read_text(), said
-    assert json.load(open("loop.transducer.json"))["identification"]["high_hz"] < 1.1  # what loops of 1 Hz know
+    assert json.load(open("loop.transducer.json"))["identification"]["high_hz"] < 1.1  # loops of 1 Hz determine no more
     kept = pathlib.Path("loop.transducer.json").read_bytes()
     for again in (["-o", "loop"], ["-o", "other", "--picture", "loop.svg"]):
         assert "--force" in tacto.run("identify", "loop.csv", "--method", "loop", *again, code=2)[1]
@@ -188,7 +189,7 @@ def loops_are_held_to_what_a_sweep_is():
     loop_table("fast.csv", 5 * np.sin(2 * np.pi * 249 * np.arange(3000) / 1e3))
     assert "too fast" in tacto.run("identify", "fast.csv", "--method", "loop", "-o", "bad", code=5)[1]
     assert not pathlib.Path("bad.transducer.json").exists()
-    # What is wrong with the linear model stays wrong, whatever the loops say.
+    # The doubts about the linear model remain, whatever the loops show.
     f = np.geomspace(10, 1000, 40)
     h = response(f) * np.exp(-0.1j)
     write_table("lag.csv", f, h, 1e-9)
@@ -202,7 +203,7 @@ def loops_are_held_to_what_a_sweep_is():
 
 
 def stopped_leaving_nothing(*arguments):
-    """A signal once it measures: the process dies by it, and no file of its own stays."""
+    """A signal during the measurement: the process ends by it and leaves no file."""
     scratch = pathlib.Path("scratch")
     scratch.mkdir(exist_ok=True)
     work = subprocess.Popen([tacto.COMMAND, *arguments], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
@@ -210,7 +211,7 @@ def stopped_leaving_nothing(*arguments):
     while not list(scratch.iterdir()) and arguments[0] == "fidelity":
         time.sleep(0.02)
     if arguments[0] == "identify":
-        work.stderr.readline()  # its progress
+        work.stderr.readline()  # waits for its first progress
     work.send_signal(signal.SIGTERM)
     said = work.communicate()[1]
     assert work.returncode == -signal.SIGINT and "stopped" in said, (work.returncode, said)
@@ -220,7 +221,7 @@ def stopped_leaving_nothing(*arguments):
 def second_mode_is_told_and_found():
     args = ["identify", "-d", "sim:tray_sensor=on,second_mode=800Hz", *SWEEP]
     said = json.loads(tacto.run(*args, "-o", "one", "--json", code=5)[0])
-    assert said["model_one_mode_short"] is True and "one mode short" in said["words"], said
+    assert said["model_one_mode_short"] is True and "lacks one mode" in said["words"], said
     two = tacto.run_json(*args, "--second-mode", "-o", "two")
     assert two["verdict"] == "fits" and abs(values(two)["second_mode_hz"]["value"] / 800 - 1) < 0.02, two
     assert "second_mode" in json.load(open("two.transducer.json"))
@@ -241,19 +242,19 @@ def bad_input_is_one_clear_error():
     write_table("bad.csv", f, np.conj(h))
     refused("--phase-sign")
     tacto.run("identify", "bad.csv", "-o", "turned", "--phase-sign", "-1")
-    for turn, given, advice in [(h, ["--phase-sign", "-1"], "leave --phase-sign out"), (h, ["--invert"], "leave --invert out"),
-                                (h, ["--phase-sign", "-1", "--invert"], "leave --phase-sign and --invert out"),
+    for turn, given, advice in [(h, ["--phase-sign", "-1"], "omit --phase-sign"), (h, ["--invert"], "omit --invert"),
+                                (h, ["--phase-sign", "-1", "--invert"], "omit --phase-sign and --invert"),
                                 (-np.conj(h), [], "give --phase-sign -1 and --invert"),
                                 (-np.conj(h), ["--invert"], "give --phase-sign -1"),
                                 (-np.conj(h), ["--phase-sign", "-1"], "give --invert"),
-                                (-h, ["--phase-sign", "-1"], "leave --phase-sign out, and give --invert"), (-h, [], "give --invert")]:
+                                (-h, ["--phase-sign", "-1"], "omit --phase-sign, and give --invert"), (-h, [], "give --invert")]:
         write_table("bad.csv", f, turn)
         refused(advice, *given)
     write_table("bad.csv", f, -np.conj(h))
     tacto.run("identify", "bad.csv", "-o", "both", "--phase-sign", "-1", "--invert")
     write_table("bad.csv", f, h * np.where(np.arange(40) > 17, -1, 1))
     refused("unwrapped wrongly")
-    write_table("bad.csv", f, h, times=1e9)  # nanometres, said to be micrometres
+    write_table("bad.csv", f, h, times=1e9)  # the values are nanometres, the header says micrometres
     refused("unit")
     tacto.run("identify", "bad.csv", "-o", "thousand", "--implausible")
     write_table("bad.csv", f / 1e3, h)
@@ -281,11 +282,11 @@ def bad_input_is_one_clear_error():
     for words, *options in (["--low", "--low", "100Hz", "--high", "50Hz"], ["--amplitude", "--amplitude", "0V"],
                             ["--frequencies", "--frequencies", "100000"]):
         assert words in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", *options, code=2)[1]
-    # 6 periods at each of 60 frequencies from 1 mHz on, evenly by octaves, and 0.05 s each: 28,746 s.
+    # 6 periods at each of 60 frequencies from 1 mHz on, evenly by octaves, plus 0.05 s each: 28,746 s.
     endless = tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--low", "1mHz", code=5)[1]
     assert "takes 2.87e+04 s" in endless and "begin at" in endless, endless
     assert "half the device's rate" in tacto.run("identify", "-d", "sim:tray_sensor=on", "-o", "bad", "--high", "5kHz", code=5)[1]
-    # Whole turns too many are no harm: values are complex.
+    # Additional whole turns do no harm: values are complex.
     write_table("turns.csv", f, h)
     table = np.loadtxt("turns.csv", delimiter=",", skiprows=1)
     table[20:, 2] += 360
@@ -307,7 +308,7 @@ def intervals_are_printed_with_digits_that_show_them():
 
 
 def another_unit_is_named_with_its_option():
-    """What the header says and what the numbers are: the likely unit, its option, and that this option puts it right."""
+    """If header and numbers disagree: the message has the likely unit and its option, and that option helps."""
     f, random = np.geomspace(10, 2000, 40), np.random.default_rng(7)
     noisy = response(f, damping=0.3) * (1 + 1e-6 * (random.standard_normal(40) + 1j * random.standard_normal(40)))
 
@@ -318,12 +319,12 @@ def another_unit_is_named_with_its_option():
     def decibels(re):
         return lambda size: 20 * np.log10(size / re)
 
-    loud = noisy * 100  # 66 dB re 1 um/V, above 0 dB all over
+    loud = noisy * 100  # 66 dB re 1 um/V: above 0 dB everywhere
     for h, head, amplitude, phase, words, option in [
             (noisy, "amplitude_um_per_v", lambda size: size * 1e6, lambda rad: rad, "radians", ["--phase-unit", "rad"]),
-            (noisy, "amplitude_m_per_v", decibels(1), np.degrees, "as in 40 of 40 lines: these will be decibels", ["--amplitude-unit", "dB m/V"]),
-            (noisy, "amplitude_um_per_v", decibels(1e-6), np.degrees, "these will be decibels", ["--amplitude-unit", "dB um/V"]),
-            (loud, "amplitude_um_per_v", decibels(1e-6), np.degrees, "these will be decibels", ["--amplitude-unit", "dB um/V"])]:
+            (noisy, "amplitude_m_per_v", decibels(1), np.degrees, "as in 40 of 40 lines: these are probably decibels", ["--amplitude-unit", "dB m/V"]),
+            (noisy, "amplitude_um_per_v", decibels(1e-6), np.degrees, "these are probably decibels", ["--amplitude-unit", "dB um/V"]),
+            (loud, "amplitude_um_per_v", decibels(1e-6), np.degrees, "these are probably decibels", ["--amplitude-unit", "dB um/V"])]:
         as_table("unit.csv", h, amplitude, phase, f"frequency_hz,{head},phase_deg")
         err = tacto.run("identify", "unit.csv", "-o", "unit", code=5)[1]
         assert words in err and option[0] in err and option[1] in err and not pathlib.Path("unit.transducer.json").exists(), err
@@ -341,19 +342,21 @@ def another_unit_is_named_with_its_option():
 
 
 def what_is_identified_is_undone():
-    """From slow loops to a finger that feels the texture: the operator is found, stored, inverted and played."""
+    """From slow loops to a finger on the texture: the operator is fitted, stored, inverted and played."""
     tacto.run("identify", "-d", "sim:hysteresis=0.16,tray_sensor=on", "--method", "loop", "-o", "bench")
     tacto.run("record", "-d", "sim:surface=C,speed=50mm/s,seed=1", "--time", "2s", "-o", "c")
     tacto.run("spatial", "c", "-o", "c")
     errors = {}
     for transducer in ("wiertlewski2011", "bench"):
         rows = tacto.run_json("fidelity", "c-01", "--transducer", transducer, "--speed", "51.7mm/s")["fidelity"]
+        for row in rows:
+            measured(f"identify_command.{transducer}.{key_part(row['tray'])}_db", row["error_db"])
         errors[transducer] = {row["tray"]: row["error_db"] for row in rows}
     tray = "hysteresis 16 %"
     print(f"{tray}: {errors['wiertlewski2011'][tray]:.1f} dB as it is, {errors['bench'][tray]:.1f} dB undone")
     assert errors["wiertlewski2011"][tray] > -15 and errors["bench"][tray] < -40, errors
     assert errors["bench"]["all three"] < errors["wiertlewski2011"]["all three"] - 10, errors
-    assert errors["bench"]["ideal"] > -15, errors  # a hysteresis undone that is not there
+    assert errors["bench"]["ideal"] > -15, errors  # inverting a hysteresis that the tray does not have
     stopped_leaving_nothing("fidelity", "c-01", "--speed", "10mm/s,11mm/s,12mm/s")
     stopped_leaving_nothing("identify", "-d", "sim:tray_sensor=on,paced=1", "-o", "never")
     assert not pathlib.Path("never.transducer.json").exists()
@@ -362,8 +365,8 @@ def what_is_identified_is_undone():
 
 
 def a_sensor_by_a_known_force():
-    """Table I's sensor out of a recording of a known force, by tones and by a chirp; 25.23 V/N are the stiffnesses' own
-    gain. One that clips is refused, and the slow load cell does not pass for the force."""
+    """Table I's sensor from a recording of a known force, by tones and by a chirp; 25.23 V/N is the gain of the
+    stiffnesses. Clipped recordings are refused, and the slow load cell is not accepted as the force."""
     channels = ["--input", "applied_force", "--output-channel", "tangential_force"]
     ways = {"tones": "multisine,force_low=10Hz,force_high=1kHz,force_tones=60,force_amplitude=3mN",
             "chirp": "chirp,force_low=10Hz,force_high=900Hz,force_amplitude=30mN"}
@@ -379,7 +382,7 @@ def a_sensor_by_a_known_force():
         assert found["gain_v_per_n"]["high_of_95"] / found["gain_v_per_n"]["low_of_95"] < 1.005, found
     tacto.run("record", "-d", "sim:force=chirp,force_amplitude=0.3N,force_high=900Hz", "-o", "loud", "--time", "2s")
     _, err = tacto.run("identify", "loud", *channels, "-o", "none", code=5)
-    assert "tangential_force" in err and "drive less" in err, err
+    assert "tangential_force" in err and "use a smaller drive" in err, err
     tacto.run("identify", "tones", "--input", "net_force", "--output-channel", "tangential_force", "-o", "slow", code=5)
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plant and model alike: the intervals say the truth as often as they claim.
+// If plant and model are alike, the intervals contain the truth as often as stated.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,32 +11,34 @@
 #include "analysis/identify/report/identification.hpp"
 #include "playback/player/player_device.hpp"
 #include "tests/analysis/identify_plants.hpp"
+#include "tests/measured.hpp"
 #include "tests/sanitized.hpp"
 
 namespace tacto::analysis {
 namespace {
 
-const int kDraws = draws(1000, 40);
+const int kCoverageDraws = draws(1000, 40);
 
-struct Tally {
+struct CoverageTally {
   std::map<std::string, int> covered;
   int claimed = 0, misfits = 0, not_converged = 0;
 };
 
-void count(const std::string& name, double truth, const ResponseFit& fit, Tally& tally) {
+void count(const std::string& name, double truth, const ResponseFit& fit, CoverageTally& tally) {
   const FittedParameter* p = fit.find(name);
   ASSERT_NE(p, nullptr);
   tally.covered[name] += p->low <= truth && truth <= p->high;
 }
 
-// What the sensor's response is, less its pole and its resonance.
+// Gain of the sensor's response without its pole and its resonance.
 double sensor_gain(const schema::Transducer& t) {
   const double hz = 100, r = hz / schema::resonance_hz(t), by_pole = hz / schema::sensor_pole_hz(t);
   const std::complex<double> pole(1, by_pole), mechanics(1 - r * r, 2 * schema::damping_ratio(t) * r);
   return std::abs(schema::sensor_response(t, hz) * pole * mechanics) / by_pole;
 }
 
-void count_all(const schema::Transducer& plant, Direction direction, const ResponseFit& fit, Tally& tally) {
+void count_all(const schema::Transducer& plant, Direction direction, const ResponseFit& fit,
+               CoverageTally& tally) {
   const bool actuator = direction == Direction::actuator;
   tally.misfits += fit.misfit.found;
   tally.not_converged += !fit.converged;
@@ -52,12 +54,14 @@ void count_all(const schema::Transducer& plant, Direction direction, const Respo
 }
 
 // 92.5 to 97.1 % is 95 % +- 3.5 standard deviations of 1,000 draws (0.69 %), as the upper end is skewed.
-void expect_nineteen_of_twenty(const Tally& tally, double least = 92.5, double most = 97.1) {
+void expect_nineteen_of_twenty(const CoverageTally& tally, const std::string& key, double least = 92.5,
+                               double most = 97.1) {
   EXPECT_EQ(tally.not_converged, 0);
   for (const auto& [name, covered] : tally.covered) {
     const double percent = 100.0 * covered / tally.claimed;
     testing::Test::RecordProperty(name, std::to_string(percent));
     std::printf("  %s: covered in %.1f %% of %d\n", name.c_str(), percent, tally.claimed);
+    tacto::measured("identify_coverage." + key + "." + name + "_covered_percent", percent);
     EXPECT_TRUE(sanitized() || (percent >= least && percent <= most)) << name << " " << percent;
   }
 }
@@ -67,30 +71,30 @@ class IdentifyCoverage : public testing::TestWithParam<Direction> {};
 TEST_P(IdentifyCoverage, IntervalsCoverInNineteenOfTwenty) {
   std::mt19937_64 random(2026);
   const schema::Transducer base = schema::read_transducer("wiertlewski2011").value();
-  Tally tally;
-  for (int draw = 0; draw < kDraws; ++draw) {
+  CoverageTally tally;
+  for (int draw = 0; draw < kCoverageDraws; ++draw) {
     const schema::Transducer plant = varied(base, random);
     const BodeData data = measured(plant, GetParam(), octaves(10, 1000, 60), 0.005, random);
     count_all(plant, GetParam(), fit_response(data, {.direction = GetParam()}, base), tally);
   }
   EXPECT_LE(tally.misfits, 8);  // three tests at 5 in 10,000: 1.5 expected; more than 8 in 2e-4 of runs
-  expect_nineteen_of_twenty(tally);
+  expect_nineteen_of_twenty(tally, GetParam() == Direction::actuator ? "actuator" : "sensor");
 }
 
 INSTANTIATE_TEST_SUITE_P(Directions, IdentifyCoverage,
                          testing::Values(Direction::actuator, Direction::sensor));
 
-// Tables without a column of noise: what it is like is told by the residuals alone.
+// Tables without a column of noise: the noise is estimated from the residuals.
 struct UnknownNoise {
   const char* name;
-  double constant, proportional;  // of the gain at rest, of the amplitude
+  double constant, proportional;  // of the gain at 0 Hz, of the amplitude
   int frequencies;
-  double least = 92.5;  // per cent: of eight frequencies the residuals hardly tell what the noise is like
-  double times = 1, low_hz = 0, high_hz = 0;  // as loud between these
-  int least_uneven = 0, most_uneven = 8;      // draws that are told so: 5 in 10,000 where the noise is even
-  int most_misfits = 50;  // few values that are loud run in waves more often than many that are even
-  // The fewest degrees of freedom hold for all: where the loud part says little of the gain its interval is
-  // wide.
+  double least = 92.5;  // per cent; with eight frequencies the residuals hardly determine the noise
+  double times = 1, low_hz = 0, high_hz = 0;  // factor on the noise in this range
+  int least_uneven = 0, most_uneven = 8;      // draws with a warning; with even noise 5 in 10,000
+  int most_misfits = 50;  // a few loud values look like waves more often than many equal ones
+  // The fewest degrees of freedom apply to all parameters: if the loud part hardly determines the gain, its
+  // interval is too wide.
   double most() const { return times > 1 ? 99.5 : 97.1; }
 };
 
@@ -114,9 +118,9 @@ class IdentifyUnknownNoise : public testing::TestWithParam<UnknownNoise> {};
 TEST_P(IdentifyUnknownNoise, IntervalsCoverInNineteenOfTwenty) {
   std::mt19937_64 random(2027);
   const schema::Transducer base = schema::read_transducer("wiertlewski2011").value();
-  Tally tally;
+  CoverageTally tally;
   int uneven = 0;
-  for (int draw = 0; draw < kDraws; ++draw) {
+  for (int draw = 0; draw < kCoverageDraws; ++draw) {
     const schema::Transducer plant = varied(base, random);
     const BodeData data = without_noise_column(plant, GetParam(), random);
     const ResponseFit fit = fit_response(data, {}, base);
@@ -129,7 +133,8 @@ TEST_P(IdentifyUnknownNoise, IntervalsCoverInNineteenOfTwenty) {
     EXPECT_LE(uneven, GetParam().most_uneven);
     EXPECT_LE(tally.misfits, GetParam().most_misfits);
   }
-  expect_nineteen_of_twenty(tally, GetParam().least, GetParam().most());
+  expect_nineteen_of_twenty(tally, "no_column_" + key_part(GetParam().name), GetParam().least,
+                            GetParam().most());
 }
 
 INSTANTIATE_TEST_SUITE_P(Tables, IdentifyUnknownNoise,
@@ -148,14 +153,14 @@ INSTANTIATE_TEST_SUITE_P(Tables, IdentifyUnknownNoise,
                            return name;
                          });
 
-// The emulated device's own way: converter, vibrometer, ticks paired with frames, the hold taken out. A
-// finger that is up, and 4 kHz, make a draw cheap. Of 40 draws of 95 % fewer than 33 cover in 1 of 1,000
-// (binomial).
+// The complete measurement on the emulated device: converter, vibrometer, ticks paired with frames, the hold
+// removed. Without a finger, and at 4 kHz, a draw is cheap. Of 40 draws of 95 % fewer than 33 cover in 1 of
+// 1,000 (binomial).
 TEST(IdentifyDeviceCoverage, AChirpsIntervalsCoverInNineteenOfTwenty) {
   constexpr int kFewestCovered = 33;
   const int device_draws = draws(40, 4);
   const schema::Transducer truth = schema::read_transducer("wiertlewski2011").value();
-  Tally tally;
+  CoverageTally tally;
   for (int seed = 1; seed <= device_draws; ++seed) {
     const std::string uri = "sim:tray_sensor=on,finger=up,rate=4kHz,seed=" + std::to_string(seed);
     const auto opened = playback::open_player_device(uri, std::nullopt);
@@ -169,6 +174,7 @@ TEST(IdentifyDeviceCoverage, AChirpsIntervalsCoverInNineteenOfTwenty) {
   EXPECT_LE(tally.misfits, 1);
   for (const auto& [name, covered] : tally.covered) {
     std::printf("  %s: covered in %d of %d\n", name.c_str(), covered, tally.claimed);
+    tacto::measured("identify_coverage.device_chirps." + name + "_covered", covered);
     EXPECT_TRUE(sanitized() || covered >= kFewestCovered) << name << " " << covered;
   }
 }

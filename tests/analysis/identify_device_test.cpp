@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What identification says of the emulated tray (equations of motion, integrated) when it is not the model:
-// an operator of hysteresis, a second mass, a finger. Responses are measured as `identify` does, by stepped
-// sine.
+// Identification of an emulated tray (integrated equations of motion) that differs from the model: an
+// operator of hysteresis, a second mass, a finger. Responses are measured by stepped sine, as `identify`
+// does.
 #include <gtest/gtest.h>
 
 #include "analysis/identify/fit/response_fit.hpp"
@@ -9,6 +9,7 @@
 #include "analysis/identify/measure/response_estimate.hpp"
 #include "firmware-host/sim/bench/actuated_tray.hpp"
 #include "tests/analysis/identify_plants.hpp"
+#include "tests/measured.hpp"
 #include "tests/sanitized.hpp"
 
 namespace tacto::analysis {
@@ -21,7 +22,7 @@ schema::Transducer base() {
   return schema::read_transducer("wiertlewski2011").value();
 }
 
-// The response of a tray, without noise; its noise is what 20 nm a sample leave.
+// The response of a tray without noise; `noise` is the effect of 20 nm per sample.
 BodeData without_noise(const schema::Transducer& plant, const firmware_host::TrayPhysics& physics,
                        double amplitude_v) {
   const SteppedSine stepped = stepped_sine({.amplitude_v = amplitude_v, .low_hz = 20, .frequencies = 24});
@@ -91,9 +92,12 @@ TEST(IdentifyDevice, FlagsAHysteresisThatNobodyModelled) {
     }
   std::printf("  flagged %d of %d, R^2 at least %.4f; a lag suggested in %d, a second mode in %d\n", flagged,
               draws, least_r_squared, lag, short_of_a_mode);
-  EXPECT_EQ(short_of_a_mode, 0);  // a second resonance at the first's is none
+  tacto::measured("identify_device.hysteresis_flagged", flagged);
+  tacto::measured("identify_device.hysteresis_draws", draws);
+  tacto::measured("identify_device.hysteresis_least_r_squared", least_r_squared);
+  EXPECT_EQ(short_of_a_mode, 0);  // a second resonance equal to the first does not count
   EXPECT_GE(flagged, 0.95 * draws);
-  EXPECT_GT(least_r_squared, 0.98);  // what would have let it pass
+  EXPECT_GT(least_r_squared, 0.98);  // R^2 alone would not detect the misfit
 }
 
 TEST(IdentifyDevice, WithALagTheResonanceStays) {
@@ -110,7 +114,7 @@ TEST(IdentifyDevice, WithALagTheResonanceStays) {
                 bias("pole_hz", schema::actuator_pole_hz(drawn.truth)),
                 bias("gain_m_per_v", std::abs(schema::actuator_response(drawn.truth, 0))),
                 57.29578 * fit.find("lag_rad")->value);
-    EXPECT_LT(std::abs(resonance), 0.5);  // per cent: the issue's
+    EXPECT_LT(std::abs(resonance), 0.5);  // per cent; the requirement of the issue
   }
 }
 
@@ -127,7 +131,7 @@ TEST(IdentifyDevice, SaysThatTheModelIsOneModeShort) {
     }
     const ResponseFit two = fit_response(with_noise(drawn.clean, random), {.second_mode = true}, base());
     EXPECT_FALSE(two.misfit.found) << two.misfit.words;
-    EXPECT_NEAR(two.find("second_mode_hz")->value / 850, 1, 0.02);  // the damping moves it by less
+    EXPECT_NEAR(two.find("second_mode_hz")->value / 850, 1, 0.02);  // the damping shifts it by less
   }
   std::printf("  told %d of %d\n", told, draws);
   EXPECT_EQ(told, draws);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the paper contradicts itself, against numbers that were computed by hand from Table I.
+// Contradictions in the paper, against numbers computed by hand from Table I.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,10 +63,11 @@ TEST_F(PaperFigures, AFingerTakesWhatItsDamperSays) {
   const double exact = 20 * std::log10(peak(b + more, 81520, 6.902e-3) / peak(b, 80520, 6.8e-3));
   const PaperFigure finger = figure("finger_at_resonance_db");
   EXPECT_NEAR(finger.by_table, exact, 1e-3);
-  EXPECT_NEAR(finger.by_table, finger.reported, 0.2);  // here the paper agrees with itself
+  EXPECT_NEAR(finger.by_table, finger.reported, 0.2);  // the paper is consistent here
 }
 
-// A constant lag of 8 degrees leaves |1 - exp(-i 8 deg)|^2 = 2 % at most; the fit takes a part of it.
+// A constant lag of 8 degrees causes a residual of at most |1 - exp(-i 8 deg)|^2 = 2 %; the fit explains a
+// part of it.
 TEST_F(PaperFigures, TheLagDoesNotExplainRSquared) {
   const double left = 4 * std::pow(std::sin(4 * M_PI / 180), 2);
   const PaperFigure actuator = figure("r_squared_actuator");
@@ -80,7 +81,7 @@ TEST_F(PaperFigures, TheLagDoesNotExplainRSquared) {
   EXPECT_EQ(figure("r_squared_sensor").reported, 0.91);
 }
 
-// A fit of one direction leaves the other at the base's values: those are not identified.
+// A fit of one direction does not change the other's base values, so those are not identified.
 TEST_F(PaperFigures, OfADirectionThatWasNotMeasuredNothingIsIdentified) {
   for (const char* name : {"sensor_at_100hz_v_per_n", "sensor_at_500_over_100_hz", "resolution_n"}) {
     EXPECT_TRUE(std::isnan(figure(name).identified)) << name;

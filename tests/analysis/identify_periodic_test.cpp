@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What identification says of the emulated tray when it is not the model, by the signals that take seconds:
-// multisine and chirp, with each draw's own noise in every sample and the noise told by the periods.
+// Identification of an emulated tray that differs from the model, by the signals that take seconds: multisine
+// and chirp, with noise of its own in every sample of a draw; the noise is estimated from the periods.
 #include <gtest/gtest.h>
 
 #include "analysis/identify/fit/response_fit.hpp"
@@ -13,29 +13,29 @@
 namespace tacto::analysis {
 namespace {
 
-constexpr double kNoiseM = 20e-9;  // the emulated vibrometer's
-const int kPlants = draws(8, 3), kNoises = draws(10, 2);
+constexpr double kPeriodicNoiseM = 20e-9;  // the emulated vibrometer's
+const int kPeriodicPlants = draws(8, 3), kNoises = draws(10, 2);
 constexpr double kSecondModeHz = 850;
 
-using Signal = PeriodicDrive (*)(const ExcitationPlan&);
+using PeriodicSignal = PeriodicDrive (*)(const ExcitationPlan&);
 
-schema::Transducer base() {
+schema::Transducer periodic_base() {
   return schema::read_transducer("wiertlewski2011").value();
 }
 
-struct Drawn {
+struct PeriodicDraw {
   schema::Transducer truth;
   PeriodicDrive plan;
   DrivenTray tray;  // without noise
 };
 
 // Plants like the paper's, driven with 0.3 to 2 V, as in identify_device_test.
-std::vector<Drawn> driven_plants(Signal signal, const firmware_host::TrayPhysics& physics,
-                                 std::mt19937_64& random) {
+std::vector<PeriodicDraw> driven_plants(PeriodicSignal signal, const firmware_host::TrayPhysics& physics,
+                                        std::mt19937_64& random) {
   std::uniform_real_distribution<double> amplitude(0.3, 2);
-  std::vector<Drawn> list;
-  while (std::ssize(list) < kPlants) {
-    const schema::Transducer truth = varied(base(), physics, random);
+  std::vector<PeriodicDraw> list;
+  while (std::ssize(list) < kPeriodicPlants) {
+    const schema::Transducer truth = varied(periodic_base(), physics, random);
     const PeriodicDrive plan = signal({.amplitude_v = amplitude(random)});
     firmware_host::ActuatedTray tray(truth, 10e3, physics);
     const std::vector<double> drive(plan.drive_v.begin(), plan.drive_v.end());
@@ -44,8 +44,8 @@ std::vector<Drawn> driven_plants(Signal signal, const firmware_host::TrayPhysics
   return list;
 }
 
-BodeData measured_once(const Drawn& drawn, std::mt19937_64& random) {
-  std::normal_distribution<double> normal(0, kNoiseM);
+BodeData measured_once(const PeriodicDraw& drawn, std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0, kPeriodicNoiseM);
   DrivenTray tray = drawn.tray;
   for (double& displacement_m : tray.displacement_m) displacement_m += normal(random);
   return response_of_periods(tray, drawn.plan);
@@ -56,11 +56,11 @@ struct Told {
   double least_r_squared = 1;
 };
 
-Told told_of(const std::vector<Drawn>& plants, int noises, std::mt19937_64& random) {
+Told told_of(const std::vector<PeriodicDraw>& plants, int noises, std::mt19937_64& random) {
   Told told;
-  for (const Drawn& drawn : plants)
+  for (const PeriodicDraw& drawn : plants)
     for (int noise = 0; noise < noises; ++noise, ++told.draws) {
-      const ResponseFit fit = fit_response(measured_once(drawn, random), {}, base());
+      const ResponseFit fit = fit_response(measured_once(drawn, random), {}, periodic_base());
       told.flagged += fit.misfit.found && !fit.claims_intervals();
       told.one_mode_short += fit.misfit.found && fit.one_mode_short;
       told.least_r_squared = std::min(told.least_r_squared, fit.r_squared);
@@ -70,9 +70,9 @@ Told told_of(const std::vector<Drawn>& plants, int noises, std::mt19937_64& rand
   return told;
 }
 
-class IdentifyPeriodic : public testing::TestWithParam<std::pair<const char*, Signal>> {
+class IdentifyPeriodic : public testing::TestWithParam<std::pair<const char*, PeriodicSignal>> {
  protected:
-  Signal signal() const { return GetParam().second; }
+  PeriodicSignal signal() const { return GetParam().second; }
 };
 
 TEST_P(IdentifyPeriodic, FindsATrayThatIsTheModel) {
@@ -88,7 +88,7 @@ TEST_P(IdentifyPeriodic, FlagsAHysteresisThatNobodyModelled) {
   const Told told = told_of(plants, kNoises, random);
   EXPECT_GE(told.flagged, 0.95 * told.draws);
   EXPECT_EQ(told.one_mode_short, 0);
-  EXPECT_GT(told.least_r_squared, 0.98);  // what would have let it pass
+  EXPECT_GT(told.least_r_squared, 0.98);  // R^2 alone would not detect the misfit
 }
 
 TEST_P(IdentifyPeriodic, SaysThatTheModelIsOneModeShort) {
@@ -100,16 +100,17 @@ TEST_P(IdentifyPeriodic, SaysThatTheModelIsOneModeShort) {
                                     random);
   const Told told = told_of(plants, kNoises / 2, random);
   EXPECT_EQ(told.one_mode_short, told.draws);
-  for (const Drawn& drawn : plants) {
-    const ResponseFit two = fit_response(measured_once(drawn, random), {.second_mode = true}, base());
+  for (const PeriodicDraw& drawn : plants) {
+    const ResponseFit two =
+        fit_response(measured_once(drawn, random), {.second_mode = true}, periodic_base());
     EXPECT_FALSE(two.misfit.found) << two.misfit.words;
     EXPECT_NEAR(two.find("second_mode_hz")->value / kSecondModeHz, 1, 0.02);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, IdentifyPeriodic,
-                         testing::Values(std::pair{"multisine", Signal(multisine)},
-                                         std::pair{"chirp", Signal(periodic_chirp)}),
+                         testing::Values(std::pair{"multisine", PeriodicSignal(multisine)},
+                                         std::pair{"chirp", PeriodicSignal(periodic_chirp)}),
                          [](const auto& tried) { return std::string(tried.param.first); });
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Transducers to identify, and what measuring them gives.
+// Transducers for identification, and measurements of them.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,7 @@ inline schema::Transducer varied(schema::Transducer t, std::mt19937_64& random) 
   return t;
 }
 
-/// The next that can have the tray's second mode.
+/// The next one that can have the tray's second mode.
 inline schema::Transducer varied(const schema::Transducer& t, const firmware_host::TrayPhysics& physics,
                                  std::mt19937_64& random) {
   for (;;) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The response of a recording, by any drive: an exact plant (its closed form times the drive's spectrum, in a
-// record twice as long, so that nothing comes round) with a sensor's noise.
+// The response of a recording, with any drive: an exact plant (its closed form times the drive's spectrum, in
+// a record twice as long, so that the response does not wrap around) with a sensor's noise.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRecordRateHz = 8e3, kRecordS = 5, kTurns = 6.283185307179586;
 constexpr std::size_t kSamples = 40000;
-constexpr int kDraws = 6;
+constexpr int kRecordDraws = 6;
 
 using Signal = std::vector<double>;
 
@@ -61,7 +61,7 @@ Signal multisine_of(std::mt19937_64& random) {
   return u;
 }
 
-// `periodic`: the plant has been driven like that for ever.
+// `periodic`: the drive is periodic and the plant in its steady state.
 Signal answer(const Signal& u, bool periodic, std::mt19937_64& random) {
   const schema::Transducer t = truth();
   Signal padded = u;
@@ -86,7 +86,7 @@ struct DriveKind {
   std::size_t cut = 0;  // samples at the start that were not recorded
 };
 
-Signal white(std::mt19937_64& random) {
+Signal white_record(std::mt19937_64& random) {
   std::normal_distribution<double> normal(0, 0.3);
   return drive([&](double t) { return taper(t, kRecordS) * normal(random); });
 }
@@ -109,8 +109,8 @@ std::vector<DriveKind> kinds() {
   const auto repeated = [](auto&) {
     return drive([](double t) { return 0.5 * taper(std::fmod(t, 1), 1) * log_chirp(std::fmod(t, 1), 1); });
   };
-  return {{"noise", white},
-          {"noise, cut out of more", white, false, 7001},
+  return {{"noise", white_record},
+          {"noise, cut out of more", white_record, false, 7001},
           {"logarithmic chirp", log},
           {"linear chirp", linear},
           {"five chirps", repeated},
@@ -120,7 +120,7 @@ std::vector<DriveKind> kinds() {
           {"multisine, tapered", windowed}};
 }
 
-// In half intervals, the largest of the four errors; their squares are added up.
+// The largest of the four errors, in half intervals; adds their squares to `squares`.
 double worst_error(const ResponseFit& fit, double& squares) {
   double worst = 0;
   for (const auto& [name, value] : {std::pair("gain_m_per_v", 23e-6), std::pair("resonance_hz", 463.0),
@@ -138,7 +138,7 @@ TEST(IdentifyRecord, AnExactPlantFitsWhateverDroveIt) {
   for (const DriveKind& kind : kinds()) {
     int fits = 0, covered = 0;
     double resonance = 0;
-    for (int draw = 0; draw < kDraws; ++draw) {
+    for (int draw = 0; draw < kRecordDraws; ++draw) {
       std::mt19937_64 random(100 + static_cast<unsigned>(draw));
       const Signal u = kind.make(random), x = answer(u, kind.periodic, random);
       const auto data = response_of_record(std::span(u).subspan(kind.cut), std::span(x).subspan(kind.cut),
@@ -149,24 +149,25 @@ TEST(IdentifyRecord, AnExactPlantFitsWhateverDroveIt) {
       covered += worst_error(fit, squares) < 2;
       resonance = std::max(resonance, std::abs(fit.find("resonance_hz")->value / 463 - 1));
     }
-    std::printf("  %-40s fits %d of %d, resonance within %.3f %%\n", kind.name, fits, kDraws,
+    std::printf("  %-40s fits %d of %d, resonance within %.3f %%\n", kind.name, fits, kRecordDraws,
                 100 * resonance);
     // A sound fit is called a misfit in 15 of 10,000; an error of four standard errors is one in 4,000.
-    EXPECT_EQ(fits, kDraws) << kind.name;
-    EXPECT_EQ(covered, kDraws) << kind.name;
+    EXPECT_EQ(fits, kRecordDraws) << kind.name;
+    EXPECT_EQ(covered, kRecordDraws) << kind.name;
     EXPECT_LT(resonance, 2e-3) << kind.name;
   }
-  // 216 errors in standard errors: their RMS is 1 within 0.05 if all were their own; some share their noise.
-  const double rms = 1.959964 * std::sqrt(squares / (4 * kDraws * static_cast<double>(kinds().size())));
+  // 216 errors in standard errors: their RMS is 1 within 0.05 if they were independent; some share their
+  // noise.
+  const double rms = 1.959964 * std::sqrt(squares / (4 * kRecordDraws * static_cast<double>(kinds().size())));
   std::printf("  errors are %.2f of what their intervals say\n", rms);
   EXPECT_NEAR(rms, 1, 0.2);
 }
 
 TEST(IdentifyRecord, TwoSignalsOfTheirOwnAreRefused) {
   std::mt19937_64 random(5);
-  const Signal u = white(random), x = white(random);
+  const Signal u = white_record(random), x = white_record(random);
   const auto data = response_of_record(u, x, kRecordRateHz, 10, 1000, "strangers");
-  // Noise passes for a response in one place of twenty; check_bode() refuses what they make.
+  // In one place of twenty, noise looks like a response; check_bode() refuses the result.
   EXPECT_TRUE(!data || !check_bode(*data));
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ringing after taps: made ones of known poles, and a real sensor's.
+// Ringing after taps: synthetic ones with known poles, and those of a real sensor.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <random>
 
 #include "analysis/identify/measure/taps.hpp"
+#include "tests/measured.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -42,33 +43,43 @@ TEST(IdentifyTaps, PolesThatWereMadeComeBack) {
 // impacts_100kHz.csv: 20 taps on a lateral force sensor.
 TEST(IdentifyTaps, TheFirstTenForetellTheOthers) {
   const std::string path = std::string(TACTO_DATA) + "/impact-taps/impacts_100kHz.csv";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: no real data";
+  if (!std::filesystem::exists(path)) {
+    not_measured("identify_taps.*", "no real data");
+    GTEST_SKIP() << "skipped: no real data";
+  }
   const Taps taps = read_taps(path, kTapRateHz).value();
   ASSERT_EQ(taps.taps.size(), 20U);
   const TapsFit fit = fit_taps(taps).value();
-  const TapsPrediction foretold = foretell_taps(taps, 10).value();
+  const TapsPrediction predicted = predict_taps(taps, 10).value();
   std::printf(
       "  resonance %.1f Hz +- %.1f (SD %.1f), damping ratio %.4f +- %.4f (SD %.4f, %.4f to %.4f), R^2 %.4f\n",
       fit.resonance_hz.median, fit.resonance_hz.spread, fit.resonance_hz.standard_deviation,
       fit.damping_ratio.median, fit.damping_ratio.spread, fit.damping_ratio.standard_deviation,
       fit.damping_ratio.least, fit.damping_ratio.most, fit.r_squared);
   std::printf(
-      "  taps 1-10 foretell 11-20: resonance %.2f %%, damping %.1f %%, waveform %.1f %% (worst %.1f %%), "
+      "  taps 1-10 predict 11-20: resonance %.2f %%, damping %.1f %%, waveform %.1f %% (worst %.1f %%), "
       "shape %.1f %%\n",
-      100 * foretold.resonance_error, 100 * foretold.damping_error, 100 * foretold.waveform_error,
-      100 * foretold.worst_waveform_error, 100 * foretold.shape_error);
+      100 * predicted.resonance_error, 100 * predicted.damping_error, 100 * predicted.waveform_error,
+      100 * predicted.worst_waveform_error, 100 * predicted.shape_error);
+  tacto::measured("identify_taps.resonance_hz", fit.resonance_hz.median);
+  tacto::measured("identify_taps.resonance_spread_hz", fit.resonance_hz.spread);
+  tacto::measured("identify_taps.damping_ratio", fit.damping_ratio.median);
+  tacto::measured("identify_taps.damping_ratio_spread", fit.damping_ratio.spread);
+  tacto::measured("identify_taps.damping_ratio_sd", fit.damping_ratio.standard_deviation);
+  tacto::measured("identify_taps.predicted_resonance_error_percent", 100 * predicted.resonance_error);
+  tacto::measured("identify_taps.predicted_damping_error_percent", 100 * predicted.damping_error);
   // The largest line of its spectrum lies at 1627 Hz in each tap (SciPy, Hann window of 45 ms, 1 Hz apart).
   EXPECT_NEAR(fit.resonance_hz.median, 1627, 8);
   EXPECT_LT(fit.resonance_hz.spread, 0.01 * 1627);
-  // The dampings stand in two groups: the median distance says less of them than their standard deviation.
+  // The dampings form two groups, so the median distance underestimates their scatter.
   EXPECT_GT(fit.damping_ratio.standard_deviation, 1.5 * fit.damping_ratio.spread);
   EXPECT_LT(fit.damping_ratio.least, 0.035);
   EXPECT_GT(fit.r_squared, 0.9);
   EXPECT_GT(fit.damping_ratio.median, 0.02);
   EXPECT_LT(fit.damping_ratio.median, 0.06);
-  EXPECT_LT(std::abs(foretold.resonance_error), 0.005);
-  EXPECT_LT(foretold.waveform_error, 0.3);  // 1: a foretelling that knows nothing; NumPy's pencil: 0.218
-  EXPECT_LT(foretold.shape_error, 0.08);    // NumPy's: 0.053
+  EXPECT_LT(std::abs(predicted.resonance_error), 0.005);
+  EXPECT_LT(predicted.waveform_error, 0.3);  // 1: no prediction at all; NumPy's pencil: 0.218
+  EXPECT_LT(predicted.shape_error, 0.08);    // NumPy's: 0.053
 }
 
 TEST(IdentifyTaps, RefusesOneTapNoiseAndNoNumber) {

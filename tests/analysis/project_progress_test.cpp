@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A folder's files are read one by one: how far that is, also within one of them.
+// A folder's files are read one after the other; the progress also covers the part of a file.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRateHz = 10e3;
 
-// Tones well inside the band, seen `delay_s` later and `gain` times as large.
+// Tones well inside the band, delayed by `delay_s` and multiplied by `gain`.
 schema::TimeSignal tones(double delay_s, double gain, double hum = 0) {
   schema::TimeSignal signal{kRateHz, 0, {}};
   for (int i = 0; i < 20000; ++i) {
@@ -32,7 +32,7 @@ TEST(ReplayError, FindsTheDelayToATenthOfAMicrosecond) {
 
 TEST(ReplayError, IsTheRelativeErrorOfAGain) {
   const auto error = replay_error(tones(1e-3, 1.01), tones(0, 1), {}, 0.2);
-  EXPECT_NEAR(error.error_db, -40, 0.1);  // 1 %; the tones end within the padding, whose ringing is left out
+  EXPECT_NEAR(error.error_db, -40, 0.1);  // 1 %; the tones end within the padding, whose ringing is excluded
   EXPECT_NEAR(error.target_rms, std::sqrt(2.0), 0.01);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A project's page: what one file's pictures can't be drawn for is that file's fault alone.
+// A project's page: if the pictures of one file cannot be drawn, only that file is reported as broken.
 #include <gtest/gtest.h>
 
 #include "analysis/report/project.hpp"

@@ -71,7 +71,7 @@ def a_project_on_one_page():
     assert simulated >= 6 and text.count('class="simulated"') == simulated
     assert "path.csv" in said and "C.png" in said, "other programs' files are named"
     again = ["report", root, "-o", "study/study.html"]
-    assert "--force" in tacto.run(*again, code=2)[1]  # the page itself is replaced with --force, and is not a file of the project
+    assert "--force" in tacto.run(*again, code=2)[1]  # --force replaces the page, which is no file of the project
     assert "study.html" not in tacto.run(*again, "--force")[1]
 
 
@@ -87,7 +87,7 @@ def broken_files_do_not_stop_the_rest():
     (root / "more/C.texture.wav").write_bytes(samples[:3000])
     done = subprocess.run([tacto.COMMAND, "report", root, "-o", "page.html", "--json"], capture_output=True)
     assert done.returncode == 4
-    report, said = json.loads(done.stdout), done.stderr.decode(errors="replace")
+    report, said = json.loads(done.stdout), tacto.unwrapped(done.stderr.decode(errors="replace"))
     assert all(line.startswith("tactograph: warning:") for line in said.splitlines() if " %" not in line and not line.startswith("==")), said
     assert len(report["broken"]) == 5 and {row["kind"] for row in report["files"]} == KINDS
     text = pathlib.Path("page.html").read_text()
@@ -113,7 +113,7 @@ def a_torn_curve_leaves_out_its_file_only():
 
 
 def samples_are_those_that_the_sidecar_names():
-    """Under another name than the sidecar's; what lies where they would be by name is a stranger."""
+    """The samples have another name than the sidecar. A file at the default name does not belong to it."""
     make_project("study")
     root = pathlib.Path("study")
     for stem in ("C", "C.texture"):
@@ -138,17 +138,18 @@ def what_is_no_file_is_named():
     (root / "gone.texture.json").symlink_to("nowhere")
     (root / "link.json").symlink_to("C.json")
     done = subprocess.run([tacto.COMMAND, "report", root, "-o", "page.html", "--json"], capture_output=True, text=True, timeout=60)
+    done.stderr = tacto.unwrapped(done.stderr)
     report, text = json.loads(done.stdout), pathlib.Path("page.html").read_text()
-    assert done.returncode == 3, (done.returncode, done.stderr)  # of the first by name: the link
+    assert done.returncode == 3, (done.returncode, done.stderr)  # the exit code is that of the first by name: the link
     faults = {row["file"]: row["fault"] for row in report["broken"]}
     assert faults.keys() == {"study/pipe.json", "study/pipe", "study/gone.texture.json"}, faults
-    assert "leads nowhere" in faults["study/gone.texture.json"] and "pipe" in faults["study/pipe.json"]
+    assert "broken link" in faults["study/gone.texture.json"] and "pipe" in faults["study/pipe.json"]
     assert all(pathlib.Path(name).name in text and name in done.stderr for name in faults)
     assert "study/link.json" in {row["file"] for row in report["files"]}
 
 
 def sixty_files_make_a_small_page():
-    """Each texture has a picture with a raster; long tables and the files' sections fold."""
+    """Each texture has a raster picture; long tables and the files' sections are folded."""
     root = pathlib.Path("many")
     root.mkdir()
     tacto.run("record", "-d", "sim:surface=D,speed=50mm/s,seed=1,strokes=60,length=20mm", "--time", "35s", "-o", root / "D")
@@ -168,7 +169,7 @@ def a_speed_that_is_missing_is_named():
 
 def folders_that_are_none_are_refused():
     pathlib.Path("empty").mkdir()
-    assert "no file of tactograph" in tacto.run("report", "empty", code=5)[1]
+    assert "contains no file of tactograph" in tacto.run("report", "empty", code=5)[1]
     tacto.run("report", "absent", code=3)
     tacto.run("report", "empty", "-o", "page.pdf", code=2)
     assert not list(pathlib.Path(".").glob("*.html"))

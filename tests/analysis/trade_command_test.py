@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`tactograph trade` and what chooses by it: files, calibration, promises, errors."""
+"""`tactograph trade` and the verbs that choose by its table: files, calibration, promises, errors."""
 import csv
 import hashlib
 import json
@@ -47,13 +47,14 @@ def check_trade(folder):
     assert (folder / "t.svg").read_text().startswith("<?xml")
     tacto.run("validate", "t.results.json", cwd=folder)
     assert "real time" in tacto.run("info", "t.results.json", cwd=folder)[0]
-    # What is no such file is not replaced.
+    # A file of another kind is not replaced.
     (folder / "mine.csv").write_text("a,b\n1,2\n")
     assert "mine.csv" in tacto.run("trade", "C", "-o", "mine.csv", cwd=folder, code=2)[1]
 
 
 def check_page(page, rows, answers):
-    """The answer comes first, then a picture a choice, each with one unit of cost; the long tables are folded."""
+    """The answer comes first, then a picture for each choice, each with one unit of cost; the long tables are
+    folded."""
     knobs = {}
     for row in rows:
         if row["cost_ns"] and float(row["cost_ns"]) > 0 and 0 < float(row["error"] or 0) < 1:
@@ -63,12 +64,12 @@ def check_page(page, rows, answers):
     assert page.index("best for its cost") < page.index("<img") < page.index("<details>") < page.index("worth it</th><th>note")
     first = page[: page.index("<img")]
     assert first.count("<tr") == len(answers) + 2 and all(answer in first for answer in answers), first
-    assert page.count("<details>") == 2 and "ns a frame, sample, tick" not in page
+    assert page.count("<details>") == 2 and "ns per frame, sample, tick" not in page
 
 
 def check_words(said, files):
-    """No line over 120 columns. With -o the best of each choice, of both halves in at most 15 lines: 4 of them are a half's;
-    without, the table of the answers too. No row of the choices either way."""
+    """No line over 120 columns. With -o the best of each choice of both halves, in at most 15 lines, 4 of them for each
+    half; without -o also the table of the answers. In both cases no row of the choices."""
     lines = said.splitlines()
     assert all(len(line) <= 120 for line in lines) and len(lines) <= (11 if files else 30), said
     assert any(line.startswith("best, ") for line in lines) and any(line.startswith("answers") for line in lines) != files, said
@@ -76,7 +77,8 @@ def check_words(said, files):
 
 
 def check_speeds(rows, done, answers):
-    """Real-time errors are the worst of three fingers', each told; the pairs that interact are there."""
+    """Real-time errors are the worst of three fingers, and each of the three is reported; the interacting pairs
+    exist."""
     speeds = ("25", "100", "200")
     for row in rows:
         by_speed = [float(row[f"error_at_{speed}mmps"] or "nan") for speed in speeds]
@@ -94,9 +96,9 @@ def check_speeds(rows, done, answers):
 
 
 def check_scene(folder):
-    """A choice has to serve each texture of a scene: its error is the worst of theirs, its memory that of all.
+    """A choice has to serve each texture of a scene: its error is the worst of theirs, its memory the sum.
 
-    Three times the real-time half: under the sanitizers the scene alone, whose figures are the plain run's to judge.
+    This runs the real-time half three times. Under the sanitizers only the scene runs, and its figures are not judged.
     """
     tacto.run("record", "-d", "sim:surface=E,speed=50mm/s,seed=5", "--strokes", "1", "-o", "E", "--no-calibration", cwd=folder)
     tacto.run("spatial", "E", "-o", "E", cwd=folder)
@@ -130,7 +132,7 @@ def check_budgets(folder):
     assert len(taken) == 1 and taken[0]["method"] == chosen["method"]
     exact_enough = [row["cost_us_per_mm"] for row in chosen["tried"] if row["error_percent"] <= 1]
     assert taken[0]["cost_us_per_mm"] == min(exact_enough)
-    # Against the most exact: within what was promised, and a percent of the RMS apart.
+    # Against the most exact choice: within the promise, and a percent of the RMS apart.
     tacto.run("spatial", "C", "-o", "exact", "--quality", "exact", cwd=folder)
     x, values, side = tacto.texture(folder / "fast")
     xe, best, best_side = tacto.texture(folder / "exact")
@@ -140,11 +142,11 @@ def check_budgets(folder):
     error = np.sqrt(np.mean((values[inside] - read) ** 2) / np.mean(read**2))
     print(f"fast against exact: {100 * error:.3f} % of the RMS, promised {chosen['promised_error_percent']:.3f} %")
     assert error < 0.01
-    assert "least is" in tacto.run("spatial", "C", "-o", "no", "--max-error", "0.00001ppm", cwd=folder, code=5)[1]
+    assert "smallest is" in tacto.run("spatial", "C", "-o", "no", "--max-error", "0.00001ppm", cwd=folder, code=5)[1]
     assert not (folder / "no.texture.json").exists()
     assert "no unit" in tacto.run("spatial", "C", "-o", "no", "--max-error", "0.1", cwd=folder, code=2)[1]
-    assert "nothing was chosen" in tacto.run("spatial", "C", "-o", "no", "--explain", cwd=folder, code=2)[1]
-    assert "band that ends" in tacto.run("spatial", "C", "-o", "no", "--quality", "fast", "--band", "off", cwd=folder, code=2)[1]
+    assert "--explain needs a choice" in tacto.run("spatial", "C", "-o", "no", "--explain", cwd=folder, code=2)[1]
+    assert "band with an upper limit" in tacto.run("spatial", "C", "-o", "no", "--quality", "fast", "--band", "off", cwd=folder, code=2)[1]
     cells = tacto.run_json("spectrogram", "C", "-o", "C.nc", "--quality", "exact", "--explain", cwd=folder)
     assert cells["resolution"] == "whole" and len(cells["chosen"][0]["tried"]) == 2
 
@@ -160,14 +162,14 @@ def check_calibration(folder):
     tacto.run("trade", "--calibrate", "-o", "here.trade.json", cwd=folder)
     tacto.run("validate", "here.trade.json", cwd=folder)
     assert "resampling" in tacto.run("info", "here.trade.json", cwd=folder)[0]
-    assert "no name" in tacto.run("trade", "--calibrate", "-o", "here.csv", cwd=folder, code=2)[1]
+    assert "is not a name" in tacto.run("trade", "--calibrate", "-o", "here.csv", cwd=folder, code=2)[1]
     assert "without a texture" in tacto.run("trade", "C", "--calibrate", cwd=folder, code=2)[1]
     assert "--half" in tacto.run("trade", "--calibrate", "--half", "offline", cwd=folder, code=2)[1]
     table["machine"] = "Cray-1, f77"
     own.write_text(json.dumps(table))
     by = tacto.run_json("spatial", "C", "-o", "foreign", "--quality", "balanced", "--explain", cwd=folder)["chosen"][0]["by_table"]
     assert "another machine" in by and "Cray-1" in by, by
-    for choice in table["choices"]:  # a table that says nothing is no promise of nothing
+    for choice in table["choices"]:  # a table without errors promises nothing
         choice["errors"] = []
     own.write_text(json.dumps(table))
     _, said = tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=5)
@@ -177,7 +179,7 @@ def check_calibration(folder):
         _, said = tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=4)
         assert str(own) in said and "--calibrate" in said, said
     own.unlink()
-    own.mkdir()  # nobody's table, but somebody meant something
+    own.mkdir()  # a folder where a table is expected: probably a mistake of the user
     assert "--calibrate" in tacto.run("spatial", "C", "-o", "no", "--quality", "fast", cwd=folder, code=3)[1]
     own.rmdir()
     homeless = {key: value for key, value in os.environ.items() if key not in ("HOME", "XDG_CONFIG_HOME")}

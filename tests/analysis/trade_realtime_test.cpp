@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The real-time half of the trade: what must be worse is, and by how much where a closed form knows.
+// The real-time half of the trade: the order of the choices, and their errors where a closed form exists.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace tacto::analysis {
 namespace {
 
-// 24 mm with as much at its finest, 8 /mm, as anywhere.
+// 24 mm with equal amplitudes up to the finest detail, 8 /mm.
 schema::Texture traded_texture() {
   schema::Texture texture;
   texture.signal.pitch_m = 10e-6;
@@ -48,7 +48,7 @@ TEST_F(RealtimeTradeTable, HoldsNumbersAlone) {
   for (const TradeRow& row : rows_) {
     std::printf("%-36s %-22s %10.3g  %8.1f ns  %9.0f B  %7.4f ms  %s\n", row.knob.c_str(), row.choice.c_str(),
                 row.error, row.cost_ns, row.memory_bytes, 1e3 * row.latency_s, row.note.c_str());
-    EXPECT_EQ(row.is_judged(), row.knob != "loop") << row.choice;  // of the loops the latency alone
+    EXPECT_EQ(row.is_judged(), row.knob != "loop") << row.choice;  // of the loops only the latency is known
     for (const double value :
          {row.is_judged() ? row.error : 0, row.cost_ns, row.memory_bytes, row.latency_s}) {
       EXPECT_TRUE(std::isfinite(value)) << row.knob << ": " << row.choice;
@@ -59,7 +59,7 @@ TEST_F(RealtimeTradeTable, HoldsNumbersAlone) {
   EXPECT_GT(rows_.size(), 60U);
 }
 
-// At six samples a period each is worth what its text says; nearest, there, a quarter of the force.
+// At six samples per period each has its stated error; that of nearest is a quarter of the force.
 TEST_F(RealtimeTradeTable, OrdersTheInterpolations) {
   const std::string knob = "interpolation x samples per period";
   EXPECT_LT(error(knob, "sinc, 6"), 0.3 * error(knob, "hermite, 6"));
@@ -70,15 +70,15 @@ TEST_F(RealtimeTradeTable, OrdersTheInterpolations) {
     EXPECT_LT(error(knob, std::string("linear, ") + more),
               0.5 * error(knob, std::string("linear, ") + fewer));
   EXPECT_LT(error(knob, "hermite, 12"), 0.2 * error(knob, "hermite, 6"));
-  EXPECT_LT(error(knob, "hermite, 24"), 1.5e-4);  // an encoder of 1 nm knows no better at 200 mm/s
+  EXPECT_LT(error(knob, "hermite, 24"), 1.5e-4);  // an encoder of 1 nm is not more accurate at 200 mm/s
 }
 
-// Amplitudes undone without their phases are no better as a displacement than the gain alone.
+// Inverting only the magnitudes does not improve the displacement compared with the gain alone.
 TEST_F(RealtimeTradeTable, OrdersTheInverses) {
   EXPECT_LT(error("inverse", "full"), 2e-3);
   for (const char* other : {"magnitude", "gain", "none"})
     EXPECT_LT(error("inverse", "full"), 0.01 * error("inverse", other)) << other;
-  const std::string amplitudes = "inverse, amplitudes alone";
+  const std::string amplitudes = "inverse, amplitudes only";
   EXPECT_LE(error(amplitudes, "full"), error(amplitudes, "magnitude"));
   EXPECT_LT(error(amplitudes, "magnitude"), 0.1 * error(amplitudes, "gain"));
   EXPECT_LE(error(amplitudes, "gain"), error(amplitudes, "none"));
@@ -96,7 +96,7 @@ TEST_F(RealtimeTradeTable, TellsWhatEachThingIsFor) {
   EXPECT_LT(row("loop", "device").latency_s, row("loop", "host").latency_s);
 }
 
-// Below 1750 Hz the band ends early: what is above is missing.
+// Below 1750 Hz the band ends earlier, and the content above is missing.
 TEST_F(RealtimeTradeTable, KnowsWhatTheRateIsFor) {
   EXPECT_GT(error("tick rate", "1 kHz"), 0.1);
   EXPECT_LT(error("tick rate", "2 kHz"), 2e-3);
@@ -112,8 +112,8 @@ schema::Texture one_line(double per_m) {
   return texture;
 }
 
-// What comes tau late is off by 2 |sin(pi k v tau)| of a line of k: an uncompensated delay costs more the
-// faster the finger goes, the same at each rate, and compensated nearly nothing at any.
+// A delay tau causes an error of 2 |sin(pi k v tau)| for a line of k: without compensation the error grows
+// with the finger's speed, the same at each rate; with compensation it is almost zero.
 TEST(RealtimePairs, ADelayErrsByItsClosedForm) {
   constexpr double kLinePerM = 1000;
   const auto rows = measure_realtime(one_line(kLinePerM), *schema::read_transducer("wiertlewski2011"));
@@ -128,7 +128,7 @@ TEST(RealtimePairs, ADelayErrsByItsClosedForm) {
     for (const ErrorAtSpeed& each : row.by_speed) {
       const double late =
           2 * std::abs(std::sin(std::numbers::pi * kLinePerM * each.speed_mps * row.latency_s));
-      // What the compensated chain leaves at this rate comes on top: at 1 kHz the band ends below 300 Hz.
+      // The residual of the compensated chain is added; at 1 kHz the band ends below 300 Hz.
       EXPECT_NEAR(each.error, late, 0.01) << row.choice << " at " << each.speed_mps << " m/s";
     }
     if (off) {
@@ -140,7 +140,7 @@ TEST(RealtimePairs, ADelayErrsByItsClosedForm) {
   EXPECT_EQ(uncompensated, 5);
 }
 
-// 8 /mm are 200 Hz to a finger of 25 mm/s and 800 Hz, beyond the band, to one of 100 mm/s.
+// 8 /mm are 200 Hz for a finger of 25 mm/s, and 800 Hz, outside of the band, for one of 100 mm/s.
 TEST(RealtimePairs, ASpeedWithNothingToFeelIsNotCounted) {
   const auto rows = measure_realtime(one_line(8000), *schema::read_transducer("wiertlewski2011"));
   ASSERT_TRUE(rows) << schema::message(rows.error());
@@ -153,8 +153,8 @@ TEST(RealtimePairs, ASpeedWithNothingToFeelIsNotCounted) {
   EXPECT_NE(nothing.error().what.find("25, 100, 200 mm/s"), std::string::npos) << nothing.error().what;
 }
 
-// At u = 1/2, the worst place, 1 - cos(w / 2) is linear's error, 2 sin(w / 4) nearest's; the places that are
-// tried are 1/509 apart.
+// At the worst place, u = 1/2, the error of linear is 1 - cos(w / 2) and that of nearest 2 sin(w / 4). The
+// tested places are 1/509 apart.
 TEST(RealtimeChoices, AreWhatTheClosedFormsSay) {
   const auto choices = measure_reading_choices();
   const auto named = [&](const std::string& name) {
@@ -174,7 +174,7 @@ TEST(RealtimeChoices, AreWhatTheClosedFormsSay) {
   EXPECT_LT(named("sinc").error_at(6), 0.1 * named("hermite").error_at(6));
 }
 
-// The table that ships was measured by this program: errors are the same on every machine.
+// This program measured the shipped table; errors are the same on every machine.
 TEST(RealtimeChoices, AreTheShippedTables) {
   const auto shipped = schema::shipped_trade_table();
   ASSERT_TRUE(shipped);

@@ -57,9 +57,10 @@ class OfflineTrade : public testing::Test {
 };
 
 TEST_F(OfflineTrade, StraightLinesErrByTheirClosedForm) {
-  // A sine read by straight lines w apart (w in radians) errs by w^2 / sqrt(120) of its RMS, for small w: the
-  // integral of (s (1 - s))^2 is 1 / 30, and the error there w^2 s (1 - s) / 2. The finger's speed wanders by
-  // a tenth: the mean of the fourth power of its speed is 3 % above that of the mean speed.
+  // Linear interpolation of a sine between samples w apart (w in radians) has an error of w^2 / sqrt(120) of
+  // its RMS for small w: the error is w^2 s (1 - s) / 2, and the integral of (s (1 - s))^2 is 1 / 30. The
+  // finger's speed varies by a tenth: the mean of the fourth power of its speed is 3 % above that of the mean
+  // speed.
   const auto w4 = [](double per_m) { return std::pow(kTurn * per_m * 0.05 / 10e3, 4); };
   const double squared = (w4(kLines_per_m[0]) + w4(kLines_per_m[1])) / 2 / 120;
   EXPECT_NEAR(resampled("linear, 1 um").error, std::sqrt(squared), 0.05 * std::sqrt(squared));
@@ -78,8 +79,8 @@ TEST_F(OfflineTrade, MoreExactWaysErrLess) {
   EXPECT_LT(resampled("hermite, 1 um").error, resampled("linear, 1 um").error);
   EXPECT_LT(resampled("sinc, 1 um").error, 0.1 * resampled("hermite, 1 um").error);
   EXPECT_NEAR(resampled("swapped, 1 um").error, resampled("hermite, 1 um").error, 1e-4);
-  // Lines in the middle of the band are kept; the drift and the hum go.
-  // What is left is the drift, bent at the ends of the record over some periods of 15 Hz.
+  // Lines in the middle of the band pass, drift and hum are removed. The residual is the drift, distorted at
+  // the ends of the record over some periods of 15 Hz.
   EXPECT_LT(row_named(rows_, "filter", "fourier, edges treated").error, 5e-3);
   EXPECT_LT(row_named(rows_, "hop", "100 um").error, row_named(rows_, "hop", "1 mm").error);
   EXPECT_LT(row_named(rows_, "padding", "8 windows").error, row_named(rows_, "padding", "1 windows").error);
@@ -100,9 +101,9 @@ TEST_F(OfflineTrade, EveryRowIsMeasured) {
   }
 }
 
-// Blackman's window makes of the power's beat, cos(2 pi d x), one of depth Q(d) / Q(0), where Q is the
-// transform of its square; straight lines between rows h apart err of it by (2 pi d h)^2 / sqrt(120) of its
-// RMS.
+// Blackman's window reduces the depth of the power's beat, cos(2 pi d x), to Q(d) / Q(0), where Q is the
+// transform of its square. Linear interpolation between rows h apart has an error of (2 pi d h)^2 / sqrt(120)
+// of the beat's RMS.
 double closed_hop_error(double window_m, double hop_m) {
   const auto square = [&](double per_m) {
     constexpr int kSteps = 20000;
@@ -119,7 +120,8 @@ double closed_hop_error(double window_m, double hop_m) {
   return depth / std::sqrt(2 + depth * depth) * std::pow(kTurn * beat_per_m * hop_m, 2) / std::sqrt(120);
 }
 
-// Each pair's error is its two parts' root of sum of squares: the smallest hop has next to none of its own.
+// The error of a pair is the root of the sum of squares of its parts; the smallest hop has almost no error of
+// its own.
 TEST_F(OfflineTrade, WindowAndHopErrAsTheBeatSays) {
   for (const double window_mm : {2.5, 5.0}) {
     const auto error = [&](const char* hop) {
@@ -134,11 +136,11 @@ TEST_F(OfflineTrade, WindowAndHopErrAsTheBeatSays) {
     const double closed = closed_hop_error(window_mm * 1e-3, 500e-6);
     EXPECT_NEAR(hop_alone, closed, 0.1 * closed) << window_mm;  // the next term, (2 pi d h)^2 / 14, is 6 %
   }
-  // A wide window smooths the beat away: rows may lie far apart.
+  // A wide window smooths the beat, so that the rows may be far apart.
   EXPECT_LT(closed_hop_error(10e-3, 1e-3), 0.1 * closed_hop_error(2.5e-3, 1e-3));
 }
 
-// Lines alone in their window, d bins beside the next one: Blackman's main lobe at d.
+// One line per window, d bins beside the next bin: Blackman's main lobe at d.
 TEST(SpectrogramPairs, PaddingErrsAsTheWindowsLobeSays) {
   schema::Texture line;
   line.signal.pitch_m = 5e-6;
@@ -169,8 +171,8 @@ TEST(SpectrogramPairs, PaddingErrsAsTheWindowsLobeSays) {
     }
 }
 
-// White noise has the density 2 sigma^2 p up to half the grid's frequency: an octave's power is that times
-// its width.
+// White noise has the density 2 sigma^2 p up to half the grid's frequency; the power of an octave is density
+// times width.
 TEST(OctavePowers, OfWhiteNoiseAreItsDensityTimesTheirWidth) {
   schema::Texture noise;
   noise.unit = "N";
@@ -184,14 +186,14 @@ TEST(OctavePowers, OfWhiteNoiseAreItsDensityTimesTheirWidth) {
       options.window_m = window_m;
       options.hop_m = window_m / 2;
       options.padded_m = padding * window_m;
-      options.detrend = spatial::Detrend::none;  // else what lies within two bins of 0 is taken off, too
+      options.detrend = spatial::Detrend::none;  // otherwise components within two bins of 0 are removed, too
       const auto made = spatial::spatial_spectrogram(noise, options);
       ASSERT_TRUE(made) << schema::message(made.error());
       const auto powers = octave_powers(*made, 0, 20);
       for (std::size_t i = 0; i < powers.size(); ++i) {
         const double width_per_m = kOctaves_per_m[i + 1] - kOctaves_per_m[i];
-        // 20 m of noise tell a band's power to sqrt(1 / (width 20 m)), and Blackman's overlap of a half costs
-        // 1.07 times as much at most (Welch 1967): four standard deviations.
+        // 20 m of noise determine a band's power to sqrt(1 / (width 20 m)); Blackman's overlap of a half
+        // increases that to at most 1.07 times (Welch 1967). Tolerance: four standard deviations.
         const double four = 4 * 1.07 / std::sqrt(width_per_m * 20);
         EXPECT_NEAR(powers[i] / (2 * 20e-6 * width_per_m), 1, four)
             << window_m << " x " << padding << ", octave " << i;
@@ -199,7 +201,7 @@ TEST(OctavePowers, OfWhiteNoiseAreItsDensityTimesTheirWidth) {
     }
 }
 
-// The same without chance: a density a + b k at each bin, a step that divides no octave among them.
+// The same without chance: a density a + b k at each bin, with steps that do not divide an octave.
 TEST(OctavePowers, OfAStraightDensityAreItsIntegral) {
   for (const double step_per_m : {800.0, 400.0, 200.0, 137.0, 25.0}) {
     schema::Spectrogram made;
@@ -246,7 +248,7 @@ TEST(MeasuredChoices, FallWithPointsAndBoundTheClosedForm) {
 }
 
 TEST(Pareto, FindsFrontAndKneeByHand) {
-  // A choice of error for cost: 10 %, 1 % and 0.9 % for 10, 20 and 100 ns; one is beaten.
+  // Error against cost: 10 %, 1 % and 0.9 % for 10, 20 and 100 ns; a fourth choice is beaten.
   const std::vector<TradeRow> rows = {{"way", "rough", 0.1, 10, "tick", 1, 0, ""},
                                       {"way", "good", 0.01, 20, "tick", 1, 0, ""},
                                       {"way", "silly", 0.02, 50, "tick", 1, 0, ""},
@@ -260,7 +262,7 @@ TEST(Pareto, FindsFrontAndKneeByHand) {
   EXPECT_FALSE(worth[0].knee || worth[3].knee || worth[4].knee);
   const auto answers = plain_answers(rows);
   ASSERT_EQ(answers.size(), 2U);
-  EXPECT_NE(answers[0].knee.find("good (1 % off"), std::string::npos) << answers[0].knee;
+  EXPECT_NE(answers[0].knee.find("good (error 1 %"), std::string::npos) << answers[0].knee;
   EXPECT_EQ(answers[0].never, "silly");
 }
 
@@ -272,11 +274,11 @@ TEST(Pareto, SaysAtWhichSpeedItsPickErrsMost) {
   good.choice = "early", good.error = 0.005, good.by_speed = {{0.025, 0.001}, {0.1, 0.002}, {0.2, 0.005}};
   const std::vector<TradeRow> rows = {row, good};
   EXPECT_EQ(plain_answers(rows).front().knee,
-            "early (0.5 % off at 200 mm/s, the worst of 25, 100, 200 mm/s, 10 ns a tick)");
+            "early (error 0.5 % at 200 mm/s, the worst of 25, 100, 200 mm/s, 10 ns per tick)");
   EXPECT_TRUE(std::isnan(TradeRow{}.worst_speed_mps()));
 }
 
-// A scene of a slow texture and a fast one errs by the worse at each speed.
+// For a scene of a slow and a fast texture, the error is the larger one at each speed.
 TEST(WorstTrade, TakesTheWorseOfEachSpeed) {
   TradeRow a{"way", "late", 0.3, 10, "tick", 1, 0, "a"}, b{"way", "late", 0.4, 10, "tick", 2, 0, "b"};
   a.by_speed = {{0.025, 0.3}, {0.1, kNotMeasured}};

@@ -4,10 +4,11 @@
 
 usage: capture_cost.py TACTOGRAPH [--time 60] [--no-clock] [--link 1s]
 
-The device ticks by the clock on the wall and loses what neither its ring (256 frames) nor the link takes, as a real one does;
-frames count themselves, so that each one that is lost or doubled is found. --no-clock asserts on losses and memory only: for
-machines that are shared. A link that holds less than the machine's own stalls (on a busy one an idle loop stood still for 0.2 to
-0.8 s) loses frames, and the recording says which. CPU time is the whole process's, device and start included; memory is the peak above `--version`.
+The device ticks in real time and, as a real one does, loses frames that neither its ring (256 frames) nor the link can
+hold. Frames contain their number, so that lost and doubled ones are found. --no-clock asserts on losses and memory
+only, for shared machines. A link that holds less than the longest stall of the machine (on a busy one an idle loop
+stopped for 0.2 to 0.8 s) loses frames, and the recording reports which. CPU time is that of the whole process with
+device and start; memory is the peak above `--version`.
 """
 import argparse
 import os
@@ -18,19 +19,22 @@ import tempfile
 import numpy as np
 import soundfile
 
+sys.path.append(os.path.join(os.path.dirname(__file__), "../end-to-end"))  # where ctest has it in PYTHONPATH
+from measured import measured
+
 MOST_MEMORY_MB, MOST_CPU = 32, 0.03
 SANITIZED = "TACTO_SANITIZED" in os.environ
 
 
-# In a process of its own: a child's peak counts what its parent held when it was forked, and NumPy is large.
+# In a process of its own: a child's peak includes the memory of its parent at the fork, and NumPy is large.
 MEASURE = """import os, sys
 pid = os.spawnvp(os.P_NOWAIT, sys.argv[1], sys.argv[1:])
 _, status, usage = os.wait4(pid, 0)
 print(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, os.waitstatus_to_exitcode(status))"""
 
 
-def measured(command):
-    """(CPU seconds, peak MB) of a command that succeeds."""
+def cost_of(command):
+    """(CPU seconds, peak MB) of a command that must succeed."""
     done = subprocess.run([sys.executable, "-S", "-c", MEASURE, *command], capture_output=True, text=True, check=True)
     cpu_s, peak_mb, code = done.stdout.split("\n")[-2].split()
     assert code == "0", f"{' '.join(command)}\nexit {code}\n{done.stderr}"
@@ -52,7 +56,7 @@ def check_every_sample(path, frames, channels):
 def capture(command, rate_khz, channels, time_s, link):
     with tempfile.TemporaryDirectory(prefix="tacto-") as folder:
         device = f"sim:source=counter,channels={channels},rate={rate_khz}kHz,paced=1,link_buffer={link}"
-        cpu_s, peak_mb = measured([command, "record", "-d", device, "-o", f"{folder}/c", "--time", f"{time_s:g}s"])
+        cpu_s, peak_mb = cost_of([command, "record", "-d", device, "-o", f"{folder}/c", "--time", f"{time_s:g}s"])
         check_every_sample(f"{folder}/c.wav", round(rate_khz * 1000 * time_s), channels)
         return cpu_s, peak_mb
 
@@ -64,13 +68,14 @@ def main():
     parser.add_argument("--no-clock", action="store_true")
     parser.add_argument("--link", default="1s")
     options = parser.parse_args()
-    start_s, idle_mb = measured([options.tactograph, "--version"])
+    start_s, idle_mb = cost_of([options.tactograph, "--version"])
     print("simulated, all of it")
     for rate_khz, channels, most_cpu in ((10, 4, MOST_CPU), (100, 8, None)):
         cpu_s, peak_mb = capture(options.tactograph, rate_khz, channels, options.time, options.link)
         share, above_mb = cpu_s / options.time, peak_mb - idle_mb
         print(f"{rate_khz} kHz x {channels}, {options.time:g} s: no sample lost or doubled, {above_mb:.1f} MB above an idle "
               f"process, {100 * share:.2f} % of one core (start: {start_s:.2f} s)", flush=True)
+        measured(f"capture_cost.{rate_khz}khz_x_{channels}_above_idle_mb", above_mb)
         assert SANITIZED or above_mb < MOST_MEMORY_MB, above_mb  # a sanitizer keeps freed memory
         assert options.no_clock or most_cpu is None or share < most_cpu, share
     return 0

@@ -19,7 +19,7 @@ std::vector<double> force_of(std::int64_t seconds) {
   return bench::workload(static_cast<std::size_t>(seconds)).force_n;
 }
 
-// Ends treated, in blocks; the filter and its plans are kept, as a recording with gaps keeps them.
+// With treatment of the ends, in blocks; the filter and its plans are reused, as in a recording with gaps.
 void fourier_band_pass(benchmark::State& state) {
   const std::vector<double> force = force_of(state.range(0));
   BlockFourierFilter filter(bench::kRate_hz, kBand);
@@ -35,7 +35,7 @@ void fourier_band_pass(benchmark::State& state) {
 }
 BENCHMARK(fourier_band_pass)->Unit(benchmark::kMillisecond)->Arg(60)->Arg(600);
 
-// The same with making the filter and its plans.
+// The same, including the construction of the filter and its plans.
 void fourier_band_pass_once(benchmark::State& state) {
   const std::vector<double> force = force_of(state.range(0));
   for (auto _ : state)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole way: a minute's recording on disk, opened, filtered, its 60 strokes made textures in memory,
-// their spectrograms up to 15 /mm written as netCDF. Beside it, the last step alone, and a short recording as
-// a folder has many.
+// The whole chain: a minute's recording on disk is opened, filtered, its 60 strokes become textures in
+// memory, their spectrograms up to 15 /mm are written as netCDF. Also the last step alone, and a short
+// recording, of which a folder may contain many.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -48,7 +48,7 @@ Result<schema::Recording> written(const std::string& stem, std::size_t seconds) 
   return writer->close();
 }
 
-// What the verb does, without its report.
+// The work of the verb without its report.
 Result<void> to_spectrogram(const std::string& stem, const std::string& path) {
   const auto recording = schema::open_recording(stem);
   TACTO_TRY(recording);
@@ -84,7 +84,8 @@ void recording_to_spectrogram(benchmark::State& state) {
       return state.SkipWithError(schema::message(done.error()).c_str());
 }
 
-// One of a folder's many recordings, 2 s each: opened and checked, its two strokes made textures and written.
+// One of many recordings in a folder, 2 s each: opened and checked, its two strokes become textures and are
+// written.
 void short_recording_to_textures(benchmark::State& state) {
   const tests::TemporaryFolder folder;
   if (!written(folder / "two", 2)) return state.SkipWithError("no recording");

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each stage of the benchmark takes in SciPy, on the recording of workload.hpp: JSON of {stage: milliseconds}.
+"""Time of each stage of the benchmark in SciPy, on the recording of workload.hpp: JSON of {stage: milliseconds}.
 
-One thread, CPU time, medians. Each stage is what a lab would write with SciPy's own functions; `decimated` takes the
-trouble of decimating by 4 first.
+One thread, CPU time, medians. Each stage is what a laboratory would write with SciPy's own functions; `decimated`
+decimates by 4 first.
 """
 import json
 import os
@@ -46,7 +46,7 @@ def fourier(force):
 
 
 def to_space(position, force):
-    """PCHIP both ways, the axes swapped; positions that repeat are dropped."""
+    """PCHIP in both directions with exchanged axes; repeated positions are dropped."""
     textures = []
     for begin in range(0, len(position), FRAMES):
         x, f = position[begin:begin + STROKE], force[begin:begin + STROKE]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Spectrograms of a minute's 60 strokes: 40,000 samples each, window 10,000, hop 100, padded to 16,384;
-// 18,060 rows. Peer: the transforms alone, two real frames in one of FFTW's, single precision.
+// 18,060 rows. Compared with the transforms alone: two real frames per FFTW transform, single precision.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>

@@ -4,7 +4,7 @@
 
 usage: table.py TACTOGRAPH BENCH_FOLDER [-o table.json]
 
-CPU time of one thread, medians. Machines are shared and noisy: compare the columns of one run, not two runs.
+CPU time, medians; of one thread, for `import_csv` of all its threads. Machines are shared and noisy: compare the columns of one run, not two runs.
 """
 import argparse
 import glob
@@ -16,7 +16,7 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PYTHON = "/usr/bin/python3"  # Debian's own: SciPy is installed for it
-# stage -> what people call it
+# stage -> its name in the table
 STAGES = {
     "pchip_true_inverse": "PCHIP with true inverse (SciPy: axes swapped)",
     "zero_phase_sos": "zero-phase second-order sections, in time",
@@ -44,7 +44,8 @@ def medians(folder):
         for entry in json.loads(run.stdout)["benchmarks"]:
             if entry.get("aggregate_name") == "median":
                 scale = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}[entry["time_unit"]]
-                found[entry["run_name"]] = {"ms": entry["cpu_time"] * scale, "error": entry.get("error")}
+                name = entry["run_name"].removesuffix("/real_time").removesuffix("/process_time")
+                found[name] = {"ms": entry["cpu_time"] * scale, "error": entry.get("error")}
     return found
 
 
@@ -66,7 +67,8 @@ def peak_memory_mb(command, folder):
 
 
 def write_csv(path, seconds):
-    """In a process of its own: a child's peak begins with what its parent held, and this one has to stay small."""
+    """In a process of its own: a child's peak includes its parent's memory at the fork, and this one has to stay
+    small."""
     subprocess.run([PYTHON, os.path.join(HERE, "workload_csv.py"), path, str(seconds)], check=True)
 
 

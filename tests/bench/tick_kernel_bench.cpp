@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tick: place between counts, two levels of the pyramid by Hermite, gain, eight sections or taps, limits.
-// Batches of 1000 ticks of a finger that goes at 0.1 m/s; and single ticks after a sleep that leaves the
-// cache to others.
+// A tick: position between counts, two levels of the pyramid by Hermite, gain, eight sections or taps,
+// limits. Batches of 1000 ticks of a finger at 0.1 m/s; and single ticks after a sleep, during which other
+// programs use the cache.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Prepared bench_prepared(Inverse inverse) {
   return *prepare(bench_texture(), *schema::read_transducer("wiertlewski2011"), options);
 }
 
-/// Eight sections of an actuator's inverse.
+/// Eight sections of an actuator's inverse filter.
 std::vector<wire::Section> eight_sections() {
   return std::vector<wire::Section>(8, wire::Section{1.05F, -1.92F, 0.95F, -1.9F, 0.95F});
 }
@@ -74,7 +74,7 @@ void texture_tick_taps(benchmark::State& state) {
 }
 BENCHMARK(texture_tick_taps)->Unit(benchmark::kMicrosecond);
 
-/// Reads 8 MB between ticks: what a sleep leaves of the cache.
+/// Reads 8 MB between ticks, so that the cache is cold as after a sleep.
 void texture_tick_cold(benchmark::State& state) {
   const Prepared prepared = bench_prepared(Inverse::full);
   core::TickKernel kernel;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// usage: tick_lateness RATE_HZ SECONDS PRIORITY. How late the daemon's clock wakes, and what a tick of the
-// kernel takes after that sleep, as one line of JSON in seconds.
+// usage: tick_lateness RATE_HZ SECONDS PRIORITY. Prints how late the daemon's clock wakes, and the duration
+// of a tick of the kernel after that sleep, as one line of JSON in seconds.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -36,7 +36,7 @@ void measure(double rate_hz, double seconds, int priority, Lateness& into) {
     sum += kernel.tick();
     into.work.add(TickClock::now_ns() - began_ns);
   }
-  if (sum == 1e30F) std::puts("");  // so that the ticks are not left out
+  if (sum == 1e30F) std::puts("");  // uses the result, so that the compiler does not remove the ticks
 }
 
 }  // namespace

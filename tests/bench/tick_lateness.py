@@ -4,9 +4,9 @@
 
 usage: tick_lateness.py TICK_LATENESS [--rate 2000] [--rounds 10] [--seconds 5] [--priority 50] [--core 0]
 
-Shared machines stall for tens of milliseconds: what counts is the ratio of medians over the rounds, not a figure by itself. The
-daemon's clock spins the last 50 us, cyclictest does not: it sleeps as a daemon would that did not spin. Both keep the cores from deep idle
-(/dev/cpu_dma_latency) where they may.
+Shared machines stall for tens of milliseconds, so only the ratio of medians over the rounds is meaningful, not a single
+figure. The daemon's clock spins during the last 50 us; cyclictest only sleeps, as a daemon without spinning would. Both
+keep the cores out of deep idle states (/dev/cpu_dma_latency) if they have the right.
 """
 import argparse
 import json
@@ -18,7 +18,7 @@ import sys
 
 PARTS = {"p50": 0.5, "p99": 0.99, "p99.9": 0.999}
 MOST_US = 20000
-MOST_RATIO = 1.1  # of p99, asked of the clock; told, no more: a machine that others use cannot be held to it
+MOST_RATIO = 1.1  # of p99; printed, not asserted, because a shared machine cannot meet it reliably
 
 
 def printed(words):
@@ -35,7 +35,7 @@ def ours(program, o):
 
 
 def quantiles(lines):
-    """Of `cyclictest -h`: a line for each microsecond, and how many were beyond."""
+    """Reads `cyclictest -h`: one line for each microsecond, and the number of values beyond."""
     rows = [line.split() for line in lines if line and not line.startswith("#")]
     counts = [(int(us), int(count)) for us, count in rows]
     beyond = next((int(line.split(":")[1].split()[0]) for line in lines if line.startswith("# Histogram Overflows")), 0)

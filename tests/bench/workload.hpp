@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every benchmark of the spatial rooms works on: one 40 mm stroke a second at 50 mm/s, forth and back in
-// turn.
+// The recording of all benchmarks of `spatial`: one 40 mm stroke per second at 50 mm/s, alternately back and
+// forth.
 #pragma once
 
 #include <cmath>
@@ -17,20 +17,20 @@ inline constexpr std::size_t kFramesPerSecond = 10000;
 inline constexpr std::size_t kStrokeFrames = 8000;  // 40 mm at 50 mm/s, then 0.2 s of rest
 inline constexpr double kStroke_m = 40e-3;
 
-/// A finger's position on an encoder of 1 um, and a force of a surface with lines at 2 and 8 /mm, with a
-/// drift and a little noise. One value a frame, at 10 kHz.
+/// Position of a finger on an encoder of 1 um, and the force of a surface with lines at 2 and 8 /mm, with
+/// drift and some noise. One value per frame, at 10 kHz.
 struct Workload {
   std::vector<double> position_m, force_n;
 };
 
-/// Way within a stroke: the speed wavers by a tenth, three times.
+/// Position within a stroke: the speed varies by a tenth, three times.
 inline double way_m(double t_s) {
   constexpr double kWavers_hz = 3 / 0.8;
   const double turn = 2 * std::numbers::pi * kWavers_hz;
   return 0.05 * (t_s + 0.1 * std::sin(turn * t_s) / turn);
 }
 
-/// The same numbers on every machine and in scipy_columns.py: 0 ... 1, evenly spread.
+/// The same numbers on every machine and in scipy_columns.py: 0 ... 1, evenly distributed.
 inline double hashed(std::size_t i) {
   return std::fmod(static_cast<double>(i % 65536) * 0.6180339887498949, 1.0);
 }

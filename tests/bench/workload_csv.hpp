@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The workload as another program's table: what import and NumPy's loadtxt read.
+// The workload as a table of another program, for import and NumPy's loadtxt.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,8 +15,8 @@
 
 namespace tacto::bench {
 
-/// "time_s,force_V,count", 60 s: 600,000 rows, 16 MB, written as scipy_columns.py writes
-/// its table: six digits of time, nine of force, whole counts.
+/// "time_s,force_V,count", 60 s: 600,000 rows, 16 MB, in the format of scipy_columns.py's table: six digits
+/// of time, nine of force, integer counts.
 inline std::string workload_csv() {
   const Workload made = workload(60);
   std::string text = "time_s,force_V,count\n";

@@ -23,7 +23,7 @@ using tests::TemporaryFolder;
 constexpr const char* kDay = "2026-11-01T12:00:00Z";
 constexpr const char* kNow = "2026-11-21T12:00:00Z";
 
-schema::RecordingHeader header() {
+schema::RecordingHeader calibrated_header() {
   schema::RecordingHeader made;
   made.serial = "T-1";
   made.sample_rate_hz = 1000;
@@ -61,7 +61,7 @@ CalibrationEntry tare(double zero, const std::string& date) {
 }
 
 TEST(ApplyCalibration, PhysicalIsStoredMinusZeroTimesScale) {
-  auto device = header();
+  auto device = calibrated_header();
   CalibrationFile file{"T-1", {}, {}, {scale(0.02, kDay), tare(40, kDay)}, {}, {}};
   const auto warnings = apply_calibration(device, file, kStaleAfter_s, kNow);
   ASSERT_TRUE(warnings);
@@ -82,7 +82,7 @@ TEST(ApplyCalibration, PhysicalIsStoredMinusZeroTimesScale) {
 }
 
 TEST(ApplyCalibration, TheNewestCountsWhateverItsPlace) {
-  auto device = header();
+  auto device = calibrated_header();
   CalibrationFile file{"T-1", {}, {}, {scale(0.03, kDay), scale(0.02, "2026-10-01T00:00:00Z")}, {}, {}};
   ASSERT_TRUE(apply_calibration(device, file, kStaleAfter_s, kNow));
   EXPECT_EQ(device.channels[0].scale, 0.03);
@@ -90,43 +90,44 @@ TEST(ApplyCalibration, TheNewestCountsWhateverItsPlace) {
 }
 
 TEST(ApplyCalibration, AStaleOneIsAppliedAndWarnedOf) {
-  auto device = header();
+  auto device = calibrated_header();
   CalibrationFile file{"T-1", {}, {}, {scale(0.02, "2026-10-01T12:00:00Z"), tare(0, kDay)}, {}, {}};
   const auto warnings = apply_calibration(device, file, kStaleAfter_s, kNow);
   ASSERT_EQ(warnings->size(), 1U);
   EXPECT_NE((*warnings)[0].find("stale (weights, 2026-10-01, 51 days old)"), std::string::npos)
       << (*warnings)[0];
   EXPECT_EQ(device.channels[0].scale, 0.02);
-  auto again = header();
+  auto again = calibrated_header();
   EXPECT_TRUE(apply_calibration(again, file, 60 * 86400.0, kNow)->empty());
-  auto later = header();
+  auto later = calibrated_header();
   EXPECT_EQ(apply_calibration(later, file, 19 * 86400.0, kNow)->size(), 2U);
 }
 
 TEST(ApplyCalibration, OneOfTheFutureIsWarnedOf) {
-  auto device = header();
+  auto device = calibrated_header();
   const CalibrationFile file{"T-1", {}, {}, {scale(0.02, "2027-09-21T12:00:00Z")}, {}, {}};
   const auto warnings = apply_calibration(device, file, kStaleAfter_s, kNow);
   ASSERT_EQ(warnings->size(), 1U);
-  EXPECT_NE((*warnings)[0].find("of the future (weights, 2027-09-21, 304 days ahead)"), std::string::npos)
+  EXPECT_NE((*warnings)[0].find("dated in the future (weights, 2027-09-21, 304 days ahead)"),
+            std::string::npos)
       << (*warnings)[0];
   const CalibrationFile ahead{"T-1", {}, {}, {scale(0.02, "2026-11-21T22:00:00Z")}, {}, {}};
-  auto near = header();
+  auto near = calibrated_header();
   EXPECT_TRUE(apply_calibration(near, ahead, kStaleAfter_s, kNow)->empty());
 }
 
 TEST(ApplyCalibration, OneOfAnotherScaleOfTheDeviceIsNot) {
-  auto device = header();
+  auto device = calibrated_header();
   CalibrationFile file{"T-1", {}, {}, {scale(0.02, kDay, 0.011)}, {}, {}};
   const auto warnings = apply_calibration(device, file, kStaleAfter_s, kNow);
   ASSERT_EQ(warnings->size(), 1U);
-  EXPECT_NE((*warnings)[0].find("not applied"), std::string::npos);
+  EXPECT_NE((*warnings)[0].find("is not applied"), std::string::npos);
   EXPECT_EQ(device.channels[0].scale, 0.01);
   EXPECT_FALSE(device.channels[0].calibration);
 }
 
 TEST(ApplyCalibration, OneOfAnotherDeviceIsRefused) {
-  auto device = header();
+  auto device = calibrated_header();
   EXPECT_EQ(apply_calibration(device, {"T-2", {}, {}, {}, {}, {}}, 1, kNow).error().kind,
             ErrorKind::unsuitable);
 }
@@ -134,15 +135,15 @@ TEST(ApplyCalibration, OneOfAnotherDeviceIsRefused) {
 TEST(KeepCalibration, AddsToItsDevicesFile) {
   const TemporaryFolder folder;
   const std::string path = folder / "deep/er/T-1.calibration.json";
-  ASSERT_TRUE(keep_calibration(header(), "bench", {scale(0.02, "")}, path, kDay));
-  ASSERT_TRUE(keep_calibration(header(), "bench", {tare(3, "")}, path, kNow));
+  ASSERT_TRUE(keep_calibration(calibrated_header(), "bench", {scale(0.02, "")}, path, kDay));
+  ASSERT_TRUE(keep_calibration(calibrated_header(), "bench", {tare(3, "")}, path, kNow));
   const auto file = schema::read_calibration(path);
   ASSERT_TRUE(file) << schema::message(file.error());
   ASSERT_EQ(file->entries.size(), 2U);
   EXPECT_EQ(file->device, "bench");
   EXPECT_EQ(file->entries[0].date, kDay);
   EXPECT_EQ(file->entries[1].date, kNow);
-  auto other = header();
+  auto other = calibrated_header();
   other.serial = "T-2";
   EXPECT_EQ(keep_calibration(other, "", {}, path, kNow).error().kind, ErrorKind::unsuitable);
   EXPECT_EQ(schema::read_calibration(path)->entries.size(), 2U);
@@ -154,7 +155,8 @@ TEST(KeepCalibration, OfSeveralAtOnceLosesNone) {
   std::vector<std::thread> people;
   for (int person = 0; person < 4; ++person)
     people.emplace_back([&] {
-      for (int i = 0; i < 5; ++i) EXPECT_TRUE(keep_calibration(header(), "", {tare(3, "")}, path, kNow));
+      for (int i = 0; i < 5; ++i)
+        EXPECT_TRUE(keep_calibration(calibrated_header(), "", {tare(3, "")}, path, kNow));
     });
   for (std::thread& person : people) person.join();
   EXPECT_EQ(schema::read_calibration(path)->entries.size(), 20U);
@@ -167,11 +169,12 @@ TEST(CalibrationOf, IsNoneOnlyWhereNobodyNamedOne) {
   ASSERT_TRUE(none);
   EXPECT_FALSE(*none);
   EXPECT_EQ(calibration_of("T-1", folder / "mine.json").error().kind, ErrorKind::not_found);
-  ASSERT_TRUE(keep_calibration(header(), "", {tare(3, "")}, "", kNow));
+  ASSERT_TRUE(keep_calibration(calibrated_header(), "", {tare(3, "")}, "", kNow));
   EXPECT_EQ((*calibration_of("T-1", ""))->entries.size(), 1U);
 }
 
-// The whole way: an emulated load cell that is 5 % off and 0.1 N away, weighed, taken along by a recording.
+// The whole sequence: an emulated load cell with an error of 5 % and 0.1 N is calibrated by weights; a
+// recording applies it.
 TEST(ApplyCalibration, ARecordingCarriesIt) {
   const TemporaryFolder folder;
   const auto device =
@@ -190,7 +193,7 @@ TEST(ApplyCalibration, ARecordingCarriesIt) {
   EXPECT_NEAR(schema::read_channel(*opened, 2)->values.back(), 1, 1e-3);
   EXPECT_EQ(opened->header.channels[2].calibration->scale_method, "weights");
   EXPECT_EQ(opened->header.serial, "sim-1");
-  // From that recording the device's own scale can be found again, and calibrated anew.
+  // The device's own scale can be recovered from that recording, and calibrated again.
   const auto part = take_from(RecordingPart{folder / "weight", 0.1, 0.3});
   ASSERT_TRUE(part) << schema::message(part.error());
   EXPECT_EQ(part->header.channels[2].scale, own.header.channels[2].scale);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`calibrate`, `doctor` and what `record` makes of a calibration, by the command, against the emulated truth."""
+"""`calibrate`, `doctor` and the use of a calibration in `record`, by command, against the emulated device's true
+values."""
 import json
 import os
 import pathlib
@@ -10,7 +11,7 @@ import soundfile
 
 import tacto
 
-# What the bench does otherwise than its device says.
+# The true values of the emulated bench that differ from the device's description.
 TRUTH = "cell_gain=1.04,cell_zero=0.05N,sensor_gain=0.93,encoder_gain=1.003,seed=7"
 FILE = "config/tactograph/calibrations/sim-7.calibration.json"
 
@@ -28,7 +29,7 @@ def entries():
 
 
 def expect_scale(report, truth):
-    """`truth` as part of the device's own scale; within the stated interval."""
+    """`truth` as a factor on the device's own scale; it must be within the stated interval."""
     off = 100 * abs(report["of_the_devices_own"] / truth - 1)
     assert off <= report["interval_of_95_percent"], (report, off)
     print(f"{report['channel']}: {off:.4f} % off, stated {report['interval_of_95_percent']:.4f} %")
@@ -47,10 +48,10 @@ def tare():
 
 def a_finger_is_refused():
     _, error = tacto.run("calibrate", "tare", "-d", bench("surface=flat,strokes=9"), "--time", "2s", code=5)
-    assert "not still" in error and "wanders" in error, error
+    assert "not at rest" in error and "drifts" in error, error
     assert len(entries()) == 3
     _, error = tacto.run("calibrate", "tare", "-d", bench("surface=flat,strokes=9"), "--time", "2s", "--anyway", "--dry-run")
-    assert "not still" in error and len(entries()) == 3, error
+    assert "not at rest" in error and len(entries()) == 3, error
 
 
 def weights():
@@ -62,7 +63,7 @@ def weights():
     report = tacto.run_json("calibrate", "force", "--channel", "net_force", "--mass", "0N=p0@0.1s..1s",
                             "--mass", "0.5N=p1@0.1s..1s", "--mass", "1N=p2@0.1s..1s")
     expect_scale(report, 1 / 1.04)
-    # By masses the local gravity comes in, which nobody knows better than to 0.15 % unless told.
+    # Masses depend on the local gravity, which is uncertain by 0.15 % unless it is given.
     masses = ["--mass", "0g=w0@0.1s..1s", "--mass", "101.9716g=w2@0.1s..1s", "--dry-run"]
     vague = tacto.run_json("calibrate", "force", *masses)
     sharp = tacto.run_json("calibrate", "force", *masses, "--gravity", "9.80665m/s^2")
@@ -72,11 +73,11 @@ def weights():
 
 
 def weights_hung_when_asked_for():
-    """The device is asked anew each time; here it always has 1 N on it, and says so."""
+    """The device is read again for each weight; here it always has 1 N on it, and the command reports that."""
     done = subprocess.run([tacto.COMMAND, "calibrate", "force", "-d", bench("finger=up,weight=1N"), "--mass", "0g",
                            "--mass", "1N", "--time", "0.3s"], input="\n\n", capture_output=True, text=True, timeout=60)
     assert done.returncode == 5 and "does not follow" in done.stderr, done
-    assert "Take everything off normal_force, then press Enter" in done.stderr, done.stderr
+    assert "Remove everything from normal_force, then press Enter" in done.stderr, done.stderr
     assert "Hang 1N on normal_force" in done.stderr, done.stderr
     done = subprocess.run([tacto.COMMAND, "calibrate", "force", "-d", bench("finger=up"), "--mass", "0g", "--mass", "1N"],
                           stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
@@ -89,7 +90,8 @@ def against_the_reference():
 
 
 def released_weights():
-    """Five threads cut at other moments and other weights: the piezo's scale, within what is stated."""
+    """Five threads are cut at different times with different weights: the piezo's scale, within the stated
+    uncertainty."""
     for k in range(5):
         record(f"r{k}", f"force=release,force_amplitude={0.05 + 0.02 * k}N,force_sweep={0.5 + 0.037 * k}s", time="1.3s")
     cut = [f"--release={0.05 + 0.02 * k}N=r{k}" for k in range(5)]
@@ -98,11 +100,11 @@ def released_weights():
     expect_scale(report, 1 / 0.93)
     assert report["interval_of_95_percent"] < 3, report
     assert entries()[-1]["method"] == "released weight"
-    # Nothing was cut; a weight that was not said; both ways at once.
+    # No thread was cut; a weight is missing; both options at once.
     _, error = tacto.run("calibrate", "force", "--release", "0.05N=r0@0s..0.4s", code=5)
     assert "release" in error, error
     _, error = tacto.run("calibrate", "force", "--release", "0.05N=r0", "--reference", "net_force", code=2)
-    assert "needs weights, or a reference, or releases" in error, error
+    assert "needs either weights, or a reference, or releases" in error, error
 
 
 def travel():
@@ -111,11 +113,11 @@ def travel():
     report = tacto.run_json("calibrate", "encoder", "--travel", "35mm", "--from", "t0", "--from", "t2")
     assert report["travels"] == 2 and report["first_travel"] == "counts up", report
     expect_scale(report, 1 / 1.003)
-    _, error = tacto.run("calibrate", "encoder", "--travel", "35mm", "--from", "t1", code=5)  # there and back: no travel
-    assert "no travel" in error, error
+    _, error = tacto.run("calibrate", "encoder", "--travel", "35mm", "--from", "t1", code=5)  # back and forth
+    assert "too few for a travel" in error, error
     done = subprocess.run([tacto.COMMAND, "calibrate", "encoder", "--travel", "35mm", "-d", bench("surface=flat,paced=1")],
                           stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 2 and "Go to the first mark" in done.stderr, done
+    assert done.returncode == 2 and "Move to the first mark" in done.stderr, done
 
 
 def what_cannot_be_right_is_refused():
@@ -124,9 +126,9 @@ def what_cannot_be_right_is_refused():
     _, error = tacto.run(*swapped, code=5)
     assert "%" in error and "--anyway" in error and "--dry-run" in error, error
     output, error = tacto.run(*swapped, "--dry-run", "--json")
-    assert json.loads(output)["interval_of_95_percent"] > 20 and "known to +-" in error, error
+    assert json.loads(output)["interval_of_95_percent"] > 20 and "known only to +-" in error, error
     _, error = tacto.run("calibrate", "encoder", "--travel", "35m", "--from", "t0", "--from", "t2", code=5)
-    assert "times the device's own" in error, error
+    assert "times the nominal scale" in error, error
     _, error = tacto.run("calibrate", "force", "--mass", "0N=w0@0.1s..9s", "--mass", "1N=w2", code=5)
     assert "w0" in error and "ends at 9 s" in error, error
     assert len(entries()) == before
@@ -150,7 +152,7 @@ def a_recording_takes_it_along():
     assert shown["serial"] == "sim-7" and shown["channels"][2]["calibrated"] == side["channels"][2]["calibrated"]
     assert shown["channels"][2]["scale_uncertainty_percent"] > 0
     tacto.run("validate", "known")
-    # A replay is of the same device, and keeps the calibration that its recording had.
+    # A replay is the same device, so it keeps the calibration of its recording.
     _, error = tacto.run("record", "-d", "replay:known", "-o", "again")
     again = json.loads(pathlib.Path("again.json").read_text())
     assert "warning" not in error and again["serial"] == "sim-7" and again["channels"] == side["channels"], (error, again)
@@ -175,14 +177,14 @@ def another_devices_is_refused():
     assert "'sim-7'" in error and "'sim-8'" in error, error
     assert not pathlib.Path("other.wav").exists()
     _, error = tacto.run("record", "-d", "sim:finger=up,seed=8", "-o", "other", "--time", "0.2s", "--calibration", "none.json", code=3)
-    tacto.run("record", "-d", "sim:finger=up,seed=8", "-o", "other", "--time", "0.2s")  # has none of its own
+    tacto.run("record", "-d", "sim:finger=up,seed=8", "-o", "other", "--time", "0.2s")  # not calibrated
 
 
 def the_file_is_one_of_ours():
     tacto.run("validate", FILE)
     report = tacto.run_json("info", FILE)
     assert report["serial"] == "sim-7" and len(report["entries"]) == len(entries()) >= 7
-    # A zero is a stored number; beside it stands what it is in newtons.
+    # A zero is stored as a code; its value in newtons is stored beside it.
     for told, kept in zip(report["entries"], entries(), strict=True):
         if "zero" in kept:
             assert told["zero_as_stored"] == kept["zero"] and "zero" not in told, told

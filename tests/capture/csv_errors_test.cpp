@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every way a table can be wrong, with the place where it is.
+// Every kind of error in a table, reported with its place.
 #include <gtest/gtest.h>
 
 #include "tests/capture/read_text.hpp"
@@ -34,21 +34,21 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         ErrorCase{"empty", "", "is empty", "t.csv"},
         ErrorCase{"only_a_mark", "\xEF\xBB\xBF", "is empty", "t.csv"},
-        ErrorCase{"only_blanks", "\n \n\n", "holds no data", "t.csv"},
-        ErrorCase{"only_comments", "# a\n# b\n", "holds no data", "t.csv"},
+        ErrorCase{"only_blanks", "\n \n\n", "contains no data", "t.csv"},
+        ErrorCase{"only_comments", "# a\n# b\n", "contains no data", "t.csv"},
         ErrorCase{"header_only", "f,x\n", "a header but no data", "t.csv: line 1"},
         ErrorCase{"header_only_after_comments", "# a\n\nf,x", "a header but no data", "t.csv: line 3"},
-        ErrorCase{"too_few", "f,x\n1,2\n3\n4,5\n", "has 1 field where 2 are due", "t.csv: line 3"},
-        ErrorCase{"too_many", "f,x\n1,2\n3,4,5\n4,5\n", "has 3 fields where 2 are due", "t.csv: line 3"},
-        ErrorCase{"too_few_at_the_end", "f,x,y\n1,2,3\n1,2", "has 2 fields where 3 are due", "t.csv: line 3"},
+        ErrorCase{"too_few", "f,x\n1,2\n3\n4,5\n", "has 1 field instead of 2", "t.csv: line 3"},
+        ErrorCase{"too_many", "f,x\n1,2\n3,4,5\n4,5\n", "has 3 fields instead of 2", "t.csv: line 3"},
+        ErrorCase{"too_few_at_the_end", "f,x,y\n1,2,3\n1,2", "has 2 fields instead of 3", "t.csv: line 3"},
         ErrorCase{"broken_off_in_a_number", "f,x\n1,2\n3,\n", "has no value",
                   "t.csv: line 3, column 2 ('x')"},
-        ErrorCase{"text", "f,x\n1,2\n3,four\n", "'four' is no number", "t.csv: line 3, column 2 ('x')"},
-        ErrorCase{"text_in_latin1", "f,x\n1,2\n3,\xE4\n", "'\xC3\xA4' is no number",
+        ErrorCase{"text", "f,x\n1,2\n3,four\n", "'four' is not a number", "t.csv: line 3, column 2 ('x')"},
+        ErrorCase{"text_in_latin1", "f,x\n1,2\n3,\xE4\n", "'\xC3\xA4' is not a number",
                   "t.csv: line 3, column 2 ('x')"},
-        ErrorCase{"unit_in_a_field", "f,x\r\n1,2\r\n3N,4\r\n", "'3N' is no number",
+        ErrorCase{"unit_in_a_field", "f,x\r\n1,2\r\n3N,4\r\n", "'3N' is not a number",
                   "t.csv: line 3, column 1 ('f')"},
-        ErrorCase{"thousands", "f;x\n1,5;2\n1.234,5;4\n", "'1.234,5' is no number",
+        ErrorCase{"thousands", "f;x\n1,5;2\n1.234,5;4\n", "'1.234,5' is not a number",
                   "t.csv: line 3, column 1 ('f')"},
         ErrorCase{"nan", "f,x\n1,2\nNaN,4\n", "is NaN", "t.csv: line 3, column 1 ('f')"},
         ErrorCase{"windows_nan", "f,x\n1,2\n1.#QNAN,4\n", "is NaN", "t.csv: line 3, column 1 ('f')"},
@@ -58,21 +58,21 @@ INSTANTIATE_TEST_SUITE_P(
         ErrorCase{"missing_in_quotes", "f,x\n1,2\n\" \",4\n", "has no value",
                   "t.csv: line 3, column 1 ('f')"},
         ErrorCase{"all_missing", "f,x\n1,2\n,\n", "has no value", "t.csv: line 3, column 1 ('f')"},
-        ErrorCase{"too_large", "f,x\n1,2\n3,1e400\n", "beyond what a number can hold",
+        ErrorCase{"too_large", "f,x\n1,2\n3,1e400\n", "too large for a number",
                   "t.csv: line 3, column 2 ('x')"},
         ErrorCase{"other_mark", "f;x\n1,5;2\n3.5;4\n", "another decimal mark",
                   "t.csv: line 3, column 1 ('f')"},
-        ErrorCase{"open_quote", "f,x\n1,2\n\"3,4\n", "has 1 field where 2 are due", "t.csv: line 3"},
-        ErrorCase{"open_quote_at_the_end", "f,x\n1,2\n3,\"4\n", "'\"4' is no number",
+        ErrorCase{"open_quote", "f,x\n1,2\n\"3,4\n", "has 1 field instead of 2", "t.csv: line 3"},
+        ErrorCase{"open_quote_at_the_end", "f,x\n1,2\n3,\"4\n", "'\"4' is not a number",
                   "t.csv: line 3, column 2 ('x')"},
         ErrorCase{"blank_line_among_rows", "f,x\n1,2\n\n3,4\n", "is blank", "t.csv: line 3"},
         ErrorCase{"blank_lines_among_rows", "f,x\n1,2\n# c\n\n\n3,4\n", "is blank", "t.csv: line 4"},
         ErrorCase{"line_counts_comments", "# a\n\nf,x\n1,2\n# b\n3,four\n", "four",
                   "t.csv: line 6, column 2 ('x')"},
         ErrorCase{"old_mac", "f,x\r1,2\r3,four\r", "four", "t.csv: line 3, column 2 ('x')"},
-        ErrorCase{"text_alone", "a line\nand another\n\nno table\n", "holds no numbers there",
+        ErrorCase{"text_alone", "a line\nand another\n\nno table\n", "contains no numbers there",
                   "t.csv: lines 1 to 4"},
-        ErrorCase{"blanks_between", "t f\n 0.0  1.5\n 0.1  1.6\n", "has blanks between its columns",
+        ErrorCase{"blanks_between", "t f\n 0.0  1.5\n 0.1  1.6\n", "has spaces between its columns",
                   "t.csv: lines 1 to 3"},
         ErrorCase{"name_among_numbers", "1,two,3\n1,2,3\n", "'two' is a name among numbers",
                   "t.csv: line 1, column 2"},
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "is UTF-16", "t.csv"},
         ErrorCase{"zero_byte", std::string("f,x\n1,\0\n", 8), "zero byte at 6", "t.csv"},
         ErrorCase{"long_field", "f\n1\n" + std::string(500, 'z') + "\n",
-                  std::string(40, 'z') + "...' is no number", "t.csv: line 3, column 1 ('f')"}),
+                  std::string(40, 'z') + "...' is not a number", "t.csv: line 3, column 1 ('f')"}),
     [](const auto& one) { return one.param.name; });
 
 TEST(CsvErrors, AHeaderWhoseRowsAreAllCommentsHasNoRow) {
@@ -91,7 +91,7 @@ TEST(CsvErrors, AHeaderWhoseRowsAreAllCommentsHasNoRow) {
   ASSERT_TRUE(layout);
   CsvReader reader(*layout, {0}, "t.csv");
   ASSERT_TRUE(reader.feed("# a\n"));
-  EXPECT_EQ(reader.finish().error().what, "holds no row of numbers");
+  EXPECT_EQ(reader.finish().error().what, "contains no row of numbers");
 }
 
 TEST(CsvErrors, ALongFirstLineIsNoTable) {

@@ -32,7 +32,7 @@ TEST_P(CsvTables, GivesItsNumbers) {
   EXPECT_EQ(read(GetParam().text).values, GetParam().values);
 }
 
-// However a file is cut into pieces, down to single bytes, its numbers are the same.
+// The numbers do not depend on how the file is cut into pieces, down to single bytes.
 TEST_P(CsvTables, GivesThemInPiecesOfAnySize) {
   for (std::size_t piece = 1; piece < 9; ++piece)
     EXPECT_EQ(read(GetParam().text, {}, piece).values, GetParam().values) << piece;
@@ -79,7 +79,7 @@ TEST(CsvReader, KnowsTheLineOfEachRow) {
   EXPECT_EQ(line_of_row(landmarks, 3), 8U);
 }
 
-// Against strtod, in all the notations that the fast way might miss.
+// Against strtod, in all notations that the fast parser might not handle.
 TEST(CsvReader, NumbersAreExact) {
   std::mt19937_64 random(7);
   std::string text = "a,b,c\n";
@@ -94,7 +94,7 @@ TEST(CsvReader, NumbersAreExact) {
   EXPECT_EQ(read(text, {}, 4093).values, target);
 }
 
-// Plain rows of every length and sign, between others that only the slower way can read.
+// Plain rows of every length and sign, between rows that need the slow parser.
 TEST(CsvReader, TheQuickWayAndTheSlowOneAgree) {
   std::mt19937_64 random(11);
   for (const char* mark : {".", ","}) {

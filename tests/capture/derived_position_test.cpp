@@ -31,7 +31,7 @@ TEST(DerivedPosition, NominalIsSpeedTimesTimeWithGapsCounted) {
   EXPECT_EQ(derived.channel().unit, "m");
 }
 
-// The trapezoid rule is exact for a speed that grows evenly: x = a t^2 / 2, to rounding.
+// The trapezoid rule is exact for a linearly increasing speed: x = a t^2 / 2, to rounding.
 TEST(DerivedPosition, EvenAccelerationIsIntegratedExactly) {
   schema::Channel speed;
   speed.name = "speed";

@@ -21,13 +21,13 @@ using schema::ErrorKind;
 using tests::TemporaryFolder;
 namespace fs = std::filesystem;
 
-const Check& of(const Diagnosis& diagnosis, const std::string& name) {
+const Check& check_named(const Diagnosis& diagnosis, const std::string& name) {
   for (const Check& check : diagnosis.checks)
     if (check.name == name) return check;
   throw std::runtime_error(name);
 }
 
-DoctorRequest request(const TemporaryFolder& folder, const std::string& device) {
+DoctorRequest doctor_request(const TemporaryFolder& folder, const std::string& device) {
   setenv("XDG_CONFIG_HOME", (folder / "config").c_str(), 1);
   DoctorRequest made;
   made.device = device;
@@ -38,38 +38,38 @@ DoctorRequest request(const TemporaryFolder& folder, const std::string& device) 
 
 TEST(Doctor, AnEmulatedDeviceCanRecord) {
   const TemporaryFolder folder;
-  const Diagnosis diagnosis = examine(request(folder, "sim:surface=C"));
-  EXPECT_EQ(diagnosis.obstacle(), nullptr);
+  const Diagnosis diagnosis = examine(doctor_request(folder, "sim:surface=C"));
+  EXPECT_EQ(diagnosis.first_failure(), nullptr);
   ASSERT_EQ(diagnosis.checks.size(), 8U);
   const char* kOrder[] = {"device",    "permission", "firmware",        "round trip",
                           "real time", "disk",       "temporary files", "calibration"};
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(diagnosis.checks[i].name, kOrder[i]);
-  EXPECT_NE(of(diagnosis, "device").found.find("emulated"), std::string::npos);
-  EXPECT_NE(of(diagnosis, "round trip").found.find("99 of 100"), std::string::npos);
-  EXPECT_EQ(of(diagnosis, "calibration").health, Health::warns);
+  EXPECT_NE(check_named(diagnosis, "device").found.find("emulated"), std::string::npos);
+  EXPECT_NE(check_named(diagnosis, "round trip").found.find("99 of 100"), std::string::npos);
+  EXPECT_EQ(check_named(diagnosis, "calibration").health, Health::warns);
   EXPECT_EQ(diagnosis.next, "tactograph calibrate tare -d sim:surface=C,finger=up,strokes=0");
   EXPECT_EQ(folder.files(), 0U);
 }
 
-// What the command says would be refused otherwise: a finger that strokes is not still.
+// The command that the refusal suggests works: a moving finger is not still.
 TEST(Doctor, TheTareItAsksForOfAnEmulatedDeviceCanBeMade) {
   const TemporaryFolder folder;
-  const DoctorRequest asked = request(folder, "sim:finger=down,seed=3,strokes=9");
+  const DoctorRequest asked = doctor_request(folder, "sim:finger=down,seed=3,strokes=9");
   firmware_host::Capabilities said;
   said.serial = "none-of-this";
   EXPECT_EQ(check_calibration(said, asked).remedy,
             "tactograph calibrate tare -d sim:seed=3,finger=up,strokes=0");
   const Take take = sim_take("seed=3,finger=up,strokes=0", 1);
-  EXPECT_TRUE(tare_of(take)->unstill.empty());
+  EXPECT_TRUE(tare_of(take)->motion_signs.empty());
 }
 
 TEST(Doctor, WithoutADeviceItSaysSoAndLooksAtTheRest) {
   const TemporaryFolder folder;
-  const Diagnosis diagnosis = examine(request(folder, "usb:serial=no-such-device"));
-  ASSERT_NE(diagnosis.obstacle(), nullptr);
-  EXPECT_EQ(diagnosis.obstacle()->name, "device");
-  EXPECT_EQ(of(diagnosis, "round trip").health, Health::skipped);
-  EXPECT_NE(of(diagnosis, "disk").health, Health::fails);
+  const Diagnosis diagnosis = examine(doctor_request(folder, "usb:serial=no-such-device"));
+  ASSERT_NE(diagnosis.first_failure(), nullptr);
+  EXPECT_EQ(diagnosis.first_failure()->name, "device");
+  EXPECT_EQ(check_named(diagnosis, "round trip").health, Health::skipped);
+  EXPECT_NE(check_named(diagnosis, "disk").health, Health::fails);
   EXPECT_NE(diagnosis.next.find("sim:surface=C"), std::string::npos);
 }
 
@@ -102,19 +102,19 @@ TEST(Doctor, ADeviceThatDoesNotAnswerFails) {
 
 TEST(Doctor, AFolderThatIsNotThereFails) {
   const TemporaryFolder folder;
-  DoctorRequest asked = request(folder, "sim:");
+  DoctorRequest asked = doctor_request(folder, "sim:");
   asked.folder = folder / "none";
   const Diagnosis diagnosis = examine(asked);
-  ASSERT_NE(diagnosis.obstacle(), nullptr);
-  EXPECT_EQ(diagnosis.obstacle()->name, "disk");
-  EXPECT_EQ(diagnosis.obstacle()->fault, ErrorKind::cannot_write);
+  ASSERT_NE(diagnosis.first_failure(), nullptr);
+  EXPECT_EQ(diagnosis.first_failure()->name, "disk");
+  EXPECT_EQ(diagnosis.first_failure()->fault, ErrorKind::cannot_write);
 }
 
 TEST(Doctor, AReadOnlyFolderFails) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "locked");
   fs::permissions(folder / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-  const std::string place = geteuid() == 0 ? "/proc" : folder / "locked";  // root may write anywhere else
+  const std::string place = geteuid() == 0 ? "/proc" : folder / "locked";  // root can write anywhere else
   const Check check = check_disk(place, 160e3);
   EXPECT_EQ(check.health, Health::fails);
   EXPECT_EQ(check.fault, ErrorKind::cannot_write);
@@ -176,13 +176,13 @@ TEST(RealtimeLimits, ReadTheKernelsThrottle) {
   EXPECT_EQ(*realtime_limits(folder / "").runtime, 1);
   set("100000");
   const Check check = check_real_time(folder / "");
-  EXPECT_EQ(check.health, Health::warns);  // for the throttle, or because nothing is granted at all
+  EXPECT_EQ(check.health, Health::warns);  // for the throttle, or because no priority is granted
   EXPECT_NE(check.found.find("10 %"), std::string::npos);
 }
 
 TEST(Doctor, AStaleCalibrationAndAnothersAreTold) {
   const TemporaryFolder folder;
-  const DoctorRequest asked = request(folder, "sim:");
+  const DoctorRequest asked = doctor_request(folder, "sim:");
   firmware_host::Capabilities said;
   said.serial = "T-1";
   said.channels.resize(1);

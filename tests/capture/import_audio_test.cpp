@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sound files made recordings. Written here with WavWriter; other formats are the oracle's (soundfile).
+// Import of sound files written by WavWriter; the oracle test covers other formats (soundfile).
 #include <cmath>
 #include <limits>
 
@@ -71,7 +71,7 @@ TEST_F(ImportAudioTest, ARateOnTheCommandLineOverrulesTheHeader) {
   asked.rate_hz = 100000;
   const auto header = imported(asked).header;
   EXPECT_EQ(header.sample_rate_hz, 100000);
-  EXPECT_EQ(header.clock, "nominal rate given at import (its file says 48000 Hz)");
+  EXPECT_EQ(header.clock, "nominal rate, given at import (its header has 48000 Hz)");
 }
 
 TEST_F(ImportAudioTest, NanIsRefusedWithItsSample) {
@@ -86,7 +86,7 @@ TEST_F(ImportAudioTest, NanIsRefusedWithItsSample) {
 
 TEST_F(ImportAudioTest, AFileWithoutSamplesIsRefused) {
   const auto file = write_wav("a.wav", 1, schema::SampleFormat::float64, std::vector<double>{});
-  EXPECT_EQ(import(request(file)).error().what, "holds no samples");
+  EXPECT_EQ(import(request(file)).error().what, "contains no samples");
 }
 
 TEST_F(ImportAudioTest, ARecordingIsNotImportedAgain) {
@@ -94,7 +94,7 @@ TEST_F(ImportAudioTest, ARecordingIsNotImportedAgain) {
   imported(request(file));
   auto again = request(folder_ / "out.wav");
   again.name = folder_ / "other";
-  EXPECT_EQ(import(again).error().what, "is a recording already");
+  EXPECT_EQ(import(again).error().what, "is already a recording");
 }
 
 }  // namespace

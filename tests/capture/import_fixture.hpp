@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Imports in a folder of their own.
+// Imports in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class ImportTest : public testing::Test {
     return import_file(request, [](double) {});
   }
 
-  /// What is on disk after an import that must succeed.
+  /// The recording on disk after an import that must succeed.
   schema::Recording imported(const ImportRequest& request) const {
     const auto done = import(request);
     EXPECT_TRUE(done) << (done ? "" : schema::message(done.error()));

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `import` says to type next can be typed, whatever channels there are; masked outliers read correctly after it."""
+"""The next command that `import` prints works with any channels; masked outliers are read correctly by it."""
 import pathlib
 import subprocess
 
@@ -13,7 +13,7 @@ N = 12000
 
 
 def table(name="in.csv", spoilt=()):
-    """A finger goes 40 mm at 40 mm/s over ridges of 1 mm; the force of some rows lost its exponent."""
+    """A finger moves 40 mm at 40 mm/s over ridges of 1 mm; the force of some rows has lost its exponent."""
     t = np.arange(N) / 1e4
     x = np.clip(t - 0.1, 0, 1) * 40
     f = 0.1 * np.sin(2 * np.pi * x) + 0.01 * np.sin(2 * np.pi * 7.3 * x + 1)
@@ -24,7 +24,7 @@ def table(name="in.csv", spoilt=()):
 
 def next_of(name, *channels):
     report = tacto.run_json("import", table(), "-o", name, *RATE, *(word for one in channels for word in ("--channel", one)))
-    # As a person pastes it into a shell.
+    # As pasted into a shell.
     line = report["next"].replace("tactograph", tacto.COMMAND, 1)
     done = subprocess.run(["bash", "-c", line], capture_output=True, text=True)
     assert done.returncode == 0, (report["next"], done.stderr)
@@ -45,7 +45,7 @@ def the_next_command_works():
 
 
 def masked_outliers_leave_the_texture():
-    """Two rows of 12,000 are spoilt: with the mask the longest texture is what the sound table gives there."""
+    """Two rows of 12,000 are wrong: with the mask, the longest texture equals that of the correct table there."""
     channels = ["--channel", "tangential_force=f*1N", "--channel", "position=x*1mm"]
     tacto.run("import", table("sound.csv"), "-o", "sound", *RATE, *channels)
     spoilt = table("spoilt.csv", spoilt=(2100, 9100))
@@ -62,10 +62,10 @@ def masked_outliers_leave_the_texture():
     place, values, side = tacto.texture(str(pathlib.Path(longest["file"])).removesuffix(".texture.json"))
     whole_place, whole, whole_side = tacto.texture("sound")
     shift = round((side["source_origin_m"] - whole_side["source_origin_m"]) / side["pitch_m"])
-    edge = 5000  # 5 mm: the band-pass of 15 Hz, 2.7 mm here, meets other ends there
+    edge = 5000  # 5 mm: there the band-pass of 15 Hz (2.7 mm here) depends on the different ends
     error = values[edge:-edge] - whole[shift + edge:shift + len(values) - edge]
     print(f"longest texture {longest['length_m'] * 1e3:.1f} mm; error {20 * np.log10(tacto.rms(error) / tacto.rms(whole)):.0f} dB")
-    # A spoilt sample that stayed would be 4581 N among 0.1 N. What is left is the filter's other ends: -30 dB allowed.
+    # A wrong sample would be 4581 N among 0.1 N. The rest is the effect of the filter's ends: -30 dB allowed.
     assert tacto.rms(error) < 10 ** (-30 / 20) * tacto.rms(whole), tacto.rms(error) / tacto.rms(whole)
 
 

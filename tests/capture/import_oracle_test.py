@@ -9,6 +9,7 @@ import numpy as np
 import soundfile
 
 import tacto
+from measured import measured
 
 HEADERS = {"latin-1": "Größe [µm];Kraft", "utf-8": "Größe [µm];Kraft", "utf-8-sig": "Größe [µm];Kraft"}
 
@@ -94,7 +95,7 @@ def physical_values_and_derived_positions():
     speed = loaded[:, 0] * side["channels"][0]["scale"] + side["channels"][0]["offset"]
     assert np.allclose(speed, loaded[:, 0] * -2e-3 + 1e-3, rtol=1e-15)
     wanted = np.concatenate([[0], np.cumsum((speed[1:] + speed[:-1]) / 2 * 1e-3)])
-    # Two sums of 5000 terms, each rounded to 1.1e-16 of what it has reached.
+    # Two sums of 5000 terms, each rounded to 1.1e-16 of its value.
     assert np.max(np.abs(samples[:, 1] - wanted)) < 5000 * 2.2e-16 * np.max(np.abs(wanted))
     assert "integrated" in side["channels"][1]["derivation"]
 
@@ -121,6 +122,8 @@ def long_tables_need_no_more_memory_than_short_ones():
     options = ["-o", "out", "--force", "--time-column", "t*1s", "--channel", "tangential_force=f*1N",
                "--channel", "position=x*1um"]
     short, long = tacto.peak_mb("import", "short.csv", *options), tacto.peak_mb("import", "long.csv", *options)
+    measured("import_oracle.peak_of_3_rows_mb", short)
+    measured("import_oracle.peak_of_1500000_rows_mb", long)
     tacto.expect_little_memory(f"{rows} rows ({os.path.getsize('long.csv') / 1e6:.0f} MB) against 3", long, short)
     assert imported("out")[1]["data"]["frames"] == rows
 

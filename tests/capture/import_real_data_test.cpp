@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real files of other laboratories, where they are at hand.
+// Real files of other laboratories, if they are available.
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -17,7 +17,7 @@ class ImportRealData : public ImportTest {
 #define NEED(file) \
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: no real data"
 
-// Read a second time, plainly: line by line, field by field, strtod.
+// An independent reader: line by line, field by field, strtod.
 std::vector<double> plain_column(const std::string& file, std::size_t column) {
   std::ifstream input(file);
   std::string line;
@@ -46,7 +46,7 @@ TEST_F(ImportRealData, TheBareFingerIsKeptExactly) {
   EXPECT_TRUE(recording.header.warnings.empty());
 }
 
-// Every column of every good file passes without a warning: what is odd in them is real.
+// Every column of every good file is imported without a warning: unusual values in them are real.
 TEST_F(ImportRealData, RealTransientsAreNoOutliers) {
   const std::string finger = data("bare-finger/bare_finger_10kHz.csv");
   const std::string taps = data("impact-taps/impacts_100kHz.csv");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What import refuses: the fault, the words, and nothing left behind.
+// Refusals of import: the fault, the message, and no files left.
 #include <functional>
 
 #include "tests/capture/import_fixture.hpp"
@@ -44,7 +44,7 @@ TEST_F(ImportRefusals, Files) {
   refused([&](auto& r) { r.file = folder_ / "absent.csv"; }, ErrorKind::not_found,
           "absent.csv: there is no such file");
   refused([&](auto& r) { r.file = folder_ / "."; }, ErrorKind::not_found, "folder");
-  refused([&](auto& r) { r.file = "/dev/zero"; }, ErrorKind::not_found, "no regular file");
+  refused([&](auto& r) { r.file = "/dev/zero"; }, ErrorKind::not_found, "not a regular file");
   refused([&](auto& r) { r.file = write("binary.csv", std::string("PK\3\4\0\0\0\0 zip", 12)); },
           ErrorKind::unsuitable, "is a ZIP archive, which import does not read; unpack it");
   refused([&](auto& r) { r.file = write("binary.dat", std::string("\1\2\3\0\0\0\0\0 any", 12)); },
@@ -53,7 +53,7 @@ TEST_F(ImportRefusals, Files) {
   refused([&](auto& r) { r.file = write("oak.csv", " {\"kind\": \"recording\"}"); }, ErrorKind::unsuitable,
           "is JSON");
   refused([&](auto& r) { r.file = write("oak.texture.wav", "RIFF"); }, ErrorKind::unsuitable,
-          "is a texture already");
+          "is already a texture");
   refused(
       [&](auto& r) {
         r.file = write("bad.csv", "f,x\n1,2\n3,4\n5,\n");
@@ -90,14 +90,14 @@ TEST_F(ImportRefusals, Options) {
   refused([](auto& r) { r.rate_hz = -5; }, ErrorKind::usage, "a rate of -5 Hz");
   refused([](auto& r) { r.rate_hz = 3e9; }, ErrorKind::usage, "a rate of 3e+09 Hz");
   refused([](auto& r) { r.rate_hz.reset(); }, ErrorKind::usage,
-          "add --rate, as in --rate 10kHz, or --time-column");
-  refused([](auto& r) { r.skip_lines = 9; }, ErrorKind::usage, "no table can follow 9 lines: there are 4");
+          "add --rate, for example --rate 10kHz, or --time-column");
+  refused([](auto& r) { r.skip_lines = 9; }, ErrorKind::usage, "no table can follow 9 lines: the file has 4");
   refused([](auto& r) { r.time_column = "t*1s"; }, ErrorKind::usage, "both --rate and --time-column");
   refused([](auto& r) { r.channels.clear(); }, ErrorKind::usage, "1 'f', 2 'x', 3 'v', 4 't'");
   refused([](auto& r) { r.channels.clear(); }, ErrorKind::usage,
           "--rate 10kHz --channel 'tangential_force=f*1N'");
   refused([](auto& r) { r.channels = {"position=y*1mm"}; }, ErrorKind::usage, "there is no column 'y'");
-  refused([](auto& r) { r.speed_mps = 0; }, ErrorKind::usage, "a speed of zero");
+  refused([](auto& r) { r.speed_mps = 0; }, ErrorKind::usage, "a speed of 0");
   refused(
       [](auto& r) {
         r.speed_mps = 1;
@@ -109,10 +109,10 @@ TEST_F(ImportRefusals, Options) {
         r.speed_mps = 1;
         r.channels = {"speed=v*1mm/s"};
       },
-      ErrorKind::usage, "there is a speed channel");
-  refused([](auto& r) { r.recorded = "14.3.2026"; }, ErrorKind::usage, "--date: '14.3.2026' is no date");
+      ErrorKind::usage, "a speed channel is integrated");
+  refused([](auto& r) { r.recorded = "14.3.2026"; }, ErrorKind::usage, "--date: '14.3.2026' is not a date");
   refused([](auto& r) { r.calibrated = "2026-13-01"; }, ErrorKind::usage, "--calibrated");
-  refused([](auto& r) { r.humidity_percent = 101; }, ErrorKind::usage, "101 % is no relative humidity");
+  refused([](auto& r) { r.humidity_percent = 101; }, ErrorKind::usage, "101 % is not a relative humidity");
 }
 
 TEST_F(ImportRefusals, ClocksThatAreNone) {
@@ -135,7 +135,7 @@ TEST_F(ImportRefusals, Outputs) {
           "there is no such folder");
   refused([](auto& r) { r.name = "/proc/out"; }, ErrorKind::cannot_write, "/proc/out");
   ASSERT_TRUE(import(good()));
-  refused([](auto&) {}, ErrorKind::usage, "is there already; choose another name, or --force");
+  refused([](auto&) {}, ErrorKind::usage, "exists already; choose another name, or replace it with --force");
 }
 
 TEST_F(ImportRefusals, TheOutputIsCheckedBeforeTheDataAreRead) {
@@ -156,7 +156,7 @@ TEST_F(ImportRefusals, TheSourceIsNeverTheTarget) {
   auto asked = request(wav);
   asked.name = folder_ / "a";
   asked.replace = true;
-  refused(asked, ErrorKind::usage, "is the file that is imported");
+  refused(asked, ErrorKind::usage, "is the imported file itself");
 }
 
 TEST_F(ImportRefusals, AFailedImportLeavesTheOldRecording) {

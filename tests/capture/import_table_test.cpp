@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables made recordings, read back from disk.
+// Import of tables, read back from disk.
 #include <fmt/format.h>
 
 #include "data-schema/files/files.hpp"
@@ -35,7 +35,7 @@ TEST_F(ImportTest, TheSidecarSaysWhereItCameFrom) {
   const auto header = imported(asked).header;
   EXPECT_EQ(header.source_file, "t.csv");
   EXPECT_EQ(header.source_sha256, *schema::sha256_of_file(file));
-  EXPECT_EQ(header.clock, "nominal rate given at import");
+  EXPECT_EQ(header.clock, "nominal rate, given at import");
   EXPECT_EQ(header.sample_rate_hz, 1000);
   EXPECT_EQ(header.subject + header.finger + header.surface + header.notes, "S07right indexoakdry");
   EXPECT_EQ(header.humidity_percent, 45);
@@ -122,7 +122,7 @@ TEST_F(ImportTest, SaysThatItReadDecimalCommas) {
   EXPECT_EQ(import(points)->format, "table, semicolon, with header");
 }
 
-// As Excel saves it in Germany: a title, names, units under them, decimal commas.
+// As Excel saves it with German settings: a title, names, units below them, decimal commas.
 TEST_F(ImportTest, UnitsUnderTheNamesAreTheScale) {
   const auto file = write(
       "t.csv", "Messung 7; links\r\n\r\nZeit;Kraft;Weg\r\nms;mN;mm\r\n0,0;1,5;2,5\r\n0,5;2,5;3\r\n1;3;4\r\n");
@@ -137,7 +137,7 @@ TEST_F(ImportTest, UnitsUnderTheNamesAreTheScale) {
   const auto& header = done->recording.header;
   EXPECT_EQ(header.sample_rate_hz, 2000);
   EXPECT_EQ(header.channels[0].scale, 1e-3);
-  EXPECT_EQ(header.channels[1].scale, 1e-6);  // the option counts more than the table
+  EXPECT_EQ(header.channels[1].scale, 1e-6);  // the option overrides the table
   EXPECT_EQ(stored(done->recording, 0), (std::vector<double>{1.5, 2.5, 3}));
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run that was killed left behind goes: at the next run of its name, with `recover`, with `doctor`."""
+"""Remains of a killed run are removed: by the next run with its name, by `recover`, by `doctor`."""
 import os
 import pathlib
 import signal
@@ -25,7 +25,7 @@ def table():
 
 
 def size_of(name):
-    """0 where the import has renamed or removed the file since it was listed."""
+    """0 if the import has renamed or removed the file since it was listed."""
     try:
         return os.path.getsize(name)
     except FileNotFoundError:
@@ -33,7 +33,7 @@ def size_of(name):
 
 
 def begun(name):
-    """An import that has begun to write its samples, and is held there."""
+    """An import that has begun to write its samples, and is blocked there."""
     process = subprocess.Popen([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT],
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     while process.poll() is None and not any(one.startswith(f".{name}.wav") and size_of(one) > 1000 for one in hidden()):
@@ -91,7 +91,8 @@ def what_runs_is_left_alone():
 
 
 def of_another_machine_it_is_said_and_left():
-    """A host of another name, as on shared storage; its own space of names, where that is permitted."""
+    """Remains of another host, as on shared storage, are reported and kept. Uses a namespace of its own if
+    permitted."""
     table()
     ours = subprocess.run(["unshare", "--uts", "sh", "-c", "hostname another-host"], capture_output=True)
     if ours.returncode != 0:
@@ -101,12 +102,12 @@ def of_another_machine_it_is_said_and_left():
     before = hidden()
     done = subprocess.run(["unshare", "--uts", "sh", "-c", 'hostname another-host; "$@"', "-", tacto.COMMAND, "doctor",
                            "-d", "sim:finger=up"], capture_output=True, text=True)
-    assert done.returncode == 0 and "may still go on" in done.stdout and "rm ./.oak.wav" in done.stdout, done
+    assert done.returncode == 0 and "may still be active" in done.stdout and "rm ./.oak.wav" in done.stdout, done
     assert hidden() == before
 
 
 def without_proc_a_recording_is_closed():
-    """/proc is not everywhere (a chroot, a container): here it is covered, where that is permitted."""
+    """/proc may be absent (chroot, container): here it is hidden, if permitted."""
     if tacto.SANITIZED:
         print("the sanitizers themselves need /proc: not tested")
         return

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The live line and its keys on a terminal, and the strokes that stay in the recording."""
+"""The live line and its keys on a terminal, and the strokes that the recording keeps."""
 import fcntl
 import json
 import os
@@ -19,7 +19,8 @@ DEVICE = "sim:surface=flat,paced=1,strokes=20,length=25mm"  # a stroke of 20 mm 
 
 
 def on_a_terminal(arguments, keys, columns=COLUMNS):
-    """Runs the command on a terminal of its own, presses keys so long after the first line; (everything shown, exit code)."""
+    """Runs the command on a terminal of its own, presses keys at times after the first line; (everything shown, exit
+    code)."""
     pid, terminal = pty.fork()
     if pid == 0:
         os.execv(tacto.COMMAND, [tacto.COMMAND, *arguments])
@@ -35,7 +36,7 @@ def on_a_terminal(arguments, keys, columns=COLUMNS):
             continue
         try:
             piece = os.read(terminal, 65536)
-        except OSError:  # the other side has gone
+        except OSError:  # the process has closed the terminal
             piece = b""
         if not piece:
             break
@@ -46,7 +47,7 @@ def on_a_terminal(arguments, keys, columns=COLUMNS):
 def redrawn_marked_and_stopped():
     shown, code = on_a_terminal(["record", "-d", DEVICE, "-o", "oak"], [(0.8, b"m"), (1.3, b"x"), (2.2, b"q")])
     assert code == 0, shown
-    lines = shown.split("\r\x1b[K")[1:-1]  # before the first there is nothing, after the last the report
+    lines = shown.split("\r\x1b[K")[1:-1]  # before the first line is nothing, after the last the report
     assert 8 <= len(lines) <= 80, (len(lines), shown)
     for line in lines:
         first = line.split("\r\n")[0]
@@ -56,7 +57,8 @@ def redrawn_marked_and_stopped():
     assert times == sorted(times) and times[-1] > 1.5, times
     side = json.loads(pathlib.Path("oak.json").read_text())
     assert [mark["label"] for mark in side["marks"]] == ["mark"], side["marks"]
-    # The first line comes some tenths after the device's first frame; a busy machine sees both, and the key, later.
+    # The first line appears some tenths of a second after the device's first frame; on a busy machine both, and the
+    # key, are later.
     assert 0.5 < side["marks"][0]["frame"] / 1e4 < 2.5, side["marks"]
     assert side["data"]["frames"] / 1e4 < 6 and "ended" not in side
     return side
@@ -132,14 +134,14 @@ def what_is_missing_counts_in_the_duration():
 
 
 def clocks_are_fitted():
-    """20 s in emulated time: host and device differ by the asked ppm, and by what a message's place tells."""
+    """20 s of emulated time: the clocks differ by the requested ppm, within the uncertainty of the messages' times."""
     for ppm in (0, 250, -1200):
         name = f"clock{ppm}"
         tacto.run("record", "-d", f"sim:finger=up,clock_ppm={ppm}", "-o", name, "--time", "20s")
         told = tacto.run_json("info", name)
         assert abs(told["clock_drift_ppm"] - ppm) <= max(1, 4 * told["clock_drift_uncertainty_ppm"]), told
         assert told["clock_scatter_s"] < 5e-3, told
-    # By the clock on the wall: 12 s of a device that is 3 % fast pass in 12 / 1.03 s.
+    # In real time: 12 s of a device that is 3 % fast take 12 / 1.03 s.
     begun = time.monotonic()
     tacto.run("record", "-d", "sim:finger=up,clock_ppm=30000,paced=1", "-o", "wall", "--time", "12s")
     took = time.monotonic() - begun

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows with outliers are left out and become gaps; every other number and time stays.
+// Rows with outliers are left out and become gaps; all other numbers and times are unchanged.
 #include "capture/import/outlier_mask.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "data-schema/check/check.hpp"
@@ -32,7 +33,7 @@ TEST(OutlierMask, RowsBecomeGaps) {
   expect_gaps(OutlierMask::of({3, 4, 5}, 10, "t.csv")->gaps_with({}), {{3, 6, 3}});
 }
 
-// Of the source 2 rows are missing before its row 5, and 1 before its row 8.
+// Two rows are missing in the source before its row 5, and one before its row 8.
 TEST(OutlierMask, GapsOfTheSourceAreCountedWithThem) {
   const std::vector<Gap> source = {{5, 7, 2}, {8, 11, 1}};
   expect_gaps(OutlierMask().gaps_with(source), source);
@@ -64,7 +65,7 @@ TEST(OutlierMask, ManyRowsAreNoOutliers) {
 class MaskedImport : public ImportTest {
  protected:
   static constexpr int kRows = 2000, kHole = 700;
-  // A sine over a steady movement; 5 rows are missing from kHole on where there is a time column.
+  // A sine during a steady movement; with a time column, 5 rows are missing from kHole on.
   static double force(int i) { return std::sin(i / 20.0); }
   std::string table(const std::vector<int>& outliers) const {
     std::string text = "t,f,v\n";
@@ -113,7 +114,7 @@ TEST_F(MaskedImport, SaysHowManyAndWhere) {
   EXPECT_NE(all.find("1 gap in the times, 5 frames missing"), std::string::npos) << all;
   EXPECT_NE(all.find("4.582 kN (4581.5) at line 102, 0.1 s"), std::string::npos) << all;
   EXPECT_NE(all.find("at line 1497, 1.5 s"), std::string::npos) << all;
-  EXPECT_NE(all.find("outliers masked: 2 rows left out and recorded as gaps, not filled in"),
+  EXPECT_NE(all.find("outliers masked: 2 rows removed and recorded as gaps, not filled in"),
             std::string::npos)
       << all;
   EXPECT_EQ(done->ranges[0].largest < 1.1, true);

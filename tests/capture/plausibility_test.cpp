@@ -19,7 +19,7 @@ std::vector<double> noisy(std::size_t count, double level) {
   return values;
 }
 
-// In pieces, as import has them: what is found must not depend on where they are cut.
+// In pieces, as during import: the result must not depend on where they are cut.
 template <class Take>
 void in_pieces(const std::vector<double>& values, std::size_t piece, Take take) {
   for (std::size_t at = 0; at < values.size(); at += piece)
@@ -64,12 +64,12 @@ TEST(Plausibility, LostExponentsAreFound) {
   EXPECT_EQ(outliers(values), (std::vector<std::uint64_t>{1000, 3000}));
 }
 
-// Wherever the pieces are cut, down to single samples.
+// For all sizes of pieces, down to single samples.
 TEST(Plausibility, ThePiecesDoNotMatter) {
   auto values = noisy(3000, 100);
   for (const std::size_t i : {0, 1, 5, 150, 2996, 2999}) values[i] = 9999;
   const auto whole = outliers(values, values.size());
-  EXPECT_EQ(whole, (std::vector<std::uint64_t>{5, 150, 2996, 2999}));  // 0 and 1 stand side by side
+  EXPECT_EQ(whole, (std::vector<std::uint64_t>{5, 150, 2996, 2999}));  // 0 and 1 are neighbours
   for (std::size_t piece = 1; piece < 12; ++piece) EXPECT_EQ(outliers(values, piece), whole) << piece;
 }
 
@@ -122,7 +122,7 @@ TEST(Plausibility, AWarningNamesTheFirstSamplesAndCountsAll) {
 TEST(Plausibility, ValuesThatNoBenchHasPointAtTheUnit) {
   auto values = noisy(100, 40);
   EXPECT_TRUE(warnings_of("speed", values, 1e-3).empty());
-  const auto warnings = warnings_of("speed", values);  // mm/s taken for m/s
+  const auto warnings = warnings_of("speed", values);  // mm/s interpreted as m/s
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("100 of 100 samples beyond any plausible speed (5 m/s)"), std::string::npos)
       << warnings[0];
@@ -132,7 +132,7 @@ TEST(Plausibility, ValuesThatNoBenchHasPointAtTheUnit) {
 TEST(Plausibility, AChannelThatNeverChangesIsSaid) {
   const auto warnings = warnings_of("position", std::vector<double>(50, 3), 1e-3);
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_EQ(warnings[0], "position never changes: 3 mm throughout");
+  EXPECT_EQ(warnings[0], "position is constant: 3 mm");
 }
 
 }  // namespace

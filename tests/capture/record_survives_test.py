@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a recording survives: kill -9 at 50 random moments, a full disk, a stop by signal."""
+"""A recording survives kill -9 at 50 random times, a full disk, and a stop by signal."""
 import json
 import os
 import pathlib
@@ -14,6 +14,7 @@ import numpy as np
 import soundfile
 
 import tacto
+from measured import measured, not_measured
 
 BLOCK_FRAMES = 200  # 20 ms: a killed process loses the block that was not yet written (live_recording.hpp)
 KILLS = 12 if tacto.SANITIZED else 50
@@ -35,7 +36,7 @@ def start(name, *options, **more):
 
 
 def frames_on_disk(name):
-    """Read from outside, as another program would: whole frames beyond the header of 104 bytes at most."""
+    """Read as another program would: only whole frames behind the header of 104 bytes."""
     return max(0, os.path.getsize(f"{name}.wav") - 104) // 16
 
 
@@ -71,6 +72,8 @@ def killed_at_random_moments():
         lost += [mark["frame"] - len(frames) for mark in json.loads(pathlib.Path(f"{name}.json").read_text()).get("marks", [])]
     print(f"{KILLS} kills: at most {max(lost)} of the frames before the mark were not on the disk")
     assert len(lost) == KILLS // 2 and max(lost) <= BLOCK_FRAMES, lost
+    measured("record_survives.kills", KILLS)
+    measured("record_survives.lost_most_frames", max(lost))
 
 
 def stopped_by_signal_and_marked():
@@ -96,25 +99,30 @@ def expect_full(name, process, most_bytes):
     size = os.path.getsize(f"{name}.wav")
     assert frames * 16 > 0.8 * most_bytes and size <= most_bytes, (frames, size)
     print(f"full: {frames} frames kept, ended: {side['ended']}")
+    return frames, size
 
 
 def fast(name, **more):
-    """As fast as the physics go: 8 MB are 50 s of recording."""
+    """As fast as the physics can be computed: 8 MB are 50 s of recording."""
     return subprocess.Popen([tacto.COMMAND, "record", "-d", "sim:surface=flat,rate=100kHz", "--strokes", "1000", "-o", name],
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
 
 
 def on_a_full_file_system():
-    """A file system of 8 MB where this may be mounted; where not, that is said, and the next test stands for it."""
+    """A file system of 8 MB, if mounting is permitted; otherwise this is reported, and only the next test covers a full
+    disk."""
     folder = pathlib.Path("small")
     folder.mkdir()
     mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", str(folder)], capture_output=True,
                              text=True)
     if mounted.returncode != 0:
         print(f"no file system of 8 MB could be mounted ({mounted.stderr.strip()}): a size limit of 8 MB is tested alone")
+        not_measured("record_survives.full_*", "no file system of 8 MB")
         return
     try:
-        expect_full("small/oak", fast("small/oak"), 8 << 20)
+        frames, size = expect_full("small/oak", fast("small/oak"), 8 << 20)
+        measured("record_survives.full_frames", frames)
+        measured("record_survives.full_mb", 1e-6 * size)
     finally:
         subprocess.run(["umount", str(folder)], check=True)
 
@@ -128,7 +136,8 @@ def at_a_size_limit():
 
 
 def memory_does_not_grow():
-    """60 s at 10 kHz against 0.1 s: the same blocks. What sanitizers keep is not judged, so there it is 10 s."""
+    """60 s at 10 kHz against 0.1 s: the same blocks of memory. With sanitizers memory is not judged, so they run 10
+    s."""
     most_s = 10 if tacto.SANITIZED else 60
     short, long = (tacto.peak_mb("record", "-d", "sim:surface=flat", "-o", f"m{time_s}", "--time", f"{time_s}s")
                    for time_s in (0.1, most_s))
@@ -144,7 +153,7 @@ def takes_count_up_and_are_listed():
     assert [(row["subject"], row["take"], row["name"]) for row in listed] == [
         ("S01", 1, "S01_oak_1"), ("S01", 2, "S01_oak_2"), ("S02", 1, "S02_oak_1")], listed
     assert "S01_oak_2" in tacto.run("list")[0]
-    # One that is removed changes no other's number, and its own is not given again.
+    # A removed mark does not change the numbers of others, and its number is not used again.
     for ending in (".wav", ".json"):
         pathlib.Path("S01_oak_1" + ending).unlink()
     tacto.run("record", "-d", "sim:", "--time", "50ms", "--template", "{subject}_{surface}_{take}", "--subject", "S01", "--surface", "oak")

@@ -17,7 +17,7 @@ schema::Result<ReferenceScale> against_net(const Take& take, double relative_unc
   return scale_by_reference(take, "tangential_force", "net_force", {scale, relative_uncertainty * scale});
 }
 
-// A piezo that gives 8 % too little, under a finger that slides to and fro.
+// A piezo whose gain is 8 % too small, under a finger that slides back and forth.
 TEST(ReferenceScale, FindsThePiezosGainWithinItsUncertainty) {
   Coverage coverage;
   double worst_percent = 0;
@@ -32,8 +32,8 @@ TEST(ReferenceScale, FindsThePiezosGainWithinItsUncertainty) {
   EXPECT_TRUE(sanitized() || coverage.inside() >= 0.8);  // of 20: three sigma below 95 %
   EXPECT_TRUE(sanitized() || (coverage.rms() > 0.5 && coverage.rms() < 1.6));
   EXPECT_LT(worst_percent, 1.5);
-  coverage.print("reference");
-  std::printf("reference: worst %.2f %%\n", worst_percent);
+  coverage.print("reference_scale.scale");
+  measured("reference_scale.worst_percent", worst_percent);
 }
 
 TEST(ReferenceScale, TheReferencesOwnUncertaintyIsInIt) {
@@ -51,11 +51,11 @@ TEST(ReferenceScale, WrongInputsAreNamed) {
   EXPECT_EQ(scale_by_reference(take, "tangential_force", "position", {1, 0}).error().kind, ErrorKind::usage);
   EXPECT_EQ(scale_by_reference(take, "net_force", "normal_force", {1, 0}).error().kind,
             ErrorKind::unsuitable);
-  EXPECT_NE(against_net(sim_take("surface=C,strokes=20", 3)).error().what.find("5 s at least"),
+  EXPECT_NE(against_net(sim_take("surface=C,strokes=20", 3)).error().what.find("at least 5 s"),
             std::string::npos);
   const auto quiet = against_net(sim_take("finger=up", 6));
   ASSERT_FALSE(quiet);
-  EXPECT_NE(quiet.error().what.find("too little in common"), std::string::npos);
+  EXPECT_NE(quiet.error().what.find("too little coherence"), std::string::npos);
   const double scale = take.header.channels[3].scale;
   const auto turned = scale_by_reference(take, "tangential_force", "net_force", {-scale, 0});
   ASSERT_FALSE(turned);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pull that is let go, integrated here from the transducer's equations of motion (Wiertlewski 2011, (1) to
-// (3)).
+// A pull that is released, integrated here from the transducer's equations of motion (Wiertlewski 2011, (1)
+// to (3)).
 #include "capture/calibrate/released_weight.hpp"
 
 #include <gtest/gtest.h>
@@ -77,7 +77,7 @@ TEST(ReleasedWeight, ItsUncertaintyHoldsTheTruth) {
     EXPECT_LT(std::abs(found->scale.uncertainty / found->scale.value), 0.02);
   }
   EXPECT_GE(coverage.inside(), 0.74);  // of 12: three sigma below 95 %
-  coverage.print("released");
+  coverage.print("released_weight.scale");
 }
 
 TEST(ReleasedWeight, WrongInputsAreNamed) {
@@ -85,7 +85,7 @@ TEST(ReleasedWeight, WrongInputsAreNamed) {
   EXPECT_NE(scale_by_releases(loud, "tangential_force", 0).error().what.find("clipped"), std::string::npos);
   std::vector<Release> late = {release(0.1, 1, 0, 1)};
   late[0].take.codes[0].resize(5500);
-  EXPECT_NE(scale_by_releases(late, "tangential_force", 0).error().what.find("near an end"),
+  EXPECT_NE(scale_by_releases(late, "tangential_force", 0).error().what.find("near the start or the end"),
             std::string::npos);
   const std::vector<Release> quiet = {release(1e-5, 1, 0.046, 1)};
   EXPECT_EQ(scale_by_releases(quiet, "tangential_force", 0).error().kind, ErrorKind::unsuitable);

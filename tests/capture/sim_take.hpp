@@ -11,6 +11,7 @@
 #include "capture/calibrate/uncertain.hpp"
 #include "capture/record/take.hpp"
 #include "firmware-host/open_device.hpp"
+#include "tests/measured.hpp"
 
 namespace tacto::capture {
 
@@ -23,8 +24,8 @@ inline Take sim_take(const std::string& keys, double time_s) {
   return std::move(*take);
 }
 
-/// How errors of known truth relate to what was stated: parts within the stated interval of 95 %, and the
-/// RMS of error over standard uncertainty.
+/// Compares errors with the stated uncertainty: the share within the stated interval of 95 %, and the RMS of
+/// error over standard uncertainty.
 class Coverage {
  public:
   void add(const Uncertain& found, double truth) {
@@ -35,9 +36,13 @@ class Coverage {
   }
   double inside() const { return inside_ / count_; }
   double rms() const { return std::sqrt(squares_ / count_); }
-  void print(const char* what) const {
-    std::printf("%s: %.0f of %.0f within the stated 95 %%, RMS of error over uncertainty %.2f\n", what,
+  /// KEY.inside of KEY.draws, and KEY.rms.
+  void print(const std::string& key) const {
+    std::printf("%s: %.0f of %.0f within the stated 95 %%, RMS of error over uncertainty %.2f\n", key.c_str(),
                 inside_, count_, rms());
+    measured(key + ".inside", inside_);
+    measured(key + ".draws", count_);
+    measured(key + ".rms", rms());
   }
 
  private:

@@ -11,18 +11,18 @@
 namespace tacto::capture {
 namespace {
 
-constexpr double kRate_hz = 1000;
+constexpr double kStrokeCounterRate_hz = 1000;
 
-// Goes to a position at a speed, then rests.
+// Moves to a position at a speed, then rests.
 void go(StrokeCounter& counter, double& at_m, double to_m, double speed_mps, double load_n, int rest = 0) {
-  const double step_m = speed_mps / kRate_hz * (to_m > at_m ? 1 : -1);
+  const double step_m = speed_mps / kStrokeCounterRate_hz * (to_m > at_m ? 1 : -1);
   for (auto left = static_cast<int>(std::lround(std::abs((to_m - at_m) / step_m))); left > 0; --left)
     counter.add(at_m += step_m, load_n);
   for (int i = 0; i < rest; ++i) counter.add(at_m, 9);
 }
 
 TEST(StrokeCounter, ThereAndBackAreTwo) {
-  StrokeCounter counter(kRate_hz);
+  StrokeCounter counter(kStrokeCounterRate_hz);
   double at_m = 0;
   go(counter, at_m, 0, 1, 0, 300);
   go(counter, at_m, 0.04, 0.05, 0.5);
@@ -39,7 +39,7 @@ TEST(StrokeCounter, ThereAndBackAreTwo) {
 }
 
 TEST(StrokeCounter, RestsBeforeAndAfterAreNoPartOfTheSpeed) {
-  StrokeCounter counter(kRate_hz);
+  StrokeCounter counter(kStrokeCounterRate_hz);
   double at_m = 0;
   go(counter, at_m, 0, 1, 0, 140);  // less than a rest
   go(counter, at_m, 0.04, 0.05, 0.5);
@@ -54,7 +54,7 @@ TEST(StrokeCounter, RestsBeforeAndAfterAreNoPartOfTheSpeed) {
 }
 
 TEST(StrokeCounter, TheStreamsEndEndsAStrokeThatHadStopped) {
-  StrokeCounter counter(kRate_hz);
+  StrokeCounter counter(kStrokeCounterRate_hz);
   double at_m = 0;
   go(counter, at_m, 0.04, 0.05, 0.5, 30);
   EXPECT_TRUE(counter.strokes().empty());
@@ -67,7 +67,7 @@ TEST(StrokeCounter, TheStreamsEndEndsAStrokeThatHadStopped) {
 }
 
 TEST(StrokeCounter, AShortHaltDoesNotEndAStroke) {
-  StrokeCounter counter(kRate_hz);
+  StrokeCounter counter(kStrokeCounterRate_hz);
   double at_m = 0;
   go(counter, at_m, 0.02, 0.05, 0.5, 100);
   go(counter, at_m, 0.04, 0.05, 0.5, 200);
@@ -75,14 +75,14 @@ TEST(StrokeCounter, AShortHaltDoesNotEndAStroke) {
 }
 
 TEST(StrokeCounter, TrembleAndShortWaysAreNone) {
-  StrokeCounter counter(kRate_hz);
+  StrokeCounter counter(kStrokeCounterRate_hz);
   double at_m = 0;
   for (int i = 0; i < 20; ++i) go(counter, at_m, i % 2 == 0 ? 0.004 : 0, 0.05, 0.5, 50);
   EXPECT_TRUE(counter.strokes().empty());
 }
 
 TEST(StrokeCounter, OneCountOfDitherDoesNotTurnAStroke) {
-  StrokeCounter counter(kRate_hz);
+  StrokeCounter counter(kStrokeCounterRate_hz);
   for (int i = 0; i < 1000; ++i) counter.add(50e-6 * i - (i % 3 == 0 ? 100e-6 : 0), 0.5);
   EXPECT_TRUE(counter.strokes().empty());  // still going on
   for (int i = 0; i < 200; ++i) counter.add(0.05, 0.5);
@@ -92,7 +92,7 @@ TEST(StrokeCounter, OneCountOfDitherDoesNotTurnAStroke) {
 // 60 mm in 1.2 s, of which 25 frames are missing in the middle and 3 samples are clipped.
 TEST(LiveFigures, TellWhatIsMissingAndClippedInAStroke) {
   schema::RecordingHeader header;
-  header.sample_rate_hz = kRate_hz;
+  header.sample_rate_hz = kStrokeCounterRate_hz;
   header.channels.resize(2);
   header.channels[0].quantity = "position";
   header.channels[0].scale = 1e-6;
@@ -113,11 +113,11 @@ TEST(LiveFigures, TellWhatIsMissingAndClippedInAStroke) {
   EXPECT_FALSE(strokes[0].mean_normal_n);
 }
 
-// A counter of 32 bits that passes 2^31 in the middle of a stroke goes on; what is shown is no leap of 4.3
-// km.
+// A counter of 32 bits that passes 2^31 in the middle of a stroke continues; the stroke does not get 4.3 km
+// long.
 TEST(LiveFigures, CountAStrokeThroughTheCountersWrap) {
   schema::RecordingHeader header;
-  header.sample_rate_hz = kRate_hz;
+  header.sample_rate_hz = kStrokeCounterRate_hz;
   header.channels.resize(1);
   header.channels[0].quantity = "position";
   header.channels[0].scale = 1e-6;
@@ -130,7 +130,7 @@ TEST(LiveFigures, CountAStrokeThroughTheCountersWrap) {
   const auto strokes = figures.stroke_figures();
   ASSERT_EQ(strokes.size(), 1U);
   EXPECT_EQ(strokes[0].direction, 1);
-  EXPECT_NEAR(strokes[0].length_m, 1200 * 53e-6, 0.2e-3);  // told in steps of 0.1 mm
+  EXPECT_NEAR(strokes[0].length_m, 1200 * 53e-6, 0.2e-3);  // resolution of 0.1 mm
   EXPECT_NEAR(*figures.take_view().speed_mps, 1200 * 53e-6 / 1.5, 1e-6);
 }
 

@@ -43,14 +43,14 @@ TEST(TakeName, WithoutATakeItMustBeFree) {
   const tests::TemporaryFolder folder;
   EXPECT_EQ(name_of_take(folder / "{subject}", kParts), folder / "S01");
   std::ofstream(folder / "S01.json");
-  EXPECT_EQ(name_of_take(folder / "{subject}", kParts).error().remedy, "put {take} into it, which counts up");
+  EXPECT_EQ(name_of_take(folder / "{subject}", kParts).error().remedy, "add {take} to it, which counts up");
 }
 
 TEST(TakeName, SaysWhatIsWrongWithTheTemplate) {
   EXPECT_EQ(name_of_take("{person}_{take}", kParts).error().remedy,
-            "there are {take}, {subject}, {surface}, {finger}");
-  EXPECT_EQ(name_of_take("{finger}_{take}", kParts).error().remedy, "say what it is, with --finger");
-  EXPECT_EQ(name_of_take("{subject", kParts).error().what, "a brace is never closed");
+            "the placeholders are {take}, {subject}, {surface}, {finger}");
+  EXPECT_EQ(name_of_take("{finger}_{take}", kParts).error().remedy, "give it with --finger");
+  EXPECT_EQ(name_of_take("{subject", kParts).error().what, "a brace is not closed");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TEST(Tare, FindsTheLoadCellsZeroWithinItsUncertainty) {
     const Take take = sim_take(fmt::format("finger=up,cell_zero=0.05N,seed={}", seed), 1);
     const auto tare = tare_of(take);
     ASSERT_TRUE(tare);
-    EXPECT_TRUE(tare->unstill.empty()) << tare->unstill.front();
+    EXPECT_TRUE(tare->motion_signs.empty()) << tare->motion_signs.front();
     for (const char* name : {"normal_force", "net_force"}) {
       const ChannelTare& one = of(*tare, take, name);
       coverage.add(one.zero, 0.05 / take.header.channels[one.channel].scale);
@@ -30,10 +30,10 @@ TEST(Tare, FindsTheLoadCellsZeroWithinItsUncertainty) {
   EXPECT_GE(coverage.inside(), 0.88);  // of 80: three sigma below 95 %
   EXPECT_LT(coverage.rms(), 1.4);
   EXPECT_GT(coverage.rms(), 0.7);
-  coverage.print("tare");
+  coverage.print("tare.zero");
 }
 
-// 25 uN/sqrt(Hz) in the middle of the band; in newtons of 100 Hz a little less.
+// 25 uN/sqrt(Hz) in the middle of the band; slightly less in newtons at 100 Hz.
 TEST(Tare, FindsTheNoiseFloor) {
   const Take take = sim_take("finger=up", 5);
   const auto tare = tare_of(take);
@@ -66,22 +66,22 @@ TEST(Tare, NamesTheMainsAndOnlyWhereThereIsOne) {
 TEST(Tare, LoudMainsIsNoFinger) {
   const auto tare = tare_of(sim_take("finger=up,mains=1V", 2));
   ASSERT_TRUE(tare);
-  EXPECT_TRUE(tare->unstill.empty()) << tare->unstill.front();
+  EXPECT_TRUE(tare->motion_signs.empty()) << tare->motion_signs.front();
 }
 
 TEST(Tare, AFingerThatSlidesIsNoticed) {
   const auto tare = tare_of(sim_take("surface=flat,strokes=4", 2));
   ASSERT_TRUE(tare);
-  EXPECT_GE(tare->unstill.size(), 2U);  // the load wanders, and the piezo is loud
+  EXPECT_GE(tare->motion_signs.size(), 2U);  // the load wanders, and the piezo is loud
   EXPECT_NE(tare->warnings.back().find("position moved"), std::string::npos);
 }
 
 TEST(Tare, ALoadAtRestIsWarnedOf) {
   const auto tare = tare_of(sim_take("finger=up,weight=0.5N", 1));
   ASSERT_TRUE(tare);
-  EXPECT_TRUE(tare->unstill.empty());
+  EXPECT_TRUE(tare->motion_signs.empty());
   ASSERT_EQ(tare->warnings.size(), 2U);
-  EXPECT_NE(tare->warnings[0].find("normal_force rests at 0.5 N"), std::string::npos) << tare->warnings[0];
+  EXPECT_NE(tare->warnings[0].find("normal_force is 0.5 N at rest"), std::string::npos) << tare->warnings[0];
 }
 
 TEST(Tare, RefusesWhatIsTooShort) {

@@ -21,7 +21,8 @@ TEST(Travel, GoesOnWhereTheCounterWraps) {
   EXPECT_EQ(travelled_counts(-5, 7), 12);
 }
 
-// Two ends of a count each: over many travels of random places the stated interval holds the truth.
+// Each end has an error of up to one count: over many travels at random positions the stated interval
+// contains the truth.
 TEST(Travel, CountsAtTheEndsAreCovered) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> somewhere(0, 1);
@@ -41,7 +42,7 @@ TEST(Travel, CountsAtTheEndsAreCovered) {
   EXPECT_LT(many.rms(), 1.1);
 }
 
-// Hands that miss the marks by 20 um.
+// A user who misses the marks by 20 um.
 TEST(Travel, ScatterOfTheHandsIsCovered) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> miss(0, 20);
@@ -57,10 +58,10 @@ TEST(Travel, ScatterOfTheHandsIsCovered) {
   }
   EXPECT_GT(coverage.inside(), 0.92);
   EXPECT_LT(coverage.inside(), 0.98);
-  coverage.print("travel");
+  coverage.print("travel.scale");
 }
 
-// The emulated finger goes 35 mm, from 2.5 mm to 37.5 mm, over a scale that is 0.4 % off.
+// The emulated finger moves 35 mm, from 2.5 mm to 37.5 mm; the scale has an error of 0.4 %.
 TEST(Travel, TheEmulatedEncodersScaleIsFound) {
   for (const double gain : {1.004, 0.99, 1.0}) {
     Take take = sim_take(fmt::format("surface=flat,strokes=1,encoder_gain={}", gain), 1.5);
@@ -111,11 +112,11 @@ TEST(Travel, WrongInputsAreNamed) {
   EXPECT_EQ(scale_by_travel(good, 0, 0).error().kind, ErrorKind::usage);
   EXPECT_EQ(scale_by_travel(none, 1, 0).error().kind, ErrorKind::unsuitable);
   EXPECT_EQ(scale_by_travel(still, 1, 0).error().kind, ErrorKind::unsuitable);
-  const std::vector<double> coarse = {1000 * 65536.0};  // a converter's codes: its step is what is rounded to
+  const std::vector<double> coarse = {1000 * 65536.0};  // codes of a converter: its step is the rounding
   EXPECT_NEAR(scale_by_travel(coarse, 1, 0, 65536)->scale.uncertainty * 1000 * 65536,
               std::sqrt(2.0 / 12) / 1000, 1e-9);
   EXPECT_EQ(scale_by_travel(coarse, 1, 0, 65536 * 11).error().kind, ErrorKind::unsuitable);
-  EXPECT_NE(scale_by_travel(apart, 1, 0).error().what.find("disagree"), std::string::npos);
+  EXPECT_NE(scale_by_travel(apart, 1, 0).error().what.find("differ"), std::string::npos);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace tacto::capture {
 namespace {
 
-// Student's t, two-sided 95 %: any printed table.
+// Student's t, two-sided 95 %, from printed tables.
 TEST(Uncertain, CoverageFactorsAreStudents) {
   const std::pair<double, double> kTable[] = {{1, 12.7062}, {2, 4.3027},  {3, 3.1824},
                                               {5, 2.5706},  {19, 2.0930}, {100, 1.9840}};
@@ -23,7 +23,8 @@ TEST(Uncertain, CoverageFactorsAreStudents) {
   EXPECT_NEAR(coverage_factor_95(INFINITY), 1.95996, 1e-5);
 }
 
-// Noise held for ten samples, as a load cell's: what takes samples for independent is three times too sure.
+// Noise held for ten samples, as a load cell's: an estimate with independent samples would be three times too
+// small.
 TEST(Uncertain, TheMeanOfHeldNoiseIsCovered) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, 1000);
@@ -86,7 +87,7 @@ TEST(HannLine, WhiteNoiseHasItsDensity) {
     for (int i = 0; i < 500; ++i) samples.push_back(normal(random));
     sum += density_of(hann_line(samples, 0.11), samples.size(), 1000);
   }
-  EXPECT_NEAR(sum / 400, 2 * 9.0 / 1000, 0.15 * 2 * 9.0 / 1000);  // 5 % is a sigma of 400
+  EXPECT_NEAR(sum / 400, 2 * 9.0 / 1000, 0.15 * 2 * 9.0 / 1000);  // 5 % is one sigma of 400
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ schema::Result<UniformClock> clock_of(const std::vector<double>& times) {
   return finder.clock();
 }
 
-// Ticks at a rate, those for which `keep` is false left out, printed with steps of `resolution_s`.
+// Ticks at a rate, without those for which `keep` is false, rounded to steps of `resolution_s`.
 template <class Keep>
 std::vector<double> ticks(std::size_t count, double rate_hz, double resolution_s, Keep keep) {
   std::vector<double> times;
@@ -45,7 +45,7 @@ TEST(UniformClock, FindsWholeRatesExactly) {
   EXPECT_EQ(clock_of(ticks(20000, 10000, 1e-4, all))->rate_hz, 10000);
 }
 
-// Steps of 0.3, 0.3 and 0.4 ms: over n rows the ends are wrong by half a step of print each, no more.
+// Steps of 0.3, 0.3 and 0.4 ms: over n rows only the ends have an error, of half a printed step each.
 TEST(UniformClock, CoarselyPrintedTimesAreNoJitter) {
   const auto clock = clock_of(ticks(3000, 3000, 1e-4, all));
   ASSERT_TRUE(clock) << schema::message(clock.error());

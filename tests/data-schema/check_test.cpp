@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each way in which a file of ours can be wrong is made, and must be found where it is.
+// Each possible fault of a file is made, and must be found at its place.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ class Check : public testing::Test {
     return checked ? checked->findings : std::vector<Finding>{};
   }
 
-  // Whether one finding has both texts.
+  // Whether one finding contains both texts.
   static testing::AssertionResult found(const std::vector<Finding>& all, const std::string& where,
                                         const std::string& what) {
     std::string list;
@@ -84,7 +84,7 @@ TEST_F(Check, CountsOfAnAverageThatCannotBe) {
   const auto found = findings(FileKind::texture, "mean.texture.json");
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NE(found[0].what.find("more than the 2 strokes averaged"), std::string::npos);
-  EXPECT_NE(found[1].what.find("must rise"), std::string::npos);
+  EXPECT_NE(found[1].what.find("must increase"), std::string::npos);
 }
 
 TEST_F(Check, SoundFilesHaveNoFindings) {
@@ -148,12 +148,12 @@ TEST_F(Check, FindsHeadersThatDisagree) {
   edit("oak.json", "\"frames\": 4", "\"frames\": 5");
   edit("oak.json", "\"float64\"", "\"pcm32\"");
   const auto all = findings(FileKind::recording, "oak.json");
-  EXPECT_TRUE(found(all, "oak.wav", "rate is 1000"));
-  EXPECT_TRUE(found(all, "oak.wav", "holds 4 frames"));
+  EXPECT_TRUE(found(all, "oak.wav", "has the rate 1000"));
+  EXPECT_TRUE(found(all, "oak.wav", "contains 4 frames"));
   EXPECT_TRUE(found(all, "oak.wav", "64 bit float"));
   edit("oak.texture.json", "\"pitch_m\": 1e-06", "\"pitch_m\": 1e-05");
-  EXPECT_TRUE(found(findings(FileKind::texture, "oak.texture.json"), "oak.texture.wav",
-                    "by its sidecar it is 100000"));
+  EXPECT_TRUE(
+      found(findings(FileKind::texture, "oak.texture.json"), "oak.texture.wav", "its sidecar 100000"));
 }
 
 TEST_F(Check, FindsATexturesBandAndUnit) {
@@ -163,7 +163,7 @@ TEST_F(Check, FindsATexturesBandAndUnit) {
   const auto all = findings(FileKind::texture, "oak.texture.json");
   EXPECT_TRUE(found(all, "#/unit", "is in N"));
   EXPECT_TRUE(found(all, "#/valid_band/0", "upper end"));
-  EXPECT_TRUE(found(all, "#/valid_band/1/position_m", "fall"));
+  EXPECT_TRUE(found(all, "#/valid_band/1/position_m", "decrease"));
 }
 
 TEST_F(Check, FindsCellsThatAreNoDensity) {
@@ -175,7 +175,7 @@ TEST_F(Check, FindsCellsThatAreNoDensity) {
   s.window_m = s.hop_m = s.pitch_m = 1;
   s.unit = "N";
   ASSERT_TRUE(write_spectrogram_nc(folder_ / "oak.nc", std::span(&s, 1)));
-  EXPECT_TRUE(found(findings(FileKind::spectrogram, "oak.nc"), "position 1, bin 0", "no density"));
+  EXPECT_TRUE(found(findings(FileKind::spectrogram, "oak.nc"), "position 1, bin 0", "not a density"));
   std::ofstream(folder_ / "oak.nc") << "text";
   EXPECT_TRUE(found(findings(FileKind::spectrogram, "oak.nc"), "oak.nc", "netCDF"));
 }

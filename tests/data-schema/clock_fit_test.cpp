@@ -27,7 +27,8 @@ TEST(ClockFit, FindsAClockThatIsFastToTheDigit) {
   EXPECT_LT(fit->drift_uncertainty_ppm, 1e-4);
 }
 
-// Messages late by up to 2 ms: the truth lies within two standard uncertainties about as often as it should.
+// Messages that are late by up to 2 ms: the true value is within two standard uncertainties about as often as
+// stated.
 TEST(ClockFit, ItsUncertaintyHoldsTheTruth) {
   int inside = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {

@@ -21,21 +21,21 @@ Error refused(const std::string& members) {
 
 TEST(DaemonConfig, TwoPromisesExcludeEachOther) {
   const Error error = refused(R"("quality":"fast","max_error":0.01)");
-  EXPECT_EQ(error.what, "quality, max_error exclude each other: say one of them");
+  EXPECT_EQ(error.what, "quality, max_error exclude each other: give only one of them");
 }
 
 TEST(DaemonConfig, ANumberOutOfRangeIsToldItsRange) {
   for (const char* rate : {R"("rate_hz":500)", R"("rate_hz":"fast")"}) {
     const Error error = refused(rate);
     EXPECT_TRUE(error.where.ends_with("#/rate_hz")) << error.where;
-    EXPECT_EQ(error.remedy, "Ticks; 2 kHz unless told; from 1000 to 20000") << error.what;
+    EXPECT_EQ(error.remedy, "Rate of the ticks; default 2 kHz; from 1000 to 20000") << error.what;
   }
   EXPECT_TRUE(refused(R"("max_error":0)").remedy.ends_with("above 0 to 0.1"));
 }
 
 TEST(DaemonConfig, AMisspeltChoiceIsNamedWithTheNearest) {
-  EXPECT_EQ(refused(R"("playback":{"contact_on":1})").remedy, "is 'contact_on_n' meant?");
-  EXPECT_EQ(refused(R"("rate_Hz":2000)").remedy, "is 'rate_hz' meant?");
+  EXPECT_EQ(refused(R"("playback":{"contact_on":1})").remedy, "did you mean 'contact_on_n'?");
+  EXPECT_EQ(refused(R"("rate_Hz":2000)").remedy, "did you mean 'rate_hz'?");
 }
 
 }  // namespace

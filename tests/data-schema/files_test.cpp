@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that appear whole or not at all.
+// Files are written completely or not at all.
 #include "data-schema/files/files.hpp"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(PendingFiles, LeaveNothingAfterAFailedCommit) {
     ASSERT_FALSE(committed);
     EXPECT_EQ(committed.error().kind, ErrorKind::cannot_write);
   }
-  EXPECT_EQ(folder.files(), 1U);  // the folder that stood in the way
+  EXPECT_EQ(folder.files(), 1U);  // the folder with that name
 }
 
 TEST(PendingFiles, ThatAreToKeepWhatIsThereAppearAllOrNotAtAll) {
@@ -152,20 +152,20 @@ TEST(Files, SayWhyTheyCantBeRead) {
   EXPECT_EQ(sha256_of_file(folder / "absent").error().kind, ErrorKind::not_found);
 }
 
-// The vectors of FIPS 180-4's examples: "", "abc" and a million times "a".
-// Nobody writes into the pipe: who opened it would wait for ever.
+// The pipe has no writer, so opening it would block.
 TEST(Files, APipeIsNotWaitedFor) {
   const TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder / "oak.texture.json").c_str(), 0600), 0);
   for (const std::string& path : {folder / "oak.texture.json", std::string("/dev/zero")}) {
     const auto read = read_file(path);
     ASSERT_FALSE(read) << path;
-    EXPECT_EQ(read.error().what, "is no regular file");
+    EXPECT_EQ(read.error().what, "is not a regular file");
     EXPECT_FALSE(check_readable(path));
     EXPECT_FALSE(sha256_of_file(path));
   }
 }
 
+// The vectors of FIPS 180-4's examples: "", "abc" and a million times "a".
 TEST(Sha256, MatchesTheStandard) {
   EXPECT_EQ(sha256_of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");

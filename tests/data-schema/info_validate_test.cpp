@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The verbs `info` and `validate` as they are called: arguments in, text and exit code out.
+// The verbs `info` and `validate` as commands: arguments in, text and exit code out.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Documents: what is said of broken ones, what becomes of those from the future.
+// Documents: the messages about broken ones, and the handling of newer versions.
 #include "data-schema/json/json_document.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(Document, AMemberThatAppearsTwiceIsRefusedWithItsPlace) {
 
 TEST(Document, AMemberOfEachOfTwoObjectsIsNoSecondOne) {
   EXPECT_EQ(error_in_text(R"({"a":{"x":1},"b":{"x":1},"c":[{"x":1},{"x":1}],"x":1})").what,
-            "JSON without a `kind`: not a file of tactograph's");
+            "JSON without a `kind`: not a file of tactograph");
 }
 
 TEST(Document, SaysWhichKindItIsInstead) {
@@ -126,8 +126,8 @@ TEST(Document, NamesBreachesByPointer) {
       {"/sample_rate_hz", 0, "greater than 0"},
       {"/sample_rate_hz", "fast", "\"fast\" is not of type number"},
       {"/channels", Json::array(), "no fewer than 1"},
-      {"/channels/0/unit", "mN", "\"mN\" is none of N, m, m/s, m/s^2, V, 1"},
-      {"/channels/0/quantity", "taste", "is none of tangential_force"},
+      {"/channels/0/unit", "mN", "\"mN\" is not one of N, m, m/s, m/s^2, V, 1"},
+      {"/channels/0/quantity", "taste", "is not one of tangential_force"},
       {"/channels/0/scale", nullptr, "null is not of type number"},
       {"/data/file", "../a.wav", "does not match"},
       {"/data/frames", -1, "greater than or equal to 0"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a killed process left is known from what a running one, or another machine's, writes.
+// Files of a killed process are distinguished from those of a running process or of another machine.
 #include "data-schema/files/leftover_files.hpp"
 
 #include <fcntl.h>
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using tests::TemporaryFolder;
 
-// Another process that has written `path` half when this is back, and waits.
+// Another process. Its constructor returns after half of `path` is written; the process then waits.
 class Writer {
  public:
   explicit Writer(const std::string& path) {
@@ -122,7 +122,7 @@ TEST(LeftoverFiles, OfAProcessThatRunsStayAtTheNextRunOfThatName) {
   EXPECT_TRUE(is_file(its_file));
 }
 
-// A number that is used again belongs to a process that began at another time.
+// A reused process number belongs to a process with another start time.
 TEST(LeftoverFiles, AProcessIsKnownByWhenItBegan) {
   const TemporaryFolder folder;
   ProcessMark mark = own_mark();
@@ -145,7 +145,7 @@ TEST(LeftoverFiles, OfAnotherMachineAreNeverRemoved) {
   EXPECT_EQ(folder.files(), 1U);
 }
 
-// A machine that was started again; or a copy of it, with the same names, that runs beside it.
+// A machine after a restart; or a copy of it with the same names that runs at the same time.
 TEST(LeftoverFiles, OfAnotherBootHaveEndedWhereTheyAreOlderThanThisOne) {
   const TemporaryFolder folder;
   ProcessMark mark = own_mark();

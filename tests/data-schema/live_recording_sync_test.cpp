@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording on a disk that takes its time, or fails: this program's fdatasync() is its own.
+// A recording on a disk that is slow or fails; this program replaces fdatasync().
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -49,7 +49,7 @@ bool soon(const auto& happens) {
   return happens();
 }
 
-// What is in the file outlives the process; what waits for the disk in memory does not.
+// Data in the file survive a crash of the process; data in memory that wait for the disk do not.
 TEST(LiveRecordingSync, ABusyDiskKeepsNoFrameFromTheFile) {
   const tests::TemporaryFolder folder;
   auto live = counting(folder / "oak");
@@ -76,7 +76,7 @@ TEST(LiveRecordingSync, ADiskThatFailsIsSaidToTheWriter) {
   }));
   disk_fails = false;
   EXPECT_EQ(error.kind, ErrorKind::cannot_write);
-  EXPECT_NE(error.what.find("can't be brought to the disk"), std::string::npos);
+  EXPECT_NE(error.what.find("cannot be written to the disk"), std::string::npos);
 }
 
 }  // namespace

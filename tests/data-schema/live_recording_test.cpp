@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings that were broken off in every way, and what recovering gives back.
+// Recordings that were interrupted in every way, and their recovery.
 #include "data-schema/recording/live_recording.hpp"
 
 #include <gtest/gtest.h>
@@ -87,10 +87,10 @@ TEST(LiveRecording, DroppedOnesAreRecovered) {
   ASSERT_TRUE(recovered) << message(recovered.error());
   expect_whole(folder / "oak", 1000);
   EXPECT_EQ(recovered->recording.header.ended, "broken off");
-  EXPECT_EQ(recover_recording(folder / "oak").error().what, "was closed: there is nothing to recover");
+  EXPECT_EQ(recover_recording(folder / "oak").error().what, "was closed and needs no recovery");
 }
 
-// What a crash leaves: a header that promises other than there is, half a frame, half a line.
+// Remains of a crash: a header with another length than the data, half a frame, half a line.
 TEST(LiveRecording, BrokenFramesAndLinesAreCutOff) {
   const TemporaryFolder folder;
   { const auto dropped = begun(folder / "oak"); }
@@ -130,7 +130,7 @@ std::string joined(const std::vector<std::string>& notes) {
   return all;
 }
 
-// The header is rewritten all the time, so it is what a power cut hits.
+// The header is rewritten all the time, so a power failure is likely to destroy it.
 TEST(LiveRecording, ALostHeaderIsWrittenAnewByTheJournal) {
   for (const std::size_t lost : {4, 12, 50, 70, 112}) {
     const TemporaryFolder folder;
@@ -138,7 +138,7 @@ TEST(LiveRecording, ALostHeaderIsWrittenAnewByTheJournal) {
     overwrite(folder / "oak.wav", lost == 50 ? 48 : 0, std::string(lost, '\0'));
     const auto recovered = recover_recording(folder / "oak");
     ASSERT_TRUE(recovered) << message(recovered.error());
-    EXPECT_NE(joined(recovered->notes).find("header was damaged"), std::string::npos);
+    EXPECT_NE(joined(recovered->notes).find("header of its WAV was damaged"), std::string::npos);
     expect_whole(folder / "oak", 1000);
   }
 }
@@ -166,7 +166,7 @@ TEST(LiveRecording, WhatIsNotItsWavIsLeftAsItIs) {
   EXPECT_EQ(folder.files(), 1U);
 }
 
-// The journal of a second and more, beside a WAV of less.
+// The journal covers a second or more, the WAV less.
 TEST(LiveRecording, WhatTheJournalKnowsAndTheWavLacksIsSaid) {
   const TemporaryFolder folder;
   {
@@ -183,7 +183,7 @@ TEST(LiveRecording, WhatTheJournalKnowsAndTheWavLacksIsSaid) {
   EXPECT_NE(joined(recovered->notes).find("at least 1999 frames (0.2 s) are lost"), std::string::npos);
 }
 
-// A bad disk, or a file that was edited.
+// Caused by a bad disk, or by a file that was edited.
 TEST(LiveRecording, ABadLineOfTheJournalCostsThatLineAlone) {
   const TemporaryFolder folder;
   { const auto dropped = begun(folder / "oak"); }
@@ -194,14 +194,14 @@ TEST(LiveRecording, ABadLineOfTheJournalCostsThatLineAlone) {
       << events.substr(first_end) << "\xfe{";
   const auto recovered = recover_recording(folder / "oak");
   ASSERT_TRUE(recovered) << message(recovered.error());
-  EXPECT_NE(joined(recovered->notes).find("1 lines of its journal can't be read (the first is line 2)"),
+  EXPECT_NE(joined(recovered->notes).find("1 lines of its journal are not readable (the first is line 2)"),
             std::string::npos);
-  EXPECT_NE(joined(recovered->notes).find("its last event was broken off: ?{"), std::string::npos);
+  EXPECT_NE(joined(recovered->notes).find("its last event is incomplete: ?{"), std::string::npos);
   EXPECT_EQ(recovered->notes, recovered->recording.header.warnings);
   expect_whole(folder / "oak", 1000);
 }
 
-// The device numbers its frames: what a lost line told of is missing all the same.
+// The device numbers its frames, so a gap is known even if the line about it is lost.
 TEST(LiveRecording, TheGapOfALostLineIsCountedToTheNext) {
   const TemporaryFolder folder;
   {
@@ -218,7 +218,7 @@ TEST(LiveRecording, TheGapOfALostLineIsCountedToTheNext) {
   EXPECT_EQ(gaps[1].device_sequence, 1015U);
   EXPECT_EQ(recovered->recording.header.marks.size(), 1U);
   const std::string notes = joined(recovered->notes);
-  for (const char* said : {"1 gaps of its journal contradict", "5 missing frames stood in no line",
+  for (const char* said : {"1 gaps of its journal contradict", "5 missing frames are in no readable line",
                            "1 marks and 1 gaps are beyond its last frame, 1010", "at least 990 frames"})
     EXPECT_NE(notes.find(said), std::string::npos) << said << " in " << notes;
 }
@@ -236,7 +236,7 @@ TEST(LiveRecording, ZerosThatTheHeaderNeverPromisedAreNoSamples) {
 TEST(LiveRecording, WithoutASampleThereIsAnEmptyRecording) {
   const TemporaryFolder folder;
   { const auto live = LiveRecording::create(folder / "oak", header()); }
-  fs::resize_file(folder / "oak.wav", 0);  // power was cut before its header was on the disk
+  fs::resize_file(folder / "oak.wav", 0);  // a power failure before its header was on the disk
   ASSERT_TRUE(recover_recording(folder / "oak"));
   EXPECT_TRUE(check_file({FileKind::recording, folder / "oak.json"})->findings.empty());
 }

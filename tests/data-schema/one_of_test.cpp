@@ -53,7 +53,7 @@ TEST(OneOf, handlers_may_change_the_value) {
   EXPECT_EQ(figure(thing), 6);
 }
 
-// A scene's layers promise it.
+// The type of a scene's layers guarantees it.
 TEST(OneOf, a_layer_can_be_read_only_by_handling_every_kind) {
   static_assert(!CanGet<Layer, TextureLayer>);
   static_assert(!std::is_same_v<Layer, std::variant<TextureLayer>>);

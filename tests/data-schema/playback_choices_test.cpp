@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The object `playback` is one and the same in scene, configuration and request.
+// The object `playback` is the same in scene, configuration and request.
 #include "data-schema/scene/playback_choices.hpp"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ TEST(PlaybackChoices, WhatIsMisspeltIsNamed) {
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().what.find("'interpolaton'"), std::string::npos) << message(wrong.error());
   EXPECT_EQ(wrong.error().where, "request#/playback");
-  EXPECT_EQ(wrong.error().remedy, "is 'interpolation' meant?");
+  EXPECT_EQ(wrong.error().remedy, "did you mean 'interpolation'?");
   const auto passed = parse_control_request(request + R"("at_mm":3,"gian":1})");
   ASSERT_TRUE(passed) << message(passed.error());
   EXPECT_EQ(passed->passed_over, (std::vector<std::string>{"at_mm", "gian"}));

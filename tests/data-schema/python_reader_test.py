@@ -29,7 +29,7 @@ STORED = TESTS / "data-schema" / "stored_1_0"
 
 
 def refusal(read, name, *words, **options):
-    """The message of the FileProblem that reading raises; it has to hold all `words`."""
+    """The message of the FileProblem that reading must raise; it must contain all `words`."""
     try:
         read(name, **options)
     except tactograph.FileProblem as problem:
@@ -67,7 +67,7 @@ def recording_is_physical_and_keeps_its_gaps():
 def clipping_is_masked():
     document = json.loads(pathlib.Path("ridge.json").read_text())
     codes, rate = soundfile.read("ridge.wav", dtype="int32", always_2d=True)
-    codes[50:53, 0] = 2**31 - 1  # the converter's end
+    codes[50:53, 0] = 2**31 - 1  # the end of the converter's range
     soundfile.write("clipped.wav", codes, rate, subtype="PCM_32")
     shutil.copy("ridge.json", "clipped.json")
     edit("clipped.json", data={**document["data"], "file": "clipped.wav", "sha256": hashlib.sha256(pathlib.Path("clipped.wav").read_bytes()).hexdigest()})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording's journal: what is written is what is read, and a broken line takes no other along.
+// A recording's journal: it reads back as written, and a broken line does not affect others.
 #include "data-schema/recording/recording_events.hpp"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(RecordingEvents, ComeBackAsTheyWereWritten) {
   EXPECT_EQ(log.header.faults[0].what, "hot");
 }
 
-// A kill cuts the last line; a bad disk does worse.
+// A killed process cuts the last line; a bad disk may destroy any line.
 TEST(RecordingEvents, AreReadPastALineThatIsNone) {
   for (const std::string line :
        {R"({"event": "gap", "frame": 10, "device_sequence": 12, "co`nt": 2})",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings: what is written is what is read, and what is broken is named.
+// Recordings: they read back as written, and faults are reported.
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/recording/recording_frames.hpp"
 
@@ -203,7 +203,7 @@ TEST(Recording, ReadFromAnyPlaceNamesTheSampleThatIsNotFinite) {
   const auto broken = frames->read_stored(1, 1, out);
   ASSERT_FALSE(broken);
   EXPECT_NE(message(broken.error()).find("channel 'position', sample 2"), std::string::npos);
-  ASSERT_TRUE(frames->read_stored(1, 0, std::span(out).first(2)));  // and what lies before it is read
+  ASSERT_TRUE(frames->read_stored(1, 0, std::span(out).first(2)));  // the data before it are read
 }
 
 TEST(Recording, NamesTheSampleThatIsNotFinite) {
@@ -257,14 +257,13 @@ TEST(Recording, SaysWhatIsLeftOfATruncatedWav) {
   std::filesystem::resize_file(folder / "oak.wav", size - 24);  // 16 bytes a frame
   const auto cut = open_recording(folder / "oak");
   ASSERT_FALSE(cut);
-  EXPECT_EQ(cut.error().what, "truncated: its header promises 4 frames, 2 are left");
+  EXPECT_EQ(cut.error().what, "truncated: its header has 4 frames, the file 2");
   edit(folder / "oak.json", "/data/frames", 9);
   write(folder / "elm", full_header(SampleFormat::float64), kSamples);
   std::filesystem::rename(folder / "elm.wav", folder / "oak.wav");
-  EXPECT_EQ(open_recording(folder / "oak").error().what,
-            "truncated: its sidecar promises 9 frames, 4 are left");
+  EXPECT_EQ(open_recording(folder / "oak").error().what, "truncated: its sidecar has 9 frames, the file 4");
   edit(folder / "oak.json", "/data/frames", 3);
-  EXPECT_EQ(open_recording(folder / "oak").error().what, "has 4 frames, its sidecar says 3");
+  EXPECT_EQ(open_recording(folder / "oak").error().what, "has 4 frames, its sidecar 3");
   std::filesystem::remove(folder / "oak.wav");
   EXPECT_EQ(open_recording(folder / "oak").error().kind, ErrorKind::not_found);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results as a file: what is written reads back; what is unsound, or would be lost, is refused.
+// Results as a file: they read back as written; invalid results, and those that would overwrite files, are
+// refused.
 #include "data-schema/results/results.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "data-schema/check/check.hpp"
 #include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
+#include "tests/data-schema/texts.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -27,17 +29,11 @@ Results results() {
   return made;
 }
 
-void put(const std::string& path, const std::string& text) {
-  PendingFiles files;
-  ASSERT_TRUE(files.write(path, text));
-  ASSERT_TRUE(files.commit());
-}
-
 TEST(Results, ReadBack) {
   const tests::TemporaryFolder folder;
   const auto text = results_json(results());
   ASSERT_TRUE(text) << message(text.error());
-  put(folder / "a.results.json", *text);
+  write_text(folder / "a.results.json", *text);
   const auto read = read_results(folder / "a");
   ASSERT_TRUE(read) << message(read.error());
   EXPECT_EQ(read->inputs, results().inputs);
@@ -60,7 +56,7 @@ TEST(Results, RefusesWhatIsUnsound) {
   made.verb.clear();
   EXPECT_EQ(results_json(made).error().kind, ErrorKind::unsuitable);
   const tests::TemporaryFolder folder;
-  put(folder / "a.results.json", R"({"kind": "results", "version": "1.0", "verb": "compare"})");
+  write_text(folder / "a.results.json", R"({"kind": "results", "version": "1.0", "verb": "compare"})");
   EXPECT_EQ(read_results(folder / "a").error().kind, ErrorKind::malformed);
   EXPECT_EQ(read_results(folder / "absent").error().kind, ErrorKind::not_found);
 }
@@ -73,7 +69,7 @@ TEST(Results, RefusesACurveOfUnequalLengths) {
   std::string text = results_json(made).value();
   const auto at = text.find("5.5,");
   ASSERT_NE(at, std::string::npos);
-  put(path, text.erase(at, 4));
+  write_text(path, text.erase(at, 4));
   const auto read = read_results(path);
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().kind, ErrorKind::malformed);
@@ -86,11 +82,11 @@ TEST(Results, RefusesACurveOfUnequalLengths) {
 TEST(Results, ReplacesOnlyItsLike) {
   const tests::TemporaryFolder folder;
   EXPECT_TRUE(check_results_free(folder / "absent.json", Existing::replace));
-  put(folder / "a.json", *results_json(results()));
+  write_text(folder / "a.json", *results_json(results()));
   EXPECT_TRUE(check_results_free(folder / "a.json", Existing::replace));
-  put(folder / "b.json", R"({"kind": "recording"})");
+  write_text(folder / "b.json", R"({"kind": "recording"})");
   EXPECT_EQ(check_results_free(folder / "b.json", Existing::replace).error().kind, ErrorKind::usage);
-  put(folder / "c.json", "{");
+  write_text(folder / "c.json", "{");
   EXPECT_EQ(check_results_free(folder / "c.json", Existing::replace).error().kind, ErrorKind::usage);
 }
 

@@ -32,7 +32,7 @@ TEST(Scene, ReadsBackWhatWasWritten) {
   tests::TemporaryFolder folder;
   Scene scene;
   scene.name = "two";
-  scene.newer_version = "1.3";  // only such a one has members that are not known here
+  scene.newer_version = "1.3";  // only a newer version has unknown members
   scene.layers = {TextureLayer{"oak", 0.01, 1e-3, "mw", "2026-01-02T03:04:05Z", TextureEnds::stop, ""},
                   TextureLayer{"../beech", -0.02, -5e-4, "", "", TextureEnds::stop, R"({"tint":"red"})"}};
   ASSERT_TRUE(write_scene(folder / "two", scene));
@@ -63,7 +63,7 @@ TEST(Scene, OneTextureMayGoOnBeyondItsEnds) {
   }
 }
 
-// `validate` refuses what `play` would.
+// `validate` refuses the same scenes as `play`.
 TEST(Scene, OneOfSeveralTexturesMayNotGoOnBeyondItsEnds) {
   const std::string stops = R"({"type":"texture","texture":"o","at_m":0,"gain_m_per_n":1,"ends":"stop"})";
   const std::string loops = R"({"type":"texture","texture":"o","at_m":0.1,"gain_m_per_n":1,"ends":"loop"})";
@@ -90,12 +90,13 @@ TEST(Scene, FaultsAreNamedByJsonPointer) {
 TEST(Scene, WhatIsMisspeltIsRefusedWithTheNearest) {
   const std::string body = R"("type":"texture","texture":"oak","at_m":0,"gain_m_per_n":0.001)";
   for (const auto& [text, where, remedy] :
-       {std::tuple{scene_text("{" + body + R"(,"end":"mirror"})"), "s#/layers/0", "is 'ends' meant?"},
+       {std::tuple{scene_text("{" + body + R"(,"end":"mirror"})"), "s#/layers/0", "did you mean 'ends'?"},
         std::tuple{
             R"({"kind":"scene","version":"1.0","playback":{"energy_rms":1},"layers":[{)" + body + "}]}",
-            "s#/playback", "is 'energy_rms_v' meant?"},
+            "s#/playback", "did you mean 'energy_rms_v'?"},
         std::tuple{R"({"kind":"scene","version":"1.0","light":"dim","layers":[{)" + body + "}]}", "s",
-                   "its members are kind, version, name, notes, created, creator, playback, layers"}}) {
+                   "the known members are kind, version, name, notes, created, creator, playback, layers, "
+                   "patches"}}) {
     const auto scene = parse_scene(text, "s");
     ASSERT_FALSE(scene) << text;
     EXPECT_EQ(scene.error().kind, ErrorKind::malformed);

@@ -72,7 +72,7 @@ class Session : public testing::Test {
   std::string path_ = folder_ / "one.session";
 };
 
-// Sessions that say nothing of a loop's seam were played with one of 1 mm.
+// Sessions without a seam in the header were played with a seam of 1 mm.
 TEST(SessionHeaderText, AnUntoldSeamIsAMillimetre) {
   std::string text = *session_header_text(made_header());
   const std::string told = "\"seam_m\"";
@@ -107,7 +107,7 @@ TEST_F(Session, ReadsBackToTheBit) {
   EXPECT_TRUE(check_file({FileKind::session, path_})->findings.empty());
 }
 
-// Protocol 1.0 of the format knew no sensor.
+// Version 1.0 of the format had no sensor.
 TEST(SessionHeaderText, NamesTheTraysSensorWhereThereIsOne) {
   SessionHeader header = made_header();
   EXPECT_FALSE(parse_session_header(*session_header_text(header), "session")->sensor);
@@ -178,7 +178,7 @@ TEST_F(Session, IsNeverWrittenOverAnother) {
   EXPECT_EQ(second.error().kind, ErrorKind::usage);
 }
 
-// Wherever it is cut, what was whole is read, and nothing else.
+// For a cut at any place, exactly the complete blocks are read.
 TEST_F(Session, CutAnywhereGivesItsWholeBlocks) {
   {
     auto writer = created();
@@ -232,7 +232,7 @@ TEST_F(Session, AKilledWriterLosesNothingThatWasSynced) {
   EXPECT_EQ(reader->ending(), SessionEnding::unclosed);
 }
 
-// A file size limit stands in for a full disk: both cut a write short.
+// A limit of the file size simulates a full disk: both cut a write short.
 TEST_F(Session, AFullDiskLeavesWholeBlocksAndLaterOnesAreTaken) {
   auto writer = created();
   ASSERT_TRUE(writer.add(made_ticks(0, 100)));
@@ -287,7 +287,7 @@ SessionCommand change_command() {
   return {20, 21, {0, 0, 0, 0x17}};
 }
 
-// Of two that no `change` parts, the first came to nothing; so did what stands at the end.
+// Two textures without a `change` between them: the first had no effect. The same applies to one at the end.
 TEST_F(Session, AChangeNamesWhatTheNextOneBrings) {
   auto writer = created();
   for (const char* file : {"failed.texture.json", "pine.texture.json"})
@@ -318,7 +318,7 @@ void append_block(const std::string& path, std::uint8_t type, const std::string&
       << sealed_block(static_cast<BlockType>(type), payload);
 }
 
-// As this reader is to one of before.
+// As this reader is for an older version's file.
 TEST_F(Session, ATypeThatIsNotKnownIsPassedOver) {
   { ASSERT_TRUE(created().add(made_ticks(0, 10))); }
   append_block(path_, 99, "of a version to come");

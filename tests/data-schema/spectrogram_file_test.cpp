@@ -105,7 +105,7 @@ TEST_F(SpectrogramFile, KeepsAmplitudesAndWhatIsKnown) {
   }
 }
 
-// Row by row and in pieces of any size: the same file, to the byte.
+// Written row by row or in pieces of any size, the file is the same to the byte.
 TEST_F(SpectrogramFile, RowsMakeTheSameFileAsAllAtOnce) {
   const std::array all = {example(12, "oak-01"), example(20, "oak-02")};
   ASSERT_TRUE(write_spectrogram_nc(path("a.nc"), all));

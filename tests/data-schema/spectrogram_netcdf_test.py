@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What xarray and netCDF4 make of our spectrograms. Argument: the program write_spectrogram."""
+"""Our spectrograms as xarray and netCDF4 read them. Argument: the program write_spectrogram."""
 import os
 import subprocess
 import sys
@@ -66,7 +66,7 @@ def check_storage(path):
 
 
 def check_known(path):
-    """The example knows bins 2.5 + p to 20.5 (from position p)."""
+    """The valid bins of the example are 2.5 + p to 20.5 (at position p)."""
     with xarray.open_dataset(path) as data:
         known = data.known.values
         assert known.dtype == np.int8

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files that version 0.1.0 wrote in November 2026 (formats 1.0, spectrogram 1.1) are still read, replayed and rendered.
 
-`stored_1_0/README.md` says how they were made. The session's replay has to be the same to the bit: it holds all that it
-needs. The rendered drive depends on Fourier transforms, whose last bit differs by processor: 1e-5 of its peak is some
-eighty roundings of single precision.
+`stored_1_0/README.md` describes how they were made. The session's replay must be the same to the bit, because it
+contains all inputs. The rendered drive depends on Fourier transforms, whose last bit differs between processors: 1e-5
+of its peak is about eighty roundings of single precision.
 """
 import json
 import pathlib
@@ -35,7 +35,7 @@ def every_document_is_valid(folder):
 
 
 def a_changed_sample_is_found(folder):
-    """The check of this test itself: `validate` must not accept everything."""
+    """Checks this test: `validate` must not accept everything."""
     wav = folder / "ridge.texture.wav"
     kept = wav.read_bytes()
     wav.write_bytes(kept[:-4] + bytes([kept[-4] ^ 1]) + kept[-3:])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Formants, descriptions and certificates as files: what is written reads back; what is unsound is refused.
+// Formants, descriptions and certificates as files: they read back as written; invalid ones are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -94,7 +94,7 @@ TEST_F(Tables, FormantsAsCsvNameTheirUnits) {
   EXPECT_NE(csv.find("\n\"oak, planed\",5,85,1,0,2,"), std::string::npos) << csv;
 }
 
-// NaN has no JSON: the member is left out and reads back as NaN.
+// JSON has no NaN: the member is left out and reads back as NaN.
 TEST_F(Tables, DescriptionsReadBack) {
   write("oak.descriptions.json", descriptions_json(descriptions()));
   const auto read = read_descriptions(folder_ / "oak");

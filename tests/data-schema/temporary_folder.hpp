@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A folder for one test's files, gone with it.
+// A folder for the files of one test; its destructor deletes it.
 #pragma once
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of measured choices as a file, and where a machine's own is found.
+// The table of measured choices as a file, and how a machine finds its own.
 #include "data-schema/results/trade_table.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include "data-schema/check/check.hpp"
 #include "data-schema/files/files.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
+#include "tests/data-schema/texts.hpp"
 
 namespace tacto::schema {
 namespace {
@@ -23,12 +24,6 @@ TradeTable table() {
   return made;
 }
 
-void put(const std::string& path, const std::string& text) {
-  PendingFiles files;
-  ASSERT_TRUE(files.write(path, text));
-  ASSERT_TRUE(files.commit());
-}
-
 class TradeTableFile : public testing::Test {
  protected:
   TradeTableFile() { setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1); }
@@ -38,7 +33,7 @@ class TradeTableFile : public testing::Test {
 
 TEST(MeasuredChoice, ErrsAsTheNearestPointBelow) {
   const MeasuredChoice choice = table().choices.front();
-  EXPECT_EQ(choice.error_at(3.9), 1);  // coarser than was measured: nothing is promised
+  EXPECT_EQ(choice.error_at(3.9), 1);  // coarser than measured: no promise
   EXPECT_EQ(choice.error_at(4), 0.3);
   EXPECT_EQ(choice.error_at(19.9), 0.03);
   EXPECT_EQ(choice.error_at(1e6), 0.009);
@@ -48,7 +43,7 @@ TEST(MeasuredChoice, ErrsAsTheNearestPointBelow) {
 TEST_F(TradeTableFile, ReadsBack) {
   const auto text = trade_table_json(table());
   ASSERT_TRUE(text) << message(text.error());
-  put(folder_ / "a.trade.json", *text);
+  write_text(folder_ / "a.trade.json", *text);
   const auto read = read_trade_table(folder_ / "a.trade.json");
   ASSERT_TRUE(read) << message(read.error());
   EXPECT_EQ(*trade_table_json(*read), *text);
@@ -63,7 +58,7 @@ TEST_F(TradeTableFile, RefusesWhatIsUnsound) {
   EXPECT_EQ(trade_table_json(made).error().kind, ErrorKind::unsuitable);
   made = table();
   std::swap(made.choices.front().errors[0], made.choices.front().errors[1]);
-  put(folder_ / "b.trade.json", *trade_table_json(made));
+  write_text(folder_ / "b.trade.json", *trade_table_json(made));
   const auto refused = read_trade_table(folder_ / "b.trade.json");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().where.find("#/choices/0/errors"), std::string::npos) << refused.error().where;
@@ -89,7 +84,7 @@ TEST_F(TradeTableFile, ABrokenOneIsNotPassedOver) {
   const auto path = machine_trade_path();
   ASSERT_TRUE(path);
   std::filesystem::create_directories(std::filesystem::path(*path).parent_path());
-  put(*path, "{");
+  write_text(*path, "{");
   EXPECT_EQ(find_trade_table().error().kind, ErrorKind::malformed);
 }
 

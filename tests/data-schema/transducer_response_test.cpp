@@ -27,11 +27,11 @@ double actuator_db(double frequency_hz) {
   return decibels(std::abs(actuator_response(t, frequency_hz)) / std::abs(actuator_response(t, 0)));
 }
 
-// x, dx/dt and the voltage behind the resistor of the stage at hand.
+// x, dx/dt and the voltage behind the resistor of the current stage.
 using State = std::array<double, 3>;
 
-// What happens in time when `input` (volts at the amplifier, or newtons on the tray) is a cosine of 1: the
-// paper's equations (1) to (6) one by one, without any transfer function.
+// Integrates the paper's equations (1) to (6) for `input` (volts at the amplifier, or newtons on the tray) =
+// a cosine of amplitude 1, without any transfer function.
 struct Motion {
   Transducer t;
   double frequency_hz;
@@ -81,7 +81,7 @@ struct Motion {
 
 TEST(TransducerResponse, HasTheRecomputedResonanceAndPoles) {
   const Transducer t = preset("wiertlewski2011");
-  EXPECT_NEAR(resonance_hz(t), 547.7, 0.05);  // tolerances: half of the last digit that PAPERS.md gives
+  EXPECT_NEAR(resonance_hz(t), 547.7, 0.05);  // tolerances: half of the last digit (CONTRIBUTING.md)
   EXPECT_NEAR(damping_ratio(t), 0.096, 0.0005);
   EXPECT_NEAR(actuator_pole_hz(t), 143, 0.5);
   EXPECT_NEAR(sensor_pole_hz(t), 8.1, 0.05);
@@ -115,7 +115,7 @@ TEST(TransducerResponse, TheoryGivesThePrintedGains) {
   EXPECT_NEAR(std::abs(actuator_response(t, 0)) * 1e6, 16.5, 0.05);
   t.flexure_stiffness_n_per_m = 4.05e3;
   EXPECT_NEAR(std::abs(actuator_response(t, 0)) * 1e6, 15.6, 0.05);
-  // The sensor's pass-band as the print means it: stiffness alone, far above the high-pass and far below
+  // The sensor's pass-band in the sense of the paper: stiffness only, far above the high-pass and far below
   // resonance.
   t.flexure_stiffness_n_per_m = 0;
   t.mass_kg = t.damping_n_s_per_m = 1e-9;
@@ -132,7 +132,7 @@ TEST(TransducerResponse, NominalForceKeepsTheSensorsSign) {
   const Transducer t = preset("wiertlewski2011");
   const double newtons_per_volt = nominal_newtons_per_volt(t);
   EXPECT_LT(newtons_per_volt, 0);
-  // |H_s| is 26 V/N there; its phase is off half a turn by the high-pass's lead (4.6 degrees) and the
+  // |H_s| is 26 V/N there; its phase differs from half a turn by the high-pass's lead (4.6 degrees) and the
   // mechanics' lag.
   EXPECT_NEAR(newtons_per_volt, -1 / 26.0, 0.01 / 26.0);
 }
@@ -148,8 +148,8 @@ TEST(TransducerResponse, EqualsTheEquationsOfMotionInTime) {
   }
 }
 
-// A mass on a spring and a damper of its own, by Newton: x (m_1 s^2 + k + m_2 s^2 k_2 / (m_2 s^2 + k_2)) = f.
-// Undamped, so that the poles have closed forms.
+// A mass on its own spring, undamped so that the poles have closed forms; by Newton: x (m_1 s^2 + k + m_2 s^2
+// k_2 / (m_2 s^2 + k_2)) = f.
 TEST(TransducerResponse, ASecondModeIsAMassOnASpring) {
   Transducer t = preset("wiertlewski2011");
   const double k = t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m;
@@ -167,7 +167,7 @@ TEST(TransducerResponse, ASecondModeIsAMassOnASpring) {
     const std::complex<double> s(0, 2 * kPi * hz);
     const auto tray = tray_kg * s * s + k, inner = inner_kg * s * s;
     const auto exact = (inner + inner_n_per_m) / (tray * (inner + inner_n_per_m) + inner * inner_n_per_m);
-    const auto one = actuator_response(t, hz) * (t.mass_kg * s * s + k);  // all but the mechanics
+    const auto one = actuator_response(t, hz) * (t.mass_kg * s * s + k);  // everything except the mechanics
     EXPECT_LT(std::abs(actuator_response(two, hz) / (one * exact) - 1.0), 1e-6) << hz;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sample files, against headers written here byte by byte.
+// Sample files, against headers that this test writes byte by byte.
 #include "data-schema/wav/wav.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::string little_endian(std::uint64_t value, int bytes) {
   return text;
 }
 
-// A plain integer WAV of one channel at 8 kHz; `promised` is the data chunk's size, in bytes.
+// A plain integer WAV of one channel at 8 kHz; `promised` is the size in the data chunk's header, in bytes.
 std::string wav_of(const std::vector<std::int64_t>& codes, int bits, std::uint64_t promised) {
   const int bytes = bits / 8;
   std::string data;
@@ -69,7 +69,7 @@ TEST(WavReader, SaysHowMuchOfATruncatedFileIsLeft) {
   const auto reader = WavReader::open(folder / "a.wav");
   ASSERT_FALSE(reader);
   EXPECT_EQ(reader.error().kind, ErrorKind::malformed);
-  EXPECT_EQ(reader.error().what, "truncated: its header promises 10 frames, 3 are left");
+  EXPECT_EQ(reader.error().what, "truncated: its header has 10 frames, the file 3");
 }
 
 TEST(WavReader, ReadsWhatWasWrittenToAPipe) {
@@ -158,7 +158,7 @@ TEST(WavWriter, RefusesRatesThatNoHeaderHolds) {
   EXPECT_EQ(folder.files(), 0U);
 }
 
-// Over 4 GB the header is RF64. The file is sparse: it takes no room.
+// Above 4 GB the header is RF64. The file is sparse, so it needs no disk space.
 TEST(WavReader, CountsFramesBeyondFourGigabytes) {
   const TemporaryFolder folder;
   constexpr std::uint64_t kFrames = 2'500'000'000;
@@ -173,7 +173,7 @@ TEST(WavReader, CountsFramesBeyondFourGigabytes) {
   EXPECT_EQ(whole->info().frames, kFrames);
   std::filesystem::resize_file(folder / "a.wav", head.size() + 2 * kFrames - 200);
   EXPECT_EQ(WavReader::open(folder / "a.wav").error().what,
-            "truncated: its header promises 2500000000 frames, 2499999900 are left");
+            "truncated: its header has 2500000000 frames, the file 2499999900");
 }
 
 }  // namespace

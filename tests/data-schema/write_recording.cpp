@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For recording_wav_test.py: writes the recordings FOLDER/codes and FOLDER/numbers, whose content the script
-// knows.
+// Writes the recordings FOLDER/codes and FOLDER/numbers for recording_wav_test.py, which contains the
+// expected values.
 #include <cmath>
 #include <cstdio>
 #include <string>

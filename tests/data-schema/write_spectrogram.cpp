@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes OUT.nc, of one spectrogram, and OUT-two.nc, of two, for spectrogram_netcdf_test.py, which knows the
-// same formulas: at position p (from 0) and bin k the density is (1 + p + 100 k) 1e-6 N^2 m, in stroke 2
-// twice that. Known are the bins from 2.5 + p to 20.5.
+// Writes OUT.nc with one spectrogram, and OUT-two.nc with two, for spectrogram_netcdf_test.py, which contains
+// the same formulas: at position p (from 0) and bin k the density is (1 + p + 100 k) 1e-6 N^2 m, in stroke 2
+// twice that. The valid bins are 2.5 + p to 20.5.
 #include <array>
 #include <string>
 

@@ -15,7 +15,7 @@ TWO = ["--rate", "1kHz", "--channel", "tangential_force=f*1N", "--channel", "pos
 
 
 def refused(*arguments, code, says, leaves=None):
-    """The run fails with `code`, says all of `says` in one line, and the folder looks as before."""
+    """The run must fail with `code` and print all of `says` in one line; the folder must not change."""
     before = sorted(os.listdir("."))
     out, err = tacto.run(*arguments, code=code)
     lines = [line for line in err.strip().split("\n") if "warning:" not in line]
@@ -133,8 +133,8 @@ def the_rest_refuses():
 
 
 def record_says_which_option_and_what_to_do():
-    refused("record", "-d", "sim:", "-o", "x", "--strokes", "0", code=USAGE, says=["--strokes: '0' is no whole number from 1 on"])
-    refused("record", "-d", "sim:", "-o", "nodir/x", "--time", "1s", code=CANNOT_WRITE, says=["nodir", "make it first"])
+    refused("record", "-d", "sim:", "-o", "x", "--strokes", "0", code=USAGE, says=["--strokes: '0' is not a whole number of at least 1"])
+    refused("record", "-d", "sim:", "-o", "nodir/x", "--time", "1s", code=CANNOT_WRITE, says=["nodir", "create it first"])
     refused("record", "-d", "sim:", "-o", "x", code=USAGE, says=["faster than real time", "--time 2s", "--strokes 2", "paced=1"])
     refused("record", "-d", "sim:strokes=2", "-o", "x", "--strokes", "3", code=USAGE, says=["makes 2 strokes", "--time"])
     refused("record", "-d", "sim:source=counter", "-o", "x", "--strokes", "1", code=USAGE, says=["makes 0 strokes"])
@@ -147,7 +147,7 @@ def record_says_which_option_and_what_to_do():
     side = json.loads(pathlib.Path("loud.json").read_text())
     side["channels"][0]["scale"] = 0
     pathlib.Path("loud.json").write_text(json.dumps(side))
-    refused("info", "loud", code=MALFORMED, says=["/channels/0/scale", "0 must not stand here"])
+    refused("info", "loud", code=MALFORMED, says=["/channels/0/scale", "0 is not allowed here"])
 
 
 def dirty_file_warns():

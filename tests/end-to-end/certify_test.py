@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The verbs that look into textures, as a user runs them: certify, formants, sheet."""
+"""The verbs that analyse textures, as a user runs them: certify, formants, sheet."""
 import json
 import pathlib
 
@@ -13,7 +13,7 @@ RATE = 10000
 
 
 def record(name, speed_mps, hum_n=0.03, seed=0, length_m=0.08):
-    """A stroke over a surface of 1.3 and 2.6 /mm with mains at 100 Hz, through import and spatial: the whole way."""
+    """A stroke over a surface of 1.3 and 2.6 /mm with mains hum at 100 Hz, through import and spatial."""
     rng = np.random.default_rng(seed)
     t = np.arange(int((length_m / speed_mps + 0.6) * RATE)) / RATE
     speed = speed_mps * np.clip(np.minimum((t - 0.2) / 0.02, (t[-1] - 0.2 - t) / 0.02), 0, 1)
@@ -57,18 +57,18 @@ def certify_refuses_what_tells_nothing():
     record("one", 0.05)
     record("same", 0.05)
     _, said = tacto.run("certify", "one", code=2)
-    assert "two textures or more" in said, said
+    assert "at least two textures" in said, said
     _, said = tacto.run("certify", "one", "same", code=5)
     assert "differ only by a factor of 1;" in said and "another speed" in said, said
     assert "certificate" not in json.loads(pathlib.Path("one.texture.json").read_text())
 
 
 def strokes_and_recordings_are_taken_alike():
-    """A recording of two strokes, by its name before there are textures, and by theirs after."""
+    """A recording of two strokes, by its name while it has no textures, and by the textures' names after."""
     for name, speed in (("slow", 0.03), ("fast", 0.09)):
         record(name, speed, seed=int(1000 * speed))
     slow, fast = (np.loadtxt(f"{name}.csv", delimiter=",", skiprows=1) for name in ("slow", "fast"))
-    fast[:, 1] = slow[-1, 1] - fast[:, 1]  # back from where the first one ended
+    fast[:, 1] = slow[-1, 1] - fast[:, 1]  # back from the end of the first one
     np.savetxt("both.csv", np.vstack([slow, fast]), delimiter=",", fmt="%.6f", header="force_N,count",
                comments="")
     tacto.run("import", "both.csv", "-o", "both", "--rate", "10kHz", "--channel", "tangential_force=force_N*1N",
@@ -103,21 +103,21 @@ def formants_are_listed_stored_and_drawn():
     tacto.run("validate", "oak.formants.json")
     assert "formants" in tacto.run("info", "oak.formants.json")[0]
     tacto.run("formants", "oak", "-o", "oak-formants.csv")
-    tacto.run("formants", "oak", "-o", "oak-formants.csv", "--force")  # a table replaces its like
+    tacto.run("formants", "oak", "-o", "oak-formants.csv", "--force")  # --force replaces a table by a table
     raw = pathlib.Path("raw.csv")
     raw.write_text("time,force\n0,1\n")
     for verb in ("formants", "describe", "spectrogram"):
         _, said = tacto.run(verb, "oak", "-o", "raw.csv", code=2)
-        assert "would be lost" in said and raw.read_text() == "time,force\n0,1\n", said
+        assert "not overwritten" in said and raw.read_text() == "time,force\n0,1\n", said
     foreign = pathlib.Path("weather.nc")
     for content in (b"CDF\x01 of somebody's", b"no netCDF at all"):
         foreign.write_bytes(content)
         _, said = tacto.run("spectrogram", "oak", "-o", "weather.nc", code=2)
-        assert "would be lost" in said and foreign.read_bytes() == content, said
-    foreign.write_bytes(b"")  # of nobody
-    for _ in range(2):        # and one of ours replaces its like
+        assert "not overwritten" in said and foreign.read_bytes() == content, said
+    foreign.write_bytes(b"")  # not a file of tactograph
+    for _ in range(2):        # --force replaces a file of the same kind
         tacto.run("spectrogram", "oak", "-o", "weather.nc", "--force")
-    for verb in ("formants", "describe"):  # nothing that was recorded or made is replaced by a table
+    for verb in ("formants", "describe"):  # a table never replaces a recording or texture
         _, said = tacto.run(verb, "oak", "-o", "oak.json", code=2)
         assert "is a recording" in said, said
         _, said = tacto.run(verb, "oak", "-o", "oak.texture.json", code=2)

@@ -45,11 +45,12 @@ def an_emulated_finger_strokes_for_the_time_asked():
     assert report["device"] == "sim:seed=1", report
     tacto.run("record", "-d", "sim:seed=1,strokes=2", "--time", "8s", "-o", "two")
     two, long = (soundfile.read(f"{name}.wav", dtype="int32")[0] for name in ("two", "long"))
-    assert np.array_equal(two[:18000], long[:18000])  # the same finger; both have made two strokes then
+    assert np.array_equal(two[:18000], long[:18000])  # the same finger; both have made two strokes by then
     assert len(tacto.run_json("info", "two")["strokes"]) == 2
     assert len(tacto.run_json("record", "-d", "sim:seed=1", "--strokes", "3", "-o", "three")["strokes"]) == 3
     assert "pace" not in tacto.run_json("record", "-d", "sim:seed=1,paced=1", "--time", "0.2s", "-o", "paced")
-    assert "real time" in tacto.run("record", "-d", "replay:three", "-o", "again")[0]  # ends with the recording
+    # A replay ends with its recording.
+    assert "real time" in tacto.run("record", "-d", "replay:three", "-o", "again")[0]
 
 
 def a_full_output_is_an_error():
@@ -59,7 +60,8 @@ def a_full_output_is_an_error():
 
 
 def closed_outputs_get_nothing():
-    """The files that are opened must not take the numbers of stdout and stderr, or words land among the frames."""
+    """Opened files must not get the descriptors of stdout and stderr; otherwise messages would be written between the
+    frames."""
     def in_shell(redirected, *arguments):
         return subprocess.run(["bash", "-c", f'exec {redirected}; exec "$@"', "-", tacto.COMMAND, *arguments]).returncode
     tacto.run("record", "-d", "sim:seed=1", "-o", "open", "--time", "0.3s")
@@ -85,7 +87,7 @@ complete_words tactograph render --tra
 
 
 def complete(*words):
-    """What bash offers for the last of the words, which bash itself breaks at : and =."""
+    """bash's completions of the last of the words, which bash itself splits at : and =."""
     script, _ = tacto.run("completion")
     line = " ".join(words)
     broken = [piece for word in words for piece in re.findall(r"[:=]|[^:=]+", word) or [""]]

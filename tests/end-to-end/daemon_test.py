@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""tactographd on the emulated device, as clients see it: the way from load to a session that replays, and what happens when
-something goes wrong."""
+"""tactographd on the emulated device, from the clients' side: from load to a session that replays, and the handling of
+faults."""
 import contextlib
 import fcntl
 import hashlib
@@ -55,7 +55,7 @@ def other_config(**changed):
 
 @contextlib.contextmanager
 def daemon(code=0, **options):
-    """A daemon that is ready; at the end it is asked to stop, and has to with `code`."""
+    """A daemon that is ready; at the end it is told to stop, and must exit with `code`."""
     process = subprocess.Popen([DAEMON, "--config", "tactographd.json"], stderr=subprocess.PIPE, text=True, **options)
     said = []
     while not said or "ready" not in said[-1]:
@@ -87,7 +87,7 @@ class Client:
         return json.loads(self.lines.readline())
 
     def rest_of_events(self):
-        """All that a watcher was told and has not read, until nothing comes for half a second."""
+        """All unread events of a watcher, until none arrives for half a second."""
         events = []
         self.socket.settimeout(0.5)
         with contextlib.suppress(TimeoutError, OSError):
@@ -122,7 +122,7 @@ def ticks_of(session):
 
 
 def expect_a_ramp(session):
-    """The drive is zero within 20 ms of the first tick in fault, and stays there."""
+    """The drive is zero within 20 ms of the first tick in fault, and stays zero."""
     ticks = ticks_of(session)
     fault = int(np.argmax(ticks["fault"] > 0))
     assert ticks["fault"][fault] == 1 and len(ticks) > fault + 40
@@ -167,8 +167,9 @@ def from_load_to_a_session_that_replays():
 
 
 def what_the_limits_took_is_found():
-    """`status` tells in dB what the limits take, in both loops, and nothing where they take nothing; once the session is closed it is what
-    `session` tells of the whole. The command that it names also reads a session that goes on."""
+    """`status` has the removed part in dB, in both loops, and nothing if the limits remove nothing. After the session
+    is closed it is the value that `session` reports for the whole. The command in its message also reads a running
+    session."""
     preset = pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json"
     weak = {**json.loads(preset.read_text()), "name": "weak", "drive_limit_v": 0.3}
     pathlib.Path("weak.transducer.json").write_text(json.dumps(weak))
@@ -209,7 +210,7 @@ def what_the_limits_took_is_found():
 
 
 def kill_9_in_mid_play():
-    """What was synced is there and replays; the next daemon takes socket and device over."""
+    """Synced ticks exist and replay; the next daemon takes over socket and device."""
     prepare_files()
     with daemon(code=-signal.SIGKILL) as process:
         session = begin(Client())
@@ -225,7 +226,8 @@ def kill_9_in_mid_play():
 
 
 def sigstop_of_200_ms():
-    """A link that holds 250 ms and a device that ticks on: it has to save itself, and the daemon has to say so."""
+    """A link that holds 250 ms and a device that ticks on: the device must stop safely, and the daemon must report
+    it."""
     prepare_files(device="sim:link_buffer=1s")
     with daemon() as process:
         client = Client()
@@ -235,7 +237,7 @@ def sigstop_of_200_ms():
         time.sleep(0.2 * SLOW)
         process.send_signal(signal.SIGCONT)
         status = client.wait_for("fault")
-        assert "heard nothing from this computer" in status["fault"], status
+        assert "received nothing from this computer" in status["fault"], status
         assert not client.ask(request="play")["ok"]
         time.sleep(0.1)
         client.must(request="disarm")
@@ -295,7 +297,8 @@ def garbage_and_endless_lines():
 
 
 def many_requests_at_once():
-    """Sent in one piece they are all answered, in their order, a `stop` at the end among them; also of a client that says no more."""
+    """Requests sent in one piece are all answered, in order, including a `stop` at the end; also if the client closes
+    its sending side."""
     prepare_files()
     lines = "".join(json.dumps({"request": "gain", "gain": 0.5, "id": i}) + "\n" for i in range(70)) + '{"request":"stop","id":70}\n'
     with daemon():
@@ -308,16 +311,17 @@ def many_requests_at_once():
         half = Client()
         half.socket.sendall(lines.encode())
         half.socket.shutdown(socket.SHUT_WR)
-        assert [json.loads(line)["id"] for line in half.lines] == list(range(71))  # and then it is hung up on
+        # After that the daemon closes the connection.
+        assert [json.loads(line)["id"] for line in half.lines] == list(range(71))
         client.must(request="disarm")
-        silent = Client()  # the same where nothing plays, and nobody reads
+        silent = Client()  # the same if nothing plays, and the client does not read
         silent.socket.sendall(lines.encode())
         silent.socket.close()
         client.must(request="status")
 
 
 def a_thousand_clients():
-    """Those who are too many are told so; those who play go on playing."""
+    """Clients above the limit are told so; those that play continue to play."""
     prepare_files(most_clients=8)
     with daemon():
         client = Client()
@@ -340,7 +344,7 @@ def a_thousand_clients():
             with contextlib.suppress(BlockingIOError, OSError):
                 refused += b"clients are connected already" in one.recv(4096)
         assert refused > 950, refused
-        _, said = tacto.run("ctl", "status", "--socket", "control", code=5)  # the daemon's own words
+        _, said = tacto.run("ctl", "status", "--socket", "control", code=5)  # the message of the daemon
         assert "clients are connected already" in said, said
         assert "armed" in tacto.run("ctl", "stop", "--socket", "control")[0]
         client.must(request="play")
@@ -366,7 +370,7 @@ def second_daemon():
         assert second.returncode != 0 and "remove it, or name another socket" in second.stderr, second
         pathlib.Path("other.json").write_text(json.dumps({**config, "socket": "other", "files": "nowhere"}))
         second = subprocess.run([DAEMON, "--config", "other.json"], capture_output=True, text=True, timeout=20)
-        assert second.returncode == 3 and "there is no such folder" in second.stderr, second
+        assert second.returncode == 3 and "this folder does not exist" in second.stderr, second
         assert Client().must(request="status")["state"] == "idle"
 
 
@@ -388,7 +392,7 @@ def permissions():
 
 
 def full_disk_for_the_log():
-    """A limit of the file's size stands in for the disk. Playing goes on; what is missing is counted, and said."""
+    """A limit of the file size simulates a full disk. Playback continues; missing ticks are counted and reported."""
     import resource
     prepare_files()
     with daemon(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000))) as process:
@@ -406,23 +410,24 @@ def full_disk_for_the_log():
         kept = client.must(request="status")
         assert kept["recorder_lost_ticks"] >= status["recorder_lost_ticks"] and kept["lost_ticks"] == kept["recorder_lost_ticks"], kept
         told = [e for e in watcher.rest_of_events() if e["event"] == "recorder"]
-        assert told and told[0]["lost_ticks"] > 0 and "can't be written" in told[0]["why"], told
+        assert told and told[0]["lost_ticks"] > 0 and "cannot be written" in told[0]["why"], told
         said = [process.stderr.readline() for _ in range(5)]
         assert any("ticks are not in the session" in line for line in said), said
     described = tacto.run_json("info", session)
     assert described["ticks"] > 1000, described
-    # As far as the hole, or to the last tick that found room: more is missing either way.
+    # Up to the hole, or to the last tick that was written: more is missing in either case.
     done = subprocess.run([tacto.COMMAND, "replay", session, "--json"], capture_output=True, text=True, timeout=60)
     replayed = json.loads(done.stdout)
     assert "first_difference_tick" not in replayed and replayed["ticks_compared"] > 1000, replayed
     assert replayed["same_to_the_bit_up_to_the_lost_tick"] and "lost_at_tick" in replayed and done.returncode == 5, replayed
     assert replayed["lost_ticks"] == described["lost_ticks"] >= status["lost_ticks"] > 0, (replayed, described, status)
-    assert described["ending"] == "closed", described  # room for that is held back
+    assert described["ending"] == "closed", described  # the space for it is reserved
     assert "ticks are missing" in tacto.run("session", session)[1]
 
 
 def the_loop_closed_on_the_host():
-    """The same, with the kernel on this computer's real-time thread. How late its ticks are is measured, not judged: machines stall."""
+    """The same with the kernel on this computer's real-time thread. Lateness is measured, not asserted: machines
+    stall."""
     prepare_files(loop="host", device="sim:rate=2kHz", most_late_percent=100, watchdog_ms=500)
     with daemon() as process:
         client = Client()
@@ -437,7 +442,8 @@ def the_loop_closed_on_the_host():
         time.sleep(0.1)
         process.send_signal(signal.SIGCONT)
         time.sleep(0.5)
-        after = client.must(request="status")  # it fell, took the new count, and rose: no jump, no fault
+        # The drive fell, the new count was used, the drive rose: no jump, no fault.
+        after = client.must(request="status")
         assert after["state"] == "playing" and after["blind_ticks"] > status["blind_ticks"], after
         assert status["period_s"] == 1 / 2000 and 0 < status["wake_p99_s"] < 1 and status["busy_p99_s"] > 0, status
         client.must(request="disarm")
@@ -446,16 +452,16 @@ def the_loop_closed_on_the_host():
     assert tacto.run_json("replay", session)["same_to_the_bit"]
     ticks = ticks_of(session)
     assert np.sum(np.isfinite(ticks["lateness_s"])) == len(ticks) > 2000
-    _, said = tacto.run("session", session, "-o", "host.wav")  # time goes on while the computer stands still
-    assert said.count("ticks were never made") == 2, said
+    _, said = tacto.run("session", session, "-o", "host.wav")  # time continues during a stall of the computer
+    assert said.count("periods have no tick") == 2, said
     span_s = ticks["time_s"][-1] - ticks["time_s"][0]
-    drift_s = 0.005 * span_s  # the ticks follow the device's clock by half a percent at most
+    drift_s = 0.005 * span_s  # the ticks follow the device's clock with an error of at most half a percent
     assert span_s > len(ticks) / 2000 + 0.08 - drift_s, (span_s, len(ticks))
     assert abs(soundfile.info("host.wav").frames / 2000 - span_s) < 2e-3 + drift_s, (span_s, len(ticks))
 
 
 def the_service_manager_is_told():
-    """systemd's protocol: ready once it can be asked, alive every half of WATCHDOG_USEC, stopping at the end."""
+    """systemd's protocol: ready when clients can connect, alive every half of WATCHDOG_USEC, stopping at the end."""
     prepare_files()
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
         manager.bind("notify")
@@ -474,7 +480,8 @@ def the_service_manager_is_told():
 
 
 def a_band_that_the_rate_cuts_is_told():
-    """Below 2 kHz the band shrinks, and the status says to what: rate / 3.5 (playback/DECISIONS.md). So it does of a loop's period."""
+    """Below 2 kHz the band is narrower, and the status has its end: rate / 3.5 (playback/DECISIONS.md). It also has a
+    loop's period."""
     prepare_files(rate_hz=1500)
     with daemon():
         client = Client()
@@ -490,7 +497,7 @@ def a_band_that_the_rate_cuts_is_told():
 
 
 def late_ticks_beyond_a_limit_are_a_fault():
-    """A computer that stops again and again plays what the finger felt too late: beyond most_late_percent, not at all."""
+    """A computer that stalls repeatedly plays too late: above most_late_percent it is a fault."""
     prepare_files(loop="host", device="sim:rate=2kHz", most_late_percent=1, watchdog_ms=1000)
     with daemon() as process:
         client = Client()
@@ -520,12 +527,12 @@ def gain_saved_in_the_scene():
         assert client.must(request="gain", gain=-1)["inverts_texture"] and client.must(request="status")["inverts_texture"]
         assert "inverts_texture" not in client.must(request="gain", gain=1) | client.must(request="status")
         client.must(request="gain", gain=2, save=True)
-        client.must(request="gain", gain=0.5, save=True)  # of what was loaded, not of what was saved
+        client.must(request="gain", gain=0.5, save=True)  # relative to the loaded gain, not to the saved one
         answer = client.ask(request="gain", gain=0, save=True)
-        assert not answer["ok"] and "lose" in answer["error"]["what"], answer
-        assert client.must(request="status")["gain"] == 0.5  # what is refused changes nothing
+        assert not answer["ok"] and "recovered" in answer["error"]["what"], answer
+        assert client.must(request="status")["gain"] == 0.5  # a refused request changes nothing
         answer = client.ask(request="gain", gain=900, save=True)
-        assert not answer["ok"] and "its limit is 100 um" in answer["error"]["what"] and "could go as far as" in answer["error"]["what"], answer
+        assert not answer["ok"] and "its limit is 100 um" in answer["error"]["what"] and "could reach" in answer["error"]["what"], answer
         as_it_was = pathlib.Path("s.scene.json").read_bytes()
         os.chmod("s.scene.json", 0o444)
         answer = client.ask(request="gain", gain=0.25, save=True)
@@ -537,7 +544,8 @@ def gain_saved_in_the_scene():
 
 
 def gain_kept_with_the_texture():
-    """One client saves it, the next load has it, with who and when; all else in the sidecar and the WAV stay."""
+    """One client saves a gain; the next load has it, with author and time; the rest of the sidecar and the WAV do not
+    change."""
     prepare_files()
     sidecar, wav = pathlib.Path("oak.texture.json"), pathlib.Path("oak.texture.wav")
     sidecar.write_text(json.dumps({**json.loads(sidecar.read_text()), "from_tomorrow": {"kept": [1, 2.5]}}))
@@ -552,11 +560,11 @@ def gain_kept_with_the_texture():
     pathlib.Path("tactographd.json").write_text(json.dumps({**config, "tcp_port": port, "tcp_token_file": "token", "files": "."}))
     with daemon():
         first = Client()
-        assert first.ask(request="gain", gain=0.5, save=True)["error"]["remedy"] == "load first"
+        assert first.ask(request="gain", gain=0.5, save=True)["error"]["remedy"] == "load one first"
         loaded = first.must(request="load", file="oak")
         assert loaded["gain_m_per_n"] == 1e-3 and "gain_set_by" not in loaded, loaded
         first.must(request="gain", gain=2, save=True)
-        first.must(request="gain", gain=0.5, save=True)  # of what was loaded, not of what was saved
+        first.must(request="gain", gain=0.5, save=True)  # relative to the loaded gain, not to the saved one
         second = Client()
         loaded = second.must(request="load", file="oak")
         assert loaded["gain_m_per_n"] == 5e-4 and loaded["gain_set_by"] == me and loaded["gain_set_on"].endswith("Z"), loaded
@@ -593,8 +601,9 @@ def gain_kept_with_the_texture():
 
 
 def a_texture_changed_in_mid_play():
-    """The states stay, the gain stays, the drive has no step, the session replays, judges every stroke, and names what came."""
-    prepare_files(device="sim:link_buffer=1s")  # a device that ticks on by itself, and hears whether the daemon is busy
+    """State and gain do not change, the drive has no step, the session replays, judges every stroke, and names the
+    texture."""
+    prepare_files(device="sim:link_buffer=1s")  # a device that ticks independently, so that a busy daemon is noticed
     x = np.arange(100_000) * 1e-6               # 100 mm: takes longer to prepare than the watchdog's 100 ms
     write_texture("cork", 0.01 * np.sin(2 * np.pi * 1000 * x), 1e-6)
     with daemon():
@@ -607,7 +616,7 @@ def a_texture_changed_in_mid_play():
         answer = json.loads(tacto.run("ctl", "load", "cork", "--gain", "0.25mm/N", "--fade", "100ms", "--socket", "control", "--json")[0])
         assert answer["changed"] and answer["fade_s"] == 0.1, answer
         changed = client.must(request="status")["ticks"]
-        time.sleep(3.5)  # a way of the finger takes 1.2 s: one whole way lies before the next change, wherever this one fell
+        time.sleep(3.5)  # a pass of the finger takes 1.2 s, so one whole pass is before the next change
         status = client.must(request="status")
         assert status["state"] == "playing" and status["loaded"].endswith("cork") and status["gain"] == 0.5, status
         assert status["session"] == session and status["lost_ticks"] == 0
@@ -622,12 +631,13 @@ def a_texture_changed_in_mid_play():
         assert not client.must(request="load", file="oak")["changed"]
         events = watcher.rest_of_events()
     states = [e["state"] for e in events if e["event"] == "state"]
-    assert states[:2] == ["armed", "playing"] and states[2:] in (["idle"], ["armed", "idle"]), states  # while the drive falls it is armed
+    # Armed while the drive falls.
+    assert states[:2] == ["armed", "playing"] and states[2:] in (["idle"], ["armed", "idle"]), states
     assert tacto.run_json("replay", session)["same_to_the_bit"]
     described = tacto.run_json("session", session)
     judged = ["predicted_error_db" in stroke for stroke in described["strokes"]]
     assert len(judged) > 2 and all(judged), described["strokes"]
-    assert all(abs(stroke["predicted_over_wanted_db"]) < 0.5 for stroke in described["strokes"][1:]), described["strokes"]
+    assert all(abs(stroke["predicted_over_target_db"]) < 0.5 for stroke in described["strokes"][1:]), described["strokes"]
     info = tacto.run_json("info", session)
     assert [(pathlib.Path(c["texture"]).name, c["gain_m_per_n"]) for c in info["changes"]] == \
         [("cork.texture.json", 0.00025), ("oak.texture.json", 0.0005)], info
@@ -639,18 +649,18 @@ def a_texture_changed_in_mid_play():
     after = next(i + 1 for i, s in enumerate(described["strokes"]) if s["from_s"] > (changed + 500) / 2000 and s["to_s"] < again / 2000)
     found = tacto.run_json("compare", session, "cork", "--stroke-a", str(after))
     assert found["verdict"] == "same" or abs(found["gain"] - 1) < 0.1, found
-    assert "is not what the session played" in tacto.run("compare", session, "oak", "--stroke-a", str(after), code=5)[1]
+    assert "is not the texture that the session played" in tacto.run("compare", session, "oak", "--stroke-a", str(after), code=5)[1]
     assert len(told) == 2 and told[0].endswith("cork.texture.json") and "over 0.1 s: " in told[0], told
     ticks = ticks_of(session)
     drive = ticks["drive_v"]
-    one, two = drive[600:3000], drive[changed + 400:changed + 2800]  # 1.2 s each: a way of the finger and its rests
+    one, two = drive[600:3000], drive[changed + 400:changed + 2800]  # 1.2 s each: a pass of the finger and its rests
     assert 3.5 < np.std(one) / np.std(two) < 4.5, (np.std(one), np.std(two))  # 0.02 N x 0.5 mm/N to 0.01 N x 0.25 mm/N
     steps = np.abs(np.diff(drive[ticks["playing"] > 0]))
     assert np.max(steps) < 1.1 * np.max(np.abs(np.diff(one))), (np.max(steps), np.max(np.abs(np.diff(one))))
 
 
 def terminal_shows(rows, columns, *arguments):
-    """Whether a terminal of that size is enough: what is shown has no line too long, and none too many."""
+    """Whether a terminal of that size is sufficient: no line is too long, and there are not too many lines."""
     ours, its = pty.openpty()
     fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
     subprocess.run([os.environ["TACTOGRAPH"], *arguments], stdout=its, check=True, timeout=30)
@@ -661,7 +671,7 @@ def terminal_shows(rows, columns, *arguments):
 
 
 def a_path_that_ends_where_it_began_is_a_loop():
-    """Up in 0.3 s, back in 0.9 s, over and over: back and forth it would go up slowly every other time."""
+    """Up in 0.3 s, back in 0.9 s, repeated; played back and forth, every other pass up would be slow."""
     prepare_files()
     pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.004\n0.3,0.034\n1.2,0.004\n")
     with daemon():
@@ -670,7 +680,7 @@ def a_path_that_ends_where_it_began_is_a_loop():
         assert terminal_shows(5, 20, "ctl", "top", "--time", "0.2s", "--socket", "control"), "a small terminal"
         for ignored in (["arm", "--gain", "1mm/N"], ["play", "--at", "3mm"], ["gain", "0.5", "--inverse", "gain"], ["stop", "--save"],
                         ["status", "--time", "1s"], ["top", "--time", "-1s"]):
-            assert "takes no" in tacto.run("ctl", *ignored, "--socket", "control", code=2)[1], ignored
+            assert "does not accept" in tacto.run("ctl", *ignored, "--socket", "control", code=2)[1], ignored
         client = Client()
         session = begin(client)
         time.sleep(3.6)
@@ -682,7 +692,8 @@ def a_path_that_ends_where_it_began_is_a_loop():
 
 
 def what_was_chosen_is_told():
-    """The configuration's choices, a scene's over them, a request's over both; what can't be is refused, and the rest plays on."""
+    """The configuration's choices; a scene overrides them, a request overrides both; an impossible choice is refused,
+    and the rest continues to play."""
     prepare_files(playback={"interpolation": "linear", "inverse": "gain", "contact_on_n": 0.6, "energy_rms_v": 5})
     layer = {"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 0.0005}
     scene = {"kind": "scene", "version": "1.0", "layers": [layer], "playback": {"inverse": "magnitude", "contact_on_n": 0.2}}
@@ -703,7 +714,7 @@ def what_was_chosen_is_told():
         for misplaced in ({"request": "arm", "playback": {"energy_rms_v": 0.1}}, {"request": "gain", "gain": 1, "playback": {}},
                           {"request": "load", "file": "s", "gain": 0.5}, {"request": "play", "gain": 0.01}, {"request": "status", "save": True}):
             refused = client.ask(**misplaced)
-            assert not refused["ok"] and "takes no" in refused["error"]["what"] and "send it with" in refused["error"]["remedy"], refused
+            assert not refused["ok"] and "does not accept" in refused["error"]["what"] and "send it with" in refused["error"]["remedy"], refused
         session = client.must(request="arm")["session"]
         client.must(request="play")
         time.sleep(0.7)
@@ -726,14 +737,15 @@ def what_was_chosen_is_told():
 
 
 def a_promise_in_the_configuration():
-    """What is loaded keeps it, what can't is refused with the best there is, and a change keeps the filter that plays."""
+    """A loaded texture keeps the promise; if it cannot, it is refused with the best possible one; a change keeps the
+    playing filter."""
     prepare_files(max_error=0.002, max_tick_ns=10000, undo_hysteresis=False)
     write_texture("cork", 0.01 * np.sin(2 * np.pi * 1700 * np.arange(4000) * 10e-6))
     with daemon():
         client = Client()
         answer = client.must(request="load", file="oak", gain_m_per_n=0.0005)
         assert answer["promised_error"] <= 0.002 and 0 < answer["tick_s"] <= 1e-5, answer
-        assert answer["inverse_error_db"] <= 20 * np.log10(answer["promised_error"]) and "asked: 0.2 %" in answer["why_1"], answer
+        assert answer["inverse_error_db"] <= 20 * np.log10(answer["promised_error"]) and "requested: 0.2 %" in answer["why_1"], answer
         client.must(request="arm")
         client.must(request="play")
         changed = client.must(request="load", file="cork", gain_m_per_n=0.0005)
@@ -743,14 +755,15 @@ def a_promise_in_the_configuration():
     prepare_files(quality="balanced", max_tick_ns=1)
     with daemon():
         answer = Client().ask(request="load", file="oak")
-        assert not answer["ok"] and "is the least" in answer["error"]["what"], answer
+        assert not answer["ok"] and "the fastest needs" in answer["error"]["what"], answer
     prepare_files(quality="balanced", max_error=0.01)
     refused = subprocess.run([DAEMON, "--config", "tactographd.json"], capture_output=True, text=True, timeout=20)
     assert refused.returncode == 4, refused
 
 
 def a_load_holds_up_nobody():
-    """What takes seconds to prepare delays neither `stop` nor SIGTERM; a `stop` behind it on its own connection ends it."""
+    """A load that takes seconds delays neither `stop` nor SIGTERM; a `stop` behind it on its own connection cancels
+    it."""
     prepare_files()
     write_texture("long", np.zeros(4_000_000))  # 40 m
     with daemon() as process:
@@ -771,15 +784,16 @@ def a_load_holds_up_nobody():
         session = begin(client)
         client.socket.sendall(b'{"request":"load","file":"long"}\n{"request":"status"}\n{"request":"stop"}\n')
         answers = [json.loads(client.lines.readline()) for _ in range(3)]
-        assert not answers[0]["ok"] and "given up" in answers[0]["error"]["what"], answers
+        assert not answers[0]["ok"] and "cancelled" in answers[0]["error"]["what"], answers
         assert answers[1]["state"] == "playing" and answers[2]["state"] == "armed", answers
-        # The long one's thread goes on for itself, and is in nobody's way.
+        # The thread of the long load continues alone and blocks nothing.
         assert client.must(request="load", file="oak", gain_m_per_n=0.0005)["changed"]
     assert tacto.run_json("replay", session)["same_to_the_bit"]
 
 
 def the_terminal_goes_away():
-    """SIGHUP is as SIGTERM: the drive ramps to zero, the session is closed, the socket goes. Under nohup it goes on."""
+    """SIGHUP acts as SIGTERM: the drive ramps to zero, the session is closed, the socket removed. Under nohup play
+    continues."""
     prepare_files()
     with daemon() as process:
         session = begin(Client())
@@ -796,7 +810,7 @@ def the_terminal_goes_away():
 
 
 def files_that_nobody_can_play():
-    """A pipe is not waited for, and what would take all memory is refused before it is taken: what plays plays on."""
+    """A pipe is not opened, and a file that would need all memory is refused before it is read; playback continues."""
     prepare_files()
     os.mkfifo("pipe.texture.json")
     layer = {"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 0.001}
@@ -804,7 +818,7 @@ def files_that_nobody_can_play():
     with daemon():
         client = Client()
         begin(client)
-        for file, words in (("pipe", "is no regular file"), ("far", "far.scene.json#/layers/1/at_m")):
+        for file, words in (("pipe", "is not a regular file"), ("far", "far.scene.json#/layers/1/at_m")):
             answer = client.ask(request="load", file=file)
             assert not answer["ok"] and words in json.dumps(answer["error"]), answer
         assert client.must(request="status")["state"] == "playing"
@@ -816,14 +830,15 @@ def write_token(text, mode=0o600):
 
 
 def by_tcp_with_a_token():
-    """127.0.0.1 only; nothing without the token, not even a second request; and strangers don't take all places."""
+    """127.0.0.1 only; without the token nothing, not even a second request; unauthenticated clients cannot take all
+    places."""
     token = "0123456789abcdef"
     prepare_files(tcp_port=0, tcp_token_file="token", most_clients=8, files=".")
     write_token(token + "\n")
     with daemon() as process:
         port = int(process.ready.rsplit(":", 1)[1])
         newer = Client(greet=False, port=port).ask(request="hello", version="2.0")
-        assert not newer["ok"] and "speaks version 2.0" in newer["error"]["what"] and "token" not in json.dumps(newer), newer
+        assert not newer["ok"] and "uses version 2.0" in newer["error"]["what"] and "token" not in json.dumps(newer), newer
         for first in ({"request": "status"}, {"request": "hello", "version": "1.0"},
                       {"request": "hello", "version": "1.0", "token": token[:-1]},
                       {"request": "hello", "version": "1.0", "token": token + "0"}):
@@ -838,7 +853,8 @@ def by_tcp_with_a_token():
             assert browser.lines.readline() == "", "hung up on at the first line"
         client = Client(port=port, token=token)
         begin(client)
-        silent = [Client(greet=False, port=port) for _ in range(5)]  # with `client` half of 8: two have a place for `stop`
+        # `client` has half of 8; two keep a place for `stop`.
+        silent = [Client(greet=False, port=port) for _ in range(5)]
         assert Client().must(request="status")["state"] == "playing"
         said = [json.loads(one.lines.readline())["error"]["what"] for one in silent]
         assert all("no hello came" in what or "connected already" in what for what in said), said
@@ -860,7 +876,7 @@ def by_tcp_with_a_token():
 
 
 def silent_clients_do_not_keep_stop_out():
-    """All sixteen places are taken by clients who say nothing, or nothing but hello: `stop` is taken all the same."""
+    """Clients that send nothing, or only hello, take all sixteen places: `stop` is accepted nevertheless."""
     prepare_files()
     for greets in (False, True):
         with daemon():
@@ -875,7 +891,7 @@ def silent_clients_do_not_keep_stop_out():
 
 
 def expect_a_soft_fall(session, why):
-    """The session is closed and says why; its drive ends at zero, by no step larger than the transducer's slew limit allows."""
+    """The session is closed with the reason; its drive ends at zero, with no step above the transducer's slew limit."""
     assert tacto.run_json("info", session)["ending"] == "closed"
     assert tacto.run_json("replay", session)["same_to_the_bit"]
     said = json.dumps(tacto.run_json("info", session))
@@ -897,8 +913,8 @@ def arm_while_connected(client, **members):
 
 
 def whoever_armed_goes_away():
-    """By closing the socket, by Unix and TCP: the drive falls, states and status say why, the session is closed, and the next may arm. Another
-    client's leaving changes nothing."""
+    """By closing the socket, by Unix and TCP: the drive falls, states and status have the reason, the session is
+    closed, and the next client may arm. If another client leaves, nothing changes."""
     prepare_files(tcp_port=0, tcp_token_file="token", files=".")
     write_token("0123456789abcdef")
     with daemon() as process:
@@ -930,8 +946,8 @@ def whoever_armed_goes_away():
 
 
 def whoever_armed_is_silent():
-    """dead_man_s: the shorter one of the request and the configuration holds. Any line is a sign of life, of the client that armed; without
-    while_connected that of any client."""
+    """dead_man_s: the shorter one of request and configuration applies. Any line of the client that armed resets it;
+    without while_connected a line of any client."""
     prepare_files(dead_man_s=1)
     with daemon():
         client, other = Client(), Client()
@@ -954,7 +970,7 @@ def whoever_armed_is_silent():
 
 
 def play_that_is_watched():
-    """`ctl play --watch` plays for as long as it runs: Ctrl-C, SIGKILL and SIGSTOP each end it, and so does its time."""
+    """`ctl play --watch` plays as long as it runs: Ctrl-C, SIGKILL and SIGSTOP each end it, and so does its time."""
     prepare_files()
     command = [tacto.COMMAND, "ctl", "play", "--watch", "--socket", "control"]
     with daemon():
@@ -986,7 +1002,8 @@ def play_that_is_watched():
 
 
 def what_clients_over_tcp_load():
-    """From the configured folder only; the one error tells nothing of what lies elsewhere. Clients of the Unix socket name any file."""
+    """Files from the configured folder only; the error reveals nothing about other files. Clients of the Unix socket
+    may load any file."""
     pathlib.Path("served").mkdir()
     prepare_files(tcp_port=0, tcp_token_file="token", files="served")
     write_token("0123456789abcdef")

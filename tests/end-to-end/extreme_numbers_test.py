@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each number of a transducer's file at extreme values, through the verbs that take one: it is refused by its name, or, where the user
-insists, all numbers that come out are finite."""
+"""Each number of a transducer's file at extreme values, through the verbs that use a transducer: it is refused by name
+or, with --implausible, all resulting numbers are finite."""
 import concurrent.futures
 import json
 import pathlib
@@ -41,7 +41,7 @@ def refuse_constant(text):
 
 
 def commands_with(name):
-    """With each what it writes, if it does."""
+    """The commands, each with the file that it writes, if any."""
     return [(["render", "oak", "--path", "path.csv", "--transducer", name, "--over-limit", "clip", "-o", f"{name}.wav", "--displacement",
               f"{name}-tray.wav", "--json"], [f"{name}.wav", f"{name}-tray.wav"]),
             (["explain", "oak", "--transducer", name, "--json"], []),
@@ -49,7 +49,7 @@ def commands_with(name):
 
 
 def one_number(index, path, value):
-    """Whether it was refused as implausible, and how many commands took it where the user insisted."""
+    """Whether it was refused as implausible, and how many commands accepted it with --implausible."""
     name, member = f"odd{index}", path[-1]
     write_transducer(name, path, value)
     validated, described = run("validate", name), run("info", name, "--json")
@@ -90,7 +90,7 @@ def what_was_found():
         write_transducer("odd", (member,), value)
         refused = run("render", "oak", "--path", "path.csv", "--transducer", "odd", "-o", "drive.wav")
         assert refused.returncode == 5 and f"#/{member}: {member} is {value:g}" in refused.stderr, refused
-        assert "no transducer has less than" in refused.stderr and "--implausible" in refused.stderr, refused
+        assert "a plausible value is from" in refused.stderr and "--implausible" in refused.stderr, refused
         assert not pathlib.Path("drive.wav").exists()
     tacto.run("record", "-d", "sim:surface=C", "--time", "1s", "-o", "taken")
     side = json.loads(pathlib.Path("taken.json").read_text())

@@ -80,19 +80,19 @@ def what_is_no_profile_is_refused():
         assert words in err and len(err.strip().split("\n")) == 1, err
     pathlib.Path("u.csv").write_text("x,z\n0,1\n1,2\n2.4,4\n3,8\n4,9\n")
     channels = ["--channel", "position=x*1um", "--channel", "height=z*1um"]
-    refused(5, "u.csv: line 4: the position of 0.0024 mm is 0.4 um off", "u.csv", "-o", "u", *channels)
+    refused(5, "u.csv: line 4: the position of 0.0024 mm deviates by 0.4 um", "u.csv", "-o", "u", *channels)
     refused(2, "both --pitch and a position", "u.csv", "-o", "u", *channels, "--pitch", "1um")
-    refused(2, "a profile has no speed", "u.csv", "-o", "u", "--pitch", "1um", "--channel", "speed=x*1mm/s")
+    refused(2, "a profile cannot contain speed", "u.csv", "-o", "u", "--pitch", "1um", "--channel", "speed=x*1mm/s")
     good = "<DATA><DATAFILE><UNITS>um</UNITS><NUMPOINTS>2</NUMPOINTS><SPACING>1</SPACING><DATA_POINT_VALUES>1\n2</DATA_POINT_VALUES></DATAFILE></DATA>"
-    for old, new, words in (("um", "kg", "'kg' is no unit of length"), ("<NUMPOINTS>2", "<NUMPOINTS>3", "2 values where 3"),
-                            ("1\n2", "1\ntwo", "value 2, 'two', is no number"), (">1</SP", ">0</SP", "a spacing is above 0"),
-                            ("</DATA>", "", "is no XML"), ("DATAFILE", "FILE", "there is no DATA/DATAFILE")):
+    for old, new, words in (("um", "kg", "'kg' is not a unit of length"), ("<NUMPOINTS>2", "<NUMPOINTS>3", "2 values, but NUMPOINTS is 3"),
+                            ("1\n2", "1\ntwo", "value 2, 'two', is not a number"), (">1</SP", ">0</SP", "a spacing must be above 0"),
+                            ("</DATA>", "", "is not XML"), ("DATAFILE", "FILE", "there is no DATA/DATAFILE")):
         pathlib.Path("bad.xml").write_text(good.replace(old, new))
         refused(4, words, "bad.xml", "-o", "bad")
     pathlib.Path("good.xml").write_text(good)
     tacto.run("import", "good.xml", "-o", "good")
-    refused(2, "is there already", "good.xml", "-o", "good")
-    refused(2, "names its heights", "good.xml", "-o", "good2", "--pitch", "1um")
+    refused(2, "exists already", "good.xml", "-o", "good")
+    refused(2, "already contains the channel of its heights", "good.xml", "-o", "good2", "--pitch", "1um")
 
 
 if __name__ == "__main__":

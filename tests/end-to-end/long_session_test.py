@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions of hours: judged, exported and compared in memory that their length has no part in.
+"""Sessions of hours are judged, exported and compared in memory that does not depend on their length.
 
-A session of 20 s in emulated time is told again and again: the ticks of a whole number of strokes are repeated, numbered and
-timed on, until they are hours. So every stroke of the hours has one of the 20 s to be held against.
+A session of 20 s in emulated time is extended: the ticks of a whole number of strokes are repeated, with continued
+numbers and times, up to hours. So every stroke has a reference in the 20 s.
 """
 import csv
 import hashlib
@@ -45,7 +45,7 @@ def ticks_block(first, ticks):
 
 
 def write_long(source, target, hours):
-    """The session's commands and first 4 s, then the 4 s after them again and again."""
+    """The session's commands and first 4 s, then the next 4 s repeated."""
     data = pathlib.Path(source).read_bytes()
     ticks = np.concatenate([np.frombuffer(p[20:], TICK) for kind, p in blocks_of(data) if kind == 1])
     begin, cycle = ticks[:CYCLE], ticks[CYCLE:2 * CYCLE]
@@ -83,12 +83,12 @@ def judged_in_little_memory():
     with open("short.csv", newline="") as short, open("long.csv", newline="") as long:
         of_short, strokes = list(csv.DictReader(short)), list(csv.DictReader(long))
     assert len(strokes) == 2 * (count // CYCLE) * 2
-    # Each is one of four of the short session (the repeated ones from its fifth on): what differs is where in a block it lies
-    # (5e-4 of what is wanted: JudgedBlocks) and which counts stand at the seams, one count of 10 um beside a period of 1 mm.
+    # Each is one of four of the short session (the repeated ones from its fifth on). Differences: the position in a
+    # block (5e-4 of the target: JudgedBlocks), and the counts at the seams, one count of 10 um beside a period of 1 mm.
     for i, stroke in enumerate(strokes[8:-1]):  # the last one has no turn at its end
         same = of_short[4 + i % 4]
         assert abs(float(stroke["predicted_error_db"]) - float(same["predicted_error_db"])) < 0.2, (stroke, same)
-        for key in ("wanted_rms_m", "predicted_rms_m"):
+        for key in ("target_rms_m", "predicted_rms_m"):
             assert abs(float(stroke[key]) / float(same[key]) - 1) < 2e-3, (key, stroke, same)
         assert abs(float(stroke["to_s"]) - float(stroke["from_s"]) - float(same["to_s"]) + float(same["from_s"])) < 0.01
     _, said = tacto.run("session", "long", "--json")
@@ -106,7 +106,8 @@ def compared_and_told():
 
 
 def a_stroke_without_an_end():
-    """A finger that never turns: counts that only grow, for the whole session. One stroke, judged; too long to be compared."""
+    """A finger that never reverses: increasing counts for the whole session. One stroke, judged, but too long to
+    compare."""
     write_short()
     count = write_long("short.session", "still.session", HOURS)
     data = pathlib.Path("still.session").read_bytes()
@@ -126,11 +127,13 @@ def a_stroke_without_an_end():
     assert stroke["to_s"] - stroke["from_s"] > 0.99 * count / RATE_HZ
     assert tacto.SANITIZED or peak < MOST_MB, peak
     _, said = tacto.run("compare", "still.session", "oak", code=5)
-    assert ("without a turn" if count > 1 << 22 else "no band in common") in said, said  # the sanitizers' session is a shorter one
+    # With sanitizers the session is shorter.
+    assert ("without a reversal" if count > 1 << 22 else "no band in common") in said, said
 
 
 def a_stop_of_days():
-    """A computer that sleeps for 23 days in mid-play: the strokes end there, and nothing is made of what is between."""
+    """A computer that sleeps for 23 days during playback: the strokes end there, and the time between is not
+    interpolated."""
     write_short()
     count = write_long("short.session", "slept.session", 30 / 3600)
     data = pathlib.Path("slept.session").read_bytes()
@@ -147,7 +150,7 @@ def a_stop_of_days():
     assert report["stroke_count"] == len(strokes) and any(s["from_s"] > 2e6 for s in strokes), report
     assert all(s["to_s"] - s["from_s"] < 2 and s["predicted_error_db"] < -15 for s in strokes), strokes
     _, said = tacto.run("session", "slept", "-o", "slept.wav", code=5)
-    assert "made up" in said and not pathlib.Path("slept.wav").exists(), said
+    assert "interpolated" in said and not pathlib.Path("slept.wav").exists(), said
     pathlib.Path("mine.csv").write_text("my,own\n1,2\n")
     tacto.run("session", "slept", "--strokes", "mine.csv", code=2)
     assert pathlib.Path("mine.csv").read_text().startswith("my,own")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recordings that `tactograph spatial` must refuse, say something of, or take together."""
+"""Recordings that `tactograph spatial` must refuse, warn about, or combine."""
 import json
 import pathlib
 
@@ -51,7 +51,7 @@ def a_jump_of_the_encoder_is_refused_with_its_sample():
     assert f"sample {at}" in said, said
     rows = tacto.run_json("spatial", "jump", "--list")["position_jumps"]
     assert [(row["sample"], round(row["step_m"], 3)) for row in rows] == [(at, 1.0)], rows
-    # What lies before it is a texture, and the one that it would have been without.
+    # The part before it is a texture, as it would be without it.
     tacto.run("spatial", "jump", "-o", "before", "--from", "0.55s", "--to", "0.85s")
     touch("whole", x, force)
     tacto.run("spatial", "whole", "-o", "same", "--from", "0.55s", "--to", "0.85s")
@@ -67,7 +67,7 @@ def other_strokes_survive_a_jump():
     jumped[at:] -= 0.3
     touch("jump", jumped, surface(x))
     out, said = tacto.run("spatial", "jump", "-o", "t")
-    assert f"sample {at}" in said and "makes no texture" in said, said
+    assert f"sample {at}" in said and "no texture was made" in said, said
     made = sorted(path.name for path in pathlib.Path(".").glob("t*.texture.json"))
     assert len(made) == 2, made
     for name in made:
@@ -91,7 +91,7 @@ def positions_that_are_held_or_coarse_do_not_jump():
 
 def forces_that_single_precision_cannot_hold_are_refused():
     x = np.concatenate([stroke(0.01, 0.03), np.full(RATE_HZ // 2, 0.03)])
-    for name, size, words in (("large", 1e39, "beyond the 3.4e38"), ("small", 1e-310, "would be stored as zeros")):
+    for name, size, words in (("large", 1e39, "above the 3.4e38"), ("small", 1e-310, "all values would be nearly 0")):
         touch(name, x, size * surface(x) / 0.02)
         _, said = tacto.run("spatial", name, "-o", "t", code=UNSUITABLE)
         assert words in said, said
@@ -114,11 +114,11 @@ def the_one_channel_that_can_be_a_texture_is_taken():
     tacto.run("spatial", "two", "-o", "two", "--channel", "displacement")
     import_columns("none", press=press, count=count)
     _, said = tacto.run("spatial", "none", "-o", "none", code=UNSUITABLE)
-    assert "no channel that can be a texture" in said, said
+    assert "no channel that can become a texture" in said, said
 
 
 def takes_in_several_recordings_are_averaged():
-    """Noise of three takes falls by their number; the mean says which recordings it is of."""
+    """Noise of the mean of three takes is smaller by the root of their number; the mean names its recordings."""
     random = np.random.default_rng(1)
     x = np.concatenate([stroke(0.01, 0.03), stroke(0.03, 0.01), np.full(RATE_HZ // 2, 0.01)])
     for n in (1, 2, 3):
@@ -132,7 +132,7 @@ def takes_in_several_recordings_are_averaged():
     assert side["source"]["recording"] == "take1.json, take2.json, take3.json"
     tacto.run("validate", "mean-forward", "mean-backward")
     _, said = tacto.run("spatial", "take1", "take2", "--average", "-o", "mean", code=USAGE)
-    assert "is there already" in said and "--force" in said, said
+    assert "exists already" in said and "--force" in said, said
     tacto.run("spatial", "take1", "--stroke", "1", "-o", "single")
     touch("quiet", x, surface(x))
     tacto.run("spatial", "quiet", "--stroke", "1", "-o", "exact")
@@ -151,7 +151,7 @@ def takes_in_several_recordings_are_averaged():
     # Independent noise: 3^-1/2 = 0.577. 15 mm of noise up to 10 /mm are 300 values: each RMS is known to
     # 1 / sqrt(600), 4 %, their ratio to 6 %; three times that.
     assert abs(ratio / 3 ** -0.5 - 1) < 0.18
-    # A folder names a mean of each recording, as before.
+    # A folder gives a mean for each recording, as before.
     pathlib.Path("each").mkdir()
     tacto.run("spatial", "take1", "take2", "--average", "--both-ways", "-o", "each")
     assert sorted(path.name for path in pathlib.Path("each").glob("*.json")) == ["take1.texture.json", "take2.texture.json"]

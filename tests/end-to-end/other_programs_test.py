@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of ours open in the programs people have beside tactograph: soundfile, sox, Octave, xarray."""
+"""Files of tactograph open in other programs that users have: soundfile, sox, Octave, xarray."""
 import subprocess
 
 import numpy as np

@@ -11,11 +11,11 @@ STROKES = 24
 
 
 def printed(*arguments, code=0):
-    """All lines that a person sees, of stdout and stderr."""
+    """All lines that a user sees on stdout and stderr."""
     done = subprocess.run([tacto.COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=600)
     assert done.returncode == code, (arguments, done)
     lines = (done.stdout + done.stderr).splitlines()
-    # Progress of long work is redrawn on a terminal.
+    # On a terminal the progress of long work is redrawn in place.
     return [line for line in lines if not line.rstrip().endswith(" %")]
 
 
@@ -36,8 +36,8 @@ def json_has_what_the_lines_leave_out():
 def like_warnings_are_one_line():
     make_strokes()
     asked = ["spatial", "many", "--grid", "200um", "-o", "coarse"]
-    said = [line for line in printed(*asked) if "warning" in line]
-    assert len(said) == 1 and f"of {STROKES} alike" in said[0] and "worst" in said[0], said
+    said = [line for line in tacto.run(*asked)[1].splitlines() if "warning" in line]
+    assert len(said) == 1 and f"of {STROKES} similar ones" in said[0] and "worst" in said[0], said
     out, err = tacto.run(*asked, "--force", "--json")
     warnings = json.loads(out)["warnings"]
     assert len(warnings) == STROKES and err.count("warning") == 1, (warnings, err)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outputs that are there already: every verb refuses them, --force replaces them, a recording's data never."""
+"""Existing outputs: every verb refuses them, --force replaces them, but never a recording's data."""
 import os
 import pathlib
 
@@ -11,18 +11,18 @@ SIM = "sim:surface=C,speed=50mm/s,seed=1"
 
 
 def make_inputs():
-    """A recording, its texture, and a path to play it along."""
+    """A recording, its texture, and a finger path."""
     tacto.run("record", "-d", SIM, "--time", "2s", "-o", "rec")
     tacto.run("spatial", "rec", "--stroke", "1", "-o", "oak")
     pathlib.Path("path.csv").write_text("time_s,position_m\n0,0.010\n0.2,0.012\n0.6,0.03\n")
 
 
 def refused_then_forced(outputs, *command):
-    """Twice the same command: the second is refused before it changes anything, and with --force replaces."""
+    """Runs the same command twice: the second is refused before it changes anything, and replaces with --force."""
     tacto.run(*command)
     before = {name: pathlib.Path(name).read_bytes() for name in outputs}
     _, said = tacto.run(*command, code=USAGE)
-    assert "is there already" in said and "--force" in said, said
+    assert "exists already" in said and "--force" in said, said
     assert before == {name: pathlib.Path(name).read_bytes() for name in outputs}, command
     for name in outputs:
         os.utime(name, (0, 0))
@@ -70,7 +70,7 @@ def recordings_are_never_replaced():
         assert "is a recording" in said, said
     pathlib.Path("notes.json").write_text("{torn")
     _, said = tacto.run("describe", "oak", "--force", "-o", "notes.json", code=USAGE)
-    assert "would be lost" in said and pathlib.Path("notes.json").read_text() == "{torn", said
+    assert "not overwritten" in said and pathlib.Path("notes.json").read_text() == "{torn", said
 
 
 def a_demo_replaces_only_demos():
@@ -78,7 +78,7 @@ def a_demo_replaces_only_demos():
     for ending in ("wav", "json"):
         pathlib.Path(f"demo/C.{ending}").write_text("mine")
     _, said = tacto.run("demo", "-o", "demo", code=USAGE)
-    assert "no earlier demo made it" in said and pathlib.Path("demo/C.wav").read_text() == "mine", said
+    assert "not made by an earlier demo" in said and pathlib.Path("demo/C.wav").read_text() == "mine", said
 
 
 def one_file_by_two_spellings_is_named_twice():

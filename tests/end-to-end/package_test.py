@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Debian packages, installed into a bare Debian 12 that has nothing of ours: usage: package_test.py BUILD-FOLDER
+"""The Debian packages in a bare Debian 12 without the build's libraries: usage: package_test.py BUILD-FOLDER
 
-Needs root (for a root folder of its own), mmdebstrap and a Debian mirror; without them it says "skipped" and why.
+Needs root (for a root folder of its own), mmdebstrap and a Debian mirror; otherwise it prints "skipped" and the reason.
 """
 import hashlib
 import os
@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 SKIPPED = 77
-EXPOSURE = 1.9  # of the unit, by systemd 252: what it was before there was a package
+EXPOSURE = 1.9  # of the unit, by systemd 252: the value before there was a package
 
 INSIDE = r"""set -e
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin
@@ -59,7 +59,7 @@ def lintian_has_no_errors(packages):
 
 
 def the_core_compiles_from_its_package(packages, folder):
-    """A maker of a board has the -dev package and a compiler, and nothing else of ours."""
+    """A maker of boards has the -dev package and a compiler, and no other part of tactograph."""
     subprocess.run(["dpkg-deb", "-x", str(next(p for p in packages if "-dev" in p.name)), str(folder)], check=True)
     source = folder / "usr/share/tactograph/src"
     for file in (source / "firmware-host/core").rglob("*.cpp"):

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The README's first session, typed as it is printed there: each command exits 0 and prints the lines that follow it.
+"""Types the README's first session: each command must exit with 0 and print the lines that follow it.
 
-In the README a line "    $ COMMAND" is typed; the lines below it are what it prints, shortened: each of them has to be in
-the command's output, with blanks folded, up to an ellipsis.
+In the README a line " $ COMMAND" is typed. The lines below it are its output, shortened: each of them must be in the
+command's output, with spaces collapsed, up to an ellipsis.
 """
 import os
 import pathlib

@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A rendered drive through the paper's actuator, written here anew in SciPy, gives the displacement that was wanted."""
+"""A rendered drive, through the paper's actuator implemented here in SciPy, gives the target displacement."""
 import numpy as np
 import soundfile
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.signal import TransferFunction, butter, freqresp, freqs
 
 import tacto
+from measured import measured
 
 RATE, GAIN = 10000, 1e-3
 
 
 def actuator(frequency_hz):
-    """Table I of Wiertlewski 2011 as PAPERS.md mends it, scaled to 20 um/V at DC; unloaded."""
+    """Table I of Wiertlewski 2011, corrected as in CONTRIBUTING.md, scaled to 20 um/V at DC; unloaded."""
     beta, kp, kr, m, br, cp, ra = 82.35e-6 / 200, 76.47e3, 4.05e3, 6.8e-3, 4.49, 818e-9, 680.0
     mechanics = TransferFunction([2 * beta * kp], [m, br, kr + kp])
     stage = TransferFunction([20.0], [2 * ra * cp, 1])
@@ -21,7 +22,7 @@ def actuator(frequency_hz):
 
 
 def finger_path():
-    """There and back within the texture, speeds to 60 mm/s and through zero, 1.6 s."""
+    """Back and forth within the texture, speeds up to 60 mm/s and through zero, 1.6 s."""
     t = np.arange(0, 1.6, 1e-3)
     x = 17e-3 - 13e-3 * np.cos(2 * np.pi * t / 1.6) + 1e-3 * np.sin(2 * np.pi * 1.5 * t)
     np.savetxt("path.csv", np.column_stack([t, x]), delimiter=",", header="time_s,position_m", comments="", fmt="%.9f")
@@ -36,7 +37,7 @@ def band(signal, rate):
 
 
 def wanted(name, n):
-    """Gain times the texture under the finger: evaluated at 20 times the rate, so that nothing folds into the band."""
+    """Gain times the texture under the finger, computed at 20 times the rate, so that nothing aliases into the band."""
     t, x = finger_path()
     fine = np.arange(n * 20) / (RATE * 20)
     position = PchipInterpolator(t, x)(np.minimum(fine, t[-1]))
@@ -75,6 +76,8 @@ def drive_gives_what_was_wanted():
     assert rate == RATE and drive.ndim == 1
     error = error_after_delay(displaced(drive), wanted("tex", len(drive)), report["delay_s"])
     print(f"displacement against wanted, 15-500 Hz: {error:.3%} RMS after a delay of {report['delay_s']} s")
+    measured("render_against_scipy.error_percent", 100 * error)
+    measured("render_against_scipy.delay_s", report["delay_s"])
     assert error < 0.01
 
 
@@ -87,6 +90,8 @@ def reconstruction_filter_is_accounted_for():
     error = error_after_delay(displaced(drive, filter_response), wanted("tex", len(drive)), 0.0)
     bare = error_after_delay(displaced(drive), wanted("tex", len(drive)), 0.0)
     print(f"with the 600 Hz filter: {error:.3%} RMS; were it not there: {bare:.1%}")
+    measured("render_against_scipy.filter_compensated_error_percent", 100 * error)
+    measured("render_against_scipy.filter_uncompensated_error_percent", 100 * bare)
     assert error < 0.01 < bare
 
 

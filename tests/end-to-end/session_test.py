@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is told of a session: one time in all its tables, places, notes of what was not felt, damage."""
+"""Reports of a session: one time in all its tables, positions, notes about ticks without a texture, damaged files."""
 import json
 import pathlib
 import sys
@@ -17,7 +17,7 @@ def write_way(from_m, to_m):
 
 
 def all_tables_share_one_time():
-    """Seconds since the first tick in CSV, netCDF and strokes; the device's clock, which began before, beside them."""
+    """Seconds since the first tick in CSV, netCDF and strokes; also the device's clock, which began earlier."""
     write_grating()
     pathlib.Path("strokes.csv").write_text("time_s,position_m\n0,0.004\n0.8,0.034\n1,0.034\n1.8,0.004\n2,0.004\n")
     if not tacto.play_on_host("oak", "-d", "sim:paced=1,rate=2kHz", "--finger-path", "strokes.csv", "--gain", "0.5mm/N", name="timed"):
@@ -40,7 +40,7 @@ def all_tables_share_one_time():
 
 
 def a_counter_that_passes_2_to_the_31_goes_on():
-    """At 1 um a count of 2^31 is 2147.48 m: the finger's way over it is one stroke, in the tables too."""
+    """At 1 um a count of 2^31 is 2147.48 m: the finger's path across it is one stroke, in the tables too."""
     write_grating()
     pathlib.Path("far.csv").write_text("time_s,position_m\n0,2147.47\n0.1,2147.47\n0.9,2147.5\n1,2147.5\n")
     tacto.run("play", "oak", "--ends", "loop", "-d", "sim:", "--finger-path", "far.csv", "--gain", "0.5mm/N", "-o", "far")
@@ -51,12 +51,12 @@ def a_counter_that_passes_2_to_the_31_goes_on():
 
 
 def where_the_device_reads_nothing_is_not_judged():
-    """At 1 um a device reads a texture as far as 2^29 um = 536.87 m from its zero (WIRE.md), and drives 0 V beyond: a loop there was not felt, and
-    no error is told of it as though it was."""
+    """At 1 um a device reads a texture up to 2^29 um = 536.87 m from its zero (WIRE.md), and drives 0 V beyond. So a
+    loop is not played there, and no error of it is reported."""
     write_grating()
     play = ("play", "oak", "--ends", "loop", "-d", "sim:", "--finger-path", "way.csv", "--gain", "0.5mm/N")
     reach_m = 2**29 * 1e-6
-    for name, from_m, to_m, felt in (("near", reach_m - 0.04, reach_m - 0.01, True), ("over", reach_m - 0.02, reach_m + 0.01, False),
+    for name, from_m, to_m, is_judged in (("near", reach_m - 0.04, reach_m - 0.01, True), ("over", reach_m - 0.02, reach_m + 0.01, False),
                                      ("beyond", reach_m + 0.01, reach_m + 0.04, False), ("far", 2146.99, 2147.02, False),
                                      ("behind", -reach_m - 0.01, -reach_m - 0.04, False)):
         write_way(from_m, to_m)
@@ -64,20 +64,22 @@ def where_the_device_reads_nothing_is_not_judged():
         assert ("farther than 536.9 m" in silence) == (name in ("beyond", "far", "behind")), (name, silence)
         judged, said = tacto.run("session", name, "--json")
         stroke = json.loads(judged)["strokes"][0]
-        assert ("wanted_rms_m" in stroke and stroke["wanted_rms_m"] != "unknown") == felt, (name, stroke)
-        assert ("farther than 536.9 m" in said) == (not felt), (name, said)
-        if felt:
-            assert stroke["predicted_error_db"] < -20, stroke  # where nothing is felt it is 0 dB
-        tacto.run("compare", f"{name}.session", "oak", "--align", "none", code=0 if felt else 5)
+        assert ("target_rms_m" in stroke and stroke["target_rms_m"] != "unknown") == is_judged, (name, stroke)
+        assert ("farther than 536.9 m" in said) == (not is_judged), (name, said)
+        if is_judged:
+            assert stroke["predicted_error_db"] < -20, stroke  # without a texture it would be 0 dB
+        tacto.run("compare", f"{name}.session", "oak", "--align", "none", code=0 if is_judged else 5)
     said = tacto.run("play", "oak", "-d", "sim:", "--at", "536.85m", "-o", "cut", code=2)[1]
     assert "within 536.9 m" in said, said
 
 
 def what_stands_before_a_damage_is_the_same():
-    """Cut off, or with a bit turned, 1000 bytes before its end: each tick before it is the same, and the exit code tells the damage."""
+    """Cut, or with a changed bit, 1000 bytes before its end: each tick before the damage is the same, and the exit code
+    reports the damage."""
     write_grating()
     write_way(0.004, 0.034)
-    tacto.run("play", "oak", "-d", "sim:paced=1", "--finger-path", "way.csv", "-o", "whole")  # paced, it is written in many blocks
+    # In real time, so that it is written in many blocks.
+    tacto.run("play", "oak", "-d", "sim:paced=1", "--finger-path", "way.csv", "-o", "whole")
     whole = pathlib.Path("whole.session").read_bytes()
     flipped = bytearray(whole)
     flipped[len(whole) - 1000] ^= 1
@@ -126,7 +128,8 @@ def a_misspelling_is_not_played():
 
 
 def a_newer_version_is_said_once():
-    """Scene, texture and transducer of a newer minor version play with one warning each: which file, which version, what is passed over."""
+    """Scene, texture and transducer of a newer minor version play with one warning each: the file, the version, the
+    ignored members."""
     write_grating()
     write_way(0.004, 0.034)
     layer = {"type": "texture", "texture": "oak", "at_m": 0, "gain_m_per_n": 5e-4}
@@ -155,11 +158,12 @@ def a_newer_version_is_said_once():
 
 
 def a_rate_that_leaves_the_resonance_in_is_named():
-    """At 1.4 kHz the band ends at 400 Hz (2/7 of the rate), below the transducer's resonance: the remedy says so, and 1750 Hz plays."""
+    """At 1.4 kHz the band ends at 400 Hz (2/7 of the rate), below the transducer's resonance: the remedy names 1750 Hz,
+    which plays."""
     write_grating()
     play = ("play", "oak", "-d", "sim:", "--time", "0.1s", "--gain", "3.1mm/N")
     said = tacto.run(*play, "--rate", "1.4kHz", "-o", "cut", code=5)[1]
-    assert "ends at 400 Hz because 1400 ticks a second" in said and "from 1750 on" in said, said
+    assert "ends at 400 Hz at 1400 ticks per second" in said and "from 1750 on" in said, said
     tacto.run(*play, "--rate", "1.75kHz", "-o", "whole")
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`spatial --max-error` against the band-pass' definition at eight times the rate, and what `--explain` says that the band-pass took."""
+"""`spatial --max-error` against the band-pass's definition at eight times the rate, and the part that the band-pass
+removed as `--explain` reports it."""
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import oaconvolve
@@ -12,7 +13,8 @@ STILL_S, WAY_M = 0.4, 60e-3
 
 
 class Finger:
-    """Stands, goes WAY_M at a speed that wanders by a part `wander`, and stands again, from one sample to the next."""
+    """Rests, moves WAY_M at a speed that varies by a fraction `wander`, and rests again; it starts and stops within one
+    sample."""
 
     def __init__(self, random):
         self.speed_mps, self.wander = random.uniform(30e-3, 80e-3), random.uniform(0, 0.3)
@@ -32,14 +34,15 @@ class Finger:
 
 
 def surface(random, finger):
-    """Four lines that the finger brings to 25 to 450 Hz at all its speeds."""
+    """Four lines at frequencies that are 25 to 450 Hz at all speeds of the finger."""
     slow, fast = finger.speed_mps * (1 - finger.wander), finger.speed_mps * (1 + finger.wander)
     lines = [(random.uniform(25 / slow, 450 / fast), random.uniform(0.005, 0.05), random.uniform(0, 6.28)) for _ in range(4)]
     return lambda x: sum(a * np.sin(2 * np.pi * k * x + phase) for k, a, phase in lines)
 
 
 def beyond_end(values, rate_hz):
-    """What spatial/dsp/record_ends.hpp says of an end, from the inside to the outside, and the level that stays."""
+    """The extension of an end as in spatial/dsp/record_ends.hpp, from the inside to the outside, and the level that
+    remains."""
     padding, baseline = min(int(8 / LOW_HZ * rate_hz), len(values) - 1), int(2 / LOW_HZ * rate_hz)
     slope, level = np.polyfit(np.arange(baseline), values[:baseline], 1)
     k = np.arange(1, padding + 1)
@@ -49,7 +52,7 @@ def beyond_end(values, rate_hz):
 
 
 def low_pass(edge, reach):
-    """The ideal kernel under the window of spatial/dsp/band_kernel.hpp."""
+    """The ideal kernel with the window of spatial/dsp/band_kernel.hpp."""
     n = np.arange(1, reach + 1)
     u = np.clip((n / reach - 0.3) / 0.7, 0, 1)
     half = np.sin(2 * np.pi * edge * n) / (np.pi * n) * (1 - u**4 * (35 - u * (84 - u * (70 - 20 * u))))
@@ -85,7 +88,7 @@ def one_case(seed, asked_percent):
               "--channel", "position=x*1um")
     done = tacto.run_json("spatial", "touch", "-o", "made", "--force", "--stroke", "1", "--max-error", f"{asked_percent}%", "--explain")
     chosen, stroke = done["chosen"][0], done["textures"][0]
-    # The force of a finger that is known between the samples, too; band-passed; read where the texture's samples are.
+    # The force of a finger whose motion between the samples is known, too; band-passed; read at the texture's samples.
     fine = np.arange((len(t) - 1) * FINER + 1) / (RATE_HZ * FINER)
     exact = band_passed(force(finger.position_m(fine)), RATE_HZ * FINER)
     at, values, side = tacto.texture("made")
@@ -97,7 +100,8 @@ def one_case(seed, asked_percent):
     print(f"seed {seed}: asked {asked_percent} %, promised {chosen['promised_error_percent']:.4f} %, real {error:.5f} %; the band-pass took {surface_error:.2f} %")
     assert error <= chosen["promised_error_percent"] <= asked_percent, (seed, error, chosen)
     said_is_true(chosen, stroke, t, force(x), exact[::FINER])
-    # The surface itself may be off by more than was asked, by what the band-pass took: the words say how much.
+    # The error against the surface itself may exceed the request by the part that the band-pass removed; the report has
+    # it.
     assert surface_error <= chosen["band_pass_took_percent"] and f"{chosen['band_pass_took_percent']:.3g} %" in chosen["counts_not"], chosen
 
 
@@ -106,8 +110,8 @@ def said_is_true(chosen, stroke, t, recorded, passed):
     quarter = (last - first) // 4
     for key, frames in (("band_pass_took_percent", slice(first, last)), ("band_pass_took_inside_percent", slice(first + quarter, last - quarter))):
         wanted = taken_percent(recorded[frames], passed[frames])
-        # The record's filter knows its samples only, the reference what lies between them, too: where the finger sets out
-        # from one sample to the next that is 1e-4 of the RMS.
+        # The record's filter uses only its samples, the reference also values between them: if the finger starts within
+        # one sample, the difference is 1e-4 of the RMS.
         assert abs(chosen[key] - wanted) <= 1e-3 * wanted + 0.01, (key, chosen[key], wanted)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`tactograph spatial` as a user meets it: names, many recordings, averages, positions as sensors give them, memory."""
+"""`tactograph spatial` from the user's view: names, many recordings, averages, positions of real sensors, memory."""
 import json
 import os
 import pathlib
@@ -11,13 +11,14 @@ import numpy as np
 import soundfile
 
 import tacto
+from measured import measured
 
 USAGE, UNSUITABLE = 2, 5
 RATE_HZ = 10000
 
 
 def surface(x_m):
-    """Lines at 1 to 6 /mm with phases of their own, in N."""
+    """Lines at 1 to 6 /mm with different phases, in N."""
     return sum(0.02 * np.sin(2 * np.pi * 1e3 * (1 + 0.31 * k) * x_m + 2.1 * k * k) for k in range(16))
 
 
@@ -32,7 +33,7 @@ def stroke(from_m, to_m, speed_mps):
 
 
 def import_touch(name, position_m, force_n, normal_n=None, counts=None, unit="1m"):
-    """A recording of these numbers through the CSV import; `counts` stand for the position where they are given."""
+    """A recording of these numbers through the CSV import; `counts` replace the position if they are given."""
     columns = {"force": force_n, "position": position_m if counts is None else counts}
     channels = ["--channel", "tangential_force=force*1N", "--channel", f"position=position*{unit}"]
     if normal_n is not None:
@@ -44,7 +45,7 @@ def import_touch(name, position_m, force_n, normal_n=None, counts=None, unit="1m
 
 
 def forth_and_back(pairs, noise_n=0.0, offsets_m=None, seed=1):
-    """(position, force) of strokes from 10 to 30 mm and back; stroke i feels the surface offsets_m[i] away."""
+    """(position, force) of strokes from 10 to 30 mm and back; in stroke i the surface is shifted by offsets_m[i]."""
     random = np.random.default_rng(seed)
     positions, forces = [], []
     for i in range(2 * pairs):
@@ -64,9 +65,9 @@ def nothing_is_replaced_in_silence():
     assert "oak-01.texture.json" in said and "--force" in said, said
     assert pathlib.Path("oak-01.texture.wav").stat().st_mtime_ns == before
     _, said = tacto.run("spatial", "oak", "-o", "oak", "--force")
-    assert "beside" not in said, said
+    assert "of another run" not in said, said
     _, said = tacto.run("spatial", "oak", "-o", "oak", "--stroke", "1")
-    assert "beside, of another run: oak-01.texture.json, oak-02.texture.json" in said, said
+    assert "of another run are in the same folder: oak-01.texture.json, oak-02.texture.json" in said, said
 
 
 def many_recordings_go_on_past_one_that_fails():
@@ -74,7 +75,7 @@ def many_recordings_go_on_past_one_that_fails():
         import_touch(name, *forth_and_back(1, seed=i))
     import_touch("still", np.full(20000, 0.01), np.zeros(20000))
     tacto.run("spatial", "ash", "-o", "ash", "--stroke", "1")
-    shutil.copy("elm.json", "torn.json")  # its samples are elm's, and that is a sound recording
+    shutil.copy("elm.json", "torn.json")  # its samples are elm's, and elm is a valid recording
     pathlib.Path("torn.json").write_text("{")
     os.mkdir("made")
     names = sorted(str(path) for path in pathlib.Path(".").glob("*.json"))
@@ -83,12 +84,12 @@ def many_recordings_go_on_past_one_that_fails():
     report = json.loads(done.stdout)
     assert report["done"] == 3 and [pathlib.Path(r["recording"]).name for r in report["recordings"]] == ["ash", "elm", "oak"]
     assert report["skipped"] == ["ash.texture.json (texture)"], report["skipped"]
-    assert len(report["failed"]) == 2 and "never moves" in report["failed"][0] and "torn.json" in report["failed"][1]
-    assert done.returncode == UNSUITABLE, done.returncode  # the first failure's
+    assert len(report["failed"]) == 2 and "does not change" in report["failed"][0] and "torn.json" in report["failed"][1]
+    assert done.returncode == UNSUITABLE, done.returncode  # the exit code of the first failure
     assert "still" in done.stderr and "torn" in done.stderr and "skipped" in done.stderr
     made = sorted(path.name for path in pathlib.Path("made").glob("*.texture.wav"))
     assert made == [f"{name}-0{n}.texture.wav" for name in ("ash", "elm", "oak") for n in (1, 2)], made
-    # Side by side gives what one by one gives.
+    # A recording gives the same textures alone and together with others.
     tacto.run("spatial", "elm", "-o", "alone")
     assert pathlib.Path("alone-02.texture.wav").read_bytes() == pathlib.Path("made/elm-02.texture.wav").read_bytes()
     tacto.run("spatial", "ash", "elm", "-o", "made/{}-fine", "--grid", "0.5um", "--stroke", "2")
@@ -112,7 +113,7 @@ def averages_keep_the_spread():
         x = np.arange(len(samples)) * 1e-6
         inside = (x > 2e-3) & (x < x[-1] - 2e-3)
         spread = tacto.rms(samples[inside, 1])
-        # The noise is white in time; S_f keeps most of it between its samples: 5 um apart at 50 mm/s on a grid of 1 um.
+        # The noise is white in time. S_f keeps most of it between its samples: 5 um apart at 50 mm/s on a grid of 1 um.
         assert 0.6 * noise_n < spread < 1.05 * noise_n, spread
         error = tacto.rms((samples[:, 0] - surface(side["source_origin_m"] + x))[inside])
         assert abs(error / (spread / np.sqrt(pairs)) - 1) < 0.1, (error, spread)
@@ -133,12 +134,12 @@ def strokes_that_slipped_are_aligned_by_correlation():
         shifts = np.array([row["shift_m"] for row in sharp[direction]["averaged"]])
         wanted = offsets_m[first::2] - offsets_m[first]
         assert np.max(np.abs(shifts - wanted)) < 0.5e-6, (shifts, wanted)
-        # What is left is noise, and the last 2 mm, where each stops on another part of the surface: its force then
-        # stands at another level, and the band-pass rings from that.
+        # The rest is noise, and the last 2 mm, where each stroke stops on another part of the surface: its force has
+        # another level there, which makes the band-pass ring.
         assert sharp[direction]["spread_rms_n"] < 0.2 * blurred[direction]["spread_rms_n"]
         assert all(row["correlation"] > 0.95 for row in sharp[direction]["averaged"][1:])
     _, said = tacto.run("spatial", "oak", "--average", "--align", "correlation", "--align-range", "60um", "-o", "narrow")
-    assert "agrees with those before it nowhere within 60 um" in said, said
+    assert "correlates with those before it at no shift within 60 um" in said, said
     tacto.run("spatial", "oak", "--align", "correlation", code=USAGE)
 
 
@@ -151,17 +152,18 @@ def a_counter_that_ran_over_is_put_right():
     assert listed["counter_bits"] == 16 and listed["counter_wraps"] == 2, listed
     for name in ("whole", "wrapped"):
         _, said = tacto.run("spatial", name, "-o", name)
-        assert ("ran over 1 time" in said) == (name == "wrapped"), said
+        assert ("overflowed 1 time" in said) == (name == "wrapped"), said
     for n in (1, 2):
         _, wanted, _ = tacto.texture(f"whole-0{n}")
         _, given, side = tacto.texture(f"wrapped-0{n}")
         np.testing.assert_allclose(given, wanted, atol=1e-9)
         assert side["source"]["counter_bits"] == 16 and side["source"]["counter_wraps"] == 1
-    assert soundfile.read("wrapped.wav")[0][:, 1].max() < 65536  # raw stays raw
+    assert soundfile.read("wrapped.wav")[0][:, 1].max() < 65536  # raw data are not changed
 
 
 def a_noisy_lvdt_gives_the_same_texture():
-    """3 um of noise at 50 mm/s: 5 um a sample, so that every eighth step goes back. Compared with the true position's."""
+    """3 um of noise at 50 mm/s (5 um per sample), so that every eighth step goes back. Compared with the true
+    position's."""
     x, force = forth_and_back(1)
     import_touch("true", x, force)
     import_touch("lvdt", x + 3e-6 * np.random.default_rng(5).standard_normal(len(x)), force)
@@ -171,15 +173,15 @@ def a_noisy_lvdt_gives_the_same_texture():
     for n in (1, 2):
         (given, wanted), side = both_at(3e-3, f"lvdt-0{n}", f"true-0{n}")
         moved_m = side["source"]["position_moved_m"]
-        assert 9e-6 < moved_m <= 19e-6, moved_m  # the largest of thousands of noises, and no more than 6 sigma
+        assert 9e-6 < moved_m <= 19e-6, moved_m  # the largest of thousands of noise values, at most 6 sigma
         error = tacto.rms(given - wanted) / tacto.rms(wanted)
         print(f"noisy LVDT, stroke {n}: {error:.2%} of the RMS, positions moved by up to {moved_m * 1e6:.1f} um")
-        # 3 um at 3.4 /mm, the mean of the lines, are 6.4 %; an average over 500 samples leaves a tenth of that.
+        # 3 um at 3.4 /mm, the mean of the lines, are 6.4 %; an average over 500 samples reduces that to a tenth.
         assert error < 0.01
 
 
 def both_at(margin_m, *names):
-    """The values of two textures where both are, `margin_m` from their ends, and the first one's sidecar."""
+    """The values of two textures in their common range, `margin_m` from their ends, and the first one's sidecar."""
     textures = [tacto.texture(name) for name in names]
     firsts = [round(side["source_origin_m"] * 1e6) for _, _, side in textures]
     begin, end = max(firsts), min(first + len(values) for first, (_, values, _) in zip(firsts, textures))
@@ -215,7 +217,7 @@ def a_way_back_is_warned_of():
     bumped = np.concatenate([x[:middle], x[middle] - step * np.arange(60), x[middle] + step * np.arange(-60, 0), x[middle:]])
     import_touch("bumped", np.round(bumped * 1e6) * 1e-6, surface(bumped))
     _, said = tacto.run("spatial", "bumped", "-o", "bumped")
-    assert "the finger went back on its way" in said and "explain 2 um" in said, said
+    assert "the finger moved backwards" in said and "explain only 2 um" in said, said
 
 
 def fingers_up_are_told_by_the_normal_force():
@@ -223,14 +225,14 @@ def fingers_up_are_told_by_the_normal_force():
     pressed = np.where(np.arange(len(x)) < len(stroke(0.01, 0.03, 0.05)), 0.8, 0.005)
     import_touch("lifted", x, force, pressed)
     out, said = tacto.run("spatial", "lifted", "-o", "lifted", "--json")
-    assert "finger up in stroke 2" in said and [t["stroke"] for t in json.loads(out)["textures"]] == [1]
+    assert "does not touch in stroke 2" in said and [t["stroke"] for t in json.loads(out)["textures"]] == [1]
     import_touch("above", x, force, np.full(len(x), 0.003))
     _, said = tacto.run("spatial", "above", "-o", "above", code=UNSUITABLE)
     assert "--finger-up" in said, said
 
 
 def long_recordings_need_little_memory():
-    """600 s at 10 kHz, one 40 mm stroke a second, written as the format says: 144 MB of samples."""
+    """600 s at 10 kHz, one 40 mm stroke per second, written by the definition of the format: 144 MB of samples."""
     t = np.arange(RATE_HZ) / RATE_HZ
     way = np.minimum(0.05 * (t + 0.1 * np.sin(2 * np.pi * 3.75 * t) / (2 * np.pi * 3.75)), 0.04)
     second = np.concatenate([way, 0.04 - way])
@@ -248,6 +250,7 @@ def long_recordings_need_little_memory():
     idle = tacto.peak_mb("--version")
     for more in ([], ["--filter", "butterworth"]):
         peak = tacto.peak_mb("spatial", "long", "-o", "t", "--force", *more)
+        measured(f"spatial_command.{more[-1] if more else 'fourier'}_600_s_mb", peak - idle)
         tacto.expect_little_memory(" ".join(["600 s at 10 kHz", *more]), peak, idle)
     assert len(list(pathlib.Path(".").glob("t-*.texture.wav"))) == 600
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A spectrogram's netCDF file: decibels as a plot wants them, and a checksum that finds changed cells."""
+"""A spectrogram's netCDF file: decibels for plots, and a checksum that detects changed cells."""
 import hashlib
 import shutil
 
@@ -14,7 +14,7 @@ MALFORMED = 4
 
 
 def checksum(data, stroke=None):
-    """As `spectrogram_sum.hpp` describes it."""
+    """As described in `spectrogram_sum.hpp`."""
     rows = data if stroke is None else data.isel(stroke=stroke)
     whole = ~np.isnan(rows.density.values).all(axis=1)
     parts = [rows.density.values[whole], rows.known_from.values[whole], rows.known_to.values[whole],
@@ -68,7 +68,7 @@ def changed_cells_are_found():
 
 
 def files_without_a_checksum_still_read():
-    """As version 1.1 wrote them: no decibels, no checksum."""
+    """Files of version 1.1: no decibels, no checksum."""
     make()
     with xarray.open_dataset("oak.nc", mask_and_scale=False) as data:
         old = data.drop_vars("density_db")

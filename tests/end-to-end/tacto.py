@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the end-to-end tests share: running the command, finding real data, reading what the command wrote."""
+"""Shared by the end-to-end tests: runs the command, finds real data, reads the files that the command wrote."""
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -12,7 +13,7 @@ import soundfile
 
 COMMAND = os.environ["TACTOGRAPH"]
 DATA = pathlib.Path(os.environ.get("TACTO_DATA", "/nonexistent"))
-# AddressSanitizer keeps what was freed (256 MB by default), so peaks of memory say nothing under it.
+# AddressSanitizer keeps freed memory (256 MB by default), so peaks of memory have no meaning with it.
 SANITIZED = "TACTO_SANITIZED" in os.environ
 BARE_FINGER = DATA / "bare-finger" / "bare_finger_10kHz.csv"
 
@@ -24,12 +25,17 @@ IMPORT_BARE_FINGER = [
 ]
 
 
+def unwrapped(err):
+    """What a verb wrote to stderr, each warning on one line: further lines of one are indented by 4."""
+    return re.sub(r"^tactograph: warning: .*(?:\n {4}.*)*", lambda found: found[0].replace("\n    ", " "), err, flags=re.M)
+
+
 def run(*arguments, code=0, cwd=None):
-    """Runs `tactograph ARGUMENTS`, checks the exit code, gives (stdout, stderr)."""
+    """Runs `tactograph ARGUMENTS`, checks the exit code, returns (stdout, stderr), warnings unwrapped."""
     done = subprocess.run([COMMAND, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=600)
     shown = f"tactograph {' '.join(map(str, arguments))}\nexit {done.returncode}, wanted {code}\n{done.stdout}\n{done.stderr}"
     assert done.returncode == code, shown
-    return done.stdout, done.stderr
+    return done.stdout, unwrapped(done.stderr)
 
 
 def run_json(*arguments, cwd=None):
@@ -37,10 +43,12 @@ def run_json(*arguments, cwd=None):
 
 
 def play_on_host(*arguments, name):
-    """`play ... --loop host -o NAME` on a paced emulated device; gives its JSON, or nothing where this machine is too slow.
+    """`play ... --loop host -o NAME` on an emulated device in real time; returns its JSON, or nothing if this machine
+    is too slow.
 
-    The host loop runs by the clock. A computer that stops for longer than the watchdog's time ends it in a fault, as it
-    should; what a test asks of the session can then not be asked. Every session, whole or ended by a fault, must replay.
+    The host loop runs in real time. If the computer stalls for longer than the watchdog's time, the loop ends in a
+    fault, as it should; then the test's checks of the session are not possible. Every session, complete or ended by a
+    fault, must replay.
     """
     command = [COMMAND, "play", *map(str, arguments), "--loop", "host", "-o", name, "--json"]
     for _ in range(5):
@@ -57,7 +65,7 @@ def play_on_host(*arguments, name):
 
 
 def peak_mb(*arguments, cwd=None):
-    """Most memory that the command ever held, in MB, as the kernel counted it for a child of its own."""
+    """The largest memory of the command in MB, as the kernel counts it for a child process."""
     measure = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); " \
               "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)"
     return float(subprocess.run([sys.executable, "-c", measure, COMMAND, *map(str, arguments)], cwd=cwd, check=True,
@@ -65,7 +73,7 @@ def peak_mb(*arguments, cwd=None):
 
 
 def expect_little_memory(what, peak, idle, most=32):
-    """`peak` MB at most `most` MB above `idle` MB; printed only where the build is sanitized."""
+    """Checks that `peak` MB is at most `most` MB above `idle` MB; in a sanitized build it is only printed."""
     print(f"{what}: {peak - idle:.1f} MB above {idle:.1f} MB" + (" (sanitized, not judged)" if SANITIZED else ""))
     assert SANITIZED or peak < idle + most, (what, peak, idle)
 
@@ -84,7 +92,7 @@ def need_real_data():
 
 
 def in_folder(function):
-    """Runs a test in a folder of its own, which goes when the test has passed."""
+    """Runs a test in a folder of its own, which is deleted after the test has passed."""
     with tempfile.TemporaryDirectory(prefix="tacto-") as folder:
         os.chdir(folder)
         function()

@@ -26,8 +26,8 @@ Complex held_response(double frequency_hz, bool filtered) {
   return filtered ? tray * schema::butterworth3_response(600, frequency_hz) : tray;
 }
 
-// What ticks see of a sine that a converter holds: the response at the sine and at all its images, which fold
-// onto it.
+// The response at the ticks to a sine that a converter holds: that of the sine and of all its images, which
+// alias onto it.
 Complex folded_response(double frequency_hz, bool filtered) {
   Complex sum;
   for (int image = -100; image <= 100; ++image)
@@ -45,8 +45,8 @@ Complex measured_response(double frequency_hz, ActuatedTray& tray) {
 
 class TraySine : public testing::TestWithParam<double> {};
 
-// Tolerance: the step's error, (w h)^4 / 120 = 1e-7 a radian at 800 Hz times the resonance's Q of 5, and the
-// images beyond the hundredth.
+// Tolerance: the step's error, (w h)^4 / 120 = 1e-7 per radian at 800 Hz times the resonance's Q of 5, and
+// the images beyond the hundredth.
 TEST_P(TraySine, GainAndPhaseAreTheClosedForm) {
   ActuatedTray tray(preset(), kTickHz);
   const Complex ratio = measured_response(GetParam(), tray) / folded_response(GetParam(), false);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts what a thread takes from the heap. Its definition replaces operator new, in a unit of its own.
+// Counts a thread's heap allocations. The definition replaces operator new, in a source of its own.
 #pragma once
 
 namespace tacto::tests {
 
-/// By this thread, since it began.
+/// Allocations by this thread since its start.
 long allocations_here();
 
 }  // namespace tacto::tests

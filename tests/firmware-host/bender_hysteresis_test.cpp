@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hysteresis operator against what is known of Prandtl-Ishlinskii loops.
+// The hysteresis operator against known properties of Prandtl-Ishlinskii loops.
 #include "firmware-host/sim/physics/bender_hysteresis.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ constexpr int kPlays = BenderHysteresis::kPlays;
 
 class Hysteresis : public testing::Test {
  protected:
-  // Goes straight to u in steps of about `step`; gives y there.
+  // Moves to u in steps of about `step`; returns y there.
   double go(double u, double step = 0.5) {
     const int count = std::max(1, static_cast<int>(std::ceil(std::abs(u - u_) / step)));
     const double from = u_;
@@ -25,13 +25,13 @@ class Hysteresis : public testing::Test {
     return y();
   }
   double y() const { return operator_.at(u_); }
-  // y along a way of points.
+  // y along a sequence of points.
   std::vector<double> along(const std::vector<double>& points) {
     std::vector<double> values;
     for (const double point : points) values.push_back(go(point));
     return values;
   }
-  // Loop area between +-a, by the trapezoidal rule on steps that meet every play's kinks.
+  // Loop area between +-a, by the trapezoidal rule with steps at the kinks of all play operators.
   double area(double a) {
     go(a), go(-a);
     const int steps = 64 * kPlays;
@@ -48,7 +48,7 @@ class Hysteresis : public testing::Test {
   double u_ = 0;
 };
 
-// What the paper's Figure 7 shows: the loop's ends where the straight line ends, and 16 % of its height open.
+// As in the paper's Figure 7: the loop ends on the straight line, and opens by 16 % of its height.
 TEST_F(Hysteresis, TheFullLoopEndsOnTheLineAndOpensAsStated) {
   EXPECT_NEAR(go(kAmplitude), kAmplitude, 1e-9);
   const double down = go(0);
@@ -56,8 +56,8 @@ TEST_F(Hysteresis, TheFullLoopEndsOnTheLineAndOpensAsStated) {
   EXPECT_NEAR(down - go(0), kOpening * 2 * kAmplitude, 1e-9);
 }
 
-// Each play's loop is a parallelogram of area 4 r (a - r); with thresholds (i + 1/2) A / n and weights 4 h /
-// n.
+// The loop of a play operator is a parallelogram of area 4 r (a - r); thresholds (i + 1/2) A / n, weights 4 h
+// / n.
 TEST_F(Hysteresis, LoopAreasAreTheSumOfTheParallelograms) {
   for (const double a : {100.0, 70.0, 25.0, 3.0}) {
     double target = 0;
@@ -69,8 +69,8 @@ TEST_F(Hysteresis, LoopAreasAreTheSumOfTheParallelograms) {
   }
 }
 
-// Rayleigh's law, of which the plays are 32 steps: opening over height in proportion to the swing, and a
-// branch that is a parabola.
+// Rayleigh's law, approximated by 32 play operators: opening over height is proportional to the swing, and a
+// branch is a parabola.
 TEST_F(Hysteresis, SmallerLoopsOpenInProportion) {
   for (const double a : {80.0, 50.0, 25.0}) {
     go(a), go(-a), go(a);
@@ -94,8 +94,8 @@ TEST_F(Hysteresis, TheRateChangesNothing) {
   for (std::size_t i = 0; i < fine.size(); ++i) EXPECT_NEAR(fine[i], coarse[i], 1e-12);
 }
 
-// Madelung's rules: a minor loop closes where it began, and what comes after it goes on as if it had not
-// been.
+// Madelung's rules: a minor loop closes where it began, and the path after it is as if the loop had not
+// happened.
 TEST_F(Hysteresis, MinorLoopsCloseAndAreForgotten) {
   along({100, -100, 40});
   const double turned = y();
@@ -107,7 +107,7 @@ TEST_F(Hysteresis, MinorLoopsCloseAndAreForgotten) {
   EXPECT_NEAR(go(70), onward, 1e-12);
 }
 
-// Congruency: minor loops between equal ends have one shape, whatever came before.
+// Congruency: minor loops between the same ends have the same shape for any history.
 TEST_F(Hysteresis, MinorLoopsBetweenEqualEndsAreCongruent) {
   along({100, -100, 30, -30, 30});
   const double high = y() - go(-30);

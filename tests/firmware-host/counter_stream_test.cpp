@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames that count themselves: none is lost or doubled in silence.
+// Frames contain their own number, so that lost and doubled frames are detected.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -26,12 +26,12 @@ TEST(CounterStream, EveryFrameOfEveryWidthAndRateComes) {
       ASSERT_EQ(stream.capabilities.channels.size(), channels);
       EXPECT_EQ(stream.capabilities.channels.back().unit, "1");
       EXPECT_FALSE(stream.capabilities.transducer);
-      EXPECT_NE(stream.capabilities.simulated.find("count themselves"), std::string::npos);
+      EXPECT_NE(stream.capabilities.simulated.find("contain their numbers"), std::string::npos);
       expect_counted(stream.codes, channels, 0);
     }
 }
 
-// The link holds 20 ms, the ring 2.56 ms; nobody reads for 300 ms or more.
+// The link holds 20 ms, the ring 2.56 ms; nothing is read for 300 ms or more.
 TEST(CounterStream, AReaderThatStaysAwayLosesFramesAndIsToldWhich) {
   const auto device = open_device("sim:source=counter,channels=8,rate=100kHz,paced=1,link_buffer=20ms");
   ASSERT_TRUE(device);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cable that does harm: frames from the device are dropped, damaged, cut, doubled, held back, on request.
+// A faulty cable: frames from the device are dropped, damaged, cut, doubled or delayed on request.
 #pragma once
 
 #include <deque>
@@ -17,7 +17,7 @@ enum class Harm { none, drop, corrupt, truncate, duplicate, delay, garbage_befor
 
 class FaultyTransport final : public firmware_host::Transport {
  public:
-  /// What is done to each frame, by its type.
+  /// Selects the fault of each frame by its type.
   using Choice = std::function<Harm(wire::MessageType type)>;
   FaultyTransport(std::unique_ptr<firmware_host::Transport> inner, Choice choice)
       : inner_(std::move(inner)), choice_(std::move(choice)) {}

@@ -49,7 +49,8 @@ TEST(FingerPath, EasesItsLoadWhereItRests) {
   EXPECT_DOUBLE_EQ(path[5000].press, 1);
 }
 
-// 60 knots of wander over a long stroke: their RMS is known to about 15 %, and 0.2 holds three errors.
+// 60 knots of speed variation over a long stroke: their RMS is known to about 15 %, so 0.2 covers three
+// errors.
 TEST(FingerPath, WandersByWhatIsAsked) {
   const auto path = places({.from_m = 0, .to_m = 1, .strokes = 1}, 15);
   double squares = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The core's promise, held by a hook on every allocation: neither tick() nor poll() takes from the heap,
-// playing, streaming, being spoken to and in fault.
+// Checks with a hook on every allocation that neither tick() nor poll() allocates: while playing, streaming,
+// receiving messages, and in fault.
 #include <gtest/gtest.h>
 
 #include "tests/firmware-host/allocation_hook.hpp"

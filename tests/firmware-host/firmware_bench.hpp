@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The firmware on a test board, spoken to in messages.
+// The firmware on a test board, controlled by messages.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ class FirmwareBench {
     board.from_host.insert(board.from_host.end(), bytes.begin(), bytes.end());
     poll();
   }
-  /// What the firmware answers to a command.
+  /// Sends a command and returns the firmware's answer.
   template <class Message>
   wire::Answer command(const Message& message) {
     answers.clear();
@@ -44,7 +44,7 @@ class FirmwareBench {
     return pulses.at(0);
   }
 
-  /// Ticks, while the host is heard now and then.
+  /// Ticks, with an occasional message of the host if `heard`.
   void run(int count, bool heard = true) {
     for (int i = 0; i < count && board.rate_millihertz > 0; ++i) {
       board.clock += kTestClockHz / (board.rate_millihertz / 1000);
@@ -60,7 +60,7 @@ class FirmwareBench {
   }
 
   void upload_constant(float value) { upload(std::vector<float>(64, value)); }
-  /// A loop, one sample a count, sample 0 at count 0.
+  /// Uploads a loop with one sample per count, sample 0 at count 0.
   void upload(const std::vector<float>& target) {
     expect_ok(code(begin_of(target.size())));
     upload_samples(target);
@@ -68,7 +68,7 @@ class FirmwareBench {
   static wire::ProfileBegin begin_of(std::size_t samples) {
     return {static_cast<std::uint32_t>(samples), 0, 0, UINT64_C(1) << 32, wire::ProfileEnds::loop};
   }
-  /// What comes after profile_begin.
+  /// The part of an upload after profile_begin.
   void upload_samples(const std::vector<float>& target) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(target.data());
     wire::ProfileChunk chunk{};
@@ -85,7 +85,7 @@ class FirmwareBench {
     upload_constant(value);
     expect_ok(code(wire::Arm{wire::DriveSource::profile, kTenKilohertz}));
   }
-  /// Playing at full level.
+  /// Plays with the full level.
   void play_profile(float value) {
     arm_profile(value);
     expect_ok(code(wire::Play{}));

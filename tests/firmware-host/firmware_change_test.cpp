@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A texture changes while one plays: where the next one lies, when it may come, what the drive does.
+// Changes the texture during playback: the place of the next one in memory, the permitted times, the drive.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -15,8 +15,9 @@ using tests::kTestLimits;
 using wire::AnswerCode;
 using wire::DriveState;
 
-constexpr std::uint32_t kRoom = 4096;  // of the test board
-// 500 steps of the weight, each rounded to 2^-25, times its steepest, 1.5, times 5 V between the textures.
+constexpr std::uint32_t kRoom = 4096;  // samples in the test board's memory
+// 500 steps of the weight, each rounded to 2^-25, times the largest slope, 1.5, times 5 V between the
+// textures.
 constexpr double kBlendErrorV = 500 * 0x1p-25 * 1.5 * 5;
 
 std::vector<float> sine(std::size_t samples, double amplitude) {
@@ -27,7 +28,7 @@ std::vector<float> sine(std::size_t samples, double amplitude) {
   return values;
 }
 
-/// The weight of the texture that leaves, so many ticks after the one that took the change.
+/// The weight of the old texture, `tick` ticks after the tick that started the change.
 double leaving(int tick, int fade_ticks) {
   const double u = std::max(0.0, 1 - static_cast<double>(tick) / fade_ticks);
   return u * u * (3 - 2 * u);
@@ -40,7 +41,7 @@ void move_on(FirmwareBench& bench, int counts_per_tick, int ticks) {
   }
 }
 
-// One count a tick, and nothing between counts: the texture's samples are what is wanted.
+// One count per tick, and no interpolation between counts: the target is the texture's samples.
 TEST(FirmwareChange, TheDriveIsTheBlendOfBothTextures) {
   const auto one = sine(64, 2), two = sine(48, -3);
   FirmwareBench bench;
@@ -58,7 +59,7 @@ TEST(FirmwareChange, TheDriveIsTheBlendOfBothTextures) {
     const auto at = static_cast<std::size_t>(bench.board.encoder);
     const double old = leaving(i, 500);
     ASSERT_NEAR(bench.board.drive_v, old * one[at % 64] + (1 - old) * two[at % 48], kBlendErrorV) << i;
-    // The steepest of the two sines, 3 V x 2 pi / 48, and of the fade between them, 5 V x 1.5 / 500.
+    // The steepest of the two sines, 3 V x 2 pi / 48, and the fade between them, 5 V x 1.5 / 500.
     ASSERT_LT(std::abs(bench.board.drive_v - before_v), 0.393 + 0.015) << i;
     before_v = bench.board.drive_v;
   }
@@ -92,7 +93,8 @@ TEST(FirmwareChange, GainIsLiveThroughout) {
   EXPECT_EQ(bench.board.drive_v, -2);
 }
 
-// The next one's place is the end of the memory, then the start, and so on: all that is free is one piece.
+// The next texture is placed at the end of the memory, then at the start, and so on, so that the free memory
+// is one piece.
 TEST(FirmwareChange, TheNextOneLiesBesideTheOneThatPlays) {
   FirmwareBench bench;
   bench.play_profile(1);
@@ -168,7 +170,7 @@ TEST(FirmwareChange, AFadeOutOfRangeIsRefused) {
   EXPECT_EQ(bench.code(wire::Change{10}), AnswerCode::ok);
 }
 
-// An answer may be lost: then it is sent again, and was obeyed once.
+// An answer may be lost; then the command is sent again, and must have no second effect.
 TEST(FirmwareChange, SentAgainItDoesNothing) {
   FirmwareBench bench;
   bench.play_profile(1);
@@ -206,7 +208,7 @@ TEST(FirmwareChange, AFaultTakesNoNextOne) {
   EXPECT_EQ(bench.board.drive_v, 0);
 }
 
-// Else a host that begins anew would arm what played before.
+// Otherwise a new host would arm the texture that played before.
 TEST(FirmwareChange, OnTheWayToIdleNothingBegins) {
   FirmwareBench bench;
   bench.play_profile(5);
@@ -221,7 +223,7 @@ TEST(FirmwareChange, ArmedAgainItPlaysTheNewOne) {
   bench.play_profile(1);
   bench.upload_constant(2);
   bench.expect_ok(bench.code(wire::Change{5}));
-  bench.run(100);  // far from through
+  bench.run(100);  // long before the end of the change
   bench.expect_ok(bench.code(wire::Disarm{}));
   bench.run(100);
   bench.expect_ok(bench.code(wire::Arm{wire::DriveSource::profile, kTenKilohertz}));
@@ -263,8 +265,8 @@ TEST(FirmwareChange, InIdleAProfileHasAllTheMemoryAgain) {
   EXPECT_EQ(bench.board.drive_v, 3);
 }
 
-// Two levels of 32 samples, 1 V and 3 V; from 2 counts a tick on, twice the full detail's speed, it is the
-// second.
+// Two levels of 32 samples, 1 V and 3 V; from 2 counts per tick on, twice the speed of full detail, the
+// second one plays.
 TEST(FirmwareChange, LevelsAndTheirSpeedComeWithIt) {
   for (const bool told : {true, false}) {
     FirmwareBench bench;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The drive: its states, its sources, and that every fault brings it to zero in the stated time.
+// The drive: its states, its sources, and its return to zero in the stated time after every fault.
 #include <gtest/gtest.h>
 
 #include "tests/firmware-host/firmware_bench.hpp"
@@ -160,7 +160,7 @@ TEST(FirmwareDrive, AnEncodersJumpIsAFaultAndZero) {
   }
 }
 
-// Ten counts came no more often than one would: what a finger may go in the meantime is no jump.
+// Ten counts after ten missing periods are one count per period, which is no jump.
 TEST(FirmwareDrive, AfterPeriodsWithoutACountAJumpIsMeasuredByThem) {
   for (const std::int32_t way : {1000, 1001}) {
     FirmwareBench bench;
@@ -174,7 +174,8 @@ TEST(FirmwareDrive, AfterPeriodsWithoutACountAJumpIsMeasuredByThem) {
   }
 }
 
-// 0.1 s at 10 kHz: it falls within the release time, waits, takes whatever count comes then, and rises again.
+// 0.1 s without counts at 10 kHz: the drive falls within the release time, waits, accepts any next count, and
+// rises again.
 TEST(FirmwareDrive, WithoutACountTheDriveFallsAndComesBackWithoutAJump) {
   FirmwareBench bench;
   bench.play_profile(3);
@@ -188,26 +189,26 @@ TEST(FirmwareDrive, WithoutACountTheDriveFallsAndComesBackWithoutAJump) {
   bench.run(1);
   bench.board.encoder_unseen = 0;
   bench.run(400);
-  EXPECT_EQ(bench.drives[99], 3.0F);   // 10 ms are borne
-  EXPECT_EQ(bench.drives[160], 0.0F);  // 5 ms to fall in
+  EXPECT_EQ(bench.drives[99], 3.0F);   // 10 ms are tolerated
+  EXPECT_EQ(bench.drives[160], 0.0F);  // 5 ms for the fall
   EXPECT_EQ(bench.drives[1000], 0.0F);
   EXPECT_EQ(bench.drives.back(), 3.0F);
   float largest_step = 0;
   for (std::size_t i = 1; i < bench.drives.size(); ++i)
     largest_step = std::max(largest_step, std::abs(bench.drives[i] - bench.drives[i - 1]));
-  EXPECT_LE(largest_step, 3 * 1.51F / 20);  // an onset of 2 ms: 1.5 is the weight's steepest
+  EXPECT_LE(largest_step, 3 * 1.51F / 20);  // an onset of 2 ms; the largest slope of the weight is 1.5
   EXPECT_TRUE(bench.faults.empty());
   const auto blind = std::ranges::count_if(
       bench.ticks, [](const wire::Tick& tick) { return (tick.flags & wire::kTickBlind) != 0; });
   EXPECT_EQ(blind, 901);
 }
 
-// 1e38 is a number; ten times that is none.
+// 1e38 is finite; ten times that is not.
 TEST(FirmwareDrive, AFilteredDriveThatIsNoNumberIsAFaultAndZero) {
   FirmwareBench bench;
   bench.play_profile(2);
   bench.expect_ok(bench.code(wire::Gain{2e38F}));
-  for (int i = 0; i < 100 && bench.faults.empty(); ++i) {  // on the gain's way up
+  for (int i = 0; i < 100 && bench.faults.empty(); ++i) {  // while the gain rises
     bench.drives.clear();
     bench.run(1);
   }

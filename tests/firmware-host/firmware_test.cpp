@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The device's conversation: what it says of itself, its stream, what it refuses and why.
+// The device's protocol: its description, its stream, its refusals and their reasons.
 #include <gtest/gtest.h>
 
 #include "tests/firmware-host/firmware_bench.hpp"
@@ -243,7 +243,7 @@ TEST(ProfileUpload, TakesChunksInOrderAndChecksThem) {
       bench.code(wire::ProfileEnd{wire::crc32c(reinterpret_cast<const std::uint8_t*>(sent), 80)}));
 }
 
-// The check is of what is there in the end, whichever chunk came again, and with which samples.
+// The check covers the final samples, also if a chunk is sent again with other samples.
 TEST(ProfileUpload, AChunkThatComesAgainChangesTheCheck) {
   FirmwareBench bench;
   const auto chunk_of = [](std::uint32_t first, float value) {

@@ -23,7 +23,7 @@ struct Decoded {
   std::map<Arrival, int> arrivals;
 };
 
-// Feeds `bytes` in pieces whose sizes `next_size` gives.
+// Feeds `bytes` in pieces of the sizes that `next_size` returns.
 template <class NextSize>
 Decoded decoded(FrameDecoder& decoder, const Bytes& bytes, NextSize next_size) {
   Decoded result;
@@ -105,7 +105,7 @@ TEST(FrameDecoder, GarbageBetweenFramesIsDroppedAndCounted) {
   EXPECT_EQ(decoder.counts().dropped_bytes, garbage);
 }
 
-// Whatever byte of a frame is changed, that frame is lost and no other.
+// For a change of any byte of a frame, only that frame is lost.
 TEST(FrameDecoder, OneDamagedByteCostsOneFrame) {
   const Bytes first = framed(random_message<Pulse>(1), 0), second = framed(random_message<Answer>(2), 1),
               third = framed(random_message<Pulse>(3), 2);
@@ -131,7 +131,7 @@ TEST(FrameDecoder, AFrameWithoutItsEndIsTruncatedAndTheNextIsWhole) {
     FrameDecoder decoder;
     Decoded result = decoded(decoder, bytes);
     ASSERT_EQ(result.sequences, std::vector<std::uint32_t>{1}) << cut;
-    // A few bytes short, the end of the claimed frame falls into the next one's header.
+    // With a few bytes missing, the claimed end of the frame is in the next one's header.
     EXPECT_EQ(decoder.counts().truncated + decoder.counts().bad_check, 1U);
     EXPECT_EQ(decoder.counts().truncated, whole.size() - cut >= kHeaderSize ? 1U : 0U) << cut;
   }
@@ -158,7 +158,7 @@ TEST(FrameDecoder, ASoundHeaderOfTooMuchIsOversize) {
   EXPECT_EQ(result.sequences, std::vector<std::uint32_t>{6});
 }
 
-// Random damage of all kinds at once. Nothing that was not sent may come out.
+// Random damage of all kinds at once. Every decoded frame must have been sent.
 TEST(FrameDecoder, DamagedStreamsGiveOnlyWhatWasSent) {
   std::mt19937_64 random(7);
   for (int round = 0; round < 200; ++round) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gadget without a kernel: its ticks, its queue, what it tells FunctionFS, and what it does wrong on
-// purpose.
+// The gadget without a kernel: its ticks, its queue, its descriptors for FunctionFS, and its intentional
+// faults.
 #include <gtest/gtest.h>
 #include <linux/usb/functionfs.h>
 
@@ -56,7 +56,7 @@ TEST(TickPacer, GivesUpWhatAStallCost) {
   EXPECT_EQ(slipped_s, 0);
 }
 
-// 2 V at 2 kHz through zero and on: the level at the fault, and the last tick that had one.
+// 2 V at 2 kHz, falling to zero: the level at the fault, and the last tick with a drive.
 TEST(DriveWatch, MeasuresTheFallToTheLastTickWithADrive) {
   constexpr double kTickS = 0.5e-3;
   DriveWatch watch;
@@ -72,7 +72,7 @@ TEST(DriveWatch, MeasuresTheFallToTheLastTickWithADrive) {
   EXPECT_FALSE(watch.observe(wire::DriveState::fault, 0, kTickS)) << "a fault is told once";
 }
 
-// At 2 kHz, heard 100 ticks before the fault, and bytes that come after it change nothing.
+// At 2 kHz, with the last message 100 ticks before the fault; later bytes do not change the result.
 TEST(DriveWatch, SaysHowLongBeforeTheFaultTheHostWasHeard) {
   constexpr double kTickS = 0.5e-3;
   DriveWatch watch;
@@ -142,7 +142,7 @@ TEST(BurstQueue, JoinsBytesUpToAnEnd) {
   EXPECT_TRUE(queue.take(2, milliseconds(1)).bytes.empty());
 }
 
-// As the kernel reads them: its own magic numbers, the whole's length, three interfaces.
+// As the kernel parses them: its own magic numbers, the total length, three interfaces.
 TEST(FunctionFs, DescriptorsAddUp) {
   const Bytes bytes = functionfs_descriptors();
   EXPECT_EQ(word(bytes, 0), std::uint32_t{FUNCTIONFS_DESCRIPTORS_MAGIC_V2});
@@ -158,7 +158,7 @@ TEST(FunctionFs, DescriptorsAddUp) {
 
 class Faults : public testing::Test {
  protected:
-  // What comes of ten messages of samples and a pulse behind each.
+  // The result of ten messages of samples with a pulse behind each.
   void pass(const std::string& plan) {
     FaultInjector injector(*parse_fault_plan(plan),
                            [this](std::span<const std::uint8_t> bytes, BurstEnd end) {
@@ -187,7 +187,7 @@ class Faults : public testing::Test {
     frames.insert(frames.end(), frame, frame + size);
   }
 
-  // What a host's decoder makes of it.
+  // The number of frames that a host's decoder finds.
   std::size_t frames() {
     wire::FrameDecoder decoder;
     majors_.clear();
@@ -257,7 +257,7 @@ TEST(GadgetOptions, AreReadOrRefused) {
   EXPECT_EQ(options->board, "replay:oak");
   EXPECT_EQ(options->vendor, 0x1d50);
   EXPECT_EQ(options->product, 0x60ab);
-  EXPECT_EQ(options->faults.deaf_after, 0U);
+  EXPECT_EQ(options->faults.stop_reading_after, 0U);
   for (const auto& [name, value] :
        {std::pair{"--id", "1d50"}, std::pair{"--id", "x:1"}, std::pair{"--fault", "version=2"},
         std::pair{"--fault", "packet=0"}, std::pair{"--udc", (const char*)nullptr}}) {

@@ -43,7 +43,7 @@ TEST(HeightProfile, IsLinearBetweenPointsAndLevelBeyond) {
   EXPECT_DOUBLE_EQ(ramp.length_m(), 3e-3);
 }
 
-// A sine keeps its shape under running means and shrinks by sinc(w / period) for each.
+// Running means do not change a sine's shape; each multiplies its amplitude by sinc(w / period).
 TEST(HeightProfile, SofteningShrinksASineByTheCubedSinc) {
   constexpr double kPitchM = 2e-6, kPeriodM = 0.5e-3;
   std::vector<double> heights;

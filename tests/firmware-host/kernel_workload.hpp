@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the kernel is given where its bits and its ticks are counted: on this machine, and on a Cortex-M4F in
-// QEMU. Freestanding, and no arithmetic whose result a compiler or processor may choose.
+// The kernel's input for tests of its bits and for counting its ticks: on this machine, and on a Cortex-M4F
+// in QEMU. Freestanding, and without arithmetic whose result depends on compiler or processor.
 #pragma once
 
 #include "firmware-host/core/kernel/tick_kernel.hpp"
@@ -10,7 +10,7 @@ namespace tacto::tests {
 inline constexpr uint32_t kWorkloadSamples = 2000;
 inline constexpr uint32_t kWorkloadTicks = 20000;
 inline constexpr uint32_t kWorkloadSections = 8;
-/// Of all its drives: what every machine must give. It changes only with the kernel or the workload.
+/// Hash of all its drives, equal on every machine. It changes only with the kernel or the workload.
 inline constexpr uint32_t kWorkloadFingerprint = 765930658;
 
 /// Whole numbers of 16 bits, signed: a linear congruential generator.
@@ -28,8 +28,8 @@ class WorkloadRandom {
 
 class KernelWorkload {
  public:
-  /// A profile of smoothed noise, 10 um apart, read by an encoder of 1 um; eight sections of an actuator's
-  /// inverse between 15 and 500 Hz at 20 kHz; a drive that reaches both limits now and then.
+  /// A profile of smoothed noise, 10 um apart, with an encoder of 1 um; eight sections of an actuator's
+  /// inverse between 15 and 500 Hz at 20 kHz; a drive that sometimes reaches both limits.
   KernelWorkload() noexcept {
     float smooth = 0;
     for (float& value : profile_)
@@ -45,7 +45,7 @@ class KernelWorkload {
     kernel_.sections().set(sections, kWorkloadSections);
   }
 
-  /// One tick: the finger goes on by 0 to 3 counts, and turns now and then.
+  /// One tick: the finger moves by 0 to 3 counts, and sometimes reverses.
   float tick() noexcept {
     const int32_t draw = next_();
     if (draw % 500 == 0) way_ = -way_;
@@ -66,8 +66,8 @@ class KernelWorkload {
 inline constexpr uint32_t kTextureFirst = 1025, kTextureSamples = 2 * (1025 + 513), kTextureTaps = 64;
 inline constexpr uint32_t kTextureFingerprint = 3341721029;
 
-/// All that a texture needs of a tick: place between counts, looking ahead, two levels at most speeds, 64
-/// taps, a change of gain now and then, energy, touch, limits.
+/// All features of a texture in a tick: position between counts, prediction, two levels at most speeds, 64
+/// taps, an occasional change of gain, energy, touch, limits.
 class TextureWorkload {
  public:
   TextureWorkload() noexcept {
@@ -89,7 +89,7 @@ class TextureWorkload {
     kernel_.set(setup);
   }
 
-  /// One tick: the finger's speed wanders between rest and 4 counts a tick, and turns now and then.
+  /// One tick: the finger's speed varies between rest and 4 counts per tick, and sometimes reverses.
   float tick() noexcept {
     const int32_t draw = next_();
     if (draw % 700 == 0) way_ = -way_;
@@ -104,7 +104,7 @@ class TextureWorkload {
     return output.drive_v;
   }
   uint32_t flags() const noexcept { return flags_; }
-  /// To the same texture, which costs what another one would.
+  /// Changes to the same texture, which costs as much as another one.
   void change(float fade_s) noexcept { kernel_.change(texture_, fade_s); }
 
  private:
@@ -116,7 +116,7 @@ class TextureWorkload {
   float samples_[kTextureSamples], taps_[kTextureTaps];
 };
 
-/// FNV-1a over the bits of what was driven.
+/// FNV-1a over the bits of the drives.
 class DriveFingerprint {
  public:
   void add(float drive_v) noexcept {

@@ -8,7 +8,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-// The friction after sliding at an even speed for a time, from relaxed bristles.
+// The friction after sliding at constant speed for a time, starting with relaxed bristles.
 double after_sliding(double speed_mps, double time_s) {
   const FingerParameters finger;
   OdeState<1> bristle{};

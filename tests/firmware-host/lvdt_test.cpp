@@ -19,8 +19,8 @@ double metres(const Lvdt& lvdt, std::int32_t code) {
 
 class LvdtSine : public testing::TestWithParam<double> {};
 
-// First order: 1 / (1 + i f / f_c). Between samples the position is taken to go evenly, which is sinc^2 of
-// the sine, and its images: at 300 Hz 1e-3 of it, of which the low-pass leaves 2 %. A code is 0.15 um.
+// First order: 1 / (1 + i f / f_c). Linear interpolation of the position between samples multiplies the sine
+// by sinc^2 and adds images: at 300 Hz 1e-3 of it, of which the low-pass keeps 2 %. A code is 0.15 um.
 TEST_P(LvdtSine, GainAndPhaseAreTheClosedForm) {
   const double frequency_hz = GetParam();
   Lvdt lvdt({.range_m = 10e-3, .bandwidth_hz = 200, .noise_m = 0}, 0, 0, kRateHz, false, Random(1, 0));
@@ -54,7 +54,7 @@ TEST(Lvdt, ItsNoiseAndItsRangeAreWhatIsAskedFor) {
   EXPECT_NEAR(lvdt.converter().most(), 30e-3, 1e-6);
 }
 
-// Beside the encoder: the same path, in another instrument's words.
+// Beside the encoder: the same path, measured by another instrument.
 TEST(Lvdt, InTheDeviceItFollowsTheEncodersPath) {
   const auto encoder = tests::stream_of("sim:surface=C", 1),
              lvdt = tests::stream_of("sim:surface=C,position=lvdt", 1);
@@ -66,7 +66,7 @@ TEST(Lvdt, InTheDeviceItFollowsTheEncodersPath) {
   const auto exact_m = encoder.channel(tests::kPosition), seen_m = lvdt.channel(tests::kPosition);
   for (std::size_t i = 0; i < exact_m.size(); ++i) {
     ASSERT_EQ(lvdt.codes[4 * i + 1] & 0xFFFF, 0) << "16 bits";
-    // A lag of 0.8 ms at 60 mm/s, a count of the encoder, six standard deviations of 2 um.
+    // Tolerance: a lag of 0.8 ms at 60 mm/s, a count of the encoder, six standard deviations of 2 um.
     ASSERT_NEAR(seen_m[i], exact_m[i], 48e-6 + 1e-6 + 12e-6) << i;
     ASSERT_EQ(lvdt.codes[4 * i], encoder.codes[4 * i]) << "the rest is the same to the bit";
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording as a board, spoken to over the wire: its codes, its end, again and again, and what is refused.
+// A recording as a board, controlled over the wire: its codes, its end, repetition, and refusals.
 #include "firmware-host/gadget/replay_board.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-/// The cable in memory; time goes on while somebody waits.
+/// The cable in memory; time advances while a reader waits.
 class BoardTransport final : public Transport {
  public:
   explicit BoardTransport(GadgetBoard& board) : board_(board) {}

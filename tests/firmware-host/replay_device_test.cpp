@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording as a device: its codes, its gaps, its end; and what can be listed and opened.
+// A recording as a device: its codes, its gaps, its end; listing and opening of recordings.
 #include "firmware-host/replay/replay_device.hpp"
 
 #include <gtest/gtest.h>

@@ -63,9 +63,9 @@ TEST(RidgeContact, NewtonAndBisectionAgreeWithAndWithoutLiftOff) {
   for (const double amplitude_m : {1e-6, 20e-6, 80e-6}) {
     const HeightProfile profile = wavy(amplitude_m);
     RidgeContact contact(finger, profile, 1);
-    const HeightProfile felt = softened(profile, finger.ridge_width_m);
+    const HeightProfile smoothed = softened(profile, finger.ridge_width_m);
     for (double x_m = 5e-3; x_m < 15e-3; x_m += 0.173e-3)
-      EXPECT_NEAR(contact.slope_force_n(x_m, 0.5), by_bisection(finger, felt, x_m, 0.5), 1e-9) << x_m;
+      EXPECT_NEAR(contact.slope_force_n(x_m, 0.5), by_bisection(finger, smoothed, x_m, 0.5), 1e-9) << x_m;
   }
 }
 

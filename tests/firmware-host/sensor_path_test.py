@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A known force through the emulated transducer, and out of `spatial` again in newtons.
+"""A known force through the emulated transducer, and back to newtons by `spatial`.
 
-The force is written down here as known_force.hpp says it, the sensor as Wiertlewski 2011 says it (Table I, scipy.signal);
-nothing of the emulated device or of the equaliser is used. Complex amplitudes of its tones are fitted by least squares."""
+The force is defined here as in known_force.hpp, the sensor as in Wiertlewski 2011 (Table I, scipy.signal); no code of
+the emulated device or of the equaliser is used. Complex amplitudes of the tones are fitted by least squares."""
 import json
 
 import numpy as np
@@ -11,9 +11,10 @@ import soundfile
 from scipy import interpolate, signal
 
 import tacto
+from measured import measured
 
 RATE_HZ = 10e3
-STROKE = "strokes=1,length=500mm"  # 10 s at 50 mm/s: far from the record's ends, which a band-pass cannot see beyond
+STROKE = "strokes=1,length=500mm"  # 10 s at 50 mm/s: far from the record's ends, where the band-pass lacks samples
 
 
 def multisine(low_hz, high_hz, tones=16):
@@ -23,7 +24,7 @@ def multisine(low_hz, high_hz, tones=16):
 
 
 def sensor_v_per_n(frequency_hz):
-    """H_s of Table I, brought to 26 V/N at 100 Hz."""
+    """H_s of Table I, scaled to 26 V/N at 100 Hz."""
     delta, k_p, k_r, m, b_r, c_p, v_max, g_s, r_s = 82.35e-6, 76.47e3, 4.05e3, 6.8e-3, 4.49, 818e-9, 100, 100, 12e3
     beta = delta / (2 * v_max)
     system = signal.TransferFunction([-2 * g_s * r_s * k_p * beta, 0],
@@ -46,7 +47,7 @@ def record(stem, parameters, time_s=10.5):
 
 
 def texture_in_time(stem, *options):
-    """The texture's values, and when the finger was there: SciPy's inverse of the recorded path. Without the ramps."""
+    """The texture's values with the finger's times, by SciPy's inverse of the recorded path. Without the ramps."""
     tacto.run("spatial", stem, "-o", stem, "--force", *options)
     x, values, side = tacto.texture(stem)
     time_s, _, position, _ = recorded(stem)
@@ -57,7 +58,7 @@ def texture_in_time(stem, *options):
 
 
 def tone_ratios(time_s, values, tones, amplitude_n=0.02):
-    """Complex amplitude of each tone over what the force had."""
+    """Complex amplitude of each tone over that of the force."""
     frequencies, phases = tones
     turns = 2 * np.pi * np.outer(time_s, frequencies) + phases
     fitted, *_ = np.linalg.lstsq(np.hstack([np.sin(turns), np.cos(turns)]), values, rcond=None)
@@ -77,6 +78,9 @@ def volts_are_the_equations():
     seen, wanted = tone_ratios(time_s[settled], volts, tones), sensor_v_per_n(tones[0])
     print(f"volts against the closed form, 15-500 Hz: {worst(seen, wanted):.1e} at most; "
           f"{abs(seen[8]):.1f} V/N at {tones[0][8]:.0f} Hz, {abs(seen[15]):.1f} V/N at 500 Hz")
+    measured("sensor_path.volts_error", worst(seen, wanted))
+    measured("sensor_path.gain_at_97hz_v_per_n", abs(seen[8]))
+    measured("sensor_path.gain_at_500hz_v_per_n", abs(seen[15]))
     assert worst(seen, wanted) < 2e-4  # a converter of 16 bits over 40000 frames: 3e-5 of a tone of 0.5 V
     assert abs(abs(np.interp(100, tones[0], abs(seen))) - 26) < 0.02 * 26
     assert 3.8 < abs(seen[15]) / 26 < 4.3
@@ -85,7 +89,8 @@ def volts_are_the_equations():
 
 
 def newtons_come_back():
-    """Tones at the band's very ends, so a band that is a little wider; noise, wander and encoder as a bench has them."""
+    """Tones at the ends of the band, so the band is slightly wider; noise, speed variation and encoder as on a
+    bench."""
     tones = multisine(15, 500)
     record("force", "force=multisine")
     time_s, values, side = texture_in_time("force", "--band", "12Hz..600Hz")
@@ -93,15 +98,18 @@ def newtons_come_back():
     ratios = tone_ratios(time_s, values, tones)
     print(f"newtons over newtons, 15-500 Hz, noise on: {100 * worst(ratios):.2f} % at most, phase included; "
           f"15 Hz: {abs(ratios[0]):.4f}, {np.angle(ratios[0]):+.4f} rad")
+    measured("sensor_path.newtons_error_percent", 100 * worst(ratios))
     assert worst(ratios) < 0.01
     _, raw, _ = texture_in_time("force", "--band", "12Hz..600Hz", "--equalise", "off")
     off = tone_ratios(time_s, raw, tones)
     print(f"without equalising: {abs(off[15]):.2f} times at 500 Hz, {np.angle(off[0]):+.2f} rad at 15 Hz")
+    measured("sensor_path.raw_gain_at_500hz", abs(off[15]))
+    measured("sensor_path.raw_phase_at_15hz_rad", np.angle(off[0]))
     assert abs(off[15]) > 3.8 and abs(np.angle(off[0])) > 0.3
 
 
 def newtons_come_back_by_default():
-    """`tactograph spatial NAME`, no options: equalised, 15 to 500 Hz. The force as a whole, sample by sample."""
+    """`tactograph spatial NAME` without options: equalised, 15 to 500 Hz. Compares the force sample by sample."""
     tones = multisine(16, 490)
     record("plain", "force=multisine,force_low=16Hz,force_high=490Hz,noise=off,encoder_quantum=10nm")
     time_s, values, side = texture_in_time("plain")

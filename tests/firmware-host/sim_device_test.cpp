@@ -81,8 +81,8 @@ TEST(SimDevice, OneSeedGivesTheSameFramesHoweverTheyAreRead) {
   EXPECT_NE(stream_of("sim:surface=D,seed=3,person=2", 0.5).codes, whole);
 }
 
-// Kept numbers: any compiler, optimisation or processor must give these frames. They change only with the
-// physics.
+// Stored fingerprints: any compiler, optimisation or processor must give these frames. They change only with
+// the physics.
 TEST(SimDevice, FramesAreTheSameOnEveryMachine) {
   EXPECT_EQ(fingerprint(stream_of("sim:surface=A,seed=1", 0.5).codes), 6790481903509420105U);
   EXPECT_EQ(fingerprint(stream_of("sim:surface=sine,seed=2,speed=80mm/s", 0.5).codes), 12137953936224948991U);
@@ -118,7 +118,7 @@ TEST(SimDevice, RatesFromOneToTwoHundredKilohertz) {
     const auto stream = stream_of(uri, 0.4);
     const auto position_m = stream.channel(tests::kPosition);
     EXPECT_NEAR(position_m.back() - position_m.front(), 12.5e-3, 2.5e-3)
-        << uri;  // 0.3 s, less the ramp, with wander
+        << uri;  // 0.3 s without the ramp, with speed variation
   }
 }
 

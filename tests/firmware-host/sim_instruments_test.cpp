@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converter, noise floor, encoder and load cell, as the frames show them.
+// Converter, noise floor, encoder and load cell, measured from the frames.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,8 +59,8 @@ TEST(SimInstruments, WithFingerUpAndNoNoiseThereIsNothing) {
   }
 }
 
-// 25 uN/sqrt(Hz) at the 26 V/N of the middle of the band, in 0 to 5 kHz. The tolerance: 4 % between 100 Hz,
-// where 26 V/N is stated, and the gain of the stiffness alone (the resonance lifts 100 Hz by 3.4 %), 1 %
+// 25 uN/sqrt(Hz) at 26 V/N in the middle of the band, in 0 to 5 kHz. Tolerance: 4 % between 100 Hz, where 26
+// V/N is stated, and the gain of the stiffness alone (the resonance raises 100 Hz by 3.4 %), 1 % for
 // statistics.
 TEST(SimInstruments, FingerUpLeavesThePapersNoiseFloor) {
   const auto noise_v = stream_of("sim:finger=up,seed=5", 3).channel(tests::kSensor);
@@ -83,7 +83,7 @@ TEST(SimInstruments, TheEncoderCountsThePathInItsQuantum) {
   for (std::size_t i = 1; i < fine.codes.size(); i += 4) ASSERT_EQ(coarse.codes[i], fine.codes[i] / 10);
 }
 
-// One sensor for both: friction makes the net force 0.92 of the normal one during a steady stroke.
+// The same sensor for both: friction makes the net force 0.92 of the normal force during a steady stroke.
 TEST(SimInstruments, TheLoadCellFeelsLoadAndFriction) {
   const auto stream = stream_of("sim:surface=flat", 0.7);
   const auto normal_n = stream.channel(tests::kNormal), net_n = stream.channel(tests::kNet);

@@ -89,8 +89,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"speed=0mm/s", "sim:speed", "from 1 mm/s"}, Refusal{"speed=nanmm/s", "sim:speed", "finite"},
         Refusal{"speed=1e99m/s", "sim:speed", "out of range"}, Refusal{"seed=-1", "sim:seed", "whole"},
         Refusal{"seed=1.5", "sim:seed", "whole"}, Refusal{"finger=sideways", "sim:finger", "up or down"},
-        Refusal{"seed=1,seed=2", "sim:seed", "twice"}, Refusal{"surface=", "sim:surface", "no value"},
-        Refusal{",", "sim:", "key=value"}, Refusal{"hysteresis=0.5", "sim:hysteresis", "to 0.3"},
+        Refusal{"seed=1,seed=2", "sim:seed", "twice"},
+        Refusal{"surface=", "sim:surface", "not a possible value"}, Refusal{",", "sim:", "key=value"},
+        Refusal{"hysteresis=0.5", "sim:hysteresis", "to 0.3"},
         Refusal{"hysteresis=16um", "sim:hysteresis", "number"},
         Refusal{"second_mode=20kHz", "sim:second_mode", "5 kHz"},
         Refusal{"second_mode_share=0.2", "sim:second_mode_share", "add second_mode=800Hz"},
@@ -119,9 +120,9 @@ TEST_P(SimParametersAgainst, IsRefusedWithWhatWouldDo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SimParametersAgainst,
-                         testing::Values(Refusal{"second_mode=560Hz", "sim:second_mode", "from 623.7 Hz on"},
+                         testing::Values(Refusal{"second_mode=560Hz", "sim:second_mode", "at least 623.7 Hz"},
                                          Refusal{"force=multisine,force_low=600Hz", "sim:force_low",
-                                                 "upside"},
+                                                 "above the higher one"},
                                          Refusal{"force=sine,force_low=5kHz", "sim:force_low", "below 5 kHz"},
                                          Refusal{"position=lvdt,length=100mm", "sim:lvdt_range", "100 mm"}));
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the emulated device gives for a URI, channel by channel in physical units.
+// The stream of the emulated device for a URI, channel by channel in physical units.
 #pragma once
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the simulated finger makes of surfaces, by spatial frequency.
+// Spatial frequencies in the force of the simulated finger on surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,11 +8,12 @@
 #include <numbers>
 
 #include "tests/firmware-host/sim_stream.hpp"
+#include "tests/measured.hpp"
 
 namespace tacto::firmware_host {
 namespace {
 
-constexpr double kLongEnoughS = 1.3;  // for 34 mm at 40 mm/s with rest, ramp and wander
+constexpr double kLongEnoughS = 1.3;  // for 34 mm at 40 mm/s with rest, ramp and speed variation
 
 // Volts at the sensor against position, over the first stroke without its ramps, with a Hann window.
 class Stroke {
@@ -46,7 +47,7 @@ class Stroke {
   }
 
  private:
-  static constexpr double kStepPerMm = 0.02;  // half of what 28 mm resolve
+  static constexpr double kStepPerMm = 0.02;  // half of the resolution of 28 mm
 
   void add(double volts, double part, double here_m, double before_m) {
     place_mm_.push_back(here_m * 1e3);
@@ -77,12 +78,14 @@ TEST(SimTexture, FigureOneForTwentySeeds) {
   }
   std::printf("second harmonic 3 dB above the fundamental: %d of 20; 0.3-0.8 /mm 6 dB above flat: %d of 20\n",
               second_above, below_the_line);
+  tacto::measured("sim_texture.second_harmonic_seeds", second_above);
+  tacto::measured("sim_texture.below_the_line_seeds", below_the_line);
   EXPECT_GE(second_above, 16);
   EXPECT_GE(below_the_line, 16);
 }
 
-// The paper's Figure 1 has "sub-harmonics" of the grating. This finger's pulp repeats itself every second
-// period at 50 mm/s: a line at half the fundamental, as Stroke resolves it.
+// The paper's Figure 1 has "sub-harmonics" of the grating. At 50 mm/s this finger's pulp has a period of two
+// grating periods: a line at half the fundamental, at the resolution of Stroke.
 constexpr const char* kHalfOrder = "load=0.6N,strokes=1,person=3,wander=0,seed=1";
 
 TEST(SimTexture, ANamedSetShowsTheHalfOrderLine) {
@@ -102,7 +105,7 @@ struct Line {
 
 class SurfaceLine : public testing::TestWithParam<Line> {};
 
-// A line belongs to the surface: it stays in 1/mm while it doubles in Hz.
+// A line of the surface keeps its frequency in 1/mm while its frequency in Hz doubles.
 TEST_P(SurfaceLine, StaysInSpaceAtAnySpeed) {
   const auto [surface, per_mm] = GetParam();
   for (const char* speed : {"40mm/s", "80mm/s"}) {

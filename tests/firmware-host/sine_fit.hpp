@@ -9,8 +9,7 @@
 
 namespace tacto::tests {
 
-/// The A of Re(A e^(2 pi i f t)), where the samples hold whole periods of it: sample i is at (first + i) /
-/// rate.
+/// The A of Re(A e^(2 pi i f t)), for samples with whole periods: sample i is at (first + i) / rate.
 inline std::complex<double> sine_fit(std::span<const double> samples, std::size_t first, double rate_hz,
                                      double frequency_hz) {
   std::complex<double> sum;

@@ -10,6 +10,7 @@ import numpy as np
 import soundfile
 
 import tacto
+from measured import measured
 
 SPEEDS_MM = (20, 40, 60, 80, 100)
 # Of B, C and E from Table II: harmonics of 1.5, 3 and 0.5 mm. Of A and D, which are random, what seed 1 drew.
@@ -65,6 +66,9 @@ def lines_stay_in_space_and_move_in_time():
         print(f"| {surface}, {line:.2f} /mm | " + " | ".join(f"{per_mm:.2f} /mm, {hz:.1f} Hz" for per_mm, hz, _ in row) + " |")
     for (surface, line, speed), (per_mm, hertz, stands_db) in cells.items():
         where = f"{surface} {line:.2f} /mm at {speed} mm/s: {per_mm:.3f} /mm, {hertz:.1f} Hz, {stands_db:.1f} dB"
+        key = f"surface_lines.{surface.lower()}_{100 * line:.0f}.at_{speed}_mm_per_s"
+        measured(f"{key}_per_mm", per_mm)
+        measured(f"{key}_hz", hertz)
         assert abs(per_mm - line) < STAYS, where
         assert abs(hertz - line * speed) < STAYS * speed, where
         assert stands_db > 5, where

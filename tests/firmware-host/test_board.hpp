@@ -17,14 +17,14 @@ inline constexpr std::uint32_t kTestClockHz = 168000000;
 
 struct TestBoard {
   std::vector<std::uint8_t> from_host, to_host;
-  std::size_t taken = 0;                                            ///< of from_host
-  std::size_t link_room = std::numeric_limits<std::size_t>::max();  ///< bytes that the link still takes
+  std::size_t taken = 0;                                            ///< bytes of from_host that were read
+  std::size_t link_room = std::numeric_limits<std::size_t>::max();  ///< free bytes in the link
   std::int32_t encoder = 0;
-  std::uint32_t encoder_unseen = 0;  ///< periods
+  std::uint32_t encoder_unseen = 0;  ///< in periods
   bool enabled = true, converter_works = true;
   std::uint64_t clock = 0;
   std::uint32_t rate_millihertz = 0, restarts = 0, rates_set = 0;
-  std::vector<float> driven;  ///< the last tick's last
+  std::vector<float> driven;  ///< the last tick's value is last
   float drive_v = 0;
   float profile[4096] = {};
   wire::Channel channels[2] = {};

@@ -41,7 +41,7 @@ TickSetup noisy_setup(ProfileEnds ends) {
 
 class ProfileWithEnds : public testing::TestWithParam<ProfileEnds> {};
 
-// Tolerance: six products of samples of up to 4, each rounded to 2^-24, times slopes' weights below 2.
+// Tolerance: six products of samples of up to 4, each rounded to 2^-24, times weights of slopes below 2.
 TEST_P(ProfileWithEnds, IsTheDoubleReferenceEverywhere) {
   const TickSetup setup = noisy_setup(GetParam());
   const Profile profile(setup.profile.data(), scale_of(setup.scale));
@@ -95,7 +95,7 @@ TEST(Profile, ASinusoidIsReadWithinTheStatedError) {
   }
 }
 
-// Tolerance: none for what is the same to the bit.
+// Tolerance: none, because both are the same to the bit.
 TEST(Profile, ALoopIsSeamlessForEver) {
   const std::vector<float> values = noise(64, 3);
   const Profile profile(values.data(), {64, 0, 0, UINT64_C(1) << 29, ProfileEnds::loop});
@@ -111,7 +111,7 @@ std::vector<wire::Section> inverse_sections() {
   return {peak, low, peak, {1.3F, -0.4F, 0, -0.1F, 0}, peak, {0.5F, 0.2F, 0.1F, -0.5F, 0.3F}, peak, low};
 }
 
-// The same, three of them high-passes of 15 Hz: poles of radius 0.9967.
+// The same, but three of them are high-passes of 15 Hz: poles of radius 0.9967.
 std::vector<wire::Section> high_passed_sections() {
   auto sections = inverse_sections();
   sections[1] = sections[5] = sections[7] = {0.9967F, -1.9934F, 0.9967F, -1.9933F, 0.9934F};
@@ -132,7 +132,8 @@ TickSetup smooth_setup(std::vector<wire::Section> sections) {
   return setup;
 }
 
-// Energy of the kernel's drive less the reference's, re the reference's, over 2 s of a finger that turns.
+// Energy of the difference of the kernel's drive from the reference's, re the reference's, over 2 s of a
+// finger that reverses.
 double error_db_of(TickSetup setup, double gain) {
   setup.gain = gain;
   TickKernel kernel;
@@ -170,7 +171,7 @@ TEST(TickKernel, IsWithinTheStatedErrorOfDoublePrecision) {
   EXPECT_LT(high_passed_db, -64);
 }
 
-// Kept number; the Cortex-M4F must give the same (cortex_m4_test.py).
+// Stored number; the Cortex-M4F must give the same (cortex_m4_test.py).
 TEST(TickKernel, ItsBitsAreTheSameEverywhere) {
   auto workload = std::make_unique<tests::KernelWorkload>();
   tests::DriveFingerprint fingerprint;
@@ -211,8 +212,8 @@ TEST(TickKernel, WhatIsNoNumberDrivesTowardsZeroAndIsForgotten) {
   EXPECT_EQ(kernel.last_v(), 0);
 }
 
-// Poles of radius 0.999: from a volt to 1e-25 V in 58,000 ticks, to denormals in 88,000; six of them ring up
-// first.
+// Poles of radius 0.999: from a volt to 1e-25 V in 58,000 ticks, to denormals in 88,000; six of them first
+// ring up.
 TEST(SectionChain, EndsInSilenceWithoutDenormals) {
   SectionChain chain;
   const std::vector<wire::Section> sections(6, {1, 0.5F, 0.25F, -1.8F * 0.999F, 0.998001F});
@@ -249,7 +250,7 @@ TEST(Envelope, RisesAndFallsInItsTimesWithoutACorner) {
     before = weight;
   }
   EXPECT_NEAR(before, 1, 1e-5);
-  EXPECT_LT(steepest, 1.51F / 500);  // 3/2 of an even ramp's, in the middle
+  EXPECT_LT(steepest, 1.51F / 500);  // 3/2 of a linear ramp's slope, in the middle
   int ticks = 0;
   for (; !envelope.at_rest(); ++ticks) envelope.step(false);
   EXPECT_LE(ticks, 101);
@@ -281,9 +282,9 @@ TEST(SweepGenerator, ItsSineIsASine) {
   EXPECT_LT(worst, 4e-6);
 }
 
-// phase(n) = f0 / rate (g^n - 1) / (g - 1), g = 1 + growth: the closed form of what the integers do.
-// Tolerance: 2^-32 of the frequency a tick, rounded down, over 20000 ticks of up to 1/12 turn, and the sine's
-// 4e-6.
+// phase(n) = f0 / rate (g^n - 1) / (g - 1), g = 1 + growth: the closed form of the integer arithmetic.
+// Tolerance: 2^-32 of the frequency per tick, rounded down, over 20000 ticks of up to 1/12 turn, and the
+// sine's 4e-6.
 TEST(SweepGenerator, GrowsAsItsClosedForm) {
   const double rate_hz = 10e3, growth = 188000 / 0x1p32;
   SweepGenerator sweep;

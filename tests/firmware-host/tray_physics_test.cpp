@@ -17,19 +17,20 @@ namespace tacto::firmware_host {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kTickHz = 20e3, kTurn = 2 * std::numbers::pi;
+constexpr double kPhysicsTickHz = 20e3, kTurn = 2 * std::numbers::pi;
 
-const schema::Transducer& preset() {
+const schema::Transducer& paper_tray() {
   static const schema::Transducer kPreset = *schema::read_transducer("wiertlewski2011");
   return kPreset;
 }
 double stiffness() {
-  return preset().flexure_stiffness_n_per_m + preset().bender_stiffness_n_per_m;
+  return paper_tray().flexure_stiffness_n_per_m + paper_tray().bender_stiffness_n_per_m;
 }
 
-// The spring that gives the undamped two masses a natural frequency at w, found by halving: a way of its own.
+// The spring that gives the undamped two masses a natural frequency at w, by bisection, independently of the
+// code.
 double inner_spring_n_per_m(const SecondMode& mode) {
-  const double inner_kg = mode.mass_share * preset().mass_kg, outer_kg = preset().mass_kg - inner_kg;
+  const double inner_kg = mode.mass_share * paper_tray().mass_kg, outer_kg = paper_tray().mass_kg - inner_kg;
   const double w2 = std::pow(kTurn * mode.frequency_hz, 2);
   const auto determinant = [&](double k2) {
     return (stiffness() + k2 - outer_kg * w2) * (k2 - inner_kg * w2) - k2 * k2;
@@ -42,50 +43,51 @@ double inner_spring_n_per_m(const SecondMode& mode) {
   return low;
 }
 
-// Tray over force, by Cramer's rule; relative to the plain tray's.
+// Displacement per force, by Cramer's rule; relative to the plain tray's.
 Complex two_mass_ratio(const SecondMode& mode, double frequency_hz) {
   const Complex s(0, kTurn * frequency_hz);
-  const double inner_kg = mode.mass_share * preset().mass_kg, outer_kg = preset().mass_kg - inner_kg;
+  const double inner_kg = mode.mass_share * paper_tray().mass_kg, outer_kg = paper_tray().mass_kg - inner_kg;
   const double spring = inner_spring_n_per_m(mode);
   const double damper = 2 * mode.damping_ratio * std::sqrt(spring * inner_kg);
-  const Complex link = spring + damper * s, own = preset().damping_n_s_per_m * s + stiffness();
+  const Complex link = spring + damper * s, own = paper_tray().damping_n_s_per_m * s + stiffness();
   const Complex inner = inner_kg * s * s + link;
-  return (preset().mass_kg * s * s + own) * inner / ((outer_kg * s * s + own + link) * inner - link * link);
+  return (paper_tray().mass_kg * s * s + own) * inner /
+         ((outer_kg * s * s + own + link) * inner - link * link);
 }
 
 Complex loaded_ratio(const FingerLoad& load, double frequency_hz) {
   const Complex s(0, kTurn * frequency_hz);
-  const Complex plain = preset().mass_kg * s * s + preset().damping_n_s_per_m * s + stiffness();
+  const Complex plain = paper_tray().mass_kg * s * s + paper_tray().damping_n_s_per_m * s + stiffness();
   const double spring = 1 / load.compliance_m_per_n;
-  return plain / (plain + load.mass_share * preset().mass_kg * s * s + spring / (kTurn * load.corner_hz) * s +
-                  spring);
+  return plain / (plain + load.mass_share * paper_tray().mass_kg * s * s +
+                  spring / (kTurn * load.corner_hz) * s + spring);
 }
 
-// What ticks see of a held sine, all images folded onto it (as in actuated_tray_test).
+// The response at the ticks to a held sine, with all images aliased onto it (as in actuated_tray_test).
 template <class Ratio>
 Complex folded(double frequency_hz, Ratio&& ratio) {
   Complex sum;
   for (int image = -100; image <= 100; ++image) {
-    const double f = frequency_hz + image * kTickHz, turns = f / kTickHz;
+    const double f = frequency_hz + image * kPhysicsTickHz, turns = f / kPhysicsTickHz;
     sum += std::polar(std::sin(std::numbers::pi * turns) / (std::numbers::pi * turns),
                       -std::numbers::pi * turns) *
-           schema::actuator_response(preset(), f) * ratio(f);
+           schema::actuator_response(paper_tray(), f) * ratio(f);
   }
   return sum;
 }
 
 Complex measured(double frequency_hz, const TrayPhysics& physics) {
-  ActuatedTray tray(preset(), kTickHz, physics);
+  ActuatedTray tray(paper_tray(), kPhysicsTickHz, physics);
   std::vector<double> drive_v;
-  for (int i = 0; i < 20000; ++i) drive_v.push_back(2 * std::cos(kTurn * frequency_hz * i / kTickHz));
+  for (int i = 0; i < 20000; ++i) drive_v.push_back(2 * std::cos(kTurn * frequency_hz * i / kPhysicsTickHz));
   const auto displacement_m = displacement_under(tray, drive_v);
-  return tests::sine_fit(std::span(displacement_m).subspan(12000), 12000, kTickHz, frequency_hz) / 2.0;
+  return tests::sine_fit(std::span(displacement_m).subspan(12000), 12000, kPhysicsTickHz, frequency_hz) / 2.0;
 }
 
 class PhysicsSine : public testing::TestWithParam<double> {};
 
-// Tolerances as in actuated_tray_test; the second mode is the sharper one (0.03), and what is left of its
-// ringing after 0.6 s nothing.
+// Tolerances as in actuated_tray_test; the second mode is sharper (0.03), and its ringing has decayed after
+// 0.6 s.
 TEST_P(PhysicsSine, TheSecondModeInTheActuatorIsTheClosedForm) {
   const SecondMode mode;
   const auto target = folded(GetParam(), [&](double f) { return two_mass_ratio(mode, f); });
@@ -103,15 +105,16 @@ TEST_P(PhysicsSine, AFingersLoadIsTheClosedForm) {
 TEST_P(PhysicsSine, TheSecondModeInTheSensorIsTheClosedForm) {
   const SecondMode mode;
   ForceBench bench(
-      preset(), {.shape = ForceShape::sine, .amplitude_n = 0.1, .low_hz = GetParam(), .high_hz = GetParam()},
-      kTickHz, mode);
+      paper_tray(),
+      {.shape = ForceShape::sine, .amplitude_n = 0.1, .low_hz = GetParam(), .high_hz = GetParam()},
+      kPhysicsTickHz, mode);
   std::vector<double> output_v;
   for (int i = 0; i < 20000; ++i) {
     bench.step({}, 0);
     output_v.push_back(bench.reading().sensor_v);
   }
-  const auto seen = tests::sine_fit(std::span(output_v).subspan(12000), 12001, kTickHz, GetParam());
-  const auto target = schema::sensor_response(preset(), GetParam()) * two_mass_ratio(mode, GetParam());
+  const auto seen = tests::sine_fit(std::span(output_v).subspan(12000), 12001, kPhysicsTickHz, GetParam());
+  const auto target = schema::sensor_response(paper_tray(), GetParam()) * two_mass_ratio(mode, GetParam());
   EXPECT_NEAR(std::abs(seen / (Complex(0, -0.1) * target) - 1.0), 0, 1e-5);
 }
 
@@ -120,22 +123,22 @@ INSTANTIATE_TEST_SUITE_P(Band, PhysicsSine, testing::Values(10, 100, 300, 500, 6
 double peak_hz(double from_hz, double to_hz, const SecondMode& mode) {
   double best = from_hz;
   const auto size = [&](double f) {
-    return std::abs(two_mass_ratio(mode, f) * schema::actuator_response(preset(), f));
+    return std::abs(two_mass_ratio(mode, f) * schema::actuator_response(paper_tray(), f));
   };
   for (double f = from_hz; f <= to_hz; f += 0.1)
     if (size(f) > size(best)) best = f;
   return best;
 }
 
-// Where the paper saw them: "a small un-modeled resonance at 800 Hz" above one at 500 Hz, which Table I alone
-// puts at 548 Hz. The static gain stays what it was.
+// As in the paper: "a small un-modeled resonance at 800 Hz" above one at 500 Hz, which is at 548 Hz by Table
+// I alone. The static gain does not change.
 TEST(TrayPhysics, TheModesLieWhereThePaperSawThem) {
   const SecondMode mode;
   EXPECT_NEAR(peak_hz(400, 600, mode), 500, 10);
   EXPECT_NEAR(peak_hz(700, 900, mode), 800, 10);
-  ActuatedTray tray(preset(), 10e3, {.second_mode = mode, .finger_load = {}});
+  ActuatedTray tray(paper_tray(), 10e3, {.second_mode = mode, .finger_load = {}});
   for (int i = 0; i < 5000; ++i) tray.tick(1);
-  EXPECT_NEAR(tray.displacement_m(), schema::actuator_response(preset(), 0).real(), 1e-14);
+  EXPECT_NEAR(tray.displacement_m(), schema::actuator_response(paper_tray(), 0).real(), 1e-14);
 }
 
 // "Finger tip causes a 3 dB attenuation of the resonant peak" (section III-B).
@@ -143,7 +146,7 @@ TEST(TrayPhysics, AFingerTakesThreeDecibelsOffTheResonance) {
   const auto peak = [](auto&& ratio) {
     double best = 0;
     for (double f = 400; f < 650; f += 0.5)
-      best = std::max(best, std::abs(ratio(f) * schema::actuator_response(preset(), f)));
+      best = std::max(best, std::abs(ratio(f) * schema::actuator_response(paper_tray(), f)));
     return best;
   };
   const FingerLoad load;
@@ -151,12 +154,12 @@ TEST(TrayPhysics, AFingerTakesThreeDecibelsOffTheResonance) {
   EXPECT_NEAR(20 * std::log10(peak([](double) { return 1.0; }) / loaded), 3, 0.3);
 }
 
-// A slow sine of the full drive, as in the paper's Figure 7. Besides, the amplifier's low-pass lags by 0.2 Hz
-// over 143 Hz, and the held drive by half a tick; where the loop is widest its slope is 1, to the plays' step
-// of 1/32.
+// A slow sine of the full drive, as in the paper's Figure 7. In addition, the amplifier's low-pass lags by
+// 0.2 Hz over 143 Hz, and the held drive by half a tick; where the loop is widest its slope is 1, within the
+// step of the play operators, 1/32.
 TEST(TrayPhysics, TheDrivenLoopOpensByWhatIsAsked) {
-  constexpr double kSlowHz = 0.2, kRate = 1e3, kOpening = 0.16;
-  ActuatedTray tray(preset(), kRate, {.second_mode = {}, .finger_load = {}, .hysteresis = kOpening});
+  constexpr double kSlowHz = 0.2, kRate = 1e3, kLoopOpening = 0.16;
+  ActuatedTray tray(paper_tray(), kRate, {.second_mode = {}, .finger_load = {}, .hysteresis = kLoopOpening});
   std::vector<double> drive_v, x_m;
   for (int i = 0; i < 15000; ++i) drive_v.push_back(5 * std::sin(kTurn * kSlowHz * i / kRate));
   x_m = displacement_under(tray, drive_v);
@@ -164,15 +167,15 @@ TEST(TrayPhysics, TheDrivenLoopOpensByWhatIsAsked) {
   const auto [low, high] = std::ranges::minmax(last);
   const double opening = (last[2500] - last[0]) / (high - low);
   const double lag_rad = kSlowHz / 143 + std::numbers::pi * kSlowHz / kRate;
-  EXPECT_NEAR(opening, kOpening + lag_rad, 3e-4);
-  EXPECT_NEAR(high - low, 10 * schema::actuator_response(preset(), 0).real(), 1e-3 * (high - low));
-  // Rayleigh's loop lags by atan(8 h / 3 pi) in its fundamental: 7.7 degrees for 16 %; the paper says 8.
+  EXPECT_NEAR(opening, kLoopOpening + lag_rad, 3e-4);
+  EXPECT_NEAR(high - low, 10 * schema::actuator_response(paper_tray(), 0).real(), 1e-3 * (high - low));
+  // The fundamental of Rayleigh's loop lags by atan(8 h / 3 pi): 7.7 degrees for 16 %; the paper reports 8.
   const auto fundamental = tests::sine_fit(last, 10000, kRate, kSlowHz);
   EXPECT_NEAR(std::arg(Complex(0, -1) / fundamental),
-              std::atan(8 * kOpening / (3 * std::numbers::pi)) + lag_rad, 1e-3);
+              std::atan(8 * kLoopOpening / (3 * std::numbers::pi)) + lag_rad, 1e-3);
 }
 
-// Where the emulated device's tray is under a drive of 2 V from the host.
+// Displacement of the emulated device's tray for a drive of 2 V from the host.
 double driven_m(const std::string& parameters) {
   auto device = make_sim_device("sim:" + parameters, parameters);
   if (!device) throw std::runtime_error(message(device.error()));
@@ -194,10 +197,10 @@ double driven_m(const std::string& parameters) {
 
 TEST(TrayPhysics, TheDevicesTrayHasWhatItsParametersSay) {
   const double plain_m = driven_m("surface=C");
-  EXPECT_NEAR(plain_m, 2 * schema::actuator_response(preset(), 0).real(), 1e-4 * plain_m);
+  EXPECT_NEAR(plain_m, 2 * schema::actuator_response(paper_tray(), 0).real(), 1e-4 * plain_m);
   EXPECT_NEAR(driven_m("surface=C,finger_load=on") / plain_m, stiffness() / (stiffness() + 1000), 1e-4);
   EXPECT_NEAR(driven_m("surface=C,second_mode=800Hz") / plain_m, 1, 1e-4);
-  // The virgin curve at 2 V of 5: 1 - 2 h + 2 h s of the straight line.
+  // The virgin curve at 2 V of 5 V: 1 - 2 h + 2 h s of the straight line.
   EXPECT_NEAR(driven_m("surface=C,hysteresis=0.16") / plain_m, 1 - 0.32 + 0.32 * 0.4, 1e-3);
 }
 
@@ -207,7 +210,7 @@ TEST(TrayPhysics, TheDevicesSensorHasTheSecondMode) {
     const auto volts = tests::stream_of(force + more, 0.6).channel(tests::kSensor);
     return std::abs(tests::sine_fit(std::span(volts).subspan(2000), 2001, 10e3, 800));
   };
-  // 16 bits of a tone of 0.1 V: 3e-4.
+  // tolerance: 16 bits for a tone of 0.1 V, 3e-4
   EXPECT_NEAR(size(",second_mode=800Hz") / size(""), std::abs(two_mass_ratio({}, 800)), 2e-3);
 }
 

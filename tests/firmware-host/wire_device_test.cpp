@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Host client, wire, firmware core and physics together, over a sound cable and over bad ones. Whatever the
-// cable does, it ends in the stated gap or error: never a hang, a crash or a silent hole.
+// Host client, wire, firmware core and physics together, over a good cable and over faulty ones. Every fault
+// ends in the stated gap or error: never a hang, a crash or an unreported loss.
 #include "firmware-host/link/wire_device.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ Bench bench_with(FaultyTransport::Choice choice) {
   return {std::move(board), std::move(device)};
 }
 
-// The n-th frame of a type is harmed.
+// Damages the n-th frame of a type.
 FaultyTransport::Choice harm_the(int n, MessageType type, Harm harm) {
   return [=, count = 0](MessageType of) mutable { return of == type && ++count == n ? harm : Harm::none; };
 }
@@ -55,7 +55,7 @@ void append(StreamEvents& all, const StreamEvents& more) {
   all.clock_pairs.insert(all.clock_pairs.end(), more.clock_pairs.begin(), more.clock_pairs.end());
 }
 
-// Reads until so many frames are here, or an error.
+// Reads until this number of frames has arrived, or an error.
 Streamed stream_from(Device& device, std::size_t frames) {
   Streamed streamed;
   if (const auto started = device.start(); !started) streamed.error = started.error();
@@ -74,7 +74,7 @@ const std::vector<std::int32_t>& truth() {
   return kCodes;
 }
 
-// Every frame is the device's frame of its number, where the gaps say it is.
+// Every frame equals the device's frame with its number, as the gaps give it.
 void expect_no_silent_hole(const Streamed& streamed) {
   std::size_t next_gap = 0, missing = 0;
   for (std::size_t i = 0; i < streamed.codes.size() / kChannels; ++i) {
@@ -173,7 +173,7 @@ TEST(WireDevice, WhatWasLostOfAConversationIsAskedAgain) {
     }
 }
 
-// A program that was killed in the middle of a frame: its device waits for the frame's end.
+// A program was killed in the middle of a frame, so its device waits for the frame's end.
 TEST(WireDevice, HalfAFrameOfAnEarlierProgramIsFlushed) {
   const auto parameters = parse_sim_parameters(kParameters);
   SimBoard board(*parameters, *schema::read_transducer("wiertlewski2011"),
@@ -189,7 +189,7 @@ TEST(WireDevice, HalfAFrameOfAnEarlierProgramIsFlushed) {
   }
 }
 
-// Read in pieces, a gap that is known but not reached yet is no loss yet.
+// If the stream is read in pieces, a known gap counts as a loss only after it is reached.
 TEST(WireDevice, LossesAreCountedWhenTheirGapIsTold) {
   Bench bench = bench_with(harm_the(10, MessageType::samples, Harm::drop));
   ASSERT_TRUE((*bench.device)->start());
@@ -219,7 +219,7 @@ TEST(WireDevice, ADeviceThatNeverAnswersIsAnError) {
     Bench bench = bench_with(harm_all(type, Harm::drop));
     ASSERT_FALSE(bench.device);
     EXPECT_EQ(bench.device.error().kind, schema::ErrorKind::device);
-    EXPECT_NE(bench.device.error().what.find("did not answer hello, asked 3 times in 1.5 s"),
+    EXPECT_NE(bench.device.error().what.find("did not answer hello (sent 3 times in 1.5 s"),
               std::string::npos)
         << message(bench.device.error());
   }
@@ -229,7 +229,7 @@ TEST(WireDevice, ADeviceThatNeverAnswersIsAnError) {
   EXPECT_NE(started.error().what.find("did not answer stream_start"), std::string::npos);
 }
 
-// A bus that takes two thirds of what a device sends: the rest waits in the device, and all later answers
+// A bus that transfers two thirds of what a device sends: the rest waits in the device, and all later answers
 // behind it.
 class SlowBus final : public Transport {
  public:
@@ -282,7 +282,7 @@ TEST(WireDevice, AStreamThatStallsIsAnErrorAfterItsFrames) {
   const Streamed streamed = stream_from(**bench.device, 10000);
   EXPECT_EQ(streamed.codes.size(), 50 * 32 * kChannels);
   ASSERT_TRUE(streamed.error);
-  EXPECT_NE(streamed.error->what.find("no frames have come for 1 s"), std::string::npos);
+  EXPECT_NE(streamed.error->what.find("no frames were received for 1 s"), std::string::npos);
   expect_no_silent_hole(streamed);
 }
 
@@ -296,7 +296,7 @@ TEST(WireDevice, UnpluggedItGivesItsFramesAndThenTheReason) {
   EXPECT_FALSE((*bench.device)->stop());
 }
 
-// A device of any version, that knows no more than to welcome.
+// A device of any version that implements only the welcome.
 class OtherVersion final : public Transport {
  public:
   explicit OtherVersion(std::uint8_t major) : major_(major) {}
@@ -329,7 +329,7 @@ TEST(WireDevice, ANewerVersionIsRefusedByName) {
   const auto device = WireDevice::open("test:", std::make_unique<OtherVersion>(std::uint8_t{2}));
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().kind, schema::ErrorKind::unsupported_version);
-  EXPECT_NE(device.error().what.find("'far future' (serial X9, firmware 9.0) speaks version 2.4"),
+  EXPECT_NE(device.error().what.find("'far future' (serial X9, firmware 9.0) uses version 2.4"),
             std::string::npos)
       << message(device.error());
   EXPECT_EQ(device.error().remedy, "update tactograph");

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The example frames of core/WIRE.md, made again from its tables with struct and a bitwise CRC: a second codec.
+"""Recomputes the example frames of core/WIRE.md from its tables with struct and a bitwise CRC: a second codec.
 
-wire_golden_test.cpp holds the C++ codec against the same lines. --print gives the lines to paste.
+wire_message_test.cpp compares the C++ codec with the same lines. --print prints the lines for the document.
 """
 import pathlib
 import re
@@ -74,7 +74,7 @@ def lines():
 
 
 def broken(line):
-    """The line as WIRE.md has it: at most 50 bytes of the frame in each, further lines indented by four."""
+    """The line in the form of WIRE.md: at most 50 bytes of the frame in each, further lines indented by four."""
     name, digits = line.split()
     yield f"{name} {digits[:100]}"
     yield from (f"    {digits[at:at + 100]}" for at in range(100, len(digits), 100))

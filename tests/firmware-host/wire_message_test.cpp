@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each message there and back, cut short, too long, and against the bytes of WIRE.md.
+// Each message is encoded and decoded, cut, too long, and compared with the bytes of WIRE.md.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -104,7 +104,7 @@ TEST(WireMessages, TheLargestFit) {
   EXPECT_FALSE(framed(chunk, 0).empty());
 }
 
-// A frame's further lines are indented by four spaces.
+// Further lines of a frame are indented by four spaces.
 std::map<std::string, std::string> documented_frames() {
   std::map<std::string, std::string> frames;
   std::ifstream file(TACTO_SOURCE "/firmware-host/core/WIRE.md");

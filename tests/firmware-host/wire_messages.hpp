@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every message of the wire as a list of types, and messages filled at random: a third codec that draws
-// instead of reading.
+// Every message of the wire as a list of types, and messages filled at random: a third codec, which fills the
+// members instead of parsing them.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any device, from the host's side: it greets well or badly, then says what it likes, in frames whose checks
-// are right and in raw bytes. Every call of the client must end, in emulated time within its timeouts, and no
-// frame may come out of the queue that the gaps do not account for.
+// Any device, from the host's side: it sends a valid or invalid welcome, then any frames with valid checks
+// and any raw bytes. Every call of the client must end within its timeouts (emulated time), and no frame may
+// leave the queue without being accounted for by the gaps.
 #include "firmware-host/link/client.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class AnyDevice final : public firmware_host::Transport {
     now_s_ += 1e-3;
     return size;
   }
-  // A hello is welcomed with its nonce, or nothing would get beyond it.
+  // A hello is answered with its nonce; otherwise the fuzzer would not get further.
   schema::Result<void> write(std::span<const std::uint8_t> bytes, double) override {
     if (bytes[3] != static_cast<std::uint8_t>(wire::MessageType::hello)) return {};
     wire::Welcome welcome;

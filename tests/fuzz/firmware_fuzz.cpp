@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any conversation into the whole firmware. The input is a list of actions: frames of any type with any
-// payload (their checks made right, or nothing would get past the decoder), raw bytes, ticks, inputs that
-// change. Whatever is said, the drive is a number, within its limits and its slew, and zero 20 ms after the
-// input opened.
+// Any conversation with the complete firmware. The input is a list of actions: frames of any type with any
+// payload (with valid checks, so that they pass the decoder), raw bytes, ticks, changing inputs. In every
+// case the drive is a finite number within its limits and slew rate, and zero 20 ms after the input opened.
 #include <cmath>
 #include <cstdlib>
 #include <memory>

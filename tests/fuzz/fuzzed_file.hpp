@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A fuzzer's input as a file, in a folder of this process in memory where there is one.
+// Stores a fuzzer's input as a file in a folder of this process, in memory if possible.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ inline void demand(bool holds) {
   if (!holds) std::abort();
 }
 
-/// The folder, empty; the same one at each call.
+/// The emptied folder; the same one in each call.
 inline const std::filesystem::path& fuzz_folder() {
   static const std::filesystem::path folder = [] {
     const bool in_memory = std::filesystem::is_directory("/dev/shm");
@@ -30,7 +30,7 @@ inline const std::filesystem::path& fuzz_folder() {
   return folder;
 }
 
-/// Writes the bytes as `name` into the emptied folder, and gives its path.
+/// Writes the bytes as `name` into the emptied folder and returns the path.
 inline std::string fuzzed_file(const std::string& name, const std::uint8_t* data, std::size_t size) {
   const std::string path = (fuzz_folder() / name).string();
   std::ofstream file(path, std::ios::binary);

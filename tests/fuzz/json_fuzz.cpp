@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON from outside: the first byte says whether the rest is a line to the daemon's socket ('c') or a scene.
-// One program for both, for what they share takes minutes to compile.
-//   A line is a request or an error that names a place; a request that was understood is understood again
-//   when it is written; replies to it are lines that clients can read. A scene that is read has layers with
-//   numbers in their ranges; one that is refused names a place.
+// JSON from outside: the first byte selects whether the rest is a line to the daemon's socket ('c') or a
+// scene. Both are in one program because their common code takes minutes to compile.
+// A line gives a request or an error with a place; a valid request, written again, is still valid; replies to
+// it are lines that clients can parse. A valid scene has layers with numbers in their ranges, and one with
+// patches reads the same after it is written; an invalid one gives an error with a place.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 #include "data-schema/control/control.hpp"
 #include "data-schema/scene/scene.hpp"
+#include "tests/fuzz/fuzzed_file.hpp"
 
 namespace {
 
 using namespace tacto::schema;
-
-void demand(bool holds) {
-  if (!holds) std::abort();
-}
+using tacto::tests::demand;
 
 void demand_one_line(const std::string& line) {
   demand(!line.empty() && line.find('\n') == line.size() - 1);
@@ -45,18 +42,52 @@ void control_line(const std::string& text) {
   demand(reply && reply->ok && control_text(reply->fields, "file") == request->file);
 }
 
+void number(const LayerNumber& number) {
+  demand(std::isfinite(number.value));
+  if (number.slider) demand(number.slider->from <= number.value && number.value <= number.slider->to);
+}
+
+std::size_t patch(const Patch& patch) {
+  demand(!patch.name.empty() && patch.width_m > 0 && patch.height_m > 0 && !patch.layers.empty());
+  for (const ForceLayer& layer : patch.layers) {
+    demand(!type_of(layer).empty());
+    for (const NamedLayerNumber& named : numbers_of(layer)) number(named.number);
+  }
+  return patch.layers.size();
+}
+
+// What was read is written, and read again, with the same numbers.
+void written_again(const Scene& scene) {
+  const std::string stem = (tacto::tests::fuzz_folder() / "again").string();
+  demand(write_scene(stem, scene).has_value());
+  const auto again = read_scene(stem);
+  demand(again && again->patches.size() == scene.patches.size());
+  for (std::size_t i = 0; i < scene.patches.size(); ++i)
+    for (std::size_t j = 0; j < scene.patches[i].layers.size(); ++j) {
+      const auto ours = numbers_of(scene.patches[i].layers[j]),
+                 theirs = numbers_of(again->patches[i].layers[j]);
+      demand(ours.size() == theirs.size());
+      for (std::size_t k = 0; k < ours.size(); ++k) demand(ours[k].number == theirs[k].number);
+    }
+}
+
 void scene(const std::string& text) {
   const auto read = parse_scene(text, "fuzz");
   if (!read) {
     demand(read.error().where.starts_with("fuzz") && !read.error().what.empty());
     return;
   }
-  demand(!read->layers.empty() && read->layers.size() <= 256);
+  demand(!read->layers.empty() || !read->patches.empty());
+  demand(read->layers.size() <= 256);
   for (const Layer& layer : read->layers) {
     const auto texture = layer.visit([](const TextureLayer& of) { return of; });
     demand(!texture.texture.empty() && std::abs(texture.at_m) <= 1000);
     demand(std::abs(texture.gain_m_per_n) <= 1 && texture.ends <= TextureEnds::loop);
   }
+  std::size_t layers = read->layers.size();
+  for (const Patch& of : read->patches) layers += patch(of);
+  demand(layers <= 256);
+  if (!read->patches.empty()) written_again(*read);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the seeds of the corpora: WIRE.md's example frames, and conversations that get as far as a drive."""
+"""Writes the seeds of the corpora: WIRE.md's example frames, and conversations that start a drive."""
 import math
 import pathlib
 import re
@@ -60,7 +60,7 @@ CONVERSATIONS = {
 
 
 def says(kind, payload):
-    """client_fuzz's device: a sealed frame of type 0x81 + kind."""
+    """A frame of client_fuzz's device: type 0x81 + kind, with a valid check."""
     return bytes([72 + kind, len(payload)]) + payload
 
 

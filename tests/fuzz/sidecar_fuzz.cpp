@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any bytes as each of the JSON files, and as a log of events. What a reader takes has to be what the check
-// finds nothing wrong with, samples and checksum apart.
+// Any bytes as each of the JSON files, and as a journal of events. The check must find no error in a file
+// that a reader accepts, except for samples and checksum.
 #include "data-schema/calibration/calibration.hpp"
 #include "data-schema/check/check.hpp"
+#include "data-schema/device/device.hpp"
+#include "data-schema/device/hand.hpp"
 #include "data-schema/kinds/file_kind.hpp"
 #include "data-schema/recording/recording.hpp"
 #include "data-schema/recording/recording_events.hpp"
@@ -35,6 +37,8 @@ void sound(const std::string& path, const schema::Result<Value>& read) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string path = tests::fuzzed_file("x.json", data, size);
   sound(path, schema::read_transducer(path));
+  sound(path, schema::read_device(path));
+  sound(path, schema::read_hand(path));
   sound(path, schema::read_calibration(path));
   sound(path, schema::read_formants(path));
   sound(path, schema::read_descriptions(path));

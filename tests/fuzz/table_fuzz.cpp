@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any bytes as a table or as a profile's XML into import. What is imported is sound; what is not leaves
-// nothing behind.
+// Any bytes as a table or as a profile's XML for import. An import gives a valid recording or leaves no
+// files.
 #include "capture/import/height_profile.hpp"
 #include "capture/import/import.hpp"
 #include "data-schema/check/check.hpp"
@@ -15,7 +15,7 @@ const auto kQuiet = [](double) {};
 
 void import(capture::ImportRequest request) {
   request.name = (std::filesystem::path(request.file).parent_path() / "made").string();
-  const bool profile = capture::asks_for_profile(request);
+  const bool profile = capture::is_profile_request(request);
   const bool made = profile ? capture::import_profile(request, kQuiet).has_value()
                             : capture::import_file(request, kQuiet).has_value();
   const auto files = schema::stored_files(request.name);
@@ -29,7 +29,7 @@ void import(capture::ImportRequest request) {
 
 }  // namespace
 
-// The first byte chooses what the rest is taken for.
+// The first byte selects the format of the rest.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 1) return 0;
   const bool xml = (data[0] & 1) != 0, timed = (data[0] & 2) != 0;

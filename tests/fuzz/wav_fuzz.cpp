@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any bytes as a WAV: read whole, repaired, and read as the recording that recovery makes of it.
+// Any bytes as a WAV: read as a whole, repaired, and read as the recording that recovery makes from it.
 #include "data-schema/wav/riff_layout.hpp"
 #include "data-schema/wav/riff_repair.hpp"
 #include "data-schema/wav/wav.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any bytes into the frame decoder, in pieces; every frame that comes out into every message. What parses
-// must encode, and parse to the same again.
+// Any bytes in pieces for the frame decoder; every decoded frame is parsed as every message. A parsed message
+// must encode, and parse to the same message again.
 #include <cstdlib>
 #include <cstring>
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every header of the libraries includes what it needs itself: no build that compiles a folder's files together says so.
+"""Every header of the libraries includes all that it needs. A build that compiles sources in groups does not detect a
+missing include.
 
-All headers are parsed in one run of clang, each as a module of its own: it sees what its own includes give, and nothing
-that another header brought. So a header costs its own lines, where a source for each would parse `<string>` 500 times.
-Takes clang++ and the folders to look for headers in. The test first proves on an invented tree that it can fail.
+One run of clang parses all headers, each as a module of its own, which contains its own includes and nothing from other
+headers. So a header costs only its own lines, where a source for each would parse `<string>` 500 times. Takes clang++
+and the folders with the headers. The test first proves on an invented tree that it can fail.
 """
 import pathlib
 import re
@@ -33,7 +34,8 @@ def module(name, path, what=""):
     return f'module "{name}" {what} {{ header "{path}" export * }}\n'
 
 
-# C headers stay text in each that includes them. The standard's share text among themselves, so they are one module's parts.
+# C headers are textual: each includer parses them. The C++ standard headers share text, so they are parts of one
+# module.
 def map_of(root, names, folders):
     angled = sorted({target for name in names for target in ANGLED.findall((root / name).read_text()) if not target.endswith(".h")})
     found = {target: next((f / target for f in folders if (f / target).is_file()), None) for target in angled}
@@ -45,7 +47,7 @@ def map_of(root, names, folders):
 
 
 def faults_of(root, names, compiler):
-    """Gives what is wrong, one line a header; what clang said of no header of ours is given as it is."""
+    """Returns the faults, one line per header; messages of clang about other files are returned unchanged."""
     with tempfile.TemporaryDirectory() as scratch:
         modules = pathlib.Path(scratch) / "modules.map"
         modules.write_text(map_of(root, names, searched_folders(compiler)))
@@ -60,7 +62,7 @@ def faults_of(root, names, compiler):
 
 
 def without_consequences(root, first):
-    """One that includes a header that lacks something lacks it, too: the other is told alone."""
+    """A header that includes a faulty header is faulty, too; only the first one is reported."""
     return [fault for name, fault in first.items() if not first.keys() & set(QUOTED.findall((root / name).read_text()))]
 
 

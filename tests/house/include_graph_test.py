@@ -21,24 +21,25 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 ROOMS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spatial"]
 
-# Header (as a pattern on what stands between the brackets) -> the only places it may be included.
+# Header (a regular expression for the text between the brackets) -> the only places that may include it.
 WALLS = {
     r"libusb": ["firmware-host/usb"],
     r"fftw3": ["spatial/dsp"],
     r"sndfile": ["data-schema/wav"],
-    r"nlohmann/|valijson/|netcdf|H5": ["data-schema"],
+    r"nlohmann/|valijson/": ["data-schema"],
+    r"netcdf|H5": ["data-schema/netcdf"],
     r"nettle/": ["data-schema/base"],
-    r"opencv2/|cairo|pango": ["spatial/picture"],
+    r"opencv2/|cairo|pango|png": ["spatial/picture/engine"],
     r"pugixml": ["capture/import"],
     r"Eigen/|unsupported/Eigen": ["analysis/identify"],
     r"CLI/": ["data-schema/command"],
 }
 
-# JSON and netCDF readers must not leak into the verbs: only the report printer shares the JSON wall.
+# JSON and netCDF readers must not be used by verbs; only the report printer also uses JSON.
 VERBS = r"(.*/)?cli/|data-schema/(command|report)/|spatial/job/"
 CLI_JSON_EXCEPTION = "data-schema/report/report.cpp"
 
-# What runs on a device has no hosted library behind it.
+# Code that runs on a device uses no hosted library.
 C_HEADERS = {"firmware-host/core": ["stdint.h", "stddef.h"]}
 
 FOLDERS = ["analysis", "capture", "data-schema", "firmware-host", "playback", "spatial", "tests", "cmake", "LICENSES", ".ci"]
@@ -120,7 +121,7 @@ def table_faults(table):
 
 
 def unused_rows(names, texts):
-    """An arrow that no source takes any more is taken out of the table, so that it can't come back unseen."""
+    """Arrows that no source uses must be removed from the table, so that the includes cannot come back unnoticed."""
     used = {folder: set() for folder in MAY_INCLUDE}
     for name in names:
         for quote, target in INCLUDE.findall(texts[name]):

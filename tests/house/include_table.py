@@ -1,34 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which folder may include which. A folder that is not here has no place in the house yet; the table must stay
-without cycles (include_graph_test.py). `room/{a b}` is room/a and room/b; `room/.` its sources outside folders.
+"""Which folder may include which. A folder that is not listed here has no permission to include anything; the table
+must have no cycles (include_graph_test.py). `room/{a b}` is room/a and room/b; `room/.` its sources outside folders.
 """
 
 MAY_INCLUDE = {
     "data-schema/base": "",
     "data-schema/calibration": "data-schema/{base files json}",
     "data-schema/check":
-        "data-schema/{base files json kinds recording results scene session spectrogram texture transducer wav}",
+        "data-schema/{base device files json kinds recording results scene session spectrogram texture transducer "
+        "wav}",
     "data-schema/cli":
-        "data-schema/{calibration check command kinds recording report results scene session spectrogram texture "
+        "data-schema/{calibration check command device kinds recording report results scene session spectrogram texture "
         "transducer}",
     "data-schema/command": "data-schema/{base files report results}",
     "data-schema/control": "data-schema/{base json results scene}",
+    "data-schema/device": "data-schema/{base json}",
     "data-schema/files": "data-schema/base",
     "data-schema/json": "data-schema/{base files}",
-    "data-schema/kinds": "data-schema/{base files json session transducer}",
+    "data-schema/kinds": "data-schema/{base files json session}",
+    "data-schema/netcdf": "",
     "data-schema/recording": "data-schema/{base files json transducer wav}",
     "data-schema/report": "data-schema/{base scene}",
     "data-schema/results": "data-schema/{base files json kinds}",
     "data-schema/scene": "data-schema/{base files json}",
     "data-schema/session": "data-schema/{base files json scene spectrogram transducer}",
-    "data-schema/spectrogram": "data-schema/{base files}",
+    "data-schema/spectrogram": "data-schema/{base files netcdf}",
     "data-schema/texture": "data-schema/{base files json kinds wav}",
-    "data-schema/transducer": "data-schema/{base files json}",
+    "data-schema/transducer": "data-schema/{base json}",
     "data-schema/wav": "data-schema/{base files}",
     "firmware-host": "data-schema/base firmware-host/{link replay sim/device sim/physics usb}",
     "firmware-host/cli": "data-schema/{command report} firmware-host/{. sim/device}",
     "firmware-host/core/firmware": "firmware-host/{core/kernel core/wire}",
     "firmware-host/core/kernel": "firmware-host/core/wire",
+    "firmware-host/core/scene": "",
     "firmware-host/core/wire": "",
     "firmware-host/gadget":
         "data-schema/{base recording report} firmware-host/{core/firmware core/wire link sim/device}",
@@ -40,8 +44,9 @@ MAY_INCLUDE = {
     "firmware-host/sim/device":
         "data-schema/{base transducer} firmware-host/{core/firmware core/wire link sim/bench sim/physics}",
     "firmware-host/sim/physics": "data-schema/{base texture transducer}",
+    "firmware-host/sim/planar": "",
     "firmware-host/usb": "data-schema/base firmware-host/{core/firmware link}",
-    "capture/calibrate": "capture/record data-schema/{calibration recording transducer} firmware-host/link",
+    "capture/calibrate": "capture/record data-schema/{base calibration recording transducer} firmware-host/link",
     "capture/cli":
         "capture/{calibrate doctor import record} data-schema/{base cli command files recording report} "
         "firmware-host/{. sim/device}",
@@ -61,9 +66,10 @@ MAY_INCLUDE = {
     "spatial/job":
         "data-schema/{base command files kinds recording report texture} spatial/{dsp/filter spectrogram strokes "
         "texture}",
-    "spatial/numbers": "data-schema/texture spatial/dsp/fourier",
+    "spatial/numbers": "data-schema/{base texture} spatial/dsp/fourier",
     "spatial/picture": "data-schema/{base files spectrogram texture} spatial/{numbers picture/draw spectrogram}",
     "spatial/picture/draw": "data-schema/base",
+    "spatial/picture/engine": "spatial/picture/draw",
     "spatial/reference": "spatial/{dsp/filter dsp/resample}",
     "spatial/spectrogram":
         "data-schema/{base results spectrogram texture} spatial/{dsp/resample dsp/spectrum numbers texture}",
@@ -78,7 +84,7 @@ MAY_INCLUDE = {
     "playback/control": "data-schema/{base control files} playback/session",
     "playback/daemon":
         "data-schema/{base control files report scene} playback/{control host-loop model player session}",
-    "playback/host-loop": "data-schema/session firmware-host/{core/firmware core/kernel link} playback/prepare",
+    "playback/host-loop": "data-schema/{base session} firmware-host/{core/firmware core/kernel link} playback/prepare",
     "playback/model":
         "data-schema/{base files transducer wav} firmware-host/{core/kernel core/wire} spatial/{dsp/filter "
         "dsp/fourier dsp/resample}",
@@ -88,10 +94,11 @@ MAY_INCLUDE = {
     "playback/prepare":
         "data-schema/{base texture transducer} firmware-host/{core/kernel core/wire link} playback/model "
         "spatial/{dsp/filter dsp/fourier}",
+    "playback/prepare/relief": "data-schema/scene firmware-host/core/scene",
     "playback/render":
         "data-schema/{base recording scene texture transducer} firmware-host/core/kernel playback/{choose model "
         "prepare render/reference} spatial/dsp/filter",
-    "playback/render/reference": "data-schema/base playback/{model prepare} spatial/{dsp/filter dsp/fourier}",
+    "playback/render/reference": "data-schema/base firmware-host/core/scene playback/{model prepare} spatial/{dsp/filter dsp/fourier}",
     "playback/session":
         "data-schema/{base control files session wav} firmware-host/{core/firmware core/kernel core/wire link} "
         "playback/model",
@@ -124,8 +131,8 @@ MAY_INCLUDE = {
         "spatial/{picture picture/draw}",
     "analysis/page": "data-schema/{base results} spatial/picture",
     "analysis/report":
-        "analysis/{identify/measure page} data-schema/{base calibration check files kinds recording results scene "
-        "session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
+        "analysis/{identify/measure page} data-schema/{base calibration check device files kinds recording results "
+        "scene session spectrogram texture transducer} playback/session spatial/{picture picture/draw spectrogram "
         "texture}",
     "analysis/trade":
         "analysis/{page trade/offline trade/rows} data-schema/{base results texture transducer} "

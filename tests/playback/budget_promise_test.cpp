@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The promise: whatever texture, transducer and path, the error of what was chosen stays under the one that
-// was asked for.
+// The promise: for any texture, transducer and path, the error of the choice stays below the requested error.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,17 +7,18 @@
 #include "line_textures.hpp"
 #include "playback/choose/budget.hpp"
 #include "playback/choose/budget_words.hpp"
-#include "playback/choose/wandering_hand.hpp"
+#include "playback/choose/unsteady_speed.hpp"
 #include "playback/prepare/undone_chain.hpp"
 #include "playback/render/reference/padded_spectrum.hpp"
+#include "tests/measured.hpp"
 #include "tests/sanitized.hpp"
 
 namespace tacto::playback {
 namespace {
 
 constexpr double kSeconds = 0.65, kLeftOutS = 0.15;
-constexpr double kTrueM = 1e-9;  // an encoder so fine that its count is the place
-constexpr double kWindowHz = 8;  // the window's half width: nothing from beside the band leaks into it
+constexpr double kTrueM = 1e-9;  // an encoder so fine that its count is the exact position
+constexpr double kWindowHz = 8;  // half width of the window; nothing from outside of the band leaks into it
 constexpr double kGainMPerN = 1e-4;
 
 using Random = std::mt19937;
@@ -37,11 +37,11 @@ schema::Transducer random_transducer(Random& random) {
   t.flexure_stiffness_n_per_m *= between_logs(random, 0.6, 1.6);
   t.damping_n_s_per_m *= between_logs(random, 0.4, 4);
   t.capacitance_f *= between_logs(random, 0.6, 1.6);
-  t.drive_limit_v = 1e3, t.slew_limit_v_per_s = 1e9;  // limits are another promise
+  t.drive_limit_v = 1e3, t.slew_limit_v_per_s = 1e9;  // the promise excludes limits
   return t;
 }
 
-/// A machine that textures are tried on: its filters are judged once.
+/// A transducer and its settings, for several textures; its filters are computed once.
 struct Machine {
   schema::Transducer transducer;
   PrepareOptions options;
@@ -61,7 +61,7 @@ Machine random_machine(Random& random) {
   return machine;
 }
 
-/// Speed as it wanders about its mean; place is its integral.
+/// Speed that varies around its mean; the position is its integral.
 struct RandomPath {
   double mean_mps = 0, wander = 0, wander_hz = 0;
   double place_m(double t) const {
@@ -70,12 +70,12 @@ struct RandomPath {
 };
 
 struct Outcome {
-  double error = 0;   ///< RMS re wanted, over the band
-  double beside = 0;  ///< RMS of what is read beside the band, re what is in it
-  double felt = 0;    ///< the same error, re what is wanted where the finger then was
+  double error = 0;      ///< RMS re the target, in the band
+  double beside = 0;     ///< RMS of what is read outside of the band, re that in the band
+  double at_finger = 0;  ///< the same error, re the target at the finger's true position
 };
 
-/// Blackman and Harris's window of four terms: -92 dB beyond four bins.
+/// Blackman-Harris window of four terms: -92 dB beyond four bins.
 double window_at(double u) {
   return 0.35875 - 0.48829 * std::cos(kTwoPi * u) + 0.14128 * std::cos(2 * kTwoPi * u) -
          0.01168 * std::cos(3 * kTwoPi * u);
@@ -94,19 +94,19 @@ std::vector<double> through_response(const std::vector<double>& values, double r
   return signal_of(through(spectrum_of(values, rate_hz, 2 * values.size()), response));
 }
 
-/// What the kernel drives, and what it was to read where it took the finger to be.
+/// The kernel's drive, and the target at the position that the kernel assumed.
 struct Played {
   std::vector<double> drive_v, target_m;
-  std::vector<double> true_m;  ///< the same where the finger then was
+  std::vector<double> true_m;  ///< the target at the finger's true position
 };
 
-// Of an encoder this fine the rounding of its scale to 32 bits shows: over 0.1 m some 20 nm.
+// With an encoder this fine the rounding of its scale to 32 bits is visible: about 20 nm over 0.1 m.
 double scale_of(const Prepared& prepared) {
   return std::ldexp(static_cast<double>(prepared.scale.samples_per_count_q32), -32) * prepared.pitch_m /
          kTrueM;
 }
 
-// The place is the kernel's own guess where speed wanders: what looking ahead costs there is not promised.
+// For a varying speed the kernel predicts the position; the promise does not cover the prediction's error.
 Played played(const Prepared& prepared, const PrepareOptions& o, const LineTexture& texture,
               const RandomPath& path) {
   core::TickKernel kernel;
@@ -143,13 +143,13 @@ Outcome outcome_of(const Machine& machine, const PrepareOptions& o, const LineTe
       all.target_m, o.rate_hz, [&](double f) { return std::polar(1.0, -kTwoPi * f * prepared->delay_s); });
   const auto true_m = through_response(
       all.true_m, o.rate_hz, [&](double f) { return std::polar(1.0, -kTwoPi * f * prepared->delay_s); });
-  std::vector<double> felt_m = error_m;
-  for (std::size_t i = 0; i < error_m.size(); ++i) error_m[i] -= target_m[i], felt_m[i] -= true_m[i];
+  std::vector<double> finger_m = error_m;
+  for (std::size_t i = 0; i < error_m.size(); ++i) error_m[i] -= target_m[i], finger_m[i] -= true_m[i];
   const spatial::Band band{o.band.low_hz + kWindowHz, prepared->passes_to_hz - kWindowHz};
   const double target = windowed_energy(target_m, o.rate_hz, band);
   const double whole = windowed_energy(target_m, o.rate_hz, {0, 0.5 * o.rate_hz});
   return {std::sqrt(windowed_energy(error_m, o.rate_hz, band) / target), std::sqrt(whole / target - 1),
-          std::sqrt(windowed_energy(felt_m, o.rate_hz, band) / target)};
+          std::sqrt(windowed_energy(finger_m, o.rate_hz, band) / target)};
 }
 
 struct Case {
@@ -169,8 +169,8 @@ Case random_case(Random& random) {
 
 struct Tally {
   int kept = 0, broken = 0, refused = 0, beside = 0;
-  double nearest = 0;         ///< the largest error re what was asked
-  std::vector<double> hands;  ///< of paths that wander: what the hand cost re what was estimated
+  double nearest = 0;         ///< the largest error re the requested one
+  std::vector<double> hands;  ///< for paths with varying speed: its measured effect re the estimated one
 
   void add(const Outcome& outcome, double asked, const std::string& words) {
     if (outcome.beside > 1) {
@@ -182,7 +182,7 @@ struct Tally {
     ++(used <= 1 ? kept : broken);
     if (used > 1) last = words + ": " + percent(outcome.error) + ", asked: " + percent(asked);
   }
-  std::string last;  ///< that was broken
+  std::string last;  ///< the last broken promise
 };
 
 void try_case(Tally& tally, const Machine& machine, const Case& c, const schema::FoundTradeTable& table) {
@@ -191,7 +191,8 @@ void try_case(Tally& tally, const Machine& machine, const Case& c, const schema:
   const auto decision = decide(std::span(&placed, 1), machine.inverses, false, machine.options,
                                TickBudget{{std::nullopt, c.asked}, {}}, table);
   if (!decision) {
-    EXPECT_NE(message(decision.error()).find("is the least"), std::string::npos) << message(decision.error());
+    EXPECT_NE(message(decision.error()).find("the smallest is"), std::string::npos)
+        << message(decision.error());
     ++tally.refused;
     return;
   }
@@ -200,10 +201,10 @@ void try_case(Tally& tally, const Machine& machine, const Case& c, const schema:
   tally.add(outcome, c.asked, words_of(decision->chosen));
   if (!(c.path.wander > 0) || outcome.beside > 1) return;
   const double hand =
-      wandering_error(std::span(&placed, 1), {c.path.mean_mps, c.path.wander, c.path.wander_hz},
-                      machine.options, decision->chosen.inverse.delay_s);
+      unsteady_speed_error(std::span(&placed, 1), {c.path.mean_mps, c.path.wander, c.path.wander_hz},
+                           machine.options, decision->chosen.inverse.delay_s);
   tally.hands.push_back(
-      std::sqrt(std::max(0.0, outcome.felt * outcome.felt - outcome.error * outcome.error)) / hand);
+      std::sqrt(std::max(0.0, outcome.at_finger * outcome.at_finger - outcome.error * outcome.error)) / hand);
 }
 
 Tally tried(int machines, int cases, const schema::TradeTable& table) {
@@ -220,6 +221,8 @@ Tally tried(int machines, int cases, const schema::TradeTable& table) {
 
 TEST(BudgetPromise, HoldsForRandomTexturesPathsAndTransducers) {
   const Tally tally = tried(draws(8, 4), draws(75, 15), *schema::shipped_trade_table());
+  measured("budget_promise.promises", tally.kept + tally.broken);
+  measured("budget_promise.closest", tally.nearest);
   EXPECT_EQ(tally.broken, 0) << tally.last;
   EXPECT_GE(tally.kept, draws(500, 50));
   std::vector<double> hands = tally.hands;
@@ -232,12 +235,14 @@ TEST(BudgetPromise, HoldsForRandomTexturesPathsAndTransducers) {
   EXPECT_GT(tally.nearest, 0.2) << "a promise that nothing comes near says nothing about the table";
 }
 
-// The other way round: a table that is ten times too good is found out.
+// A check of the test: a table that is ten times too good is detected.
 TEST(BudgetPromise, BreaksWithATableThatIsTooGood) {
   schema::TradeTable table = *schema::shipped_trade_table();
   for (schema::MeasuredChoice& choice : table.choices)
     for (schema::ErrorPoint& point : choice.errors) point.error /= 10;
-  EXPECT_GT(tried(2, 50, table).broken, 0);
+  const Tally tally = tried(2, 50, table);
+  measured("budget_promise.wrong_table_broken_percent", 100.0 * tally.broken / (tally.kept + tally.broken));
+  EXPECT_GT(tally.broken, 0);
 }
 
 }  // namespace

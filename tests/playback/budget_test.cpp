@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a budget chooses, and what it refuses.
+// The choices of a budget, and its refusals.
 #include "playback/choose/budget.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using schema::ErrorPoint;
 using schema::MeasuredChoice;
 
-/// Costs as one likes them; hermite's errors are near the true ones.
+/// Arbitrary costs; hermite's errors are near the true ones.
 schema::FoundTradeTable priced(double linear_ns, double hermite_ns, double sinc_ns) {
   schema::TradeTable table;
   table.choices = {{"reading", "linear", "tick", linear_ns, 0, {{16, 2e-2}, {64, 1.3e-3}}},
@@ -66,7 +66,7 @@ TEST_F(Budgets, AQualityIsAnError) {
   EXPECT_EQ(balanced->chosen.error, decided({{{}, 1e-3}, {}}, priced(50, 60, 70))->chosen.error);
 }
 
-// Another texture in the place of one that plays has to do with its filter.
+// A texture that replaces a playing one has to use its filter.
 TEST_F(Budgets, AFilterThatPlaysStays) {
   TickBudget budget{{{}, 1e-3}, {}};
   budget.filter = decided({{{}, 1e-2}, {}}, priced(50, 60, 70))->chosen.inverse;
@@ -93,7 +93,7 @@ TEST_F(Budgets, TheMostExactHasTheLeastError) {
   EXPECT_GT(hurried->chosen.error, exact->chosen.error);
 }
 
-// What is predicted for the filter is what prepare() makes of it.
+// The prediction for the filter is the error of the filter that prepare() makes.
 TEST_F(Budgets, TheChosenFilterIsTheOneThatIsMade) {
   const auto decision = decided({{{}, 1e-3}, {}}, priced(50, 60, 70));
   const auto prepared = prepare(texture_, transducer_, decision->chosen.in(options_));
@@ -105,18 +105,18 @@ TEST_F(Budgets, TheChosenFilterIsTheOneThatIsMade) {
 
 TEST_F(Budgets, RefuseWithTheBestThereIs) {
   const std::string exacting = refusal({{{}, 1e-5}, {}});
-  EXPECT_NE(exacting.find("nothing keeps 0.001 %"), std::string::npos) << exacting;
-  EXPECT_NE(exacting.find("is the least (hermite, 40 samples a period"), std::string::npos) << exacting;
+  EXPECT_NE(exacting.find("no choice has an error of at most 0.001 %"), std::string::npos) << exacting;
+  EXPECT_NE(exacting.find("(hermite, 40 samples per period"), std::string::npos) << exacting;
   EXPECT_NE(exacting.find("the inverse of the transducer leaves"), std::string::npos) << exacting;
   const std::string hurried = refusal({{{}, 1e-3}, 40});
-  EXPECT_NE(hurried.find("no tick of 40 ns or less keeps it"), std::string::npos) << hurried;
+  EXPECT_NE(hurried.find("within 40 ns per tick"), std::string::npos) << hurried;
   EXPECT_NE(refusal({{{}, 0.5}, {}}), "");
   EXPECT_NE(refusal({{{}, 1e-3}, -1}), "");
   options_.most_samples = 100;
-  EXPECT_NE(refusal({{{}, 1e-2}, {}}).find("there is room for 100"), std::string::npos);
+  EXPECT_NE(refusal({{{}, 1e-2}, {}}).find("the memory holds 100"), std::string::npos);
 }
 
-// The error that a refusal names can be had.
+// The error that a refusal suggests is possible.
 TEST_F(Budgets, TheRefusalsRemedyHelps) {
   const std::string words = refusal({{{}, 1e-5}, {}});
   const auto at = words.find("--max-error ");
@@ -127,7 +127,7 @@ TEST_F(Budgets, TheRefusalsRemedyHelps) {
 TEST_F(Budgets, KeepWhatWasNamed) {
   options_.inverse = Inverse::gain;
   const std::string words = refusal({{{}, 1e-2}, {}, true});
-  EXPECT_NE(words.find("its gain alone"), std::string::npos) << words;
+  EXPECT_NE(words.find("gain only"), std::string::npos) << words;
   options_.inverse = Inverse::magnitude;
   EXPECT_NE(refusal({{{}, 1e-2}, {}, true}), "") << "its phase is off by more";
   EXPECT_EQ(refusal({{{}, 1e-2}, {}, false}), "");
@@ -140,7 +140,7 @@ TEST_F(Budgets, PromiseNothingOfAHysteresisThatStays) {
   ASSERT_TRUE(undone) << message(undone.error());
   EXPECT_GT(undone->chosen.tick_ns, straight_ns);
   options_.undo_hysteresis = false;
-  EXPECT_NE(refusal({{{}, 1e-2}, {}}).find("hysteresis is not undone"), std::string::npos);
+  EXPECT_NE(refusal({{{}, 1e-2}, {}}).find("hysteresis is not inverted"), std::string::npos);
 }
 
 TEST_F(Budgets, SayWhy) {
@@ -149,13 +149,13 @@ TEST_F(Budgets, SayWhy) {
     return std::ranges::any_of(
         decision->reasons, [&](const std::string& line) { return line.find(words) != std::string::npos; });
   };
-  EXPECT_TRUE(said("hermite, 20 samples a period"));
+  EXPECT_TRUE(said("hermite, 20 samples per period"));
   EXPECT_TRUE(said("linear: ")) << "what was not exact enough";
   EXPECT_TRUE(said("at best"));
   EXPECT_TRUE(said("an inverse of 128 taps: "));
-  EXPECT_TRUE(said("dearer"));
-  EXPECT_TRUE(said("its gain alone: "));
-  EXPECT_TRUE(said("not promised"));
+  EXPECT_TRUE(said("more time per tick"));
+  EXPECT_TRUE(said("gain only: "));
+  EXPECT_TRUE(said("not included"));
 }
 
 TEST_F(Budgets, KnowWhatATickCosts) {

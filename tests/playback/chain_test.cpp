@@ -11,7 +11,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Written out from Table I and equations (5), (6) of Wiertlewski 2011, scaled to 20 um/V at rest as the
+// Written out from Table I and equations (5), (6) of Wiertlewski 2011, scaled to 20 um/V at 0 Hz as the
 // preset is.
 Complex actuator(double f) {
   const Complex s(0, 2 * std::numbers::pi * f);
@@ -19,7 +19,7 @@ Complex actuator(double f) {
   return 20e-6 * stiffness / ((1.0 + 2 * 680 * 818e-9 * s) * (6.8e-3 * s * s + 4.49 * s + stiffness));
 }
 
-// The usual factored form; the filter has real gain 1 at rest and (1 + s) (1 + s + s^2) below.
+// The usual factored form; the filter has a real gain of 1 at 0 Hz and the denominator (1 + s) (1 + s + s^2).
 Complex butterworth(double f) {
   const Complex s(0, f / 600);
   return 1.0 / ((1.0 + s) * (1.0 + s + s * s));

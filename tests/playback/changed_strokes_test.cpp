@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strokes of a session in which the texture changes: what was wanted in each, before, in and after the
-// change.
+// Strokes of a session in which the texture changes: the target in each, before, during and after the change.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -18,7 +17,7 @@ namespace {
 
 using schema::SessionChange;
 
-/// A session read and written again, what it says of changes as `keep` makes it; false leaves it out.
+/// Reads a session and writes it again, with its changes modified by `keep`; false omits a change.
 class Rewriting {
  public:
   Rewriting(const std::string& from, const std::string& to, std::size_t most_ticks = 4096)
@@ -47,11 +46,11 @@ class Rewriting {
   std::size_t most_ticks_;
 };
 
-/// 30 mm there and back in 1.5 s, so that a stroke takes 0.75 s. In the second the grating gives way to the
-/// fine one, in the fourth that to the grating upside down; the gain is turned in the first and the third.
+/// 30 mm back and forth in 1.5 s, so that a stroke takes 0.75 s. In the second stroke the grating changes to
+/// the fine one, in the fourth to the inverted grating; the gain changes in the first and the third.
 class StrokesOverChanges : public PlayerOnSim {
  protected:
-  // A finger that turns gently: at a corner, looking ahead errs by more than all else.
+  // A finger that reverses smoothly: at a sharp reversal the prediction's error would be the largest one.
   void SetUp() override {
     PlayerOnSim::SetUp();
     device_->board().set_script([](double t) { return 17e-3 - 15e-3 * std::cos(kTwoPi * t / 1.5); });
@@ -70,7 +69,8 @@ class StrokesOverChanges : public PlayerOnSim {
     run(1.3);
     ASSERT_TRUE(player_->disarm());
   }
-  /// The worst error of a whole stroke of one program, dB; the first is left out, for the onset is in it.
+  /// The largest error of a whole stroke of one program, dB, without the first stroke, which contains the
+  /// onset.
   double worst_error_alone(Program played, double factor) {
     const std::string alone = folder_ / fmt::format("alone-{}.session", ++alone_);
     EXPECT_TRUE(player_->load(std::move(played)));
@@ -105,9 +105,9 @@ class StrokesOverChanges : public PlayerOnSim {
 
 using Judged = std::vector<bool>;
 
-// What errs alone (the encoder's counts of 1 um at the turns: -34.9 dB of the fine grating, -39.7 dB of the
-// other) errs here; 0.5 dB beside it are for where in the texture the strokes lie. A gain that is a factor of
-// another number would be off by 1.6 (8e-4 / 5e-4): 4 dB of level.
+// The errors of one texture (by the encoder's counts of 1 um at the reversals: -34.9 dB of the fine grating,
+// -39.7 dB of the other) are the same here, with 0.5 dB for other positions of the strokes in the texture.
+// With the wrong gain the level would be off by a factor of 1.6 (8e-4 / 5e-4): 4 dB.
 TEST_F(StrokesOverChanges, AreJudgedAsWellAsOneTextureAlone) {
   play_with_changes();
   expect_same_to_the_bit();
@@ -124,8 +124,8 @@ TEST_F(StrokesOverChanges, AreJudgedAsWellAsOneTextureAlone) {
   for (std::size_t i = 1; i < strokes.size(); ++i) EXPECT_NEAR(strokes[i].predicted.level_db, 0, 0.02) << i;
 }
 
-// A fade of most of a stroke, by its weight: an even one (u instead of u^2 (3 - 2 u)) is off by up to 0.1 of
-// each texture, which would be -23 dB.
+// A fade over most of a stroke is judged by its weight: a linear one (u instead of u^2 (3 - 2 u)) would be
+// off by up to 0.1 of each texture, which is -23 dB.
 TEST_F(StrokesOverChanges, ALongFadeIsJudgedByItsWeight) {
   play_with_changes(0.5);
   const auto strokes = strokes_of(session_);
@@ -154,7 +154,7 @@ TEST_F(StrokesOverChanges, WithTheTexturesSwappedTheNumbersAreBad) {
   EXPECT_TRUE(notes_.empty());
 }
 
-// Older sessions do not say what a change brings; they are read as they were.
+// Older sessions do not name the texture of a change; they are judged up to the change, as before.
 TEST_F(StrokesOverChanges, AnOlderSessionIsJudgedUpToItsFirstChange) {
   play_with_changes();
   const double first_db = strokes_of(session_).at(0).predicted.error_db;
@@ -162,7 +162,7 @@ TEST_F(StrokesOverChanges, AnOlderSessionIsJudgedUpToItsFirstChange) {
   EXPECT_EQ(judged_of(session_), (Judged{true, false, false, false, false}));
   ASSERT_EQ(notes_.size(), 1U);
   EXPECT_TRUE(notes_[0].starts_with("the texture changes at 1.1")) << notes_[0];
-  EXPECT_TRUE(notes_[0].ends_with(" s: strokes that reach beyond are not judged")) << notes_[0];
+  EXPECT_TRUE(notes_[0].ends_with(" s: strokes that end later are not judged")) << notes_[0];
   EXPECT_NEAR(strokes_of(session_).at(0).predicted.error_db, first_db, 0.01);
   expect_same_to_the_bit();
 }
@@ -186,7 +186,7 @@ TEST_F(StrokesOverChanges, ATextureThatIsGoneCostsItsOwnStrokesOnly) {
   EXPECT_NEAR(strokes_of(session_).at(4).predicted.error_db, whole.at(4).predicted.error_db, 0.5);
 }
 
-// The header is of what was armed, each block of what came then.
+// The header describes the armed texture, each block the texture of a change.
 TEST_F(StrokesOverChanges, TheSessionNamesWhatEachChangeBrings) {
   play_with_changes();
   auto reader = schema::SessionReader::open(session_);
@@ -203,7 +203,7 @@ TEST_F(StrokesOverChanges, TheSessionNamesWhatEachChangeBrings) {
   EXPECT_NEAR(static_cast<double>(totals.changes[0].not_before), 1.1 * kRateHz, 50);
 }
 
-// Half a minute of strokes, in which gain and texture change.
+// Half a minute of strokes with changes of gain and texture.
 class ManyStrokes : public StrokesOverChanges {
  protected:
   void play_for_long() {
@@ -233,9 +233,9 @@ class ManyStrokes : public StrokesOverChanges {
   }
 };
 
-// What the band's filters would take from farther than 5 s away: JudgedBlocks says 5e-4 of the largest value
-// there, if all of it were at an edge of the band. Of the error it is as much of the error; its level is that
-// of the displacement's difference, so it is told in dB of it.
+// Effect of values farther than 5 s away on the band's filters: JudgedBlocks states 5e-4 of the largest value
+// there, if all of it were at an edge of the band. Relative to the error it is the same part of the error;
+// its level is that of the displacement's difference, so it is given in dB of that.
 TEST_F(ManyStrokes, AreTheSameInSmallBlocks) {
   constexpr double kFarAway = 5e-4, kFarAwayDb = 0.01;  // 20 log10(1 + 5e-4), twice
   play_for_long();

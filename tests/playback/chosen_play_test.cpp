@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What users choose of reading, inverse and limits: which word wins, and that each acts, in numbers, from the
-// program to the session that replays.
+// The user's choices of interpolation, inverse and limits: which setting has priority, and the effect of each
+// in numbers, from the program to the session that replays.
 #include "playback/choose/choices.hpp"
 
 #include <unistd.h>
@@ -57,8 +57,8 @@ TEST(PlaybackChoices, WhatWasPlayedSaysItselfAgain) {
   EXPECT_FALSE(choices_in(PrepareOptions{}).energy_rms_v) << "no limit is none";
 }
 
-// Of something that is not there. What stands below may name it; a request may turn it off, and then not say
-// more of it.
+// Settings of something that does not exist are refused. A lower level may define it; a request may switch it
+// off, but not set its details at the same time.
 TEST(PlaybackChoices, MoreOfWhatIsNotThereIsRefused) {
   const PlaybackChoices below = choices_with(
       [](auto& c) { c.reconstruction = "butterworth3", c.energy_rms_v = 2.0, c.contact_on_n = 0.3; });
@@ -76,15 +76,15 @@ TEST(PlaybackChoices, MoreOfWhatIsNotThereIsRefused) {
                        choices_with([](auto& c) { c.contact_off_n = 0.1, c.contact_on_n = 0.0; }),
                        {"--contact-off", "contact_on_n"}}};
   for (const Said& said : all) {
-    EXPECT_TRUE(check_meant(said.more, said.more.over(below))) << said.words[0];
-    EXPECT_FALSE(check_meant(said.off, said.off.over(below))) << said.words[0];
-    const auto alone = check_meant(said.more, said.more);
+    EXPECT_TRUE(check_consistent(said.more, said.more.over(below))) << said.words[0];
+    EXPECT_FALSE(check_consistent(said.off, said.off.over(below))) << said.words[0];
+    const auto alone = check_consistent(said.more, said.more);
     ASSERT_FALSE(alone) << said.words[0];
     EXPECT_EQ(alone.error().kind, schema::ErrorKind::usage);
     for (const char* words : said.words)
       EXPECT_NE(schema::message(alone.error()).find(words), std::string::npos) << words;
   }
-  EXPECT_TRUE(check_meant({}, below)) << "what stands below may say more: for those who name it";
+  EXPECT_TRUE(check_consistent({}, below)) << "what stands below may say more: for those who name it";
 }
 
 TEST(PlaybackChoices, AWordThatThereIsNotIsRefused) {
@@ -93,7 +93,8 @@ TEST(PlaybackChoices, AWordThatThereIsNotIsRefused) {
   EXPECT_NE(schema::message(wrong.error()).find("'half'"), std::string::npos);
 }
 
-// The sampled texture and every filter are the device's own arithmetic, along a path of even speed.
+// RMS of the drive by the device's own arithmetic (sampled texture, all filters), along a path of constant
+// speed.
 double drive_rms_v(const PrepareOptions& options, const schema::Texture& texture, double speed_mps = 0.05) {
   const auto prepared = prepare(texture, *schema::read_transducer("wiertlewski2011"), options);
   EXPECT_TRUE(prepared) << schema::message(prepared.error());
@@ -104,8 +105,9 @@ double drive_rms_v(const PrepareOptions& options, const schema::Texture& texture
   return std::sqrt(sum / 600);
 }
 
-// A grating of f Hz: full and magnitude give 1 / |chain(f)|, gain 1 / |chain(0)|, none the limits' ratio. The
-// inverse errs by its inverse_error_db (below -40 dB), the tracker's place by 0.2 %: 2 % is told apart.
+// A grating of f Hz: full and magnitude give 1 / |chain(f)|, gain 1 / |chain(0)|, none the ratio of the
+// limits. The inverse has an error of inverse_error_db (below -40 dB), the tracker's position one of 0.2 %:
+// the test resolves 2 %.
 TEST(PlaybackChoices, EachInverseGivesTheDriveOfItsResponse) {
   PrepareOptions options;
   const schema::Texture texture = grating(8000, 0.004);  // 400 Hz at 50 mm/s: near the resonance
@@ -118,8 +120,8 @@ TEST(PlaybackChoices, EachInverseGivesTheDriveOfItsResponse) {
   }
 }
 
-// All on levels of 20 points a period, against the finest reading there is: each within the error that
-// playback/DECISIONS.md states for it (w = 2 pi / points a period), each clearly better than the one before.
+// All with levels of 20 points per period, against the most exact interpolation: each within its error stated
+// in playback/DECISIONS.md (w = 2 pi / points per period), each clearly better than the one before.
 TEST(PlaybackChoices, EachInterpolationReadsWithItsOwnError) {
   const schema::Texture texture = grating(3000, 0.01);
   const auto read_by = [&](const char* word) {
@@ -147,9 +149,9 @@ TEST(PlaybackChoices, EachInterpolationReadsWithItsOwnError) {
   EXPECT_LT(hermite, 0.0026 * std::pow(w, 4) + 0.0032 * std::pow(w, 5) + 1e-4) << "sinc's own at 20 points";
 }
 
-// In a chain that has the filter, 2 ms being allowed: what accounts for it errs by 2 % at most at any
-// frequency of the band (-55 dB RMS, inverse_filter.hpp); what does not is turned by over a right angle at
-// 500 Hz.
+// In a chain with the filter, with a delay of 2 ms: an inverse that includes the filter has an error of at
+// most 2 % at any frequency of the band (-55 dB RMS, inverse_filter.hpp); without it the phase is off by over
+// 90 degrees at 500 Hz.
 TEST(PlaybackChoices, AReconstructionFilterIsUndoneWhereItIsNamed) {
   const schema::Transducer bender = *schema::read_transducer("wiertlewski2011");
   const auto with =
@@ -161,7 +163,7 @@ TEST(PlaybackChoices, AReconstructionFilterIsUndoneWhereItIsNamed) {
   EXPECT_GT(ignored, 0.8);
 }
 
-// The user's way: a request's choices, through program, player and device, into a session.
+// A request's choices, through program, player and device, into a session.
 class ChosenPlay : public PlayerOnSim {
  protected:
   Program chosen(const PlaybackChoices& choices, const std::string& name = "grating") {
@@ -198,7 +200,7 @@ double rms_v(const std::vector<schema::SessionTick>& ticks, double from_s, doubl
   return std::sqrt(sum / static_cast<double>(last - first));
 }
 
-// energy_limiter.hpp: the RMS is within 2 % of the limit once the window has passed.
+// energy_limiter.hpp: the RMS is within 2 % of the limit after the window has passed.
 TEST_F(ChosenPlay, AnEnergyLimitHoldsItsBoundAndReplays) {
   play_chosen({}, 1);
   const double free_v = rms_v(ticks(), 0.4, 0.7);
@@ -251,7 +253,7 @@ TEST_F(ChosenPlay, WithoutAGateTheForceIsNothingToTheDrive) {
   EXPECT_EQ(status_.ticks.gated(), 0U);
 }
 
-// What an older device's ticks do not say can't be replayed, and is not tried.
+// The ticks of an older device do not contain the gate, so they cannot be replayed.
 TEST_F(ChosenPlay, AGatedSessionOfAnOlderDeviceIsRefusedByReplay) {
   play_chosen(choices_with([](auto& c) { c.contact_on_n = 0.3; }), 0.3);
   auto reader = schema::SessionReader::open(session_);
@@ -272,7 +274,7 @@ TEST_F(ChosenPlay, AGatedSessionOfAnOlderDeviceIsRefusedByReplay) {
   const auto replayed = replay_session(older);
   ASSERT_FALSE(replayed);
   EXPECT_EQ(replayed.error().kind, schema::ErrorKind::unsuitable);
-  EXPECT_NE(schema::message(replayed.error()).find("gated by contact"), std::string::npos);
+  EXPECT_NE(schema::message(replayed.error()).find("a contact gate"), std::string::npos);
 }
 
 TEST_F(ChosenPlay, AReadingIsUploadedAndReplays) {

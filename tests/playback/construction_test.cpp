@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is not named is not built: by the counters of those who build.
+// Parts that are not named are not built, by the counters of their builders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,10 +43,10 @@ TEST(Construction, WhatNobodyNamesIsNotBuilt) {
   EXPECT_EQ(built.touch_gates, 0U);
   for (const char* what : {"loop's seam", "hysteresis", "sections", "energy limit", "touch gate", "levels"})
     EXPECT_TRUE(leaves_out(plain, what)) << what;
-  EXPECT_FALSE(leaves_out(plain, "a filter that undoes"));
+  EXPECT_FALSE(leaves_out(plain, "a filter that inverts"));
 }
 
-// The counts are of what is there: each thing is as large as its counter says.
+// The counters are correct: each part has the size that its counter states.
 TEST(Construction, WhatIsThereIsCounted) {
   const Prepared plain = built_with([](PrepareOptions&) {});
   EXPECT_EQ(plain.built.textures_placed, 1U);
@@ -67,7 +67,7 @@ TEST(Construction, EachThingThatIsNamedHasItsCount) {
   EXPECT_EQ(undone.built.hysteresis, 1U);
   EXPECT_EQ(undone.built.play_operators, 16U);
   EXPECT_EQ(undone.built.sections, 1U);
-  EXPECT_FALSE(leaves_out(undone, "plays that undo"));
+  EXPECT_FALSE(leaves_out(undone, "play operators that invert"));
 }
 
 TEST(Construction, WhatIsTurnedOffIsNotBuilt) {
@@ -80,7 +80,7 @@ TEST(Construction, WhatIsTurnedOffIsNotBuilt) {
   EXPECT_EQ(still.built.following, 0U);
 }
 
-// A slow finger needs no coarse copies, a smooth texture no fine ones.
+// A slow finger needs no coarse levels, a smooth texture no fine ones.
 TEST(Construction, LevelsAreThoseThatSpeedAndTextureAskFor) {
   const auto levels = [](double speed_mps) {
     return built_with([=](PrepareOptions& o) { o.max_speed_mps = speed_mps; }).built.levels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who gets a place at the control socket where there are more clients than places: `stop` always does. And
-// what wrong tokens wait.
+// The places at the control socket with more clients than places: `stop` always gets one. And the delay after
+// wrong tokens.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -40,8 +40,8 @@ class ControlPlaces : public testing::Test {
         return ControlFields{};
       });
   }
-  // On this machine a connection, and what is sent on it, is there at once by a Unix socket; by TCP it may
-  // take its time.
+  // On this machine a connection by a Unix socket, and data sent on it, arrive at once; by TCP they may take
+  // time.
   template <class Done>
   void serve_until(const Done& done) {
     for (int i = 0; i < 100'000 && !done(); ++i) serve();
@@ -216,19 +216,19 @@ TEST_F(ControlPlaces, LinesAreCountedByClientAndOfAll) {
   const auto one = connected(), other = connected();
   one->say(std::string(kHello) + kStatus);
   serve(3);
-  const LinesHeard of_all = server_->heard_of(std::nullopt);
+  const LinesReceived of_all = server_->lines_received(std::nullopt);
   other->say("what?\n");
   serve(3);
-  EXPECT_EQ(server_->heard_of(std::nullopt).lines, of_all.lines) << "who said no hello does not count";
-  EXPECT_EQ(server_->heard_of(1).lines, 2U);
+  EXPECT_EQ(server_->lines_received(std::nullopt).lines, of_all.lines) << "who said no hello does not count";
+  EXPECT_EQ(server_->lines_received(1).lines, 2U);
   one->say("what?\n");
   serve(3);
-  EXPECT_EQ(server_->heard_of(1).lines, 3U) << "any line counts";
-  EXPECT_EQ(server_->heard_of(std::nullopt).lines, of_all.lines + 1);
-  EXPECT_TRUE(server_->heard_of(1).connected);
+  EXPECT_EQ(server_->lines_received(1).lines, 3U) << "any line counts";
+  EXPECT_EQ(server_->lines_received(std::nullopt).lines, of_all.lines + 1);
+  EXPECT_TRUE(server_->lines_received(1).connected);
   one->hang_up();
   serve(2);
-  EXPECT_FALSE(server_->heard_of(1).connected);
+  EXPECT_FALSE(server_->lines_received(1).connected);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who is answered when: the control socket under clients that send much, wait, leave, or must not ask.
+// The order of answers of the control socket to clients that send much, wait, leave, or have no permission.
 #include "playback/control/control_server.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ std::string again(const char* line, int times) {
 
 class ControlServing : public testing::Test {
  protected:
-  // A `load` is answered late, all else at once.
+  // A `load` is answered later, everything else at once.
   void serve(int timeout_ms = 0) {
     server_->serve(timeout_ms, [this](const ControlRequest& request) -> ControlServer::Answer {
       handled_.push_back(request.verb);
@@ -100,7 +100,7 @@ TEST_F(ControlServing, WhoHangsUpWhileHeWaitsIsForgotten) {
   client->hang_up();
   for (int i = 0; i < 3; ++i) serve();
   EXPECT_EQ(server_->clients(), 0U);
-  server_->answer_late(ControlFields{});  // to nobody
+  server_->answer_late(ControlFields{});  // to a client that has left
 }
 
 TEST_F(ControlServing, WhoWatchesIsToldAndCanNotAsk) {
@@ -113,7 +113,7 @@ TEST_F(ControlServing, WhoWatchesIsToldAndCanNotAsk) {
   serve();
   const auto heard = client->heard();
   ASSERT_EQ(heard.size(), 2U);
-  EXPECT_NE((heard[0] + heard[1]).find("who watches can't ask"), std::string::npos);
+  EXPECT_NE((heard[0] + heard[1]).find("a connection that watches accepts no requests"), std::string::npos);
   EXPECT_NE((heard[0] + heard[1]).find("armed"), std::string::npos);
   EXPECT_EQ(handled_, std::vector{ControlVerb::watch}) << "the stop was not carried out";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts that come several at a time, late and by another clock, as a loop on the host sees them.
+// Counts that arrive several at a time, late and by another clock, as in a loop on the host.
 #include "playback/host-loop/count_track.hpp"
 
 #include <gtest/gtest.h>
@@ -14,17 +14,17 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kRateHz = 2000;
+constexpr double kTrackRateHz = 2000;
 
-/// A device whose finger goes evenly, and the ticks of a host.
+/// A device whose finger moves at constant speed, and the ticks of a host.
 struct Cable {
   double counts_per_period = 9.3;
-  double device_periods_per_tick = 1;  ///< its clock by the host's
-  int batch = 3;                       ///< periods that are handed over together
-  double late_ticks = 0;               ///< up to so much later, at random
+  double device_periods_per_tick = 1;  ///< its clock relative to the host's
+  int batch = 3;                       ///< periods that are delivered together
+  double late_ticks = 0;               ///< largest random delay
 };
 
-/// What 20,000 ticks saw, less where the finger was: counts by which they lag.
+/// Lag in counts in each of 20,000 ticks: the finger's position minus the position seen.
 std::vector<double> lags_of(const Cable& cable, CountTrack& track) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> late(0, cable.late_ticks);
@@ -55,9 +55,9 @@ Range range_of(const std::vector<double>& lags, std::size_t first, std::size_t l
   return {*least, *most};
 }
 
-// The count itself is known to one, what lies between two is rounded to one.
+// The position is known to one count, and its interpolation is rounded to one.
 TEST(CountTrack, GoesEvenlyWhereCountsComeThreeAtATime) {
-  CountTrack track(kRateHz);
+  CountTrack track(kTrackRateHz);
   const Cable cable;
   const auto lags = lags_of(cable, track);
   const Range settled = range_of(lags, 4000, lags.size());
@@ -65,11 +65,11 @@ TEST(CountTrack, GoesEvenlyWhereCountsComeThreeAtATime) {
   EXPECT_LT(settled.most, (cable.batch + 2) * cable.counts_per_period);
 }
 
-// 100 parts in a million either way, and up to 4 ms late: over each half second the lag changes by less than
-// a period's way, where the last count alone would leap by three.
+// A drift of 100 ppm in either direction, and delays of up to 4 ms: over each half second the lag changes by
+// less than the distance per period; the last count alone would jump by three.
 TEST(CountTrack, FollowsAnotherClock) {
   for (const double part : {1 - 1e-4, 1 + 1e-4}) {
-    CountTrack track(kRateHz);
+    CountTrack track(kTrackRateHz);
     Cable cable;
     cable.device_periods_per_tick = part, cable.late_ticks = 8;
     const auto lags = lags_of(cable, track);
@@ -82,7 +82,7 @@ TEST(CountTrack, FollowsAnotherClock) {
 }
 
 TEST(CountTrack, ComesNearAgainAfterAStall) {
-  CountTrack track(kRateHz);
+  CountTrack track(kTrackRateHz);
   std::uint32_t period = 0;
   track.put(0, 0, 0);
   track.begin();
@@ -95,7 +95,7 @@ TEST(CountTrack, ComesNearAgainAfterAStall) {
   };
   for (int i = 0; i < 100; ++i) give(1), sight = track.see();
   EXPECT_GE(sight.count, 980);
-  for (int i = 0; i < 30; ++i) sight = track.see();  // 15 ms without a count: straight on for 2 ms
+  for (int i = 0; i < 30; ++i) sight = track.see();  // 15 ms without a count: linear extrapolation for 2 ms
   EXPECT_EQ(sight.count, 1040);
   give(30);
   sight = track.see();
@@ -108,8 +108,8 @@ TEST(CountTrack, ComesNearAgainAfterAStall) {
   EXPECT_GT(sight.passed, 900U);
 }
 
-// With what comes together in reserve nothing is waited for: from the first tick on the finger goes evenly,
-// as far behind as it stays. Without, the track first has to fall behind.
+// With a reserve equal to the periods that arrive together, the finger moves evenly from the first tick on,
+// with constant lag. Without it the track first has to fall behind.
 TEST(CountTrack, BeginsAsFarBehindAsItStays) {
   for (const bool reserved : {false, true}) {
     constexpr std::int32_t kBatch = 20;
@@ -119,7 +119,7 @@ TEST(CountTrack, BeginsAsFarBehindAsItStays) {
     std::int32_t before = 0;
     for (std::int32_t tick = 0; tick < 2000; ++tick) {
       for (std::int32_t i = 1; tick % kBatch == 0 && i <= kBatch; ++i)
-        track.put(static_cast<std::uint32_t>(tick + i), (tick + i) * (tick + i) / 100, 0);  // it gets faster
+        track.put(static_cast<std::uint32_t>(tick + i), (tick + i) * (tick + i) / 100, 0);  // it accelerates
       const std::int32_t count = tick == 0 ? track.begin().count : track.see().count;
       if (tick > 100) steps.push_back(count - before - (2 * tick - 2 * kBatch) / 100);
       before = count;
@@ -130,17 +130,17 @@ TEST(CountTrack, BeginsAsFarBehindAsItStays) {
 }
 
 TEST(CountTrack, PeriodsThatAreLeftOutLieOnALine) {
-  CountTrack track(kRateHz);
+  CountTrack track(kTrackRateHz);
   track.put(UINT32_MAX - 1, 100, 0);
   track.begin();
-  track.put(3, 200, 7000);  // over the counter's end: 5 periods on
+  track.put(3, 200, 7000);  // across the counter's overflow: 5 periods later
   std::vector<std::int32_t> seen;
   for (int i = 0; i < 5; ++i) seen.push_back(track.see().count);
   EXPECT_EQ(seen, (std::vector<std::int32_t>{120, 140, 160, 180, 200}));
 }
 
 TEST(CountTrack, ACounterThatPassesItsEndGoesOn) {
-  CountTrack track(kRateHz);
+  CountTrack track(kTrackRateHz);
   track.put(1, INT32_MAX - 29, 0);
   track.begin();
   track.put(6, INT32_MIN + 20, 0);  // 50 counts in 5 periods
@@ -153,7 +153,7 @@ TEST(CountTrack, ACounterThatPassesItsEndGoesOn) {
 
 TEST(TickView, ACounterThatPassesItsEndGoesOn) {
   TickView view;
-  view.begin(kRateHz, 1e-6);
+  view.begin(kTrackRateHz, 1e-6);
   for (std::uint64_t i = 0; i < 100; ++i) {
     const std::uint32_t count = 0x7FFFFFFFU - 490 + 10 * static_cast<std::uint32_t>(i);  // 20 mm/s
     view.take({.tick = i, .encoder = static_cast<std::int32_t>(count)});
@@ -164,7 +164,7 @@ TEST(TickView, ACounterThatPassesItsEndGoesOn) {
 }
 
 TEST(CountTrack, AFingerThatStandsStands) {
-  CountTrack track(kRateHz);
+  CountTrack track(kTrackRateHz);
   for (std::uint32_t i = 0; i < 50; ++i) {
     track.put(i, -7, 0);
     if (i == 0) track.begin();

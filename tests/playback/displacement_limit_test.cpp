@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a program can move the tray: against the response's own peak, found by brute force.
+// The largest displacement of a program's tray, against the response's peak by brute force.
 #include "playback/prepare/displacement_limit.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ schema::Transducer with_damping_ratio(double ratio) {
   return t;
 }
 
-// A response that is not undone: the tray goes as far as its resonance lets it, held drive and all.
+// A response that is not inverted: the displacement is limited only by the resonance, with a held drive.
 double brute_force_peak(const schema::Transducer& t, const Prepared& prepared) {
   double most = 0;
   for (double f = 0.01; f < prepared.stops_at_hz; f += 0.01) {
@@ -45,12 +45,12 @@ TEST(DisplacementLimit, ReachesTheTopOfTheResonanceHoweverSharp) {
     ASSERT_TRUE(prepared);
     ASSERT_EQ(prepared->taps.size(), 1U);
     const double expected = brute_force_peak(t, *prepared);
-    // 0.01 Hz beside the top of the sharpest, 0.5 Hz wide: 0.1 %.
+    // Tolerance: 0.01 Hz beside the maximum of the sharpest resonance, 0.5 Hz wide: 0.1 %.
     EXPECT_NEAR(tray_peak_m(*prepared, t, options), expected, 2e-3 * expected) << "damping ratio " << ratio;
   }
 }
 
-// What the message names is taken, and a thousandth more is not.
+// The factor in the message is accepted, and a thousandth more is refused.
 TEST(DisplacementLimit, NamesAFactorThatFits) {
   schema::Transducer t = with_damping_ratio(0.096);
   for (const double limit_m : {3.33333e-6, 1.99999e-6, 7.77777e-6}) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an encoder's step costs at an even speed, wherever within a count the finger begins (its phase). At a
-// speed of whole counts a tick no edge falls between two ticks, so the kernel knows the place to half a count
-// only: what it plays is shifted by a constant that depends on the phase. At half counts a tick it is a
-// quarter of a count. Beside the error in place there is the error once that shift is taken out, by the
-// function that `fidelity` uses.
+// The effect of the encoder's step at constant speed, by the position within a count at which the finger
+// begins (its phase). At a speed of whole counts per tick no edge is between two ticks, so the kernel knows
+// the position only to half a count: the playback has a constant shift that depends on the phase. At half
+// counts per tick it is a quarter of a count. Besides the error in place, this computes the error after
+// removal of that shift, by the function that `fidelity` uses.
 #pragma once
 
 #include <algorithm>
@@ -20,14 +20,14 @@ namespace tacto::tests {
 
 struct PhaseError {
   double in_place_db = 0, error_um = 0;  ///< as Fidelity has them
-  double shifted_db = 0;                 ///< once one constant shift of place is taken out
-  double shift_um = 0;                   ///< of the tray, along the finger's way
+  double shifted_db = 0;                 ///< after removal of one constant shift
+  double shift_um = 0;                   ///< of the tray, along the finger's path
 };
 
-/// Of how many counts the finger goes from one tick to the next.
+/// The distance of the finger from one tick to the next, in counts.
 enum class CountsATick { any, whole, half };
 
-/// From 25 to 200 mm/s, evenly over the logarithm, m/s.
+/// From 25 to 200 mm/s, evenly spaced on a logarithmic axis, m/s.
 inline std::vector<double> drawn_speeds(CountsATick kind, std::size_t number, double count_m, double rate_hz,
                                         firmware_host::Random& random) {
   constexpr double kSlowestMps = 0.025, kFastestMps = 0.2;
@@ -43,27 +43,27 @@ inline std::vector<double> drawn_speeds(CountsATick kind, std::size_t number, do
   return speeds;
 }
 
-/// In counts. The first two are just behind an edge and just behind the middle: the largest shifts. None is
-/// on an edge to the last bit, where the rounding of each place decides which count is read.
+/// In counts. The first two are just behind an edge and just behind the middle, with the largest shifts. None
+/// is exactly on an edge, where the rounding of each position decides which count is read.
 inline std::vector<double> drawn_phases(std::size_t number, firmware_host::Random& random) {
   std::vector<double> phases = {0.001, 0.501};
   while (phases.size() < number) phases.push_back(random.uniform());
   return phases;
 }
 
-/// At one speed, each in the order of the phases.
+/// At one speed, in the order of the phases.
 struct PhaseErrors {
   std::vector<PhaseError> errors;
 
-  /// How far the error without the shift depends on the phase.
+  /// Range of the error without the shift over the phases.
   double spread_db() const {
     const auto [least, most] = std::ranges::minmax(errors, {}, &PhaseError::shifted_db);
     return most.shifted_db - least.shifted_db;
   }
 };
 
-/// One texture, looped, at one rate. What is wanted at another phase is what is wanted at phase 0, earlier by
-/// phase x count / speed.
+/// One texture, looped, at one rate. The target at another phase is the target at phase 0, earlier by phase x
+/// count / speed.
 class EvenPass {
  public:
   static constexpr double kDurationS = 1.4, kStartM = 0.02;
@@ -74,10 +74,10 @@ class EvenPass {
     auto prepared = playback::prepare(std::span(&placed, 1), c.model, c.options);
     TACTO_TRY(prepared);
     return EvenPass(c, std::move(*prepared),
-                    playback::laid_out(std::span(&placed, 1), playback::Ends::loop, c.options.seam_m));
+                    playback::one_period(std::span(&placed, 1), playback::Ends::loop, c.options.seam_m));
   }
 
-  /// The speed of the passes to come.
+  /// The speed of the following passes.
   void set_speed(double speed_mps) {
     const spatial::Band reference{10, case_.options.band.high_hz * 1.01};
     const playback::FingerPath path{{0, kDurationS}, {kStartM, kStartM + speed_mps * kDurationS}};
@@ -98,9 +98,9 @@ class EvenPass {
     const double ahead_m = phase * case_.options.metres_per_count;
     case_.path = {{0, kDurationS}, {kStartM + ahead_m, kStartM + ahead_m + speed_mps_ * kDurationS}};
     auto target = playback::signal_of(earlier(ahead_m / speed_mps_));
-    const auto felt = felt_displacement(case_, prepared_, target.size() / fine_, fine_);
-    target.resize(felt.size());
-    return compared(target, felt);
+    const auto played = displacement_at_finger(case_, prepared_, target.size() / fine_, fine_);
+    target.resize(played.size());
+    return compared(target, played);
   }
 
  private:
@@ -118,12 +118,12 @@ class EvenPass {
         target_, [time_s](double hz) { return std::polar(1.0, 2 * std::numbers::pi * hz * time_s); });
   }
 
-  PhaseError compared(const std::vector<double>& target, const std::vector<double>& felt) const {
+  PhaseError compared(const std::vector<double>& target, const std::vector<double>& played) const {
     const auto skipped = static_cast<std::size_t>(kLeftOutS * fine_rate_hz());
     const std::size_t judged = target.size() - 2 * skipped;
     const auto& band = case_.options.band;
     const auto mean = analysis::mean_of(analysis::segment_spectra(
-        std::span(target).subspan(skipped, judged), std::span(felt).subspan(skipped, judged), true,
+        std::span(target).subspan(skipped, judged), std::span(played).subspan(skipped, judged), true,
         1 / fine_rate_hz(), judged, band.low_hz, band.high_hz));
     const auto sums = analysis::band_sums(mean, band.low_hz, band.high_hz);
     const double two_counts_s = 2 * case_.options.metres_per_count / speed_mps_;

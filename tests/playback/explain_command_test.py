@@ -26,9 +26,9 @@ def check_explain(folder):
     assert passes == sorted(passes, reverse=True) and abs(report["levels"][-1]["up_to_mps"] / 0.5 - 1) < 0.5
     assert report["hysteresis_plays"] == report["sections"] == report["touch_gates"] == report["energy_limits"] == 0
     said = "\n".join(each["part"] for each in report["left_out"])
-    assert all(words in said for words in ("touch gate", "energy limit", "hysteresis", "seam", "besides those named")), said
+    assert all(words in said for words in ("touch gate", "energy limit", "hysteresis", "seam", "another texture")), said
     assert 1e-8 < report["tick_s"] < 1e-5 and "by_table" in report, report
-    # A gain alone has no filter to pay for.
+    # A gain alone has no filter, hence no cost.
     plain = made.report_of("explain", folder / "t", "--inverse", "gain")
     assert plain["filter_taps"] == 1 and plain["tick_s"] < report["tick_s"], plain
     chosen = made.report_of("explain", folder / "t", "--interpolation", "sinc", "--inverse", "none", "--hold", "none", "--contact", "0.3N", "--energy-limit", "2V")
@@ -36,18 +36,19 @@ def check_explain(folder):
     assert (chosen["touch_gates"], chosen["energy_limits"], chosen["energy_rms_v"], chosen["contact_on_n"]) == (1, 1, 2, 0.3), chosen
     assert chosen["sample_bytes"] < report["sample_bytes"], "sinc takes six points a period, hermite sixteen"
     kept = made.report_of("explain", folder / "t", "--quality", "fast", "--interpolation", "linear")
-    assert kept["interpolation"] == "linear", kept  # what was named stays, whatever is cheaper
+    assert kept["interpolation"] == "linear", kept  # a named choice is kept, even if another one is cheaper
     check_room(folder, report["sample_bytes"] // 4)
 
 
 def explained_without_room(what, room):
     done = made.run("explain", str(what), "--device-memory", str(room), "--json")
-    assert done.returncode == UNSUITABLE and f"there is room for {room}" in done.stderr, (done.returncode, done.stderr)
+    assert done.returncode == UNSUITABLE and f"the memory holds {room}" in done.stderr, (done.returncode, done.stderr)
     return done.stderr, json.loads(done.stdout)
 
 
 def check_room(folder, needed):
-    """Where a device has no room the table comes all the same: what is built, item by item against the room, and what would fit."""
+    """If a device has too little memory the table is printed nevertheless: each part against the available memory, and
+    what would fit."""
     fitting = made.report_of("explain", folder / "t", "--device-memory", str(needed))
     assert fitting["fits"] is True and fitting["needed_samples"] == fitting["device_samples"] == needed, fitting
     room = needed - 1
@@ -63,7 +64,7 @@ def check_room(folder, needed):
     assert ways["interpolate"]["fits"] and ways["let"]["fits"], ways
     sinc = made.report_of("explain", folder / "t", "--interpolation", "sinc", "--device-memory", str(room))
     assert sinc["needed_samples"] == ways["interpolate"]["samples"], (sinc, ways)
-    # The beginning that is said to fit does, and the next hundredth would not.
+    # The beginning that is reported to fit does fit, and one a hundredth longer does not.
     whole = made.samples(folder / "t.texture.wav")
     _, short = explained_without_room(folder / "t", room)
     beginning = next(row for row in short["ways_to_fit"] if "first" in row["way"])
@@ -73,11 +74,12 @@ def check_room(folder, needed):
     assert made.report_of("explain", folder / "part", "--device-memory", str(room))["needed_samples"] == beginning["samples"]
     made.write_texture(folder / "part", whole[: len(whole) * (hundredths + 1) // 100])
     explained_without_room(folder / "part", room)
-    # Where nothing fits, it is said, and only this computer's loop is named; a room for 100 samples has none for a hundredth by sinc.
+    # If nothing fits, the report says so, and suggests only this computer's loop; memory for 100 samples is too small
+    # even for a hundredth by sinc.
     said, short = explained_without_room(folder / "t", 100)
-    assert "nothing that was tried fits" in said and "--loop host" in said and "--interpolation sinc" not in said and "shorter" not in said, said
+    assert "no tested alternative fits" in said and "--loop host" in said and "--interpolation sinc" not in said and "shorter" not in said, said
     assert [row["way"].split()[0] for row in short["ways_to_fit"] if row["fits"]] == ["let"], short
-    # What is said to fit fits: a part of it by sinc, where no part does by the cubic.
+    # The suggested beginning fits: by sinc, where none fits by the cubic.
     said, short = explained_without_room(folder / "t", 1000)
     assert all((row["way"] in said) == row["fits"] for row in short["ways_to_fit"]), (said, short["ways_to_fit"])
     report = made.report_of("explain", folder / "t", "--interpolation", "sinc")
@@ -91,12 +93,12 @@ def check_scene(folder):
     far = {**json.loads((folder / "bench.scene.json").read_text()), "layers": [layers[0], {**layers[1], "at_m": 0.3}]}
     (folder / "far.scene.json").write_text(json.dumps(far))
     whole = made.report_of("explain", folder / "far.scene.json")
-    assert any("between the textures take as many samples" in note for note in whole["notes"]), whole["notes"]
+    assert any("between the textures need as many samples" in note for note in whole["notes"]), whole["notes"]
     _, short = explained_without_room(folder / "far.scene.json", whole["sample_bytes"] // 4 - 1)
-    assert any("in scenes of their own" in note for note in short["notes"]), short["notes"]
+    assert any("in separate scenes" in note for note in short["notes"]), short["notes"]
     far["layers"][1]["at_m"] = 10
     (folder / "far.scene.json").write_text(json.dumps(far))
-    refused(UNSUITABLE, "in scenes of their own", "play", folder / "far.scene.json", "-d", "sim:", "--time", "1s", "-o", folder / "far")
+    refused(UNSUITABLE, "in separate scenes", "play", folder / "far.scene.json", "-d", "sim:", "--time", "1s", "-o", folder / "far")
     report = made.report_of("explain", folder / "bench.scene.json")
     assert not any("between the textures" in note for note in report.get("notes", [])), report["notes"]
     assert report["texture_files_read"] == 1 and len(report["textures"]) == 2, report
@@ -104,7 +106,7 @@ def check_scene(folder):
     alone = [row for row in short["ways_to_fit"] if "t.texture.json" in row["way"]]
     assert len(alone) == 1 and alone[0]["fits"] and alone[0]["samples"] == made.report_of("explain", folder / "t")["sample_bytes"] // 4, short
     printed = made.run("explain", str(folder / "bench.scene.json"), "--device-memory", "100")
-    assert printed.returncode == UNSUITABLE and "of room" in printed.stdout and "play by itself" in printed.stdout, printed
+    assert printed.returncode == UNSUITABLE and "of room" in printed.stdout and "play only" in printed.stdout, printed
 
 
 def check_choice(folder):
@@ -112,11 +114,11 @@ def check_choice(folder):
     assert fast["promised_error_percent"] <= 1 and balanced["promised_error_percent"] <= 0.1
     assert fast["tick_s"] <= balanced["tick_s"], (fast, balanced)
     said = "\n".join(each["reason"] for each in balanced["why"])
-    assert "asked: 0.1 %" in said and "not promised" in said and "at best" in said, said
-    assert "is the least" in refused(UNSUITABLE, "nothing keeps", "explain", folder / "t", "--max-error", "1ppm")
-    remedy = refused(UNSUITABLE, "ask for", "explain", folder / "t", "--max-error", "1ppm").split("--max-error ")[1].split()[0]
+    assert "requested: 0.1 %" in said and "not included" in said and "at best" in said, said
+    assert "the smallest is" in refused(UNSUITABLE, "no choice has", "explain", folder / "t", "--max-error", "1ppm")
+    remedy = refused(UNSUITABLE, "use --max-error", "explain", folder / "t", "--max-error", "1ppm").split("--max-error ")[1].split()[0]
     assert made.report_of("explain", folder / "t", "--max-error", remedy)["promised_error_percent"] <= float(remedy[:-1])
-    assert "is the least" in refused(UNSUITABLE, "no tick of", "explain", folder / "t", "--max-error", "0.1%", "--max-tick", "1ns")
+    assert "the fastest needs" in refused(UNSUITABLE, "no choice keeps", "explain", folder / "t", "--max-error", "0.1%", "--max-tick", "1ns")
     refused(USAGE, "%", "explain", folder / "t", "--max-error", "0.1")
     refused(USAGE, "--quality", "explain", folder / "t", "--explain")
 
@@ -129,19 +131,19 @@ def render(folder, *more):
 def check_render(folder):
     report = render(folder, "--max-error", "0.5%", "--explain")
     assert report["engine"] == "reference" and report["displacement_error_db"] < 20 * np.log10(5e-3), report
-    assert "cheaper" in report["why_this_engine"][0]
-    # The kernel at rests and turns errs by more than this: what it made is measured, and not kept. One that was named stays.
+    assert "faster offline" in report["why_this_engine"][0]
+    # At rests and reversals the kernel's error is larger: the measured error breaks the promise. A named one stays.
     report = render(folder, "--max-tick", "1us", "--hold", "zero-order", "--max-error", "0.5%")
     assert report["engine"] == "reference" and report["displacement_error_db"] < 20 * np.log10(5e-3), report
     refused(UNSUITABLE, "the rendering's error", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011",
             "-o", folder / "no.wav", "--gain", "0.2mm/N", "--engine", "kernel", "--hold", "zero-order", "--max-error", "0.5%")
-    # The best that there is keeps its own promise, not the path's: the difference is told.
+    # The best possible choice keeps its own promise, not the path's: the difference is reported.
     exact = made.run("render", "--force", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--gain", "0.2mm/N",
                      "--engine", "kernel", "--hold", "zero-order", "--quality", "exact")
-    assert exact.returncode == 0 and "are promised, the rest is what the encoder's step" in exact.stderr, exact
+    assert exact.returncode == 0 and "are predicted for the choice, the encoder's step" in exact.stderr, exact
     report = render(folder, "--engine", "kernel", "--hold", "zero-order", "--max-error", "10%", "--explain")
     assert report["engine"] == "kernel" and report["displacement_error_db"] <= -20 and "why" in report, report
-    refused(UNSUITABLE, "asked", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "no.wav",
+    refused(UNSUITABLE, "requested", "render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "no.wav",
             "--inverse", "gain", "--max-error", "1%")
     assert not (folder / "no.wav").exists()
 
@@ -154,7 +156,8 @@ def check_play(folder):
 
 
 def check_where_it_was_identified(folder):
-    """A transducer known over 100-300 Hz alone is warned of by each verb; a rate too high is what is blamed, not the transducer."""
+    """A transducer identified over 100-300 Hz only causes a warning by each verb; for a rate that is too high, the rate
+    is named and not the transducer."""
     preset = json.loads((pathlib.Path(__file__).parents[2] / "data-schema/presets/wiertlewski2011.transducer.json").read_text())
     about = {"date": "2026-01-01T00:00:00Z", "conditions": "bench", "source": "sim:", "converged": True, "misfit": False, "words": "noise",
              "r_squared": 1, "low_hz": 100, "high_hz": 300}
@@ -174,7 +177,7 @@ def check_where_it_was_identified(folder):
 
 
 def check_ends(folder):
-    """--ends means what it means to play and render: of a texture alone, and the same loop."""
+    """--ends means the same as for play and render: for a single texture, and the same loop."""
     played = made.report_of("play", folder / "t", "-d", "sim:", "--time", "0.1s", "--ends", "loop", "-o", folder / "looped")
     loop = made.report_of("explain", folder / "t", "--ends", "loop")
     assert (loop["loop_period_m"], loop["loop_seam_m"]) == (played["loop_period_m"], played["loop_seam_m"]), (loop, played)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated device with a filter behind its converter: what the bender does of a drive that undoes it, and
-// of one that knows nothing of it.
+// The emulated device with a filter behind its converter: displacement of the bender for a drive that inverts
+// the filter, and for one that does not include it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kFastHz = 10e3;  // what a held drive brings above 5 kHz is nothing to the tray
+constexpr double kFastHz = 10e3;  // the images of a held drive above 5 kHz do not move the tray
 constexpr double kPlayS = 1.6;
 
 class FilteredPlay : public testing::Test {
@@ -21,8 +21,8 @@ class FilteredPlay : public testing::Test {
   // Up to 380 Hz: 63 mm/s over 6 lines a mm.
   void SetUp() override { ASSERT_TRUE(schema::write_texture(folder_ / "lines", grating(6000, 0.004))); }
 
-  // The finger turns gently, as in changed_strokes_test. Its place is asked for once a tick, before the tray
-  // moves on: what the tray is then it was when the last drive began.
+  // The finger reverses smoothly, as in changed_strokes_test. Its position is read once per tick, before the
+  // tray moves: at that time the tray is in the state at which the last drive began.
   void open(const std::string& parameters) {
     player_.reset();
     auto device = firmware_host::make_sim_device("sim:", parameters);
@@ -49,7 +49,7 @@ class FilteredPlay : public testing::Test {
     EXPECT_TRUE(made) << schema::message(made.error());
     return std::move(*made);
   }
-  /// Error of the bender's displacement re what was wanted, in the band, in the second stroke: dB.
+  /// Error of the bender's displacement re the target, in the band, in the second stroke: dB.
   double error_db(const std::string& parameters, const schema::PlaybackChoices& choices) {
     open(parameters);
     const std::string session = folder_ / fmt::format("{}.session", ++sessions_);
@@ -75,7 +75,7 @@ class FilteredPlay : public testing::Test {
     auto spectrum = spectrum_of(std::span(moved_m_).subspan(1), kFastHz, 4 * rows);
     keep_band(spectrum, band);
     const auto moved = signal_of(spectrum);  // without the last row
-    const auto target = WantedReader(*overview).target_in(judged).displacement_m;
+    const auto target = TargetReader(*overview).target_in(judged).displacement_m;
     double error = 0, whole = 0;
     for (std::size_t row = 8000; row < 14500; ++row)  // 0.8 to 1.45 s
       error += std::pow(moved[row] - target[row], 2), whole += std::pow(target[row], 2);
@@ -95,9 +95,9 @@ class FilteredPlay : public testing::Test {
   int sessions_ = 0;
 };
 
-// Without a filter -29.4 dB are left, by the finger's turns (looking 2 ms ahead, at six lines a mm) and the
-// encoder; one that is undone adds its inverse's error, which is 20 dB below that. One that nobody undoes
-// turns a sine of 380 Hz by 75 degrees and more (twice its delay of 2 / (2 pi 600 Hz), at least).
+// Without a filter -29.4 dB remain, from the finger's reversals (2 ms of prediction, at six lines per mm) and
+// the encoder; an inverted filter adds the error of its inverse, which is 20 dB below that. A filter that is
+// not inverted rotates a sine of 380 Hz by at least 75 degrees (twice its delay of 2 / (2 pi 600 Hz)).
 TEST_F(FilteredPlay, WhatIsUndoneIsNotFeltAndWhatIsNotIs) {
   const double none_db = error_db("", {});
   const double undone_db = error_db("reconstruction=butterworth3", filter(600));

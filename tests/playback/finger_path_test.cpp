@@ -46,18 +46,18 @@ TEST_P(BadFingerPath, IsNamedByPlace) {
 INSTANTIATE_TEST_SUITE_P(
     Each, BadFingerPath,
     testing::Values(
-        Bad{"", "empty"}, Bad{"time_s,position_m\n", "at least 2 rows, here are 0"},
-        Bad{"time_s,position_m\n0,0\n", "at least 2 rows, here are 1"},
+        Bad{"", "empty"}, Bad{"time_s,position_m\n", "at least 2 rows, this one has 0"},
+        Bad{"time_s,position_m\n0,0\n", "at least 2 rows, this one has 1"},
         Bad{"time,position_m\n0,0\n1,1\n", "no column 'time_s', only time, position_m"},
-        Bad{"time_s;position_m\n0;0\n1;1,2,3\n", "'1,2,3' is no number"},
+        Bad{"time_s;position_m\n0;0\n1;1,2,3\n", "'1,2,3' is not a number"},
         Bad{"time_s,position_m\n0;0\n1;1\n", "line 2: the row has 1 fields"},
         Bad{"0,0\n1,1\n", "no column 'time_s', only 0, 0"},
-        Bad{"time_s,position_m\n0,0\n1,abc\n", "line 3, column 2 (position_m): 'abc' is no number"},
-        Bad{"time_s,position_m\n0,0\n1,\n", "line 3, column 2 (position_m): '' is no number"},
-        Bad{"time_s,position_m\n0,0\n1,1mm\n", "'1mm' is no number"},
+        Bad{"time_s,position_m\n0,0\n1,abc\n", "line 3, column 2 (position_m): 'abc' is not a number"},
+        Bad{"time_s,position_m\n0,0\n1,\n", "line 3, column 2 (position_m): '' is not a number"},
+        Bad{"time_s,position_m\n0,0\n1,1mm\n", "'1mm' is not a number"},
         Bad{"time_s,position_m\n0,nan\n1,1\n", "line 2, column 2 (position_m): 'nan' is not finite"},
         Bad{"time_s,position_m\n0,0\ninf,1\n", "line 3, column 1 (time_s): 'inf' is not finite"},
-        Bad{"time_s,position_m\n0,0\n1,1\n1,2\n", "line 4, column 1 (time_s): time does not grow"},
+        Bad{"time_s,position_m\n0,0\n1,1\n1,2\n", "line 4, column 1 (time_s): the time does not increase"},
         Bad{"time_s,position_m\n0,0\n1,1,2\n", "line 3: the row has 3 fields, the header 2"},
         Bad{"time_s,position_m\n0,0\n\n1,1\n", "line 3: the row has 1 fields"}));
 
@@ -88,8 +88,8 @@ TEST(FingerPath, AFingerAtRestBetweenKnotsStaysThere) {
   EXPECT_EQ(positions[300], 0);
 }
 
-// Against the finite differences of the path itself, 1 us apart: their error is that of the second
-// derivative, below 1e-5 of the speed here.
+// Against finite differences of the path, 1 us apart: their error is that of the second derivative, below
+// 1e-5 of the speed here.
 TEST(FingerPath, GreatestSpeedIsTheGreatestSlope) {
   const FingerPath path{{0, 0.1, 0.15, 0.4, 0.6}, {0, 0.01, 0.03, 0.035, -0.02}};
   const auto positions = positions_along(path, 1e6, 600001);

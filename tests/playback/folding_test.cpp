@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is too fine for the finger's speed, and must not be felt: while the speed changes, and in the emulated
-// tray's displacement.
+// Detail that is too fine for the finger's speed must not alias: while the speed changes, and in the
+// displacement of the emulated tray.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,17 +11,18 @@
 #include <vector>
 
 #include "playback/render/reference/padded_spectrum.hpp"
+#include "tests/measured.hpp"
 #include "tests/playback/fidelity.hpp"
 #include "tests/playback/made_textures.hpp"
 
 namespace tacto::playback {
 namespace {
 
-constexpr double kPlaceM = 1e-9;       // so fine that the count is the place
+constexpr double kPlaceM = 1e-9;       // so fine that the count is the exact position
 constexpr double kFinestPerM = 140e3;  // 70 kHz at the greatest speed
-constexpr double kReadingHz = 160e3;   // twice that and more; a multiple of every rate of ticks here
-constexpr double kUnfoldedHz = 100e3;  // the most that it is prepared for; it gives nothing beyond 1250 Hz
-constexpr double kJudgedHz = 1e3;      // at which errors are told
+constexpr double kReadingHz = 160e3;   // at least twice that; a multiple of every tick rate here
+constexpr double kUnfoldedHz = 100e3;  // highest rate for prepare(); levels then end at 1250 Hz
+constexpr double kJudgedHz = 1e3;      // rate of the error signals
 constexpr double kGain = 1e-7;         // m/N, far from the limits
 constexpr double kPassHz = 480, kStopHz = 500;
 
@@ -29,7 +30,7 @@ double db_of(double ratio) {
   return 20 * std::log10(ratio);
 }
 
-/// Tones of unit amplitude and random phase, a 7 % step apart, whole in 10 mm.
+/// Tones of unit amplitude and random phase, in steps of 7 %, periodic in 10 mm.
 class Tones {
  public:
   Tones(double least_per_m, double most_per_m) {
@@ -55,7 +56,7 @@ class Tones {
   std::vector<std::pair<double, double>> tones_;
 };
 
-/// At rest, evenly faster up to 500 mm/s, on at that speed.
+/// From rest, linearly faster up to 500 mm/s, then at that speed.
 struct Acceleration {
   double mps2 = 0.5;
   static constexpr double kRestS = 0.3, kOnS = 0.35;
@@ -69,8 +70,8 @@ struct Acceleration {
   }
 };
 
-/// A low-pass that passes 480 Hz whole and holds back all from 500 Hz on by 80 dB: a Kaiser window (beta 8)
-/// on a sinc, as long as its 20 Hz ask for (Kaiser 1974: (A - 8) / (2.285 x 2 pi x 20 Hz)).
+/// A low-pass that passes 480 Hz and attenuates everything from 500 Hz on by 80 dB: a Kaiser window (beta 8)
+/// on a sinc, of the length for 20 Hz (Kaiser 1974: (A - 8) / (2.285 x 2 pi x 20 Hz)).
 class BandFilter {
  public:
   static constexpr double kHalfS = 0.13;
@@ -84,7 +85,7 @@ class BandFilter {
       taps_.push_back(sinc * window / rate_hz);
     }
   }
-  /// Filtered, at kJudgedHz, from kHalfS after the first value to kHalfS before the last.
+  /// The filtered values at kJudgedHz, from kHalfS after the first value to kHalfS before the last.
   std::vector<double> operator()(const std::vector<double>& values) const {
     const int step = static_cast<int>(std::lround(rate_hz_ / kJudgedHz));
     const int first = static_cast<int>(std::ceil(kHalfS * kJudgedHz)) * step;
@@ -137,7 +138,7 @@ std::vector<double> kernel_along(const Tones& tones, const Acceleration& path, d
   return BandFilter(rate_hz)(values);
 }
 
-/// What the texture asks for, closed form, all of it up to 500 Hz and nothing beyond.
+/// The target in closed form: all content up to 500 Hz, and none above.
 const std::vector<double>& ideal_along(const Tones& tones, const Acceleration& path) {
   static std::map<double, std::vector<double>> known;
   if (const auto at = known.find(path.mps2); at != known.end()) return at->second;
@@ -152,7 +153,7 @@ float speed_after(core::FingerTracker& tracker, std::int32_t count) {
   return tracker.speed();
 }
 
-/// Half-octaves at each tick.
+/// The level of detail, in half-octaves, at each tick.
 std::vector<float> detail_along(const Prepared& prepared, const Acceleration& path) {
   core::FingerTracker tracker;
   tracker.set(prepared.tracker);
@@ -163,7 +164,7 @@ std::vector<float> detail_along(const Prepared& prepared, const Acceleration& pa
   return detail;
 }
 
-/// The same levels, faded at the same time, read so often that nothing folds.
+/// The same levels with the same fades, read at such a rate that nothing aliases.
 std::vector<double> unfolded_along(const Tones& tones, const Acceleration& path, double rate_hz) {
   const Prepared prepared = prepared_at(tones, rate_hz);
   const core::Profile profile(prepared.samples.data(), prepared.scale);
@@ -181,7 +182,7 @@ std::vector<double> unfolded_along(const Tones& tones, const Acceleration& path,
   return BandFilter(kUnfoldedHz)(values);
 }
 
-/// The same without any care: the texture at each tick.
+/// The same without levels: the texture at each tick.
 std::vector<double> careless_along(const Tones& tones, const Acceleration& path, double rate_hz) {
   std::vector<double> values;
   for (int i = 0; i < static_cast<int>(path.duration_s() * rate_hz); ++i)
@@ -189,8 +190,8 @@ std::vector<double> careless_along(const Tones& tones, const Acceleration& path,
   return BandFilter(rate_hz)(values);
 }
 
-/// The greatest level over 15-500 Hz of one signal without another, RMS, in windows of 64 ms (Hann) that
-/// begin in [from_s, to_s) of the way.
+/// The largest level over 15-500 Hz of the difference of two signals, RMS, in windows of 64 ms (Hann) that
+/// begin in [from_s, to_s).
 double worst_short_time_rms(const std::vector<double>& one, const std::vector<double>& other, double from_s,
                             double to_s) {
   constexpr std::size_t kWindow = 64, kHop = 4;
@@ -211,15 +212,14 @@ double worst_short_time_rms(const std::vector<double>& one, const std::vector<do
 
 class FoldingAtRate : public testing::TestWithParam<double> {};
 
-// From rest to 500 mm/s within 1 s and within 0.2 s, over all that is fine. What folds (against the same
-// levels, faded alike, read so often that nothing can) is at no time above -60 dB of the texture, but for the
-// windows that hold the first hundredth of a second from rest to 2.5 m/s^2 at 2 kHz: there the texture fades
-// within a few ticks, and a fade that sudden is itself more than 2 kHz hold. (To fade by a speed that
-// foresees the acceleration, or by twice the speed, leaves -50 and -46 dB of six textures where this leaves
-// -47 dB.)
-// Against all that there is up to 500 Hz it is -60 dB once the finger moves for 50 ms; before, tones sweep
-// through 500 Hz within milliseconds, and fading them by the speed takes a part of what they leave below.
-// Read without care it is -20 dB and much more.
+// From rest to 500 mm/s within 1 s and within 0.2 s, over all fine detail. The aliasing (against the same
+// levels with the same fades, read without aliasing) never exceeds -60 dB of the texture, except in windows
+// with the first hundredth of a second from rest to 2.5 m/s^2 at 2 kHz: there the texture fades within a few
+// ticks, which is too fast for 2 kHz. (A fade by a speed that predicts the acceleration, or by twice the
+// speed, leaves -50 and -46 dB of six textures; this leaves -47 dB.)
+// Against all content up to 500 Hz it is -60 dB after the finger has moved for 50 ms. Before, tones sweep
+// through 500 Hz within milliseconds, and a fade by the speed removes a part of their content below 500 Hz. A
+// reading without levels gives -20 dB and much more.
 TEST_P(FoldingAtRate, NothingFoldsWhileTheFingerGetsFaster) {
   constexpr double kStart = Acceleration::kRestS, kBegun = kStart + 0.01, kSteady = kStart + 0.05;
   const Tones tones(0, kFinestPerM);
@@ -240,6 +240,11 @@ TEST_P(FoldingAtRate, NothingFoldsWhileTheFingerGetsFaster) {
         "%5g Hz, %g m/s^2: folded %.1f dB, with the start %.1f dB; re the ideal %.1f dB, without care "
         "%.1f dB\n",
         GetParam(), mps2, folded_db, starting_db, ideal_db, careless_db);
+    const std::string key = "folding.at_" + std::to_string(std::lround(1e-3 * GetParam())) + "khz_" +
+                            std::to_string(std::lround(1e3 * mps2)) + "_mm_per_s2_";
+    measured(key + "folded_db", folded_db);
+    measured(key + "starting_db", starting_db);
+    measured(key + "ideal_db", ideal_db);
     EXPECT_LT(folded_db, -60);
     EXPECT_LT(ideal_db, -60);
     EXPECT_LT(starting_db, mps2 < 1 || GetParam() > 2e3 ? -60 : -45);
@@ -247,10 +252,10 @@ TEST_P(FoldingAtRate, NothingFoldsWhileTheFingerGetsFaster) {
   }
 }
 
-// Hardly less than the greatest: what folds does not fall onto what is wanted.
+// Slightly below the largest speed, so that aliases do not coincide with the texture's lines.
 constexpr double kFastMps = 0.497;
 
-/// The tray under the kernel's drive, at 20 kHz and more.
+/// The tray for the kernel's drive, at 20 kHz or more.
 std::vector<double> tray_along(const Tones& tones, double rate_hz) {
   constexpr double kDurationS = 2.4;
   tests::FidelityCase c;
@@ -262,14 +267,14 @@ std::vector<double> tray_along(const Tones& tones, double rate_hz) {
   const auto prepared = prepare(tones.loop(), c.model, c.options);
   EXPECT_TRUE(prepared) << message(prepared.error());
   const auto fine = static_cast<std::size_t>(std::ceil(20e3 / rate_hz));
-  return tests::felt_displacement(c, *prepared, static_cast<std::size_t>(kDurationS * rate_hz), fine);
+  return tests::displacement_at_finger(c, *prepared, static_cast<std::size_t>(kDurationS * rate_hz), fine);
 }
 
 struct Spectrum {
-  double lines_m = 0, beside_m = 0;  ///< RMS in the band, within 5 Hz of a line of the texture and elsewhere
+  double lines_m = 0, beside_m = 0;  ///< RMS in the band: within 5 Hz of a line of the texture, and elsewhere
 };
 
-// A window of 2 s (Hann squared: 5 Hz beside a line less than -120 dB of it are left).
+// A window of 2 s (Hann squared: 5 Hz beside a line less than -120 dB of it remain).
 Spectrum spectrum_in_band(std::vector<double> moved_m, double rate_hz) {
   moved_m.erase(moved_m.begin(), moved_m.begin() + static_cast<std::ptrdiff_t>(0.3 * rate_hz));
   moved_m.resize(static_cast<std::size_t>(2 * rate_hz));
@@ -287,8 +292,8 @@ Spectrum spectrum_in_band(std::vector<double> moved_m, double rate_hz) {
   return {std::sqrt(level.lines_m), std::sqrt(level.beside_m)};
 }
 
-// Tones lie at multiples of 49.7 Hz; what folds of those beyond 1250 Hz, and of the images of reading, lies
-// beside them. And those of the band come as they are.
+// Tones are at multiples of 49.7 Hz. Aliases of tones beyond 1250 Hz, and of the images of interpolation, are
+// between them. Tones within the band do not change.
 TEST_P(FoldingAtRate, TheSpectrumOfTheTrayAtFiveHundredMillimetresASecond) {
   const Tones all(0, kFinestPerM), band(0, 500 / kFastMps);
   const double rate_hz = GetParam() * std::ceil(20e3 / GetParam());
@@ -297,8 +302,11 @@ TEST_P(FoldingAtRate, TheSpectrumOfTheTrayAtFiveHundredMillimetresASecond) {
   const double moved_db = db_of(level.lines_m / (kGain * band.rms()));
   std::printf("%5g Hz: beside the lines %.1f dB of the texture, the lines %.3f dB of what is wanted\n",
               GetParam(), folded_db, moved_db);
+  const std::string key = "folding.tray_at_" + std::to_string(std::lround(1e-3 * GetParam())) + "khz_";
+  measured(key + "beside_db", folded_db);
+  measured(key + "lines_db", moved_db);
   EXPECT_LT(folded_db, -60);
-  EXPECT_NEAR(moved_db, 0, 0.05);  // the inverse is within -69 dB, the reading within -50 dB: 0.03 dB
+  EXPECT_NEAR(moved_db, 0, 0.05);  // tolerance: the inverse -69 dB, the interpolation -50 dB: 0.03 dB
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, FoldingAtRate, testing::Values(2e3, 5e3, 20e3));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A limit of the file's size stands in for a full disk.
+// A limit of the file size that simulates a full disk.
 #pragma once
 
 #include <sys/resource.h>
 
 namespace tacto::playback {
 
-/// As long as it lives, this process writes no file beyond so many bytes.
+/// While the object exists, this process cannot write a file beyond this number of bytes.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {

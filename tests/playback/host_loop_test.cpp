@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loop closed on this computer: the tick's promises, and a whole way on the emulated device. Machines
-// stall, so nothing here asserts how late a tick was; that late ticks are counted is asserted.
+// The loop on this computer: the promises of its tick, and a complete run on the emulated device. Machines
+// stall, so no assertion limits the lateness of a tick; that late ticks are counted is asserted.
 #include "playback/host-loop/host_loop.hpp"
 
 #include <gtest/gtest.h>
@@ -21,6 +21,7 @@
 #include "playback/strokes/stroke_report.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 #include "tests/firmware-host/allocation_hook.hpp"
+#include "tests/measured.hpp"
 
 namespace tacto::playback {
 namespace {
@@ -54,7 +55,7 @@ TEST(TickClock, PassesOverPeriodsThatItSlept) {
   EXPECT_GE(missed - before, 18U);
   const std::int64_t next = TickClock::now_ns();
   clock.wait(missed);
-  EXPECT_LE(next - began, TickClock::now_ns() - began);  // waits again, no burst
+  EXPECT_LE(next - began, TickClock::now_ns() - began);  // waits again, without a burst of ticks
 }
 
 schema::Texture host_grating() {
@@ -135,22 +136,22 @@ TEST_F(HostLoopOnSim, PlaysOnTheDeviceAndItsSessionReplaysToTheBit) {
   EXPECT_GT(replayed->ticks + status.missed_ticks, 3500U);
   auto reader = schema::SessionReader::open(session);
   EXPECT_EQ(reader->header().loop, "host");
-  // Of the grating the finger feels the grating: -0.8 dB where each tick took the last count that had come.
-  // A computer that stalls spoils a stroke, but not each.
-  const auto felt = report_strokes(session);
-  ASSERT_TRUE(felt) << schema::message(felt.error());
+  // The strokes follow the grating: with the last count that had arrived in each tick the error was -0.8 dB.
+  // A stall of the computer spoils one stroke, but not every stroke.
+  const auto judged = report_strokes(session);
+  ASSERT_TRUE(judged) << schema::message(judged.error());
   double best_db = 0, best_measured_db = 0;
   bool measured = false;
-  for (const PlayedStroke& stroke : felt->strokes) {
+  for (const PlayedStroke& stroke : judged->strokes) {
     best_db = std::min(best_db, stroke.predicted.error_db);
     if (stroke.measured) best_measured_db = std::min(best_measured_db, stroke.measured->error_db);
     measured |= stroke.measured.has_value();
   }
   std::printf("%zu strokes, the best errs by %.1f dB as predicted, by %.1f dB as measured; ",
-              felt->strokes.size(), best_db, best_measured_db);
+              judged->strokes.size(), best_db, best_measured_db);
   EXPECT_LT(best_db, -10);
-  // The tray moves when the drive arrives. Where a busy machine delays drives beyond the queue and the look
-  // ahead (6 ms of a quiet one), it moves late, and that is no fault of the loop.
+  // The tray moves when the drive arrives. If a busy machine delays drives beyond the queue and the
+  // prediction (6 ms on a quiet one), it moves late, which is no fault of the loop.
   if (measured && status.latency.p50_s < 0.007 && status.latency.p99_s < 0.015)
     EXPECT_LT(best_measured_db, -10);
   else
@@ -164,6 +165,10 @@ TEST_F(HostLoopOnSim, PlaysOnTheDeviceAndItsSessionReplaysToTheBit) {
   std::printf("wake-up p50 %.1f us, p99 %.1f us; work p99 %.2f us; missed %llu; real time %d\n",
               1e6 * status.wake_p50_s, 1e6 * status.wake_p99_s, 1e6 * status.busy_p99_s,
               static_cast<unsigned long long>(status.missed_ticks), status.real_time);
+  measured("playback_host_loop.best_stroke_error_db", best_db);
+  measured("playback_host_loop.wake_p99_us", 1e6 * status.wake_p99_s);
+  measured("playback_host_loop.work_p99_us", 1e6 * status.busy_p99_s);
+  measured("playback_host_loop.missed_ticks", static_cast<double>(status.missed_ticks));
 }
 
 TEST_F(HostLoopOnSim, ADeviceThatFaultsOpensTheEnableInput) {
@@ -172,7 +177,7 @@ TEST_F(HostLoopOnSim, ADeviceThatFaultsOpensTheEnableInput) {
   ASSERT_TRUE(player_->play());
   run(0.5);
   device_->board().set_enabled(false);
-  // A tick that says so and the device's fault come by two ways: either may be first.
+  // The tick with the fault and the device's fault message arrive independently, in any order.
   const auto told = [this] {
     return player_->state() == PlayerState::fault && !loop_->status().device_fault.empty();
   };
@@ -180,7 +185,8 @@ TEST_F(HostLoopOnSim, ADeviceThatFaultsOpensTheEnableInput) {
   EXPECT_EQ(player_->state(), PlayerState::fault);
   EXPECT_NE(loop_->status().device_fault.find("enable input"), std::string::npos)
       << loop_->status().device_fault;
-  // Closed again and disarmed, it is armed anew, once the loop has heard of it.
+  // After the input is closed again and the player disarmed, it can be armed, once the loop has read the
+  // input.
   device_->board().set_enabled(true);
   ASSERT_TRUE(player_->disarm());
   bool armed = false;
@@ -191,7 +197,7 @@ TEST_F(HostLoopOnSim, ADeviceThatFaultsOpensTheEnableInput) {
   EXPECT_TRUE(armed);
 }
 
-// Plays 0.5 m everywhere, by ticks that the test gives.
+// A texture of 0.5 m everywhere, played by ticks that the test makes.
 class HostBoardTicks : public testing::Test {
  protected:
   static constexpr std::int64_t kPeriodNs = 500'000;
@@ -226,7 +232,7 @@ class HostBoardTicks : public testing::Test {
     board_->from_player().put(std::span(frame).first(size));
     board_->rest(1'000'000);
   }
-  /// The drive of a tick.
+  /// Makes a tick and returns its drive.
   float tick(std::int64_t late_ns) {
     board_->tick(1'000'000 + ticked_++ * kPeriodNs, late_ns);
     while (board_->to_player().take(sink_) > 0) {
@@ -263,7 +269,7 @@ TEST_F(HostBoardTicks, TakeNothingFromTheHeap) {
   EXPECT_EQ(board_->lateness_ns(1499), 1499);
 }
 
-// Channel 2 is the normal force, a newton a code here. The gate closes over 20 ms, 40 ticks.
+// Channel 2 is the normal force, one newton per code here. The gate closes over 20 ms, 40 ticks.
 TEST_F(HostBoardTicks, AreGatedByTheForceThatTheDeviceStreams) {
   say(wire::Disarm{});
   for (int i = 0; i < 60 && board_->ticking(); ++i) tick_at(i);
@@ -284,7 +290,7 @@ TEST_F(HostBoardTicks, AreGatedByTheForceThatTheDeviceStreams) {
   EXPECT_EQ(drive_under(0), 0);
 }
 
-// In strict mode the kernel kills a thread for any call but read, write and exit.
+// In strict mode the kernel kills a thread for any system call except read, write and exit.
 int status_under_seccomp(const std::function<bool()>& work) {
   const pid_t child = fork();
   if (child == 0) {
@@ -313,7 +319,7 @@ TEST_F(HostBoardTicks, CallTheSystemForNothing) {
   EXPECT_EQ(WEXITSTATUS(ticking), 0);
 }
 
-// The limits say 100 counts a tick: 1900 counts later it goes on, for it saw nothing meanwhile.
+// The limits allow 100 counts per tick. A jump of 1900 counts after missing counts is no fault.
 TEST_F(HostBoardTicks, FallAndRiseAgainWhereNoCountsCome) {
   for (int i = 0; i < 200; ++i) tick_at(i);
   float drive_v = 0;
@@ -337,11 +343,11 @@ TEST_F(HostBoardTicks, FallAndRiseAgainAfterTheyWereSleptThrough) {
   }
   EXPECT_EQ(least_v, 0);
   EXPECT_NEAR(last_v, 0.5, 1e-3);
-  EXPECT_LE(largest_step_v, 0.5 * 1.5 / 20 * 1.01);  // 10 ms each way: 1.5 is the weight's steepest
+  EXPECT_LE(largest_step_v, 0.5 * 1.5 / 20 * 1.01);  // 10 ms each way; the largest slope of the weight is 1.5
 }
 
-// A device that ticked on while this computer stood still hands over what it has kept: 50 periods for each of
-// this computer's, long after the drive came to rest for the first time.
+// A device that continued during a stall of this computer delivers its stored counts: 50 periods for each
+// period of this computer, long after the drive came to rest for the first time.
 TEST_F(HostBoardTicks, FollowWhatADeviceHandsOverAfterAStallWithoutAJump) {
   for (int i = 0; i < 200; ++i) tick_at(i);
   period_ += 2000;

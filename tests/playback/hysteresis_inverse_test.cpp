@@ -14,7 +14,7 @@
 namespace tacto::playback {
 namespace {
 
-// A walk that turns at all sizes, within +-4 V.
+// A random walk with reversals of all sizes, within +-4 V.
 std::vector<double> walk(std::size_t count) {
   firmware_host::Random random(7, 1);
   std::vector<double> values;
@@ -27,7 +27,7 @@ std::vector<double> walk(std::size_t count) {
   return values;
 }
 
-// Single precision: 1e-6 of 4 V, a few roundings of 6e-8.
+// Single precision: 1e-6 of 4 V, a few rounding errors of 6e-8.
 TEST(HysteresisInverse, UndoesTheOperatorFromRest) {
   const schema::Hysteresis law = rayleigh(0.16, 5, wire::kMaxPlays);
   core::PlayOperators inverse;
@@ -49,7 +49,8 @@ TEST(HysteresisInverse, UndoesTheOperatorFromRest) {
   EXPECT_GT(moved, 0.5) << "an inverse that does nothing proves nothing";
 }
 
-// The emulated bender has 32 plays: twice as many as the kernel holds. What merging costs, re the hysteresis.
+// The emulated bender has 32 play operators, twice as many as the kernel holds. Error of the merging, re the
+// hysteresis.
 TEST(HysteresisInverse, MergesPlaysThatAreTooMany) {
   const wire::Hysteresis few = inverse_of(rayleigh(0.16, 5, 32));
   EXPECT_EQ(few.count, wire::kMaxPlays);
@@ -72,7 +73,7 @@ TEST(HysteresisInverse, OfNoHysteresisIsNothing) {
   EXPECT_EQ(none.straight, 1.0F);
 }
 
-// A held drive charges by 1 - a in a tick: the section takes that back.
+// A held drive charges the bender by 1 - a in a tick; the section inverts that.
 TEST(HysteresisInverse, TheLeadUndoesTheAmplifiersLowPass) {
   const wire::Section lead = pole_lead(143, 2000);
   const double a = std::exp(-kTwoPi * 143 / 2000);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One play with limits that nothing reaches, and with those of a test.
+// One play without effective limits, and with the limits of a test.
 #pragma once
 
 #include "tests/playback/player_on_sim.hpp"
 
 namespace tacto::playback {
 
-/// Plays the same twice: with limits that nothing reaches, where the drive is what is wished, and with those
-/// of a test. A device each, so that time and finger are the same to the tick.
+/// Plays the same twice: with limits that are never reached, so that the drive is the unlimited one, and with
+/// those of a test. Each has a new device, so that time and finger are the same to the tick.
 class LimitedPlay : public PlayerOnSim {
  protected:
   void load(const std::string& texture) {
@@ -18,7 +18,7 @@ class LimitedPlay : public PlayerOnSim {
   void begin_play(const schema::Transducer& transducer, const schema::PlaybackChoices& choices,
                   const std::string& name) {
     player_.reset();
-    SetUp();  // the finger begins anew
+    SetUp();  // the finger starts again
     session_ = folder_ / (name + ".session");
     transducer_ = folder_ / (name + ".transducer.json");
     choices_ = choices;
@@ -52,7 +52,7 @@ class LimitedPlay : public PlayerOnSim {
   schema::Transducer bender_ = *schema::read_transducer("wiertlewski2011");
 };
 
-// The two sums differ by the roundings of double precision alone.
+// The two sums differ only by rounding errors of double precision.
 inline constexpr double kRoundingsDb = 1e-6;
 
 }  // namespace tacto::playback

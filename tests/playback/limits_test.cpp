@@ -28,7 +28,7 @@ TEST(Limits, PeaksAreMagnitudesWithTheirTimes) {
   EXPECT_TRUE(peaks.fit());
 }
 
-// The device rests before and after: the step up to the first sample and down from the last one count.
+// The device is at zero before and after: the step to the first sample and the step from the last one count.
 TEST(Limits, SlewCountsFromAndToRest) {
   const auto first = peaks_of(std::vector<double>{3, 2, 1}, {}, 10, limited(5, 1, 1));
   EXPECT_EQ(first.slew_v_per_s.value, 30);

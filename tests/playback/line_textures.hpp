@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loops made of lines, so that what a level holds is known in closed form, at any place.
+// Loops that consist of lines, so that the content of a level has a closed form at any position.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ struct TextureLine {
   double per_m = 0, phase = 0, amplitude_n = 0;
 };
 
-/// 20 mm on a 10 um grid, over and over.
+/// 20 mm on a 10 um grid, repeated.
 struct LineTexture {
   static constexpr double kLengthM = 20e-3, kPitchM = 10e-6;
   std::vector<TextureLine> lines;
@@ -28,8 +28,8 @@ struct LineTexture {
             line.amplitude_n * std::sin(kTwoPi * line.per_m * texture.signal.position_m(i) + line.phase);
     return texture;
   }
-  /// What the kernel is to read there at a speed: levels pass finest / 2^(n/2) whole and fall to nothing
-  /// at 1.25 times that by a raised cosine (make_pyramid); the kernel fades between two of them by its own
+  /// The kernel's target at a position and speed: levels pass finest / 2^(n/2) unchanged and fall to zero at
+  /// 1.25 times that by a raised cosine (make_pyramid); the kernel fades between two of them by its own
   /// measure of speed (core::half_octaves).
   double read(double position_m, double speed_ratio, double finest_per_m, int levels) const {
     const double coarseness = levels > 1 ? core::half_octaves(static_cast<float>(speed_ratio)) : 0;
@@ -53,7 +53,7 @@ struct LineTexture {
   static constexpr double kPi = std::numbers::pi;
 };
 
-/// Up to six lines, or thirty as band-limited noise, from a twelfth of finest_per_m to all of it.
+/// Up to six lines, or thirty as band-limited noise, from a twelfth of finest_per_m up to finest_per_m.
 inline LineTexture random_lines(std::mt19937& random, double finest_per_m, bool noise) {
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution<>(low, high)(random);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the limits are told to take while it plays, against what the session says of it afterwards.
+// The effect of the limits as reported during playback, against the session's report afterwards.
 #include "playback/player/live_limits.hpp"
 
 #include "playback/session/session_limits.hpp"
@@ -9,7 +9,7 @@
 namespace tacto::playback {
 namespace {
 
-constexpr std::uint64_t kWatchdogTicks = 200;  // 100 ms, usual
+constexpr std::uint64_t kWatchdogTicks = 200;  // 100 ms, the default
 
 class LiveLimitsTest : public LimitedPlay {
  protected:
@@ -20,14 +20,15 @@ class LiveLimitsTest : public LimitedPlay {
     EXPECT_TRUE(tally) << schema::message(tally.error());
     return tally.value_or(LimitTally());
   }
-  // The same core, the same sums in the same order: no rounding is between them.
+  // The same core adds in the same order, so that there is no rounding difference.
   void expect_as_the_session_tells() {
     const LimitsTook live = player_->status().limits;
     EXPECT_EQ(live.unknown, "");
     ASSERT_TRUE(live.db);
     EXPECT_EQ(*live.db, tally().removed_db());
   }
-  // A session, a few ticks at a time, with `change` made to those of a block; `hear` after each block.
+  // Follows a session, a few ticks at a time, with `change` applied to the ticks of a block; calls `hear`
+  // after each block.
   LimitsTook follow_session(const std::function<void(std::vector<schema::SessionTick>&)>& change = {},
                             const std::function<void(const LiveLimits&, std::uint64_t ticks)>& hear = {}) {
     auto reader = schema::SessionReader::open(session_);
@@ -49,10 +50,10 @@ class LiveLimitsTest : public LimitedPlay {
     live.end();
     return live.told();
   }
-  // Of ticks from..to-1 of the session.
+  // The value for ticks from..to-1 of the session.
   std::optional<double> part_db(std::uint64_t from, std::uint64_t to) {
     LimitTally part;
-    EXPECT_TRUE(hear_wishes(session_, [&](const schema::SessionTick& tick, float unlimited_v) {
+    EXPECT_TRUE(read_unlimited(session_, [&](const schema::SessionTick& tick, float unlimited_v) {
       if (tick.tick >= from && tick.tick < to) part.add(limited_tick(tick.drive_v, unlimited_v, tick.flags));
     }));
     return part.removed_any() ? std::optional(part.removed_db()) : std::nullopt;
@@ -68,7 +69,7 @@ TEST_F(LiveLimitsTest, IsWhatTheSessionTells) {
 
 TEST_F(LiveLimitsTest, IsWhatTheSessionTellsOfSlew) {
   bender_.slew_limit_v_per_s = 60;
-  bender_.drive_limit_v = 0.4;  // so that a release stays within 18 ms
+  bender_.drive_limit_v = 0.4;  // so that a release takes at most 18 ms
   drive_of(bender_, {}, "slow");
   expect_as_the_session_tells();
 }
@@ -97,7 +98,7 @@ TEST_F(LiveLimitsTest, IsNotToldUnlessAsked) {
   EXPECT_FALSE(player_->status().limits.db);
 }
 
-// While it goes on: of all ticks but those by which it follows, and of the newest second of them.
+// During playback: for all ticks except the newest ones within the delay, and for the newest second of them.
 TEST_F(LiveLimitsTest, FollowsTheTicksByTheWatchdog) {
   bender_.drive_limit_v = 0.2;
   drive_of(bender_, {}, "weak");
@@ -131,7 +132,7 @@ TEST_F(LiveLimitsTest, TheLastSecondForgets) {
   EXPECT_FALSE(player_->status().limits.last_second_db) << "the drive was at zero";
 }
 
-// A fault ramps down, and what comes after it is part of the session, too.
+// After a fault the drive ramps down; the ticks after it are part of the session, too.
 TEST_F(LiveLimitsTest, AJumpIsFollowedIntoItsFault) {
   bender_.drive_limit_v = 0.2;
   jump_s_ = 0.7;
@@ -154,7 +155,7 @@ TEST_F(LiveLimitsTest, ASilentHostIsFollowedIntoItsFault) {
   EXPECT_EQ(follow_session().db, tally().removed_db()) << "the fault is not seen together with the silence";
 }
 
-// The recorder's thread writes every 20 ms of the wall's clock: it is waited for.
+// The recorder's thread writes every 20 ms of real time; the test waits for it.
 TEST_F(LiveLimitsTest, IsNotKnownFromTicksOnThatTheDiskDidNotTake) {
   bender_.drive_limit_v = 0.2;
   begin_play(bender_, {}, "full");
@@ -186,7 +187,7 @@ TEST_F(LiveLimitsTest, SaysWhyItIsNotKnown) {
   EXPECT_FALSE(holed.db);
   const auto other =
       follow_session([](std::vector<schema::SessionTick>& ticks) { ticks[1].drive_v += 1e-6F; });
-  EXPECT_EQ(other.unknown, "the device computes another drive");
+  EXPECT_EQ(other.unknown, "the device computes a different drive");
 }
 
 }  // namespace

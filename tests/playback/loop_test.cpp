@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A looped texture is as long as it is where its end meets its beginning; elsewhere a seam is cut.
+// A looped texture keeps its length if its end matches its beginning; otherwise a seam is cut.
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "made_textures.hpp"
 #include "playback/prepare/texture_layout.hpp"
-#include "playback/render/played_ends.hpp"
+#include "playback/render/loop_seam.hpp"
 #include "playback/render/render.hpp"
 
 namespace tacto::playback {
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSeamM = 1e-3;
 
-// As a file keeps it: 32-bit float.
+// As in a file: 32-bit float.
 schema::Texture waves(std::size_t samples, double pitch_m, double period_m, double phase) {
   schema::Texture texture;
   texture.signal.pitch_m = pitch_m;
@@ -38,8 +38,8 @@ TEST(Loop, WholePeriodsMeetInEveryPhaseAtEveryPitch) {
   }
 }
 
-// A sample too many or too few, a sixth or half a period too many; never right at a crest, where a sample
-// that is there twice makes no step.
+// A sample too many or too few, a sixth or half a period too many; not exactly at a maximum, where a
+// duplicated sample makes no step.
 TEST(Loop, WhatDoesNotMeetIsCut) {
   for (int step = 0; step < 16; ++step) {
     const double phase = 0.1 + kTwoPi * step / 16;
@@ -50,13 +50,13 @@ TEST(Loop, WhatDoesNotMeetIsCut) {
   EXPECT_NEAR(seam_of(texture_of(1e-3, [](double x) { return x; })), 0.5e-3, 1e-12);  // at most half
 }
 
-// An edge in the texture's middle is no licence for one at its ends.
+// A large edge in the texture's middle does not permit one at its ends.
 TEST(Loop, AnEdgeElsewhereDoesNotCount) {
   const auto stairs = texture_of(0.03, [](double x) { return x < 0.015 ? 10 * x : 1 + 10 * x; });
   EXPECT_NEAR(seam_of(stairs), kSeamM, 1e-12);
 }
 
-// A path through white noise meets itself as well as it meets any neighbour.
+// In white noise, end and beginning match as well as any neighbours.
 TEST(Loop, NoiseUpToTheLastFrequencyNeedsNoSeam) {
   std::mt19937 random(1);
   int uncut = 0;
@@ -67,12 +67,12 @@ TEST(Loop, NoiseUpToTheLastFrequencyNeedsNoSeam) {
     for (int i = 0; i < 2000; ++i) noise.signal.values.push_back(normal(random));
     uncut += seam_of(noise) == 0;
   }
-  EXPECT_GE(uncut, 45);  // two steps in slope of 130, either of which may be the largest: 1.5 %
+  EXPECT_GE(uncut, 45);  // two slopes of 130 are changed, each of which may be the largest: 1.5 %
 }
 
 TEST(Loop, ASineOfWholePeriodsIsTheEndlessOneToBothEngines) {
   const auto texture = waves(36000, 1e-6, 3e-3, 0.3);
-  const auto path = steady_path(0.004, 0.1, 4);  // eleven times round
+  const auto path = steady_path(0.004, 0.1, 4);  // eleven times around
   for (const Engine engine : {Engine::reference, Engine::kernel}) {
     RenderOptions options;
     options.ends = Ends::loop, options.engine = engine, options.encoder_step_m = 0.1e-6;
@@ -87,7 +87,7 @@ TEST(Loop, ASineOfWholePeriodsIsTheEndlessOneToBothEngines) {
       worst_m = std::max(worst_m, std::abs(rendering->target_m.values[i] - endless_m));
       worst_m = std::max(worst_m, std::abs(rendering->modelled_m.values[i] - endless_m));
     }
-    // The kernel: half a count of 0.1 um is 1e-4 of a period's 3 mm / 2 pi, and its inverse leaves -60 dB.
+    // The kernel: half a count of 0.1 um is 1e-4 of 3 mm / 2 pi, and its inverse has an error of -60 dB.
     EXPECT_LT(worst_m, (engine == Engine::reference ? 1e-4 : 2e-3) * 10e-6);
   }
 }
@@ -111,7 +111,7 @@ TEST(Loop, WhatIsCutIsTold) {
   EXPECT_NEAR(prepared->scale.samples * prepared->pitch_m, 35.5e-3, 1e-12);
 }
 
-// A session of before says nothing of the seam: it was 1 mm whatever met.
+// Older sessions do not contain the seam: it was always 1 mm.
 TEST(Loop, AToldSeamIsKept) {
   const auto texture = waves(36000, 1e-6, 3e-3, 0);
   const auto cut = as_played(texture, 0, {Ends::loop, kSeamM}, 0, 0.1, "texture");

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Textures and paths written by hand, after data-schema/schemas, and runs of the command."""
+"""Textures and paths written by hand as data-schema/schemas defines them, and runs of the command."""
 import hashlib
 import json
 import os
@@ -8,6 +8,7 @@ import subprocess
 
 import numpy as np
 import soundfile
+import tacto
 
 COMMAND = os.environ["TACTOGRAPH"]
 PITCH_M = 1e-6
@@ -40,7 +41,9 @@ def write_path(file: pathlib.Path, time_s, position_m) -> None:
 
 
 def run(*arguments) -> subprocess.CompletedProcess:
-    return subprocess.run([COMMAND, *map(str, arguments)], capture_output=True, text=True)
+    done = subprocess.run([COMMAND, *map(str, arguments)], capture_output=True, text=True)
+    done.stderr = tacto.unwrapped(done.stderr)
+    return done
 
 
 def report_of(*arguments) -> dict:

@@ -27,12 +27,12 @@ inline schema::Texture sine_texture(double length_m, double frequency_per_m, dou
   return texture_of(length_m, [=](double x) { return amplitude_n * std::sin(kTwoPi * frequency_per_m * x); });
 }
 
-/// Straight on at one speed.
+/// Straight ahead at one speed.
 inline FingerPath steady_path(double from_m, double speed_mps, double duration_s) {
   return {{0, duration_s}, {from_m, from_m + speed_mps * duration_s}};
 }
 
-/// From one place to another and back, at rest at both ends: x = from + travel / 2 (1 - cos(2 pi t /
+/// From one position to another and back, at rest at both ends: x = from + travel / 2 (1 - cos(2 pi t /
 /// duration)).
 inline FingerPath there_and_back(double from_m, double travel_m, double duration_s) {
   FingerPath path;

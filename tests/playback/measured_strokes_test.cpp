@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tray's sensor measured in each stroke, on a bender whose hysteresis the transducer's file does not
-// have.
+// Strokes as the tray's sensor measured them, on a bender with a hysteresis that is not in the transducer's
+// file.
 #include <functional>
 
 #include "data-schema/session/session_writer.hpp"
@@ -30,7 +30,7 @@ class MeasuredStrokes : public PlayerOnSim {
     EXPECT_TRUE(report) << schema::message(report.error());
     return std::move(*report);
   }
-  /// The session, each of its samples as `change` makes it: none where it is left out.
+  /// The session with each of its samples modified by `change`, which may omit it.
   std::string changed(const std::function<bool(SessionSamples&)>& change) {
     const std::string to = folder_ / ("changed-" + std::to_string(++changed_) + ".session");
     auto reader = schema::SessionReader::open(session_);
@@ -58,7 +58,8 @@ class MeasuredStrokes : public PlayerOnSim {
   int changed_ = 0;
 };
 
-// The model knows no hysteresis, the tray has it: 16 % of it is -10 dB and some (tests/MEASURED.md, row e).
+// The tray has a hysteresis that the model does not contain: for 16 % the error is about -10 dB
+// (tests/MEASURED.md, row e).
 TEST_F(MeasuredStrokes, TellAHysteresisThatTheModelDoesNotKnow) {
   const StrokeReport seen = report_of(session_);
   ASSERT_GE(seen.strokes.size(), 3U);
@@ -71,7 +72,7 @@ TEST_F(MeasuredStrokes, TellAHysteresisThatTheModelDoesNotKnow) {
   expect_same_to_the_bit();
 }
 
-// The sensor changes nothing of what is played, and without a hysteresis it sees what is predicted.
+// The sensor does not change the playback; without a hysteresis it measures the prediction.
 TEST_F(MeasuredStrokes, AreThoseOfTheModelWhereItIsRight) {
   play_on("", "plain");
   const auto plain = ticks();
@@ -117,7 +118,7 @@ TEST_F(MeasuredStrokes, AreNotToldNearMissingSamples) {
   ASSERT_TRUE(holed.strokes[3].measured);
   EXPECT_NEAR(holed.strokes[3].measured->error_db, whole.strokes[3].measured->error_db, 0.01);
   EXPECT_TRUE(std::ranges::any_of(holed.notes, [](const std::string& note) {
-    return note.find("in 1 of") != std::string::npos && note.find("sensor") != std::string::npos;
+    return note.find("1 of") != std::string::npos && note.find("sensor") != std::string::npos;
   }));
   const StrokeReport none = report_of(changed([](const SessionSamples&) { return false; }));
   for (const PlayedStroke& stroke : none.strokes) EXPECT_FALSE(stroke.measured);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A texture changes while one plays: what is driven, what is recorded, what can't be.
+// The texture changes during playback: the drive, the record, and refused changes.
 #include <fmt/format.h>
 
 #include "playback/prepare/texture_change.hpp"
@@ -8,8 +8,8 @@
 namespace tacto::playback {
 namespace {
 
-/// The largest difference of ticks [from, to) from a kernel that has played this program all along, re their
-/// RMS.
+/// The largest difference of ticks [from, to) from a kernel that has played this program all the time, re
+/// their RMS.
 double difference_from(const std::vector<schema::SessionTick>& ticks, const Program& program, double factor,
                        std::size_t from, std::size_t to) {
   core::TickKernel kernel;
@@ -33,7 +33,7 @@ double largest_step_v(const std::vector<schema::SessionTick>& ticks, std::size_t
   return most;
 }
 
-// The gain was turned to half before, and stays: each texture is then played as if there had been no other.
+// The gain was halved before and does not change; each texture is then played as if there had been no other.
 TEST_F(PlayerOnSim, ATextureChangesInMidStrokeWithoutAStepAndReplaysToTheBit) {
   begin();
   ASSERT_TRUE(player_->play());
@@ -110,7 +110,7 @@ TEST_F(PlayerOnSim, WhatCanNotBeChangedToLeavesTheOtherPlaying) {
   const auto other_rate = player_->load(program("fine", 5e-4, 4000));
   ASSERT_FALSE(other_rate);
   EXPECT_EQ(other_rate.error().kind, schema::ErrorKind::unsuitable);
-  EXPECT_NE(other_rate.error().what.find("4000 ticks a second"), std::string::npos);
+  EXPECT_NE(other_rate.error().what.find("4000 ticks per second"), std::string::npos);
   EXPECT_EQ(other_rate.error().remedy, "disarm first, then load");
   run(0.2);
   EXPECT_EQ(player_->state(), PlayerState::playing);
@@ -119,7 +119,7 @@ TEST_F(PlayerOnSim, WhatCanNotBeChangedToLeavesTheOtherPlaying) {
   expect_same_to_the_bit();
 }
 
-// As where the link fails in the middle of it: what did nothing must not be replayed into a fault either.
+// Also if the link fails in the middle of it: a change without effect must not cause a fault in the replay.
 TEST_F(PlayerOnSim, AnUploadThatComesToNothingReplays) {
   jump_s_ = 0.6;
   begin();
@@ -150,7 +150,8 @@ TEST(TextureChange, OnlyWhatBelongsToTheTextureMayDiffer) {
   EXPECT_TRUE(check_texture_change(playing, playing, 2 * room));
   const auto too_large = check_texture_change(playing, playing, 2 * room - 1);
   ASSERT_FALSE(too_large);
-  EXPECT_NE(too_large.error().what.find(fmt::format("there is room for {}", room - 1)), std::string::npos);
+  EXPECT_NE(too_large.error().what.find(fmt::format("the memory beside the playing one holds {}", room - 1)),
+            std::string::npos);
   EXPECT_FALSE(check_texture_change(playing, playing, room / 2));
   const auto may = [&](auto set) {
     return check_texture_change(playing, prepared_with(set), 4 * room).has_value();

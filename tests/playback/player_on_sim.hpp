@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A player on the emulated device, in emulated time, under a finger that goes there and back.
+// A player on the emulated device, in emulated time, under a finger that moves back and forth.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class PlayerOnSim : public testing::Test {
     ASSERT_TRUE(schema::write_texture(folder_ / "grating", grating()));
     ASSERT_TRUE(schema::write_texture(folder_ / "fine", grating(1700, 0.012)));
   }
-  // 40 mm/s there and back over 30 mm; at `jump_s_` it is suddenly 10 mm further on.
+  // 40 mm/s back and forth over 30 mm; at `jump_s_` the position jumps by 10 mm.
   double place_m(double t) const {
     const double way = 2e-3 + 0.03 - std::abs(std::fmod(0.04 * t, 0.06) - 0.03);
     return way + (t >= jump_s_ ? 0.01 : 0);

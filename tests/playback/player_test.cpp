@@ -49,7 +49,7 @@ TEST_F(PlayerOnSim, PlaysRecordsAndReplaysToTheBit) {
   expect_same_to_the_bit();
 }
 
-// SESSION.md: the upload stands first, and no command behind a tick that knew it.
+// SESSION.md: the upload is first, and each command is before the ticks that it affects.
 TEST_F(PlayerOnSim, ASessionHoldsEachCommandBeforeTheTicksThatTookIt) {
   begin();
   for (int i = 0; i < 40; ++i) {
@@ -107,9 +107,9 @@ TEST_F(PlayerOnSim, WhatCanNotBeDoneIsRefusedWithWhatToDo) {
   };
   expect_refused(player_->arm(session_), "load a texture or scene first");
   expect_refused(player_->play(), "arm first");
-  expect_refused(player_->stop(), "nothing plays");
+  expect_refused(player_->stop(), "nothing is playing");
   begin();
-  expect_refused(player_->load(program(), 10.1), "0 s to 10 s");
+  expect_refused(player_->load(program(), 10.1), "use 0 s to 10 s");
   expect_refused(player_->arm(session_), "disarm first");
   EXPECT_FALSE(player_->gain(std::nan("")));
   ASSERT_TRUE(player_->disarm());
@@ -145,7 +145,7 @@ TEST_F(PlayerOnSim, AnOpenEnableInputRampsToZeroAndReplays) {
   expect_same_to_the_bit();
 }
 
-// The host stands still; the device goes on ticking, and saves itself.
+// The host stalls; the device continues to tick, and stops safely.
 TEST_F(PlayerOnSim, AHostThatStandsStillIsAFaultOnTheDeviceAndReplays) {
   begin();
   ASSERT_TRUE(player_->play());
@@ -162,12 +162,12 @@ TEST_F(PlayerOnSim, AHostThatStandsStillIsAFaultOnTheDeviceAndReplays) {
   EXPECT_GT(since_fault_s, 0.02);
   run(0.1);
   EXPECT_EQ(player_->state(), PlayerState::fault);
-  EXPECT_NE(player_->status().fault.find("heard nothing"), std::string::npos);
+  EXPECT_NE(player_->status().fault.find("received nothing"), std::string::npos);
   ASSERT_TRUE(player_->disarm());
   expect_same_to_the_bit();
 }
 
-// That program was killed in mid-play: the device is still ramping down when the next one greets it.
+// That program was killed during playback: the device is still ramping down when the next one connects.
 TEST_F(PlayerOnSim, WhatAnEarlierProgramsRunHasStillToSayBelongsToNobody) {
   begin();
   ASSERT_TRUE(player_->play());
@@ -199,7 +199,7 @@ TEST_F(PlayerOnSim, APlayedTextureThatIsNoNumberNeverGetsToTheDevice) {
   EXPECT_EQ(prepared.error().kind, schema::ErrorKind::unsuitable);
 }
 
-// Of 0.02 N at 0.5 mm/N: 10 um. The limit holds at load, for live gains, and while textures fade.
+// 0.02 N at 0.5 mm/N are 10 um. The limit applies at load, to live gains, and while textures fade.
 TEST_F(PlayerOnSim, TheTrayIsKeptWithinItsLimitOfDisplacement) {
   const auto limited = [this](double limit_m, double gain_m_per_n = 5e-4) {
     Program made = program("grating", gain_m_per_n);
@@ -227,7 +227,7 @@ TEST_F(PlayerOnSim, TheTrayIsKeptWithinItsLimitOfDisplacement) {
   ASSERT_TRUE(player_->disarm());
 }
 
-// Another program's samples under the sidecar's own name are not what is played.
+// The samples of another file under the sidecar's default name are not played.
 TEST_F(PlayerOnSim, ASessionHasTheSumOfTheFileThatTheSidecarNames) {
   const auto text = schema::read_file(folder_ / "grating.texture.json");
   ASSERT_TRUE(text);
@@ -269,7 +269,7 @@ TEST(DeviceLock, IsHeldByOneProgramAtATime) {
 
 TEST_F(PlayerOnSim, ASessionThatNeverBeganLeavesNoFile) {
   Program refused = program();
-  refused.prepared.limits.onset_s = 1e6F;  // the device refuses it
+  refused.prepared.limits.onset_s = 1e6F;  // causes a refusal by the device
   ASSERT_TRUE(player_->load(std::move(refused)));
   ASSERT_FALSE(player_->arm(session_));
   EXPECT_FALSE(std::filesystem::exists(session_));
@@ -289,7 +289,7 @@ TEST_F(PlayerOnSim, WithoutRoomForTheSessionsBeginningNothingIsArmed) {
     const auto armed = player_->arm(session_);
     ASSERT_FALSE(armed) << bytes << " of " << whole;
     EXPECT_EQ(armed.error().kind, schema::ErrorKind::cannot_write);
-    EXPECT_NE(armed.error().remedy.find("make room"), std::string::npos);
+    EXPECT_NE(armed.error().remedy.find("free space"), std::string::npos);
     EXPECT_EQ(player_->state(), PlayerState::idle);
     EXPECT_FALSE(std::filesystem::exists(session_));
   }
@@ -298,7 +298,7 @@ TEST_F(PlayerOnSim, WithoutRoomForTheSessionsBeginningNothingIsArmed) {
   expect_same_to_the_bit();
 }
 
-// Of a session without them, as a full disk left it before arming was refused there.
+// A session without its commands, as after a full disk before arming was refused in that case.
 TEST_F(PlayerOnSim, AReplayNamesTheCommandsThatAreMissing) {
   begin();
   run(0.1);
@@ -321,11 +321,11 @@ TEST_F(PlayerOnSim, AReplayNamesTheCommandsThatAreMissing) {
   const auto told = report_strokes(without);
   ASSERT_TRUE(told);
   EXPECT_TRUE(std::ranges::any_of(told->notes, [](const std::string& note) {
-    return note.find("samples of its upload: the disk") != std::string::npos;
+    return note.find("samples of its upload") != std::string::npos;
   }));
 }
 
-// The largest gain is negative: the texture is turned over.
+// The largest gain is negative: the texture is inverted.
 TEST_F(PlayerOnSim, ANegativeGainTurnsTheTextureOver) {
   const Program up = program("grating", 5e-4), down = program("grating", -5e-4);
   ASSERT_EQ(up.prepared.samples.size(), down.prepared.samples.size());

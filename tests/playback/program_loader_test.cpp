@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One program at a time, and nobody who waits for what was given up.
+// One program is loaded at a time; a cancelled load blocks no client.
 #include "playback/player/program_loader.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 using schema::ErrorKind;
 using schema::Result;
 
-// What is made is an error with a name: a program takes a texture.
+// The loader returns an error with a name, because a program would need a texture.
 ProgramLoader::Make fails_with(const std::string& name) {
   return [name]() -> Result<Program> { return schema::fail(ErrorKind::not_found, name, "here"); };
 }
@@ -43,7 +43,7 @@ TEST(ProgramLoading, WhatIsBegunAfterOneThatWasGivenUpIsMade) {
   loader.give_up();
   const auto given_up = loader.take();
   ASSERT_TRUE(given_up);
-  EXPECT_NE(given_up->error().what.find("given up"), std::string::npos);
+  EXPECT_NE(given_up->error().what.find("cancelled"), std::string::npos);
   EXPECT_FALSE(loader.target());
   EXPECT_TRUE(loader.busy()) << "its thread can't be interrupted";
   loader.begin(fails_with("second"), ProgramLoader::Beside::nothing);
@@ -54,7 +54,7 @@ TEST(ProgramLoading, WhatIsBegunAfterOneThatWasGivenUpIsMade) {
   EXPECT_FALSE(loader.busy());
 }
 
-// Who gave it up may arm and play at once.
+// After cancelling a load, a client may arm and play at once.
 TEST(ProgramLoading, AThreadThatWasGivenUpStepsBack) {
   std::promise<void> begun, end;
   std::promise<int> nice;
@@ -85,7 +85,7 @@ TEST(ProgramLoading, WhatWaitsForAThreadCanBeGivenUpToo) {
   loader.give_up();
   const auto given_up = loader.take();
   ASSERT_TRUE(given_up);
-  EXPECT_NE(given_up->error().what.find("given up"), std::string::npos);
+  EXPECT_NE(given_up->error().what.find("cancelled"), std::string::npos);
   end.set_value();
   loader.begin(fails_with("third"), ProgramLoader::Beside::nothing);
   EXPECT_EQ(taken_in_the_end(loader), "third");

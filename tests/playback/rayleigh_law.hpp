@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hysteresis that the emulated bender has, as a transducer's file would tell it.
+// The hysteresis of the emulated bender as in a transducer's file.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace tacto::playback {
 
-/// Rayleigh's law between +-limit: plays of equal weight, evenly spread, that open the loop by `opening`.
+/// Rayleigh's law between +-limit: play operators of equal weight at even thresholds, with the given opening.
 inline schema::Hysteresis rayleigh(double opening, double limit_v, int play_operators) {
   schema::Hysteresis law{{0}, {0}};
   double ends = 0, apart = 0;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The verb `render` as a command: what it refuses, in one line and with nothing half-written, and what it reports."""
+"""The verb `render` as a command: its refusals, in one line and without incomplete files, and its report."""
 import pathlib
 import tempfile
 
@@ -32,11 +32,11 @@ def check_refusals(folder):
     expect_refusal(folder, NOT_FOUND, "absent.csv", path=folder / "absent.csv")
     expect_refusal(folder, CANNOT_WRITE, "absent", o=folder / "absent" / "drive.wav")
     expect_refusal(folder, USAGE, "recording or texture", o=folder / "t.texture.wav")
-    expect_refusal(folder, USAGE, "two outputs", wanted=folder / "drive.wav")
+    expect_refusal(folder, USAGE, "two outputs", target=folder / "drive.wav")
     expect_refusal(folder, USAGE, "mm/N", gain="1")
     expect_refusal(folder, USAGE, "1000Hz", rate="1kHz")
     expect_refusal(folder, USAGE, "--inverse", inverse="phase")
-    expect_refusal(folder, UNSUITABLE, "never meets", at="1m")
+    expect_refusal(folder, UNSUITABLE, "outside the texture", at="1m")
     expect_refusal(folder, UNSUITABLE, "largest gain that fits", gain="100mm/N")
     (folder / "bad.csv").write_text("time_s,position_m\n0,0\n1,x\n")
     expect_refusal(folder, MALFORMED, "line 3, column 2", path=folder / "bad.csv")
@@ -69,7 +69,7 @@ def check_report(folder):
 def check_kernel(folder):
     report = made.report_of("render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "kernel.wav",
                             "--engine", "kernel", "--encoder-step", "0.5um", "--hold", "zero-order")
-    assert report["displacement_error_db"] < -30 and report["delay_s"] == 0, report  # with the path's rests in it
+    assert report["displacement_error_db"] < -30 and report["delay_s"] == 0, report  # includes the path's rests
     kernel = ["render", folder / "t", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "kernel.wav", "--hold", "zero-order",
               "--engine", "kernel"]
     free = made.report_of(*kernel)
@@ -79,7 +79,8 @@ def check_kernel(folder):
     assert free["energy_limited_samples"] == 0 < limited["energy_limited_samples"] and limited["limits_removed_db"] > -12, limited
     assert 0.9 * limit < rms() < 1.02 * limit, (rms(), limit)
     errors = [made.report_of(*kernel, "--interpolation", word)["displacement_error_db"] for word in ("nearest", "sinc")]
-    assert abs(errors[1] - free["displacement_error_db"]) < 1 and errors[0] < -20, errors  # 64 points a period for nearest
+    # 64 points per period for nearest.
+    assert abs(errors[1] - free["displacement_error_db"]) < 1 and errors[0] < -20, errors
     assert "limits_removed_db" not in free and free["limits_removed"] == "none", free
     for unknown, value in (("energy-limit", "1V"), ("encoder-step", "1um"), ("interpolation", "sinc")):
         for engine in ({}, {"engine": "reference"}):
@@ -88,16 +89,16 @@ def check_kernel(folder):
 
 
 def check_interior(folder):
-    """A finger that moves at both ends: the onset and the ends are most of the error; away from them it is the kernel's.
+    """A finger that moves at both ends: onset and ends are most of the error; away from them it is the kernel's.
 
-    Held against its own files: 15-500 Hz of what lies between the ends, under a Hann window.
+    Compared with its own files: 15-500 Hz of the signal between the ends, with a Hann window.
     """
     made.write_path(folder / "moves.csv", [0, 3], [0.002, 0.048])
     base = ["render", folder / "t", "--path", folder / "moves.csv", "--transducer", "wiertlewski2011", "-o", folder / "m.wav"]
-    report = made.report_of(*base, "--engine", "kernel", "--hold", "zero-order", "--displacement", folder / "moved.wav", "--wanted", folder / "wanted.wav")
+    report = made.report_of(*base, "--engine", "kernel", "--hold", "zero-order", "--displacement", folder / "moved.wav", "--target", folder / "wanted.wav")
     keys = list(report)
     assert keys.index("interior_displacement_error_db") < keys.index("left_out_at_each_end_s") < keys.index("displacement_error_db"), keys
-    assert abs(report["left_out_at_each_end_s"] - 0.75) < 1e-3, report  # 1 s, but a quarter of the path at most
+    assert abs(report["left_out_at_each_end_s"] - 0.75) < 1e-3, report  # 1 s, but at most a quarter of the path
     moved, wanted = made.samples(folder / "moved.wav"), made.samples(folder / "wanted.wav")
 
     def in_band(values):
@@ -106,7 +107,7 @@ def check_interior(folder):
         return np.sum(np.abs(np.fft.rfft(inside * np.hanning(len(inside))))[(hz >= 15) & (hz <= 500)] ** 2)
 
     interior_db = 10 * np.log10(in_band(moved - wanted) / in_band(wanted))
-    # The window weighs the middle more, and the error need not be even: 2 dB.
+    # The window emphasises the middle, and the error need not be uniform: 2 dB.
     assert abs(interior_db - report["interior_displacement_error_db"]) < 2, (interior_db, report)
     assert report["interior_displacement_error_db"] < report["displacement_error_db"] - 20, report
     text = made.run(*base, "--engine", "kernel", "--hold", "zero-order", "--force").stdout
@@ -114,29 +115,32 @@ def check_interior(folder):
 
 
 def check_budget(folder):
-    """What is asked for holds between the path's ends; a time alone is no promise; what can't be told is refused."""
-    made.write_path(folder / "through.csv", [0, 1.5], [0.002, 0.048])  # goes at both ends
+    """A requested error is kept between the path's ends; a time limit alone promises nothing; impossible requests are
+    refused."""
+    made.write_path(folder / "through.csv", [0, 1.5], [0.002, 0.048])  # moves at both ends
     base = ["render", folder / "t", "--path", folder / "through.csv", "--transducer", "wiertlewski2011", "-o", folder / "b.wav"]
     kept = made.report_of(*base, "--max-error", "10ppm")
-    assert kept["engine"] == "reference" and kept["displacement_error_db"] > -95, kept  # the ends are told, not judged
+    # The ends are reported, not judged.
+    assert kept["engine"] == "reference" and kept["displacement_error_db"] > -95, kept
     timed = made.report_of(*base, "--max-tick", "1us")
     assert timed["engine"] == "kernel" and "promised_error_percent" not in timed and timed["least_error_percent"] < 0.1, timed
     assert made.report_of(*base, "--engine", "kernel", "--max-error", "5%", "--encoder-step", "10nm")["engine"] == "kernel"
-    # Both steps are too coarse; what the message says of a tenth of them was tried.
-    for step, said in (("5um", "--encoder-step 0.5um keeps it"), ("40um", "with a tenth of --encoder-step")):
+    # Both steps are too coarse; the value for a tenth of them in the message was measured.
+    for step, said in (("5um", "use --encoder-step 0.5um"), ("40um", "with a tenth of --encoder-step")):
         expect_refusal(folder, UNSUITABLE, said, **{"path": folder / "through.csv", "engine": "kernel", "max-error": "0.1%", "encoder-step": step})
-    # A count of 1 nm is few parts of a sample: what the wire rounds of it must not add up along the texture.
+    # A count of 1 nm is a small part of a sample: its rounding by the wire must not accumulate along the texture.
     for step in ("100nm", "10nm", "1nm", "0.3nm"):
         fine = made.report_of(*base, "--engine", "kernel", "--max-error", "0.1%", "--encoder-step", step)
         assert fine["engine"] == "kernel" and fine["promised_error_percent"] <= 0.1, (step, fine)
     expect_refusal(folder, UNSUITABLE, "2^29", **{"path": folder / "through.csv", "engine": "kernel", "encoder-step": "0.08nm"})
-    # Of 8 samples a count (5 um over 0.62 um) the kernel reads as far as 2^29 / 9 counts = 298.3 m, and is silent beyond.
+    # With 8 samples per count (5 um over 0.62 um) the kernel reads up to 2^29 / 9 counts = 298.3 m, and is silent
+    # beyond.
     made.write_texture(folder / "fine", 0.01 * np.sin(2 * np.pi * 1e5 * np.arange(50_000) * made.PITCH_M))
     far = {"texture": folder / "fine", "ends": "loop", "engine": "kernel", "encoder-step": "5um", "gain": "0.1mm/N"}
     for from_m, beyond in ((298.35, True), (298.2, False)):
         made.write_path(folder / "far.csv", [0, 1], [from_m, from_m + 0.03])
         if beyond:
-            expect_refusal(folder, UNSUITABLE, "as far as 298.3 m", path=folder / "far.csv", **far)
+            expect_refusal(folder, UNSUITABLE, "up to 298.3 m", path=folder / "far.csv", **far)
         else:
             made.report_of("render", folder / "fine", "--path", folder / "far.csv", "--transducer", "wiertlewski2011", "-o", folder / "far.wav",
                            *[part for key, value in far.items() if key != "texture" for part in ("--" + key, value)])

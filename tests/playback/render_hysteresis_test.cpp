@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A bender whose file tells a hysteresis: both engines judge by it, whoever undoes it.
+// A bender with a hysteresis in its file: both engines judge with it, whether or not the drive inverts it.
 #include <gtest/gtest.h>
 
 #include "made_textures.hpp"
@@ -9,13 +9,13 @@
 namespace tacto::playback {
 namespace {
 
-constexpr double kRateHz = 10e3;
+constexpr double kRenderRateHz = 10e3;
 
-// The tray by its equations, in steps of a hundredth of a tick: amplifier, plays, and the mass on its spring
-// (semi-implicit Euler).
+// The tray by its equations, in steps of a hundredth of a tick: amplifier, play operators, and the mass on
+// its spring (semi-implicit Euler).
 std::vector<double> integrated(const schema::TimeSignal& drive_v, const schema::Transducer& t) {
   constexpr int kSteps = 100;
-  const double dt = 1 / (kRateHz * kSteps), pole = kTwoPi * schema::actuator_pole_hz(t);
+  const double dt = 1 / (kRenderRateHz * kSteps), pole = kTwoPi * schema::actuator_pole_hz(t);
   const double k = t.bender_stiffness_n_per_m + t.flexure_stiffness_n_per_m;
   const double rest_m_per_v = std::abs(schema::actuator_response(t, 0));
   std::vector<double> play_operators(t.hysteresis->weights.size()), all;
@@ -61,7 +61,7 @@ class RenderHysteresis : public testing::Test {
   RenderOptions options_;
 };
 
-// Within 1 %: what the plays do between two ticks, and Euler's steps.
+// Within 1 %: the play operators between two ticks, and Euler's steps.
 TEST_F(RenderHysteresis, TheTrayIsTheIntegratedOne) {
   for (const Engine engine : {Engine::reference, Engine::kernel})
     for (const bool undo : {true, false}) {
@@ -73,8 +73,8 @@ TEST_F(RenderHysteresis, TheTrayIsTheIntegratedOne) {
     }
 }
 
-// The reference undoes no hysteresis: its drive is the linear tray's, its error the bent one's, and the
-// kernel's where it keeps it.
+// The reference does not invert a hysteresis: its drive is the linear tray's, its error that of the tray with
+// hysteresis, and equal to the kernel's without inversion.
 TEST_F(RenderHysteresis, TheReferenceTellsWhatTheBenderDoes) {
   const Rendering linear = rendered(straight_), told = rendered(bent_);
   EXPECT_EQ(linear.drive_v.values, told.drive_v.values);
@@ -82,13 +82,13 @@ TEST_F(RenderHysteresis, TheReferenceTellsWhatTheBenderDoes) {
   EXPECT_GT(told.error_db, -20);
   EXPECT_EQ(told.warnings.size(), 1U);
   options_.engine = Engine::kernel;
-  EXPECT_LT(rendered(bent_).error_db, -20);  // the onset in it
+  EXPECT_LT(rendered(bent_).error_db, -20);  // includes the onset
   options_.undo_hysteresis = false;
   EXPECT_NEAR(rendered(bent_).error_db, told.error_db, 0.5);
 }
 
 TEST_F(RenderHysteresis, AReferenceHeldToAnErrorIsHeldToTheBenders) {
-  options_.undo_hysteresis = false;  // else a budget takes the kernel
+  options_.undo_hysteresis = false;  // otherwise a budget selects the kernel
   options_.budget.error.max_error = 0.01;
   const auto refused = render(texture_, path_, bent_, options_);
   ASSERT_FALSE(refused);

@@ -80,7 +80,8 @@ TEST_F(RenderLimits, ClippedDisplacementAndSlewFitToo) {
   EXPECT_LE(clipped->peaks.slew_v_per_s.used(), 1 + 1e-5);
 }
 
-// The kernel's limits are told as the reference's are; so is the tray's, which no kernel holds.
+// The kernel's limits are reported as the reference's are; so is the displacement limit, which the kernel
+// does not enforce.
 TEST_F(RenderLimits, TheKernelNamesItsLimitAndTheGainThatFits) {
   options_.engine = Engine::kernel;
   const Peaks free = rendered()->peaks;
@@ -106,7 +107,8 @@ TEST_F(RenderLimits, TheKernelNamesItsLimitAndTheGainThatFits) {
   }
 }
 
-// Neither an energy limit nor an undone hysteresis goes with the gain: a proportion would name too much.
+// An energy limit and an inverted hysteresis are not proportional to the gain: a proportional estimate would
+// be too large.
 TEST_F(RenderLimits, TheKernelsGainFitsWhereNothingIsProportional) {
   options_.engine = Engine::kernel;
   for (const bool energy : {true, false}) {
@@ -124,7 +126,7 @@ TEST_F(RenderLimits, TheKernelsGainFitsWhereNothingIsProportional) {
   }
 }
 
-// Once 5 ms, in which the drive rose by more than its slew may be.
+// At some starting positions the drive rose by more than its slew limit, for 5 ms.
 TEST_F(RenderLimits, WhatFitsTheReferenceFitsTheKernelWhereverTheFingerStarts) {
   texture_ = texture_of(0.12, [](double x) { return 0.02 * std::cos(kTwoPi * 1e3 * x); });
   path_ = steady_path(0.01, 0.05, 2);

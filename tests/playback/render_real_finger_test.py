@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A real finger's texture, played at its own speed and at twice that: the usual gain fits the paper's transducer, and
-SciPy's actuator follows what is wanted within 1 % RMS over 15-500 Hz."""
+"""A real finger's texture, played at its own speed and at twice that: the default gain fits the paper's transducer, and
+SciPy's actuator follows the target within 1 % RMS over 15-500 Hz."""
 import os
 import pathlib
 import sys
@@ -9,6 +9,7 @@ import tempfile
 import numpy as np
 
 import made_files as made
+from measured import measured
 
 DATA = pathlib.Path(os.environ.get("TACTO_DATA", "")) / "bare-finger" / "bare_finger_10kHz.csv"
 RATE = 10_000
@@ -20,7 +21,7 @@ def make_texture(folder):
 
 
 def displacement(drive):
-    """H_a of Wiertlewski 2011 at the drive's own frequencies, the drive followed by silence."""
+    """Applies H_a of Wiertlewski 2011 at the drive's frequencies; the drive is followed by silence."""
     period = 4 * len(drive)
     s = 2j * np.pi * np.fft.rfftfreq(period, 1 / RATE)
     stiffness = 76.47e3 + 4.05e3
@@ -38,12 +39,15 @@ def in_band(values):
 
 def check(folder, speed_mps):
     made.write_path(folder / "path.csv", [0, 0.08 / speed_mps], [0.005, 0.085])
-    report = made.report_of("render", folder / "finger", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--wanted", folder / "wanted.wav")
+    report = made.report_of("render", folder / "finger", "--path", folder / "path.csv", "--transducer", "wiertlewski2011", "-o", folder / "drive.wav", "--target", folder / "wanted.wav")
     wanted = in_band(made.samples(folder / "wanted.wav"))
     moved = in_band(displacement(made.samples(folder / "drive.wav")))
     error = np.sqrt(np.mean((moved - wanted) ** 2) / np.mean(wanted**2))
-    print(f"{speed_mps * 1e3:.0f} mm/s: error {100 * error:.3f} %, drive {report['drive_peak_v']:.3f} V, wanted {1e6 * report['wanted_rms_m']:.2f} um RMS, "
+    print(f"{speed_mps * 1e3:.0f} mm/s: error {100 * error:.3f} %, drive {report['drive_peak_v']:.3f} V, wanted {1e6 * report['target_rms_m']:.2f} um RMS, "
           f"limits used: drive {report['drive_limit_used_percent']:.0f} %, displacement {report['displacement_limit_used_percent']:.0f} %, slew {report['slew_limit_used_percent']:.0f} %")
+    key = f"render_real_finger.at_{1e3 * speed_mps:.0f}_mm_per_s"
+    measured(f"{key}.error_percent", 100 * error)
+    measured(f"{key}.limit_used_percent", max(report[f"{name}_limit_used_percent"] for name in ("drive", "displacement", "slew")))
     assert error < 0.01
     assert report["displacement_error_db"] < -40
 

@@ -25,7 +25,7 @@ class RenderRefusals : public testing::Test {
 
 TEST_F(RenderRefusals, PathThatNeverMeetsTheTexture) {
   options_.at_m = 0.5;
-  expect_refused(schema::ErrorKind::unsuitable, "never meets the texture");
+  expect_refused(schema::ErrorKind::unsuitable, "outside the texture");
 }
 
 TEST_F(RenderRefusals, PathShorterThanOnePeriod) {

@@ -37,8 +37,8 @@ double rms_between(const schema::TimeSignal& signal, double from_s, double to_s)
   return std::sqrt(sum / static_cast<double>(count));
 }
 
-// 5 /mm under 50 mm/s is 250 Hz: 10 mN at 1 mm/N is 10 um, and takes 10 um / H_a(250 Hz) of drive. 1e-4: what
-// the path's ends leave in the middle of a band cut by Fourier truncation.
+// 5 /mm under 50 mm/s is 250 Hz: 10 mN at 1 mm/N is 10 um, and needs a drive of 10 um / H_a(250 Hz). 1e-4:
+// the effect of the path's ends in the middle, with a band cut by Fourier truncation.
 TEST(Render, ASineAtOneSpeedHasItsClosedForm) {
   const auto texture = sine_texture(0.12, 5e3, 0.01);
   const auto rendering = render(texture, steady_path(0.005, 0.05, 2), paper(), {});
@@ -54,8 +54,8 @@ TEST(Render, ASineAtOneSpeedHasItsClosedForm) {
   EXPECT_NEAR(rendering->highest_passed_per_m, 10e3, 1e-6);
 }
 
-// The tick kernel instead of the reference: what is wanted, by an encoder of 1 um, within -40 dB of it (the
-// onset in it), and the same drive to -40 dB away from the path's ends.
+// The tick kernel instead of the reference: the target, with an encoder of 1 um, within -40 dB (including the
+// onset), and the same drive to -40 dB away from the path's ends.
 TEST(Render, TheKernelsDriveIsTheReferences) {
   const auto texture = texture_of(0.12, [](double x) {
     return 0.01 * (std::sin(kTwoPi * 1e3 * x) + 0.5 * std::sin(kTwoPi * 4.3e3 * x));
@@ -107,8 +107,7 @@ TEST(Render, SignalsShareThePathsAxis) {
   for (double value : rendering->drive_v.values) ASSERT_EQ(value, static_cast<float>(value));
 }
 
-// What the tray does with the rounded, cut drive, against what was wanted. -60 dB: a tenth of the 1 % that is
-// asked for.
+// The displacement for the rounded, cut drive, against the target. -60 dB: a tenth of the required 1 %.
 TEST(Render, ModelledDisplacementFollowsTheWantedOne) {
   const auto texture = texture_of(0.06, [](double x) {
     return 0.01 * (std::sin(kTwoPi * 1e3 * x) + 0.5 * std::sin(kTwoPi * 2.3e3 * x) +
@@ -127,7 +126,8 @@ TEST(Render, ModelledDisplacementFollowsTheWantedOne) {
   EXPECT_GT(render(texture, there_and_back(-0.01, 0.08, 3), paper(), options)->error_db, -20);
 }
 
-// There and back along the same way is its own mirror image in time, and so is what is wanted, ends included.
+// Back and forth along the same path is its own mirror image in time, and so is the target, including the
+// ends.
 TEST(Render, AReversalMirrorsTheDisplacement) {
   const auto texture = sine_texture(0.06, 3e3, 0.01);
   const auto rendering = render(texture, there_and_back(0.01, 0.04, 2), paper(), {});
@@ -137,8 +137,9 @@ TEST(Render, AReversalMirrorsTheDisplacement) {
     ASSERT_NEAR(target[i], target[target.size() - 1 - i], 1e-4 * 10e-6);
 }
 
-// 20 /mm under 100 mm/s is 2 kHz, above the band; 97 /mm is 9.7 kHz, which would fold to 300 Hz if the
-// texture were read once a sample. At least 60 dB below what the force asks for, away from the path's ends.
+// 20 /mm under 100 mm/s is 2 kHz, above the band; 97 /mm is 9.7 kHz, which would alias to 300 Hz if the
+// texture were read once per sample. The result is at least 60 dB below the texture, away from the path's
+// ends.
 TEST(Render, NothingFoldsIntoTheBand) {
   for (const double per_m : {20e3, 97e3, 103e3}) {
     const auto texture = sine_texture(0.12, per_m, 0.01);
@@ -168,8 +169,8 @@ TEST(Render, BesideTheTextureThereIsSilenceAndNoClickAtItsEnds) {
     ASSERT_LT(std::abs(target[i] - target[i - 1]), 1.1 * steepest);
 }
 
-// Without the onset the drive begins with a jump of its own size; 15 % and -54 dB: the band's edges ring a
-// little.
+// Without the onset the drive would begin with a jump of its own size. 15 % and -54 dB: the band's edges ring
+// a little.
 TEST(Render, StartsAndEndsAtRestWhereTheFingerDoesNot) {
   const auto texture = texture_of(0.12, [](double x) { return 0.02 * std::cos(kTwoPi * 2e3 * x); });
   RenderOptions options;

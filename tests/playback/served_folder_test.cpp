@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which files clients over TCP may load, and what they learn of the others: nothing.
+// The files that clients over TCP may load; they get no information about other files.
 #include "playback/player/served_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ class ServedFolder : public testing::Test {
     ASSERT_TRUE(schema::write_scene(folder_ / stem, scene));
   }
   bool served(const std::string& file) const { return served_file(home_, file).has_value(); }
-  // Everything but the name that was asked for.
+  // The message without the requested name.
   std::string refusal(const std::string& file) const {
     const auto refused = served_file(home_, file);
     return refused ? "served" : refused.error().what + "; " + refused.error().remedy;

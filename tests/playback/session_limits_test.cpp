@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the limits of a session took, against what plays where there is no limit to reach.
+// The effect of a session's limits, against a playback without limits.
 #include "playback/session/session_limits.hpp"
 
 #include "playback/strokes/stroke_report.hpp"
@@ -35,7 +35,7 @@ TEST_F(SessionLimits, AmplitudeIsToldInDb) {
 TEST_F(SessionLimits, SlewIsToldInDb) {
   const auto wished = drive_of(bender_, {}, "free");
   bender_.slew_limit_v_per_s = 60;
-  bender_.drive_limit_v = 0.4;  // so that a release stays within 18 ms
+  bender_.drive_limit_v = 0.4;  // so that a release takes at most 18 ms
   const auto drive = drive_of(bender_, {}, "slow");
   ASSERT_EQ(wished.size(), drive.size());
   const auto tally = tally_session(session_);
@@ -58,7 +58,7 @@ TEST_F(SessionLimits, EnergyIsToldInDb) {
   EXPECT_EQ(tally->amplitude_limited(), 0U);
 }
 
-// A stroke's part is of its own ticks.
+// A stroke's share is that of its own ticks.
 TEST_F(SessionLimits, EachStrokeIsToldItsOwn) {
   const auto wished = drive_of(bender_, {}, "free");
   bender_.drive_limit_v = 0.2;

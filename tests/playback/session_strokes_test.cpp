@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strokes of sessions that are not whole or not seen throughout, and what a table of one holds.
+// Strokes of sessions with missing ticks or missing counts, and the contents of a session's table.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -15,7 +15,7 @@ namespace {
 using schema::SessionTick;
 using Ticks = std::vector<SessionTick>;
 
-/// A session played for 3 s, 0.75 s a stroke, whose ticks are then changed.
+/// A session played for 3 s, 0.75 s per stroke, whose ticks are then changed.
 class SessionStrokes : public PlayerOnSim {
  protected:
   void SetUp() override {
@@ -30,7 +30,7 @@ class SessionStrokes : public PlayerOnSim {
     EXPECT_TRUE(report) << schema::message(report.error());
     return std::move(*report);
   }
-  /// The session with `kept` for its ticks: from one of them that is missing on it tells a loss.
+  /// The session with the ticks `kept`; from a missing one on it reports a loss.
   std::string with_ticks(const Ticks& kept, std::uint64_t lost) {
     const std::string to = folder_ / fmt::format("changed-{}.session", ++changed_);
     auto reader = schema::SessionReader::open(session_);
@@ -59,8 +59,8 @@ class SessionStrokes : public PlayerOnSim {
   int changed_ = 0;
 };
 
-// Judged as in the whole session. What the band's filters take from beyond the loss is not there: 0.2 s away
-// from it, on edges of 3 and 5 Hz, that is 0.004 dB here.
+// Judged as in the whole session. Values beyond the loss are missing in the band's filters: 0.2 s away from
+// it, for edges of 3 and 5 Hz, the effect is 0.004 dB here.
 constexpr double kBeyondTheLossDb = 0.02;
 
 TEST_F(SessionStrokes, BeforeTheFirstLossAreJudged) {
@@ -90,7 +90,7 @@ TEST_F(SessionStrokes, WithTheFirstTickMissingNoneIs) {
   EXPECT_TRUE(noted(cut, "1 ticks are missing, from tick 0 on"));
 }
 
-// As a computer that stood still feeds the counts that came meanwhile: a way of 12 mm in 6 ms.
+// As after a stall of the computer, when the counts of that time are delivered: a distance of 12 mm in 6 ms.
 TEST_F(SessionStrokes, EndWhereTicksAreBlind) {
   const StrokeReport whole = report_of(session_);
   const PlayedStroke& stroke = whole.strokes.at(1);
@@ -108,10 +108,10 @@ TEST_F(SessionStrokes, EndWhereTicksAreBlind) {
   EXPECT_NEAR(after.from_s, static_cast<double>(middle + 12) / kRateHz, 1e-6);
   EXPECT_EQ(before.from_m, stroke.from_m);
   EXPECT_EQ(after.to_m, stroke.to_m);
-  EXPECT_TRUE(noted(blind, "in 12 ticks no count of the encoder had come"));
+  EXPECT_TRUE(noted(blind, "in 12 ticks no encoder count had come"));
 }
 
-// A count of 1 um at 100 m.
+// A count of 1 um at a distance of 100 m.
 TEST_F(SessionStrokes, ATableHoldsEachCountsPlace) {
   Ticks all = ticks();
   const double metres_per_count = schema::SessionReader::open(session_)->header().metres_per_count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A client of the control socket, for tests: it says lines and hears lines.
+// A client of the control socket for tests: it sends and receives lines.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ class SocketClient {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
   }
-  /// Lines that have come and are not read yet.
+  /// Received lines that are not read yet.
   std::vector<std::string> heard() {
     char bytes[65536];
     for (ssize_t got = 1; (got = recv(descriptor_, bytes, sizeof bytes, MSG_DONTWAIT)) > 0;)

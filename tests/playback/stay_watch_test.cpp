@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When the drive has to fall because those who have to stay are gone.
+// The drive must fall if the clients that have to stay connected are gone.
 #include "playback/session/stay_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(StayWatch, TheShorterTimeHolds) {
   EXPECT_EQ(stay_rules(arm, {}).client, 7U);
 }
 
-// A daemon that was stopped itself, or waited for its device, has not listened meanwhile.
+// While the daemon was stopped, or waited for its device, it did not read, so that time does not count.
 TEST(StayWatch, TimeInWhichNobodyListenedIsNoSilence) {
   StayWatch watch;
   watch.begin({7, 1.0});

@@ -10,8 +10,8 @@
 namespace tacto::playback {
 namespace {
 
-// The bound stated at TextureLookup, from the kernel's series: reached within a factor of 2, and never
-// passed.
+// The bound stated at TextureLookup, from the kernel's series: the error is at least half of it, and never
+// larger.
 TEST(TextureLookup, InterpolationErrorIsAsStated) {
   for (const double per_m : {15e3, 50e3, 100e3}) {
     const auto texture = sine_texture(0.012, per_m, 1);
@@ -35,7 +35,7 @@ TEST(TextureLookup, LiesWhereItIsLaid) {
   EXPECT_TRUE(lookup.contains(0.11));
 }
 
-// A constant texture shows the fade itself: zero at the end, half after half a millimetre, whole after one.
+// A constant texture shows the fade: zero at the end, half after half a millimetre, full after one.
 TEST(TextureLookup, EndsFadeByARaisedCosine) {
   const auto texture = texture_of(0.02, [](double) { return 2.0; });
   const TextureLookup lookup(texture.signal, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of textures in a session's rows, against the kernel's own player of textures.
+// Shares of textures in a session's rows, against the kernel's own texture player.
 #include "playback/strokes/texture_mix.hpp"
 
 #include <gtest/gtest.h>
@@ -17,25 +17,25 @@ constexpr std::size_t kRows = 400;
 
 struct Rows {
   std::vector<SessionRow> rows;
-  std::vector<TextureTurn> turns;
+  std::vector<TextureChange> turns;
 };
 
-Rows rows_with(const std::vector<TextureTurn>& turns) {
+Rows rows_with(const std::vector<TextureChange>& turns) {
   Rows all{std::vector<SessionRow>(kRows), turns};
   for (std::size_t i = 0; i < kRows; ++i) {
     all.rows[i].tick = i;
     all.rows[i].gain = i < 120 ? 1 : i < 128 ? 0.25 : 3;
     all.rows[i].turns = static_cast<std::uint32_t>(
-        std::ranges::count_if(turns, [&](const TextureTurn& turn) { return turn.row <= i; }));
+        std::ranges::count_if(turns, [&](const TextureChange& turn) { return turn.row <= i; }));
   }
   return all;
 }
 
-TextureTurn turn_at(std::size_t row, double fade_ticks) {
+TextureChange turn_at(std::size_t row, double fade_ticks) {
   return {row, fade_ticks, schema::SessionProgram{}, 0};
 }
 
-/// What the kernel makes of textures that are 1, 10, 100 ... everywhere, under these gains.
+/// The kernel's output for textures that are 1, 10, 100 ... everywhere, with these gains.
 std::vector<double> played(const Rows& columns) {
   std::vector<std::array<float, 8>> samples(columns.turns.size() + 1);
   float value = 1;
@@ -76,8 +76,8 @@ std::vector<double> mixed(const Rows& all) {
   return sum;
 }
 
-// Single precision: four operations' rounding, 2^-24 each of the largest texture, times the gain.
-void expect_as_played(const std::vector<TextureTurn>& turns) {
+// Single precision: the rounding of four operations, 2^-24 each of the largest texture, times the gain.
+void expect_as_played(const std::vector<TextureChange>& turns) {
   const Rows columns = rows_with(turns);
   const auto target = played(columns), here = mixed(columns);
   const double rounding = 4 * 0x1p-24 * 3 * std::pow(10.0, static_cast<double>(turns.size()));
@@ -92,7 +92,7 @@ TEST(TextureMix, IsWhatTheKernelPlays) {
   expect_as_played({turn_at(50, 0), turn_at(60, 1), turn_at(70, 1.5)});
 }
 
-// A second change before the first is through begins from what is nearer.
+// A second change before the end of the first begins from the texture with the larger weight.
 TEST(TextureMix, ASecondChangeInAFadeIsTheKernelsToo) {
   expect_as_played({turn_at(100, 60), turn_at(110, 60)});
   expect_as_played({turn_at(100, 60), turn_at(150, 60)});
@@ -112,7 +112,7 @@ TEST(TextureMix, WhatIsNotKnownIsStoodInFor) {
   EXPECT_TRUE(none.unknown[0]);
 }
 
-// Rows that were put in where no tick was made do not go on with a fade.
+// A fade does not continue in rows that were inserted for missing ticks.
 TEST(TextureMix, ARowWithoutATickIsNoTick) {
   Rows columns = rows_with({turn_at(100, 50)});
   for (std::size_t row = 120; row < 140; ++row) columns.rows[row].put_in = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is counted of a run: the time in play is not the time since arming.
+// Counters of a run: the time of playback differs from the time since arming.
 #include "playback/session/tick_view.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated device closes the loop with what was uploaded: every tick of it is the in-process kernel's, to
-// the bit.
+// The emulated device closes the loop with the uploaded data: each of its ticks equals the in-process
+// kernel's to the bit.
 #include "playback/prepare/upload.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ void take_ticks(Client& client, std::size_t up_to, std::vector<wire::Tick>& tick
   }
 }
 
-/// Ticks of a second of playing. Halfway, `meanwhile`.
+/// Ticks of a second of playback; `meanwhile` is called halfway.
 std::vector<wire::Tick> play_a_second(
     Client& client, double rate_hz, const std::function<void()>& meanwhile = [] {}) {
   EXPECT_TRUE(
@@ -87,7 +87,7 @@ TEST_P(Uploaded, TheDevicesDriveIsTheKernelsToTheBit) {
       << "a drive of nothing proves nothing";
 }
 
-// The device's gain stays the first one's: what is sent is scaled to it.
+// The device's gain remains that of the first texture: the uploaded samples are scaled to it.
 TEST_P(Uploaded, AChangeIsTheKernelsToTheBit) {
   PrepareOptions options = device_options(GetParam());
   const auto one = prepare(two_sines(), uploaded_transducer(), options);
@@ -132,8 +132,8 @@ TEST(Upload, ATextureTooLargeIsRefusedWithBothSizes) {
   EXPECT_NE(message(sent.error()).find(std::to_string(room)), std::string::npos);
 }
 
-// Between upload and arming a new profile takes levels, taps and all back: a host of protocol 1.0 plays as it
-// did.
+// Between upload and arming a new profile removes levels, taps and everything else: a host of protocol 1.0
+// plays as before.
 TEST(Upload, AnOlderHostsProfileKnowsNothingOfIt) {
   const auto prepared = prepare(two_sines(), uploaded_transducer(), device_options(2e3));
   const auto device = sim_device();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The positions of the real bare-finger recording, read without any of our readers.
+// The positions of the real bare-finger recording, read without the readers under test.
 #pragma once
 
 #include <fstream>
@@ -8,7 +8,7 @@
 
 namespace tacto::spatial {
 
-/// In m, at 10 kHz; empty where the data isn't there. 0.5 um a count (data/README.md).
+/// In m, at 10 kHz; empty without the data. 0.5 um per count (data/README.md).
 inline std::vector<double> bare_finger() {
   std::ifstream file(std::string(TACTO_DATA) + "/bare-finger/bare_finger_10kHz.csv");
   std::vector<double> position_m;

@@ -25,7 +25,7 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-// White noise of RMS 1, under an offset, a drift and slow waves of 100 times that.
+// White noise of RMS 1, plus an offset, a drift and slow waves that are 100 times as large.
 std::vector<double> drifting(std::size_t size, unsigned seed, double largest = 100) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -37,7 +37,7 @@ std::vector<double> drifting(std::size_t size, unsigned seed, double largest = 1
   return values;
 }
 
-// In chunks of uneven sizes.
+// In chunks of different sizes.
 std::vector<double> in_chunks(BlockFourierFilter& filter, std::span<const double> values,
                               std::size_t largest) {
   std::mt19937_64 random(7);
@@ -58,7 +58,7 @@ struct Case {
   std::size_t size;
 };
 
-// The largest difference at some 60 places, many of them near the ends, re the RMS of what passes.
+// The largest error at some 60 places, many of them near the ends, re the RMS of the output.
 double error_of(const Case& c, const std::vector<double>& values) {
   BlockFourierFilter filter(c.rate_hz, c.band);
   const auto fast = in_chunks(filter, values, 30000);
@@ -80,7 +80,7 @@ TEST_P(EqualsTheDefinition, ToFiveTenMillionths) {
   const Case& c = GetParam();
   const double error = error_of(c, drifting(c.size, 1));
   RecordProperty("error_re_rms", fmt::format("{:.1e}", error));
-  // 1e-4 is asked for. The half-band filters' 1e-8, of a drift of 100 and of noise out of the band.
+  // Required: 1e-4. The half-band filters have 1e-8 of a drift of 100 and of noise outside of the band.
   EXPECT_LT(error, 5e-7) << c.name;
 }
 
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"1 MHz", 1e6, {2000, 10000}, 400000}, Case{"low and slow", 100, {0.5, 20}, 30000}),
     name_of_case);
 
-// The real recording's tangential force, in volts; empty where the data isn't there.
+// The real recording's tangential force, in volts; empty without the data.
 std::vector<double> lateral_force() {
   std::ifstream file(std::string(TACTO_DATA) + "/bare-finger/bare_finger_10kHz.csv");
   std::vector<double> values;
@@ -113,7 +113,7 @@ std::vector<double> lateral_force() {
 TEST(BlockFourierFilter, EqualsTheDefinitionOnARealFingersForce) {
   const auto once = lateral_force();
   if (once.empty()) GTEST_SKIP() << "skipped: no real data";
-  // Ten times in turn, over a drift of 3 V.
+  // Repeated ten times, over a drift of 3 V.
   std::vector<double> values;
   for (int turn = 0; turn < 10; ++turn) values.insert(values.end(), once.begin(), once.end());
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -155,8 +155,8 @@ TEST(BlockFourierFilter, GivesValuesInBoundedLag) {
 }
 
 TEST(BlockFourierFilter, AppliesAGain) {
-  // A resonance as a sensor has it, in a record that is at rest for longer than the kernel at both ends: the
-  // transform of the whole record is right there.
+  // A resonance like a sensor's, in a record that rests at both ends for longer than the kernel, so that the
+  // transform of the whole record is exact.
   const auto gain = [](double f_hz) {
     const std::complex<double> s(0, f_hz / 200);
     return s / (1.0 + 0.1 * s + s * s);

@@ -12,7 +12,7 @@
 namespace tacto::spatial {
 namespace {
 
-// Brown noise: strong where the filter is slow.
+// Brown noise has much energy at the filter's low frequencies.
 std::vector<double> brown(std::size_t size) {
   std::mt19937_64 random(6);
   std::normal_distribution<double> normal;
@@ -21,7 +21,7 @@ std::vector<double> brown(std::size_t size) {
   return values;
 }
 
-double largest(const std::vector<double>& values) {
+double largest_difference(const std::vector<double>& values) {
   double size = 0;
   for (const double value : values) size = std::max(size, std::abs(value));
   return size;
@@ -46,7 +46,7 @@ void expect_equal(int order, Band band, double rate_hz, std::size_t size, std::s
   BlockZeroPhase filter(*sections, padding);
   const auto filtered = in_chunks(filter, values, 50000);
   ASSERT_EQ(filtered.size(), size);
-  const double most = 1e-13 * largest(values);
+  const double most = 1e-13 * largest_difference(values);
   for (std::size_t i = 0; i < size; ++i)
     ASSERT_NEAR(filtered[i], expected[i], most) << order << " of " << size << " at " << i;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The promise of --max-error: for random surfaces, fingers and rates the real error stays under the asked
+// The promise of --max-error: for random surfaces, fingers and rates the true error stays below the requested
 // one.
 #include "spatial/spectrogram/budget.hpp"
 
@@ -13,33 +13,34 @@
 #include "playback/model/texture_lookup.hpp"
 #include "spatial/dsp/resample/thinned.hpp"
 #include "spatial/texture/make_texture.hpp"
+#include "tests/measured.hpp"
 
 namespace tacto::spatial {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-struct Line {
+struct BudgetLine {
   double frequency, amplitude, phase;  // 1/m, or of vibrations in time: cycles a frame
 };
 
-// A surface, a finger on it whose position is known exactly, and the error that is asked for.
+// A surface, a finger on it with exactly known position, and the requested error.
 struct Case {
   TextureNeed need;
   double wander = 0, wander_frames = 0, asked = 0;
   std::size_t frames = 0;
-  std::vector<Line> lines;
-  bool in_time = false;  // vibrations: finest in space where the finger is slowest
+  std::vector<BudgetLine> lines;
+  bool in_time = false;  // vibrations; their spatial frequency is highest where the finger is slowest
 
   double force_at_frame(double frame) const { return sum_of(in_time ? frame : way_m(frame)); }
   double force_at(double x_m) const { return sum_of(in_time ? frame_at(x_m) : x_m); }
   double sum_of(double place) const {
     double sum = 0;
-    for (const Line& line : lines)
+    for (const BudgetLine& line : lines)
       sum += line.amplitude * std::sin(kTurn * line.frequency * place + line.phase);
     return sum;
   }
-  // By halving: the way grows with each frame.
+  // By bisection; the position increases with each frame.
   double frame_at(double x_m) const {
     double low = 0, high = static_cast<double>(frames);
     for (int i = 0; i < 60; ++i) (way_m((low + high) / 2) < x_m ? low : high) = (low + high) / 2;
@@ -71,7 +72,8 @@ Case drawn_case(unsigned seed) {
   made.wander_frames = draw.even(kSteadyFrames, 3000);
   made.asked = draw.logarithmic(3e-6, 3e-2);
   made.frames = 2500;
-  // Nothing beyond the band where the finger is fastest; half of the surfaces are a single line at its edge.
+  // No content outside of the band where the finger is fastest; half of the surfaces are a single line at its
+  // edge.
   made.in_time = draw.even(0, 1) < 0.4;
   const double highest = made.in_time ? made.need.highest_hz / made.need.sample_rate_hz
                                       : made.need.highest_hz / (made.need.slowest_mps * (1 + made.wander));
@@ -82,7 +84,7 @@ Case drawn_case(unsigned seed) {
   return made;
 }
 
-// As TextureMaker does it: on a finer grid where the band asks for one, then thinned.
+// As TextureMaker does: on a finer grid if the band requires one, then decimated.
 schema::SpaceSignal texture_by(const TextureChoice& choice, const Case& from) {
   MonotonePath path;
   std::vector<double> force;
@@ -98,7 +100,7 @@ schema::SpaceSignal texture_by(const TextureChoice& choice, const Case& from) {
   return {choice.pitch_m, grid->origin_m(), std::move(values)};
 }
 
-// RMS of what playback's reading misses, re the RMS, away from the ends.
+// RMS error of playback's interpolation, re the RMS, away from the ends.
 double real_error(const TextureChoice& choice, const Case& from) {
   const schema::SpaceSignal texture = texture_by(choice, from);
   const playback::TextureLookup lookup(texture, texture.origin_m);
@@ -140,7 +142,9 @@ TEST(Budget, KeepsItsPromiseForRandomSurfacesAndFingers) {
     closest = std::max(closest, error / drawn.asked);
     ++kept;
   }
-  // A promise that is kept by always taking the dearest would be worth nothing.
+  measured("spatial_budget.promises", static_cast<double>(kept));
+  measured("spatial_budget.closest", closest);
+  // Promises that always need the most expensive choice, or are mostly refused, would be useless.
   EXPECT_GT(kept, 500U);
   EXPECT_GT(closest, 0.3);
   std::cout << kept << " promises kept, " << refused << " refused; the closest at " << closest
@@ -166,7 +170,7 @@ TEST(Budget, NamesWhatIsAttainableWhereItRefuses) {
   const auto refused = choose_texture(*table, {10e3, 500, 0.05, ResampleMethod::linear, {}}, budget_of(1e-4));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, schema::ErrorKind::unsuitable);
-  EXPECT_NE(refused.error().what.find("the least is"), std::string::npos) << refused.error().what;
+  EXPECT_NE(refused.error().what.find("the smallest is"), std::string::npos) << refused.error().what;
   EXPECT_NE(refused.error().what.find("linear"), std::string::npos) << refused.error().what;
 }
 

@@ -71,7 +71,7 @@ TEST(Butterworth, ZeroPhaseBandIsWhereTheGainSaysSo) {
         return power;
       };
       const Band kept = zero_phase_band(order, band, 10000, 0.9);
-      EXPECT_NEAR(amplitude(kept.low_hz), 0.9, 1e-6) << order;  // the sections' own rounding near 1 Hz
+      EXPECT_NEAR(amplitude(kept.low_hz), 0.9, 1e-6) << order;  // coefficient rounding near 1 Hz
       EXPECT_NEAR(amplitude(kept.high_hz), 0.9, 1e-6) << order;
       EXPECT_GT(kept.low_hz, band.low_hz);
       EXPECT_LT(kept.high_hz, band.high_hz);
@@ -115,7 +115,7 @@ TEST(Butterworth, RefusesWhatCannotBe) {
 TEST(Butterworth, TakesTheShortest) {
   const auto sections = butterworth_band_pass(2, {15, 400}, 1000);
   EXPECT_TRUE(filter_zero_phase(*sections, {}, 10).empty());
-  // A constant is stopped whole: the sections start in its steady state.
+  // A constant is removed completely: the sections start in their steady state.
   for (const std::size_t size : {1U, 2U, 10U})
     for (const double value : filter_zero_phase(*sections, std::vector<double>(size, 5.0), 15))
       EXPECT_NEAR(value, 0, 1e-12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Speed certificates of simulated strokes, in which it is known what is the surface's.
+// Speed certificates of simulated strokes with known lines of the surface.
 #include "spatial/certificate/certificate.hpp"
 
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include <map>
 #include <string>
 
+#include "tests/measured.hpp"
 #include "tests/spatial/simulated_strokes.hpp"
 
 namespace tacto::spatial {
@@ -72,12 +73,12 @@ TEST(Certificate, AHumAcrossThreeSpeedsIsTemporal) {
       EXPECT_EQ(line[0].verdict, PeakVerdict::spatial) << k;
     }
   }
-  // The hum lies elsewhere along each surface.
+  // The hum is at another spatial frequency in each texture.
   EXPECT_NEAR(near_hz((*made)[0], 100)[0].frequency_per_m, 100 / 0.03, 0.01 * 100 / 0.03);
   EXPECT_NEAR((*made)[0].speed_ratio, 3, 0.01);
 }
 
-// At 50 mm/s the hum lies right on the line of 2 /mm.
+// At 50 mm/s the hum coincides with the line of 2 /mm.
 TEST(Certificate, AHumThatCrossesALineAtOneSpeedIsToldFromIt) {
   World world;
   world.hums = {{100, 0.03}};
@@ -94,7 +95,7 @@ TEST(Certificate, AHumThatCrossesALineAtOneSpeedIsToldFromIt) {
   }
 }
 
-// A line at 0.4 /mm is under the fast stroke's valid band (15 Hz): not absent there, but not known.
+// A line at 0.4 /mm is below the fast stroke's valid band (15 Hz), so it is unknown there, not absent.
 TEST(Certificate, WhatTheBandCutsOffIsUnknownNotAbsent) {
   World world;
   world.surface = {{250, 0.05}};
@@ -132,15 +133,15 @@ TEST(Certificate, RefusesWhatTellsNothing) {
       << alike.error().what;
 }
 
-// A case of the two hundred: surfaces with harmonics, hums with theirs, resonances, wavering speeds.
-struct Case {
+// One of the two hundred cases: surfaces with harmonics, hums with harmonics, resonances, varying speeds.
+struct CertificateCase {
   World world;
   std::vector<Stroke> strokes;
 };
 
-Case random_case(std::uint64_t seed) {
+CertificateCase random_case(std::uint64_t seed) {
   Dice dice(seed);
-  Case made;
+  CertificateCase made;
   World& world = made.world;
   world.noise = 0.02;
   const int lines = static_cast<int>(dice.even(0, 4));
@@ -164,7 +165,7 @@ Case random_case(std::uint64_t seed) {
   }
   if (dice.chance(0.3)) world.rough = dice.ratio(0.005, 0.03);
   const int strokes = dice.chance(0.4) ? 2 : 3;
-  // Round ratios as people choose them, on which harmonics fall on one another, or any.
+  // Round ratios, at which harmonics coincide, or any ratio.
   const double round[] = {1.25, 1.5, 2, 3, 4};
   double speed = dice.ratio(0.02, 0.06);
   for (int n = 0; n < strokes; ++n) {
@@ -180,7 +181,8 @@ bool near_any(const std::vector<Line>& lines, double frequency, double tolerance
                              [&](const Line& l) { return std::abs(l.frequency - frequency) < tolerance; });
 }
 
-// Peaks of a rough surface are its own wherever they lie; a resonance's within its bandwidth.
+// Whether a peak is certified correctly: peaks of a rough surface at any frequency; those of a resonance
+// within its bandwidth.
 bool right(const World& world, const CertifiedPeak& peak, double shortest_m, double longest_s) {
   if (peak.verdict == PeakVerdict::spatial)
     return world.rough > 0 ||
@@ -195,7 +197,7 @@ TEST(Certificate, AmongDecidedPeaksOf200CasesAtMostOneInTwentyIsWrong) {
   std::size_t decided = 0, wrong = 0, undecided = 0, refused = 0, truths = 0;
   std::map<std::string, std::size_t> reasons;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const Case each = random_case(7000 + seed);
+    const CertificateCase each = random_case(7000 + seed);
     const auto made = certificates_of(each.world, each.strokes, 7000 + seed);
     if (!made) {
       ++refused;
@@ -230,6 +232,10 @@ TEST(Certificate, AmongDecidedPeaksOf200CasesAtMostOneInTwentyIsWrong) {
       refused, truths, decided, wrong, 100.0 * static_cast<double>(wrong) / static_cast<double>(decided),
       undecided);
   for (const auto& [reason, count] : reasons) std::printf("  undecided, %s: %zu\n", reason.c_str(), count);
+  measured("spatial_certificate.classified", static_cast<double>(decided));
+  measured("spatial_certificate.wrong", static_cast<double>(wrong));
+  measured("spatial_certificate.wrong_percent",
+           100.0 * static_cast<double>(wrong) / static_cast<double>(decided));
   EXPECT_GT(decided, 500U);
   EXPECT_LE(static_cast<double>(wrong), 0.05 * static_cast<double>(decided));
 }

@@ -10,7 +10,7 @@
 namespace tacto::spatial {
 namespace {
 
-// 200 mm forth and back on counts of 1 um, and the same through a counter of so many bits that starts high.
+// 200 mm back and forth with counts of 1 um, and the same through a counter of some bits that starts high.
 std::vector<double> true_counts() {
   std::vector<double> counts;
   for (int i = 0; i < 40000; ++i)
@@ -31,7 +31,7 @@ std::vector<double> wrapped(const std::vector<double>& counts, int bits, double 
 
 CounterWraps found_in(const std::vector<double>& counts, std::span<const schema::Gap> gaps = {}) {
   CounterWrapFinder finder(gaps);
-  // In pieces of odd sizes, as a long record comes.
+  // In pieces of odd sizes, as in a long record.
   for (std::size_t begin = 0; begin < counts.size(); begin += 777)
     finder.add(std::span(counts).subspan(begin, std::min<std::size_t>(777, counts.size() - begin)));
   return finder.finish();
@@ -40,7 +40,7 @@ CounterWraps found_in(const std::vector<double>& counts, std::span<const schema:
 void expect_put_right(const std::vector<double>& truth, std::vector<double> seen, int bits) {
   const CounterWraps wraps = found_in(seen);
   ASSERT_EQ(wraps.bits, bits);
-  // From any place on.
+  // From any start on.
   for (const std::size_t first : {std::size_t{0}, std::size_t{12345}}) {
     std::vector<double> part(seen.begin() + static_cast<std::ptrdiff_t>(first), seen.end());
     wraps.unwrap(first, part);
@@ -60,10 +60,10 @@ TEST(CounterWraps, SixteenTwentyFourAndThirtyTwoBitsArePutRight) {
 TEST(CounterWraps, AreCountedWhereTheyAre) {
   const auto truth = true_counts();
   const CounterWraps wraps = found_in(wrapped(truth, 16, 0, false));
-  ASSERT_EQ(wraps.turns.size(), 12U);  // 3 on each way of the four
+  ASSERT_EQ(wraps.turns.size(), 12U);  // 3 on each pass of the four
   EXPECT_EQ(wraps.count_in(0, 10000), 3U);
   EXPECT_EQ(wraps.count_in(10000, 20000), 3U);
-  EXPECT_EQ(wraps.count_in(wraps.turns[0].frame, 10000), 2U);  // the first frame has no step into it
+  EXPECT_EQ(wraps.count_in(wraps.turns[0].frame, 10000), 2U);  // the first frame has no previous one
 }
 
 TEST(CounterWraps, ACounterThatIsLongEnoughHasNone) {
@@ -93,7 +93,7 @@ TEST(CounterWraps, NumbersThatAreNoCountsHaveNone) {
 TEST(CounterWraps, AGapHidesNone) {
   const auto truth = true_counts();
   auto seen = wrapped(truth, 16, 65536 - 50, false);
-  // 40 frames are missing where it wraps first.
+  // 40 frames are missing at its first overflow.
   const CounterWraps before = found_in(seen);
   const std::size_t wrap = before.turns[0].frame;
   seen.erase(seen.begin() + static_cast<std::ptrdiff_t>(wrap) - 20,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A PNG in memory as pixels, so that tests can look at pictures.
+// Decodes a PNG in memory to pixels, for tests of pictures.
 #pragma once
 
 #include <cairo.h>
@@ -26,7 +26,7 @@ inline cairo_status_t take_bytes(void* rest, unsigned char* out, unsigned int le
   return CAIRO_STATUS_SUCCESS;
 }
 
-/// An empty picture where the bytes are not a PNG.
+/// An empty picture if the bytes are not a PNG.
 inline DecodedPng decode_png(const std::string& bytes) {
   std::string_view rest = bytes;
   cairo_surface_t* surface = cairo_image_surface_create_from_png_stream(take_bytes, &rest);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Standard descriptions against closed forms; description_test.py holds them against SciPy.
+// Standard descriptions against closed forms; description_test.py compares them with SciPy.
 #include "spatial/features/description.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(Description, ASineIsAllInItsOwnBand) {
     }
 }
 
-// Bands tile what is known without gap or overlap, so their powers sum to the RMS to rounding.
+// Bands cover the valid band without gap or overlap, so their powers sum to the RMS, to rounding.
 TEST(Description, BandsSumToTheRms) {
   auto texture = white(50000, 2e-6);
   texture.valid_band = {{0, 375, 12500}, {0.05, 410, 13000}, {0.1, 375, 12500}};
@@ -64,8 +64,8 @@ TEST(Description, BandsSumToTheRms) {
   }
 }
 
-// Parseval: the first and last half window weigh less (2 windows in about 200), and what lies under 1.5 /
-// window (0.6 % of the band here) is left out.
+// Parseval: the first and last half window have less weight (2 windows in about 200), and frequencies below
+// 1.5 / window (0.6 % of the band here) are excluded.
 TEST(Description, TheWholeBandHoldsTheSamplesPower) {
   DescriptionOptions options;
   options.window_m = 1e-3;
@@ -75,8 +75,8 @@ TEST(Description, TheWholeBandHoldsTheSamplesPower) {
   EXPECT_NEAR(made->total_rms, 1, 0.01);
 }
 
-// White noise: density 2 pitch, slope 0, centroid in the middle of the band. 5 seeds of a wide band scatter
-// by their number of windows.
+// White noise: density 2 pitch, slope 0, centroid in the middle of the band. Tolerance: scatter by the number
+// of windows; 5 seeds of a wide band.
 TEST(Description, WhiteNoiseHasNoSlope) {
   auto texture = white(500000, 2e-6);
   texture.valid_band = {{0, 400, 100e3}};
@@ -87,7 +87,8 @@ TEST(Description, WhiteNoiseHasNoSlope) {
   EXPECT_NEAR(made->rms, std::sqrt(2 * 2e-6 * 99.6e3), 0.005);
 }
 
-// A random walk's density falls by 20 dB a decade, 6.02 dB an octave, well under half the sampling frequency.
+// A random walk's density falls by 20 dB per decade, 6.02 dB per octave, far below half the sampling
+// frequency.
 TEST(Description, ARandomWalkFallsBySixDecibelsAnOctave) {
   auto texture = white(500000, 2e-6);
   double sum = 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A touch whose numbers a test makes: tangential force and position, no normal force.
+// A touch with values from a test: tangential force and position, no normal force.
 #pragma once
 
 #include "spatial/strokes/touch_source.hpp"
 
 namespace tacto::spatial::samples {
 
-/// What is left to do is read_stored().
+/// Derived classes implement only read_stored().
 class ForceAndPosition : public TouchSource {
  public:
   ForceAndPosition() {

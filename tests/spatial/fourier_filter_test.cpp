@@ -15,9 +15,9 @@ namespace {
 constexpr double kRate_hz = 10000;
 constexpr Band kBand{15, 500};
 
-// Tones well inside the band at random frequencies (none periodic in the record), of RMS 1, and the same
-// under what the band must take away: drift, slow waves, an offset, and a slope that leaves the ends 20 RMS
-// apart.
+// Tones well inside the band at random frequencies (none periodic in the record), of RMS 1, and the same with
+// content that the band must remove: drift, slow waves, an offset, and a slope that makes the ends differ by
+// 20 RMS.
 struct Example {
   std::vector<double> inside, all;
 };
@@ -72,7 +72,7 @@ TEST(FourierFilter, PlainOneEqualsTheDefinition) {
     const auto record = example(size, 1);
     const auto fast = fourier_filter(record.all, kRate_hz, {15, 501}, Edges::none);
     const auto exact = reference::exact_band_pass(record.all, kRate_hz, {15, 501});
-    // 1e-9 is asked for; doubles give some 1e-16 of the record's size, 25.
+    // Required: 1e-9. Double precision gives about 1e-16 of the record's size, 25.
     for (std::size_t i = 0; i < size; ++i) ASSERT_NEAR(fast[i], exact[i], 1e-13) << size;
   }
 }
@@ -87,8 +87,7 @@ TEST(FourierFilter, KeepsWhatLiesOnTheBandsEdges) {
 }
 
 TEST(FourierFilter, TreatedEndsDoNotRing) {
-  // The figures of the header. Plain truncation of the same records is shown to be what they are held
-  // against.
+  // The figures in the header. Plain truncation of the same records is compared with its figures there, too.
   const Errors treated = errors_of(Edges::treated, 20000), plain = errors_of(Edges::none, 20000);
   RecordProperty("treated_middle", std::to_string(treated.middle));
   RecordProperty("treated_near", std::to_string(treated.near));
@@ -103,8 +102,8 @@ TEST(FourierFilter, TreatedEndsDoNotRing) {
 }
 
 TEST(FourierFilter, TreatedOneDoesNotDependOnWhereBinsLie) {
-  // Brown noise is strong at 15 Hz, where it is cut. The same record, a little shorter, has its bins
-  // elsewhere.
+  // Brown noise has much energy at 15 Hz, where it is cut. The same record, a little shorter, has bins at
+  // other frequencies.
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;
   std::vector<double> brown(80000);
@@ -125,7 +124,7 @@ TEST(FourierFilter, TreatedEndsForgetOffsetsAndSlopes) {
   for (std::size_t i = 0; i < shifted.size(); ++i) shifted[i] += 1000 - 0.3 * static_cast<double>(i);
   const auto a = fourier_filter(record.all, kRate_hz, kBand, Edges::treated);
   const auto b = fourier_filter(shifted, kRate_hz, kBand, Edges::treated);
-  // What is left is the in-band part of the smooth taper from one level to the other, 1500 high.
+  // The residual is the part within the band of the smooth taper from one level to the other, 1500 high.
   EXPECT_LT(rms_difference(a, b, 0, a.size()), 1500 * 2e-5);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Golden numbers: text files of lines of numbers, made by the scripts beside them.
+// Reads golden numbers: text files with lines of numbers, made by the scripts beside them.
 #pragma once
 
 #include <fstream>
@@ -16,7 +16,7 @@ class GoldenFile {
   bool good() const { return file_.good(); }
   /// The next line; false at the end.
   bool next(std::string& line) { return static_cast<bool>(std::getline(file_, line)); }
-  /// The next line's numbers; none at the end. strtod by way of stod reads denormals, which streams refuse.
+  /// The next line's numbers; none at the end. Uses strtod through stod, because streams refuse denormals.
   std::vector<double> numbers() {
     std::string line, word;
     std::getline(file_, line);

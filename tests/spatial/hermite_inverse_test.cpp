@@ -50,7 +50,7 @@ std::vector<double> targets(const Knots& knots, std::size_t count) {
   return at;
 }
 
-// The largest miss of position, in m.
+// The largest error of position, in m.
 double position_error(const Knots& knots, const std::vector<double>& at) {
   const HermiteInverse inverse(knots.t, knots.x);
   const reference::ExactHermite exact(knots.t, knots.x);
@@ -62,7 +62,7 @@ double position_error(const Knots& knots, const std::vector<double>& at) {
   return error;
 }
 
-// The largest miss of time, in segments.
+// The largest error of time, in segments.
 double time_error(const Knots& knots, const std::vector<double>& at) {
   const HermiteInverse inverse(knots.t, knots.x);
   const reference::ExactHermite exact(knots.t, knots.x);
@@ -78,7 +78,7 @@ double time_error(const Knots& knots, const std::vector<double>& at) {
 
 TEST(HermiteInverse, AgreesWithBisectionInLongDouble) {
   const Knots knots = finger(0);
-  // 1e-9 m is asked for; a step of 1e-10 of a segment of 9 um at most is 1e-15 m.
+  // Required: 1e-9 m. A step of 1e-10 of a segment of at most 9 um is 1e-15 m.
   EXPECT_LT(position_error(knots, targets(knots, 5000)), 1e-14);
   EXPECT_LT(time_error(knots, targets(knots, 500)), 1e-10);
 }

@@ -35,7 +35,7 @@ double largest(const std::vector<double>& values) {
   return size;
 }
 
-// Some roundings of doubles: both sides take about 20 operations.
+// Some rounding errors of doubles: both sides use about 20 operations.
 constexpr double kRounding = 1e-14;
 
 TEST(Hermite, EqualsSciPy) {

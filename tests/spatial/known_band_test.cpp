@@ -18,7 +18,7 @@ const std::vector<BandPoint> kBand = {
     {0, 100, 9000}, {10e-3, 300, 9000}, {20e-3, 300, 5000}, {40e-3, 500, 5000}};
 
 TEST(KnownBand, IsTheNarrowestAlongTheStretch) {
-  // Between breakpoints the limits are straight: 200 at 5 mm, 7000 at 15 mm.
+  // Between breakpoints the limits are linear: 200 at 5 mm, 7000 at 15 mm.
   const auto rising = band_along(kBand, 2e-3, 5e-3);
   EXPECT_NEAR(rising.low_per_m, 200, 1e-9);
   EXPECT_NEAR(rising.high_per_m, 9000, 1e-9);
@@ -35,7 +35,7 @@ TEST(KnownBand, FindsAPeakBetweenTheEnds) {
   EXPECT_NEAR(band_along(slow, 1e-3, 9e-3).low_per_m, 900, 1e-9);
 }
 
-// Against every position of a fine grid.
+// Compared with a test of every position of a fine grid.
 TEST(KnownBand, AgreesWithALookAtEachPosition) {
   const std::vector<double> centres = {0, 4e-3, 9.9e-3, 17e-3, 39e-3, 50e-3};
   const auto known = known_bands(kBand, centres, 10e-3);
@@ -66,7 +66,7 @@ TEST(KnownBand, CellsBelongToItWithBothEnds) {
   spectrogram.bins = 5;
   spectrogram.frequency_step_per_m = 100;
   spectrogram.position_m = {0, 1};
-  EXPECT_TRUE(spectrogram.knows(1, 4));  // nothing is said: all is taken for known
+  EXPECT_TRUE(spectrogram.knows(1, 4));  // without an entry everything is known
   spectrogram.known = {{100, 300}, {300, 100}};
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_EQ(spectrogram.knows(0, k), k >= 1 && k <= 3) << k;

@@ -10,34 +10,34 @@
 #include <numbers>
 
 #include "spatial/spectrogram/known_band.hpp"
-#include "spatial/texture/equaliser.hpp"
+#include "spatial/texture/time_filter.hpp"
 #include "spatial/texture/valid_band.hpp"
 #include "tests/data-schema/temporary_folder.hpp"
 
 namespace tacto::spatial {
 namespace {
 
-constexpr double kRate_hz = 10000;
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kTextureRate_hz = 10000;
+constexpr double kTextureTurn = 2 * std::numbers::pi;
 using Surface = std::function<double(double position_m)>;
 
 // A chirp from 0.5 to 6 /mm over 80 mm, in N.
 double chirp(double x_m) {
-  return 0.1 * std::sin(kTurn * (500 * x_m + 0.5 * 5500 / 0.08 * x_m * x_m));
+  return 0.1 * std::sin(kTextureTurn * (500 * x_m + 0.5 * 5500 / 0.08 * x_m * x_m));
 }
 
 double ridges(double x_m) {
-  return 0.2 * std::sin(kTurn * 2000 * x_m) + 0.1 * std::sin(kTurn * 3300 * x_m + 1);
+  return 0.2 * std::sin(kTextureTurn * 2000 * x_m) + 0.1 * std::sin(kTextureTurn * 3300 * x_m + 1);
 }
 
-// A finger that goes `length_m` with `wobble` of its speed too fast and too slow three times, rests 0.5 s at
-// each end.
+// A finger that moves `length_m` with a speed that varies three times by `wobble`, and rests 0.5 s at each
+// end.
 std::vector<double> stroke_path(double from_m, double length_m, double speed_mps, double wobble) {
-  const auto moving = static_cast<int>(std::abs(length_m) / speed_mps * kRate_hz), rest = 5000;
+  const auto moving = static_cast<int>(std::abs(length_m) / speed_mps * kTextureRate_hz), rest = 5000;
   std::vector<double> path(rest, from_m);
   for (int i = 1; i <= moving; ++i) {
     const double u = static_cast<double>(i) / moving;
-    path.push_back(from_m + length_m * (u + wobble / (3 * kTurn) * std::sin(3 * kTurn * u)));
+    path.push_back(from_m + length_m * (u + wobble / (3 * kTextureTurn) * std::sin(3 * kTextureTurn * u)));
   }
   path.insert(path.end(), rest, path.back());
   return path;
@@ -56,12 +56,12 @@ schema::Channel channel(const std::string& quantity, const std::string& unit) {
 
 class MakeTexture : public testing::Test {
  protected:
-  // What a surface gives along a path, with the position rounded to the encoder's quantum, as a recording on
-  // disk.
+  // A recording on disk of the surface's force along a path, with the position rounded to the encoder's
+  // quantum.
   schema::Recording record(const std::vector<double>& path, const Surface& surface, double quantum_m,
                            const std::function<void(schema::RecordingHeader&)>& change = {}) {
     schema::RecordingHeader header;
-    header.sample_rate_hz = kRate_hz;
+    header.sample_rate_hz = kTextureRate_hz;
     header.clock = "computed";
     header.channels = {channel("tangential_force", "N"), channel("position", "m"),
                        channel("normal_force", "N")};
@@ -93,7 +93,7 @@ class MakeTexture : public testing::Test {
   int count_ = 0;
 };
 
-// RMS difference from the surface, re its RMS, where it lies `margin_m` and more from the stroke's ends.
+// RMS difference from the surface, re its RMS, at least `margin_m` from the stroke's ends.
 double error_of(const schema::Texture& texture, const Surface& surface, double margin_m) {
   double miss = 0, size = 0;
   for (std::size_t i = 0; i < texture.signal.values.size(); ++i) {
@@ -107,8 +107,8 @@ double error_of(const schema::Texture& texture, const Surface& surface, double m
 }
 
 TEST_F(MakeTexture, AChirpInSpaceComesBackFromAnUnevenFinger) {
-  // 30 to 70 mm/s, so that the chirp lies within 15 to 420 Hz. What is left is the cubic's own error at 24
-  // samples a period, and of the filter at the start, where the chirp is at the band's edge.
+  // 30 to 70 mm/s, so that the chirp is within 15 to 420 Hz. The residual is the cubic's own error at 24
+  // samples per period, and that of the filter at the start, where the chirp is at the band's edge.
   const auto recording = record(stroke_path(0, 0.08, 0.05, 0.4), chirp, 0);
   EXPECT_LT(error_of(texture_of(recording, {}), chirp, 0.008), 0.01);
   TextureOptions whole;
@@ -116,15 +116,15 @@ TEST_F(MakeTexture, AChirpInSpaceComesBackFromAnUnevenFinger) {
   EXPECT_LT(error_of(texture_of(recording, whole), chirp, 0), 0.004);
 }
 
-// A surface that fades in and out over 15 mm: where the finger starts and stops there is no jolt, whose band
-// reaches over everything.
+// A surface that fades in and out over 15 mm, so that the force has no step where the finger starts and
+// stops, which would have all frequencies.
 double fading(double x_m, double from_m, double to_m) {
   const double inside = std::clamp(std::min(x_m - from_m, to_m - x_m) / 0.015, 0.0, 1.0);
-  return std::pow(std::sin(kTurn / 4 * inside), 2);
+  return std::pow(std::sin(kTextureTurn / 4 * inside), 2);
 }
 
-// Largest part of the band that a texture knows throughout, from 20 % above its lower end to 20 % below its
-// upper one: at the edges the band-pass halves what lies on them.
+// The largest band that is valid along the whole texture, from 20 % above its lower end to 20 % below its
+// upper one, because the band-pass halves components at the edges.
 schema::BandPoint well_within(const schema::Texture& texture, double from_m, double to_m) {
   std::vector<schema::BandPoint> along;
   for (const auto& point : texture.valid_band)
@@ -134,11 +134,11 @@ schema::BandPoint well_within(const schema::Texture& texture, double from_m, dou
 }
 
 TEST_F(MakeTexture, AChirpInItsValidBandComesBackToATenthOfAPercent) {
-  // 1 to 5 /mm under 30 to 70 mm/s: 30 to 350 Hz. A texture knows 0.5 /mm (15 Hz / 30 mm/s) to 7.1 /mm (500
-  // Hz / 70 mm/s) of it. By the windowed sinc; the monotone cubic flattens the peaks of what has 29 samples a
-  // period, by what resample.hpp states.
+  // 1 to 5 /mm under 30 to 70 mm/s: 30 to 350 Hz. The valid band is 0.5 /mm (15 Hz / 30 mm/s) to 7.1 /mm (500
+  // Hz / 70 mm/s). With the windowed sinc; the monotone cubic flattens the peaks at 29 samples per period, by
+  // the error that resample.hpp states.
   const Surface slow_chirp = [](double x_m) {
-    return fading(x_m, 0, 0.08) * 0.1 * std::sin(kTurn * (1000 * x_m + 0.5 * 4000 / 0.08 * x_m * x_m));
+    return fading(x_m, 0, 0.08) * 0.1 * std::sin(kTextureTurn * (1000 * x_m + 0.5 * 4000 / 0.08 * x_m * x_m));
   };
   const auto recording = record(stroke_path(0, 0.08, 0.05, 0.4), slow_chirp, 0);
   TextureOptions options;
@@ -173,7 +173,7 @@ TEST_F(MakeTexture, TwoSpeedsGiveOneSurface) {
 }
 
 TEST_F(MakeTexture, AnEncodersMicrometreCostsWhatItsPhaseIsWorth) {
-  // 1 um at 6 /mm is 2.2 degrees from end to end: 1.1 % RMS of a uniform error, at most.
+  // 1 um at 6 /mm is 2.2 degrees in all: at most 1.1 % RMS for a uniform error.
   const auto recording = record(stroke_path(0, 0.08, 0.05, 0.4), chirp, 1e-6);
   TextureOptions whole;
   whole.filter.method = FilterMethod::none;
@@ -199,7 +199,8 @@ double amplitude_of(const schema::Texture& texture, double per_m) {
   std::complex<double> sum = 0;
   const std::size_t from = samples.size() / 4, to = 3 * samples.size() / 4;
   for (std::size_t i = from; i < to; ++i)
-    sum += samples[i] * std::polar(1.0, -kTurn * per_m * static_cast<double>(i) * texture.signal.pitch_m);
+    sum +=
+        samples[i] * std::polar(1.0, -kTextureTurn * per_m * static_cast<double>(i) * texture.signal.pitch_m);
   return 2 * std::abs(sum) / static_cast<double>(to - from);
 }
 
@@ -214,10 +215,10 @@ TEST_F(MakeTexture, PositionsLieOnTheGridOfTheBench) {
   EXPECT_LT(error_of(texture, ridges, 0.005), 0.015);
 }
 
-// 1.5 /mm on a grid of 0.5 mm would come back as 0.5 /mm.
+// 1.5 /mm on a grid of 0.5 mm would alias to 0.5 /mm.
 TEST_F(MakeTexture, NothingFoldsOnACoarseGrid) {
-  const auto line = [](double x) { return 0.05 * std::sin(kTurn * 1500 * x); };
-  const auto held = [](double x) { return 0.05 * std::sin(kTurn * 700 * x); };
+  const auto line = [](double x) { return 0.05 * std::sin(kTextureTurn * 1500 * x); };
+  const auto held = [](double x) { return 0.05 * std::sin(kTextureTurn * 700 * x); };
   TextureOptions options;
   options.pitch_m = 0.5e-3;
   const auto folded = texture_of(record(stroke_path(0, 0.1, 0.05, 0), line, 0), options);
@@ -227,16 +228,16 @@ TEST_F(MakeTexture, NothingFoldsOnACoarseGrid) {
   EXPECT_NEAR(band_throughout(kept.valid_band).high_per_m, 0.4 / 0.5e-3, 1e-6);
 }
 
-// At a low rate the cubics flatten what the band lets through; the valid band ends where they keep nine
+// At a low rate the cubics flatten frequencies within the band; the valid band ends where they keep nine
 // tenths.
 TEST_F(MakeTexture, ValidBandEndsWhereTheMethodLosesTheLine) {
   for (const auto method : {ResampleMethod::hermite, ResampleMethod::linear, ResampleMethod::sinc}) {
     TextureOptions options;
     options.method = method;
     options.filter.band = {15, 4900};
-    const double known_hz = kept_hz(method, kRate_hz);
+    const double known_hz = kept_hz(method, kTextureRate_hz);
     const double speed_mps = 0.05, per_m = 0.98 * known_hz / speed_mps;
-    const auto line = [=](double x) { return 0.1 * std::sin(kTurn * per_m * x); };
+    const auto line = [=](double x) { return 0.1 * std::sin(kTextureTurn * per_m * x); };
     const auto texture = texture_of(record(stroke_path(0, 0.1, speed_mps, 0), line, 0), options);
     const auto known = band_along(texture.valid_band, 0.03, 0.07);
     EXPECT_NEAR(known.high_per_m, known_hz / speed_mps, 0.02 * known_hz / speed_mps) << name_of(method);
@@ -252,7 +253,7 @@ TEST_F(MakeTexture, ValidBandFollowsTheSpeed) {
   EXPECT_EQ(band.front().position_m, 0);
   EXPECT_EQ(band.back().position_m, texture.signal.length_m());
   for (const auto& point : band) {
-    // Limits kept to 1 % each; where the finger starts and stops, within half a period of 15 Hz, the low one
+    // Limits exact to 1 % each; where the finger starts and stops, within half a period of 15 Hz, the low one
     // is higher.
     EXPECT_LT(point.high_per_m / point.low_per_m, 1.02 * 500 / 15);
     const bool inside = point.position_m > 2e-3 && point.position_m < texture.signal.length_m() - 2e-3;
@@ -267,19 +268,19 @@ TEST_F(MakeTexture, ValidBandFollowsTheSpeed) {
   EXPECT_NEAR(texture.source.max_speed_mps, 0.07, 0.001);
 }
 
-// Creeps 26.4 ms at 2 mm/s, slips 5 ms at 300 mm/s, and so on along 80 mm: 49 mm/s in the mean.
+// Creeps 26.4 ms at 2 mm/s, slips 5 ms at 300 mm/s, repeatedly along 80 mm: 49 mm/s on average.
 std::vector<double> stick_slip_path() {
   std::vector<double> path(5000, 0.0);
   for (int i = 0; path.back() < 0.08; ++i)
-    path.push_back(path.back() + (i % 314 < 264 ? 0.002 : 0.3) / kRate_hz);
+    path.push_back(path.back() + (i % 314 < 264 ? 0.002 : 0.3) / kTextureRate_hz);
   path.insert(path.end(), 5000, path.back());
   return path;
 }
 
-// What a slip of some milliseconds carries past 500 Hz is lost, however slow the finger is in the mean.
+// Content that a slip of some milliseconds moves above 500 Hz is lost, however slow the finger is on average.
 TEST_F(MakeTexture, ValidBandKnowsWhatSlipsTookAway) {
   const auto amplitude_at = [&](double per_m, schema::KnownBand& known) {
-    const auto surface = [=](double x) { return 0.2 * std::sin(kTurn * per_m * x); };
+    const auto surface = [=](double x) { return 0.2 * std::sin(kTextureTurn * per_m * x); };
     const auto texture = texture_of(record(stick_slip_path(), surface, 1e-6), {});
     known = band_along(texture.valid_band, 0.01, 0.07);
     return amplitude_of(texture, per_m) / 0.2;
@@ -290,7 +291,7 @@ TEST_F(MakeTexture, ValidBandKnowsWhatSlipsTookAway) {
   EXPECT_NEAR(known.high_per_m, 500 / 0.3, 0.02 * 500 / 0.3);
   EXPECT_NEAR(known.low_per_m, 15 / 0.049,
               0.3 * 15 / 0.049);  // half a period of 15 Hz holds 33 of the cycle's 31.4 ms
-  // Within its limits a level that jumps from slip to slip comes back to 20 % (measured: 17 %).
+  // Within its limits a level that jumps from slip to slip is reproduced to 20 % (measured: 17 %).
   for (const double per_m : {500.0, 700.0, 1000.0, 1400.0})
     EXPECT_NEAR(amplitude_at(per_m, known), 1, 0.2) << per_m;
 }
@@ -315,18 +316,18 @@ TEST_F(MakeTexture, ValidBandIsTrueToOnePercentBetweenItsPoints) {
 }
 
 TEST_F(MakeTexture, EqualisingUndoesTheSensor) {
-  // The sensor of the paper sees ridges at 50 mm/s: 100 Hz and 165 Hz, turned and raised by its response.
+  // The sensor of the paper on ridges at 50 mm/s: 100 Hz and 165 Hz, with phase and gain of its response.
   const auto transducer = *schema::read_transducer("wiertlewski2011");
   const double nominal = schema::nominal_newtons_per_volt(transducer);
   const auto seen = [&](double size, double per_m, double phase) {
     const auto response = schema::sensor_response(transducer, per_m * 0.05) * nominal;
     return [=](double x) {
-      return std::abs(response) * size * std::sin(kTurn * per_m * x + phase + std::arg(response));
+      return std::abs(response) * size * std::sin(kTextureTurn * per_m * x + phase + std::arg(response));
     };
   };
   const auto low = seen(0.2, 2000, 0), high = seen(0.1, 6600, 1);
   const auto true_force = [](double x) {
-    return 0.2 * std::sin(kTurn * 2000 * x) + 0.1 * std::sin(kTurn * 6600 * x + 1);
+    return 0.2 * std::sin(kTextureTurn * 2000 * x) + 0.1 * std::sin(kTextureTurn * 6600 * x + 1);
   };
   const auto named = [&](schema::RecordingHeader& header) { header.transducer = transducer; };
   const auto recording = record(
@@ -348,7 +349,7 @@ TEST_F(MakeTexture, EqualiserEndsWhereTheSensorSeesNothing) {
   EXPECT_EQ(gain(0), std::complex<double>(0));
   EXPECT_NEAR(std::abs(gain(0.01)), kMostEqualiserGain, 1e-9);
   EXPECT_NEAR(std::abs(gain(4900)), kMostEqualiserGain, 1e-9);
-  // At 300 Hz the sensor gives 1.4 times its nominal gain (PAPERS.md).
+  // At 300 Hz the sensor has 1.4 times its nominal gain (CONTRIBUTING.md).
   EXPECT_NEAR(1 / std::abs(gain(300)), 1.4, 0.05);
 }
 
@@ -419,12 +420,12 @@ TEST_F(MakeTexture, RefusesToEqualiseWhatDidNotPassTheTransducer) {
   options.channel = "normal_force";
   EXPECT_FALSE(texture_of(recording, options).source.equalised);
   options.equalise = Equalise::on;
-  EXPECT_NE(refusal(recording, options).find("normal_force did not pass"), std::string::npos);
+  EXPECT_NE(refusal(recording, options).find("normal_force was not measured"), std::string::npos);
 }
 
 TEST_F(MakeTexture, RefusesWhatHasNoPosition) {
   const auto still = record(std::vector<double>(1000, 0.02), ridges, 0);
-  EXPECT_NE(refusal(still, {}).find("never moves"), std::string::npos);
+  EXPECT_NE(refusal(still, {}).find("does not change"), std::string::npos);
   const auto blind = record(stroke_path(0, 0.05, 0.05, 0), ridges, 0,
                             [](schema::RecordingHeader& h) { h.channels[1] = channel("displacement", "m"); });
   EXPECT_NE(refusal(blind, {}).find("no position channel"), std::string::npos);
@@ -436,16 +437,16 @@ TEST_F(MakeTexture, StretchesMustLieInOneStrokeWithoutAGap) {
   const auto recording = record(path, ridges, 1e-6);
   EXPECT_EQ(stretch_refusal(recording, 0.6, 1.4), "");
   EXPECT_EQ(stretch_refusal(recording, 0.5, 1.5), "");
-  EXPECT_NE(stretch_refusal(recording, 0.6, 3.4).find("turns round"), std::string::npos);
-  EXPECT_NE(stretch_refusal(recording, 0.1, 0.4).find("gets nowhere"), std::string::npos);
-  EXPECT_NE(stretch_refusal(recording, 3.5, 4.5).find("out of the recording"), std::string::npos);
-  EXPECT_NE(stretch_refusal(recording, -1, 1).find("out of the recording"), std::string::npos);
+  EXPECT_NE(stretch_refusal(recording, 0.6, 3.4).find("reverses"), std::string::npos);
+  EXPECT_NE(stretch_refusal(recording, 0.1, 0.4).find("does not advance"), std::string::npos);
+  EXPECT_NE(stretch_refusal(recording, 3.5, 4.5).find("not within the recording"), std::string::npos);
+  EXPECT_NE(stretch_refusal(recording, -1, 1).find("not within the recording"), std::string::npos);
   EXPECT_NE(stretch_refusal(recording, 1, 0.9).find("not after its start"), std::string::npos);
   const auto record_of_touch = TouchRecord::open(recording, "tangential_force");
   ASSERT_EQ(record_of_touch->strokes().size(), 2U);
   const auto third = record_of_touch->stroke(3);
   ASSERT_FALSE(third);
-  EXPECT_NE(schema::message(third.error()).find("there are 1: 0.49"), std::string::npos);
+  EXPECT_NE(schema::message(third.error()).find("the strokes are 1: 0.49"), std::string::npos);
   EXPECT_FALSE(record_of_touch->stroke(0));
 }
 
@@ -466,7 +467,7 @@ TEST_F(MakeTexture, AGapPartsStrokesAndFilters) {
 }
 
 TEST_F(MakeTexture, AFingerThatAllButRestsIsRefused) {
-  // 0.1 um/s for 30 s: 15 Hz lie at 150,000 /mm.
+  // 0.1 um/s for 30 s: 15 Hz is at 150,000 /mm.
   auto path = stroke_path(0, 0.05, 0.05, 0);
   append(path, stroke_path(path.back(), 3e-6, 1e-7, 0));
   const auto recording = record(path, ridges, 1e-9);
@@ -476,17 +477,20 @@ TEST_F(MakeTexture, AFingerThatAllButRestsIsRefused) {
   auto maker = TextureMaker::open(recording, {});
   const auto made = maker->make(*stretch, 0);
   ASSERT_FALSE(made);
-  EXPECT_NE(schema::message(made.error()).find("all but rests: at 0.1 um/s"), std::string::npos)
+  EXPECT_NE(schema::message(made.error()).find("too slow: at 0.1 um/s"), std::string::npos)
       << schema::message(made.error());
 }
 
 TEST_F(MakeTexture, ABandInSpacePassesTheSameLinesAtAnySpeed) {
-  // Of 2 and 3.3 /mm only the first passes 1 to 2.5 /mm; at 25 mm/s they are 50 and 83 Hz, at 70 140 and 231.
+  // Of 2 and 3.3 /mm only the first is within 1 to 2.5 /mm; at 25 mm/s they are 50 and 83 Hz, at 70 140 and
+  // 231 Hz.
   auto path = stroke_path(0.01, 0.06, 0.025, 0.1);
   append(path, stroke_path(path.back(), -0.06, 0.07, 0.1));
   const auto recording = record(
       path, [](double x_m) { return fading(x_m, 0.01, 0.07) * ridges(x_m); }, 0);
-  const Surface low = [](double x_m) { return fading(x_m, 0.01, 0.07) * 0.2 * std::sin(kTurn * 2000 * x_m); };
+  const Surface low = [](double x_m) {
+    return fading(x_m, 0.01, 0.07) * 0.2 * std::sin(kTextureTurn * 2000 * x_m);
+  };
   TextureOptions options;
   options.space = SpaceFilter{FilterMethod::fourier, 1000, 2500, Edges::treated, 4};
   options.method = ResampleMethod::sinc;

@@ -43,7 +43,7 @@ TEST(MonotonePath, LeavesTheBareFingersStretchAlone) {
 }
 
 TEST(MonotonePath, SlowEvenMotionComesBackEven) {
-  // One count in 8 samples: knots lie on a straight line, but for the two end plateaus.
+  // One count in 8 samples: the knots are on a straight line, except for the two end plateaus.
   std::vector<double> slow;
   for (int i = 0; i < 800; ++i) slow.push_back(std::floor(i / 8.0) * kQuantum_m);
   const MonotonePath path = monotone_path(slow, 1, {kQuantum_m, 0});
@@ -65,7 +65,8 @@ TEST(MonotonePath, DitherMovesWithinACount) {
 }
 
 TEST(MonotonePath, AStickStaysWhereItIs) {
-  // 100 samples still, then a jump of 50 counts: the way stays within half a count while the finger sticks.
+  // 100 samples at rest, then a jump of 50 counts: the path stays within half a count while the finger
+  // sticks.
   std::vector<double> jumps;
   for (int i = 0; i < 1000; ++i) jumps.push_back(std::floor(i / 100.0) * 50 * kQuantum_m);
   const MonotonePath path = monotone_path(jumps, 1, {kQuantum_m, 0});
@@ -83,7 +84,7 @@ TEST(MonotonePath, StaysStrictAKilometreAwayAndWithoutAQuantum) {
 }
 
 TEST(MonotonePath, IsotonicRegressionIsTheClosest) {
-  // The known answer for 1 3 2 4 3 5: means of the pools (3 2) and (4 3).
+  // The known result for 1 3 2 4 3 5: means of the pools (3 2) and (4 3).
   const std::vector<double> given = {1, 3, 2, 4, 3, 5};
   const MonotonePath path = monotone_path(given, 1, {0.1, 0});
   const std::vector<double> sample = {0, 1, 2, 3, 4, 5};
@@ -93,7 +94,7 @@ TEST(MonotonePath, IsotonicRegressionIsTheClosest) {
   EXPECT_NEAR(path.moved_m, 0.525, 1e-12);
 }
 
-// Largest distance of a path's way from `truth` at its knots, the first and last `margin` samples left out.
+// Largest distance of a path from `truth` at its knots, without the first and last `margin` samples.
 template <class Truth>
 double furthest_off(const MonotonePath& path, const Truth& truth, double samples, double margin) {
   double off = 0;
@@ -112,8 +113,9 @@ std::vector<double> noisy(const std::function<double(double)>& truth, int sample
 }
 
 TEST(MonotonePath, NoiseIsAveragedOutWithinItsReach) {
-  // 40 mm/s at 10 kHz, uneven by a fifth: 4 um a sample under 3 um of noise. Isotonic regression alone keeps
-  // most of the noise; an average over hundreds of samples leaves under a third of it at the worst of 8000.
+  // 40 mm/s at 10 kHz, varying by a fifth: 4 um per sample with 3 um of noise. Isotonic regression alone
+  // keeps most of the noise; an average over hundreds of samples reduces it to less than a third, also at the
+  // worst of 8000.
   constexpr double kNoise_m = 3e-6;
   const auto truth = [](double i) { return 4e-6 * (i + 160 * std::sin(i / 800)); };
   const auto seen = noisy(truth, 8000, kNoise_m);
@@ -122,11 +124,12 @@ TEST(MonotonePath, NoiseIsAveragedOutWithinItsReach) {
   EXPECT_LT(furthest_off(path, truth, 8000, 600), kNoise_m / 3);
   EXPECT_GT(furthest_off(isotonic, truth, 8000, 600), 2 * kNoise_m);
   EXPECT_GT(path.moved_m, 3 * kNoise_m);
-  EXPECT_LE(path.moved_m, PositionError({0, kNoise_m}).explains_m());
+  EXPECT_LE(path.moved_m, PositionError({0, kNoise_m}).error_bound_m());
 }
 
 TEST(MonotonePath, NoiseLeavesASlipAsSharpAsItIs) {
-  // Sticks for 30 ms, slips 0.5 mm in 2 ms: a window that blurs the slip would move it by over 6 sigma.
+  // Sticks for 30 ms, slips 0.5 mm in 2 ms: a window that smooths the slip would have an error of over 6
+  // sigma.
   constexpr double kNoise_m = 3e-6;
   const auto truth = [](double i) {
     const double k = std::floor(i / 320), u = std::min(1.0, (i - 320 * k) / 20);
@@ -136,7 +139,7 @@ TEST(MonotonePath, NoiseLeavesASlipAsSharpAsItIs) {
   const MonotonePath path = monotone_path(seen, 1, {0, kNoise_m});
   expect_strictly_increasing(path);
   EXPECT_LT(furthest_off(path, truth, 9600, 0), 5 * kNoise_m);
-  EXPECT_LE(path.moved_m, PositionError({0, kNoise_m}).explains_m());
+  EXPECT_LE(path.moved_m, PositionError({0, kNoise_m}).error_bound_m());
 }
 
 TEST(MonotonePath, AWayBackIsMoreThanItsErrorExplains) {
@@ -144,7 +147,7 @@ TEST(MonotonePath, AWayBackIsMoreThanItsErrorExplains) {
   for (int i = 0; i < 2000; ++i) back.push_back((i < 1000 ? i : i < 1100 ? 2000 - i : i - 200) * 1e-6);
   const MonotonePath path = monotone_path(back, 1, {1e-6, 0});
   EXPECT_NEAR(path.moved_m, 50e-6, 2e-6);
-  EXPECT_GT(path.moved_m, PositionError({1e-6, 0}).explains_m());
+  EXPECT_GT(path.moved_m, PositionError({1e-6, 0}).error_bound_m());
 }
 
 TEST(MonotonePath, IsEmptyWhereNothingMoves) {

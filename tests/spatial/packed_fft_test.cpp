@@ -31,7 +31,7 @@ class PackedFftOf : public testing::Test {};
 using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(PackedFftOf, Reals);
 
-// Two frames of noise, each with a level and a slope, against the exact transform of each alone.
+// Two frames of noise, each with an offset and a slope, against the exact transform of each alone.
 TYPED_TEST(PackedFftOf, TwoFramesComeApartAgain) {
   constexpr std::size_t kPadded = 128, kWindow = 100;
   const auto noise = samples::noise(2 * kWindow).signal.values;
@@ -60,12 +60,12 @@ TYPED_TEST(PackedFftOf, TwoFramesComeApartAgain) {
 }
 
 TEST(PackedFft, MeasuresOnlyForLongJobs) {
-  EXPECT_FALSE(measuring_pays(16384, 301));  // one stroke: 17 ms
-  EXPECT_TRUE(measuring_pays(16384, 100000));
-  EXPECT_FALSE(measuring_pays(1024, 9030));
+  EXPECT_FALSE(measuring_saves_time(16384, 301));  // one stroke: 17 ms
+  EXPECT_TRUE(measuring_saves_time(16384, 100000));
+  EXPECT_FALSE(measuring_saves_time(1024, 9030));
 }
 
-// FFTW's plain sum from the definition of the exact reference itself: lengths even, odd, and of both.
+// FFTW's plain sum against the definition of the exact reference: lengths even, odd, and mixed.
 TEST(ExactFourier, EqualsItsDefinition) {
   for (const std::size_t length : {1U, 2U, 7U, 12U, 30U}) {
     const auto noise = samples::noise(length).signal.values;
@@ -111,13 +111,13 @@ TEST(Decimator, SumsShiftedSequences) {
     EXPECT_NEAR(out[i], 0.5F * x[i] - 2 * x[i + 3] + x[i + 100], 1e-6F) << i;
 }
 
-// Every grid point of a block, by whichever phase holds it, is the low-passed signal there.
+// Every grid point of a block, in whichever phase, is the low-passed signal there.
 TEST(Decimator, DealsTheFilteredSignalToItsPhases) {
   for (const std::size_t hop : {100U, 160U, 101U, 102U}) {
     const FrameShape shape{10000, hop, 16384, 246};
     const Decimation decimation = decimation_for(shape);
     Decimator decimator(decimation, 1000);
-    const double turn = 2 * std::numbers::pi * 0.0137;  // inside the band that is passed
+    const double turn = 2 * std::numbers::pi * 0.0137;  // in the pass band
     std::vector<float> samples;
     for (std::size_t i = 0; i < 1000 + 2 * decimator.reach() + decimation.grid; ++i)
       samples.push_back(static_cast<float>(
@@ -140,7 +140,7 @@ TEST(Trend, FindsTheLineUnderAStrongBaseline) {
   EXPECT_NEAR(trend.largest, 0.5 * 501 + 1, 0.01);
   EXPECT_NEAR(sum_above(x, 1e6), 0.5 * 501 * 1003 + 1, 1e-6);
   std::vector<float> off(x.size());
-  take_off_line(x, 1e6, 0.5, 2, off);
+  subtract_line(x, 1e6, 0.5, 2, off);
   EXPECT_EQ(off[10], 2.0F);
   EXPECT_EQ(off[11], -2.0F);
 }
@@ -180,7 +180,7 @@ TEST_F(Wisdom, IsIgnoredWhereItIsDamaged) {
     std::ofstream(path_) << text;
     EXPECT_FALSE(read_wisdom<float>(path_)) << text;
   }
-  EXPECT_TRUE(write_wisdom<float>(path_));  // and is mended
+  EXPECT_TRUE(write_wisdom<float>(path_));  // and is repaired
   EXPECT_TRUE(read_wisdom<float>(path_));
 }
 

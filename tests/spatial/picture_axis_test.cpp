@@ -58,7 +58,7 @@ TEST(Axis, RoomyAxisHoldsItsData) {
   }
 }
 
-// Of a million samples, no column loses its extremes: a single spike is still there.
+// For a million samples, no column loses its extremes: a single spike is kept.
 TEST(Trace, KeepsSpikes) {
   std::vector<double> x(1'000'000);
   std::vector<double> y(x.size(), 0.0);

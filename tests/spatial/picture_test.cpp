@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures, looked at: what is drawn is where its axis says.
+// Checks of pictures: elements are drawn at the positions of their axes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,9 +53,8 @@ TEST(SpectrogramFigure, PngHasTwoPixelsAPoint) {
   EXPECT_EQ(png.height, 1000);
 }
 
-// The bright line of a sine lies on the pixel row that the axis gives its frequency. Bins are 61/m apart and
-// the window 100/m wide, so a line at a bin's centre is brightest there. Above about 4/mm a row is wider than
-// a bin.
+// The bright line of a sine is in the pixel row of its frequency. Bins are 61/m apart and the window 100/m
+// wide, so a line at a bin's centre is brightest there. Above about 4/mm a row is wider than a bin.
 TEST(SpectrogramFigure, DrawsASineAtItsFrequency) {
   for (const double bin : {10.0, 33.0, 130.0}) {
     const double frequency_per_m = bin * 1e6 / 16384;
@@ -65,7 +64,7 @@ TEST(SpectrogramFigure, DrawsASineAtItsFrequency) {
     const Box box = figure.layout(0).heat;
     const double expected = figure.frequencies(0).place(1e-3 * frequency_per_m) * kPixelsPerPoint - 0.5;
     const int x = static_cast<int>((box.x + box.width / 2) * kPixelsPerPoint);
-    // Colours come in 256 steps of 0.23 dB: rows around the line share the brightest one.
+    // Colours have 256 steps of 0.23 dB: several rows around the line have the brightest colour.
     const int brightest = brightest_row(png, x, box);
     int last = brightest;
     while (png.at(x, last + 1) == png.at(x, brightest)) ++last;
@@ -73,7 +72,7 @@ TEST(SpectrogramFigure, DrawsASineAtItsFrequency) {
   }
 }
 
-// A step in frequency in the middle of the texture is seen in the middle of the axis.
+// A step in frequency in the middle of the texture is in the middle of the axis.
 TEST(SpectrogramFigure, DrawsAChangeAtItsPosition) {
   auto texture = samples::sine(0.02, 1000, 80000);
   const auto second = samples::sine(0.02, 4000, 80000);
@@ -110,8 +109,7 @@ TEST(SpectrogramFigure, SvgHoldsItsWordsAndStaysSmall) {
     EXPECT_NE(svg->find(words), std::string::npos) << words;
 }
 
-// However many samples there are, the curves keep a few points a pixel column: what grows is the embedded
-// image only.
+// For any number of samples the curves have a few points per pixel column; only the embedded image grows.
 TEST(SpectrogramFigure, SvgOfALongTextureKeepsItsCurvesSmall) {
   const auto svg = to_svg(drawn(samples::noise(1'000'000)).figure());
   ASSERT_TRUE(svg);
@@ -122,7 +120,7 @@ TEST(SpectrogramFigure, SvgOfALongTextureKeepsItsCurvesSmall) {
 
 TEST(SpectrogramFigure, SeveralShareColoursAndAxes) {
   const Drawn loud = drawn(samples::sine(1, 1000, 40000));
-  const Drawn quiet = drawn(samples::sine(0.01, 1000, 20000));  // 40 dB under it
+  const Drawn quiet = drawn(samples::sine(0.01, 1000, 20000));  // 40 dB below it
   const SpectrogramFigure figure({{&loud.texture, &loud.spectrogram}, {&quiet.texture, &quiet.spectrogram}});
   EXPECT_DOUBLE_EQ(figure.positions(1).high, 39.999);
   EXPECT_DOUBLE_EQ(figure.levels().high_db,
@@ -162,7 +160,7 @@ TEST(SpectrogramFigure, DrawsSilence) {
 TEST(Heatmap, HoldsTheLevelOfAFlatSpectrum) {
   schema::Spectrogram flat;
   flat.unit = "N";
-  flat.bins = 50000;  // more than cv::remap can address
+  flat.bins = 50000;  // more than cv::remap can index
   flat.frequency_step_per_m = 1;
   flat.hop_m = 1e-3;
   flat.position_m = {0, 1e-3, 2e-3};
@@ -189,7 +187,7 @@ TEST(Picture, ExtensionsAreNamedWhereOneIsUnknown) {
   const auto refused = encode_as("a.jpg", figure);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::usage);
-  EXPECT_EQ(refused.error().remedy, "take .png or .svg");
+  EXPECT_EQ(refused.error().remedy, "use .png or .svg");
   EXPECT_TRUE(encode_as("A.PNG", figure)->starts_with("\x89PNG"));
   EXPECT_TRUE(encode_as("a.svg", figure)->starts_with("<?xml"));
 }
@@ -218,7 +216,7 @@ TEST(LineFigure, NamesItsCurvesAndAxes) {
     EXPECT_NE(svg->find(words), std::string::npos) << words;
 }
 
-// The element of a label in the SVG's layer of text, which says where it is and how wide; empty: not drawn.
+// The element of a label in the SVG's text layer, with its position and width; empty: not drawn.
 std::string placed_label(const LineFigure& figure, const std::string& text) {
   const auto svg = to_svg(figure);
   const auto end = svg ? svg->find(">" + text + "<") : std::string::npos;
@@ -226,14 +224,14 @@ std::string placed_label(const LineFigure& figure, const std::string& text) {
                                   : svg->substr(svg->rfind("<text", end), end - svg->rfind("<text", end));
 }
 
-// A label gives way to every mark, also to those of later series, and is left out where there is no room.
+// A label avoids every mark, also those of later series, and is omitted if there is no space.
 TEST(LineFigure, LabelsCoverNoMark) {
   LineFigure figure;
   figure.series = {{"frame", {0, 1}, {0, 1}, series_colour(0)},
                    {"", {0.4}, {0.5}, series_colour(1), 1, false, true, {"a choice"}}};
   const std::string alone = placed_label(figure, "a choice");
   ASSERT_FALSE(alone.empty());
-  // 0.43 is some 18 points to the right, 0.52 some 5 above: below the label that was alone.
+  // 0.43 is about 18 points to the right, 0.52 about 5 above: below the label without the second mark.
   figure.series.push_back({"", {0.43}, {0.52}, series_colour(2), 1, false, true});
   const std::string beside = placed_label(figure, "a choice");
   EXPECT_FALSE(beside.empty());

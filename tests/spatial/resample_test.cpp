@@ -26,8 +26,8 @@ TEST(Resample, EqualsSciPy) {
       const auto expected = file.numbers();
       const auto values = resample(path, direction, *grid, force, 0, method);
       ASSERT_EQ(values.size(), expected.size());
-      // Forces of up to 20 with steps of 1, times to 1e-10 of a sample; at the very ends, where the finger's
-      // speed may be 0, a rounding of the position is worth 1e-8 of a sample and more.
+      // Forces of up to 20 with steps of 1; times exact to 1e-10 of a sample. At the very ends, where the
+      // finger's speed may be 0, a rounding of the position changes the time by 1e-8 of a sample and more.
       for (std::size_t i = 0; i < values.size(); ++i)
         ASSERT_NEAR(values[i], expected[i], i == 0 || i + 1 == values.size() ? 1e-6 : 1e-9)
             << name_of(method) << " " << direction << " " << i;
@@ -35,16 +35,16 @@ TEST(Resample, EqualsSciPy) {
   }
 }
 
-// A surface's line of `wavelength_m` under the finger of the benchmarks, whose positions are exact.
-struct Surface {
+// A surface line of `wavelength_m` under the finger of the benchmarks, with exact positions.
+struct ResampleSurface {
   double wavelength_m;
   double force_n(double position_m) const {
     return std::sin(2 * std::numbers::pi * position_m / wavelength_m);
   }
 };
 
-// RMS of what a method misses of the surface, re its RMS, 1 mm from the ends.
-double error_of(ResampleMethod method, const Surface& surface, int direction) {
+// RMS error of a method, re the surface's RMS, 1 mm from the ends.
+double resample_error(ResampleMethod method, const ResampleSurface& surface, int direction) {
   MonotonePath path;
   std::vector<double> force;
   for (std::size_t i = 0; i < bench::kStrokeFrames; ++i) {
@@ -70,8 +70,8 @@ TEST(Resample, MissesAKnownSurfaceByWhatTheHeaderSays) {
                                              {ResampleMethod::swapped, 1.1e-4, 3.3e-3},
                                              {ResampleMethod::sinc, 4e-7, 4e-7}})
     for (const int direction : {1, -1}) {
-      EXPECT_LT(error_of(method, {0.4e-3}, direction), coarse) << name_of(method);
-      EXPECT_LT(error_of(method, {0.1e-3}, direction), fine) << name_of(method);
+      EXPECT_LT(resample_error(method, {0.4e-3}, direction), coarse) << name_of(method);
+      EXPECT_LT(resample_error(method, {0.1e-3}, direction), fine) << name_of(method);
     }
 }
 

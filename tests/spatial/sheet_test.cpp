@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact sheets, hatching and ridges, looked at: what is drawn is where its axis says.
+// Checks of contact sheets, hatching and ridges: elements are drawn at the positions of their axes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,20 +18,20 @@ namespace {
 using samples::decode_png;
 using samples::DecodedPng;
 
-struct Drawn {
+struct SheetDrawn {
   schema::Texture texture;
   schema::Spectrogram spectrogram;
   SpectrogramPanel panel() const { return {&texture, &spectrogram}; }
 };
 
-Drawn drawn(schema::Texture texture, const std::string& name) {
+SheetDrawn drawn_sheet(schema::Texture texture, const std::string& name) {
   auto spectrogram = spatial_spectrogram(texture, {});
   EXPECT_TRUE(spectrogram);
   spectrogram->name = name;
   return {std::move(texture), std::move(*spectrogram)};
 }
 
-int luminance(std::uint32_t rgb) {
+int sheet_luminance(std::uint32_t rgb) {
   return static_cast<int>((rgb >> 16 & 0xFF) * 3 + (rgb >> 8 & 0xFF) * 6 + (rgb & 0xFF));
 }
 
@@ -42,16 +42,16 @@ SheetFigure sheet_of(const std::vector<SpectrogramPanel>& panels) {
 }
 
 TEST(Sheet, CellsShareOneScale) {
-  const Drawn loud = drawn(samples::sine(1, 1000, 40000), "loud");
-  const Drawn quiet = drawn(samples::sine(0.01, 1000, 20000), "quiet");  // 40 dB under it
+  const SheetDrawn loud = drawn_sheet(samples::sine(1, 1000, 40000), "loud");
+  const SheetDrawn quiet = drawn_sheet(samples::sine(0.01, 1000, 20000), "quiet");  // 40 dB below it
   const SheetFigure figure = sheet_of({loud.panel(), quiet.panel()});
   const DecodedPng png = decode_png(*to_png(figure));
   const auto shade = [&](std::size_t cell) {
-    return luminance(png.at(static_cast<int>(figure.positions(cell).place(10) * kPixelsPerPoint),
-                            static_cast<int>(figure.frequencies(cell).place(1) * kPixelsPerPoint)));
+    return sheet_luminance(png.at(static_cast<int>(figure.positions(cell).place(10) * kPixelsPerPoint),
+                                  static_cast<int>(figure.frequencies(cell).place(1) * kPixelsPerPoint)));
   };
   EXPECT_GT(shade(0), 2 * shade(1));
-  // 20 mm of 40 mm: the right half of the quiet one's cell is empty paper.
+  // 20 mm of 40 mm: the right half of the cell of `quiet` is empty.
   const int beyond = static_cast<int>(figure.positions(1).place(30) * kPixelsPerPoint);
   const int middle = static_cast<int>(figure.frequencies(1).place(1) * kPixelsPerPoint);
   EXPECT_EQ(png.at(beyond, middle) & 0xFFFFFF, 0xFFFFFFU);
@@ -75,10 +75,10 @@ TEST(Sheet, CellsKeepToTheirPlaces) {
 }
 
 TEST(Sheet, NamesItsTexturesAndTheirSpeeds) {
-  Drawn oak = drawn(samples::noise(20000), "oak & ash");
+  SheetDrawn oak = drawn_sheet(samples::noise(20000), "oak & ash");
   oak.texture.source.mean_speed_mps = 0.05;
   oak.texture.simulated = "a test";
-  const Drawn pine = drawn(samples::noise(30000), "pine");
+  const SheetDrawn pine = drawn_sheet(samples::noise(30000), "pine");
   const auto svg = to_svg(sheet_of({oak.panel(), pine.panel()}));
   ASSERT_TRUE(svg);
   for (const char* words :
@@ -87,18 +87,17 @@ TEST(Sheet, NamesItsTexturesAndTheirSpeeds) {
 }
 
 TEST(Sheet, RefusesMixedUnits) {
-  const Drawn force = drawn(samples::noise(20000), "force");
-  Drawn height = force;
+  const SheetDrawn force = drawn_sheet(samples::noise(20000), "force");
+  SheetDrawn height = force;
   height.spectrogram.unit = "m";
   const auto scales = sheet_scales(std::vector{force.panel(), height.panel()}, {});
   ASSERT_FALSE(scales);
   EXPECT_EQ(scales.error().kind, schema::ErrorKind::unsuitable);
 }
 
-// Under the band the picture is veiled and hatched: paler than the same place without a band, with lines in
-// it.
+// Below the valid band the picture is paler than without a band, and hatched.
 TEST(Hatch, CoversWhatTheRecordingCouldNotKnow) {
-  Drawn oak = drawn(samples::noise(40000), "oak");
+  SheetDrawn oak = drawn_sheet(samples::noise(40000), "oak");
   const DecodedPng bare = decode_png(*to_png(SpectrogramFigure({oak.panel()}, {100.0, 60})));
   oak.texture.valid_band = {{0, 1000, 10e3}};
   const SpectrogramFigure figure({oak.panel()}, {100.0, 60});
@@ -110,18 +109,18 @@ TEST(Hatch, CoversWhatTheRecordingCouldNotKnow) {
   };
   int paler = 0, changes = 0;
   for (int i = 0; i < 60; ++i) {
-    paler += luminance(veiled.at(x + i, row(0.4))) > luminance(bare.at(x + i, row(0.4)));
-    changes +=
-        std::abs(luminance(veiled.at(x + i + 1, row(0.4))) - luminance(veiled.at(x + i, row(0.4)))) > 150;
+    paler += sheet_luminance(veiled.at(x + i, row(0.4))) > sheet_luminance(bare.at(x + i, row(0.4)));
+    changes += std::abs(sheet_luminance(veiled.at(x + i + 1, row(0.4))) -
+                        sheet_luminance(veiled.at(x + i, row(0.4)))) > 150;
     EXPECT_EQ(veiled.at(x + i, row(3)), bare.at(x + i, row(3)));  // known: as it was
   }
   EXPECT_GT(paler, 50);
-  EXPECT_GE(changes, 6);  // a line each 5 points makes 6 in 60 pixels
+  EXPECT_GE(changes, 6);  // one line every 5 points gives 6 in 60 pixels
 }
 
 TEST(Ridges, LieOnTheirFrequencyAndCarryIt) {
   const double k = 33e6 / 16384;
-  const Drawn oak = drawn(samples::sine(0.02, k, 40000), "oak");
+  const SheetDrawn oak = drawn_sheet(samples::sine(0.02, k, 40000), "oak");
   const auto formants = find_formants(oak.spectrogram);
   ASSERT_TRUE(formants);
   ASSERT_EQ(formants->size(), 1U);
@@ -131,7 +130,7 @@ TEST(Ridges, LieOnTheirFrequencyAndCarryIt) {
   const int y = static_cast<int>(std::lround(figure.frequencies(0).place(1e-3 * k) * kPixelsPerPoint));
   int white = 0;
   for (int x = static_cast<int>(heat.x * 2) + 200; x < static_cast<int>(heat.x * 2) + 300; ++x)
-    white += luminance(png.at(x, y)) > 2300 || luminance(png.at(x, y - 1)) > 2300;
+    white += sheet_luminance(png.at(x, y)) > 2300 || sheet_luminance(png.at(x, y - 1)) > 2300;
   EXPECT_GT(white, 90);
   const auto svg = to_svg(figure);
   EXPECT_NE(svg->find("2.01/mm"), std::string::npos);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Complex spectra against the definition in extended precision. The bound is the one the project asks of
-// spectrograms: |X - X_exact| / max |X_exact| over all cells, all frequencies, at most -120 dB.
+// Complex spectra against the definition in extended precision. Required for spectrograms: |X - X_exact| /
+// max |X_exact| over all cells, all frequencies, at most -120 dB.
 #include "spatial/dsp/spectrum/short_time_transform.hpp"
 
 #include <gtest/gtest.h>
@@ -38,9 +38,9 @@ struct Error {
   double db() const { return 20 * std::log10(largest / largest_exact); }
 };
 
-// Of every `each`-th row.
-Error error_of(const Signal& x, const FrameShape& shape, const Decimation& decimation, std::size_t each,
-               bool detrend = true, std::size_t expected = 1) {
+// For every `each`-th row.
+Error transform_error(const Signal& x, const FrameShape& shape, const Decimation& decimation,
+                      std::size_t each, bool detrend = true, std::size_t expected = 1) {
   ShortTimeTransform transform(shape, decimation, blackman(shape.window), 1, detrend, expected);
   Error error;
   const auto compare = [&](std::size_t row, std::span<const std::complex<float>> got, int exponent) {
@@ -69,13 +69,13 @@ Error error_of(const Signal& x, const FrameShape& shape, const Decimation& decim
   return error;
 }
 
-struct Case {
+struct TransformCase {
   const char* name;
   Signal signal;
 };
 
-std::vector<Case> cases() {
-  std::vector<Case> all;
+std::vector<TransformCase> cases() {
+  std::vector<TransformCase> all;
   all.push_back({"touch", touch(40000, 0.3, 0.1)});
   all.push_back({"noise", samples::noise(40000).signal.values});
   all.push_back({"strong baseline", touch(40000, 1e4, 0)});
@@ -92,15 +92,15 @@ std::vector<Case> cases() {
   return all;
 }
 
-// So many that single precision is taken, and too few for a plan to be measured.
+// Enough rows for single precision, and too few for measuring a plan.
 constexpr std::size_t kManyRows = 6000;
 
 TEST(ShortTimeTransform, IsExactTo120DbAtWholeResolution) {
-  ASSERT_FALSE(take_a_moment(kUsual.padded, kManyRows / 2));
-  ASSERT_FALSE(measuring_pays(kUsual.padded, kManyRows / 2));
+  ASSERT_FALSE(is_short_job(kUsual.padded, kManyRows / 2));
+  ASSERT_FALSE(measuring_saves_time(kUsual.padded, kManyRows / 2));
   for (const auto& [name, signal] : cases()) {
-    EXPECT_LT(error_of(signal, kUsual, {}, 61, true, kManyRows).db(), -120) << name;
-    EXPECT_LT(error_of(signal, kUsual, {}, 61).db(), -120) << name;
+    EXPECT_LT(transform_error(signal, kUsual, {}, 61, true, kManyRows).db(), -120) << name;
+    EXPECT_LT(transform_error(signal, kUsual, {}, 61).db(), -120) << name;
   }
 }
 
@@ -111,30 +111,31 @@ TEST(ShortTimeTransform, IsExactTo120DbOnACoarserGrid) {
   EXPECT_EQ(decimation.factor, 16U);
   EXPECT_EQ(decimation.grid, 4U);
   for (const auto& [name, signal] : cases()) {
-    EXPECT_LT(error_of(signal, shape, decimation, 61).db(), -120) << name;
+    EXPECT_LT(transform_error(signal, shape, decimation, 61).db(), -120) << name;
   }
 }
 
-// Hops and paddings that factors divide or not, even and odd, short windows and long hops.
+// Hops and paddings with and without common factors, even and odd, short windows and long hops.
 TEST(ShortTimeTransform, KeepsItsBinsForAnyHop) {
   const Signal signal = touch(60000, 0.3, 0.1);
   for (const std::size_t hop : {1600U, 160U, 101U, 102U, 6000U, 25000U})
     for (const std::size_t padded : {16384U, 10000U, 12000U}) {
       const FrameShape shape{10000, hop, padded, padded * 15 / 1000 + 1};
       const Decimation decimation = decimation_for(shape);
-      EXPECT_LT(error_of(signal, shape, decimation, 1 + 12000 / hop).db(), -120) << hop << " " << padded;
+      EXPECT_LT(transform_error(signal, shape, decimation, 1 + 12000 / hop).db(), -120)
+          << hop << " " << padded;
     }
   for (const std::size_t window : {1000U, 1037U, 3001U}) {
     const FrameShape shape{window, 50, 4096, 62};
-    EXPECT_LT(error_of(signal, shape, decimation_for(shape), 97).db(), -120) << window;
+    EXPECT_LT(transform_error(signal, shape, decimation_for(shape), 97).db(), -120) << window;
   }
 }
 
 TEST(ShortTimeTransform, KeepsTheMeanWhereAsked) {
-  EXPECT_LT(error_of(touch(40000, 100, 0), kUsual, {}, 43, false, kManyRows).db(), -120);
+  EXPECT_LT(transform_error(touch(40000, 100, 0), kUsual, {}, 43, false, kManyRows).db(), -120);
   FrameShape shape = kUsual;
   shape.bins = kBinsTo15PerMm;
-  EXPECT_LT(error_of(touch(40000, 100, 0), shape, decimation_for(shape), 43, false).db(), -120);
+  EXPECT_LT(transform_error(touch(40000, 100, 0), shape, decimation_for(shape), 43, false).db(), -120);
 }
 
 TEST(ShortTimeTransform, SaysWhyItKeepsTheWholeResolution) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strokes over a surface whose lines are known, with hums and resonances that are none of it: force(t) =
+// Strokes over a surface with known lines, plus hums and resonances that do not belong to it: force(t) =
 // surface(x(t)) + hum(t) + noise, as textures.
 #pragma once
 
@@ -21,7 +21,7 @@ class Dice {
   double even(double low, double high) {
     return low + (high - low) * (static_cast<double>(generator_() >> 11) + 0.5) * 0x1p-53;
   }
-  /// Even in the logarithm.
+  /// Uniform in the logarithm.
   double ratio(double low, double high) { return low * std::pow(high / low, even(0, 1)); }
   double normal() { return std::sqrt(-2 * std::log(even(0, 1))) * std::cos(even(0, 2 * std::numbers::pi)); }
   bool chance(double part) { return even(0, 1) < part; }
@@ -35,7 +35,7 @@ struct Line {
   double amplitude = 0;
 };
 
-/// A finger's way: a steady speed that wavers by `waver` of itself, `wavers_hz` times a second.
+/// The motion of a finger: a constant speed that varies by `waver`, relative, `wavers_hz` times per second.
 struct Stroke {
   double speed_mps = 0, length_m = 0, waver = 0, wavers_hz = 0, phase = 0;
   double speed(double t) const {
@@ -71,8 +71,8 @@ inline std::vector<double> resonant_noise(Dice& dice, double frequency_hz, doubl
   return values;
 }
 
-/// The texture of one stroke. The surface's amplitudes differ by 2 dB from stroke to stroke, hums keep
-/// theirs.
+/// The texture of one stroke. The surface's amplitudes vary by 2 dB from stroke to stroke, those of hums do
+/// not.
 inline schema::Texture stroke_texture(const World& world, const Stroke& stroke, std::uint64_t seed) {
   Dice dice(seed), ground(99);
   const auto count = static_cast<std::size_t>(stroke.length_m / kGrid_m);

@@ -24,8 +24,8 @@ std::vector<double> lines(bool all) {
 
 TEST(FilterInSpace, KeepsTheLineInItsBand) {
   const auto all = lines(true), expected = lines(false);
-  // 20 periods of the lowest from an end and more, where the mirrored line at 0.2 /mm still rings a little;
-  // the slope does not. Butterworth's gain at the line is 1 - 1e-4 and some.
+  // At least 20 periods of the lowest from an end, where the mirrored line at 0.2 /mm still rings a little;
+  // the slope does not. Butterworth's gain at the line is about 1 - 1e-4.
   for (const auto& [method, error] :
        {std::pair{FilterMethod::fourier, 5e-3}, {FilterMethod::butterworth, 1e-2}}) {
     const auto filtered = filter_in_space(all, kPitch_m, {method, 1e3, 4e3});
@@ -43,7 +43,7 @@ TEST(FilterInSpace, SaysWhatCannotBeInCyclesPerMillimetre) {
   };
   EXPECT_NE(refused(4e3, 1e3, 1000).find("4/mm to 1/mm"), std::string::npos);
   EXPECT_NE(refused(1e3, 6e5, 1000).find("600/mm"), std::string::npos);
-  EXPECT_NE(refused(1e2, 1e3, 1000).find("1 mm of texture"), std::string::npos);
+  EXPECT_NE(refused(1e2, 1e3, 1000).find("texture of 1 mm"), std::string::npos);
   EXPECT_EQ(refused(1e3, 5e3, 1000), "");
 }
 

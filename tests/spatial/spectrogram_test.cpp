@@ -26,7 +26,7 @@ SpectrogramOptions everything() {
   return options;
 }
 
-double blackman(double n, double length) {
+double exact_blackman(double n, double length) {
   const double phase = 2 * std::numbers::pi * n / length;
   return 0.42 - 0.5 * std::cos(phase) + 0.08 * std::cos(2 * phase);
 }
@@ -43,8 +43,8 @@ TEST(Spectrogram, HasTheDefaultsOfThePaper) {
   EXPECT_EQ(result->detrend, "constant");
 }
 
-// A window that holds whole periods, without zeros after it: the sine falls in three bins of the Blackman
-// window, whose sum is A^2 / 2 by Parseval.
+// A window with whole periods and without padding: the sine is in three bins of the Blackman window, whose
+// sum is A^2 / 2 by Parseval.
 TEST(Spectrogram, IntegratesASineToHalfItsSquare) {
   constexpr double kAmplitude = 0.02;
   SpectrogramOptions options = everything();
@@ -78,7 +78,7 @@ TEST(Spectrogram, KeepsEnergyByParseval) {
       for (std::size_t k = 0; k < result->bins; ++k) integral += static_cast<double>(result->at(p, k));
       integral *= result->frequency_step_per_m;
       for (std::size_t n = 0; n < 1000; ++n) {
-        const double w = blackman(static_cast<double>(n), 1000);
+        const double w = exact_blackman(static_cast<double>(n), 1000);
         weighted += std::pow(w * texture.signal.values[p * 250 + n], 2);
         weights += w * w;
       }
@@ -101,7 +101,7 @@ TEST(Spectrogram, AgreesWithItsDefinition) {
     long double mean = 0, real = 0, imaginary = 0, weights = 0;
     for (std::size_t n = 0; n < 300; ++n) mean += texture.signal.values[p * 100 + n] / 300;
     for (std::size_t n = 0; n < 300; ++n) {
-      const long double w = blackman(static_cast<double>(n), 300);
+      const long double w = exact_blackman(static_cast<double>(n), 300);
       const long double phase = 2 * std::numbers::pi_v<long double> * static_cast<long double>(k * n) / 512;
       real += w * (texture.signal.values[p * 100 + n] - mean) * std::cos(phase);
       imaginary -= w * (texture.signal.values[p * 100 + n] - mean) * std::sin(phase);
@@ -122,7 +122,7 @@ TEST(Spectrogram, TakesTheMeanOffOnlyWhereAsked) {
   options.detrend = Detrend::none;
   const auto kept = spatial_spectrogram(texture, options);
   ASSERT_TRUE(plain && lifted && kept);
-  // A constant of 100 costs the samples 7 of their 53 bits.
+  // A constant of 100 reduces the precision of the samples by 7 of their 53 bits.
   for (std::size_t i = 0; i < plain->cells.size(); ++i)
     ASSERT_NEAR(lifted->cells[i], plain->cells[i], 1e-6F * plain->cells[i] + 1e-15F);
   EXPECT_GT(kept->at(0, 0), 1e4F * plain->at(0, 3));
@@ -133,7 +133,7 @@ TEST(Spectrogram, AmplitudesOfASineAreItsOwn) {
   for (const double highest : {15e3, 1e9})
     for (const double size : {1e-30, 1.0, 1e30}) {
       SpectrogramOptions options;
-      options.padded_m = options.window_m;  // the sine meets a bin
+      options.padded_m = options.window_m;  // the sine is at the centre of a bin
       options.scaling = schema::Scaling::amplitude;
       options.max_frequency_per_m = highest;
       const auto result = spatial_spectrogram(samples::sine(kAmplitude * size, 2000, 12000), options);
@@ -145,7 +145,7 @@ TEST(Spectrogram, AmplitudesOfASineAreItsOwn) {
     }
 }
 
-// One is the other: A^2 / 2 over the window's noise bandwidth.
+// Both agree: A^2 / 2 over the window's noise bandwidth.
 TEST(Spectrogram, DensitiesAndAmplitudesAgree) {
   const auto texture = samples::noise(1500);
   SpectrogramOptions options = everything();
@@ -173,7 +173,7 @@ TEST(Spectrogram, DensitiesBeyondSinglePrecisionAreRefused) {
   EXPECT_NE(refused.error().remedy.find("--scaling amplitude"), std::string::npos);
 }
 
-// 1e-30 squared is no single-precision number: all cells would be zero, and nobody told.
+// 1e-30 squared is below single precision: all cells would be zero without a message.
 TEST(Spectrogram, DensitiesBelowSinglePrecisionAreRefusedToo) {
   const auto refused = spatial_spectrogram(samples::sine(1e-30, 2000, 12000), {});
   ASSERT_FALSE(refused);
@@ -182,7 +182,7 @@ TEST(Spectrogram, DensitiesBelowSinglePrecisionAreRefusedToo) {
   amplitudes.scaling = schema::Scaling::amplitude;
   const auto shown = spatial_spectrogram(samples::sine(1e-30, 2000, 12000), amplitudes);
   ASSERT_TRUE(shown);
-  EXPECT_NEAR(strongest_peak(*shown, 0).cell / 1e-30, 1, 0.02);  // the line lies beside its bin
+  EXPECT_NEAR(strongest_peak(*shown, 0).cell / 1e-30, 1, 0.02);  // the line is beside its bin
   EXPECT_TRUE(spatial_spectrogram(samples::sine(0, 2000, 12000), {}));
 }
 
@@ -199,7 +199,7 @@ TEST(Spectrogram, ACoarserGridGivesTheSameCells) {
   EXPECT_EQ(whole->decimation, 1U);
   ASSERT_EQ(coarse->cells.size(), whole->cells.size());
   const double largest = std::sqrt(strongest_peak(*whole, 0).cell);
-  // Both are right to -120 dB of the largest.
+  // Both are exact to -120 dB of the largest.
   for (std::size_t i = 0; i < whole->cells.size(); ++i)
     ASSERT_NEAR(std::sqrt(coarse->cells[i]), std::sqrt(whole->cells[i]), 2e-6 * largest);
 }
@@ -218,7 +218,7 @@ TEST(Spectrogram, RowsComeInOrderAndOnce) {
       const auto made = maker->make(texture, [&](std::size_t first, std::span<const float> cells) {
         EXPECT_EQ(first, rows);
         EXPECT_EQ(cells.size() % header->bins, 0U);
-        EXPECT_LE(cells.size(), std::size_t{1} << 17);  // half a megabyte, however long the texture
+        EXPECT_LE(cells.size(), std::size_t{1} << 17);  // half a megabyte for textures of any length
         rows += cells.size() / header->bins;
         return schema::Result<void>{};
       });
@@ -255,7 +255,7 @@ TEST(Spectrogram, TakesHeightsOnAGridOfAQuarterMicrometre) {
   EXPECT_GT(result->decimation, 1U);
   const SpectralPeak peak = strongest_peak(*result, 1e3);
   EXPECT_NEAR(peak.frequency_per_m, 40e3, result->frequency_step_per_m / 2);
-  EXPECT_NEAR(peak.cell, 3e-6, 0.02 * 3e-6);  // between two bins of a padded window: at most 1.5 % lower
+  EXPECT_NEAR(peak.cell, 3e-6, 0.02 * 3e-6);  // between two bins of a padded window: up to 1.5 % lower
   EXPECT_EQ(level_reference(*result).unit, "1 um");
 }
 
@@ -296,7 +296,7 @@ TEST(Spectrogram, TakesTheShortestTextureThatHoldsAWindow) {
   const auto refused = spatial_spectrogram(samples::noise(9999), {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::unsuitable);
-  EXPECT_EQ(refused.error().remedy, "a window of 9.99 mm would fit");
+  EXPECT_EQ(refused.error().remedy, "use a window of 9.99 mm or less");
   SpectrogramOptions options;
   options.window_m = 9.99e-3;
   EXPECT_TRUE(spatial_spectrogram(samples::noise(9999), options));
@@ -320,7 +320,7 @@ TEST(Spectrogram, RefusesImpossibleOptions) {
   SpectrogramOptions far;
   far.padded_m = 100;
   EXPECT_EQ(spatial_spectrogram(texture, far).error().remedy,
-            "take 10 mm (the window) to 16.78 m (2^24 samples)");
+            "use 10 mm (the window) to 16.78 m (2^24 samples)");
   for (const double bad : {0.0, -1.0, kNan})
     EXPECT_EQ(fault_of([&](auto& o) { o.max_frequency_per_m = bad; }), ErrorKind::usage) << bad;
 }

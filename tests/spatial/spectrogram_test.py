@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The verb `spectrogram` against scipy.signal.spectrogram, and the files it writes against what reads such files."""
+"""The verb `spectrogram` against scipy.signal.spectrogram; its files against independent readers."""
 
 import csv
 import hashlib
@@ -48,8 +48,8 @@ def write_texture(stem, values, pitch_m=PITCH_M, **members):
 
 
 def write_recording(stem):
-    """Three strokes of 40 mm at 50 mm/s over lines of 2 and 8 /mm, forth and back, as another program would write
-    it."""
+    """Three strokes of 40 mm at 50 mm/s over lines of 2 and 8 /mm, back and forth, as another program would write
+    them."""
     rate_hz, frames = 10000, 30000
     t = np.arange(frames) / rate_hz
     way_mm = np.minimum(50 * (t % 1), 40)
@@ -125,8 +125,8 @@ class Spectrogram(unittest.TestCase):
         return attributes
 
     def check_cells(self, density, expected):
-        """Sizes right to -120 dB of the largest, which is what is asked of the complex spectra; densities 60 dB under it
-        to 1e-4, which short jobs reach as their transforms are in double precision."""
+        """Magnitudes exact to -120 dB of the largest, as required for complex spectra; densities 60 dB below it to
+        1e-4, which short jobs reach because their transforms use double precision."""
         error = np.abs(np.sqrt(density) - np.sqrt(expected))
         self.assertLess(error.max(), 1e-6 * np.sqrt(expected.max()))
         strong = expected > 1e-6 * expected.max()
@@ -159,7 +159,7 @@ class Spectrogram(unittest.TestCase):
         x = np.asarray(values, np.float32).astype(float)
         power = signal.spectrogram(x, 1e6, "blackman", 10000, 9900, 16384, detrend="constant", scaling="spectrum")[2].T
         factor = np.full(power.shape[1], 2.0)
-        factor[[0, -1]] = 1  # zero and half the sampling frequency have no twin
+        factor[[0, -1]] = 1  # zero and half the sampling frequency have no negative counterpart
         expected = np.sqrt(power * factor)
         for highest in ("15/mm", "500/mm"):
             self.made(self.stem, "-o", self.here / "oak.nc", "--scaling", "amplitude", "--max-frequency", highest)
@@ -197,7 +197,7 @@ class Spectrogram(unittest.TestCase):
             position, frequency = file["position"][:].data, file["spatial_frequency"][:].data
             self.assertEqual(list(file["known"].flag_values), [0, 1])
             limits = file["known_from"][:].data, file["known_to"][:].data
-        # The limits throughout the 39.2 % of the window that carry 90 % of its power, by a fine grid.
+        # The valid limits throughout the 39.2 % of the window that contain 90 % of its power, by a fine grid.
         at = position[:, None] + np.linspace(-1.96, 1.96, 2001)[None, :]
         places = [1e3 * point["position_m"] for point in band]
         low = np.interp(at, places, [1e-3 * point["low_per_m"] for point in band]).max(axis=1)
@@ -246,7 +246,8 @@ class Spectrogram(unittest.TestCase):
         row = report["textures"][0]
         self.assertEqual(row["positions"], 301)
         self.assertLess(abs(row["peak_frequency_per_m"] - 2000), 1e6 / 16384)
-        # Over the window's weights, a sine keeps A^2 / 2; a window of 20 periods differs by far less than 1e-4.
+        # With the window's weights, the power of a sine is A^2 / 2; with 20 periods per window the deviation is far
+        # below 1e-4.
         self.assertAlmostEqual(row["band_rms_n"], 0.02 / np.sqrt(2), delta=2e-6)
         self.assertEqual(report["level_reference"], "1 N^2 mm")
 
@@ -317,9 +318,9 @@ class Spectrogram(unittest.TestCase):
     def test_absurd_lengths_name_the_range(self):
         write_texture(self.stem, chirp_and_noise())
         message = self.refused(2, self.stem, "-o", self.here / "oak.nc", "--padding", "100m")
-        self.assertIn("take 10 mm (the window) to 16.78 m", message)
+        self.assertIn("use 10 mm (the window) to 16.78 m", message)
         message = self.refused(2, self.stem, "-o", self.here / "oak.nc", "--window", "1e300m")
-        self.assertIn("take 8 um (8 samples) to 16.78 m", message)
+        self.assertIn("use 8 um (8 samples) to 16.78 m", message)
 
     def test_a_name_stands_for_its_numbered_textures(self):
         write_recording(self.stem)
@@ -340,17 +341,17 @@ class Spectrogram(unittest.TestCase):
         # A stored texture is rounded to single precision: 6e-8 of each sample.
         error = np.abs(np.sqrt(direct) - np.sqrt(stored))
         self.assertLess(np.nanmax(error), 1e-6 * np.sqrt(np.nanmax(stored)))
-        # Named in full it is the recording again.
+        # Its full name selects the recording again.
         self.made(f"{self.stem}.json", "-o", self.here / "again.nc")
         np.testing.assert_array_equal(read_nc(self.here / "again.nc")[2], direct)
 
     def test_a_full_disk_is_told_and_leaves_what_was_there(self):
-        """A limit on files' sizes fails as a full disk does, netCDF's and HDF5's clearing up included."""
+        """A limit of the file size fails like a full disk, including the clean-up of netCDF and HDF5."""
         write_texture(self.stem, chirp_and_noise())
         self.made(self.stem, "-o", self.here / "small.nc", "--window", "20mm", "--hop", "20mm", "--max-frequency", "1/mm")
         small = (self.here / "small.nc").read_bytes()
         table = b"position_mm,N^2 mm at 0/mm,before\n"
-        # What is of its like may be replaced: so nothing but the disk stands in the way.
+        # Files of the same kind may be replaced, so that only the disk prevents it.
         for name, before in (("oak.nc", small), ("oak.csv", table), ("oak.png", table)):
             (self.here / name).write_bytes(before)
             done = subprocess.run(
@@ -359,33 +360,35 @@ class Spectrogram(unittest.TestCase):
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)),
             )  # fmt: skip
             self.assertEqual(done.returncode, 7, name + done.stderr)
-            said = [line for line in done.stderr.splitlines() if "==WARNING: " not in line]  # a sanitizer's own
+            # Without a sanitizer's own warnings.
+            said = [line for line in done.stderr.splitlines() if "==WARNING: " not in line]
             self.assertEqual(len(said), 1, done.stderr)
             self.assertEqual((self.here / name).read_bytes(), before)
             self.assertEqual([path.name for path in self.here.glob(".*")], [])
 
     def test_memory_does_not_grow_with_textures_or_bins(self):
-        """All 8,193 bins of 0.4 m of texture, 128 MB of cells, in a few megabytes more than one short texture."""
+        """All 8,193 bins of 0.4 m of texture, 128 MB of cells, need only a few megabytes more than one short
+        texture."""
         peaks = []
         for name, length_m, highest in (("short", 0.011, "15/mm"), ("long", 0.4, "500/mm")):
             write_texture(self.here / name, chirp_and_noise(length_m))
             peaks.append(
                 tacto.peak_mb("spectrogram", name, "-o", f"{name}.nc", "--max-frequency", highest, cwd=self.here)
             )
-        # The texture itself is in memory, in double precision and as it is read.
+        # The texture itself is in memory, in double precision and as read from the file.
         tacto.expect_little_memory("all bins of 0.4 m against 11 mm up to 15 /mm", peaks[1], peaks[0])
 
     def test_a_texture_shorter_than_the_window_says_what_fits(self):
         write_texture(self.stem, chirp_and_noise(0.008))
         message = self.refused(5, self.stem, "-o", self.here / "oak.nc")
-        self.assertIn("a window of 8 mm would fit", message)
+        self.assertIn("use a window of 8 mm or less", message)
         done = self.made(self.stem, "-o", self.here / "oak.nc", "--window", "8mm")
-        self.assertIn("hardly longer than the window", done.stderr)
+        self.assertIn("only slightly longer than the window", done.stderr)
 
     def test_a_hop_beyond_the_window_is_warned_of(self):
         write_texture(self.stem, chirp_and_noise())
         done = self.made(self.stem, "-o", self.here / "oak.nc", "--window", "2mm", "--hop", "3mm")
-        self.assertIn("the parts between windows are left out", done.stderr)
+        self.assertIn("the parts between windows are ignored", done.stderr)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings of any length in bounded memory: from a source that makes its frames as they are read.
+// Recordings of any length in bounded memory, from a source that computes its frames during reading.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -10,25 +10,27 @@
 
 #include "spatial/texture/filtered_track.hpp"
 #include "spatial/texture/make_texture.hpp"
+#include "tests/measured.hpp"
 #include "tests/spatial/force_and_position.hpp"
 
 namespace tacto::spatial {
 namespace {
 
-constexpr double kRate_hz = 1000;
+constexpr double kStreamRate_hz = 1000;
 constexpr double kStroke_m = 0.04;
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kStreamTurn = 2 * std::numbers::pi;
 
-double surface(double position_m) {
-  return 0.1 * std::sin(kTurn * 1000 * position_m) + 0.05 * std::sin(kTurn * 1900 * position_m + 1);
+double stream_surface(double position_m) {
+  return 0.1 * std::sin(kStreamTurn * 1000 * position_m) +
+         0.05 * std::sin(kStreamTurn * 1900 * position_m + 1);
 }
 
-// 40 mm forth in 0.8 s, uneven by a tenth, and back after 4.2 s of rest: 10 s, again and again.
+// 40 mm ahead in 0.8 s, with speed varying by a tenth, and back after 4.2 s of rest: 10 s, repeated.
 std::vector<double> ten_seconds() {
   std::vector<double> position_m;
   for (int i = 0; i < 5000; ++i) {
-    const double t_s = std::min(i / kRate_hz, 0.8);
-    const double way_m = 0.05 * (t_s + 0.1 * std::sin(kTurn * 2.5 * t_s) / (kTurn * 2.5));
+    const double t_s = std::min(i / kStreamRate_hz, 0.8);
+    const double way_m = 0.05 * (t_s + 0.1 * std::sin(kStreamTurn * 2.5 * t_s) / (kStreamTurn * 2.5));
     position_m.push_back(std::round(way_m / 1e-6) * 1e-6);
   }
   for (std::size_t i = 0; i < 5000; ++i)
@@ -36,11 +38,11 @@ std::vector<double> ten_seconds() {
   return position_m;
 }
 
-// What a surface gives along a path that is repeated for as long as it is asked for, under a slow drift.
+// The force of a surface along a path that is repeated without end, with a slow drift.
 class EndlessSource : public samples::ForceAndPosition {
  public:
   explicit EndlessSource(std::vector<double> path) : path_(std::move(path)) {
-    for (const double x : path_) force_n_.push_back(surface(x));
+    for (const double x : path_) force_n_.push_back(stream_surface(x));
   }
   schema::Result<void> read_stored(Track track, std::size_t first, std::span<double> out) override {
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -57,7 +59,7 @@ class EndlessSource : public samples::ForceAndPosition {
 schema::Result<TouchRecord> record_of(std::vector<double> path, std::uint64_t frames) {
   schema::RecordingHeader header;
   header.frames = frames;
-  header.sample_rate_hz = kRate_hz;
+  header.sample_rate_hz = kStreamRate_hz;
   return TouchRecord::open(std::make_unique<EndlessSource>(std::move(path)), header, "endless");
 }
 
@@ -76,19 +78,19 @@ double peak_mb() {
 }
 
 // RMS difference from the surface re its RMS, 5 mm and more from the ends.
-double error_of(const schema::Texture& texture) {
+double stream_error(const schema::Texture& texture) {
   double miss = 0, size = 0;
   for (std::size_t i = 0; i < texture.signal.values.size(); ++i) {
     const double at_m = texture.signal.position_m(i);
     if (at_m < 0.005 || at_m > texture.signal.length_m() - 0.005) continue;
-    const double exact = surface(texture.source_origin_m + at_m);
+    const double exact = stream_surface(texture.source_origin_m + at_m);
     miss += std::pow(texture.signal.values[i] - exact, 2);
     size += exact * exact;
   }
   return std::sqrt(miss / size);
 }
 
-// Before all others: the peak is the process's.
+// This test is first, because the peak is that of the process.
 TEST(Streaming, ADayFitsInLittleMemory) {
   constexpr std::uint64_t kDay = 24 * 3600 * 1000;
   const double before_mb = peak_mb();
@@ -103,12 +105,12 @@ TEST(Streaming, ADayFitsInLittleMemory) {
     const auto texture = maker->make(strokes[n], static_cast<int>(n) + 1);
     ASSERT_TRUE(texture) << schema::message(texture.error());
     // A quantum of 1 um at 1 and 1.9 /mm is 0.2 % of phase noise; the rest is the filter at the ends.
-    EXPECT_LT(error_of(*texture), 0.02) << n;
+    EXPECT_LT(stream_error(*texture), 0.02) << n;
   }
-  // AddressSanitizer keeps what was freed.
+  // AddressSanitizer keeps freed memory.
   const bool judged = std::getenv("TACTO_SANITIZED") == nullptr;
   EXPECT_TRUE(!judged || peak_mb() - before_mb < 32) << peak_mb() - before_mb;
-  std::cout << "24 h at 1 kHz: " << peak_mb() - before_mb << " MB\n";
+  measured("spatial_streaming.day_at_1_khz_mb", peak_mb() - before_mb);
 }
 
 TEST(Streaming, TenMinutesOfRestInMidStroke) {
@@ -124,20 +126,20 @@ TEST(Streaming, TenMinutesOfRestInMidStroke) {
   path.insert(path.end(), 2000, path.back());
   auto record = record_of(path, path.size());
   ASSERT_TRUE(record);
-  EXPECT_EQ(record->strokes().size(), 2U);  // by itself a pause parts them
+  EXPECT_EQ(record->strokes().size(), 2U);  // without the option a pause separates them
   auto maker = TextureMaker::open(std::move(*record), options_for());
   const auto stretch = maker->record().stretch(2.0, 602.8);
   ASSERT_TRUE(stretch) << schema::message(stretch.error());
   const auto texture = maker->make(*stretch, 0);
   ASSERT_TRUE(texture) << schema::message(texture.error());
   EXPECT_NEAR(texture->signal.length_m(), 0.04, 1e-4);
-  // Over 1 mm and more from the stop it is the surface; at the stop the band knows nothing, and says so.
+  // Away from the stop it is the surface; at the stop the valid band begins far above the surface's lines.
   double miss = 0, size = 0, lowest_at_stop = 0;
   for (std::size_t i = 0; i < texture->signal.values.size(); ++i) {
     const double at_m = texture->source_origin_m + texture->signal.position_m(i);
     if (at_m < 0.005 || at_m > 0.035 || std::abs(at_m - 0.02) < 0.005) continue;
-    miss += std::pow(texture->signal.values[i] - surface(at_m), 2);
-    size += std::pow(surface(at_m), 2);
+    miss += std::pow(texture->signal.values[i] - stream_surface(at_m), 2);
+    size += std::pow(stream_surface(at_m), 2);
   }
   EXPECT_LT(std::sqrt(miss / size), 0.03);
   for (const auto& point : texture->valid_band)
@@ -154,9 +156,9 @@ TEST(Streaming, GivesWhatTheWholeStretchGives) {
       EndlessSource source(ten_seconds());
       std::vector<double> all(kFrames);
       ASSERT_TRUE(source.read(Track::value, 0, all));
-      const auto whole = filter_in_time(all, kRate_hz, filter);
+      const auto whole = filter_in_time(all, kStreamRate_hz, filter);
       ASSERT_TRUE(whole);
-      FilteredTrack track(source, kRate_hz, filter, {});
+      FilteredTrack track(source, kStreamRate_hz, filter, {});
       double miss = 0, size = 0;
       for (const FrameRange frames :
            {FrameRange{0, 900}, FrameRange{5000, 6000}, FrameRange{90000, 120000}}) {
@@ -183,7 +185,7 @@ TEST(Streaming, AFaultOfTheSourceIsPassedOn) {
   };
   schema::RecordingHeader header;
   header.frames = 100000;
-  header.sample_rate_hz = kRate_hz;
+  header.sample_rate_hz = kStreamRate_hz;
   auto record = TouchRecord::open(std::make_unique<Broken>(), header, "torn");
   ASSERT_TRUE(record);
   auto maker = TextureMaker::open(std::move(*record), options_for());

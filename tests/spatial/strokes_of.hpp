@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strokes and facts of positions that lie in memory.
+// Strokes and facts of positions in memory.
 #pragma once
 
 #include <algorithm>

@@ -12,28 +12,28 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kRate_hz = 10000;
+constexpr double kStrokeRate_hz = 10000;
 
-// Positions written stretch by stretch, read by an encoder.
+// Positions written part by part, read by an encoder.
 class Path {
  public:
   explicit Path(double quantum_m = 1e-6, double dither_m = 0) : quantum_m_(quantum_m), dither_m_(dither_m) {}
   Path& go(double speed_mps, double duration_s) {
-    for (int i = 0; i < std::lround(duration_s * kRate_hz); ++i) {
-      exact_m_ += speed_mps / kRate_hz;
+    for (int i = 0; i < std::lround(duration_s * kStrokeRate_hz); ++i) {
+      exact_m_ += speed_mps / kStrokeRate_hz;
       const double seen_m = exact_m_ + dither_m_ * normal_(random_);
       position_m.push_back(quantum_m_ > 0 ? std::round(seen_m / quantum_m_) * quantum_m_ : seen_m);
     }
     return *this;
   }
   Path& rest(double duration_s) { return go(0, duration_s); }
-  // Sticks for `stick_s`, then slips `slip_m` in 2 ms and springs back by a twentieth of it.
+  // Sticks for `stick_s`, then slips `slip_m` in 2 ms and recoils by a twentieth of it.
   Path& stick_slip(double slip_m, double stick_s, int times) {
     for (int i = 0; i < times; ++i)
       rest(stick_s).go(slip_m * 1.05 / 0.002, 0.002).go(-slip_m * 0.05 / 0.001, 0.001);
     return *this;
   }
-  double seconds() const { return static_cast<double>(position_m.size()) / kRate_hz; }
+  double seconds() const { return static_cast<double>(position_m.size()) / kStrokeRate_hz; }
   std::vector<double> position_m;
 
  private:
@@ -43,15 +43,15 @@ class Path {
 };
 
 void expect_stroke(const Stroke& stroke, double from_s, double to_s, int direction) {
-  // The speed is known over 20 ms.
-  EXPECT_NEAR(static_cast<double>(stroke.frames.begin) / kRate_hz, from_s, 0.015);
-  EXPECT_NEAR(static_cast<double>(stroke.frames.end) / kRate_hz, to_s, 0.015);
+  // The speed is averaged over 20 ms.
+  EXPECT_NEAR(static_cast<double>(stroke.frames.begin) / kStrokeRate_hz, from_s, 0.015);
+  EXPECT_NEAR(static_cast<double>(stroke.frames.end) / kStrokeRate_hz, to_s, 0.015);
   EXPECT_EQ(stroke.direction, direction);
 }
 
 TEST(Strokes, FindsBothWaysBetweenPauses) {
   const Path path = Path().rest(1).go(0.04, 1).rest(0.5).go(-0.08, 0.5).rest(1);
-  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   expect_stroke(strokes[0], 1, 2, 1);
   expect_stroke(strokes[1], 2.5, 3, -1);
@@ -59,7 +59,7 @@ TEST(Strokes, FindsBothWaysBetweenPauses) {
 
 TEST(Strokes, AReversalPartsThem) {
   const Path path = Path().go(0.05, 1).go(-0.05, 1).go(0.05, 1);
-  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
   ASSERT_EQ(strokes.size(), 3U);
   expect_stroke(strokes[1], 1, 2, -1);
 }
@@ -67,13 +67,13 @@ TEST(Strokes, AReversalPartsThem) {
 TEST(Strokes, APausePartsAndAStickDoesNot) {
   const Path paused = Path().go(0.05, 1).rest(0.3).go(0.05, 1),
              stuck = Path().go(0.05, 1).rest(0.05).go(0.05, 1);
-  EXPECT_EQ(strokes_of(paused.position_m, kRate_hz).size(), 2U);
-  EXPECT_EQ(strokes_of(stuck.position_m, kRate_hz).size(), 1U);
+  EXPECT_EQ(strokes_of(paused.position_m, kStrokeRate_hz).size(), 2U);
+  EXPECT_EQ(strokes_of(stuck.position_m, kStrokeRate_hz).size(), 1U);
 }
 
 TEST(Strokes, EachIsJudgedByItsOwnSpeed) {
   const Path path = Path().rest(1).go(0.002, 10).rest(1).go(0.2, 0.2).rest(1);
-  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   expect_stroke(strokes[0], 1, 11, 1);
   expect_stroke(strokes[1], 12, 12.2, 1);
@@ -82,7 +82,7 @@ TEST(Strokes, EachIsJudgedByItsOwnSpeed) {
 TEST(Strokes, ACoarseEncoderMakesNoFalseOnes) {
   for (const double quantum_m : {0.1e-6, 1e-6, 10e-6}) {
     const Path path = Path(quantum_m, quantum_m / 2).rest(2).go(0.001, 5).rest(60).go(-0.005, 1).rest(2);
-    const auto strokes = strokes_of(path.position_m, kRate_hz);
+    const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
     ASSERT_EQ(strokes.size(), 2U) << quantum_m;
     EXPECT_EQ(strokes[0].direction, 1);
     EXPECT_EQ(strokes[1].direction, -1);
@@ -91,8 +91,8 @@ TEST(Strokes, ACoarseEncoderMakesNoFalseOnes) {
 
 TEST(Strokes, ANominalPositionIsOneStroke) {
   const Path path = Path(0).go(0.04, 2);
-  EXPECT_EQ(facts_of(path.position_m, kRate_hz).quantum_m, 0);
-  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  EXPECT_EQ(facts_of(path.position_m, kStrokeRate_hz).quantum_m, 0);
+  const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
   ASSERT_EQ(strokes.size(), 1U);
   EXPECT_EQ(strokes[0].frames.size(), path.position_m.size());
 }
@@ -100,18 +100,18 @@ TEST(Strokes, ANominalPositionIsOneStroke) {
 TEST(Strokes, AGapPartsThem) {
   const Path path = Path().go(0.05, 2);
   const schema::Gap gap{9000, 9000, 100};
-  const auto strokes = strokes_of(path.position_m, kRate_hz, {&gap, 1});
+  const auto strokes = strokes_of(path.position_m, kStrokeRate_hz, {&gap, 1});
   ASSERT_EQ(strokes.size(), 2U);
   EXPECT_EQ(strokes[0].frames.end, 9000U);
   EXPECT_EQ(strokes[1].frames.begin, 9000U);
 }
 
 TEST(Strokes, AFingerThatSticksAndSlipsMakesOneStroke) {
-  // 40 mm in slips of 0.5 mm with 50 ms between them, there and back: 9.4 mm/s.
+  // 40 mm in slips of 0.5 mm with 50 ms between them, back and forth: 9.4 mm/s.
   for (const double quantum_m : {0.1e-6, 1e-6, 10e-6}) {
     const Path path =
         Path(quantum_m).rest(0.5).stick_slip(0.5e-3, 0.05, 80).rest(0.5).stick_slip(-0.5e-3, 0.05, 80);
-    const auto strokes = strokes_of(path.position_m, kRate_hz);
+    const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
     ASSERT_EQ(strokes.size(), 2U) << quantum_m;
     EXPECT_EQ(strokes[0].direction, 1);
     EXPECT_EQ(strokes[1].direction, -1);
@@ -122,7 +122,7 @@ TEST(Strokes, AFingerThatSticksAndSlipsMakesOneStroke) {
 
 TEST(Strokes, StickAndSlipBesideASmoothStroke) {
   const Path path = Path().rest(0.5).go(0.1, 1).rest(0.5).stick_slip(0.5e-3, 0.04, 40).rest(0.5);
-  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
   EXPECT_NEAR(strokes[1].advance_m(), 0.02, 1e-3);
 }
@@ -139,7 +139,7 @@ TEST(Strokes, FromOneToAThousandMillimetresASecondInOneRecord) {
                           .rest(1)
                           .go(-1, 0.15)
                           .rest(1);
-    const auto strokes = strokes_of(path.position_m, kRate_hz);
+    const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
     ASSERT_EQ(strokes.size(), 4U) << quantum_m;
     const double way_m[] = {0.01, 0.01, 0.1, 0.15};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -151,12 +151,12 @@ TEST(Strokes, FromOneToAThousandMillimetresASecondInOneRecord) {
 }
 
 TEST(Strokes, ANoisyLvdtShowsTheSameStrokes) {
-  // No grid; noise of 3 um, 30 times what the finger goes in a sample at 1 mm/s.
+  // No grid; noise of 3 um, 30 times the distance per sample at 1 mm/s.
   const Path path = Path(0, 3e-6).rest(1).go(0.001, 10).rest(1).go(-0.04, 1).rest(30).go(0.2, 0.2).rest(1);
-  const PositionFacts facts = facts_of(path.position_m, kRate_hz);
+  const PositionFacts facts = facts_of(path.position_m, kStrokeRate_hz);
   EXPECT_NEAR(facts.noise_m, 3e-6, 0.05e-6);
   EXPECT_LT(facts.quantum_m, 1e-8);
-  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
   ASSERT_EQ(strokes.size(), 3U);
   expect_stroke(strokes[1], 12, 13, -1);
   expect_stroke(strokes[2], 43, 43.2, 1);
@@ -164,7 +164,7 @@ TEST(Strokes, ANoisyLvdtShowsTheSameStrokes) {
 }
 
 TEST(Strokes, ANominalPositionHasNeitherQuantumNorNoise) {
-  const PositionFacts facts = facts_of(Path(0).rest(1).go(0.04, 2).position_m, kRate_hz);
+  const PositionFacts facts = facts_of(Path(0).rest(1).go(0.04, 2).position_m, kStrokeRate_hz);
   EXPECT_EQ(facts.quantum_m, 0);
   EXPECT_EQ(facts.noise_m, 0);
   EXPECT_NEAR(facts.travelling_mps, 0.04, 0.0005);
@@ -173,17 +173,17 @@ TEST(Strokes, ANominalPositionHasNeitherQuantumNorNoise) {
 TEST(Strokes, AnEncodersRoundingAndDitherAreNoNoise) {
   for (const double dither : {0.0, 0.3, 0.8}) {
     const Path path = Path(1e-6, dither * 1e-6).rest(1).go(0.0403, 2).rest(1);
-    EXPECT_EQ(facts_of(path.position_m, kRate_hz).noise_m, 0) << dither;
-    EXPECT_NEAR(facts_of(path.position_m, kRate_hz).quantum_m, 1e-6, 1e-15) << dither;
+    EXPECT_EQ(facts_of(path.position_m, kStrokeRate_hz).noise_m, 0) << dither;
+    EXPECT_NEAR(facts_of(path.position_m, kStrokeRate_hz).quantum_m, 1e-6, 1e-15) << dither;
   }
 }
 
 TEST(Strokes, AreTheSameInChunksOfALongRecord) {
-  // Longer than a chunk by far, with strokes across chunks' edges; each found where it is when searched
-  // alone.
+  // Much longer than a chunk, with strokes across the chunks' borders; each is found at the same place as in
+  // a search of its part alone.
   Path path;
   for (int i = 0; i < 30; ++i) path.rest(0.3).go(i % 2 == 0 ? 0.05 : -0.05, 1.7);
-  const auto strokes = strokes_of(path.position_m, kRate_hz);
+  const auto strokes = strokes_of(path.position_m, kStrokeRate_hz);
   ASSERT_EQ(strokes.size(), 30U);
   for (std::size_t i = 0; i < strokes.size(); ++i)
     expect_stroke(strokes[i], 2.0 * static_cast<double>(i) + 0.3, 2.0 * static_cast<double>(i) + 2,
@@ -191,14 +191,14 @@ TEST(Strokes, AreTheSameInChunksOfALongRecord) {
 }
 
 TEST(Strokes, NoneWhereNothingMoves) {
-  EXPECT_TRUE(strokes_of(Path().rest(1).position_m, kRate_hz).empty());
-  EXPECT_TRUE(strokes_of({}, kRate_hz).empty());
-  EXPECT_TRUE(strokes_of(std::vector<double>{1.0}, kRate_hz).empty());
+  EXPECT_TRUE(strokes_of(Path().rest(1).position_m, kStrokeRate_hz).empty());
+  EXPECT_TRUE(strokes_of({}, kStrokeRate_hz).empty());
+  EXPECT_TRUE(strokes_of(std::vector<double>{1.0}, kStrokeRate_hz).empty());
 }
 
 TEST(Strokes, QuantumIsTheEncodersCount) {
-  EXPECT_NEAR(facts_of(Path(0.5e-6).go(0.0403, 1).position_m, kRate_hz).quantum_m, 0.5e-6, 1e-15);
-  EXPECT_NEAR(facts_of(Path(1e-6).rest(5).go(0.001, 1).position_m, kRate_hz).quantum_m, 1e-6, 1e-15);
+  EXPECT_NEAR(facts_of(Path(0.5e-6).go(0.0403, 1).position_m, kStrokeRate_hz).quantum_m, 0.5e-6, 1e-15);
+  EXPECT_NEAR(facts_of(Path(1e-6).rest(5).go(0.001, 1).position_m, kStrokeRate_hz).quantum_m, 1e-6, 1e-15);
 }
 
 TEST(Strokes, PiecesLieBetweenGaps) {
@@ -213,12 +213,12 @@ TEST(Strokes, PiecesLieBetweenGaps) {
 TEST(Strokes, FindsTheTwoOfTheBareFinger) {
   const auto finger = bare_finger();
   if (finger.empty()) GTEST_SKIP() << "skipped: no real data";
-  EXPECT_NEAR(facts_of(finger, kRate_hz).quantum_m, 0.5e-6, 1e-15);
-  const auto strokes = strokes_of(finger, kRate_hz);
+  EXPECT_NEAR(facts_of(finger, kStrokeRate_hz).quantum_m, 0.5e-6, 1e-15);
+  const auto strokes = strokes_of(finger, kStrokeRate_hz);
   ASSERT_EQ(strokes.size(), 2U);
-  // By the data's own timeline: 0.1 to 2.45 s back, 4.5 to 6.9 s forth; the stage ramps up and down over 0.25
+  // By the data's own timeline: 0.1 to 2.45 s back, 4.5 to 6.9 s ahead; the stage ramps up and down over 0.25
   // s.
-  const auto time_s = [](std::size_t frame) { return static_cast<double>(frame) / kRate_hz; };
+  const auto time_s = [](std::size_t frame) { return static_cast<double>(frame) / kStrokeRate_hz; };
   EXPECT_EQ(strokes[0].direction, -1);
   EXPECT_NEAR(time_s(strokes[0].frames.begin), 0.1, 0.1);
   EXPECT_NEAR(time_s(strokes[0].frames.end), 2.45, 0.15);

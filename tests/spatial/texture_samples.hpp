@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Textures with closed answers, for tests of spectrograms and pictures.
+// Textures with closed forms, for tests of spectrograms and pictures.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ inline schema::Texture sine(double amplitude_n, double frequency_per_m, std::siz
   return texture_of(std::move(values), pitch_m);
 }
 
-/// Even noise between -1 and 1, the same on every machine (Numerical Recipes' 64-bit generator).
+/// Uniform noise between -1 and 1, the same on every machine (Numerical Recipes' 64-bit generator).
 inline schema::Texture noise(std::size_t count, double pitch_m = 1e-6) {
   std::vector<double> values(count);
   std::uint64_t state = 12345;

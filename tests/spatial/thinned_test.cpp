@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fewer samples: what can be kept is kept, what can't leaves nothing behind.
+// Decimation: frequencies that the result can represent are kept, others are removed without aliases.
 #include "spatial/dsp/resample/thinned.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ std::vector<double> tone(double cycles_a_sample, std::size_t count) {
   return values;
 }
 
-// The largest difference away from the ends, where the filter sees beyond them.
+// The largest difference away from the ends, where the filter lacks samples.
 double difference(std::span<const double> a, std::span<const double> b) {
   double largest = 0;
   for (std::size_t i = 50; i + 50 < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));

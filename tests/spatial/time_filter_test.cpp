@@ -18,7 +18,7 @@ std::complex<double> twice(double) {
   return 2;
 }
 
-std::vector<double> in_chunks(BlockTimeFilter& filter, std::span<const double> values, std::size_t size) {
+std::vector<double> fed_in_chunks(BlockTimeFilter& filter, std::span<const double> values, std::size_t size) {
   std::vector<double> out;
   for (; !values.empty(); values = values.subspan(std::min(size, values.size())))
     EXPECT_TRUE(filter.push(values.first(std::min(size, values.size())), out));
@@ -38,7 +38,7 @@ TEST(BlockTimeFilter, GivesByEveryMethodWhatTheWholeStretchGives) {
         ASSERT_TRUE(whole && fed);
         ASSERT_EQ(whole->size(), force.size());
         for (int again = 0; again < 2; ++again) {
-          const auto chunked = in_chunks(*fed, force, 777);
+          const auto chunked = fed_in_chunks(*fed, force, 777);
           ASSERT_EQ(chunked.size(), force.size());
           for (std::size_t i = 0; i < force.size(); ++i)
             ASSERT_NEAR(chunked[i], (*whole)[i], 1e-12) << name_of(method) << name_of(edges) << i;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures hide nothing: texts are whole, a spike does not squash the curve; and on a page they are small.
+// Pictures show everything: texts are complete, a spike does not compress the curve; and on a page they are
+// small.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "spatial/picture/draw/palette_png.hpp"
+#include "spatial/picture/draw/engine.hpp"
 #include "spatial/picture/draw/shown_range.hpp"
 #include "spatial/picture/draw/svg_numbers.hpp"
 #include "spatial/picture/line_plot.hpp"
@@ -31,7 +32,7 @@ LineFigure one_curve(const std::string& title, const std::string& simulated) {
   return figure;
 }
 
-// All words of the text layer, as a reader sees them one line after the other.
+// All words of the text layer, line by line.
 std::string words_of(const std::string& svg) {
   std::string words;
   for (auto at = svg.find("<text"); at != svg.npos; at = svg.find("<text", at + 1)) {
@@ -87,12 +88,12 @@ TEST(WholePicture, ASpectrogramsHeadingIsWhole) {
   const auto svg = to_svg(two);
   ASSERT_TRUE(svg);
   EXPECT_NE(words_of(*svg).find("SIMULATED: " + kBywhat), std::string::npos);
-  // The second panel begins below the first, however high its heading is.
+  // The second panel begins below the first, for any height of its heading.
   EXPECT_GT(two.layout(1).heading.y, two.layout(0).heat.bottom());
   EXPECT_LT(two.layout(1).heat.bottom(), two.page().height);
 }
 
-// On a page of sixty such pictures each may have 160 kB; noise is the largest.
+// On a page with sixty such pictures each may have 160 kB; noise gives the largest.
 TEST(WholePicture, APagesPictureIsSmall) {
   const schema::Texture texture = samples::noise(90'000);
   auto spectrogram = spatial_spectrogram(texture, {});
@@ -149,11 +150,11 @@ TEST(ShownRange, OneSpikeDoesNotSquashTheRest) {
   const ShownRange range = shown_range(values);
   EXPECT_LT(range.high, 10);
   EXPECT_EQ(range.furthest, 1000);
-  EXPECT_NE(beyond_words(range, "mN").find("as far as 1e+03 mN"), std::string::npos)
-      << beyond_words(range, "mN");
+  EXPECT_NE(out_of_range_text(range, "mN").find("up to 1e+03 mN"), std::string::npos)
+      << out_of_range_text(range, "mN");
 }
 
-// A twentieth of each stroke, as a recorded finger's onset.
+// A twentieth of each stroke, like the onset in a recording of a finger.
 TEST(ShownRange, OnsetsDoNotSquashTheStrokes) {
   std::vector<double> values = noise(100'000);
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -164,7 +165,7 @@ TEST(ShownRange, OnsetsDoNotSquashTheStrokes) {
   EXPECT_EQ(range.beyond, 5000U);
 }
 
-// Rest with one short stroke: the stroke is what the picture is for.
+// Rest with one short stroke: the picture must show the stroke.
 TEST(ShownRange, AStrokeAmongRestIsShown) {
   std::vector<double> values = noise(100'000);
   for (std::size_t i = 0; i < values.size(); ++i)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a recording to complex cells of its spectrograms, against the same way in extended precision:
-// band-pass by its sum, positions inverted by bisection, monotone cubic, transform by its definition. The
-// bound is the one the project asks of the whole way: |X - X_exact| / max |X_exact| over all cells at most
-// -100 dB.
+// From a recording to complex cells of its spectrograms, against the same chain in extended precision:
+// band-pass by its sum, positions inverted by bisection, monotone cubic, transform by its definition.
+// Required for the whole chain: |X - X_exact| / max |X_exact| over all cells at most -100 dB.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "spatial/spectrogram/spectrogram_options.hpp"
 #include "spatial/texture/make_texture.hpp"
 #include "tests/bench/workload.hpp"
+#include "tests/measured.hpp"
 #include "tests/spatial/force_and_position.hpp"
 
 namespace tacto::spatial {
@@ -49,7 +49,7 @@ TextureMaker maker_of(const bench::Workload& made) {
   return std::move(*maker);
 }
 
-// The band-pass in extended precision, each sample when it is first asked for.
+// The band-pass in extended precision; each sample is computed when it is first used.
 class ExactForce {
  public:
   explicit ExactForce(const bench::Workload& made)
@@ -67,7 +67,7 @@ class ExactForce {
   std::map<std::size_t, double> known_;
 };
 
-// One stroke's texture as it should be, a stretch of grid points at a time.
+// The exact texture of one stroke, a stretch of grid points at a time.
 class ExactTexture {
  public:
   ExactTexture(const TextureMaker& maker, const Stroke& stroke, ExactForce& force)
@@ -90,7 +90,7 @@ class ExactTexture {
   }
 
  private:
-  // A slope of the monotone cubic reaches one sample beyond the next: three to each side are plenty.
+  // A slope of the monotone cubic depends on one sample beyond the next: three to each side are sufficient.
   reference::ExactHermite around(double low, double high) {
     std::vector<double> frames, forces;
     for (double frame = std::floor(low) - 3; frame <= std::ceil(high) + 3; ++frame) {
@@ -108,7 +108,7 @@ class ExactTexture {
 
 using Row = std::vector<std::complex<double>>;
 
-// The rows of a texture that are named, as the spectrogram's transform gives them.
+// The given rows of a texture, as the spectrogram's transform computes them.
 std::map<std::size_t, Row> rows_of(const schema::Texture& texture, const FrameShape& shape,
                                    const std::vector<std::size_t>& named) {
   ShortTimeTransform transform(shape, decimation_for(shape), blackman(shape.window), 1, true, 18000);
@@ -130,10 +130,10 @@ std::map<std::size_t, Row> rows_of(const schema::Texture& texture, const FrameSh
   return rows;
 }
 
-// Rows at both ends of a stroke forth and of one back.
+// Rows at both ends of one stroke in each direction.
 double worst_db(double max_frequency_per_m) {
   static const bench::Workload made = bench::workload(kSeconds);
-  static ExactForce force(made);  // what it takes a while to know is known to the next test
+  static ExactForce force(made);  // slow to compute, so the next test reuses it
   TextureMaker maker = maker_of(made);
   SpectrogramOptions options;
   options.max_frequency_per_m = max_frequency_per_m;
@@ -162,13 +162,13 @@ double worst_db(double max_frequency_per_m) {
 
 TEST(WholeWay, IsExactTo100DbUpTo15PerMm) {
   const double db = worst_db(15e3);
-  std::cout << "recording to complex cells up to 15 /mm: " << db << " dB\n";
+  measured("spatial_whole_way.up_to_15_per_mm_db", db);
   EXPECT_LT(db, -100);
 }
 
 TEST(WholeWay, IsExactTo100DbAtAllBins) {
   const double db = worst_db(500e3);
-  std::cout << "recording to complex cells of all bins: " << db << " dB\n";
+  measured("spatial_whole_way.all_bins_db", db);
   EXPECT_LT(db, -100);
 }
 

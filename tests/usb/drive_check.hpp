@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A drive of which every value can be told from its neighbours, and a look at what a device made of it.
+// A drive whose values identify their position, and a check of the drive that a device played.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace tacto::tests {
 
-/// Value `index`, within +-0.5 V: a hash (splitmix64), so that no other place has the same run of values.
+/// Value `index`, within +-0.5 V: a hash (splitmix64), so that no sequence of values occurs twice.
 inline float drive_of(std::uint64_t index) {
   std::uint64_t bits = (index + 1) * 0x9E3779B97F4A7C15;
   bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9;
@@ -18,9 +18,9 @@ inline float drive_of(std::uint64_t index) {
          static_cast<float>(1 << 24);
 }
 
-/// Takes a device's ticks in order. The first values may go by before the device plays. From then on each
-/// tick plays the next value to the bit, or is one that had none: those have to be as many as the device
-/// says.
+/// Takes a device's ticks in order. The first values may pass before the device plays. From then on each tick
+/// must play the next value to the bit, or report that it had none; the number of those must be the device's
+/// own count.
 class DriveCheck {
  public:
   void take(const wire::Ticks& ticks) {
@@ -29,7 +29,7 @@ class DriveCheck {
     for (std::uint8_t i = 0; i < ticks.count; ++i) take(ticks.ticks[i]);
   }
 
-  /// Values that are known to be used up.
+  /// Values that certainly are consumed.
   std::uint64_t used() const { return next_; }
   bool begun() const { return as_sent_ > 0; }
   std::uint64_t as_sent() const { return as_sent_; }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fetches Debian's stock kernel, as the package of the distribution's current one holds it, into a folder: the image,
-and the modules that the tests of USB need, in the order in which they load. Installs nothing. Does nothing where the
-folder is complete. apt checks the package against its signed lists.
+"""Extracts Debian's stock kernel from the distribution's current package into a folder: the image, and the modules that
+the USB tests need, in the order of loading. Installs nothing. Does nothing if the folder is complete. apt checks the
+package against its signed lists.
 """
 import pathlib
 import re
@@ -12,7 +12,7 @@ import sys
 import tempfile
 
 META_PACKAGE = "linux-image-amd64"
-# A controller and a device in one: dummy_hcd; the device's function: usb_f_fs; the host's files: 9p.
+# dummy_hcd: controller and device in one; usb_f_fs: the device's function; 9p: the host's files.
 WANTED = ["virtio_pci", "9pnet_virtio", "9p", "libcomposite", "usb_f_fs", "dummy_hcd"]
 
 
@@ -35,7 +35,7 @@ def unpacked(package, folder):
 
 
 def dependencies(module):
-    """What the module names in its .modinfo, without its own name."""
+    """The dependencies in the module's .modinfo, without its own name."""
     named = re.search(rb"\0depends=([^\0]*)\0", module.read_bytes())
     return [name.replace("-", "_") for name in named.group(1).decode().split(",") if name] if named else []
 
@@ -62,7 +62,7 @@ def keep(tree, folder):
     for name in order:
         shutil.copy(files[name], folder / f"{name}.ko")
     shutil.copy(image, folder / "vmlinuz")
-    (folder / "modules").write_text("\n".join(order) + "\n")  # last: it says that the folder is complete
+    (folder / "modules").write_text("\n".join(order) + "\n")  # written last: it marks the folder as complete
 
 
 def complete(folder):

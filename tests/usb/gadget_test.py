@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The gadget on a kernel: what the host's kernel sees of it at each speed; its life and its refusals."""
+"""The gadget on a kernel: what the host's kernel reports of it at each speed; its life cycle and its refusals."""
 import json
 import os
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""identify over the kernel's USB: the parameters that the emulated transducer was made with come back."""
+"""identify over the kernel's USB finds the parameters of the emulated transducer."""
 import json
 import math
 import os
@@ -10,7 +10,7 @@ import sys
 import tacto
 import virtual_machine
 
-# Table I of the paper, which is what `wiertlewski2011` is made of.
+# Table I of the paper, from which `wiertlewski2011` is made.
 M_KG, K_N_PER_M, B_NS_PER_M = 6.8e-3, 4.05e3 + 7.647e4, 4.49
 
 
@@ -25,7 +25,7 @@ def identified_over_usb():
     for parameter in found["parameters"]:
         name, value = parameter["parameter"], parameter["value"]
         print(f"{name}: {value:.6g}, wanted {wanted.get(name, math.nan):.6g}")
-        # An interval of 95 % misses once in twenty: three half widths do once in 2e8.
+        # A true value is outside of a 95 % interval once in twenty, and more than three half widths away once in 2e8.
         width = parameter["high_of_95"] - parameter["low_of_95"]
         assert name not in wanted or abs(value - wanted[name]) < 1.5 * width, (parameter, wanted[name])
     assert {p["parameter"] for p in found["parameters"]} >= set(wanted)

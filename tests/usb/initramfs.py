@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A file system in memory that the kernel starts from: cpio's "newc" form, as in the kernel's initramfs documentation."""
+"""A file system in memory for the kernel's start: cpio's "newc" format, as in the kernel's initramfs documentation."""
 import pathlib
 import stat
 
@@ -11,7 +11,7 @@ def entry(name, mode, content=b"", inode=0):
 
 
 def archive(folders, files):
-    """`folders` are names; `files` maps a name to what it holds; all of them may be executed."""
+    """`folders` are names; `files` maps a name to its content; all of them are executable."""
     entries = [(name, stat.S_IFDIR | 0o755, b"") for name in folders]
     entries += [(name, stat.S_IFREG | 0o755, content) for name, content in files.items()]
     parts = [entry(*e, inode=1 + i) for i, e in enumerate(entries)]
@@ -19,7 +19,7 @@ def archive(folders, files):
 
 
 def for_guest(kernel, init):
-    """Busybox, the kernel's modules and our /init; `kernel` is the folder that fetch_kernel.py fills."""
+    """Busybox, the kernel's modules and our /init; `kernel` is the folder of fetch_kernel.py."""
     files = {"init": pathlib.Path(init).read_bytes(), "bin/busybox": pathlib.Path("/bin/busybox").read_bytes(),
              "modules/order": (kernel / "modules").read_bytes()}
     for path in sorted(kernel.glob("*.ko")):

@@ -20,7 +20,7 @@ TIME_S = int(os.environ["TACTO_USB_SECONDS"])
 HOST_S = 10
 RATES_HZ = {"device": 2000, "host": 1000}
 WATCHDOG_MS = 1000
-LEAST_TICKS = 2000  # the emulated board passes over time in which its processor was elsewhere: of 120,000 in 60 s, 24,000 were seen
+LEAST_TICKS = 2000  # the emulated board skips time without its processor: of 120,000 in 60 s it had 24,000
 
 
 def write_texture(folder):
@@ -32,8 +32,8 @@ def write_texture(folder):
         "source_origin_m": 0.0, "data": {"file": "oak.texture.wav", "sha256": sha256, "samples": len(x)}}))
 
 
-# A processor that QEMU translates stalls for tens of milliseconds, on a busy machine for hundreds: lateness is printed, not
-# judged, and the watchdog is patient.
+# QEMU's emulated processor stalls for tens of milliseconds, on a busy machine for hundreds. So lateness is printed, not
+# asserted, and the watchdog's time is long.
 def write_configs(folder):
     config = {"kind": "daemon", "version": "1.0", "device": "usb:", "transducer": "wiertlewski2011", "socket": "/guest/control",
               "sessions": "/guest/sessions", "files": "/guest", "rate_hz": RATES_HZ["device"], "watchdog_ms": WATCHDOG_MS}
@@ -41,7 +41,7 @@ def write_configs(folder):
         (folder / f"{name}.config.json").write_text(json.dumps(config))
     (folder / "second.config.json").write_text(json.dumps({**config, "socket": "/guest/second"}))
     host = {"loop": "host", "rate_hz": RATES_HZ["host"], "most_late_percent": 100, "most_speed_mps": 100,
-            "real_time_priority": 0}  # the only processor is shared with device and bus
+            "real_time_priority": 0}  # device and bus use the same single processor
     (folder / "host.config.json").write_text(json.dumps({**config, **host}))
 
 
@@ -55,7 +55,7 @@ def ticks_of(name):
 
 
 def expect_played(name):
-    """It drove the bender as the finger moved, lost no tick, and replays."""
+    """The drive followed the finger, no tick was lost, and the session replays."""
     said = status(name)
     assert said["state"] == "playing" and said["drive_peak_v"] > 0.01 and said["lost_ticks"] == 0, said
     replayed = tacto.run_json("replay", f"{name}.session")
@@ -69,12 +69,12 @@ def expect_played(name):
 
 
 def expect_fall(name):
-    """What the device itself did to its drive, in its own ticks: DESIGN.md allows 20 ms of fall, which begins no later than the
-    watchdog's time after the host was heard last. Gives the level it fell from, and how long
-    the host had been silent when the fault came."""
+    """Measures the fall of the drive from the device's ticks: it may take 20 ms, and begins at the latest the
+    watchdog's time after the last message of the host. Returns the level before the fall, and how long the host had
+    been silent at the fault."""
     said = pathlib.Path(f"{name}.fall").read_text()
     print(f"{name}: {said.strip()}")
-    assert "the device heard nothing from this computer" in said, said
+    assert "the device received nothing from this computer" in said, said
     silent_ms = float(re.search(r"came (\S+) ms before it", said).group(1))
     from_v, left_v, within_ms = map(float, re.search(r"from (\S+) V to (\S+) V within (\S+) ms", said).groups())
     assert left_v == 0 and within_ms <= 20, said
@@ -83,7 +83,7 @@ def expect_fall(name):
 
 
 def expect_quiet_once_woken(name):
-    """After SIGCONT the device saw no drive until the daemon was asked to play again; the script has seen that rise."""
+    """After SIGCONT the device gets no drive until the daemon is told to play again; the script has seen that rise."""
     woken = pathlib.Path(f"{name}.woken").read_text().strip()
     print(f"{name}: {woken} rises of the drive after SIGCONT, state {status(name)['state']}")
     assert woken == "0", woken
@@ -110,7 +110,7 @@ def played_over_usb():
     assert replayed["same_to_the_bit"] and replayed["ticks_compared"] > LEAST_TICKS / 10, replayed
     assert expect_fall("killed")[0] > 0.1
     expect_fall("unplugged")
-    assert expect_fall("stopped")[1] >= WATCHDOG_MS  # the finger may rest: what it fell from is not judged
+    assert expect_fall("stopped")[1] >= WATCHDOG_MS  # the finger may rest, so the level before the fall is not asserted
     expect_quiet_once_woken("stopped")
     for name in ("second", "beside"):
         said = pathlib.Path(f"{name}.said").read_text()

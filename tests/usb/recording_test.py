@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A recording over the kernel's USB, with libusb on one side and the gadget on the other, and drive the other way at
-the same time: nothing lost, nothing changed. The device plays out a recording made here; what the guest recorded has
-to be the same to the bit.
+"""A recording over the kernel's USB, with libusb on one side and the gadget on the other, and a drive in the other
+direction at the same time: nothing is lost or changed. The device plays a recording made here; the guest's recording
+must be equal to the bit.
 """
 import json
 import os

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What goes wrong on a real kernel's USB ends in the stated gap or error, in the stated time, and the recording holds
-exactly the device's frames: each is compared with the recording that the device plays, at the place where the gaps
-say that it was.
+"""Faults on a real kernel's USB end in the stated gap or error, within the stated time, and the recording contains
+exactly the device's frames: each is compared with the recording that the device plays, at the position that follows
+from the gaps.
 """
 import json
 import os
@@ -20,8 +20,8 @@ import virtual_machine
 RATE_HZ = 10000
 SOURCE_S = 12
 BLOCK = 32  # frames in a message at this rate
-SLOW_S = 10  # what an emulated machine that shares its processor may take beyond the stated times
-SILENCE_S = 1  # firmware-host/DECISIONS.md: a silent stream, and a device that takes nothing
+SLOW_S = 10  # additional time for an emulated machine that shares its processor
+SILENCE_S = 1  # firmware-host/DECISIONS.md: a silent stream, or a device that accepts nothing
 RESULTS = pathlib.Path(tempfile.mkdtemp(prefix="tacto-usb-faults-"))
 
 
@@ -34,7 +34,7 @@ def code(name):
 
 
 def check_frames(name):
-    """Gives the sidecar, once every frame is the device's, and the gaps account for all others."""
+    """Checks that every frame is the device's and that the gaps account for all others; returns the sidecar."""
     assert text(f"{name}.valid").endswith("exit 0\n"), text(f"{name}.valid")
     header = json.loads(text(f"{name}.json"))
     frames = soundfile.read(RESULTS / f"{name}.wav", dtype="int32", always_2d=True)[0]
@@ -72,7 +72,7 @@ def expect_gaps(name, least, most):
 
 
 def expect_end(name, why, at_most_s=None):
-    """It closed with the reason, and what came before it is there."""
+    """The recording was closed with the reason, and contains the frames before it."""
     expect(name, 8, why)
     header = check_frames(name)
     assert why in header["ended"], header["ended"]
@@ -92,13 +92,13 @@ def sound_device():
 
 def who_may_have_it():
     expect_whole("first")
-    expect("second", 8, "another program has the device")
+    expect("second", 8, "another program uses the device")
     assert code("denied") == 3 and "60-tactograph.rules" in text("denied.err"), text("denied.err")
     problem = json.loads(text("denied.out"))["devices"][0]["problem"]
     assert "this user may not open the device" in problem, problem
     expect("unnamed", 2, "usb:serial=F1, usb:serial=F2")
     expect_whole("named")
-    expect("missing", 3, "no device on USB has the serial 'F3'")
+    expect("missing", 3, "no device on USB has the serial number 'F3'")
 
 
 def unplugging():
@@ -108,7 +108,7 @@ def unplugging():
 
 
 def disturbances():
-    """Here a gap may be, or not: what is asked is that none is silent, and that the recording goes on to its end."""
+    """Gaps are permitted here, but all must be reported, and the recording must continue to its end."""
     for name in ("reset", "held_up"):
         expect_to_go_on(name)
     check_frames("killed")
@@ -136,13 +136,13 @@ def damaged_frames():
 
 def odd_devices():
     expect_whole("packets")
-    expect_whole("exact")  # packets full to the brim, with an empty one behind
+    expect_whole("exact")  # completely full packets, followed by an empty one
     assert "did not stall" not in text("gadget.log")
     expect_to_go_on("stalled")
     expect_end("let_go", "the device was unplugged")
-    expect_end("silent", "no frames have come for 1 s")
+    expect_end("silent", "no frames were received for 1 s")
     expect("deaf", 8, "accepted no data")
-    expect("newer", 6, "speaks version 2.0 of the protocol", "update tactograph")
+    expect("newer", 6, "uses version 2.0 of the protocol", "update tactograph")
 
 
 CHECKS = {"cable_faults.sh": (sound_device, who_may_have_it, unplugging, disturbances),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // usb_link URI NAME SECONDS: records a device to NAME as `record` does, and drives it at the same time. Every
-// value of the drive has to be played, once, in its order and to the bit: the device's ticks say what was.
-// Prints what it counted; ends with 1 where anything was lost, damaged or refused.
+// value of the drive must be played once, in order and to the bit, as the device's ticks report. Prints
+// counts; the exit code is 1 if anything was lost, damaged or refused.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -23,11 +23,11 @@ using schema::Result;
 
 constexpr float kDriveV = 0.5F;
 constexpr std::uint16_t kMessage = 128;    // values
-constexpr std::uint64_t kQueue = 1024;     // the device holds so many
+constexpr std::uint64_t kQueue = 1024;     // values in the device's queue
 constexpr std::uint64_t kQueueFull = 960;  // a tenth of a second at 10 kHz
 constexpr int kMessagesAtFirst = 4;
 
-/// A device that is driven while somebody else reads it.
+/// A device that is driven while the recorder reads it.
 class DrivenDevice final : public firmware_host::Device {
  public:
   explicit DrivenDevice(WireDevice& device) : device_(device) {}
@@ -45,7 +45,7 @@ class DrivenDevice final : public firmware_host::Device {
     return device_.read(interleaved);
   }
 
-  // At rest first: the ticks are all told then.
+  // Stops the device first, after which all ticks are reported.
   Result<void> stop() override {
     if (const auto off = device_.client().command(wire::Disarm{}); !off) return off;
     do {
@@ -63,7 +63,7 @@ class DrivenDevice final : public firmware_host::Device {
   std::uint64_t sent() const { return sent_; }
 
  private:
-  // With the first read: from then on somebody reads, and fills the queue, every 20 ms.
+  // Starts with the first read: from then on the recorder reads, and fills the queue, every 20 ms.
   Result<void> play() {
     if (const auto armed = arm(); !armed) return armed;
     for (int i = 0; i < kMessagesAtFirst; ++i)
@@ -84,8 +84,9 @@ class DrivenDevice final : public firmware_host::Device {
     return device_.client().command(wire::Arm{wire::DriveSource::host, welcome.default_rate_millihertz});
   }
 
-  // Until the device's ticks have shown where the drive began, values that went by unplayed are not known:
-  // the device is asked then. Reads are no measure of its time: a board that was held up gives many at once.
+  // Until the device's ticks show where the drive began, the number of values that passed unplayed is
+  // unknown, so the device is queried. Reads do not measure its time: a delayed board delivers many blocks at
+  // once.
   Result<void> fill() {
     if (!check_.begun()) return fill_as_told();
     while (sent_ - check_.used() + kMessage <= kQueueFull)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a shell script on Debian's stock kernel in QEMU, with the host's files under its root and a folder for what
-comes back. What a guest script may use stands in README.md.
+"""Runs a shell script on Debian's stock kernel in QEMU. The host's files are its root; a folder receives its results.
+README.md lists what a guest script may use.
 """
 import os
 import pathlib
@@ -14,17 +14,17 @@ import initramfs
 
 HERE = pathlib.Path(__file__).resolve().parent
 KERNEL = pathlib.Path(os.environ.get("TACTO_KERNEL", HERE.parents[1] / "build" / "kernel"))
-NO_KVM = KERNEL / "no-kvm"  # since when it is known not to work
-BOOT_S = 400  # without KVM a fast machine needs ten, a shared one a hundred
-KVM_BOOT_S = 20  # with it, about one
+NO_KVM = KERNEL / "no-kvm"  # its time says since when KVM is known not to work
+BOOT_S = 400  # without KVM; a fast machine needs ten, a shared one a hundred
+KVM_BOOT_S = 20  # with KVM; it needs about one
 MEMORY_MB = 1024
-# Without KVM the guest's clock counts its instructions, 2^2 ns each, and follows the wall's clock only while the guest is
-# idle. So a slow computer takes longer, and nothing in the guest is late; one that stops for a second may still end a test.
+# Without KVM the guest's clock counts its instructions, 2^2 ns each, and follows real time only while the guest is
+# idle. So a slow computer takes longer, but nothing in the guest is late; a stall of a second may still end a test.
 COUNTED_CLOCK = ["-icount", "shift=2,align=off,sleep=on"]
 
 
 class GuestFailed(Exception):
-    """The guest did not come up, did not end in time, or its script failed."""
+    """The guest did not boot, did not end in time, or its script failed."""
 
 
 def this_boot():
@@ -32,7 +32,7 @@ def this_boot():
 
 
 def accelerators():
-    """KVM where it may be opened; it may not work for all that, so QEMU's own translation is next."""
+    """KVM if it can be opened; it may still fail, so QEMU's own emulation is next."""
     if "TACTO_QEMU_ACCEL" in os.environ:
         return [os.environ["TACTO_QEMU_ACCEL"]]
     tried = NO_KVM.exists() and NO_KVM.read_text() == this_boot()
@@ -41,7 +41,7 @@ def accelerators():
 
 def qemu_command(image, results, accel):
     share = "local,security_model=none,multidevs=remap"
-    processor = "max" if accel == "kvm" else "qemu64"  # what QEMU need not translate is fastest
+    processor = "max" if accel == "kvm" else "qemu64"  # the fastest choice for QEMU's emulation
     clock = [] if accel == "kvm" else COUNTED_CLOCK
     return ["qemu-system-x86_64", "-M", "q35", "-accel", accel, *clock, "-cpu", processor, "-smp", "1", "-m", str(MEMORY_MB),
             "-nodefaults", "-display", "none", "-no-reboot", "-serial", "stdio",
@@ -66,12 +66,12 @@ def require_parts():
 
 
 def wait_for(machine, results, accel, timeout_s):
-    """Until the guest has switched itself off; one that is not up in time, or does not end in time, is ended."""
+    """Waits until the guest has switched itself off; kills it if it does not boot, or does not end, in time."""
     up_by = time.monotonic() + (KVM_BOOT_S if accel == "kvm" else BOOT_S)
     while machine.poll() is None and not (results / "up").exists() and time.monotonic() < up_by:
         time.sleep(0.05)
     try:
-        # The guest's seconds; without KVM a shared computer needs several for each.
+        # Seconds of the guest; without KVM a shared computer needs several real seconds for each.
         machine.wait((timeout_s if accel == "kvm" else 5 * timeout_s) if (results / "up").exists() else 0)
     except subprocess.TimeoutExpired:
         machine.kill()
@@ -81,7 +81,7 @@ def wait_for(machine, results, accel, timeout_s):
 
 
 def boot(results, accel, timeout_s):
-    """Gives what the guest said on its serial port, and how it ended where it was not by itself."""
+    """Returns the guest's output on its serial port, and the reason if it did not end by itself."""
     with tempfile.TemporaryDirectory(prefix="tacto-guest-") as folder:
         image, serial = pathlib.Path(folder) / "initramfs", pathlib.Path(folder) / "serial"
         image.write_bytes(initramfs.for_guest(KERNEL, HERE / "guest" / "init"))
@@ -93,9 +93,9 @@ def boot(results, accel, timeout_s):
 
 
 def run(script, results, timeout_s, **environment):
-    """Runs guest/SCRIPT; `environment` is set for it. What it leaves in /guest/results is in `results` afterwards.
+    """Runs guest/SCRIPT with `environment` set. Files that it writes to /guest/results are in `results` afterwards.
 
-    Gives what it said. Raises GuestFailed, with all that was said, unless the script ended with 0.
+    Returns its output. Raises GuestFailed with the whole output unless the script ended with 0.
     """
     require_parts()
     results = pathlib.Path(results)

@@ -21,8 +21,8 @@ using schema::fail;
 using schema::Result;
 
 constexpr std::size_t kFewestLoopSamples = 100;
-constexpr double kNearZero = 0.1;    // of the amplitude: where a branch is taken for straight
-constexpr double kFullSwing = 0.98;  // of the amplitude: a loop that counts as the largest
+constexpr double kNearZero = 0.1;    // of the amplitude; within it a branch is assumed to be straight
+constexpr double kFullSwing = 0.98;  // of the amplitude; a loop with this swing counts as largest
 constexpr double kSmallResidual = 0.01;
 constexpr std::size_t kFineThresholds = 8;
 
@@ -48,7 +48,7 @@ std::vector<double> centred(std::span<const double> x) {
   return out;
 }
 
-// The stretch from one passage upwards through zero to the next that swings farthest.
+// The last part with a full swing between two upward zero crossings of the drive.
 struct LoopStretch {
   std::size_t first = 0, end = 0;
 };
@@ -65,7 +65,8 @@ LoopStretch largest_loop(std::span<const double> v, double amplitude_v) {
   return {};
 }
 
-// Where the branch of this direction crosses no drive, by a straight line through what is near.
+// Displacement of the branch of this direction at zero drive, by a straight line through the values near
+// zero.
 double branch_at_zero(std::span<const double> v, std::span<const double> x, double amplitude_v,
                       int direction) {
   double n = 0, sv = 0, sx = 0, svv = 0, svx = 0;
@@ -98,7 +99,8 @@ void put_loop(std::span<const double> v, std::span<const double> x, LoopStretch 
   fit.lag_rad = std::arg(fundamental(lv) / fundamental(lx));
 }
 
-// Weights and gain from what the non-negative fit gave; the first weight keeps a thousandth, for the inverse.
+// Scales the weights of the non-negative fit and computes the gain. The first weight is at least a thousandth
+// of the sum, so that the operator has an inverse.
 void put_operator(const std::vector<double>& thresholds_v, std::vector<double> weights, double limit_v,
                   LoopFit& fit) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -148,15 +150,16 @@ double delay_at_rest_s(const schema::Transducer& t) {
 
 namespace {
 
-// What the non-negative fit works on: plays of the drive and a constant, from the first full swing on.
+// The columns of the non-negative fit: play operators of the drive and a constant, from the first full swing
+// on.
 struct LoopTable {
   std::vector<double> thresholds_v;
   std::vector<std::vector<double>> columns;
   std::vector<double> answer;
-  double sign = 1;  // of the answer to a positive drive
+  double sign = 1;  // of the displacement for a positive drive
 };
 
-// Only what comes after a full swing knows its past.
+// The state of the play operators is known only after a full swing.
 std::ptrdiff_t first_known(std::span<const double> v, double amplitude_v) {
   return std::ranges::find_if(v, [&](double value) { return -value > kFullSwing * amplitude_v; }) - v.begin();
 }
@@ -179,7 +182,8 @@ LoopTable loop_table(std::span<const double> v, std::span<const double> x, doubl
   return table;
 }
 
-// What the table makes of the largest loop, in the answer's own sign; the last weight is the offset's.
+// The fitted operator's response in the largest loop, with the displacement's own sign; the last weight is
+// the offset.
 void put_loop_model(const LoopTable& table, std::span<const double> v, LoopStretch loop,
                     std::span<const double> weights, LoopFit& fit) {
   schema::Hysteresis made{table.thresholds_v, {weights.begin(), weights.end() - 1}};
@@ -200,7 +204,7 @@ double squares_of(std::span<const double> x) {
   return std::inner_product(x.begin(), x.end(), x.begin(), 0.0);
 }
 
-// A change of the operator that a fit found, once this is scaled as put_operator() does.
+// Change of the scaled operator for a change of the fitted one, with the scaling of put_operator().
 schema::Hysteresis scaled_change(const schema::Hysteresis& found, schema::Hysteresis change, double limit_v) {
   const auto at_limit = [&](const schema::Hysteresis& of) {
     double sum = 0;
@@ -260,8 +264,8 @@ Result<LoopFit> fit_loops(std::span<const double> drive_v, std::span<const doubl
   fit.amplitude_v = std::abs(*std::ranges::max_element(v, {}, [](double value) { return std::abs(value); }));
   const LoopStretch loop = largest_loop(v, fit.amplitude_v);
   if (loop.end <= loop.first)
-    return fail(ErrorKind::unsuitable, "the drive makes no whole loop between its largest values, both ways",
-                "loop",
+    return fail(ErrorKind::unsuitable,
+                "the drive has no complete loop between its largest positive and negative values", "loop",
                 "drive it slowly with a sine or a triangle about 0, two periods at the largest swing first");
   if (thresholds_v.empty()) thresholds_v = even_thresholds(kThresholds, fit.amplitude_v);
   const LoopTable table = loop_table(v, displacement_m, fit.amplitude_v, std::move(thresholds_v));

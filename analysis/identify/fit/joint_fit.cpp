@@ -17,10 +17,11 @@ using Complex = std::complex<double>;
 using schema::Result;
 
 constexpr int kMostRounds = 10;
+constexpr double kPoleStep = 1e-3;  // relative step of the finite difference
 constexpr double kRoughPart =
-    0.5;  // on the emulated bender, of 32 plays, the residuals are then of the noise's size
+    0.5;  // then the residuals of the emulated bender (32 play operators) have the noise's size
 
-// Behind the pole only the mechanics lag a slow drive.
+// Behind the pole, only the mechanics cause a lag of a slow drive.
 double mechanical_delay_s(const schema::Transducer& t) {
   const Complex behind =
       schema::actuator_response(t, kLoopHz) * Complex(1, kLoopHz / schema::actuator_pole_hz(t));
@@ -33,27 +34,62 @@ double largest(std::span<const double> v) {
   return most;
 }
 
-Result<LoopFit> loops_behind(const schema::Transducer& t, const DrivenTray& loops, double sweep_v) {
-  const auto charge_v = charge_of(loops.drive_v, schema::actuator_pole_hz(t), loops.rate_hz);
-  return fit_loops(charge_v, loops.displacement_m, loops.rate_hz, mechanical_delay_s(t), t.drive_limit_v,
-                   thresholds_finer_below(sweep_v, largest(charge_v)));
+struct JointMeasurement {
+  const BodeData& sweep;
+  const SweptDrive& drive;
+  const DrivenTray& loops;
+};
+
+// The operator behind the pole of a transducer, and its describing function for the sweep.
+struct OperatorBehind {
+  SweptOperator swept;
+  LoopFit loops;
+  std::vector<Complex> left;
+};
+
+Result<OperatorBehind> operator_behind(const schema::Transducer& t, const JointMeasurement& of) {
+  const double pole_hz = schema::actuator_pole_hz(t);
+  SweptOperator swept(of.drive, pole_hz);
+  const auto charge_v = charge_of(of.loops.drive_v, pole_hz, of.loops.rate_hz);
+  auto loops =
+      fit_loops(charge_v, of.loops.displacement_m, of.loops.rate_hz, mechanical_delay_s(t), t.drive_limit_v,
+                thresholds_finer_below(swept.largest_charge_v(), largest(charge_v)));
+  TACTO_TRY(loops);
+  auto left = swept.left_by(loops->hysteresis);
+  return OperatorBehind{std::move(swept), std::move(*loops), std::move(left)};
+}
+
+schema::Transducer with_pole_times(schema::Transducer t, double times) {
+  t.amplifier_resistance_ohm /= times;
+  return t;
+}
+
+// Relative errors of the sweep after the division by the describing function.
+Result<PoleDependence> dependence_on_pole(const schema::Transducer& t, const OperatorBehind& here,
+                                          const JointMeasurement& of) {
+  const auto there = operator_behind(with_pole_times(t, 1 + kPoleStep), of);
+  TACTO_TRY(there);
+  PoleDependence slope{schema::actuator_pole_hz(t), {}};
+  for (std::size_t i = 0; i < here.left.size(); ++i)
+    slope.log_slope.push_back(-std::log(there->left[i] / here.left[i]) / std::log1p(kPoleStep));
+  return slope;
 }
 
 bool shows_hysteresis(const LoopFit& loops) {
   return loops.opening >= kLeastOpening && loops.explains_more;
 }
 
-void add_shared(const std::vector<schema::Hysteresis>& changes, SweptOperator& swept,
-                std::span<const Complex> made, BodeData& data) {
-  for (const auto& change : changes) {
-    data.shared_errors.push_back(swept.left_by(change));
-    for (std::size_t i = 0; i < data.size(); ++i) data.shared_errors.back()[i] /= made[i];
-  }
+void add_shared(const OperatorErrors& errors, OperatorBehind& behind, BodeData& data) {
+  std::vector<schema::Hysteresis> changes = errors.by_noise;
+  changes.insert(changes.end(), errors.by_misfit.begin(), errors.by_misfit.end());
+  data.shared_errors = behind.swept.left_by(changes);
+  for (auto& error : data.shared_errors)
+    for (std::size_t i = 0; i < data.size(); ++i) error[i] /= behind.left[i];
 }
 
-// Where the charge's peak passes a play that the operator lacks its answer has a kink, which plays in the
-// middle of two thresholds do not follow: from one frequency to the next the errors of the last `misfits`
-// patterns differ by a part of themselves.
+// If the charge's peak passes the threshold of a play operator that the model lacks, the response has a kink,
+// which play operators in the middle of two thresholds do not reproduce. So from one frequency to the next
+// the errors differ from the last `misfits` patterns by a part of their size.
 void add_rough(std::size_t misfits, BodeData& data) {
   if (misfits == 0 || !data.has_noise()) return;
   const std::span patterns = std::span(data.shared_errors).last(misfits);
@@ -68,33 +104,47 @@ void add_rough(std::size_t misfits, BodeData& data) {
 void say_unsettled(JointFit& joint) {
   if (joint.settled) return;
   joint.response.converged = false;
-  joint.response.ended = fmt::format("pole and hysteresis did not settle in {} rounds", joint.rounds);
+  joint.response.ended = fmt::format("pole and hysteresis did not converge in {} rounds", joint.rounds);
 }
 
-// What is no hysteresis of this kind makes the linear part wrong, too.
+// If the loops are not a hysteresis of this kind, the linear part is wrong, too.
 void say_unusable(JointFit& joint) {
   if (joint.loops.usable) return;
   Misfit& misfit = joint.response.misfit;
-  misfit.words += fmt::format("{}the loops are no such hysteresis: the operator leaves {:.2g} % of them",
+  misfit.words += fmt::format("{}the operator does not describe the loops: it leaves {:.2g} % of them",
                               misfit.found ? "; " : "", 100 * joint.loops.residual_part);
   misfit.found = true;
   joint.response.band.clear();
 }
 
-}  // namespace
-
-BodeData without_hysteresis(BodeData data, SweptOperator& swept, const LoopFit& loops) {
-  const std::vector<Complex> made = swept.left_by(loops.hysteresis);
+BodeData without_hysteresis(BodeData data, OperatorBehind& behind) {
   for (std::size_t i = 0; i < data.size(); ++i) {
-    data.response[i] /= made[i];
-    if (data.has_noise()) data.noise[i] /= std::abs(made[i]);
+    data.response[i] /= behind.left[i];
+    if (data.has_noise()) data.noise[i] /= std::abs(behind.left[i]);
   }
-  add_shared(loops.errors.by_noise, swept, made, data);
-  add_shared(loops.errors.by_misfit, swept, made, data);
-  add_rough(loops.errors.by_misfit.size(), data);
-  data.third_harmonic.reset();  // the operator makes one
+  add_shared(behind.loops.errors, behind, data);
+  add_rough(behind.loops.errors.by_misfit.size(), data);
+  data.third_harmonic.reset();  // the operator causes a third harmonic
   return data;
 }
+
+// One round: the sweep of the linear part, on the assumption that the pole is the transducer's.
+Result<BodeData> linear_sweep(const schema::Transducer& t, const JointMeasurement& of, JointFit& joint) {
+  auto behind = operator_behind(t, of);
+  TACTO_TRY(behind);
+  joint.has_hysteresis = shows_hysteresis(behind->loops);
+  BodeData linear = of.sweep;
+  if (joint.has_hysteresis) {
+    linear = without_hysteresis(std::move(linear), *behind);
+    auto slope = dependence_on_pole(t, *behind, of);
+    TACTO_TRY(slope);
+    linear.by_pole = std::move(*slope);
+  }
+  joint.loops = std::move(behind->loops);
+  return linear;
+}
+
+}  // namespace
 
 Result<JointFit> fit_jointly(const BodeData& sweep, const SweptDrive& drive, const DrivenTray& loops,
                              const ModelChoice& choice, const schema::Transducer& base) {
@@ -103,12 +153,9 @@ Result<JointFit> fit_jointly(const BodeData& sweep, const SweptDrive& drive, con
   BodeData linear;
   while (!joint.settled && joint.rounds < kMostRounds) {
     const double pole_hz = schema::actuator_pole_hz(found);
-    SweptOperator swept(drive, pole_hz);
-    auto operator_found = loops_behind(found, loops, swept.largest_charge_v());
-    TACTO_TRY(operator_found);
-    joint.loops = std::move(*operator_found);
-    joint.has_hysteresis = shows_hysteresis(joint.loops);
-    linear = joint.has_hysteresis ? without_hysteresis(sweep, swept, joint.loops) : sweep;
+    auto divided = linear_sweep(found, {sweep, drive, loops}, joint);
+    TACTO_TRY(divided);
+    linear = std::move(*divided);
     found = fit_values(linear, choice, base).transducer;
     joint.settled =
         ++joint.rounds > 1 && std::abs(schema::actuator_pole_hz(found) / pole_hz - 1) < kPoleSettled;

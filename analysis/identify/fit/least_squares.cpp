@@ -18,9 +18,9 @@ constexpr double kStep = 1e-5;
 constexpr double kTolerance = 1e-12;
 constexpr int kMostEvaluations = 200;
 constexpr double kNearBound = 1e-3;
-constexpr double kLeastLeft = 1e-6;  // of a value that the model follows wherever it goes
+constexpr double kLeastLeft = 1e-6;  // smallest 1 - leverage; of a value that the model always follows
 
-// Residuals and their derivatives, in the coordinates themselves.
+// Residuals and their derivatives with respect to the bounded coordinates.
 struct Problem {
   const Residuals& residuals;
   const Bounds& bounds;
@@ -56,7 +56,7 @@ struct Problem {
   }
 };
 
-// What Eigen's algorithm asks for.
+// The interface for Eigen's algorithm.
 struct Functor : Eigen::DenseFunctor<double> {
   Functor(const Problem& of, Index inputs)
       : DenseFunctor(static_cast<int>(inputs), static_cast<int>(of.count)), problem(of) {}
@@ -84,11 +84,11 @@ const char* words_of(Status status) {
     case Eigen::LevenbergMarquardtSpace::FtolTooSmall:
     case Eigen::LevenbergMarquardtSpace::XtolTooSmall:
     case Eigen::LevenbergMarquardtSpace::GtolTooSmall:
-      return "no step makes it better";
+      return "no step reduces the residuals";
     case Eigen::LevenbergMarquardtSpace::TooManyFunctionEvaluation:
-      return "no end after 200 iterations";
+      return "not converged after 200 iterations";
     default:
-      return "the model gave no numbers";
+      return "the model gave values that are not finite";
   }
 }
 
@@ -132,7 +132,7 @@ Solution least_squares(const Residuals& residuals, std::size_t residual_count, s
   solution.ended = words_of(status);
   solution.at_bound = at_bound(problem, c);
   solution.converged = solution.ended.starts_with("no step") && !solution.at_bound;
-  if (solution.at_bound) solution.ended = "a parameter ran into its bound";
+  if (solution.at_bound) solution.ended = "a parameter reached its bound";
   add_uncertainty(problem, c, solution);
   return solution;
 }
@@ -155,7 +155,7 @@ RobustErrors robust_errors(const Residuals& residuals, std::size_t residual_coun
 
 namespace {
 
-// The least squares over the columns in use, 0 for the others.
+// The least-squares solution over the columns in use; 0 for the others.
 VectorXd solved(const MatrixXd& a, const VectorXd& b, const std::vector<bool>& used) {
   std::vector<Index> which;
   for (std::size_t i = 0; i < used.size(); ++i)
@@ -169,8 +169,8 @@ VectorXd solved(const MatrixXd& a, const VectorXd& b, const std::vector<bool>& u
   return x;
 }
 
-// From x towards a solution that is negative somewhere: as far as nothing is negative, and what got there
-// leaves.
+// Moves from x towards a solution with negative values as far as none becomes negative; the values that reach
+// 0 leave the set in use.
 void go_back(VectorXd& x, const VectorXd& target, std::vector<bool>& used, Index bounded) {
   double part = 1;
   for (Index i = 0; i < bounded; ++i)
@@ -191,7 +191,7 @@ bool is_negative(const VectorXd& x, const std::vector<bool>& used, Index bounded
 
 namespace {
 
-// The same minimum from a triangle of the columns' own size: A = Q R.
+// Reduces the problem to a triangle of the columns' number: A = Q R has the same minimum.
 struct Triangle {
   MatrixXd r;
   VectorXd y;
@@ -206,8 +206,8 @@ struct Triangle {
     y = turned.head(count);
     r = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
   }
-  // The unused column that would help most; -1 where none would.
-  Index most_wanted(const VectorXd& x, const std::vector<bool>& used, Index bounded) const {
+  // The unused column with the largest descent; -1 if none descends.
+  Index steepest_unused(const VectorXd& x, const std::vector<bool>& used, Index bounded) const {
     const VectorXd gradient = r.transpose() * (y - r * x);
     Index best = -1;
     double most = 1e-12 * (r.transpose() * y).cwiseAbs().maxCoeff();
@@ -228,7 +228,7 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
   for (Index i = bounded; i < count; ++i) used[static_cast<std::size_t>(i)] = true;
   VectorXd x = solved(triangle.r, triangle.y, used);
   for (Index round = 0; round < 3 * count; ++round) {
-    const Index best = triangle.most_wanted(x, used, bounded);
+    const Index best = triangle.steepest_unused(x, used, bounded);
     if (best < 0) break;
     used[static_cast<std::size_t>(best)] = true;
     VectorXd target = solved(triangle.r, triangle.y, used);

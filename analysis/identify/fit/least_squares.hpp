@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Non-linear least squares within bounds: the wall around Eigen's Levenberg-Marquardt.
+// Non-linear least squares within bounds; hides Eigen's Levenberg-Marquardt.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace tacto::analysis {
 
-/// Residuals of coordinates, whitened. Writes all of them.
+/// Computes all whitened residuals at the coordinates.
 using Residuals = std::function<void(std::span<const double> coordinates, std::span<double> residuals)>;
 
 struct Bounds {
@@ -22,25 +22,26 @@ struct Solution {
   double squares = 0;  ///< sum of the squared residuals
   bool converged = false;
   std::string ended;                    ///< in words
-  std::optional<std::size_t> at_bound;  ///< the coordinate that stands at one
+  std::optional<std::size_t> at_bound;  ///< a coordinate at one of its bounds
   int iterations = 0;
-  /// Inverse of J^T J at the solution, row by row; for residuals of variance 1 the coordinates' covariance.
+  /// Inverse of J^T J at the solution, row by row: the coordinates' covariance if the residuals have variance
+  /// 1.
   std::vector<double> covariance;
-  double condition = 0;  ///< of J with columns of length 1
+  double condition = 0;  ///< of J with columns scaled to length 1
 };
 
 /// Moré's Levenberg-Marquardt (MINPACK's, in Eigen's unsupported modules) in u, where coordinate = low +
-/// (high - low) (1 + tanh u) / 2, so that no step leaves the bounds. Jacobian by central differences of 1e-5:
-/// exact to 1e-9 for coordinates that are logarithms. Converged: its own tests (1e-12 of the squares or the
-/// step) passed within 200 iterations, and no coordinate stands within 1e-3 of the range from a bound.
-/// Preconditions: as many residuals as coordinates at least; the start within the bounds.
+/// (high - low) (1 + tanh u) / 2, so that no step leaves the bounds. The Jacobian uses central differences of
+/// 1e-5: exact to 1e-9 for logarithmic coordinates. Converged: its tests (1e-12 of the squares or the step)
+/// passed within 200 iterations, and no coordinate is within 1e-3 of the range from a bound. Preconditions:
+/// at least as many residuals as coordinates; the start is within the bounds.
 Solution least_squares(const Residuals& residuals, std::size_t residual_count, std::vector<double> start,
                        const Bounds& bounds);
 
-/// Of a solution whose residuals are not all of one variance: the coordinates' covariance A J^T W J A, row by
-/// row, where A is the inverse of J^T J and W holds (r / (1 - h))^2, h being the diagonal of J A J^T (HC3 of
-/// MacKinnon and White 1985); and the fewest degrees of freedom that a coordinate's variance is told by
-/// (Satterthwaite's, the fourth moments being Gaussian ones). Preconditions: as of least_squares().
+/// Errors of a solution whose residuals have different variances. The coordinates' covariance is A J^T W J A,
+/// row by row, where A is the inverse of J^T J and W contains (r / (1 - h))^2, with the diagonal h of J A J^T
+/// (HC3 of MacKinnon and White 1985). `freedom` is the fewest degrees of freedom of a coordinate's variance
+/// (Satterthwaite's, with Gaussian fourth moments). Preconditions: those of least_squares().
 struct RobustErrors {
   std::vector<double> covariance;
   double freedom = 0;
@@ -52,10 +53,10 @@ RobustErrors robust_errors(const Residuals& residuals, std::size_t residual_coun
 std::vector<double> non_negative_least_squares(const std::vector<std::vector<double>>& columns,
                                                std::span<const double> b, std::size_t free_columns);
 
-/// How least squares over `columns` (A = Q R) err. `noise`: where b errs by independent errors of variance 1,
+/// Errors of least squares over `columns` (A = Q R). `noise`: for independent errors of b with variance 1,
 /// the changes of x along independent directions, one standard error each: the columns of the inverse of R.
-/// `taken` and `left`: where b holds one of the `omitted` columns besides, what x takes up of it, and the
-/// square sum of the rest.
+/// `taken` and `left`: if b also contains one of the `omitted` columns, the change of x that it causes, and
+/// the sum of squares of the rest.
 struct ColumnErrors {
   std::vector<std::vector<double>> noise, taken;
   std::vector<double> left;

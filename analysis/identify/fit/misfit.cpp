@@ -8,27 +8,27 @@
 #include <numbers>
 #include <vector>
 
+#include "data-schema/base/statistics.hpp"
+
 namespace tacto::analysis {
 namespace {
 
-constexpr double kQuantile = 3.2905;  // of the normal distribution: 5 in 10,000 beyond
+constexpr double kQuantile = 3.2905;  // of the normal distribution; 5 in 10,000 exceed it
 
 double chi_squared_at(double quantile, double freedom) {
   const double spread = 2 / (9 * freedom);
   return std::pow(std::max(0.0, 1 - spread + quantile * std::sqrt(spread)), 3);
 }
 
-// Of |r|^2, which is exponential: the median over what it should be, 1 / ln 2 of ...
+// Median of |r|^2, which is exponentially distributed, over its expected value, 1 / ln 2 of ...
 double median_square(std::span<const std::complex<double>> residuals) {
   std::vector<double> squares;
   for (const auto& r : residuals) squares.push_back(std::norm(r));
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::ranges::nth_element(squares, middle);
-  return *middle / (2 * std::numbers::ln2);
+  return schema::upper_median(std::span(squares)) / (2 * std::numbers::ln2);
 }
 
-// ... and the least that it is. Its place in the distribution is a beta's, of standard deviation
-// 1 / (2 sqrt(n + 2)); of ten values or fewer there is none.
+// ... and its lower limit. The median's place in the distribution follows a beta distribution of standard
+// deviation 1 / (2 sqrt(n + 2)); ten values or fewer have no limit.
 double lowest_median_square(double values) {
   const double place = 0.5 - kQuantile / (2 * std::sqrt(values + 2));
   return place > 0 ? -std::log1p(-place) / std::numbers::ln2 : 0;
@@ -56,7 +56,7 @@ std::string words_of(const Misfit& m) {
                         std::sqrt(m.reduced_chi_squared), std::sqrt(m.chi_squared_limit));
   const auto add = [&](const char* what, double correlation) {
     if (correlation > m.correlation_limit)
-      words += fmt::format("{}residual {} runs in waves over frequency (correlation {:.2f}, at most {:.2f})",
+      words += fmt::format("{}neighbouring residuals of the {} are correlated ({:.2f}, at most {:.2f})",
                            words.empty() ? "" : "; ", what, correlation, m.correlation_limit);
   };
   add("phase", m.phase_correlation);

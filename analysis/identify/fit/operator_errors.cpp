@@ -11,9 +11,9 @@
 namespace tacto::analysis {
 namespace {
 
-constexpr double kMisfitQuantile = 3.29;  // of the normal distribution: 5 in 10,000 beyond
-// Of what independent plays would make of it: those that one bender has are spread alike, and their errors
-// add up.
+constexpr double kMisfitQuantile = 3.29;  // of the normal distribution; 5 in 10,000 exceed it
+// Factor on the error of independent play operators: those of one bender have similar weights, so that their
+// errors add up.
 constexpr double kCoherent = 2;
 
 double mean_square(std::span<const double> x) {
@@ -31,18 +31,18 @@ std::vector<double> column_of(const FittedOperator& fitted, double threshold_v) 
   return {play.begin() + static_cast<std::ptrdiff_t>(fitted.first), play.end()};
 }
 
-// The plays that the fit gave a weight, and those in the middle of each two thresholds.
+// The play operators with a weight in the fit, and one in the middle of each two thresholds.
 struct Plays {
-  std::vector<double> thresholds_v;  // its own, then those between
+  std::vector<double> thresholds_v;  // those with a weight, then those in the middle
   std::size_t own = 0;
-  std::vector<double> usual_weights;  // of those between: the plays' mean weight a volt, over their spacing
+  std::vector<double> usual_weights;  // of those in the middle: mean weight per volt, times the spacing
 
   explicit Plays(const schema::Hysteresis& found) {
     const auto& r = found.thresholds_v;
     for (std::size_t i = 0; i < r.size(); ++i)
       if (found.weights[i] > 0) thresholds_v.push_back(r[i]);
     own = thresholds_v.size();
-    // The first weight is that of what follows at once: no play's.
+    // The first weight has the threshold 0, which is no play operator.
     const double a_volt = std::accumulate(found.weights.begin() + 1, found.weights.end(), 0.0) / r.back();
     for (std::size_t i = 1; i < r.size(); ++i) {
       thresholds_v.push_back(std::midpoint(r[i - 1], r[i]));

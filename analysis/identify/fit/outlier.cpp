@@ -5,16 +5,18 @@
 #include <cmath>
 #include <numeric>
 
+#include "data-schema/base/statistics.hpp"
+
 namespace tacto::analysis {
 namespace {
 
 constexpr double kTakes = 0.1;
 constexpr double kNeverNoise = 1e-9;   // of tables
-constexpr double kParameters = 4;      // more in longer models: then it asks for a little too much
+constexpr double kParameters = 4;      // longer models have more; then the test is a little too strict
 constexpr std::size_t kTried = 3;      // of each kind of suspect
-constexpr std::ptrdiff_t kBeside = 2;  // neighbours on either side
+constexpr std::ptrdiff_t kBeside = 2;  // neighbours to each side
 
-// How far each amplitude is from the median of its neighbours and itself, as a logarithm.
+// Logarithmic distance of each amplitude from the median of its neighbours and itself.
 std::vector<double> off_neighbours(const BodeData& data) {
   std::vector<double> off, sizes;
   for (const auto& value : data.response) sizes.push_back(std::abs(value));
@@ -22,8 +24,8 @@ std::vector<double> off_neighbours(const BodeData& data) {
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto from = std::clamp<std::ptrdiff_t>(i - kBeside, 0, count - 2 * kBeside - 1);
     std::vector<double> near(sizes.begin() + from, sizes.begin() + from + 2 * kBeside + 1);
-    std::ranges::nth_element(near, near.begin() + kBeside);
-    off.push_back(std::abs(std::log(sizes[static_cast<std::size_t>(i)] / near[kBeside])));
+    off.push_back(
+        std::abs(std::log(sizes[static_cast<std::size_t>(i)] / schema::upper_median(std::span(near)))));
   }
   return off;
 }
@@ -42,10 +44,11 @@ BodeData without_value(BodeData data, std::size_t index) {
   data.response.erase(data.response.begin() + at);
   if (data.has_noise()) data.noise.erase(data.noise.begin() + at);
   for (auto& error : data.shared_errors) error.erase(error.begin() + at);
+  if (data.by_pole) data.by_pole->log_slope.erase(data.by_pole->log_slope.begin() + at);
   return data;
 }
 
-// With two values less, left^((2 n - p - 2) / 2) is the F test's own probability.
+// With two values fewer, left^((2 n - p - 2) / 2) is the probability of the F test.
 bool is_never_noise(const BodeData& data, const RestOfFit& rest, double part_left) {
   const double n = static_cast<double>(data.size()), freedom = 2 * n - kParameters - 2;
   return data.noise_from_residuals && rest.is_noise && n * std::pow(part_left, freedom / 2) < kNeverNoise;
@@ -67,7 +70,7 @@ std::optional<Outlier> outlier_of(const BodeData& data, std::span<const double> 
     const RestOfFit rest = left_by_fit(without_value(data, index));
     const double left = rest.left / left_by_all;
     const bool takes = left < kTakes || is_never_noise(data, rest, left);
-    if (takes && (!found || left < found->left)) found = Outlier{index, left};
+    if (takes && (!found || left < found->left)) found = Outlier{index, left, rest};
   }
   return found;
 }

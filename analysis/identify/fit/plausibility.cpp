@@ -18,12 +18,11 @@ using schema::fail;
 using schema::Result;
 
 constexpr double kClearly = 0.25;
-constexpr double kBadStart = 0.2;  // of the data's weight: the grid alone leaves less of a sound response
-constexpr double kHalfTurn =
-    2.2;                      // rad: a step between neighbours that is nearer to a half turn than to none
-constexpr double kLevel = 2;  // amplitudes of neighbours within this factor
+constexpr double kBadStart = 0.2;  // of the data's weight; the grid alone fits a good response better
+constexpr double kHalfTurn = 2.2;  // rad: a step between neighbours that is nearer to a half turn than to 0
+constexpr double kLevel = 2;       // largest ratio of neighbouring amplitudes
 constexpr double kOtherUnit = 200;
-constexpr double kOtherFrequency = 3.5;  // below 2 pi, with room for a resonance of half the base's
+constexpr double kOtherFrequency = 3.5;  // below 2 pi, and above 2 for a resonance of half the base's
 
 template <class Change>
 BodeData changed(BodeData data, Change change) {
@@ -33,11 +32,11 @@ BodeData changed(BodeData data, Change change) {
 
 double left_by_grid(const ResponseModel& model, const BodeData& data) {
   BodeData plain = data;
-  plain.noise.clear();  // relative: what matters is the phase everywhere
+  plain.noise.clear();  // relative errors, because the phase matters at all frequencies
   return starting_values(model, plain).left;
 }
 
-// Half turns that come from one neighbour to the next are taken back.
+// Removes half turns between neighbours.
 BodeData without_half_turns(BodeData data, std::size_t& first_step) {
   double sign = 1;
   auto before = data.response.front();
@@ -55,13 +54,13 @@ BodeData without_half_turns(BodeData data, std::size_t& first_step) {
 }
 
 std::string invert_remedy(bool inverted) {
-  return inverted ? "leave --invert out" : "turn the sensor's polarity round, or give --invert";
+  return inverted ? "omit --invert" : "reverse the sensor's polarity, or give --invert";
 }
 
 std::string unit_words(double times) {
   const double powers = std::round(std::log10(times) / 3) * 3;
   return fmt::format(
-      "{:.3g} times what '{{}}' gives; if the values are in a unit 10^{:g} times {} than was said, name it",
+      "{:.3g} times that of '{{}}'; if the unit of the values is 10^{:g} times {} than stated, name the unit",
       times, std::abs(powers), times > 1 ? "smaller" : "larger");
 }
 
@@ -78,23 +77,24 @@ namespace {
 
 std::string turns_remedy(Turned needed, Turned given) {
   if (!needed.conjugated) return invert_remedy(given.inverted);
-  if (!needed.inverted) return given.conjugated ? "leave --phase-sign out" : "give --phase-sign -1";
-  if (given.conjugated && given.inverted) return "leave --phase-sign and --invert out";
-  if (given.conjugated) return "leave --phase-sign out, and give --invert";
-  if (given.inverted) return "give --phase-sign -1, and leave --invert out";
+  if (!needed.inverted) return given.conjugated ? "omit --phase-sign" : "give --phase-sign -1";
+  if (given.conjugated && given.inverted) return "omit --phase-sign and --invert";
+  if (given.conjugated) return "omit --phase-sign, and give --invert";
+  if (given.inverted) return "give --phase-sign -1, and omit --invert";
   return "give --phase-sign -1 and --invert";
 }
 
 std::string turns_words(Turned needed, Direction direction) {
-  const std::string grows = "the phase grows where a lag must fall", down = "the response is upside down",
+  const std::string grows = "the phase increases where a lag has to decrease",
+                    down = "the response has the inverted sign",
                     why = direction == Direction::actuator
-                              ? ": a positive drive gives a negative answer"
-                              : ": its volts have the other sign than the transducer's for the same force";
-  if (!needed.inverted) return grows + ": it has the other sign convention";
+                              ? ": a positive drive gives a negative displacement"
+                              : ": its voltage has the opposite sign of the transducer's for the same force";
+  if (!needed.inverted) return grows + ": it has the opposite sign convention";
   return needed.conjugated ? grows + ", and " + down : down + why;
 }
 
-// The turns that leave clearly less than the data do as they are, and of those the least; none: {}.
+// The change with the smallest residual, if that is clearly less than without a change; otherwise {}.
 Turned turns_needed(const ResponseModel& model, const BodeData& data, double left) {
   double least = kClearly * left;
   Turned needed;
@@ -137,16 +137,16 @@ Result<void> check_phases(const BodeData& measured, const ModelChoice& choice, c
 
 namespace {
 
-// In the table's own degrees.
+// In degrees, as in the table.
 double largest_angle(const BodeData& data) {
   double most = 0;
   for (const auto& value : data.response) most = std::max(most, kDegrees * std::abs(std::arg(value)));
   return most;
 }
 
-constexpr double kLoudest = 400;        // dB: nothing measured is, and 10^20 times it is finite
+constexpr double kLoudest = 400;        // dB: no measured level is larger, and 10^20 times the unit is finite
 constexpr double kExplained = 0.99;     // R^2
-constexpr double kMostRadians = kTurn;  // three poles lag by three quarters of it
+constexpr double kMostRadians = kTurn;  // three poles lag by three quarters of a turn
 
 }  // namespace
 
@@ -156,9 +156,10 @@ Result<void> check_units(const BodeData& data, const ModelChoice& choice, const 
   const BodeData radians =
       changed(data, [](auto h) { return std::polar(std::abs(h), kDegrees * std::arg(h)); });
   if (left_by_grid(model, radians) >= kClearly * left_by_grid(model, data)) return {};
-  return fail(ErrorKind::unsuitable,
-              fmt::format("no phase is beyond {:.3g} degrees: these will be radians", largest_angle(data)),
-              data.source, "give --phase-unit rad, or write phase_rad into the header");
+  return fail(
+      ErrorKind::unsuitable,
+      fmt::format("no phase is beyond {:.3g} degrees: these are probably radians", largest_angle(data)),
+      data.source, "give --phase-unit rad, or write phase_rad into the header");
 }
 
 Result<void> check_measured(const BodeData& data, const ModelChoice& choice, const schema::Transducer& base,
@@ -178,7 +179,7 @@ Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice, con
   levels.noise_from_residuals = false;
   const ResponseFit other = fit_response(levels, choice, base);
   if (!other.claims_intervals() || other.r_squared < kExplained) return {};
-  return fail(ErrorKind::unsuitable, "the amplitudes fit as levels only: these will be decibels",
+  return fail(ErrorKind::unsuitable, "the amplitudes fit as levels only: these are probably decibels",
               fit.data.source, "give --amplitude-unit with \"dB \" before the unit, as \"dB um/V\"");
 }
 
@@ -186,8 +187,7 @@ Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base) 
   const bool actuator = fit.data.direction == Direction::actuator;
   return check_times(actuator ? fit.transducer.actuator_scale / base.actuator_scale
                               : fit.transducer.sensor_scale / base.sensor_scale,
-                     base, fit.data.source,
-                     "give --amplitude-unit, or --implausible where the gain is right");
+                     base, fit.data.source, "give --amplitude-unit, or --implausible if the gain is correct");
 }
 
 Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer& base) {
@@ -196,27 +196,27 @@ Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer&
   const double times = resonance->value / schema::resonance_hz(base);
   if (times < kOtherFrequency && times > 1 / kOtherFrequency) return {};
   const bool in_khz = times < 1;
-  return fail(
-      ErrorKind::unsuitable,
-      fmt::format("the resonance is {:.4g} Hz, {:.3g} times what '{}' has; if the frequencies are in {} "
-                  "it is {:.4g} Hz",
-                  resonance->value, times, base.name, in_khz ? "kHz" : "rad/s",
-                  resonance->value * (in_khz ? 1e3 : 1 / kTurn)),
-      fit.data.source,
-      "write frequency_khz or frequency_rad_per_s into the header, or give --implausible where they are "
-      "right");
+  return fail(ErrorKind::unsuitable,
+              fmt::format("the resonance is {:.4g} Hz, {:.3g} times that of '{}'; if the frequencies are in "
+                          "{} it is {:.4g} Hz",
+                          resonance->value, times, base.name, in_khz ? "kHz" : "rad/s",
+                          resonance->value * (in_khz ? 1e3 : 1 / kTurn)),
+              fit.data.source,
+              "write frequency_khz or frequency_rad_per_s into the header, or give --implausible if they are "
+              "correct");
 }
 
 Result<void> check_size(const LoopFit& fit, const schema::Transducer& base, const std::string& source) {
   return check_times(
       std::abs(fit.gain_m_per_v) / std::abs(schema::actuator_response(base, 0)), base, source,
-      "put the unit into the table's first line, or give --implausible where the gain is right");
+      "write the unit into the table's first line, or give --implausible if the gain is correct");
 }
 
 Result<void> check_upright(const LoopFit& fit, const std::string& source, bool inverted) {
   if (fit.gain_m_per_v > 0) return {};
-  return fail(ErrorKind::unsuitable, "the loops are upside down: a positive drive gives a negative answer",
-              source, invert_remedy(inverted));
+  return fail(ErrorKind::unsuitable,
+              "the loops have the inverted sign: a positive drive gives a negative displacement", source,
+              invert_remedy(inverted));
 }
 
 }  // namespace tacto::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults of measuring and of writing down that a fit would hide.
+// Finds faults of measurements and tables that a fit would hide.
 #pragma once
 
 #include "analysis/identify/fit/hysteresis_loop.hpp"
@@ -7,23 +7,23 @@
 
 namespace tacto::analysis {
 
-/// How values were turned on request before they were looked at.
+/// Changes of the values that the user requested.
 struct Turned {
   bool conjugated = false;  ///< --phase-sign -1
   bool inverted = false;    ///< --invert
 };
 
-/// Before a fit. Errors: unsuitable, with the option that puts it right: a table's degrees that are all
-/// within 2 pi, and that leave less than a quarter of what they leave where they are taken for radians.
+/// Before a fit. Errors: unsuitable, with the option that corrects it: all of a table's degrees are within 2
+/// pi, and their residual as radians is less than a quarter of that as degrees.
 schema::Result<void> check_units(const BodeData& data, const ModelChoice& choice,
                                  const schema::Transducer& base);
 
-/// Before a fit. Errors: unsuitable, with what would put it right: phases that grow where they must fall (the
-/// other sign convention), a response upside down, or both (whichever leaves least; an option that was given
-/// and should not have been is named as to be left out), a step of half a turn between neighbours where the
-/// amplitude does not fall (phases unwrapped as if they had a period of 180 degrees): each only where the
-/// data, so changed, leave less than a quarter of what they leave as they are. Jumps of whole turns do not
-/// matter: values are complex.
+/// Before a fit. Errors: unsuitable, with a remedy: phases that increase instead of decreasing (the other
+/// sign convention), an inverted response, or both (whichever has the smallest residual; the message names a
+/// given option that has to be left out); a step of half a turn between neighbours without a decrease of the
+/// amplitude (phases unwrapped with a period of 180 degrees). Each is reported only if the changed data have
+/// less than a quarter of the unchanged data's residual. Jumps of whole turns do not matter: values are
+/// complex.
 schema::Result<void> check_phases(const BodeData& data, const ModelChoice& choice,
                                   const schema::Transducer& base, Turned turned = {});
 
@@ -31,19 +31,19 @@ schema::Result<void> check_phases(const BodeData& data, const ModelChoice& choic
 schema::Result<void> check_measured(const BodeData& data, const ModelChoice& choice,
                                     const schema::Transducer& base, Turned turned);
 
-/// After it. Errors: unsuitable: a table that is a misfit, and whose amplitudes leave noise only (R^2 above
-/// 0.99) where they are taken for levels in decibels.
+/// After a fit. Errors: unsuitable: a table that is a misfit, whose residual is noise (R^2 above 0.99) if its
+/// amplitudes are taken as levels in decibels.
 schema::Result<void> check_levels(const ResponseFit& fit, const ModelChoice& choice,
                                   const schema::Transducer& base);
 
-/// Errors: unsuitable: a gain more than 200 times the base's or less than a 200th, with the unit
-/// that would explain it.
+/// Errors: unsuitable: a gain of more than 200 times the base's or less than a 200th, with the unit that
+/// would explain it.
 schema::Result<void> check_size(const ResponseFit& fit, const schema::Transducer& base);
-/// A resonance more than 3.5 times the base's or less than that below it (a bender of this kind has none
-/// there), with the unit of frequency that would explain it. Of a finger's load nothing is
-/// said, nor of a fit that claims nothing.
+/// Errors: unsuitable: a resonance more than 3.5 times above or below the base's (a bender of this kind has
+/// none there), with the unit of frequency that would explain it. Fits of a finger's load, and fits without
+/// intervals, are not checked.
 schema::Result<void> check_frequencies(const ResponseFit& fit, const schema::Transducer& base);
-/// Of loops, against the base at rest, likewise; and a negative gain: the answer is upside down.
+/// The same for loops, against the base at 0 Hz; also a negative gain: the answer is inverted.
 schema::Result<void> check_size(const LoopFit& fit, const schema::Transducer& base,
                                 const std::string& source);
 schema::Result<void> check_upright(const LoopFit& fit, const std::string& source, bool inverted = false);

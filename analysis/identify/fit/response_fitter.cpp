@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/identify/fit/student.hpp"
+#include "data-schema/base/statistics.hpp"
 
 namespace tacto::analysis {
 namespace {
@@ -21,7 +21,7 @@ ResponseFitter::ResponseFitter(const BodeData& data, const ResponseModel& model,
 
 void ResponseFitter::run() {
   solve();
-  for (std::size_t vague = vaguest(); vague < values_.size(); vague = vaguest()) {
+  for (std::size_t vague = least_determined(); vague < values_.size(); vague = least_determined()) {
     held_[vague] = true;
     values_[vague] = model_.parameters()[vague].base;
     solve();
@@ -51,7 +51,7 @@ double ResponseFitter::standard_error(std::size_t i) const {
   return std::sqrt(variance() * solution_.covariance[at * n + at]);
 }
 
-// By the gradient of the model's logarithm.
+// By the gradient of the model's logarithm (delta method).
 double ResponseFitter::spread(double hz) const {
   const std::size_t n = free_count();
   const std::vector<double> slope = log_gradient(hz);
@@ -62,9 +62,10 @@ double ResponseFitter::spread(double hz) const {
 }
 
 double ResponseFitter::times_95() const {
-  if (uneven_freedom_ > 0) return student_95(uneven_freedom_);
-  if (!data_.noise_is_measured()) return student_95(freedom());
-  return data_.noise_freedom > 0 ? student_95(data_.noise_freedom) : kNormal95;
+  if (uneven_freedom_ > 0) return schema::student_t(uneven_freedom_, schema::kNormal95);
+  if (!data_.noise_is_measured()) return schema::student_t(freedom(), schema::kNormal95);
+  return data_.noise_freedom > 0 ? schema::student_t(data_.noise_freedom, schema::kNormal95)
+                                 : schema::kNormal95;
 }
 
 std::string ResponseFitter::ended() const {
@@ -73,8 +74,8 @@ std::string ResponseFitter::ended() const {
   for (std::size_t free = *solution_.at_bound; held_[which] || free > 0; ++which)
     if (!held_[which]) --free;
   const ModelParameter& p = model_.parameters()[which];
-  return fmt::format("{} ran to the end of its range, {:.3g}: this model is not what was measured", p.name,
-                     values_[which]);
+  return fmt::format("{} reached the end of its range, {:.3g}: the model does not describe the measurement",
+                     p.name, values_[which]);
 }
 
 std::size_t ResponseFitter::place(std::size_t parameter) const {
@@ -89,10 +90,20 @@ std::vector<double> ResponseFitter::values_at(std::span<const double> coordinate
   return values;
 }
 
+// Divided by how the data would change with the pole: so their noise stays what it is.
+std::vector<std::complex<double>> ResponseFitter::modelled(std::span<const double> values) const {
+  std::vector<std::complex<double>> list;
+  list.reserve(data_.size());
+  for (const double hz : data_.frequency_hz) list.push_back(model_.at(values, hz));
+  if (!data_.by_pole || model_.choice().finger) return list;
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] /= data_.by_pole->factor(i, values[kPole]);
+  return list;
+}
+
 void ResponseFitter::residuals(std::span<const double> coordinates, std::span<double> out) const {
-  const std::vector<double> values = values_at(coordinates);
+  const std::vector<std::complex<double>> model = modelled(values_at(coordinates));
   for (std::size_t i = 0; i < data_.size(); ++i) {
-    const auto r = (data_.response[i] - model_.at(values, data_.frequency_hz[i])) / sigma_at(data_, i);
+    const auto r = (data_.response[i] - model[i]) / sigma_at(data_, i);
     out[2 * i] = r.real();
     out[2 * i + 1] = r.imag();
   }
@@ -113,11 +124,11 @@ void ResponseFitter::solve() {
   values_ = values_at(solution_.coordinates);
 }
 
-// The free parameter that the data say least of, where that is too little; else the number of parameters.
-std::size_t ResponseFitter::vaguest() const {
+// The least determined free parameter, if its error is above the limit; otherwise the number of parameters.
+std::size_t ResponseFitter::least_determined() const {
   std::size_t worst = values_.size();
   double most = kVague;
-  if (pole_is_nowhere()) return kPole;
+  if (pole_out_of_band()) return kPole;
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (held_[i] || i == kGain || !model_.parameters()[i].logarithmic) continue;
     if (const double error = standard_error(i); error > most) worst = i, most = error;
@@ -125,8 +136,8 @@ std::size_t ResponseFitter::vaguest() const {
   return worst;
 }
 
-// At the end of its range: far beyond the band, where it does nothing.
-bool ResponseFitter::pole_is_nowhere() const {
+// Whether the pole is at the end of its range, so far beyond the band that it has no effect.
+bool ResponseFitter::pole_out_of_band() const {
   if (model_.choice().finger || held_[kPole]) return false;
   const ModelParameter& pole = model_.parameters()[kPole];
   return values_[kPole] > kNowhere * pole.high || values_[kPole] < pole.low / kNowhere;

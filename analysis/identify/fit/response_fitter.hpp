@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One fit: the model, its data, and which of its parameters are free.
+// One fit: the model, its data, and its free parameters.
 #pragma once
 
 #include <span>
@@ -13,25 +13,28 @@
 
 namespace tacto::analysis {
 
-/// Data and model outlive it. Precondition: check_bode(data), as many values as parameters.
+/// Data and model must outlive it. Precondition: check_bode(data), as many values as parameters.
 class ResponseFitter {
  public:
   ResponseFitter(const BodeData& data, const ResponseModel& model, std::vector<double> start);
 
-  /// Fits, and again with the vaguest parameter held at the base's value for as long as there is one.
+  /// Fits; then holds the least determined parameter at the base's value and fits again, as long as there is
+  /// one.
   void run();
 
-  /// From now on errors are told by the residuals where they are: the noise is not of the size that was
-  /// taken.
+  /// After this call errors are estimated from the residuals at each frequency, because the size of the noise
+  /// is not the assumed one.
   void take_uneven_noise();
 
   std::size_t free_count() const;
   double freedom() const;                      ///< 2 n - p
-  double standard_error(std::size_t i) const;  ///< of a coordinate
+  double standard_error(std::size_t i) const;  ///< of parameter i's coordinate
   double spread(double hz) const;              ///< relative standard error of |model| at a frequency
-  double times_95() const;                     ///< standard errors that make half an interval
+  double times_95() const;                     ///< standard errors in half an interval
   bool held(std::size_t i) const { return held_[i]; }
   std::string ended() const;  ///< in words
+  /// The model at the data's frequencies, for the pole that the data were computed with (BodeData::by_pole).
+  std::vector<std::complex<double>> modelled() const { return modelled(values_); }
   const std::vector<double>& values() const { return values_; }
   const Solution& solution() const { return solution_; }
 
@@ -39,10 +42,11 @@ class ResponseFitter {
   double variance() const;
   std::size_t place(std::size_t parameter) const;
   std::vector<double> values_at(std::span<const double> coordinates) const;
+  std::vector<std::complex<double>> modelled(std::span<const double> values) const;
   void residuals(std::span<const double> coordinates, std::span<double> out) const;
   void solve();
-  std::size_t vaguest() const;
-  bool pole_is_nowhere() const;
+  std::size_t least_determined() const;
+  bool pole_out_of_band() const;
   std::vector<double> log_gradient(double hz) const;
 
   const BodeData& data_;
@@ -51,7 +55,7 @@ class ResponseFitter {
   std::vector<double> values_;
   std::vector<bool> held_;
   Solution solution_;
-  double uneven_freedom_ = 0;  // 0: the noise is of the size that was taken
+  double uneven_freedom_ = 0;  // 0: the noise has the assumed size
 };
 
 }  // namespace tacto::analysis

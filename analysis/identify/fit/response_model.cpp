@@ -21,7 +21,7 @@ Complex resonator(double frequency_hz, double resonance_hz, double damping) {
   return {1 - r * r, 2 * damping * r};
 }
 
-// 2 G_s R_s k_p beta w_pole / k: the sensor's volts for a newton far above its pole and far below resonance.
+// 2 G_s R_s k_p beta w_pole / k: the sensor's gain in V/N far above its pole and far below resonance.
 double sensor_gain_of(const schema::Transducer& t) {
   return 2 * t.sensor_gain * t.sensor_resistance_ohm * t.bender_stiffness_n_per_m *
          schema::piezo_coefficient_m_per_v(t) * t.sensor_scale * kTurn * schema::sensor_pole_hz(t) /
@@ -36,7 +36,7 @@ double pole_of(const schema::Transducer& t, Direction direction) {
   return direction == Direction::actuator ? schema::actuator_pole_hz(t) : schema::sensor_pole_hz(t);
 }
 
-void add_finger(std::vector<ModelParameter>& list) {  // starts: FingerLoad's of Wiertlewski, Hayward 2012
+void add_finger(std::vector<ModelParameter>& list) {  // starts: FingerLoad, from Wiertlewski, Hayward 2012
   list.push_back({"added_stiffness_n_per_m", true, 1, 1e6, 1e3});
   list.push_back({"added_damping_n_s_per_m", true, 1e-4, 1e3, 1.8});
   list.push_back({"added_mass_kg", true, 1e-7, 0.1, 1e-4});
@@ -75,6 +75,8 @@ ResponseModel::ResponseModel(const ModelChoice& choice, const schema::Transducer
   if (choice.finger) add_finger(parameters_);
   if (!choice.finger) add_tray(parameters_, base, choice.direction, low_hz, high_hz);
   if (choice.second_mode) add_second_mode(parameters_, low_hz, high_hz);
+  const double most_ms = 1e3 * kMostDelayPeriods / high_hz;
+  if (choice.delay) parameters_.push_back({"delay_ms", false, -most_ms, most_ms, 0});
   if (choice.lag) parameters_.push_back({"lag_rad", false, -1.5, 1.5, 0});
   for (ModelParameter& parameter : parameters_) {
     parameter.base = parameter.start;
@@ -101,6 +103,7 @@ Complex ResponseModel::at(std::span<const double> v, double hz) const {
     above *= resonator(hz, v[kSecondMode + 2], v[kSecondMode + 3]);
     below *= resonator(hz, v[kSecondMode], v[kSecondMode + 1]);
   }
+  if (choice_.delay) above *= std::polar(1.0, -1e-3 * kTurn * hz * v[v.size() - (choice_.lag ? 2 : 1)]);
   if (choice_.lag) above *= std::polar(1.0, hz < 0 ? v.back() : -v.back());
   return above / below;
 }

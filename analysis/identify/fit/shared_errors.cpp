@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kLeastShared = 1e-2;  // of the noise: an error that is not worth a direction
+constexpr double kLeastShared = 1e-2;  // of the noise; smaller shared errors are ignored
 
 MatrixXd over_the_noise(const BodeData& data) {
   MatrixXd b(static_cast<Index>(2 * data.size()), static_cast<Index>(data.shared_errors.size()));

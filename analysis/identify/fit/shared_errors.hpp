@@ -10,15 +10,15 @@
 
 namespace tacto::analysis {
 
-/// Makes the residuals of data with BodeData::shared_errors independent and of variance 1. Whitened by the
-/// noise alone their covariance is I + B B^T, where the columns of B are the shared errors over the noise,
-/// real and imaginary part by turns; with B = Q S V^T its inverse root is I - Q (1 - 1 / sqrt(1 + S^2)) Q^T
-/// (generalised least squares, Aitken 1936).
+/// Makes the residuals of data with BodeData::shared_errors independent and of variance 1. Divided by the
+/// noise only, their covariance is I + B B^T, where the columns of B are the shared errors over the noise,
+/// real and imaginary parts alternating. With B = Q S V^T its inverse root is I - Q (1 - 1 / sqrt(1 + S^2))
+/// Q^T (generalised least squares, Aitken 1936).
 class SharedErrors {
  public:
   explicit SharedErrors(const BodeData& data);
-  /// Of residuals over the noise, real and imaginary part by turns. Data without shared errors change
-  /// nothing.
+  /// Changes residuals over the noise, real and imaginary parts alternating. Without shared errors they do
+  /// not change.
   void take_from(std::span<double> residuals) const;
 
  private:
@@ -26,8 +26,8 @@ class SharedErrors {
   std::vector<double> taken_;                    // 1 - 1 / sqrt(1 + S^2)
 };
 
-/// (response - modelled) / noise, less what the shared errors explain, turned by the model's phase: real
-/// along the model, imaginary across.
+/// (response - modelled) / noise without the part that the shared errors explain, rotated by the model's
+/// phase: real along the model, imaginary across.
 std::vector<std::complex<double>> turned_residuals(const BodeData& data,
                                                    std::span<const std::complex<double>> modelled);
 

@@ -19,7 +19,7 @@ double weight_of(const BodeData& data, std::size_t i) {
   return 1 / (data.has_noise() ? data.noise[i] * data.noise[i] : std::norm(data.response[i]));
 }
 
-// Of the data, at most kMostLookedAt, evenly by number.
+// At most kMostLookedAt of the frequencies, evenly by index.
 std::vector<std::size_t> looked_at(const BodeData& data) {
   const std::size_t count = std::min(kMostLookedAt, data.size());
   std::vector<std::size_t> which;
@@ -27,13 +27,13 @@ std::vector<std::size_t> looked_at(const BodeData& data) {
   return which;
 }
 
-// Noise of a few frequencies must not outweigh the rest while the model is still far off: relative errors.
+// Uses relative errors: while the model is still far off, values with little noise must not dominate.
 struct Trial {
   const ResponseModel& model;
   const BodeData& data;
   std::vector<std::size_t> which = looked_at(data);
 
-  // Scales the gain to fit best and says what is left.
+  // Sets the best gain and returns the residual.
   double left(std::vector<double>& values) const {
     double across = 0, own = 0, whole = 0;
     for (const std::size_t i : which) {
@@ -74,7 +74,7 @@ void keep_within(const ResponseModel& model, Start& start) {
   }
 }
 
-// What is left of all the data, with their own weights.
+// Residual of all data with their own weights.
 double left_of_all(const ResponseModel& model, const BodeData& data, std::span<const double> values) {
   double rest = 0, whole = 0;
   for (std::size_t i = 0; i < data.size(); ++i) {
@@ -126,8 +126,7 @@ std::vector<std::vector<double>> one_mode_starts(const ResponseModel& model, con
 
 namespace {
 
-// Where |H| f is largest among its neighbours: two resonances of like size, which one mode can't be fitted
-// to.
+// The two largest local maxima of |H| f: two resonances of similar size, to which one mode cannot be fitted.
 std::vector<std::size_t> peaks_of(const BodeData& data) {
   const auto size = [&](std::size_t i) { return std::abs(data.response[i]) * data.frequency_hz[i]; };
   std::vector<std::size_t> peaks;

@@ -10,8 +10,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kRounds = 6;      // of weights: a start for a fit, not its end
-constexpr int kHalvings = 100;  // of a bracket: to rounding
+constexpr int kRounds = 6;      // of reweighting; the result is only the start of a fit
+constexpr int kHalvings = 100;  // of an interval; reaches rounding
 constexpr int kUnknowns = 4;
 
 // 1 + a s + b s^2 + c s^3 and the numerator's factor, s = i f / scale_hz.
@@ -27,7 +27,7 @@ void put(std::vector<double>& list, Complex value) {
   list.push_back(value.imag());
 }
 
-// N - H (a s + b s^2 + c s^3) = H, real and imaginary parts beneath each other.
+// N - H (a s + b s^2 + c s^3) = H; real and imaginary parts are separate rows.
 Cubic solved_with(const Cubic& before, const BodeData& data, double scale_hz) {
   std::vector<std::vector<double>> columns(kUnknowns);
   std::vector<double> right;
@@ -44,7 +44,7 @@ Cubic solved_with(const Cubic& before, const BodeData& data, double scale_hz) {
   return {x[0], x[1], x[2], x[3]};
 }
 
-// Where the cubic, 1 at 0 and falling in the end, meets 0 below it. Precondition: c above 0.
+// The negative root of the cubic, which is 1 at 0. Precondition: c above 0.
 double real_root(const Cubic& cubic) {
   double low = -1, high = 0;
   while (cubic.at(low) > 0) low *= 2;
@@ -71,7 +71,7 @@ std::vector<double> split(Direction direction, std::span<const double> values, d
   list[kResonance] = std::sqrt(one_hz * other_hz);
   list[kDamping] = 0.5 * (one_hz + other_hz) / list[kResonance];
   list[kPole] = pole_hz;
-  if (direction == Direction::sensor) list[kGain] *= pole_hz / values[kPole];  // gain / pole is what shows
+  if (direction == Direction::sensor) list[kGain] *= pole_hz / values[kPole];  // the data give gain / pole
   return list;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one-mode model as what it is in a response: a gain over three poles.
+// The one-mode model in the form of a response: a gain over three poles.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,15 @@
 
 namespace tacto::analysis {
 
-/// Gain, resonance, damping and pole by linear least squares of H D = N, D a cubic in i f, N the gain (a
-/// sensor's: times f), weighted anew with the D before: Sanathanan, Koerner 1963. No start is asked for, so
-/// that there is no false minimum. None where a pole lies on the unstable side, as noise or an outlier can
-/// make it. Precondition: check_bode(data).
+/// Gain, resonance, damping and pole by linear least squares of H D = N, where D is a cubic in i f and N the
+/// gain (for a sensor times f), reweighted with the previous D: Sanathanan, Koerner 1963. It needs no start,
+/// so it has no false minimum. Returns nothing if a pole is unstable, as noise or an outlier can cause.
+/// Precondition: check_bode(data).
 std::optional<std::vector<double>> poles_of_data(const BodeData& data);
 
-/// An overdamped mode and the pole are three real poles, and no response tells which of them is the pole: the
-/// other two ways to write the same response, the lower pole first. Values in the parameters' order, those
-/// behind the pole kept. Empty where the mode is not overdamped.
+/// An overdamped mode and the pole are three real poles, and no response determines which of them is the
+/// electrical pole. Returns the other two parameter sets of the same response, the lower pole first; values
+/// behind the pole do not change. Empty if the mode is not overdamped.
 std::vector<std::vector<double>> other_splits(Direction direction, std::span<const double> values);
 
 }  // namespace tacto::analysis

@@ -8,9 +8,9 @@
 namespace tacto::analysis {
 
 inline constexpr double kTurn = 2 * std::numbers::pi;       // rad
-inline constexpr double kDegrees = 180 / std::numbers::pi;  // a rad
+inline constexpr double kDegrees = 180 / std::numbers::pi;  // per rad
 
-/// Phase of each value of a curve in degrees, carried on from the one before so that no turn is jumped.
+/// Unwrapped phase of a curve in degrees: each value continues the one before without jumps of whole turns.
 std::vector<double> carried_phase_deg(const std::vector<std::complex<double>>& curve);
 
 }  // namespace tacto::analysis

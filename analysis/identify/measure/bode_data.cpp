@@ -6,24 +6,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data-schema/base/statistics.hpp"
+
 namespace tacto::analysis {
 namespace {
 
+using Complex = std::complex<double>;
 using schema::ErrorKind;
 using schema::fail;
 using schema::Result;
 
 constexpr double kLeastSignalToNoise = 2;
-// Of neighbours of white noise the mean of cos(phase step) is 0 +- 1 / sqrt(2 n); of a response near 1.
+// For white noise the mean of cos(phase step) between neighbours is 0 +- 1 / sqrt(2 n), for a response near
+// 1.
 constexpr double kLeastSmoothness = 0.4;
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-// How alike neighbours are, amplitude and phase: 1 where all are the same.
+// Similarity of neighbours in amplitude and phase: 1 if all are equal.
 double smoothness(const BodeData& data) {
   double sum = 0;
   for (std::size_t i = 1; i < data.size(); ++i) {
@@ -36,13 +34,13 @@ double smoothness(const BodeData& data) {
 double signal_to_noise(const BodeData& data) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < data.size(); ++i) ratios.push_back(std::abs(data.response[i]) / data.noise[i]);
-  return median_of(std::move(ratios));
+  return schema::upper_median(std::span(ratios));
 }
 
 Result<void> check_values(const BodeData& data) {
   const char* const remedy =
-      data.of_device ? "give another --amplitude or band, and see that the sensor looks at the tray"
-                     : "leave the line out";
+      data.of_device ? "give another --amplitude or band, and check that the sensor measures the tray"
+                     : "remove the line";
   for (std::size_t i = 0; i < data.size(); ++i) {
     const std::string where = fmt::format("{}, frequency {}", data.source, i + 1);
     const auto value = data.response[i];
@@ -50,9 +48,10 @@ Result<void> check_values(const BodeData& data) {
     if (!finite || !std::isfinite(data.frequency_hz[i]))
       return fail(ErrorKind::unsuitable, "a value is not a number", where, remedy);
     if (!(data.frequency_hz[i] > 0) || (i > 0 && !(data.frequency_hz[i] > data.frequency_hz[i - 1])))
-      return fail(ErrorKind::unsuitable,
-                  fmt::format("{:g} Hz does not grow from above 0", data.frequency_hz[i]), where,
-                  "sort the lines by frequency, one line for each");
+      return fail(
+          ErrorKind::unsuitable,
+          fmt::format("{:g} Hz is not above 0, or not above the frequency before it", data.frequency_hz[i]),
+          where, "sort the lines by frequency, one line for each");
     if (data.has_noise() && !(data.noise[i] > 0))
       return fail(ErrorKind::unsuitable, "the noise is not above 0", where);
     if (value == 0.0) return fail(ErrorKind::unsuitable, "the amplitude is 0", where, remedy);
@@ -61,6 +60,10 @@ Result<void> check_values(const BodeData& data) {
 }
 
 }  // namespace
+
+Complex PoleDependence::factor(std::size_t i, double at_pole_hz) const {
+  return std::exp(log_slope[i] * std::log(at_pole_hz / pole_hz));
+}
 
 Result<void> check_bode(const BodeData& data) {
   if (data.size() < kLeastFrequencies)
@@ -71,11 +74,11 @@ Result<void> check_bode(const BodeData& data) {
   const bool loud = !data.has_noise() || signal_to_noise(data) >= kLeastSignalToNoise;
   if (loud && smoothness(data) >= kLeastSmoothness) return {};
   return fail(
-      ErrorKind::unsuitable, "this is noise: there is no response in it", data.source,
+      ErrorKind::unsuitable, "it contains only noise, no response", data.source,
       data.direction == Direction::sensor
-          ? "push it with more force, measure longer, and see that the reference cell is in the force's way"
-          : "drive it with more, measure longer, and see that the sensor looks at the tray; slow loops "
-            "take --method loop");
+          ? "use a larger force, measure longer, and check that the force passes through the reference cell"
+          : "use a larger drive, measure longer, and check that the sensor measures the tray; slow loops "
+            "need --method loop");
 }
 
 double sigma_at(const BodeData& data, std::size_t i) {

@@ -19,7 +19,7 @@ using schema::Result;
 
 constexpr std::uint8_t kFramesOfMessage = 32;
 constexpr std::uint16_t kWatchdogMs = 500;
-constexpr std::size_t kLeastRefill = 128;  // samples: smaller messages cost more than they carry
+constexpr std::size_t kLeastRefill = 128;  // samples; smaller messages have more overhead than content
 constexpr double kWaitS = 5e-3, kIdleWaitS = 1;
 constexpr std::uint32_t kLimited =
     wire::kTickAmplitudeLimited | wire::kTickSlewLimited | wire::kTickEnergyLimited | wire::kTickGated;
@@ -28,11 +28,11 @@ Result<std::size_t> tray_channel(const firmware_host::Capabilities& about) {
   const auto found = std::ranges::find(about.channels, "displacement", &schema::Channel::quantity);
   if (found != about.channels.end()) return static_cast<std::size_t>(found - about.channels.begin());
   return fail(ErrorKind::unsuitable,
-              "the device does not see its tray move: it has no channel of displacement", about.uri,
-              "of an emulated device add tray_sensor=on; else give a file of measured values");
+              "the device does not measure its tray: it has no channel of displacement", about.uri,
+              "for an emulated device add tray_sensor=on; else give a file of measured values");
 }
 
-// One run: what has come so far, as the device numbered it.
+// One run: the frames and ticks so far, by the device's numbers.
 class Run {
  public:
   Run(Client& client, const firmware_host::Capabilities& about, std::size_t channel)
@@ -60,15 +60,15 @@ class Run {
   }
   Result<void> take() {
     if (client_.samples().has_gap() && client_.samples().at_gap())
-      return fail(ErrorKind::device, "frames were lost on the way", about_.uri,
-                  "identify again, on a quieter machine");
+      return fail(ErrorKind::device, "frames were lost on the link", about_.uri,
+                  "identify again, with less other load on the computer");
     take_frames();
     for (const wire::Ticks& block : client_.take_ticks())
       if (const auto kept = keep(block); !kept) return kept;
     if (const auto faults = client_.take_faults(); !faults.empty())
       return fail(ErrorKind::device,
                   fmt::format("the device stopped with fault {}", static_cast<int>(faults[0].code)),
-                  about_.uri, "see that its enable input is closed and the machine not too busy");
+                  about_.uri, "check that its enable input is closed and the computer not too busy");
     return {};
   }
   Result<void> end() {
@@ -85,10 +85,10 @@ class Run {
   bool all_played() const { return empty_; }
   double sent() const { return static_cast<double>(sent_); }
 
-  // Frames and ticks on one axis, from the first sample of the plan on.
+  // Aligns frames and ticks in time, from the first sample of the plan on.
   Result<DrivenTray> paired(std::span<const float> plan) const {
     if (!first_frame_s_ || drive_.empty())
-      return fail(ErrorKind::device, "the device gave nothing", about_.uri);
+      return fail(ErrorKind::device, "the device sent no samples", about_.uri);
     const auto shift =
         static_cast<std::ptrdiff_t>(std::llround((first_tick_s_ - *first_frame_s_) * about_.sample_rate_hz));
     const auto loud = [](float v) { return v != 0; };
@@ -98,7 +98,7 @@ class Run {
     const auto count = static_cast<std::ptrdiff_t>(plan.size());
     if (first < 0 || first + count > static_cast<std::ptrdiff_t>(drive_.size()) || first + shift < 0 ||
         first + shift + count > static_cast<std::ptrdiff_t>(displacement_m_.size()))
-      return fail(ErrorKind::device, "the device gave fewer samples than it played", about_.uri);
+      return fail(ErrorKind::device, "the device sent fewer samples than it played", about_.uri);
     DrivenTray tray{about_.sample_rate_hz, {}, {}, limited_};
     tray.drive_v.assign(drive_.begin() + first, drive_.begin() + first + count);
     tray.displacement_m.assign(displacement_m_.begin() + first + shift,
@@ -141,15 +141,15 @@ class Run {
       first_tick_s_ = static_cast<double>(block.device_ticks) / client_.description().welcome.clock_hz -
                       static_cast<double>(block.first_tick) / about_.sample_rate_hz;
     if (block.first_tick != drive_.size())
-      return fail(ErrorKind::device, "ticks were lost on the way", about_.uri,
-                  "identify again, on a quieter machine");
+      return fail(ErrorKind::device, "ticks were lost on the link", about_.uri,
+                  "identify again, with less other load on the computer");
     for (std::size_t i = 0; i < block.count; ++i) {
       drive_.push_back(block.ticks[i].drive_v);
       limited_ += (block.ticks[i].flags & kLimited) != 0;
     }
     return {};
   }
-  // Within what the limits may have changed, the drive is the plan.
+  // Whether the drive differs from the plan in more ticks than limits explain.
   bool late(std::span<const float> plan, const DrivenTray& tray) const {
     std::size_t other = 0;
     for (std::size_t i = 0; i < plan.size(); ++i)
@@ -157,8 +157,8 @@ class Run {
     return other > 2 * limited_;
   }
   Result<DrivenTray> late_words() const {
-    return fail(ErrorKind::device, "the device did not put out what it was sent: the drive came too late",
-                about_.uri, "identify again, on a quieter machine");
+    return fail(ErrorKind::device, "the device did not play the requested drive: it arrived too late",
+                about_.uri, "identify again, with less other load on the computer");
   }
 
   Client& client_;

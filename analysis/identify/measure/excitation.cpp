@@ -25,7 +25,7 @@ void add_silence(std::vector<float>& drive, double rate_hz) {
   drive.insert(drive.end(), static_cast<std::size_t>(kSilenceS * rate_hz), 0.0F);
 }
 
-// The frequencies as multiples of 1 / s; what falls on the same one is one.
+// The frequencies as multiples of 1 / s, without duplicates.
 std::vector<std::size_t> lines_of(const ExcitationPlan& plan) {
   std::vector<std::size_t> lines;
   for (std::size_t i = 0; i < plan.frequencies; ++i)
@@ -103,7 +103,7 @@ PeriodicDrive multisine(const ExcitationPlan& plan) {
   return repeated(period, plan);
 }
 
-// Begins a little below and ends a little above, so that the ends of the band are driven as well.
+// Begins a little below and ends a little above the band, so that its ends are excited as well.
 PeriodicDrive periodic_chirp(const ExcitationPlan& plan) {
   std::vector<double> period(static_cast<std::size_t>(plan.rate_hz), 0.0);
   const double from_hz = 0.7 * plan.low_hz, to_hz = 1.2 * plan.high_hz, growth = std::log(to_hz / from_hz);

@@ -14,15 +14,15 @@ using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
 
 constexpr Index kLocalTerms = 3;                    // of a polynomial of second degree
-constexpr double kLocalSingular = 1e-7;             // of the largest: below it a direction is not told at all
-constexpr int kLocalPlaces = 20, kLocalRounds = 6;  // either side of the best so far, ever closer: to 1e-8
+constexpr double kLocalSingular = 1e-7;             // of the largest singular value; below: not determined
+constexpr int kLocalPlaces = 20, kLocalRounds = 6;  // to each side of the best; to 1e-8
 
 struct LocalTable {
-  MatrixXcd columns;  // of length 1 each
+  MatrixXcd columns;  // each of length 1
   Eigen::VectorXd lengths;
 };
 
-// Powers of the place from -1 to 1: times the input, and alone.
+// Powers of the position from -1 to 1: multiplied by the input, and alone.
 LocalTable local_table(std::span<const Complex> input, bool transient) {
   const auto count = static_cast<Index>(input.size());
   const double half = static_cast<double>(count - 1) / 2;
@@ -39,7 +39,7 @@ LocalTable local_table(std::span<const Complex> input, bool transient) {
   return table;
 }
 
-// The polynomial's terms at a place, in columns of length 1: what is multiplied with a solution.
+// The polynomial's terms at a position, scaled for the product with a solution of unit columns.
 VectorXcd local_terms_at(const LocalTable& table, double place) {
   VectorXcd terms = VectorXcd::Zero(table.columns.cols());
   double power = 1;
@@ -47,7 +47,8 @@ VectorXcd local_terms_at(const LocalTable& table, double place) {
   return terms;
 }
 
-// From -0.5 to 0.5. A line between two bins is known at itself only: hence the rounds.
+// From -0.5 to 0.5. For a line between two bins the response is known only at the line, so the search is
+// refined in rounds.
 template <class Variance>
 double best_place(const Variance& variance) {
   double best = 0, least = variance(0), step = 0.5 / kLocalPlaces;
@@ -69,7 +70,7 @@ LocalResponse local_response(std::span<const Complex> input, std::span<const Com
   const Eigen::Map<const VectorXcd> answer(output.data(), static_cast<Index>(output.size()));
   const Eigen::JacobiSVD<MatrixXcd> parts(table.columns, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::ArrayXd sizes = parts.singularValues().array();
-  // Directions that are not told keep a variance that says so.
+  // Undetermined directions keep a large variance.
   const Eigen::ArrayXd told = (sizes.square() + std::pow(kLocalSingular * sizes(0), 2)).inverse();
   const VectorXcd along = parts.matrixU().adjoint() * answer;
   const VectorXcd solution = parts.matrixV() * ((sizes * told).cast<Complex>() * along.array()).matrix();

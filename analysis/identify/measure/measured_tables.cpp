@@ -19,7 +19,7 @@ using schema::fail;
 using schema::Result;
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNoRadians = 100;  // sixteen turns: a transducer has no such phase
+constexpr double kNoRadians = 100;  // sixteen turns; no transducer has such a phase
 
 struct UnitWorth {
   std::string_view unit;
@@ -36,7 +36,7 @@ std::optional<double> worth(std::span<const UnitWorth> units, std::string_view u
   return found == units.end() ? std::nullopt : std::optional(found->si);
 }
 
-// "Gain (dB um/V)" after "gain": "db um/v"; "_um_per_v": "um/v".
+// The unit behind the name: "Gain (dB um/V)" after "gain": "db um/v"; "_um_per_v": "um/v".
 std::string unit_in(std::string_view behind) {
   std::string unit;
   for (std::size_t i = 0; i < behind.size(); ++i) {
@@ -54,7 +54,7 @@ std::string unit_in(std::string_view behind) {
   return first == std::string::npos ? "" : unit.substr(first, unit.find_last_not_of(' ') - first + 1);
 }
 
-// A column by the beginning of its name.
+// A column, found by the beginning of its name.
 struct Found {
   std::size_t index = 0;
   std::string unit;
@@ -95,7 +95,8 @@ Result<AmplitudeUnit> amplitude_unit(std::string unit, const std::string& path) 
   else
     return fail(
         ErrorKind::usage,
-        unit.empty() ? "the amplitude has no unit" : fmt::format("'{}' is no unit of amplitude", unit), path,
+        unit.empty() ? "the amplitude has no unit" : fmt::format("'{}' is not a unit of amplitude", unit),
+        path,
         "write amplitude_um_per_v (or m, mm, nm) or amplitude_v_per_n into the header, or give "
         "--amplitude-unit um/V, V/N or \"dB m/V\"");
   return found;
@@ -113,18 +114,18 @@ Result<void> check_radians(const NumberTable& table, std::size_t phase, const st
   for (std::size_t row = 0; row < table.rows(); ++row)
     if (std::abs(table.at(row, phase)) > kNoRadians)
       return fail(ErrorKind::unsuitable,
-                  fmt::format("a phase of {:g} rad: these will be degrees", table.at(row, phase)), path,
+                  fmt::format("a phase of {:g} rad: these are probably degrees", table.at(row, phase)), path,
                   "write phase_deg, or give --phase-unit deg");
   return {};
 }
 
-// All below 0: decibels of the unit without a prefix; some: of the one that is named.
+// If all values are below 0: decibels of the unit without a prefix; if some are: of the usual unit.
 std::string likely_decibels(Direction direction, bool all) {
   if (direction == Direction::sensor) return "dB V/N";
   return all ? "dB m/V" : "dB um/V";
 }
 
-// A size is not below 0, but a level is.
+// A magnitude cannot be negative, but a level in decibels can.
 Result<void> check_sizes(const NumberTable& table, std::size_t amplitude, Direction direction,
                          const std::string& path) {
   std::size_t first = 0, below = 0;
@@ -135,9 +136,9 @@ Result<void> check_sizes(const NumberTable& table, std::size_t amplitude, Direct
                     where = fmt::format("{}, line {}", path, table.lines[first]);
   if (below == 1)
     return fail(ErrorKind::unsuitable, what, where,
-                "measure it again, or leave its line out; a half turn belongs in the phase");
+                "measure it again, or remove its line; a half turn belongs in the phase");
   return fail(ErrorKind::unsuitable,
-              fmt::format("{}, as in {} of {} lines: these will be decibels", what, below, table.rows()),
+              fmt::format("{}, as in {} of {} lines: these are probably decibels", what, below, table.rows()),
               where,
               fmt::format("give --amplitude-unit \"{}\"; a half turn belongs in the phase",
                           likely_decibels(direction, below == table.rows())));
@@ -174,7 +175,7 @@ Result<BodeData> read_bode_table(const std::string& path, const TableUnits& unit
     return schema::forward_error(sound);
   const auto hertz = worth(kFrequencyUnits, frequency->unit);
   if (!hertz)
-    return fail(ErrorKind::usage, fmt::format("'{}' is no unit of frequency", frequency->unit), path,
+    return fail(ErrorKind::usage, fmt::format("'{}' is not a unit of frequency", frequency->unit), path,
                 "write frequency_hz, frequency_khz or frequency_rad_per_s into the header");
   const auto noise = column(*table, {"noise", "sigma"});
   BodeData data;
@@ -213,12 +214,12 @@ Result<DrivenTray> read_driven_table(const std::string& path) {
   for (std::size_t row = 1; row < table->rows(); ++row)
     if (!(std::abs(table->at(row, time->index) - table->at(row - 1, time->index) - step_s) <= 0.01 * step_s))
       return fail(ErrorKind::unsuitable, "the times are not even", fmt::format("{}, row {}", path, row + 1),
-                  "sample it anew at one rate");
+                  "sample it again at one rate");
   tray.rate_hz = 1 / step_s;
   return tray;
 }
 
-// What is cut off is no response: one clipped resonance made a misfit of a sound sensor.
+// Clipped samples are refused: one clipped resonance caused a misfit of a good sensor.
 Result<void> check_unclipped(const schema::Channel& channel, const std::vector<double>& values,
                              const std::string& stem) {
   const auto clipped = std::ranges::count_if(values, [&](double value) {
@@ -228,7 +229,7 @@ Result<void> check_unclipped(const schema::Channel& channel, const std::vector<d
   if (clipped == 0) return {};
   return fail(ErrorKind::unsuitable,
               fmt::format("{} samples of {} are at an end of the converter's range", clipped, channel.name),
-              stem, "drive less, and record again");
+              stem, "use a smaller drive, and record again");
 }
 
 Result<RecordedPair> read_recorded_pair(const std::string& stem, const std::string& input,

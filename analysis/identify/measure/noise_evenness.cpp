@@ -14,7 +14,7 @@ constexpr std::size_t kFewest = 16, kShortest = 4;  // frequencies
 constexpr std::size_t kFractions[] = {8, 6, 4, 3, 2};
 constexpr double kMostUneven = 22;
 
-// Of a part of the band, of two values a frequency.
+// Sums for a part of the band; a frequency has two values.
 struct PartSize {
   double values = 0, squares = 0;
   double variance() const { return squares / values; }
@@ -27,7 +27,7 @@ double bartlett(const PartSize& part, const PartSize& rest) {
   return apart / (1 + (1 / part.values + 1 / rest.values - 1 / whole.values) / 3);
 }
 
-// Sums of the squares before each frequency, and of all.
+// Cumulative sums of the squares: before each frequency, and of all.
 std::vector<double> sums_of_squares(std::span<const std::complex<double>> residuals) {
   std::vector<double> sums = {0};
   for (const auto& r : residuals) sums.push_back(sums.back() + std::norm(r));
@@ -67,11 +67,15 @@ NoiseEvenness evenness_of(std::span<const std::complex<double>> residuals,
   return found;
 }
 
+std::string uneven_residuals_words(const NoiseEvenness& evenness) {
+  return fmt::format("the residuals are {:.2g} times as large from {:.4g} to {:.4g} Hz as elsewhere",
+                     evenness.times, evenness.low_hz, evenness.high_hz);
+}
+
 std::string evenness_words(const NoiseEvenness& evenness) {
   return fmt::format(
-      "it is {:.2g} times as loud from {:.4g} to {:.4g} Hz as elsewhere; intervals are from the residuals "
-      "where "
-      "they are, and better with a column of noise",
+      "the noise is {:.2g} times as large from {:.4g} to {:.4g} Hz as elsewhere; intervals use the local "
+      "residuals, a column of noise improves them",
       evenness.times, evenness.low_hz, evenness.high_hz);
 }
 

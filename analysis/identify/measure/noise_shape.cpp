@@ -7,14 +7,14 @@
 namespace tacto::analysis {
 namespace {
 
-// Parts of the constant noise's power in the mix where |H| is its RMS.
+// Share of the constant noise in the power, at frequencies where |H| equals its RMS.
 constexpr double kConstantParts[] = {1, 0.9, 0.5, 0.1, 0.01, 1e-3, 0};
-constexpr double kRoundingPart = 1e-15;  // an exact response leaves this much of itself
+constexpr double kRoundingPart = 1e-15;  // rounding error of an exact response, relative
 
 struct NoiseShape {
-  std::vector<double> powers;  // of which the residuals' is `scale` times
+  std::vector<double> powers;  // powers of the noise before multiplication by `scale`
   double scale = 0;
-  double unlikeliness = 0;  // -2 log likelihood, the scale being the likeliest
+  double unlikeliness = 0;  // -2 log likelihood, with the most likely scale
 };
 
 double modelled_power(std::span<const std::complex<double>> values) {

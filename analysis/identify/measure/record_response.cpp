@@ -20,15 +20,15 @@ using RecordSpectrum = std::vector<std::complex<double>>;
 constexpr std::size_t kMostPlaces = 80;
 constexpr std::size_t kFewestSamples = 1024;
 constexpr double kHalfWidthHz = 0.5;
-constexpr double kUndriven = 1e-6;  // of the strongest place's power
-constexpr double kMostNoise = 0.2;  // of the response: five standard deviations
-constexpr double kOwnNoise = 4;     // times the neighbours': a line of the mains
+constexpr double kUndriven = 1e-6;  // of the strongest bin's power
+constexpr double kMostNoise = 0.2;  // of the response; a response has at least five standard deviations
+constexpr double kOwnNoise = 4;     // times the neighbours' noise, as at a line of the mains
 constexpr double kShows = 2;        // standard deviations of chi squared
 
 struct RecordSpectra {
   RecordSpectrum input, output;
   double bin_hz = 0;
-  std::size_t half = 0;  // bins on either side of a place
+  std::size_t half = 0;  // bins to each side of a place
 };
 
 RecordSpectrum record_spectrum_of(std::span<const double> x) {
@@ -48,7 +48,7 @@ RecordSpectra spectra_of(std::span<const double> input, std::span<const double> 
   return spectra;
 }
 
-// The strongest bin of each part of the band, so far apart that no bin belongs to two.
+// The strongest bin of each part of the band; the ranges of bins around them do not overlap.
 std::vector<std::size_t> places_in(const RecordSpectra& spectra, double low_hz, double high_hz) {
   std::vector<std::size_t> places;
   std::size_t next = spectra.half + 1;
@@ -91,14 +91,14 @@ std::vector<double> noise_powers(std::span<const LocalResponse> list) {
   return powers;
 }
 
-// Real values that a place's noise is told by, at the fewest.
+// Fewest degrees of freedom (real values) of a place's noise.
 double freedom_of(std::span<const LocalResponse> list) {
   double fewest = INFINITY;
   for (const LocalResponse& local : list) fewest = std::min(fewest, 2 * local.freedom);
   return fewest * kFewestNeighbours;
 }
 
-// Whether leaving the ends out leaves more than noise would.
+// Whether the fit without the effect of the record's ends is worse than noise explains.
 bool ends_show(std::span<const LocalResponse> with, std::span<const LocalResponse> without) {
   const std::vector<double> powers = noise_powers(with);
   double taken = 0, terms = 0;
@@ -134,8 +134,8 @@ Result<BodeData> response_of_record(std::span<const double> input, std::span<con
     data.noise.push_back(noise);
   }
   if (!data.frequency_hz.empty()) return data;
-  return fail(ErrorKind::unsuitable, "output and input have nothing to do with each other", source,
-              "name the channels with --input and --output-channel; slow loops take --method loop");
+  return fail(ErrorKind::unsuitable, "output and input are not correlated", source,
+              "name the channels with --input and --output-channel; slow loops need --method loop");
 }
 
 }  // namespace tacto::analysis

@@ -13,14 +13,14 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kHarmonics = 5;
-constexpr std::ptrdiff_t kNeighbours = 4;  // on either side
+constexpr std::ptrdiff_t kNeighbours = 4;  // to each side
 static_assert(kFewestNeighbours == kNeighbours + 1, "at the ends of the band");
 
 double power_of(std::span<const double> x) {
   return std::inner_product(x.begin(), x.end(), x.begin(), 0.0) / static_cast<double>(x.size());
 }
 
-// What a step's answer holds beside its mean and its harmonics.
+// The harmonics of a step's answer, and the remaining noise without mean and harmonics.
 struct StepAnswer {
   Complex fundamental;
   double third = 0;
@@ -45,17 +45,23 @@ StepAnswer answer_of(std::span<const double> x, double turns_per_sample) {
 
 }  // namespace
 
-// The turning factor by recurrence, set right every 256 samples: exact to 1e-13.
+TurningFactor::TurningFactor(double turns_per_sample)
+    : turns_per_sample_(turns_per_sample), step_(std::polar(1.0, -kTurn * turns_per_sample)) {}
+
+Complex TurningFactor::next() {
+  if (samples_ % 256 == 0)
+    turn_ = std::polar(1.0, -kTurn * std::fmod(turns_per_sample_ * static_cast<double>(samples_), 1.0));
+  ++samples_;
+  const Complex now = turn_;
+  turn_ = {now.real() * step_.real() - now.imag() * step_.imag(),
+           now.real() * step_.imag() + now.imag() * step_.real()};
+  return now;
+}
+
 std::complex<double> amplitude_of(std::span<const double> x, double turns_per_sample) {
-  const Complex step = std::polar(1.0, -kTurn * turns_per_sample);
-  Complex sum = 0, turn = 1;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (i % 256 == 0)
-      turn = std::polar(1.0, -kTurn * std::fmod(turns_per_sample * static_cast<double>(i), 1.0));
-    sum += x[i] * turn;
-    turn = {turn.real() * step.real() - turn.imag() * step.imag(),
-            turn.real() * step.imag() + turn.imag() * step.real()};
-  }
+  TurningFactor turn(turns_per_sample);
+  Complex sum = 0;
+  for (const double value : x) sum += value * turn.next();
   return 2.0 * sum / static_cast<double>(x.size());
 }
 
@@ -127,7 +133,7 @@ BodeData response_of_periods(const DrivenTray& tray, const PeriodicDrive& plan) 
       sum += x;
       power += std::norm(x);
     }
-    // Scatter of the mean, of each of its two parts.
+    // Variance of the mean, for each of its two parts.
     squares.push_back((power - std::norm(sum) / periods) / (2 * (periods - 1) * periods));
     drives.push_back(std::abs(drive));
     data.frequency_hz.push_back(turns * tray.rate_hz);

@@ -28,7 +28,7 @@ constexpr Index kPoles = 16, kSharedPoles = 20;
 constexpr double kLowestModeHz = 50;
 constexpr double kSameMode = 0.03;
 constexpr double kOfWeight = 0.2;   // of the strongest mode's energy
-constexpr double kLoudRinging = 5;  // RMS over that of the quiet before the tap
+constexpr double kLoudRinging = 5;  // RMS over that of the silence before the tap
 constexpr double kMadToSigma = 1.4826;
 
 double median_of_values(std::vector<double> values) {
@@ -54,7 +54,7 @@ double rms_of(const VectorXd& x) {
   return x.norm() / std::sqrt(static_cast<double>(x.size()));
 }
 
-// The ringing of a tap, its baseline taken off, at a quarter of the rate.
+// The ringing of a tap without its baseline, at a quarter of the rate.
 Result<VectorXd> ringing_of(const Tap& tap, double rate_hz) {
   const auto& y = tap.value;
   for (std::size_t i = 0; i < y.size(); ++i)
@@ -68,7 +68,7 @@ Result<VectorXd> ringing_of(const Tap& tap, double rate_hz) {
       std::min(y.size() - std::min(first, y.size()), static_cast<std::size_t>(kRingingS * rate_hz)) /
       kDecimation;
   if (count < kLeastRinging || peak < kLeastRinging)
-    return fail(ErrorKind::unsuitable, "too short: it needs some quiet before and some ringing after",
+    return fail(ErrorKind::unsuitable, "too short: it needs silence before the tap and ringing after it",
                 "tap " + tap.name, "record 2 ms before and 13 ms after each tap, at 35 kHz or more");
   const Eigen::Map<const VectorXd> before(y.data(), static_cast<Index>(peak * 4 / 5));
   const double baseline = before.mean();
@@ -79,12 +79,11 @@ Result<VectorXd> ringing_of(const Tap& tap, double rate_hz) {
     ringing[static_cast<Index>(i)] = sum / kDecimation;
   }
   if (rms_of(ringing) > kLoudRinging * rms_of(before.array() - baseline)) return ringing;
-  return fail(ErrorKind::unsuitable, "there is no ringing in it: this is noise", "tap " + tap.name,
-              "leave it out");
+  return fail(ErrorKind::unsuitable, "it contains only noise, no ringing", "tap " + tap.name, "omit it");
 }
 
-// The signal poles z of y[n] = sum c z^n, shared by all ringings: by the pencil of the right singular vectors
-// of their Hankel matrices, one above the other. What would grow is no ringing and is left out.
+// The signal poles z of y[n] = sum c z^n, shared by all ringings, by the matrix pencil of the right singular
+// vectors of their stacked Hankel matrices. Growing poles are left out, because a ringing decays.
 VectorXcd pencil_poles(const std::vector<VectorXd>& ringings, Index poles) {
   const Index columns = ringings.front().size() / 2;
   MatrixXd gram = MatrixXd::Zero(columns + 1, columns + 1);
@@ -113,7 +112,7 @@ struct Ringing {
   double left = 0;
 };
 
-// A mode is a pole, or several that can't be told apart, and what they make of the signal together.
+// A mode is one pole, or several with nearly the same frequency, and their contribution to the signal.
 struct ModeGroup {
   RingingMode mode;
   double weight = 0;
@@ -158,9 +157,10 @@ Ringing modes_of(const VectorXd& y, double rate_hz) {
   return ringing;
 }
 
-// What poles of other taps say of a ringing once they know its first quarter, and once they know all of it.
+// Errors of a ringing with the poles of other taps: amplitudes from its first quarter, or from the whole
+// ringing.
 struct Miss {
-  double foretold = 0, shaped = 0;
+  double predicted = 0, shaped = 0;
 };
 
 Miss miss_of(const VectorXd& y, const VectorXcd& z) {
@@ -181,7 +181,7 @@ TapsFit summed_up(std::vector<RingingTap> taps) {
           spread_of(dampings)};
 }
 
-// Modes of all taps, energies added.
+// Modes of all taps, with the sum of their energies.
 std::vector<RingingMode> shared_modes(const std::vector<RingingTap>& taps) {
   std::vector<RingingMode> all;
   for (const RingingTap& tap : taps)
@@ -197,7 +197,7 @@ std::vector<RingingMode> shared_modes(const std::vector<RingingTap>& taps) {
   return all;
 }
 
-// The first resonance ends a sensor's band, though a hard tap may excite a higher one more.
+// The band of a sensor ends at its first resonance, even if a hard tap excites a higher one more.
 double first_resonance_hz(const std::vector<RingingTap>& taps) {
   std::vector<RingingMode> all = shared_modes(taps);
   const double most = std::ranges::max_element(all, {}, &RingingMode::energy_part)->energy_part;
@@ -207,7 +207,7 @@ double first_resonance_hz(const std::vector<RingingTap>& taps) {
 
 }  // namespace
 
-// Which mode rings loudest depends on how the tap was made: the one that is looked for is the same in all.
+// The strongest mode depends on the tap, so all taps use the mode nearest the common first resonance.
 Result<TapsFit> fit_taps(const Taps& taps) {
   if (taps.taps.size() < 2)
     return fail(ErrorKind::unsuitable, "one tap has no spread", "taps", "tap ten times or more");
@@ -216,7 +216,7 @@ Result<TapsFit> fit_taps(const Taps& taps) {
     const auto ringing = ringing_of(tap, taps.rate_hz);
     TACTO_TRY(ringing);
     Ringing found = modes_of(*ringing, taps.rate_hz / kDecimation);
-    if (found.modes.empty()) return fail(ErrorKind::unsuitable, "nothing rings in it", "tap " + tap.name);
+    if (found.modes.empty()) return fail(ErrorKind::unsuitable, "it contains no ringing", "tap " + tap.name);
     list.push_back({tap.name, std::move(found.modes), found.left});
   }
   const double usual_hz = first_resonance_hz(list);
@@ -229,7 +229,7 @@ Result<TapsFit> fit_taps(const Taps& taps) {
   return summed_up(std::move(list));
 }
 
-Result<TapsPrediction> foretell_taps(const Taps& taps, std::size_t fitted) {
+Result<TapsPrediction> predict_taps(const Taps& taps, std::size_t fitted) {
   const auto split = taps.taps.begin() + static_cast<std::ptrdiff_t>(fitted);
   const auto known = fit_taps({taps.rate_hz, {taps.taps.begin(), split}});
   TACTO_TRY(known);
@@ -239,21 +239,22 @@ Result<TapsPrediction> foretell_taps(const Taps& taps, std::size_t fitted) {
   for (auto tap = taps.taps.begin(); tap != split; ++tap) ringings.push_back(*ringing_of(*tap, taps.rate_hz));
   const auto same_length = [&](const VectorXd& y) { return y.size() == ringings.front().size(); };
   if (!std::ranges::all_of(ringings, same_length))
-    return fail(ErrorKind::unsuitable, "the taps are not equally long", "taps", "cut them alike");
+    return fail(ErrorKind::unsuitable, "the taps are not equally long", "taps",
+                "cut them to the same length");
   const VectorXcd poles = pencil_poles(ringings, kSharedPoles);
-  std::vector<double> foretold, shaped;
+  std::vector<double> predicted, shaped;
   for (auto tap = split; tap != taps.taps.end(); ++tap) {
     const Miss miss = miss_of(*ringing_of(*tap, taps.rate_hz), poles);
-    foretold.push_back(miss.foretold);
+    predicted.push_back(miss.predicted);
     shaped.push_back(miss.shaped);
   }
   TapsPrediction prediction;
   prediction.fitted = fitted;
-  prediction.foretold = foretold.size();
+  prediction.predicted = predicted.size();
   prediction.resonance_error = others->resonance_hz.median / known->resonance_hz.median - 1;
   prediction.damping_error = others->damping_ratio.median / known->damping_ratio.median - 1;
-  prediction.worst_waveform_error = std::ranges::max(foretold);
-  prediction.waveform_error = median_of_values(std::move(foretold));
+  prediction.worst_waveform_error = std::ranges::max(predicted);
+  prediction.waveform_error = median_of_values(std::move(predicted));
   prediction.shape_error = median_of_values(std::move(shaped));
   return prediction;
 }

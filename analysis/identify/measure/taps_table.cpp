@@ -11,7 +11,7 @@ schema::Result<Taps> read_taps(const std::string& path, double rate_hz) {
   TACTO_TRY(table);
   if (table->names.size() < 2)
     return schema::fail(schema::ErrorKind::malformed,
-                        "it has one column: taps need their numbers and the values", path);
+                        "it has one column: taps need a column of tap numbers and one of values", path);
   Taps taps{rate_hz, {}};
   for (std::size_t row = 0; row < table->rows(); ++row) {
     const std::string name = fmt::format("{:g}", table->at(row, 0));

@@ -26,7 +26,7 @@ constexpr double kMargin = 14, kLeft = 66, kWidth = 630, kTop = 76;
 constexpr double kHeights[] = {230, 150, 80};
 constexpr double kGap = 14;
 constexpr double kDot = 1.6;
-constexpr double kNearResidual = 1.96;  // where 95 % of noise lies
+constexpr double kNearResidual = 1.96;  // 95 % of normal noise is within this
 
 // One of the stacked plots.
 struct Panel {

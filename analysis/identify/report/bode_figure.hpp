@@ -9,9 +9,9 @@
 
 namespace tacto::analysis {
 
-/// Three panels over frequency: amplitude in dB re the model's at rest (of a sensor re its largest), phase in
-/// degrees, whitened residuals. The inverse is the drive per displacement that playback would have to give,
-/// re its own value at rest.
+/// Three panels over frequency: amplitude in dB re the model's at 0 Hz (for a sensor re its largest), phase
+/// in degrees, whitened residuals. The inverse is the drive per displacement that playback has to give, re
+/// its value at 0 Hz.
 struct BodeFigure : spatial::Figure {
   explicit BodeFigure(const ResponseFit& of) : fit(of) {}
   spatial::Size page() const override;

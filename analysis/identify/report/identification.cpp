@@ -19,7 +19,7 @@ using schema::fail;
 using schema::Result;
 
 constexpr double kMostOfRate = 0.45;
-constexpr double kLongestSweepS = 3600;  // all of it is held: 36e6 samples at 10 kHz
+constexpr double kLongestSweepS = 3600;  // the whole sweep is in memory: 36e6 samples at 10 kHz
 
 double largest_gain(const ExcitationPlan& plan, const schema::Transducer& base) {
   double most_m_per_v = 0;
@@ -28,27 +28,29 @@ double largest_gain(const ExcitationPlan& plan, const schema::Transducer& base) 
   return most_m_per_v;
 }
 
-// What the base says the drive will do. A first identification of something unknown may be wrong about that:
-// the device keeps its own limits.
+// Checks the drive against the limits as the base transducer predicts. If the transducer is unknown the
+// prediction may be wrong; the device has its own limits.
 Result<void> check_amplitude(const ExcitationPlan& plan, const schema::Transducer& base) {
   if (plan.high_hz > kMostOfRate * plan.rate_hz)
     return fail(
         ErrorKind::unsuitable,
-        fmt::format("{:g} Hz are too near half the device's rate of {:g} Hz", plan.high_hz, plan.rate_hz),
+        fmt::format("{:g} Hz is too near half the device's rate of {:g} Hz", plan.high_hz, plan.rate_hz),
         "--high", fmt::format("at most {:g} Hz", kMostOfRate * plan.rate_hz));
   const double most_m = plan.amplitude_v * largest_gain(plan, base);
-  const char* const remedy = "give a smaller --amplitude";
+  const char* const remedy = "use a smaller --amplitude";
   if (plan.amplitude_v > base.drive_limit_v)
-    return fail(ErrorKind::unsuitable,
-                fmt::format("{:g} V pass the drive's limit of {:g} V", plan.amplitude_v, base.drive_limit_v),
-                "--amplitude", remedy);
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format("{:g} V exceed the drive's limit of {:g} V", plan.amplitude_v, base.drive_limit_v),
+        "--amplitude", remedy);
   if (most_m > base.displacement_limit_m)
-    return fail(ErrorKind::unsuitable,
-                fmt::format("the tray would go {} far, its limit is {}", schema::length_for_people(most_m),
-                            schema::length_for_people(base.displacement_limit_m)),
-                "--amplitude", remedy);
+    return fail(
+        ErrorKind::unsuitable,
+        fmt::format("the tray's displacement would reach {}, its limit is {}",
+                    schema::length_for_people(most_m), schema::length_for_people(base.displacement_limit_m)),
+        "--amplitude", remedy);
   if (kTurn * plan.high_hz * plan.amplitude_v > base.slew_limit_v_per_s)
-    return fail(ErrorKind::unsuitable, "the drive would be faster than its limit", "--amplitude", remedy);
+    return fail(ErrorKind::unsuitable, "the drive would exceed its slew limit", "--amplitude", remedy);
   return {};
 }
 
@@ -59,11 +61,10 @@ Result<void> check_sweep(const ExcitationPlan& plan) {
   while (higher.low_hz < plan.high_hz && stepped_sine_s(higher) > kLongestSweepS) higher.low_hz *= 1.05;
   return fail(
       ErrorKind::unsuitable,
-      fmt::format("a sine at each of {} frequencies from {:g} Hz on takes {:.3g} s, an hour is the most",
+      fmt::format("a sine at each of {} frequencies from {:g} Hz on takes {:.3g} s, the maximum is an hour",
                   plan.frequencies, plan.low_hz, takes_s),
       "--low",
-      fmt::format("begin at {:.3g} Hz, ask for fewer --frequencies, or take --method multisine",
-                  higher.low_hz));
+      fmt::format("begin at {:.3g} Hz, or use fewer --frequencies or --method multisine", higher.low_hz));
 }
 
 std::string method_words(IdentifyMethod method) {
@@ -75,12 +76,12 @@ std::string method_words(IdentifyMethod method) {
 std::string overstated_words(const ResponseFit& fit) {
   if (!(fit.noise_overstated > 0)) return "";
   return fmt::format(
-      "; the noise that came with the data is {:.2g} times what is left: too large, and was left out",
+      "; the noise given with the data is {:.2g} times the residuals: it is too large and was ignored",
       fit.noise_overstated);
 }
 
 std::string verdict_of(const ResponseFit& fit) {
-  if (!fit.converged) return fit.ended;
+  if (!fit.converged) return fit.ended + (fit.suggestion.empty() ? "" : "; " + fit.suggestion);
   const char* const fits = fit.data.noise_is_a_bound
                                ? "the residuals are within the noise and the operator's errors"
                                : "the residuals are noise";
@@ -94,12 +95,12 @@ schema::Transducer named(schema::Transducer t, const std::string& name, const sc
   t.name = name;
   t.identification = about;
   t.identification->date = schema::creation_time();
-  t.origin = fmt::format("identified {} from {} ({}), begun from '{}'", t.identification->date, about.source,
-                         about.conditions, base);
+  t.origin = fmt::format("identified {} from {} ({}), starting from '{}'", t.identification->date,
+                         about.source, about.conditions, base);
   return t;
 }
 
-// What the base's own identification leaves in doubt, where its linear model is kept.
+// If the linear model of the base is kept, the doubts of its identification are kept, too.
 void carry_over(const schema::Transducer& base, schema::Identification& found) {
   if (!base.identification || base.identification->usable()) return;
   found.converged &= base.identification->converged;
@@ -160,7 +161,7 @@ double joint_amplitude_v(const ExcitationPlan& plan, const schema::Transducer& b
   const double most_v = std::min({kOfLoops * loop_amplitude_v(base),
                                   kOfLimits * base.slew_limit_v_per_s / (kTurn * plan.high_hz),
                                   kOfLimits * base.displacement_limit_m / largest_gain(plan, base)});
-  const double digit_v = std::pow(10, std::floor(std::log10(most_v)) - 2);  // three are enough
+  const double digit_v = std::pow(10, std::floor(std::log10(most_v)) - 2);  // three digits are enough
   return digit_v * std::round(most_v / digit_v);
 }
 
@@ -190,11 +191,11 @@ schema::Transducer identified(const LoopFit& fit, const schema::Transducer& base
   found.misfit = !fit.usable;
   found.r_squared = fit.r_squared;
   found.words = fmt::format("a loop of {:.3g} %; the operator leaves {:.2g} % of it{}", 100 * fit.opening,
-                            100 * fit.residual_part, fit.usable ? "" : ": it is no such hysteresis");
+                            100 * fit.residual_part, fit.usable ? "" : ": the operator does not describe it");
   if (base.identification) {
     found.low_hz = base.identification->low_hz;
     found.high_hz = base.identification->high_hz;
-    found.words += fmt::format("; the band is that of '{}', the loops say nothing of it", base.name);
+    found.words += fmt::format("; the band is that of '{}', because loops do not determine it", base.name);
   } else {
     found.high_hz = fit.loop_hz;
   }
@@ -222,7 +223,7 @@ schema::Transducer identified(const TapsFit& fit, const schema::Transducer& base
   t.damping_n_s_per_m = 2 * fit.damping_ratio.median * std::sqrt(k * t.mass_kg);
   schema::Identification found = about;
   found.converged = true;
-  found.words = fmt::format("{} taps; gains and stiffnesses are the base's", fit.taps.size());
+  found.words = fmt::format("{} taps; gains and stiffnesses are those of the base", fit.taps.size());
   found.r_squared = fit.r_squared;
   found.low_hz = fit.resonance_hz.median / 2;
   found.high_hz = fit.resonance_hz.median * 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From what was found to the transducer's file.
+// Makes a transducer file from identification results.
 #pragma once
 
 #include <functional>
@@ -16,14 +16,14 @@ namespace tacto::analysis {
 
 enum class IdentifyMethod { sweep, multisine, chirp, loop, taps, joint };
 
-/// A response, and the drive that it was measured by.
+/// A response, and the drive of its measurement.
 struct DrivenResponse {
   BodeData data;
   SweptDrive drive;
 };
 
-/// Measures the actuator's response on a device by sweep, multisine or chirp. Errors: as drive_tray();
-/// unsuitable: an amplitude that the base says would pass its limits.
+/// Measures the actuator's response on a device by sweep, multisine or chirp. Errors: those of drive_tray();
+/// unsuitable: an amplitude that exceeds the limits by the base's prediction.
 schema::Result<DrivenResponse> driven_response(firmware_host::Device& device, IdentifyMethod method,
                                                const ExcitationPlan& plan, const schema::Transducer& base,
                                                const std::function<bool()>& stop_asked,
@@ -34,24 +34,24 @@ schema::Result<BodeData> measured_on(firmware_host::Device& device, IdentifyMeth
                                      const std::function<bool()>& stop_asked,
                                      const std::function<void(double)>& progress);
 
-/// The drive that loops are made with where nobody says another: as far as the limits of drive and
-/// displacement go.
+/// Default amplitude of slow loops: the largest within the limits of drive and displacement.
 double loop_amplitude_v(const schema::Transducer& base);
-/// The peak of a sweep that goes with such loops: a fifth of theirs, or nine tenths of what the limits of
-/// slew and displacement leave it in the plan's band.
+/// Peak of a sweep that is combined with such loops: a fifth of their amplitude, or nine tenths of what the
+/// limits of slew and displacement allow in the plan's band.
 double joint_amplitude_v(const ExcitationPlan& plan, const schema::Transducer& base);
 
-/// The base with what was found in it, under a name of its own, dated, with validity and what the fit says of
-/// itself. Where the base's linear model is kept (a finger, loops, taps) so is what its own identification
-/// says against it.
+/// The base transducer with the fitted values, a new name, the date, the valid band and the result of the
+/// fit. If the base's linear model is kept (finger, loops, taps), the doubts of its identification are kept,
+/// too.
 schema::Transducer identified(const ResponseFit& fit, const schema::Transducer& base,
                               const std::string& name);
-/// With the hysteresis, and the gain of the loops. The band is the base's, or up to the loops' frequency.
+/// Adds the hysteresis and the gain of the loops. The band is the base's, or ends at the loops' frequency.
 schema::Transducer identified(const LoopFit& fit, const schema::Transducer& base, const std::string& name,
                               const schema::Identification& about);
-/// With the linear model of the one and the hysteresis of the other; without any where the loops show none.
+/// Combines the linear model of the sweep with the hysteresis of the loops; without hysteresis if the loops
+/// have none.
 schema::Transducer identified(const JointFit& fit, const schema::Transducer& base, const std::string& name);
-/// With mass and damping from the ringing; stiffnesses and gains are held.
+/// Sets mass and damping from the ringing; stiffnesses and gains do not change.
 schema::Transducer identified(const TapsFit& fit, const schema::Transducer& base, const std::string& name,
                               const schema::Identification& about);
 

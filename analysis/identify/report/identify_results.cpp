@@ -33,8 +33,8 @@ Results begun_results(const schema::Transducer& found) {
   return results;
 }
 
-void add_told_apart(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
-                    Results& results) {
+void add_identifiability(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
+                         Results& results) {
   for (const FittedParameter& p : fit.parameters)
     results.figures.push_back({p.name + ", 95 %", interval_words(p, fit.claims_intervals())});
   for (const std::string& line : held_words(choice, base))
@@ -62,7 +62,7 @@ void add_paper_figures(const ResponseFit& fit, const schema::Transducer& found, 
   };
   for (const PaperFigure& f : *figures)
     results.figures.push_back(
-        {"the paper against itself: " + f.what,
+        {"contradiction of the paper: " + f.what,
          fmt::format("reported {}, by Table I {}, identified {}; {}", number(f.reported), number(f.by_table),
                      number(f.identified), f.remark)});
 }
@@ -125,7 +125,7 @@ std::vector<ResultPicture> tap_pictures(const TapsFit& fit) {
 Results identify_results(const ResponseFit& fit, const ModelChoice& choice, const schema::Transducer& base,
                          const schema::Transducer& found) {
   Results results = begun_results(found);
-  add_told_apart(fit, choice, base, results);
+  add_identifiability(fit, choice, base, results);
   add_residual_figures(fit, results);
   if (is_the_papers(base)) add_paper_figures(fit, found, results);
   results.pictures = bode_pictures(fit);
@@ -145,16 +145,16 @@ Results identify_results(const JointFit& fit, const ModelChoice& choice, const s
   return results;
 }
 
-Results identify_results(const TapsFit& fit, const TapsPrediction& foretold,
+Results identify_results(const TapsFit& fit, const TapsPrediction& predicted,
                          const schema::Transducer& found) {
   Results results = begun_results(found);
   results.figures.push_back({"resonance", spread_words(fit.resonance_hz, " Hz")});
   results.figures.push_back({"damping ratio", spread_words(fit.damping_ratio, "")});
   results.figures.push_back(
-      {fmt::format("taps 1-{} foretell {} others", foretold.fitted, foretold.foretold),
+      {fmt::format("taps 1-{} predict {} others", predicted.fitted, predicted.predicted),
        fmt::format("resonance {:+.2g} %, damping {:+.2g} %, waveform within {:.3g} % (at worst {:.3g} %)",
-                   100 * foretold.resonance_error, 100 * foretold.damping_error,
-                   100 * foretold.waveform_error, 100 * foretold.worst_waveform_error)});
+                   100 * predicted.resonance_error, 100 * predicted.damping_error,
+                   100 * predicted.waveform_error, 100 * predicted.worst_waveform_error)});
   results.pictures = tap_pictures(fit);
   return results;
 }

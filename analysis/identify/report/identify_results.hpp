@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an identification found, as results that `report` draws. Verb, inputs and details are the caller's.
+// The results of an identification, which `report` draws. The caller adds verb, inputs and details.
 #pragma once
 
 #include "analysis/identify/report/identification.hpp"
@@ -7,17 +7,17 @@
 
 namespace tacto::analysis {
 
-/// Parameters with their intervals, what could not be told apart, quality; Bode plot of data, model and
-/// inverse; residuals. Where the base is the paper's also where the paper contradicts itself.
+/// Parameters with their intervals, combinations that are not separately identifiable, quality; Bode plot of
+/// data, model and inverse; residuals. If the base is the paper's, also the contradictions in the paper.
 schema::Results identify_results(const ResponseFit& fit, const ModelChoice& choice,
                                  const schema::Transducer& base, const schema::Transducer& found);
-/// The loop's opening and what the operator leaves.
+/// The loop's opening and the residual of the operator.
 schema::Results identify_results(const LoopFit& fit, const schema::Transducer& found);
 /// Both.
 schema::Results identify_results(const JointFit& fit, const ModelChoice& choice,
                                  const schema::Transducer& base, const schema::Transducer& found);
-/// Resonance and damping over the taps, and what the first foretell of the others.
-schema::Results identify_results(const TapsFit& fit, const TapsPrediction& foretold,
+/// Resonance and damping of all taps, and the prediction of later taps from the first ones.
+schema::Results identify_results(const TapsFit& fit, const TapsPrediction& predicted,
                                  const schema::Transducer& found);
 
 }  // namespace tacto::analysis

@@ -9,9 +9,9 @@
 namespace tacto::analysis {
 namespace {
 
-constexpr double kLeastDigits = 5, kMostDigits = 17;  // of a double
+constexpr double kLeastDigits = 5, kMostDigits = 17;  // a double has 17 significant digits
 
-// Place of the first digit: 2 of 547.7, -5 of 2e-05.
+// Decimal exponent of the first digit: 2 for 547.7, -5 for 2e-05.
 double place_of(double value) {
   return std::floor(std::log10(std::abs(value)));
 }
@@ -25,7 +25,7 @@ int digits_of(const FittedParameter& p) {
 
 std::string interval_words(const FittedParameter& p, bool claimed) {
   if (p.held) return fmt::format("{:.5g}, held", p.value);
-  if (!claimed) return fmt::format("{:.5g}, no interval is claimed", p.value);
+  if (!claimed) return fmt::format("{:.5g}, without interval", p.value);
   const int digits = digits_of(p);
   return fmt::format("{:#.{}g} ({:#.{}g} to {:#.{}g})", p.value, digits, p.low, digits, p.high, digits);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A parameter and its interval for people, with as many digits as show it.
+// Formats a parameter and its interval with sufficient digits.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace tacto::analysis {
 
-/// "547.730 (547.681 to 547.779)": five significant digits, and more until half the interval has two.
-/// "143.06, held" and "143.06, no interval is claimed" where there is none. `claimed`: the fit's
+/// "547.730 (547.681 to 547.779)": five significant digits, or as many as give half the interval two digits.
+/// "143.06, held" and "143.06, no interval is claimed" without an interval. `claimed`: the fit's
 /// claims_intervals().
 std::string interval_words(const FittedParameter& parameter, bool claimed);
 
-/// Whether so few significant digits print both ends of the interval alike.
+/// Whether both ends of the interval look equal with this number of significant digits.
 bool interval_is_hidden(const FittedParameter& parameter, int digits);
 
 }  // namespace tacto::analysis

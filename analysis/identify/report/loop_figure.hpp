@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture of a hysteresis: the largest loop, and what the operator makes of it.
+// The picture of a hysteresis: the largest loop, and the fitted operator's loop.
 #pragma once
 
 #include "analysis/identify/fit/hysteresis_loop.hpp"
@@ -7,7 +7,7 @@
 
 namespace tacto::analysis {
 
-/// Displacement over drive, without the linear model's lag. `found` is the transducer that came of it.
+/// Displacement over drive, without the linear model's lag. `found` is the resulting transducer.
 spatial::LineFigure loop_figure(const LoopFit& fit, const schema::Transducer& found);
 
 }  // namespace tacto::analysis

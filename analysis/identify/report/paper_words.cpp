@@ -20,8 +20,8 @@ constexpr double kReportedRSquaredActuator = 0.85, kReportedRSquaredSensor = 0.9
 constexpr double kReportedFingerDb = -3;   // ibid., off the resonance under a finger
 constexpr double kReportedOpening = 0.16;  // ibid., III-C and Figure 7
 constexpr double kReportedLagDeg = 8;      // ibid.
-constexpr double kFilterHz = 600;          // ibid., the 3rd-order Butterworth that ends the band ...
-constexpr double kFilterEndsHz = 500;      // ... here, where a band's end is 3 dB down
+constexpr double kFilterHz = 600;          // ibid., the 3rd-order Butterworth that limits the band ...
+constexpr double kFilterEndsHz = 500;      // ... to this frequency, where the limit of a band is 3 dB down
 constexpr double kReportedFilterDb = -3;
 constexpr double kReportedStretches = 6;                                     // ibid., experiment 2 ...
 constexpr double kListedStretches[] = {-70, -50, -30, -10, 10, 30, 50, 70};  // ... and the list, per cent
@@ -41,7 +41,7 @@ double actuator_db(const schema::Transducer& t, double hz) {
   return 20 * std::log10(std::abs(schema::actuator_response(t, hz) / schema::actuator_response(t, 0)));
 }
 
-// Of the mechanics' 1 / |s^2 m + s b + k|, in N/m: 1 / (b w) at the resonance damped.
+// Peak of the mechanics' 1 / |s^2 m + s b + k|, in m/N: 1 / (b w) at the damped resonance.
 double mechanical_peak(const schema::Transducer& t) {
   const double ratio = schema::damping_ratio(t);
   const double stiffness = t.flexure_stiffness_n_per_m + t.bender_stiffness_n_per_m;
@@ -58,7 +58,7 @@ double finger_db(const schema::Transducer& tray) {
   return 20 * std::log10(mechanical_peak(loaded) / mechanical_peak(tray));
 }
 
-// Of this program's fit of one mode to Table I's response behind the reported lag.
+// R^2 of this program's one-mode fit to Table I's response with the reported lag.
 double r_squared_under_lag(const schema::Transducer& paper, Direction direction) {
   constexpr int kFrequencies = 60;
   BodeData data;
@@ -83,12 +83,13 @@ std::vector<PaperFigure> fit_figures(const schema::Transducer& paper, const Resp
            "a loop that opens by 16 % is an ellipse of 9.2 degrees, 8 degrees one of 13.9 %"},
           {"r_squared_actuator", kReportedRSquaredActuator, r_squared_under_lag(paper, Direction::actuator),
            found(Direction::actuator),
-           "one tray, two fits; by Table I: what the lag of 8 degrees leaves of one, so it is not the lag"},
+           "two fits of one tray; by Table I: R^2 that remains under a lag of 8 degrees, so the lag is not "
+           "the cause"},
           {"r_squared_sensor", kReportedRSquaredSensor, r_squared_under_lag(paper, Direction::sensor),
            found(Direction::sensor), "0.91 against the actuator's 0.85, of the same mechanics"}};
 }
 
-// What was identified says nothing of a direction that was not measured.
+// An identification has no value for a direction that was not measured.
 double where_measured(const ResponseFit& fit, Direction direction, double value) {
   return fit.data.direction == direction ? value : kNothing;
 }
@@ -106,7 +107,7 @@ std::vector<PaperFigure> other_figures(const schema::Transducer& paper, const sc
            20 * std::log10(std::abs(schema::butterworth3_response(kFilterHz, kFilterEndsHz))), kNothing,
            "a 3rd-order Butterworth of 600 Hz does not end at 500 Hz"},
           {"stretch_factors", kReportedStretches, static_cast<double>(std::size(kListedStretches)), kNothing,
-           "said to be six; listed: +-10, 30, 50, 70 %"}};
+           "the text says six, the list has eight: +-10, 30, 50, 70 %"}};
 }
 
 std::vector<PaperFigure> transducer_figures(const schema::Transducer& paper,

@@ -24,14 +24,14 @@ using spatial::ResampleMethod;
 
 constexpr double kSinePoints[] = {2.2, 2.5, 3,  3.5, 4,  5,  6,  7,  8,   10,  12, 14,
                                   16,  20,  25, 32,  40, 50, 64, 80, 100, 200, 400};
-constexpr double kWanders[] = {0, 0.1, 0.5};  // of the speed, re its mean
+constexpr double kWanders[] = {0, 0.1, 0.5};  // amplitude of the speed's variation, re its mean
 constexpr std::size_t kStrokeFrames = 4000;
-constexpr double kFrameWay_m = 5e-6;  // mean way a frame
+constexpr double kFrameWay_m = 5e-6;  // mean distance per frame
 constexpr double kFineGrid_m = 1e-6;
-constexpr std::size_t kLeftOut = 1000;  // samples at either end
+constexpr std::size_t kLeftOut = 1000;  // samples at both ends
 
-// Periods of a speed that wanders, in frames; no whole number of them in anything. The shortest is the
-// promise's: spatial::kSteadyFrames.
+// Periods of the speed's variation, in frames; not commensurate with other periods. The shortest is the one
+// for which the promise holds: spatial::kSteadyFrames.
 constexpr double kWanderPeriods[] = {spatial::kSteadyFrames - 0.3, 937};
 
 struct Stroke {
@@ -51,7 +51,7 @@ Stroke stroke_over(double wavelength_m, double wander, double wander_period) {
   return stroke;
 }
 
-// RMS of what is missed re the sine's, where the highest local frequency has so many frames a period.
+// RMS error re the RMS of the sine, whose highest local frequency has `points` frames per period.
 double resampling_error(ResampleMethod method, double points, double wander, double wander_period) {
   const double wavelength_m = points * kFrameWay_m * (1 + wander);
   const Stroke stroke = stroke_over(wavelength_m, wander, wander_period);
@@ -76,7 +76,7 @@ double worst_resampling_error(ResampleMethod method, double points) {
 constexpr ResampleMethod kAllMethods[] = {ResampleMethod::linear, ResampleMethod::hermite,
                                           ResampleMethod::swapped, ResampleMethod::sinc};
 
-// Of each, in turns.
+// Cost of each method; the methods alternate.
 std::vector<double> resampling_costs_ns() {
   constexpr int kTurns = 31;
   const Stroke stroke = stroke_over(100e-6, 0.1, kWanderPeriods[1]);
@@ -90,8 +90,8 @@ std::vector<double> resampling_costs_ns() {
   return median_costs_ns(works, static_cast<double>(grid->count), kTurns);
 }
 
-// An error that a further point's exceeds by rounding or by luck of phase is raised to it: an upper bound may
-// only fall.
+// If rounding or a favourable phase makes an error smaller than that of a finer point, raises it: an upper
+// bound must not increase with the number of points.
 void make_falling(std::vector<ErrorPoint>& errors) {
   for (std::size_t i = errors.size(); i-- > 1;)
     errors[i - 1].error = std::max(errors[i - 1].error, errors[i].error);
@@ -105,7 +105,7 @@ double reading_error(double points) {
   const playback::TextureLookup lookup(signal, 0);
   double sum = 0;
   std::size_t read = 0;
-  constexpr double kGolden = 0.618033988749895;  // meets every part of a cell and of a period
+  constexpr double kGolden = 0.618033988749895;  // reaches every part of a cell and of a period
   for (double place = kSamples / 3.0; place < kSamples * 2 / 3.0; place += kGolden, ++read)
     sum += std::pow(lookup(place * kFineGrid_m) - exact(place), 2);
   return std::min(1.0, std::sqrt(2 * sum / static_cast<double>(read)));
@@ -118,7 +118,7 @@ schema::Texture rough_texture() {
   std::normal_distribution<double> normal;
   double level = 0;
   for (std::size_t i = 0; i < 12000; ++i) {
-    level += 0.05 * (normal(random) - level);  // falls with frequency, as textures do
+    level += 0.05 * (normal(random) - level);  // decreases with frequency, as in textures
     texture.signal.values.push_back(level);
   }
   return texture;

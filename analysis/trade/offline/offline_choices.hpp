@@ -9,14 +9,15 @@
 
 namespace tacto::analysis {
 
-/// Each way from time to space: the error of a sine of so many frames a period at its highest local
-/// frequency, the worst of fingers of even and of wandering speed; cost a sample of a grid with 5 a frame.
+/// Each method of resampling from time to space: the error of a sine of so many frames per period at its
+/// highest local frequency, the worst of fingers of constant and of varying speed; cost per sample of a grid
+/// with 5 samples per frame.
 std::vector<schema::MeasuredChoice> measure_resampling();
 
-/// Reading a texture between its samples by cubic Hermite: the error of a sine of so many samples a period.
+/// Interpolation of a texture by cubic Hermite: the error of a sine of so many samples per period.
 schema::MeasuredChoice measure_grid();
 
-/// Computing a spectrogram's cells: largest |X - exact| re the largest exact |X|, against extended precision.
+/// Spectrogram cells: largest |X - exact| re the largest exact |X|, against extended precision.
 std::vector<schema::MeasuredChoice> measure_spectrogram();
 
 }  // namespace tacto::analysis

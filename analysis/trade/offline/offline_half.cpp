@@ -24,7 +24,7 @@ using spatial::ResampleMethod;
 
 constexpr double kEnds_m = 1e-3;
 
-// What playback reads of a texture made by one method on one grid, between its samples, against the truth.
+// Error of the texture as playback interpolates it, made by one method on one grid, against the exact values.
 double error_read(const StrokedTexture& stroked, const spatial::SpaceGrid& grid, std::vector<double> values) {
   const schema::SpaceSignal made{grid.pitch_m, 0, std::move(values)};
   const playback::TextureLookup lookup(made, grid.origin_m());
@@ -54,7 +54,7 @@ TradeRow resampled(const StrokedTexture& stroked, ResampleMethod method, double 
           {}};
 }
 
-// What of the band a filter keeps, beside what lies out of it.
+// Error of a filter in the band, in the presence of components outside of the band.
 Result<TradeRow> filtered(const StrokedTexture& stroked, const spatial::TimeFilter& filter,
                           const std::string& name) {
   std::vector<double> dirty = stroked.force;
@@ -109,7 +109,7 @@ Result<std::vector<TradeRow>> filters(const StrokedTexture& stroked) {
   return rows;
 }
 
-// The file's single precision against double.
+// The file's single precision against double precision.
 TradeRow stored_single(const StrokedTexture& stroked) {
   const std::vector<double>& values = stroked.banded.signal.values;
   std::vector<double> rounded;

@@ -35,7 +35,7 @@ double mean_peak(const Spectrogram& made) {
   return sum / static_cast<double>(made.position_m.size());
 }
 
-// The ends, which windows see less of than of the rest, are left out of both.
+// Both leave out the ends, which have less weight in the windows.
 double left_out_m(const Texture& texture) {
   return std::min(5e-3, texture.signal.length_m() / 4);
 }
@@ -46,13 +46,13 @@ double power_between(const std::vector<double>& values, std::size_t left_out) {
   return power / static_cast<double>(values.size() - 2 * left_out);
 }
 
-// Of the hat over one bin, in bins: its integral from -1 up to x.
+// Integral of the triangular interpolation kernel from -1 to x, in bins.
 double hat_up_to(double x) {
   const double y = std::clamp(x, -1.0, 1.0);
   return y < 0 ? (1 + y) * (1 + y) / 2 : 1 - (1 - y) * (1 - y) / 2;
 }
 
-// How much of bin k lies in octave i, in bins.
+// Share of bin k in octave i, in bins.
 double share_of(const Spectrogram& made, std::size_t k, std::size_t i) {
   const auto bins_to = [&](double per_m) {
     return per_m / made.frequency_step_per_m - static_cast<double>(k);

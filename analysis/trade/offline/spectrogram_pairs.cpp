@@ -23,7 +23,7 @@ constexpr double kPairedHops_m[] = {100e-6, 200e-6, 500e-6, 1e-3};
 constexpr double kPairedPaddings[] = {1, 2, 4, 8};
 constexpr double kFinestPadding = 16;
 
-/// All pairs of one window.
+/// All pairs with one window.
 class WindowPairs {
  public:
   WindowPairs(const Texture& texture, const OctaveEnergy& energy, double window_m)

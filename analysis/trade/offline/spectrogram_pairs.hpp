@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The choices of a spectrogram that change what one another err.
+// Pairs of spectrogram choices that change each other's error.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace tacto::analysis {
 
-/// "window x hop": a wider window smooths the power along the texture, so that rows may lie farther apart;
-/// "window x padding": a line between two bins loses the same of its height whatever the window, but a
-/// narrow window's side costs less. Error: the root of the sum of squares of what the window does to the
-/// energy by octaves, and of what the hop does to the power between rows, or the padding to the height of the
-/// peaks (re 16 times the padding); the note tells both. Errors: of spatial_spectrogram.
+/// "window x hop": a wider window smooths the power along the texture, so that a larger hop is sufficient.
+/// "window x padding": a line between two bins loses the same fraction of its height with any window, but
+/// padding a narrow window costs less. Error: the root of the sum of squares of the window's effect on the
+/// energy by octaves, and of the hop's effect on the power between rows or the padding's on the height of the
+/// peaks (re 16 times the padding); the note has both. Errors: those of spatial_spectrogram.
 schema::Result<std::vector<TradeRow>> measure_spectrogram_pairs(const schema::Texture& texture,
                                                                 const OctaveEnergy& energy);
 

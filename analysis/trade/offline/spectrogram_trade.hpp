@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each choice of a spectrogram costs and errs.
+// Cost and error of each choice of a spectrogram.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace tacto::analysis {
 
-/// Resolution, hop, padding and window round the standard ones; references: see measure_offline. Cost in ns a
-/// sample of the texture. Errors: of spatial_spectrogram.
+/// Varies resolution, hop, padding and window, one at a time, from the standard ones; references: see
+/// measure_offline. Cost in ns per sample of the texture. Errors: those of spatial_spectrogram.
 schema::Result<std::vector<TradeRow>> measure_spectrogram_trade(const schema::Texture& texture);
 
 }  // namespace tacto::analysis

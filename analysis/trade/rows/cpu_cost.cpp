@@ -7,6 +7,8 @@
 #include <iterator>
 #include <utility>
 
+#include "data-schema/base/statistics.hpp"
+
 namespace tacto::analysis {
 namespace {
 
@@ -19,9 +21,7 @@ double thread_ns() {
 }  // namespace
 
 double median_cost(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  return schema::upper_median(std::span(values));
 }
 
 double median_difference(const std::vector<double>& more, const std::vector<double>& less) {

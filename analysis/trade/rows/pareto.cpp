@@ -14,7 +14,7 @@ namespace {
 constexpr double kAlikeCost = 1.1;
 constexpr double kAlikeError = 1e-6, kAlikeErrors = 1.02;
 constexpr double kGoodError = 1e-2;
-constexpr const char* kOneChoice = "one choice alone was measured";
+constexpr const char* kOneChoice = "only one choice was measured";
 constexpr const char* kNotJudged = "not judged: error and cost are not measured";
 
 double floored(double error) {
@@ -31,14 +31,14 @@ bool better_in_one(const TradeRow& a, const TradeRow& b) {
          a.memory_bytes < b.memory_bytes || a.latency_s < b.latency_s;
 }
 
-// What loses all is worth nothing, whatever it costs.
+// A choice with an error of 1 or more has no value at any cost.
 bool beats(const TradeRow& a, const TradeRow& b) {
   if (!a.is_judged() || !b.is_judged()) return false;
   if (a.error < 1 && b.error >= 1) return true;
   return no_worse(a, b) && better_in_one(a, b);
 }
 
-// Cost grows and error falls along it.
+// Sorted: the cost increases and the error decreases.
 using Front = std::vector<std::size_t>;
 
 Front front_of(std::span<const TradeRow> rows, const std::vector<Worth>& worth, const std::string& knob) {
@@ -64,7 +64,7 @@ std::ptrdiff_t choices_of(std::span<const TradeRow> rows, const std::string& kno
                                [&](const TradeRow& row) { return row.knob == knob && row.is_judged(); });
 }
 
-// Farthest below the line between the ends, both axes brought to 0...1.
+// The point farthest below the line between the ends, both axes scaled to 0...1.
 std::optional<std::size_t> knee_of(std::span<const TradeRow> rows, const Front& front) {
   if (front.empty() || choices_of(rows, rows[front.front()].knob) < 2) return std::nullopt;
   if (front.size() < 3) return first_good(rows, front);
@@ -92,10 +92,10 @@ std::vector<std::string> knobs_of(std::span<const TradeRow> rows) {
 }
 
 std::string knee_words(const TradeRow& row) {
-  std::string off = fmt::format("{} ({:.3g} % off", row.choice, 100 * row.error);
+  std::string off = fmt::format("{} (error {:.3g} %", row.choice, 100 * row.error);
   if (!row.by_speed.empty()) off += fmt::format(" at {:g} mm/s", 1e3 * row.worst_speed_mps());
   if (row.by_speed.size() > 1) off += ", the worst of " + speed_words(row.by_speed);
-  return row.cost_ns > 0 ? fmt::format("{}, {:.3g} ns a {})", off, row.cost_ns, row.per) : off + ")";
+  return row.cost_ns > 0 ? fmt::format("{}, {:.3g} ns per {})", off, row.cost_ns, row.per) : off + ")";
 }
 
 }  // namespace

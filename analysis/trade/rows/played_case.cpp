@@ -29,7 +29,7 @@ constexpr double kPlayedS = 0.8, kEndsS = 0.15, kFirstM = 5e-3;
 constexpr double kPartOfLimit = 0.02;
 constexpr double kReachesToPerM = 100, kReachesToHz = 4, kReachesFromHz = 10;
 
-FingerPath path_of(const FingerWay& way) {
+FingerPath path_of(const FingerMotion& way) {
   const double mean_mps = way.speed_mps;
   if (!way.wanders) return {{0, kPlayedS}, {kFirstM, kFirstM + mean_mps * kPlayedS}};
   firmware_host::SplineNoise wander(firmware_host::Random(3, 1), 0.25);
@@ -45,14 +45,16 @@ FingerPath path_of(const FingerWay& way) {
   return path;
 }
 
-// Of so fine an encoder the rounding of its scale to 32 bits would show: that is not the kernel's error.
+// With so fine an encoder the rounding of its scale to 32 bits would be visible, which is not an error of the
+// kernel.
 void take_scale_of(FingerPath& path, const Prepared& prepared, double metres_per_count) {
   const double per_count = std::ldexp(static_cast<double>(prepared.scale.samples_per_count_q32), -32);
   for (double& position_m : path.position_m) position_m *= per_count * prepared.pitch_m / metres_per_count;
 }
 
-// What lies beside the band is neither wanted nor an error: the reference reaches beyond it, of a slow finger
-// well below, for what it cuts there rings through the record (from 10 Hz on: 1e-3 at 25 mm/s; from 4: 3e-5).
+// Lowest frequency for the reference of this finger. Content outside of the band is neither target nor error,
+// but for a slow finger the reference must begin well below the band, because its lower cut-off rings through
+// the record (from 10 Hz on: 1e-3 at 25 mm/s; from 4: 3e-5).
 double reaches_to_hz(const FingerPath& path) {
   return std::clamp(kReachesToPerM * playback::greatest_speed_mps(path), kReachesToHz, kReachesFromHz);
 }
@@ -96,15 +98,15 @@ std::vector<float> double_run(const Prepared& prepared, const std::vector<std::i
   return values;
 }
 
-std::vector<double> moved_by(const std::vector<float>& drive_v, const schema::Transducer& transducer,
-                             const PrepareOptions& o) {
+std::vector<double> modelled_from(const std::vector<float>& drive_v, const schema::Transducer& transducer,
+                                  const PrepareOptions& o) {
   std::vector<double> drive(drive_v.begin(), drive_v.end());
   if (transducer.hysteresis)
     drive = playback::linear_drive_of(drive, *transducer.hysteresis, schema::actuator_pole_hz(transducer),
                                       o.rate_hz);
   playback::Chain chain = playback::undone_chain(transducer, o).chain;
-  chain.led_pole_hz = 0;
-  constexpr double kSettledS = 1;  // of a tray that rings for 50 ms
+  chain.compensated_pole_hz = 0;
+  constexpr double kSettledS = 1;  // the tray rings for 50 ms
   const std::size_t period =
       spatial::fast_length(drive.size() + static_cast<std::size_t>(kSettledS * o.rate_hz));
   return playback::signal_of(playback::through(playback::spectrum_of(drive, o.rate_hz, period),
@@ -157,31 +159,31 @@ double rms_of(const schema::SpaceSignal& loop) {
   return std::sqrt(sum / static_cast<double>(loop.values.size()));
 }
 
-// By Parseval, of one half of the lines; the mean square of the window between the ends is 3/2.
-double part_wanted(const std::vector<double>& exact, const schema::SpaceSignal& loop,
-                   const PrepareOptions& o) {
+// By Parseval, from one half of the lines; the mean square of the window between the ends is 3/2.
+double target_share(const std::vector<double>& exact, const schema::SpaceSignal& loop,
+                    const PrepareOptions& o) {
   const PaddedSpectrum inner = spectrum_between(exact, o);
   const auto n = static_cast<double>(inner.period);
   const double mean_square = 2 * playback::energy_in(inner, o.band) / (1.5 * n * n);
   return std::sqrt(mean_square) / (o.gain_m_per_n * rms_of(loop));
 }
 
-// Without a delay the wanted is not later.
-double later_error_of(const PaddedSpectrum& target, const std::vector<double>& felt, const PrepareOptions& o,
-                      const PlayedOutcome& outcome) {
+// Without a delay the target is not delayed.
+double later_error_of(const PaddedSpectrum& target, const std::vector<double>& played,
+                      const PrepareOptions& o, const PlayedOutcome& outcome) {
   if (outcome.delay_left_s == 0) return outcome.error;
   const auto later = playback::through(
       target, [&](double f) { return std::polar(1.0, -2 * std::numbers::pi * f * outcome.delay_left_s); });
-  return error_re(felt, playback::signal_of(later), o);
+  return error_re(played, playback::signal_of(later), o);
 }
 
-void compare_with(const PaddedSpectrum& target, const std::vector<double>& felt,
+void compare_with(const PaddedSpectrum& target, const std::vector<double>& played,
                   const schema::SpaceSignal& loop, const PrepareOptions& o, PlayedOutcome& outcome) {
   const auto exact = playback::signal_of(target);
-  outcome.target_part = part_wanted(exact, loop, o);
-  outcome.error = error_re(felt, exact, o);
-  outcome.amplitude_error = amplitude_error_re(felt, exact, o);
-  outcome.later_error = later_error_of(target, felt, o, outcome);
+  outcome.target_part = target_share(exact, loop, o);
+  outcome.error = error_re(played, exact, o);
+  outcome.amplitude_error = amplitude_error_re(played, exact, o);
+  outcome.later_error = later_error_of(target, played, o, outcome);
 }
 
 }  // namespace
@@ -193,7 +195,7 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
   options.ends = Ends::loop;
   options.onset_s = 0;
   TACTO_TRY(playback::check_prepare(std::span(&placed, 1), options));
-  const auto loop = playback::laid_out(std::span(&placed, 1), Ends::loop, options.seam_m);
+  const auto loop = playback::one_period(std::span(&placed, 1), Ends::loop, options.seam_m);
   options.gain_m_per_n = gain_for(loop, transducer);
   auto made = playback::prepare(texture, transducer, options);
   TACTO_TRY(made);
@@ -211,10 +213,10 @@ schema::Result<PlayedOutcome> play_case(const schema::Texture& texture, const sc
   outcome.delay_left_s = prepared->delay_left_s;
   outcome.drive_v =
       played.in_double ? double_run(*prepared, counts) : kernel_run(*prepared, counts, played.part);
-  const auto felt = played.part == PlayedPart::reading
-                        ? std::vector<double>(outcome.drive_v.begin(), outcome.drive_v.end())
-                        : moved_by(outcome.drive_v, transducer, options);
-  compare_with(target, felt, loop, options, outcome);
+  const auto output = played.part == PlayedPart::reading
+                          ? std::vector<double>(outcome.drive_v.begin(), outcome.drive_v.end())
+                          : modelled_from(outcome.drive_v, transducer, options);
+  compare_with(target, output, loop, options, outcome);
   return outcome;
 }
 

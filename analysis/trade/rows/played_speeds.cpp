@@ -9,8 +9,8 @@
 namespace tacto::analysis {
 namespace {
 
-// Where less of a texture is in the band, what is felt is what leaks into it from beside.
-constexpr double kLeastWantedPart = 0.05;
+// With less of the texture in the band, the displacement is mainly leakage from outside of the band.
+constexpr double kLeastTargetShare = 0.05;
 
 }  // namespace
 
@@ -31,8 +31,8 @@ schema::Result<PlayedSpeeds> PlayedSpeeds::of(const schema::Texture& texture,
 std::vector<ErrorAtSpeed> PlayedSpeeds::errors(double PlayedOutcome::*kind) const {
   std::vector<ErrorAtSpeed> errors;
   for (std::size_t i = 0; i < outcomes_.size(); ++i) {
-    const bool felt = outcomes_[i].target_part >= kLeastWantedPart;
-    errors.push_back({speeds_mps_[i], felt ? outcomes_[i].*kind : kNotMeasured});
+    const bool played = outcomes_[i].target_part >= kLeastTargetShare;
+    errors.push_back({speeds_mps_[i], played ? outcomes_[i].*kind : kNotMeasured});
   }
   return errors;
 }

@@ -11,22 +11,22 @@
 
 namespace tacto::analysis {
 
-/// A slow finger, a usual one and a fast one: a delay is a way that grows with speed, the edges of a count
-/// come rarer without it.
+/// A slow, a usual and a fast finger: with the speed, a delay becomes a longer distance; with a slow finger,
+/// edges of the count are rarer.
 inline constexpr std::array<double, 3> kTradeSpeeds_mps = {0.025, 0.1, 0.2};
 
-/// The outcomes, one a speed.
+/// The outcomes, one per speed.
 class PlayedSpeeds {
  public:
-  /// Plays `played` once for each speed. Errors: of play_case.
+  /// Plays `played` once for each speed. Errors: those of play_case.
   static schema::Result<PlayedSpeeds> of(const schema::Texture& texture, const schema::Transducer& transducer,
                                          PlayedCase played,
                                          std::span<const double> speeds_mps = kTradeSpeeds_mps);
 
-  /// One kind of error by speed; NaN where less than a twentieth of the texture (RMS) lies in the band.
+  /// One kind of error by speed; NaN if less than a twentieth of the texture (RMS) is in the band.
   std::vector<ErrorAtSpeed> errors(double PlayedOutcome::*kind = &PlayedOutcome::error) const;
 
-  /// What ticks are clocked by, and what does not change with the speed: of the middle one.
+  /// The outcome of the middle speed, for timing and for values that do not change with the speed.
   const PlayedOutcome& middle() const { return outcomes_[outcomes_.size() / 2]; }
 
  private:
@@ -34,7 +34,7 @@ class PlayedSpeeds {
   std::vector<PlayedOutcome> outcomes_;
 };
 
-/// The largest; NaN where there is none.
+/// The largest; NaN if there is none.
 double worst_of(std::span<const ErrorAtSpeed> errors);
 
 /// "25, 100, 200 mm/s".

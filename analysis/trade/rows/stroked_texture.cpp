@@ -19,12 +19,12 @@ schema::Result<void> check_texture(const schema::Texture& texture) {
     return schema::fail(ErrorKind::unsuitable,
                         "is " + schema::length_for_people(texture.signal.length_m()) + " long, and " +
                             schema::length_for_people(kShortest_m) + " are needed",
-                        "the texture", "measure the trade on a longer one");
+                        "the texture", "use a longer texture");
   if (texture.signal.pitch_m > kCoarsest_m)
     return schema::fail(ErrorKind::unsuitable,
                         "has samples " + schema::length_for_people(texture.signal.pitch_m) +
                             " apart, and finer than " + schema::length_for_people(kCoarsest_m) + " is needed",
-                        "the texture", "measure the trade on a finer one");
+                        "the texture", "use a finer texture");
   return {};
 }
 

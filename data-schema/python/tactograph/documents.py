@@ -44,12 +44,12 @@ def read_document(path, kind, newest_minor=0):
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
     except (UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise FileProblem(f"is no JSON document ({error})", path) from error
+        raise FileProblem(f"is not a JSON document ({error})", path) from error
     if not isinstance(document, dict):
-        raise FileProblem("is no JSON object", path)
+        raise FileProblem("is not a JSON object", path)
     minor = check_kind(document, kind, path)
     if minor > newest_minor:
-        warnings.warn(f"{path}: version {document['version']} is newer than this package; members that it does not know are left out")
+        warnings.warn(f"{path}: version {document['version']} is newer than this package; unknown members are ignored")
     return document
 
 
@@ -57,11 +57,11 @@ def check_sum(path, expected):
     """Raises FileProblem where the file's SHA-256 is not the expected one."""
     found = hashlib.sha256(path.read_bytes()).hexdigest()
     if found != expected:
-        raise FileProblem("its SHA-256 is not the one that its document holds: it was changed", path)
+        raise FileProblem("its SHA-256 differs from that in its document: the file was changed", path)
 
 
 def plain_attributes(document, leave_out):
-    """What netCDF attributes can hold: numbers and texts as they are, all else as JSON text."""
+    """A value as netCDF attributes support it: numbers and texts unchanged, everything else as JSON text."""
     kept = {}
     for key, value in document.items():
         if key in leave_out:

@@ -42,12 +42,12 @@ def read_session(name):
         raise FileProblem("does not begin with a session's header", path)
     header = json.loads(payload)
     if check_kind(header, "session", path) > _NEWEST_MINOR:
-        warnings.warn(f"{path}: version {header['version']} is newer than this package; what it does not know is left out")
+        warnings.warn(f"{path}: version {header['version']} is newer than this package; unknown parts are ignored")
     return _Reader(header).read(blocks)
 
 
 def _blocks(data):
-    """(type, payload) of each whole block with a right check, up to the first that is none."""
+    """(type, payload) of each complete block with a correct checksum, up to the first block without one."""
     at = 0
     while at + _BLOCK.size <= len(data):
         mark, kind, size, check = _BLOCK.unpack_from(data, at)
@@ -143,13 +143,13 @@ class _Reader:
         }
 
     def _positions(self, counts):
-        """The middle of each count; differences are taken modulo 2^32, so an overflow is no jump."""
+        """The middle of each count; differences are modulo 2^32, so an overflow is not a jump."""
         steps = np.diff(counts, prepend=counts[:1]).astype(np.int32).astype(np.int64)  # int32 subtraction wraps
         whole = np.cumsum(steps) + (int(counts[0]) if len(counts) else 0)
         return (whole + 0.5) * self.header["metres_per_count"]
 
     def _gain_in(self, flags):
-        """The factor that holds in each tick: a gain holds from the first tick that counts its command."""
+        """The factor of each tick: a gain is valid from the first tick that counts its command."""
         own = max((abs(texture["gain_m_per_n"]) for texture in self.header["textures"]), default=0.0) or 1.0
         steered = (flags >> 24).astype(np.int64)
         taken = np.cumsum(np.diff(steered, prepend=0) % 256)  # the counter runs over at 256

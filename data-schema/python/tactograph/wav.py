@@ -20,6 +20,6 @@ def read_samples(path, integers):
 
 
 def expect_frames(samples, expected, path):
-    """Raises FileProblem where the file holds another number of frames than its document says."""
+    """Raises FileProblem where the file has another number of frames than its document gives."""
     if len(samples) != expected:
-        raise FileProblem(f"holds {len(samples)} frames, its document says {expected}", path, "copy it again")
+        raise FileProblem(f"contains {len(samples)} frames, its document gives {expected}", path, "copy it again")

@@ -6,8 +6,8 @@
 
 namespace tacto::core {
 
-/// All of it has to outlive the firmware. In `about`, the board fills name, serial, firmware, features,
-/// clock_hz, the three rates and the two limits; the core fills the rest.
+/// All of it has to outlive the firmware. In `about`, the board sets name, serial, firmware, features,
+/// clock_hz, the three rates and the two limits; the core sets the rest.
 struct Board {
   wire::Welcome about;
   const wire::Channel* channels = nullptr;

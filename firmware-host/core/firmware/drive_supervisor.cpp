@@ -35,7 +35,7 @@ void DriveSupervisor::watch_drive(bool lacks) noexcept {
   if (lacking_ticks_ > watchdog_ticks_) fail(FaultCode::drive_underrun, lacking_ticks_);
 }
 
-bool DriveSupervisor::observe(const TickSights& sights) noexcept {
+bool DriveSupervisor::observe(const TickObservation& sights) noexcept {
   if (state_.load() == DriveState::idle) return false;
   watch_host();
   if (!sights.enabled) fail(FaultCode::enable_open, 0);

@@ -7,15 +7,15 @@
 
 namespace tacto::core {
 
-/// release_s + drive_v / slew_v_per_s of the limits is at most this, so that within 20 ms of a fault the
-/// drive is at zero at 1 kHz and above: this, and two ticks.
+/// The largest value of release_s + drive_v / slew_v_per_s in the limits. With the two ticks after a fault,
+/// the drive is then at zero within 20 ms at rates from 1 kHz.
 inline constexpr float kLongestReleaseS = 0.018F;
 
 /// The state of the drive that the main loop requests.
 enum class Aim : uint8_t { off, hold, play };
 
 /// What a tick observed.
-struct TickSights {
+struct TickObservation {
   uint32_t encoder_jump = 0;  ///< counts; 0: none
   bool enabled = false;
   bool drive_lacks = false;  ///< no drive sample from the host
@@ -29,7 +29,7 @@ struct TickSights {
 /// The main loop calls arm(), aim() and heard(); the tick calls the other functions.
 class DriveSupervisor {
  public:
-  /// In idle only.
+  /// Only in idle.
   void arm(const wire::Limits& limits, uint32_t rate_millihertz) noexcept;
   void aim(Aim aim) noexcept { aim_.store(aim); }
   Aim aim() const noexcept { return aim_.load(); }
@@ -39,9 +39,9 @@ class DriveSupervisor {
   wire::FaultCode fault() const noexcept { return fault_.load(); }
   uint32_t fault_detail() const noexcept { return detail_; }
 
-  /// (tick) True where the drive may rise. In idle nothing happens.
-  bool observe(const TickSights& sights) noexcept;
-  /// (tick) After the kernel: whether the drive was finite, and whether it is at rest.
+  /// (tick) Returns true if the drive may rise. In idle nothing happens.
+  bool observe(const TickObservation& sights) noexcept;
+  /// (tick) After the kernel: whether the drive is finite, and whether it is at rest.
   void settle(bool sound, bool at_rest) noexcept;
 
  private:

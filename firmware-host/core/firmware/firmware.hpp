@@ -17,11 +17,12 @@ namespace tacto::core {
 /// locks, no libm.
 class Firmware {
  public:
-  /// Precondition: the board's channels and rates are as Board says.
+  /// Precondition: the board's channels and rates satisfy the conditions in Board.
   Firmware(const Board& board, const Hal& hal) noexcept;
 
   void tick() noexcept { ticker_.tick(); }
-  /// Handles what the host sent and sends what is ready, as far as the link accepts it. Never waits.
+  /// Handles the received bytes and sends the frames that are ready, as far as the link accepts them. Never
+  /// waits.
   void poll() noexcept;
 
   wire::DriveState drive_state() const noexcept { return ticker_.supervisor().state(); }
@@ -95,7 +96,7 @@ class Firmware {
   Reply take_rate(uint32_t rate_millihertz) noexcept;
   Reply wrong_state() const noexcept;
   bool idle() const noexcept { return drive_state() == wire::DriveState::idle; }
-  /// Armed or playing, and not on its way to idle: it is not idle before the main loop says so.
+  /// Armed or playing, and not being disarmed: the state is not idle before the main loop sets it.
   bool runs() const noexcept;
   bool plays_profile() const noexcept;
   ProfileUpload& building() noexcept { return idle() ? upload_ : next_; }
@@ -122,12 +123,12 @@ class Firmware {
   uint32_t nonce_ = 0, token_ = 0;
   uint32_t rate_millihertz_ = 0;  // 0: not ticking
   uint32_t sequence_ = 0;
-  uint16_t described_ = 0;  // of welcome, channels, notes; all of them: nothing to describe
+  uint16_t described_ = 0;  // number of welcome, channels, notes sent; all of them: complete
   uint8_t run_ = 0;
   Owed owed_ = Owed::nothing;
   bool greeted_ = false, limited_ = false;
-  bool changed_ = false;  // and no next profile has begun since
-  wire::FaultCode told_ = wire::FaultCode::none, stream_fault_ = wire::FaultCode::none;
+  bool changed_ = false;  // by a command, and no next profile has begun since
+  wire::FaultCode reported_ = wire::FaultCode::none, stream_fault_ = wire::FaultCode::none;
   uint8_t received_[512];
   size_t received_size_ = 0, received_used_ = 0;
   uint8_t sending_[wire::kMaxFrame];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each command does, and when it is refused.
+// The effect of each command, and when it is refused.
 #include "firmware-host/core/firmware/firmware.hpp"
 #include "firmware-host/core/kernel/finite.hpp"
 
@@ -267,7 +267,7 @@ Reply Firmware::sweep(const wire::Sweep& message) noexcept {
   return {};
 }
 
-// Whether everything that the source needs is present.
+// Whether all data that the source needs are present.
 Reply Firmware::ready(const wire::Arm& message) noexcept {
   if ((board_.about.features & wire::kFeatureDrive) == 0 || message.source > DriveSource::sweep)
     return bad_value(0);
@@ -286,7 +286,7 @@ Reply Firmware::arm(const wire::Arm& message) noexcept {
   if (reply.code != AnswerCode::ok) return reply;
   ticker_.watch_force(contact_);
   ticks_.begin(ticks_in_block(message.rate_millihertz));
-  told_ = wire::FaultCode::none;
+  reported_ = wire::FaultCode::none;
   next_.forget();
   changed_ = false;
   ticker_.arm(message.source, kernel_setup(message), message.rate_millihertz);

@@ -52,7 +52,7 @@ Reply Firmware::contact(const wire::Contact& message) noexcept {
   if (message.channel >= board_.channel_count) return bad_value(0);
   if (!within(message.on_n, 0, kLargestFloat)) return bad_value(2);
   if (!within(message.off_n, 0, message.on_n)) return bad_value(3);
-  const float most_n = message.newtons_per_code * kMostCode;  // every code has to give a finite force
+  const float most_n = message.newtons_per_code * kMostCode;  // every code must give a finite force
   if (!is_finite(most_n + message.offset_n) || !is_finite(most_n - message.offset_n)) return bad_value(4);
   contact_ = message;
   return {};

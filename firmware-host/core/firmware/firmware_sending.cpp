@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the device sends, in this order: answers to commands, its description, faults, data.
+// The messages of the device, in the order: answers to commands, its description, faults, data.
 #include "firmware-host/core/firmware/firmware.hpp"
 
 namespace tacto::core {
@@ -63,8 +63,8 @@ bool Firmware::compose_fault() noexcept {
   if (!greeted_) return false;
   wire::Fault fault;
   const FaultCode drive = ticker_.supervisor().fault();
-  if (drive != told_) {
-    told_ = drive;
+  if (drive != reported_) {
+    reported_ = drive;
     fault.code = drive;
     fault.detail = ticker_.supervisor().fault_detail();
     fault.device_ticks = ticker_.fault_clock();

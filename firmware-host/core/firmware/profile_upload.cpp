@@ -53,7 +53,7 @@ Reply ProfileUpload::begin_within(uint32_t room, const wire::ProfileBegin& messa
   return {};
 }
 
-// What a level of every second sample needs, its neighbour has too.
+// The last level has the fewest samples, so that only its number of samples is tested.
 Reply ProfileUpload::levels(const wire::ProfileLevels& message) noexcept {
   if (samples_ == 0) return {AnswerCode::incomplete, 0};
   if (message.levels < 1 || message.levels > wire::kMaxLevels) return {AnswerCode::bad_value, kLevels};

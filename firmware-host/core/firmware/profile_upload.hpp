@@ -7,7 +7,7 @@
 
 namespace tacto::core {
 
-inline constexpr uint32_t kLeastProfile = 6;  ///< samples: as many as one interpolation reads
+inline constexpr uint32_t kLeastProfile = 6;  ///< samples: the number that one interpolation reads
 
 /// An answer to a command, with its detail.
 struct Reply {
@@ -15,7 +15,7 @@ struct Reply {
   uint32_t detail = 0;
 };
 
-/// By the field's place in its message.
+/// `field` is the index of the field in its message.
 inline Reply bad_value(uint32_t field) noexcept {
   return {wire::AnswerCode::bad_value, field};
 }
@@ -32,7 +32,7 @@ class ProfileUpload {
   /// Uses the memory that another upload leaves free, from its other end, so that the free memory is always
   /// in one piece.
   Reply begin_beside(const ProfileUpload& other, const wire::ProfileBegin& message) noexcept;
-  /// After begin(): the samples consist of so many levels.
+  /// After begin(): the samples consist of this number of levels.
   Reply levels(const wire::ProfileLevels& message) noexcept;
   Reply chunk(const wire::ProfileChunk& message) noexcept;
   Reply end(const wire::ProfileEnd& message) noexcept;
@@ -54,7 +54,7 @@ class ProfileUpload {
   uint32_t place_ = 0;    // of the first sample in the memory
   uint32_t samples_ = 0;  // of all levels
   uint32_t here_ = 0;
-  uint32_t checked_ = 0, check_ = 0;  // samples in the check, and the check
+  uint32_t checked_ = 0, check_ = 0;  // number of samples in the check so far, and the check
   bool complete_ = false;
 };
 

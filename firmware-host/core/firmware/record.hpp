@@ -14,7 +14,7 @@ struct Record {
   int32_t encoder = 0;
   float drive_v = 0;
   uint32_t flags = 0;  ///< wire::TickFlag
-  uint8_t run = 0;     ///< which start of the stream it belongs to
+  uint8_t run = 0;     ///< the number of the stream's start
   bool sampled = false, driven = false;
   int32_t codes[wire::kMaxChannels] = {};
 };

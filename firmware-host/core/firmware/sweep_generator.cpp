@@ -7,7 +7,7 @@ namespace {
 constexpr uint32_t kQuarter = UINT32_C(1) << 30;
 constexpr float kRadiansPerPhase = 1.5707963267948966F / static_cast<float>(kQuarter);
 
-// frequency / rate x 2^64, bit by bit: small cores have no division of 64 bits.
+// frequency / rate x 2^64, bit by bit: small cores have no 64-bit division.
 uint64_t turns_q64(uint64_t frequency, uint64_t rate) noexcept {
   uint64_t turns = 0;
   for (int bit = 0; bit < 64; ++bit) {
@@ -18,7 +18,7 @@ uint64_t turns_q64(uint64_t frequency, uint64_t rate) noexcept {
   return turns;
 }
 
-// a x b / 2^32 without the product's upper 32 bits getting lost.
+// a x b / 2^32 without overflow of the 96-bit product.
 uint64_t scaled(uint64_t a, uint32_t b) noexcept {
   return (a >> 32) * b + (((a & 0xFFFFFFFFU) * b) >> 32);
 }

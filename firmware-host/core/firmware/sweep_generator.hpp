@@ -6,18 +6,18 @@
 
 namespace tacto::core {
 
-/// sin(2 pi phase / 2^32), by Taylor's polynomial of degree 9 on the folded quarter turn: the error is at
-/// most 4e-6. Safe in the tick.
+/// sin(2 pi phase / 2^32), by the Taylor polynomial of degree 9 after reduction to a quarter turn: the error
+/// is at most 4e-6. Safe in the tick.
 float sine_of_phase(uint32_t phase) noexcept;
 
-/// Phase and frequency are integers (2^-64 of a turn a tick), so that the sweep is the same to the bit
-/// everywhere. Safe in the tick but for set().
+/// Phase and frequency are integers (2^-64 turns per tick), so that the sweep has the same bits on every
+/// machine. Safe in the tick except set().
 class SweepGenerator {
  public:
-  /// False where a frequency is zero, reaches half the rate, or the second is below the first. The rate in
-  /// mHz.
+  /// Returns false if a frequency is zero or at least half the rate, or if the second is below the first. The
+  /// rate is in mHz.
   bool set(const wire::Sweep& sweep, uint32_t rate_millihertz) noexcept;
-  /// The next value in volts; zero once the last frequency is reached.
+  /// The next value in volts; zero after the last frequency.
   float next() noexcept;
   bool done() const noexcept { return step_ >= last_step_; }
 

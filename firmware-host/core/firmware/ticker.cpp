@@ -67,7 +67,8 @@ void Ticker::sample(Record& record) noexcept {
   tell(FaultCode::converter);
 }
 
-// Each tick says which commands it took: therefore a session can be replayed to the bit.
+// Each record contains the number of commands in effect, so that a session can be replayed with the same
+// bits.
 void Ticker::take_steering(Record& record) noexcept {
   if (const uint8_t steered = steered_.load(); steered != steered_taken_) {
     steered_taken_ = steered;
@@ -77,7 +78,8 @@ void Ticker::take_steering(Record& record) noexcept {
   record.flags |= uint32_t{steered_taken_} << wire::kTickSteeredShift;
 }
 
-// Not before its own count: a tick may come between the word and the count, and take an earlier command.
+// Not before its own command is counted: a tick may occur between the two stores of the main loop, when only
+// an earlier command is counted.
 void Ticker::take_change() noexcept {
   const uint16_t asked = change_.load();
   const auto since = static_cast<int8_t>(steered_taken_ - static_cast<uint8_t>(asked));
@@ -109,11 +111,11 @@ float Ticker::target(int32_t count, bool& lacks) noexcept {
   return drive_v;
 }
 
-// The count that is played may differ from the one that the encoder shows.
+// The count in use may differ from the encoder's count.
 int32_t Ticker::follow(Record& record) noexcept {
   const uint32_t unseen = hal_.encoder_unseen != nullptr ? hal_.encoder_unseen(hal_.board) : 0;
   const int32_t count = watch_.see(record.encoder, unseen, kernel_.at_rest());
-  if (watch_.found()) kernel_.forget_finger();
+  if (watch_.found()) kernel_.reset_finger_speed();
   if (watch_.blind()) record.flags |= wire::kTickBlind;
   return count;
 }
@@ -132,7 +134,7 @@ void Ticker::drive(Record& record) noexcept {
   take_steering(record);
   const FaultCode before = supervisor_.fault();
   const int32_t count = follow(record);
-  TickSights sights{watch_.jump(), (record.flags & wire::kTickEnabled) != 0, false, watch_.blind()};
+  TickObservation sights{watch_.jump(), (record.flags & wire::kTickEnabled) != 0, false, watch_.blind()};
   const float kernel_input = target(count, sights.drive_lacks);
   const bool raise = supervisor_.observe(sights);
   const TickOutput output = kernel_.drive(kernel_input, raise, normal_force(record));

@@ -25,25 +25,25 @@ class Ticker {
 
   void tick() noexcept;
 
-  /// Call before the first tick at a rate. `clocks`: ticks of the clock in a period.
+  /// Call before the first tick at a rate. `clocks`: clock ticks per period.
   void set_period(float clocks) noexcept {
     late_clocks_ = static_cast<uint32_t>(1.5F * clocks), ticked_ = false;
   }
-  /// Frames begin at 0 with the next tick; records of this run carry the number that is returned.
+  /// Frames begin at 0 with the next tick. The records of this run contain the returned number.
   uint8_t start_stream() noexcept;
   void stop_stream() noexcept { stream_.store(Stream::off); }
   bool streaming() const noexcept { return stream_.load() != Stream::off; }
 
-  /// In idle only; what the source needs is set.
+  /// Only in idle; all data of the source must be set.
   void arm(wire::DriveSource source, const KernelSetup& setup, uint32_t rate_millihertz) noexcept;
-  /// Before arm(): which channel holds the normal force.
+  /// Before arm(): the channel of the normal force.
   void watch_force(const wire::Contact& contact) noexcept { contact_ = contact; }
-  /// Taken by the tick that first counts it.
+  /// In effect from the tick that first counts it.
   void set_gain(float gain) noexcept { gain_.store(gain), steered(); }
-  /// Another texture fades in over fade_s, beginning in the tick that first counts it. Armed by a profile,
-  /// and not while fading().
+  /// Cross-fades to another texture over fade_s, from the tick that first counts it. Only if armed with a
+  /// profile and not fading().
   void change(const TextureSetup& texture, float fade_s) noexcept;
-  /// Whether a change still fades: the old texture is still read. Valid until the drive is idle.
+  /// Whether a change is still fading and the old texture is still read. Valid until the drive is idle.
   bool fading() const noexcept { return change_.load() != kNoChange; }
   wire::DriveSource source() const noexcept { return source_; }
   /// Call after a command has changed the drive.
@@ -88,8 +88,8 @@ class Ticker {
   wire::Contact contact_;
   Shared<float> gain_{1.0F};
   Shared<uint8_t> steered_;
-  // The main loop writes this word where it is kNoChange, the tick where it is not.
-  static constexpr uint16_t kNoChange = 0, kChangeAsked = 0x100;  // and the count of commands that it is
+  // The main loop writes this word if it is kNoChange, the tick if it is not.
+  static constexpr uint16_t kNoChange = 0, kChangeAsked = 0x100;  // plus the count of the command
   Shared<uint16_t> change_{kNoChange};
   TextureSetup next_texture_;
   float fade_s_ = 0;

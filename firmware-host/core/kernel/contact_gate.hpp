@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lets the drive through only while the finger presses.
+// Passes the drive only while the finger presses.
 #pragma once
 
 #include "firmware-host/core/kernel/envelope.hpp"
@@ -10,8 +10,8 @@ namespace tacto::core {
 /// No normal force is reported: the gate is open.
 inline constexpr float kNoForce = __builtin_nanf("");
 
-/// Opens over `ticks` where the normal force reaches `on_n`, closes where it falls below `off_n`. It is open
-/// if on_n is 0 or no force is reported. Safe in the tick.
+/// Opens over `ticks` when the normal force reaches `on_n`, closes when it falls below `off_n`. It is open if
+/// on_n is 0 or no force is reported. Safe in the tick.
 class ContactGate {
  public:
   void set(float on_n, float off_n, float ticks) noexcept {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits the RMS of the drive over time, which heats the bender and tires the skin.
+// Limits the RMS of the drive over time, because drive heats the bender and fatigues the skin.
 #pragma once
 
 #include "firmware-host/core/wire/message_types.hpp"
 
 namespace tacto::core {
 
-/// Follows the mean square e of the unlimited drive (one pole, `window` ticks) and multiplies the drive by
-/// limit / root where the root of e passes the limit. The root is followed by one Newton step a tick: the
-/// gain has no steps, and the RMS stays within 2 % of the limit once `window` has passed. A limit of 0 is
-/// none. Safe in the tick.
+/// Tracks the mean square e of the unlimited drive (one pole, `window` ticks) and multiplies the drive by
+/// limit / root while the root of e is above the limit. The root is tracked by one Newton step per tick: the
+/// gain has no steps, and the RMS stays within 2 % of the limit after `window`. A limit of 0 means none. Safe
+/// in the tick.
 class EnergyLimiter {
  public:
   void set(float rms_v, float window_ticks) noexcept {
@@ -31,7 +31,7 @@ class EnergyLimiter {
 
  private:
   static constexpr float kSilence = 1e-30F;     // V^2
-  static constexpr float kAtLimit = 1.000001F;  // from here on Newton's steps are roundings
+  static constexpr float kAtLimit = 1.000001F;  // above this, Newton's steps are rounding errors
   float limit_v_ = 0, share_ = 1, mean_square_ = 0, root_v_ = 0;
 };
 

@@ -4,11 +4,12 @@
 
 namespace tacto::core {
 
-/// A level that goes evenly up or down, once a tick, and its weight w = l^2 (3 - 2 l), which begins and ends
-/// without a corner. From any level it is at zero after at most ceil(release ticks) + 1. Safe in the tick.
+/// A level l that rises or falls linearly, one step per tick, and its weight w = l^2 (3 - 2 l), whose slope
+/// is zero at both ends. From any level it reaches zero after at most ceil(release ticks) + 1. Safe in the
+/// tick.
 class Envelope {
  public:
-  /// Times in ticks; below one is one.
+  /// Times in ticks; values below one are treated as one.
   void set(float onset_ticks, float release_ticks) noexcept {
     rise_ = onset_ticks > 1 ? 1 / onset_ticks : 1;
     fall_ = release_ticks > 1 ? 1 / release_ticks : 1;

@@ -6,10 +6,11 @@
 namespace tacto::core {
 namespace {
 
-constexpr float kHaste = 0.2F, kMostHaste = 0.5F;  // alpha where a miss exceeds the uncertainty
-constexpr float kEdgeNoise = 0.1F;                 // counts: of an edge's place
-constexpr float kTolerableMiss = 4;
-constexpr float kPatience = 1.5F;
+constexpr float kOutlierAlpha = 0.2F,
+                kMaxOutlierAlpha = 0.5F;  // alpha if the residual exceeds the uncertainty
+constexpr float kEdgeNoise = 0.1F;        // counts: standard error of an edge's position
+constexpr float kRestartResidual = 4;
+constexpr float kOverdueFactor = 1.5F;
 constexpr int32_t kSettled = 400;
 
 float clamped(float value, float least, float most) noexcept {
@@ -26,14 +27,14 @@ void FingerTracker::begin(int32_t count) noexcept {
   seen_ = 0;
 }
 
-// No edge: if the next one is long overdue, the finger is slower than estimated.
+// No edge in this tick: if the next one is long overdue, the finger is slower than estimated.
 void FingerTracker::stay() noexcept {
-  const float most = kPatience / since_;
+  const float most = kOverdueFactor / since_;
   speed_ = clamped(speed_, -most, most);
   offset_ = clamped(offset_, -1, 2);
 }
 
-// The finger crossed the same border twice, or stood: only its place is known.
+// The finger crossed the same border twice, or was at rest: only its position is known.
 void FingerTracker::turn(int32_t moved) noexcept {
   offset_ = moved > 0 ? 0.0F : 1.0F;
   speed_ = 0;
@@ -50,12 +51,12 @@ void FingerTracker::set(const TrackerSetup& setup) noexcept {
   every_tick_ = gains_of(clamped(1 / (1 + setup.smoothing_ticks), 0, kMostAlpha));
 }
 
-// The few first ones, then what a missing edge or a miss asks for.
+// The gains of the first edges, then those for the residual of this edge.
 FingerTracker::Gains FingerTracker::gains(float miss, float since) noexcept {
-  const float per_tick = clamped(speed(), 0, 1);  // an edge is known to a tick, many of them to a count
+  const float per_tick = clamped(speed(), 0, 1);  // uncertainty: a tick's motion, at most one count
   const float excess = (miss < 0 ? -miss : miss) - kEdgeNoise - 0.5F * per_tick;
-  const float haste = kHaste * (2 - per_tick);
-  const float hasty = excess > 0 ? clamped(haste + haste * excess, 0, kMostHaste) : 0;
+  const float haste = kOutlierAlpha * (2 - per_tick);
+  const float hasty = excess > 0 ? clamped(haste + haste * excess, 0, kMaxOutlierAlpha) : 0;
   if (seen_ >= kSettled && hasty <= every_tick_.alpha && since <= 1) return every_tick_;
   const float usual = clamped(since / (since + setup_.smoothing_ticks), 0, kMostAlpha);
   const float steady = hasty > usual ? hasty : usual;
@@ -78,7 +79,7 @@ void FingerTracker::see(int32_t moved) noexcept {
   if (way * speed_ < 0) return turn(moved);
   const float border = moved > 0 ? 0.0F : 1.0F;
   const float miss = border + 0.5F * clamped(speed_, -1, 1) - offset_;
-  if (seen_ > 1 && (miss > kTolerableMiss || miss < -kTolerableMiss)) {
+  if (seen_ > 1 && (miss > kRestartResidual || miss < -kRestartResidual)) {
     offset_ += miss;
     speed_ = way / since_;
     seen_ = 2;

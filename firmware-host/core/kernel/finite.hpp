@@ -11,7 +11,7 @@ constexpr bool is_finite(float value) noexcept {
   return value >= -kLargestFloat && value <= kLargestFloat;
 }
 
-/// True where `value` is a number in [least, most].
+/// True if `value` is a number in [least, most].
 constexpr bool within(float value, float least, float most) noexcept {
   return value >= least && value <= most;
 }

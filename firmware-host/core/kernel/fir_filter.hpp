@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A filter of finite length.
+// A filter with a finite impulse response.
 #pragma once
 
 #include "firmware-host/core/kernel/float4.hpp"
@@ -7,8 +7,9 @@
 
 namespace tacto::core {
 
-/// y_n = sum_i taps_i x_(n-i), in sixteen sums that are added at the end: the order is part of the result,
-/// and the same everywhere. Always stable. Without taps it passes the input unchanged. Safe in the tick.
+/// y_n = sum_i taps_i x_(n-i), in sixteen partial sums that are added at the end: the order is fixed, so that
+/// the bits are the same everywhere. Always stable. Without taps it passes the input unchanged. Safe in the
+/// tick.
 class FirFilter {
  public:
   /// At most kMaxTaps; zeros are added up to a multiple of 16.
@@ -38,7 +39,7 @@ class FirFilter {
 
  private:
   float reversed_[wire::kMaxTaps] = {};
-  float past_[2 * wire::kMaxTaps] = {};  // twice, so that a tick reads on without turning
+  float past_[2 * wire::kMaxTaps] = {};  // stored twice, so that a tick reads it contiguously
   uint16_t count_ = 0, at_ = 0;
 };
 

@@ -10,7 +10,7 @@ constexpr float kTwelfth = 1.0F / 12;
 constexpr int kPhases = 256;
 constexpr double kPi = 3.14159265358979323846;
 
-// The cubic's coefficients, 1, u, u^2 and u^3, of each sample.
+// The coefficients of the cubic, for 1, u, u^2 and u^3, of each sample.
 Weights hermite(float u) noexcept {
   constexpr float k = kTwelfth;
   constexpr Float4 one{0, 0, 0, 1};
@@ -49,7 +49,7 @@ struct SincTable {
   float weights[kPhases + 1][kReach];
 };
 
-// Each phase's weights sum to one: a constant stays one.
+// The weights of each phase sum to one, so that a constant is unchanged.
 constexpr SincTable make_sinc() {
   SincTable table{};
   for (int phase = 0; phase <= kPhases; ++phase) {

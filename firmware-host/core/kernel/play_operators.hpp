@@ -9,12 +9,12 @@ namespace tacto::core {
 
 /// Prandtl-Ishlinskii operator (Kuhnen 2003): y = straight x + sum_i weight_i p_i, where each play p_i
 /// follows x at a distance of at most threshold_i: p_i <- max(x - threshold_i, min(x + threshold_i, p_i)).
-/// Summed in four sums that are added at the end: the order is part of the result, and the same everywhere.
-/// The inverse of such an operator is one. Without plays it is straight x, and where none was set x. Safe in
-/// the tick.
+/// Summed in four partial sums that are added at the end: the order is fixed, so that the bits are the same
+/// everywhere. The inverse of such an operator is of the same form. Without plays y = straight x; after
+/// clear() y = x. Safe in the tick.
 class PlayOperators {
  public:
-  /// At most kMaxPlays; comes to rest.
+  /// At most kMaxPlays; resets the plays.
   void set(const wire::Hysteresis& play_operators) noexcept {
     follows_ = true;
     straight_ = play_operators.straight;

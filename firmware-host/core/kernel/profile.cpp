@@ -11,19 +11,19 @@ constexpr float kPerFraction = 1.0F / (1 << 24);
 constexpr float kFractions = 1 << 24;
 constexpr int64_t kOneSample = INT64_C(1) << 32;
 
-// Of index by size, never negative.
+// index modulo size, never negative.
 int32_t wrapped(int32_t index, int32_t size) noexcept {
   const int32_t rest = index % size;
   return rest < 0 ? rest + size : rest;
 }
 
-// step x fraction / 2^32 without the product's upper 32 bits getting lost.
+// step x fraction / 2^32 without overflow of the 96-bit product.
 int64_t part_of(uint64_t step, uint32_t fraction) noexcept {
   return static_cast<int64_t>((step >> 32) * fraction + (((step & 0xFFFFFFFFU) * fraction) >> 32));
 }
 
-// offset x 2^24 toward zero. One instruction where integers have 64 bits; else, to the same bits, in two
-// parts.
+// offset x 2^24, rounded toward zero. One instruction with 64-bit registers; otherwise in two parts with the
+// same bits.
 int64_t in_fractions(float offset) noexcept {
   if constexpr (sizeof(void*) >= sizeof(int64_t)) return static_cast<int64_t>(offset * kFractions);
   const auto whole = static_cast<int32_t>(offset);
@@ -31,7 +31,7 @@ int64_t in_fractions(float offset) noexcept {
   return whole * INT64_C(0x1000000) + rest;
 }
 
-// step x offset, to 2^-24 of a step.
+// step x offset, with a resolution of 2^-24 of a step.
 int64_t stretch(uint64_t step, float offset) noexcept {
   const int64_t fractions = in_fractions(offset);
   return static_cast<int64_t>(step) * (fractions >> 24) +
@@ -70,7 +70,7 @@ Profile::Profile(const float* samples, const ProfileScale& scale) noexcept
   }
 }
 
-// One division for all of them.
+// One division for all samples.
 void Profile::gather(const Level& level, int32_t first, float* y) const noexcept {
   const int32_t size = level.size;
   if (scale_.ends == wire::ProfileEnds::stop) {

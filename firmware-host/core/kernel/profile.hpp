@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texture on the device: the target signal against the encoder count, in levels of decreasing detail,
+// The texture on the device: the target signal over the encoder count, in levels of decreasing detail,
 // interpolated between samples.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace tacto::core {
 
-/// Where counts lie on the samples: sample x 2^32 = (count - origin_count) samples_per_count_q32 +
-/// at_origin_q32, exactly, in 64-bit integers: no position is lost in a float's 24 bits.
+/// The relation of counts to samples: sample x 2^32 = (count - origin_count) samples_per_count_q32 +
+/// at_origin_q32, exactly, in 64-bit integers. The 24 bits of a float would not be sufficient.
 struct ProfileScale {
   uint32_t samples = 0;  ///< of the first level
   int32_t origin_count = 0;
@@ -20,30 +20,31 @@ struct ProfileScale {
   wire::Interpolation interpolation = wire::Interpolation::hermite;
 };
 
-/// Counts farther than this from the origin read zero, whatever the ends: 268 m of a 1 um grid.
+/// At counts farther than this from the origin the profile is zero, for all kinds of ends: 268 m of a 1 um
+/// grid.
 int32_t reach_counts(const ProfileScale& scale) noexcept;
 
-/// Samples of a level: each second level has half as many. A loop's first level has a multiple of 2^((levels
-/// - 1) / 2) samples, with other ends one more.
+/// The number of samples of a level: every second level has half as many. The first level of a loop has a
+/// multiple of 2^((levels - 1) / 2) samples, with other ends one more.
 uint32_t level_samples(const ProfileScale& scale, uint32_t level) noexcept;
-/// Of all levels, which lie one after the other.
+/// Of all levels, which are stored one after the other.
 uint32_t pyramid_samples(const ProfileScale& scale) noexcept;
 
-/// A pyramid: level n holds the texture up to a spatial frequency that falls by the square root of two with
-/// each level. Ends: stop: samples outside are zero; loop: sample n is sample 0; mirror: about the first and
-/// last sample. Interpolation's errors stand at interpolated().
+/// A pyramid: level n contains the texture up to a spatial frequency that decreases by the square root of two
+/// with each level. Ends: stop: samples outside are zero; loop: sample n is sample 0; mirror: about the first
+/// and last sample. The errors of interpolation are given at weights_at().
 class Profile {
  public:
   Profile() = default;
-  /// At least 6 samples, which are not copied. `scale` as ProfileUpload accepts it.
+  /// At least 6 samples, which are not copied. `scale` satisfies the checks of ProfileUpload.
   Profile(const float* samples, const ProfileScale& scale) noexcept;
 
-  /// At a count, of the first level. Safe in the tick.
+  /// The value of the first level at a count. Safe in the tick.
   float at(int32_t count) const noexcept { return at(count, 0, {}); }
 
-  /// At count + offset, with that detail: level `coarser` - 1 fades evenly into level `coarser`, and the last
-  /// level into zero, so the result is continuous. A profile of one level is used at every speed. Beyond
-  /// reach_counts() it is zero. Safe in the tick.
+  /// The value at count + offset with that detail: level `coarser` - 1 is cross-faded linearly into level
+  /// `coarser`, and the last level into zero, so the result is continuous. A profile of one level is used at
+  /// every speed. Beyond reach_counts() it is zero. Safe in the tick.
   float at(int32_t count, float offset, Detail detail) const noexcept;
 
  private:

@@ -6,21 +6,21 @@
 
 namespace tacto::core {
 
-/// One side puts, the other takes; neither waits. kSize is a power of two. clear() is for the taker, while
-/// the putter is at rest or may lose what it just put. Safe in the tick.
+/// One side writes, the other reads; neither waits. kSize is a power of two. Only the reader calls clear(),
+/// while the writer is inactive or may lose its latest items. Safe in the tick.
 template <class T, uint32_t kSize>
 class Ring {
   static_assert((kSize & (kSize - 1)) == 0);
 
  public:
-  /// The place to fill next, or null where the ring is full. It counts once pushed.
+  /// The place to fill next, or null if the ring is full. It is part of the ring after push().
   T* place() noexcept {
     const uint32_t head = head_.load();
     return head - tail_.load() < kSize ? &items_[head % kSize] : nullptr;
   }
   void push() noexcept { head_.store(head_.load() + 1); }
 
-  /// The oldest item, or null where the ring is empty.
+  /// The oldest item, or null if the ring is empty.
   const T* front() const noexcept {
     const uint32_t tail = tail_.load();
     return tail != head_.load() ? &items_[tail % kSize] : nullptr;

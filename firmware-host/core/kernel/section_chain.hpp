@@ -8,13 +8,13 @@
 namespace tacto::core {
 
 /// Transposed direct form II, in single precision: y = b0 x + s1, s1 = b1 x - a1 y + s2, s2 = b2 x - a2 y.
-/// The outputs of four sections in a row are linear in x, and all but x is known before the tick: y_k = (b0_1
-/// ... b0_k) x + c_k, c_k = b0_k c_(k-1) + s1_k. So a tick waits for one product and one sum in four
-/// sections, and their states are computed side by side; sections beyond a multiple of four are computed one
-/// by one. The error against double precision grows as the poles come near the unit circle; TickKernel states
-/// it. States below kSilence, some 500 dB under a volt, are set to zero, one section's every kCalmTicks
-/// ticks: otherwise silence would lead to denormal numbers, with which a tick takes tens of times as long on
-/// some processors. Safe in the tick.
+/// The outputs of four consecutive sections are linear in x, and all other terms are known before the tick:
+/// y_k = (b0_1 ... b0_k) x + c_k, c_k = b0_k c_(k-1) + s1_k. So the latency is one product and one sum for
+/// four sections, and their states are computed in parallel; sections beyond a multiple of four are computed
+/// one by one. The error against double precision increases as the poles approach the unit circle; TickKernel
+/// states it. States below kSilence, about 500 dB below one volt, are set to zero, one section every
+/// kFlushTicks ticks: otherwise a zero input would lead to denormal numbers, with which a tick takes tens of
+/// times as long on some processors. Safe in the tick.
 class SectionChain {
  public:
   void set(const wire::Section* sections, uint8_t count) noexcept {
@@ -29,7 +29,7 @@ class SectionChain {
   /// Resets the states.
   void rest() noexcept {
     for (uint8_t i = 0; i < wire::kMaxSections; ++i) s1_[i] = s2_[i] = 0;
-    until_calm_ = kCalmTicks, calm_ = 0;
+    until_calm_ = kFlushTicks, calm_ = 0;
   }
   /// Whether two chains with the same sections give the same output for every further input.
   bool is_where(const SectionChain& other) const noexcept {
@@ -47,12 +47,12 @@ class SectionChain {
 
  private:
   static constexpr float kSilence = 1e-25F;
-  static constexpr uint8_t kCalmTicks = 8;
+  static constexpr uint8_t kFlushTicks = 8;
 
   static bool is_silent(float state) noexcept { return state < kSilence && state > -kSilence; }
-  // Both states or none: one alone would excite the section again.
+  // Both states or none: a single remaining state would excite the section again.
   [[gnu::noinline]] void calm() noexcept {
-    until_calm_ = kCalmTicks;
+    until_calm_ = kFlushTicks;
     calm_ = static_cast<uint8_t>(calm_ + 1 < count_ ? calm_ + 1 : 0);
     if (is_silent(s1_[calm_]) && is_silent(s2_[calm_])) s1_[calm_] = s2_[calm_] = 0;
   }
@@ -74,12 +74,13 @@ class SectionChain {
 
   float b0_[wire::kMaxSections] = {}, b1_[wire::kMaxSections] = {}, b2_[wire::kMaxSections] = {};
   float a1_[wire::kMaxSections] = {}, a2_[wire::kMaxSections] = {};
-  float through_[wire::kMaxSections] = {};  // b0 of all from the first of its four
+  float through_[wire::kMaxSections] = {};  // product of b0 from the first of its group of four
   float s1_[wire::kMaxSections] = {}, s2_[wire::kMaxSections] = {};
-  uint8_t count_ = 0, until_calm_ = kCalmTicks, calm_ = 0;
+  uint8_t count_ = 0, until_calm_ = kFlushTicks, calm_ = 0;
 };
 
-/// True where the poles lie within the unit circle (Jury: |a2| < 1, |a1| < 1 + a2) and all is finite.
+/// True if the poles are within the unit circle (Jury: |a2| < 1, |a1| < 1 + a2) and all coefficients are
+/// finite.
 bool is_stable(const wire::Section& section) noexcept;
 
 }  // namespace tacto::core

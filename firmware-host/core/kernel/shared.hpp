@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// One word between the tick, which may interrupt anything, and the main loop, which interrupts nothing.
+// One word shared by the tick, which may interrupt the main loop anywhere, and the main loop.
 #pragma once
 
 #include <stdint.h>
 
 namespace tacto::core {
 
-/// Load acquires, store releases: what was written before a store is seen after its load. At most 32 bits:
-/// one instruction on a Cortex-M, never a lock. Safe in the tick.
+/// Loads acquire and stores release: data written before a store are visible after the load of its value. At
+/// most 32 bits: one instruction on a Cortex-M, never a lock. Safe in the tick.
 template <class T>
 class Shared {
   static_assert(sizeof(T) <= 4);

@@ -49,7 +49,7 @@ float TexturePlayer::faded(float value) noexcept {
   return value + weight * (read(leaving()) - value);
 }
 
-// In one piece: what a tick waits for begins as early as it may.
+// Inlined completely, so that independent instructions can start early.
 [[gnu::flatten]] float TexturePlayer::target(int32_t count, float gain) noexcept {
   place_ = tracker_.track(count);
   float value = read(playing());

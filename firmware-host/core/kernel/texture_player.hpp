@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The texture under the finger: place and speed, the level of detail that the speed allows, and a change of
+// Plays the texture under the finger: position and speed, the level of detail for the speed, and a change of
 // texture.
 #pragma once
 
@@ -8,12 +8,12 @@
 
 namespace tacto::core {
 
-/// A texture and how it is followed.
+/// A texture and the tracking of the finger on it.
 struct TextureSetup {
   Profile profile;
   TrackerSetup tracker;
-  /// 1 / the speed (counts a tick) up to which the first level contains nothing beyond the band: half octaves
-  /// of speed count from there. 0: the first level is used at every speed.
+  /// 1 / the speed (counts per tick) up to which the first level is within the band; half octaves of speed
+  /// are counted from there. 0: the first level is used at every speed.
   float per_full_detail = 0;
 };
 
@@ -21,23 +21,23 @@ inline float per_full_detail(float counts_per_tick) noexcept {
   return counts_per_tick > 0 ? 1 / counts_per_tick : 0;
 }
 
-/// wanted = gain x texture(place). A gain goes evenly to its new value within `gain_ticks`, and is then
-/// exactly that; another texture fades in by a raised weight w = u^2 (3 - 2 u). Safe in the tick.
+/// target = gain x texture(position). A gain changes linearly to its new value within `gain_ticks` and is
+/// then exactly that value; another texture is faded in with the weight w = u^2 (3 - 2 u). Safe in the tick.
 class TexturePlayer {
  public:
   void set(const TextureSetup& texture, float gain_ticks) noexcept;
   /// Resets the tracker, the gain and a fading texture.
   void begin(float gain_ticks) noexcept;
   void change(const TextureSetup& texture, float fade_ticks) noexcept;
-  /// The finger has moved to another place, at an unknown speed.
-  void forget_finger() noexcept { tracker_.set(playing().tracker); }
+  /// Resets the speed, because the finger is at another position.
+  void reset_finger_speed() noexcept { tracker_.set(playing().tracker); }
   bool changing() const noexcept { return fade_ > 0; }
   float target(int32_t count, float gain) noexcept;
   FingerPlace place() const noexcept { return place_; }
 
  private:
   float read(const TextureSetup& texture) const noexcept;
-  [[gnu::noinline]] float faded(float value) noexcept;  // rare: kept out of the usual tick
+  [[gnu::noinline]] float faded(float value) noexcept;  // rare, so not inlined into the usual tick
   float follow(float gain) noexcept;
 
   TextureSetup& playing() noexcept { return textures_[which_]; }

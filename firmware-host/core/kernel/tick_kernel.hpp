@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tick kernel: from target signal to drive. There is one for host and device.
+// The tick kernel: from target signal to drive. Host and device use the same one.
 #pragma once
 
 #include "firmware-host/core/kernel/contact_gate.hpp"
@@ -12,7 +12,8 @@
 
 namespace tacto::core {
 
-/// The complete setup of the kernel, as plain data; what it points to has to outlive its use by the kernel.
+/// The complete setup of the kernel, as plain data; data that it points to must outlive its use by the
+/// kernel.
 struct KernelSetup {
   TextureSetup texture;
   const float* taps = nullptr;
@@ -35,41 +36,41 @@ inline float rate_of(uint32_t millihertz) noexcept {
 struct TickInput {
   int32_t count = 0;                ///< of the encoder
   float gain = 0;                   ///< of the texture; a change takes 10 ms
-  bool raise = false;               ///< towards the full drive, else towards zero
+  bool raise = false;               ///< towards the full drive, otherwise towards zero
   float normal_force_n = kNoForce;  ///< if it is reported
 };
 
 /// The output of a tick.
 struct TickOutput {
   float drive_v = 0;
-  float unlimited_v = 0;  ///< before the limits; its difference to drive_v is what they removed
+  float unlimited_v = 0;  ///< before the limits; limits removed the difference to drive_v
   uint32_t flags = 0;     ///< wire::TickFlag: amplitude, slew, energy, gated, touching
-  bool sound = true;      ///< false where the target is no finite number; then the drive falls
+  bool sound = true;      ///< false if the target is not finite; then the drive falls
 };
 
 /// drive = limits(energy(envelope x gate x sections(play_operators(taps(target))))), where target = gain x
-/// texture(place of the finger), or comes from elsewhere. Single precision, no contraction, no libm: the same
-/// bits on host and device (a test holds the two against each other). Against double precision: a texture
-/// with levels, taps, following and limits, 2 kHz to 20 kHz: -105 dB of the drive; eight sections, 20 kHz:
-/// -100 dB for an actuator's inverse (poles of radius 0.99 at most), -64 dB where three of them are
-/// high-passes of 15 Hz (0.9967): such belong into the texture. A drive that is cut at its limits has the
-/// error that it has uncut. No function here allocates, locks, throws or makes system calls.
+/// texture(position of the finger) or an external signal. Single precision, no contraction, no libm: the same
+/// bits on host and device (a test compares them). Error against double precision: a texture with levels,
+/// taps, tracking and limits, 2 kHz to 20 kHz: -105 dB of the drive; eight sections, 20 kHz: -100 dB for an
+/// actuator's inverse (pole radius at most 0.99), -64 dB if three of them are high-passes of 15 Hz (0.9967),
+/// which should therefore be applied to the texture. Limiting does not increase the error. No function here
+/// allocates, locks, throws or makes system calls.
 class TickKernel {
  public:
-  /// Sets up everything; starts at rest at zero.
+  /// Sets all parameters; starts at rest at zero.
   void set(const KernelSetup& setup) noexcept;
-  /// Only the limits, at a rate in Hz, above zero; starts at rest at zero, without energy limit and contact
-  /// gate.
+  /// Sets only the limits, at a rate in Hz above zero; starts at rest at zero, without energy limit and
+  /// contact gate.
   void set(const wire::Limits& limits, float rate_hz) noexcept;
   void set_profile(const Profile& profile) noexcept { player_.set({profile, {}, 0}, 1); }
   SectionChain& sections() noexcept { return sections_; }
 
-  /// Another texture: the old one fades into it over `fade_s`; until then both must be there. Between ticks.
+  /// Cross-fades to another texture over `fade_s`; until then both must exist. Between ticks.
   void change(const TextureSetup& texture, float fade_s) noexcept {
     player_.change(texture, fade_s * rate_hz_);
   }
   /// Resets the speed of the finger: between ticks, at rest.
-  void forget_finger() noexcept { player_.forget_finger(); }
+  void reset_finger_speed() noexcept { player_.reset_finger_speed(); }
   bool changing() const noexcept { return player_.changing(); }
 
   /// One tick of the texture.
@@ -77,10 +78,9 @@ class TickKernel {
 
   /// The texture's target at a count; once a tick.
   float target(int32_t count, float gain) noexcept { return player_.target(count, gain); }
-  /// One tick of a target, from the texture or from elsewhere.
+  /// One tick of a target, from the texture or external.
   TickOutput drive(float target, bool raise, float normal_force_n) noexcept;
-  /// The same without a reported force. A target that is not finite gives a drive of zero, and `sound` is
-  /// false.
+  /// The same without a reported force. If the target is not finite, the drive is zero and `sound` is false.
   float tick(float target, bool raise, uint32_t& flags, bool& sound) noexcept {
     const TickOutput output = drive(target, raise, kNoForce);
     flags |= output.flags;
@@ -90,7 +90,7 @@ class TickKernel {
 
   bool at_rest() const noexcept { return envelope_.at_rest() && limiter_.last_v() == 0; }
   float last_v() const noexcept { return limiter_.last_v(); }
-  /// Of the finger, as of the last tick: counts a tick, with its sign.
+  /// The finger's position in the last tick; the speed in counts per tick, signed.
   FingerPlace place() const noexcept { return player_.place(); }
 
  private:

@@ -12,8 +12,8 @@ enum Feature : uint32_t {
   kFeatureSimulated = 1,    ///< the device is simulated
   kFeatureDrive = 2,        ///< it has an output
   kFeatureEnableInput = 4,  ///< it has a hardware enable input
-  kFeatureTextures = 8,     ///< it reads levels, and understands taps, tracking, energy and contact
-  kFeatureHysteresis = 16,  ///< it understands hysteresis
+  kFeatureTextures = 8,     ///< it supports levels, taps, tracking, energy limit and contact gate
+  kFeatureHysteresis = 16,  ///< it supports hysteresis
 };
 
 /// All fields up to `nonce` are the same in every version.
@@ -30,9 +30,9 @@ struct Welcome {
   uint32_t features = 0;
   uint32_t clock_hz = 0;  ///< of device_ticks
   uint32_t default_rate_millihertz = 0, least_rate_millihertz = 0, most_rate_millihertz = 0;
-  uint32_t ring_records = 0;     ///< frames or ticks that it keeps while the host does not read
-  uint32_t profile_samples = 0;  ///< samples that a profile may have
-  uint32_t drive_queue = 0;      ///< drive samples that it holds
+  uint32_t ring_records = 0;     ///< frames or ticks that it stores while the host does not read
+  uint32_t profile_samples = 0;  ///< the largest number of samples of a profile
+  uint32_t drive_queue = 0;      ///< the capacity of its queue of drive samples
   float drive_limit_v = 0, slew_limit_v_per_s = 0;
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
@@ -61,7 +61,7 @@ struct Channel {
 
 enum class NoteKind : uint8_t { simulated_by = 0, transducer = 1, surface = 2 };
 
-/// A text about the device, for people and files.
+/// A text about the device, for display and files.
 struct Note {
   static constexpr MessageType kType = MessageType::note;
   uint8_t index = 0;
@@ -87,8 +87,8 @@ struct Answer {
   }
 };
 
-/// Frames first_frame ... first_frame + count - 1 of the stream, none missing between them. A frame that is
-/// missing between two messages was lost, on the device or on the way.
+/// Frames first_frame ... first_frame + count - 1 of the stream, without gaps between them. A frame that is
+/// missing between two messages was lost on the device or on the link.
 struct Samples {
   static constexpr MessageType kType = MessageType::samples;
   uint64_t first_frame = 0;
@@ -115,7 +115,7 @@ struct Tick {
   uint32_t flags = 0;
 };
 
-/// Sent while armed: every tick, as samples are.
+/// Sent while armed: every tick, in the same way as samples.
 struct Ticks {
   static constexpr MessageType kType = MessageType::ticks;
   uint64_t first_tick = 0;
@@ -135,8 +135,8 @@ struct Ticks {
   }
 };
 
-/// The device's state. Counters run over at 2^32. Those from late_ticks to slew_limited begin at hello, the
-/// last two when the device starts.
+/// The device's state. Counters wrap at 2^32. Those from late_ticks to slew_limited begin at hello, the last
+/// two when the device starts.
 struct Pulse {
   static constexpr MessageType kType = MessageType::pulse;
   uint32_t token = 0;
@@ -149,7 +149,7 @@ struct Pulse {
   float drive_v = 0;
   uint32_t drive_queued = 0;
   uint32_t late_ticks = 0, lost_records = 0, underruns = 0, amplitude_limited = 0, slew_limited = 0;
-  uint32_t damaged_frames = 0, missing_frames = 0;  ///< of what the host sent
+  uint32_t damaged_frames = 0, missing_frames = 0;  ///< in the stream from the host
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.token, self.device_ticks, self.state, self.fault, self.streaming, self.enabled, self.encoder,

@@ -34,8 +34,8 @@ struct UnsignedOf<8> {
   using Type = uint64_t;
 };
 
-/// Appends fields to a buffer. What does not fit is left out, and ok() is false. Floats are written as their
-/// IEEE-754 bits.
+/// Appends fields to a buffer. Fields that do not fit are left out, and ok() is false. Floats are written as
+/// their IEEE-754 bits.
 class FieldWriter {
  public:
   FieldWriter(uint8_t* bytes, size_t capacity) noexcept : bytes_(bytes), capacity_(capacity) {}

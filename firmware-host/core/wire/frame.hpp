@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The envelope of every message: 12 bytes before it, 4 behind it (core/WIRE.md).
+// The envelope of every message: 12 bytes before it, 4 after it (core/WIRE.md).
 #pragma once
 
 #include "firmware-host/core/wire/field_codec.hpp"
@@ -31,7 +31,7 @@ struct Frame {
 /// Adds header and check to a payload that is at frame + kHeaderSize. Returns the frame's size.
 size_t seal_frame(const FrameHeader& header, uint8_t* frame) noexcept;
 
-/// True where a header begins at `bytes` (kHeaderSize of them): marks and check are right.
+/// True if a valid header is at `bytes` (kHeaderSize of them): the marks and the check are right.
 bool read_header(const uint8_t* bytes, FrameHeader& header) noexcept;
 
 /// Writes a message as a frame. Returns its size, or 0 if it does not fit in `capacity` or kMaxPayload.

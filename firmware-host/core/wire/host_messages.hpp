@@ -60,8 +60,8 @@ struct Limits {
 struct ProfileBegin {
   static constexpr MessageType kType = MessageType::profile_begin;
   uint32_t samples = 0;
-  int32_t origin_count = 0;            ///< encoder count at which the sample at_origin lies
-  int64_t at_origin_q32 = 0;           ///< sample under origin_count, times 2^32
+  int32_t origin_count = 0;            ///< encoder count at the sample at_origin
+  int64_t at_origin_q32 = 0;           ///< sample at origin_count, times 2^32
   uint64_t samples_per_count_q32 = 0;  ///< encoder step over pitch, times 2^32
   ProfileEnds ends = ProfileEnds::stop;
   template <class Codec, class Self>
@@ -126,7 +126,7 @@ struct Sweep {
   static constexpr MessageType kType = MessageType::sweep;
   float amplitude_v = 0;
   uint32_t from_millihertz = 0, to_millihertz = 0;
-  uint32_t growth_q32 = 0;  ///< of the frequency in a tick, times 2^32: 2^32 ((to / from)^(1 / ticks) - 1)
+  uint32_t growth_q32 = 0;  ///< of the frequency per tick, times 2^32: 2^32 ((to / from)^(1 / ticks) - 1)
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.amplitude_v, self.from_millihertz, self.to_millihertz, self.growth_q32);
@@ -147,7 +147,7 @@ using Play = Bare<MessageType::play>;
 using Stop = Bare<MessageType::stop>;
 using Disarm = Bare<MessageType::disarm>;
 
-/// The next ticks' drive, where the host closes the loop. Not answered.
+/// The drive of the next ticks, if the host closes the loop. Not answered.
 struct Drive {
   static constexpr MessageType kType = MessageType::drive;
   uint16_t count = 0;
@@ -159,7 +159,8 @@ struct Drive {
   }
 };
 
-/// Answered by a pulse. Every intact frame resets the watchdog; this one is sent if there is no other.
+/// Answered by a pulse. Every intact frame resets the watchdog; a heartbeat is sent if there is no other
+/// frame.
 struct Heartbeat {
   static constexpr MessageType kType = MessageType::heartbeat;
   uint32_t token = 0;
@@ -184,7 +185,7 @@ struct ProfileLevels {
   }
 };
 
-/// A finite filter between profile and filters.
+/// A finite impulse response filter between profile and filters.
 struct Taps {
   static constexpr MessageType kType = MessageType::taps;
   uint16_t count = 0;
@@ -216,13 +217,13 @@ struct Hysteresis {
   }
 };
 
-/// How the finger's place is estimated between counts, and predicted.
+/// How the finger's position is estimated between counts, and predicted.
 struct Tracking {
   static constexpr MessageType kType = MessageType::tracking;
   uint8_t between_counts = 0;
   uint8_t reserved[3] = {};
   float look_ahead_ticks = 0, smoothing_ticks = 0;
-  float full_detail_counts_per_tick = 0;  ///< speed above which the second level is mixed in
+  float full_detail_counts_per_tick = 0;  ///< speed above which the second level is blended in
   template <class Codec, class Self>
   static void fields(Codec& codec, Self& self) noexcept {
     codec(self.between_counts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers of the protocol: types, states, answers and faults. A number is never used again.
+// The numbers of the protocol: types, states, answers and faults. A number is never reused.
 #pragma once
 
 #include <stddef.h>
@@ -7,7 +7,8 @@
 
 namespace tacto::wire {
 
-/// Below 0x80 from the host, above from the device. hello and welcome begin alike in every version.
+/// Below 0x80 from the host, above from the device. hello and welcome begin with the same fields in every
+/// version.
 enum class MessageType : uint8_t {
   hello = 0x01,
   stream_start = 0x02,
@@ -43,42 +44,42 @@ enum class MessageType : uint8_t {
   fault = 0x88,
 };
 
-/// What the drive is doing.
+/// The state of the drive.
 enum class DriveState : uint8_t {
   idle = 0,   ///< no output
   armed = 1,  ///< ticking, drive at zero
   playing = 2,
-  fault = 3,  ///< ramping to zero, or there; disarm ends it
+  fault = 3,  ///< ramping to zero, or at zero; disarm ends it
 };
 
-/// Where the drive comes from.
+/// The source of the drive.
 enum class DriveSource : uint8_t { profile = 0, host = 1, sweep = 2 };
 
-/// What follows beyond the ends of a profile.
+/// The values beyond the ends of a profile.
 enum class ProfileEnds : uint8_t { stop = 0, loop = 1, mirror = 2 };
 
-/// How a profile is read between its samples.
+/// The interpolation between the samples of a profile.
 enum class Interpolation : uint8_t { nearest = 0, linear = 1, hermite = 2, sinc = 3 };
 
 /// A device's answer to a command.
 enum class AnswerCode : uint8_t {
   ok = 0,
   unknown_type = 1,
-  bad_payload = 2,    ///< too short, or it counts more than it may
+  bad_payload = 2,    ///< too short, or a count above its maximum
   bad_value = 3,      ///< a value out of range or not a number; detail: the field, from 0
   wrong_state = 4,    ///< not in this state; detail: the DriveState
-  too_large = 5,      ///< more than the device can hold; detail: how much fits
-  check_failed = 6,   ///< the profile differs from what was sent; detail: check of the samples
-  incomplete = 7,     ///< no profile, or with holes; detail: samples received
+  too_large = 5,      ///< more than the capacity of the device; detail: the capacity
+  check_failed = 6,   ///< the profile differs from the one that was sent; detail: check of the samples
+  incomplete = 7,     ///< no profile, or one with missing samples; detail: samples received
   no_limits = 8,      ///< limits have to be sent first
   enable_open = 9,    ///< the hardware enable input is open
   wrong_version = 10  ///< a major version that this device does not support
 };
 
-/// Why a device ramped its drive to zero, or what went wrong in its stream.
+/// Why a device ramped its drive to zero, or why its stream failed.
 enum class FaultCode : uint8_t {
   none = 0,
-  host_silent = 1,     ///< nothing from the host for watchdog_ms; detail: ticks of silence
+  host_silent = 1,     ///< no frame from the host for watchdog_ms; detail: ticks of silence
   enable_open = 2,     ///< the hardware enable input opened
   encoder_jump = 3,    ///< more counts in a tick than allowed; detail: counts
   drive_underrun = 4,  ///< no drive sample from the host; detail: ticks without one
@@ -96,12 +97,12 @@ enum TickFlag : uint32_t {
   kTickAmplitudeLimited = 8,  ///< the drive was limited to drive_v
   kTickSlewLimited = 16,
   kTickLate = 32,           ///< it began more than half a period late
-  kTickEnergyLimited = 64,  ///< the drive was turned down to hold its RMS
+  kTickEnergyLimited = 64,  ///< the drive was reduced to limit its RMS
   kTickGated = 128,         ///< the finger does not touch: the drive falls
   kTickBlind = 256,     ///< the encoder was not read for 10 ms: the drive falls, then the new count is used
-  kTickTouching = 512,  ///< the contact gate takes the finger as touching; since protocol 1.2
+  kTickTouching = 512,  ///< the contact gate detects contact; since protocol 1.2
 };
-/// From this bit on: the number of steering commands taken since arming, modulo 256.
+/// From this bit on: the number of steering commands in effect since arming, modulo 256.
 inline constexpr uint32_t kTickSteeredShift = 24;
 /// Whether this command changes a running drive in a tick; that tick counts it.
 constexpr bool steers(MessageType type) noexcept {

@@ -9,10 +9,10 @@ namespace tacto::wire {
 enum class Order : uint8_t {
   expected,
   gap,    ///< frames before it are missing
-  stale,  ///< it, or a later one, was received before: to be ignored
+  stale,  ///< it, or a later one, was received before: ignore it
 };
 
-/// Sequence numbers grow by one a frame and run over at 2^32. Differences up to 2^31 are forwards.
+/// Sequence numbers increase by one per frame and wrap at 2^32. Differences up to 2^31 are forwards.
 class SequenceCheck {
  public:
   /// The next frame may have any number: a new connection.

@@ -19,7 +19,7 @@ ActuatedTray::ActuatedTray(const schema::Transducer& t, double tick_rate_hz, con
       step_s_(1 / (tick_rate_hz * substeps_in(1 / tick_rate_hz))),
       substeps_(substeps_in(1 / tick_rate_hz)) {}
 
-// The Butterworth's poles: one real, and a pair of damping ratio 1/2.
+// The Butterworth poles: one real, and a pair of damping ratio 1/2.
 ActuatedTray::State ActuatedTray::rate(const State& s, double drive_v, double force_n) const {
   const double w = filter_rad_per_s_;
   const double smoothed_v = w > 0 ? s[kFilteredV] : drive_v;
@@ -34,7 +34,7 @@ ActuatedTray::State ActuatedTray::rate(const State& s, double drive_v, double fo
           mechanics_.inner_mps2(motion)};
 }
 
-// What is not a number drives nothing.
+// For a value that is not a number, the drive is zero.
 double ActuatedTray::within_limit(double drive_v) {
   if (std::abs(drive_v) <= drive_limit_v_) return drive_v;
   ++limited_ticks_;

@@ -11,8 +11,8 @@
 
 namespace tacto::firmware_host {
 
-/// The force begins at 0 s with the tray at rest; the bone only carries the position sensor along, and the
-/// load only presses. Runge-Kutta steps as everywhere: the sensor's closed form to 1e-5.
+/// The force begins at 0 s with the tray at rest; the bone only moves the position sensor, and the load only
+/// presses. Runge-Kutta steps as elsewhere: the sensor's closed form is matched to 1e-5.
 class ForceBench final : public Bench {
  public:
   ForceBench(const schema::Transducer& transducer, const ForcePlan& force, double sample_rate_hz,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mechanical whole: a fingertip on a surface on the transducer's tray, integrated from the equations of
+// The whole mechanical system: a fingertip on a surface on the transducer's tray, from the equations of
 // motion.
 #pragma once
 
@@ -13,18 +13,19 @@
 
 namespace tacto::firmware_host {
 
-/// States: pulp's place and speed, bristles, and the sensor's (SensorState). The bone drags the
-/// pulp through spring and damper, friction and slopes pull the pulp and, with the opposite sign, the tray:
+/// States: position and speed of the pulp, bristles, and the state of the sensor (SensorState). The bone
+/// pulls the pulp through spring and damper; friction and slopes act on the pulp and, with the opposite sign,
+/// on the tray:
 ///   m_f x_f'' = k_f (X - x_f) + c_f (X' - x_f') - f_d,   f_d = mu(z, x_f' - x') N + sum p_i h'_i(x_f - x).
-/// Runge-Kutta steps of at most 12.5 us, ten to twenty to the period of the fastest mode there is (a stuck
-/// pulp on its bristles, about 700 Hz).
+/// Runge-Kutta steps of at most 12.5 us, ten to twenty per period of the fastest mode (a sticking pulp on its
+/// bristles, about 700 Hz).
 class TouchBench final : public Bench {
  public:
   TouchBench(const schema::Transducer& transducer, const FingerParameters& finger,
              const HeightProfile& profile, double sample_rate_hz, double start_m, std::uint64_t seed,
              const std::optional<SecondMode>& second_mode = std::nullopt);
 
-  /// Diverged: not a number, or a pulp more than its patch away from the bone.
+  /// Diverged: a value that is not a number, or a distance of more than the patch between pulp and bone.
   bool step(const FingerPlace& bone, double load_n) override;
   BenchReading reading() const override { return reading_; }
 

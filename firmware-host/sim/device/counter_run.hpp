@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames that count themselves, to find each one that is lost or doubled on the way.
+// Frames with consecutive numbers as codes, so that each lost or repeated frame is detected.
 #pragma once
 
 #include "firmware-host/core/wire/message_types.hpp"
@@ -7,8 +7,8 @@
 
 namespace tacto::firmware_host {
 
-/// The code of channel c in frame i is 16 i + c, running over at 2^32: after 2^28 frames, 45 min at 100 kHz.
-/// No physics, next to no work.
+/// The code of channel c in frame i is 16 i + c, modulo 2^32: it wraps after 2^28 frames, 45 min at 100 kHz.
+/// No physics, and almost no computation.
 class CounterRun final : public FrameSource {
  public:
   bool next(std::span<std::int32_t> frame) override {

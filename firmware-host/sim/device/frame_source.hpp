@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the emulated device's frames come from.
+// The interface of the emulated device's sources of frames.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
 
-  /// One sample period on, and the frame at its end: a code of each channel. False where it can't go on.
+  /// Computes one sample period, and the frame at its end: one code per channel. False if it cannot continue.
   virtual bool next(std::span<std::int32_t> frame) = 0;
-  /// The encoder's, at the end of that period.
+  /// The count of the encoder at the end of that period.
   virtual std::int32_t encoder_count() const = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A finger that goes where it is told.
+// A finger that follows a given position.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace tacto::firmware_host {
 
-/// The encoder follows a script: frame i is of (i + 1) x period, not counting the frames in which it is held
-/// at its beginning. Only the channels of position and normal
-/// force, the second and third of the emulated device's, say something; the others read zero.
+/// The encoder follows a script: frame i is at (i + 1) x period, without the frames in which the script is
+/// held at its beginning. Only the channels of position and normal force, the second and third of the
+/// emulated device, have values; the others are zero.
 class ScriptedRun final : public FrameSource {
  public:
-  /// `held` outlives it; none: never.
+  /// `held` must outlive this object; null: never held.
   ScriptedRun(std::function<double(double)> position_m, std::function<std::int32_t(double)> force_code,
               double period_s, double quantum_m, const std::atomic<bool>* held = nullptr)
       : position_m_(std::move(position_m)),
@@ -38,7 +38,7 @@ class ScriptedRun final : public FrameSource {
   std::int32_t encoder_count() const override { return count_; }
 
  private:
-  // A counter of 32 bits that passes 2^31 goes on from its other end.
+  // A 32-bit counter wraps at 2^31.
   std::int32_t count_at(std::uint64_t frame) const {
     const double count = std::floor(position_m_(static_cast<double>(frame) * period_s_) / quantum_m_);
     return static_cast<std::int32_t>(static_cast<std::int64_t>(count));

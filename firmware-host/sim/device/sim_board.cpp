@@ -15,8 +15,8 @@ namespace tacto::firmware_host {
 namespace {
 
 constexpr std::uint32_t kClockHz = 1'000'000;
-constexpr std::size_t kForceChannel = 2;   // as ScriptedRun has it
-constexpr std::size_t kMessageBytes = 40;  // of a samples message, beside its codes: core/WIRE.md
+constexpr std::size_t kForceChannel = 2;   // as in ScriptedRun
+constexpr std::size_t kMessageBytes = 40;  // the bytes of a samples message without its codes: core/WIRE.md
 
 }  // namespace
 
@@ -73,7 +73,7 @@ std::size_t SimBoard::send(std::span<const std::uint8_t> bytes) {
   return size;
 }
 
-// Samples, and what every message of them begins and ends with.
+// Samples, with the header and the end of each message.
 double SimBoard::stream_bytes_per_s() const {
   const double frame = static_cast<double>(channels_.size() * sizeof(std::int32_t));
   return 1e-3 * rate_millihertz_ * (frame + static_cast<double>(kMessageBytes) / wire::kMaxBlockFrames);

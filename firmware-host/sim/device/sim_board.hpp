@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated device's board: the firmware's own core, with physics behind its hardware layer.
+// The board of the emulated device: the firmware's core, with physics behind its hardware layer.
 #pragma once
 
 #include <atomic>
@@ -18,9 +18,9 @@
 
 namespace tacto::firmware_host {
 
-/// One thread calls step() and poll(). Each time the rate is set, the finger begins anew: equal parameters
-/// give equal frames. While there is a drive, the tray answers it beside the sensor, with hysteresis, second
-/// mode and a finger's load where the parameters say so.
+/// One thread calls step() and poll(). Each time the rate is set, the finger starts again: equal parameters
+/// give equal frames. While there is a drive, the tray moves with it, independently of the sensor, with the
+/// hysteresis, second mode and finger's load of the parameters.
 class SimBoard {
  public:
   SimBoard(const SimParameters& parameters, schema::Transducer transducer, Surface surface);
@@ -29,32 +29,32 @@ class SimBoard {
 
   bool ticking() const { return rate_millihertz_ > 0; }
   double period_s() const { return 1e3 / rate_millihertz_; }
-  /// The same by the host's clock: the device's may be off.
+  /// The same by the host's clock; the device's clock may have an error.
   double host_period_s() const { return period_s() / (1 + 1e-6 * parameters_.errors.clock_ppm); }
-  /// One sample period of physics, then the firmware's tick. Precondition: ticking().
+  /// Computes one sample period of physics, then the firmware's tick. Precondition: ticking().
   void step();
   void poll() { firmware_->poll(); }
 
   std::vector<std::uint8_t>& from_host() { return from_host_; }
   std::vector<std::uint8_t>& to_host() { return to_host_; }
   void set_enabled(bool enabled) { enabled_.store(enabled); }  // from any thread
-  /// From the next time the rate is set, the encoder goes where this says (m, against seconds since then),
-  /// and there is no other physics of the finger. It presses with what the parameter `load` says, or with
-  /// normal_n (N, against the same time); the other channels read zero.
+  /// From the next time the rate is set, the encoder follows position_m (m, over the seconds since then), and
+  /// there is no other physics of the finger. Its load is the parameter `load`, or normal_n (N, over the same
+  /// time); the other channels are zero.
   void set_script(std::function<double(double time_s)> position_m,
                   std::function<double(double time_s)> normal_n = {}) {
     script_ = std::move(position_m);
     normal_n_ = std::move(normal_n);
   }
-  /// The script stays at its beginning, or goes on from there. From any thread.
+  /// The script stays at its beginning, or continues. From any thread.
   void hold_script(bool held) { script_held_.store(held); }
-  /// Bytes to the host that the link holds; what does not fit stays in the firmware's ring, as long as that
-  /// has room.
+  /// The number of bytes to the host that the link can hold; further bytes stay in the firmware's ring while
+  /// it has room.
   void set_link_bytes(std::size_t bytes) { link_bytes_ = bytes; }
-  /// Of the stream, while ticking: what the link has to carry, in bytes a second.
+  /// The data rate of the stream while ticking, in bytes per second.
   double stream_bytes_per_s() const;
 
-  /// Where the motion has diverged: when, in seconds since the rate was set. Negative while it has not.
+  /// The time at which the motion diverged, in seconds since the rate was set. Negative if it has not.
   double diverged_s() const { return diverged_s_; }
   double drive_v() const { return drive_v_; }
   double displacement_m() const { return tray_ ? tray_->displacement_m() : 0; }

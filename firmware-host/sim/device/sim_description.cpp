@@ -85,9 +85,9 @@ std::string simulated_by(const SimParameters& p) {
                      p.seed);
 }
 
-// What its recorded frames show. A play does not use the surface: the finger is on the texture.
+// The content of its recorded frames. During playback the surface is not used: the finger is on the texture.
 std::string recorded_words(const SimParameters& p, std::string_view surface) {
-  if (p.counter) return "frames that count themselves, no physics";
+  if (p.counter) return "frames that contain their numbers, no physics";
   return p.known_force ? force_words(p.force) : fmt::format("{}, on {}", finger_words(p), surface);
 }
 
@@ -109,7 +109,8 @@ std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& 
       position_channel(run, parameters), load_channel("normal_force", run.normal_cell()),
       load_channel("net_force", run.net_cell())};
   if (run.reference_cell() != nullptr) {
-    channels.push_back(converted("applied_force", "N", *run.reference_cell(), "reference cell in the pull"));
+    channels.push_back(
+        converted("applied_force", "N", *run.reference_cell(), "reference cell in line with the pull"));
     put_text(channels.back().quantity, "net_force");
   }
   if (parameters.watches_tray())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the emulated device says of itself.
+// The description of the emulated device.
 #pragma once
 
 #include <string_view>
@@ -11,13 +11,13 @@
 namespace tacto::firmware_host {
 
 /// tangential_force (the transducer's output, V), position (encoder, counts; or LVDT, m), normal_force and
-/// net_force (load cell, N), and where a known force pulls applied_force (reference cell, N).
+/// net_force (load cell, N), and with a known force applied_force (reference cell, N).
 std::vector<wire::Channel> sim_channels(const SimRun& run, const SimParameters& parameters);
 /// Plain numbers of the quantity `signal`.
 std::vector<wire::Channel> counter_channels(int count);
-/// By what it is simulated, what its frames are then of, its transducer, its surface.
+/// The simulation, the content of its frames, its transducer, its surface.
 std::vector<wire::Note> sim_notes(const SimParameters& parameters, std::string_view surface);
-/// Name, serial, firmware, features and limits; clock and rates are the board's.
+/// Name, serial, firmware, features and limits; the board sets clock and rates.
 wire::Welcome sim_welcome(const SimParameters& parameters, const schema::Transducer& transducer);
 
 }  // namespace tacto::firmware_host

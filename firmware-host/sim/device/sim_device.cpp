@@ -20,7 +20,7 @@ Result<std::unique_ptr<SimDevice>> SimDevice::open(std::string uri, const SimPar
   return std::unique_ptr<SimDevice>(new SimDevice(std::move(board), std::move(*wire), parameters.paced));
 }
 
-// On the wire it is a converter that failed; here it is known why.
+// On the wire this is a failed converter; here the reason is known.
 Result<std::size_t> SimDevice::read(std::span<std::int32_t> interleaved) {
   const auto frames = wire_->read(interleaved);
   if (frames || board_->diverged_s() < 0) return frames;
@@ -29,10 +29,10 @@ Result<std::size_t> SimDevice::read(std::span<std::int32_t> interleaved) {
                         fmt::format("the motion of the transducer '{}' diverges before the finger has moved",
                                     capabilities().transducer ? capabilities().transducer->name : ""),
                         capabilities().uri,
-                        "its parameters can't be those of a tray that works: take another transducer");
+                        "its parameters are not those of a working tray: use another transducer");
   return schema::fail(ErrorKind::device,
                       fmt::format("the simulated finger's motion diverged at {:.4f} s", board_->diverged_s()),
-                      capabilities().uri, "ask for less friction, load or depth");
+                      capabilities().uri, "use less friction, load or depth");
 }
 
 Result<std::unique_ptr<SimDevice>> make_sim_device(const std::string& uri, std::string_view parameters) {

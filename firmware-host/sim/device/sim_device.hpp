@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emulated device: physics, instruments and converters behind the firmware's own core, spoken to over the
-// wire.
+// The emulated device: physics, instruments and converters behind the firmware's core, connected by the wire
+// protocol.
 #pragma once
 
 #include "firmware-host/link/wire_device.hpp"
@@ -9,8 +9,8 @@
 namespace tacto::firmware_host {
 
 /// Channels: tangential_force (the transducer's output, V), position (encoder on the finger, counts),
-/// normal_force and net_force (load cell, N). Runs as fast as it can, or paced; read() computes what it
-/// gives. start() begins the same recording anew: equal parameters give equal frames, to the bit, on every
+/// normal_force and net_force (load cell, N). Runs at full speed, or paced; read() computes the frames.
+/// start() starts the same recording again: equal parameters give the same bits in the frames, on every
 /// machine.
 class SimDevice final : public Device {
  public:
@@ -25,7 +25,7 @@ class SimDevice final : public Device {
   schema::Result<void> stop() override { return wire_->stop(); }
   StreamCounts counts() const override { return wire_->counts(); }
   StreamEvents take_events() override { return wire_->take_events(); }
-  bool keeps_time() const override { return paced_; }
+  bool is_real_time() const override { return paced_; }
   schema::Result<double> round_trip_s() override { return wire_->round_trip_s(); }
 
   Client* conversation() override { return &wire_->client(); }
@@ -41,7 +41,7 @@ class SimDevice final : public Device {
   bool paced_;
 };
 
-/// `parameters` is what follows "sim:". Errors: as parse_sim_parameters, make_surface, read_transducer.
+/// `parameters` is the text after "sim:". Errors: as parse_sim_parameters, make_surface, read_transducer.
 schema::Result<std::unique_ptr<Device>> open_sim_device(const std::string& uri, std::string_view parameters);
 schema::Result<std::unique_ptr<SimDevice>> make_sim_device(const std::string& uri,
                                                            std::string_view parameters);

@@ -20,7 +20,7 @@ struct NumberKey {
   void (*store)(SimParameters& p, double value);
 };
 
-/// A key whose value is a word: one of `choices`, or any where they are empty.
+/// A key whose value is a word: one of `choices`, or any word if there are no choices.
 struct WordKey {
   std::string_view key, meaning;
   std::vector<std::string_view> choices;

@@ -41,7 +41,7 @@ std::string shown(double value, Dimension dimension) {
   return dimension == Dimension::none ? fmt::format("{:g}", value) : schema::for_people(value, dimension);
 }
 
-// An end of the range as people write it may be a rounding beyond it: 50um is not 50e-6.
+// A value at an end of the range may be outside by a rounding error: 50um is not exactly 50e-6.
 double within_rounding(double value, const NumberKey& number) {
   for (const double end : {number.least, number.most})
     if (std::abs(value - end) <= 1e-12 * std::abs(end)) return end;
@@ -57,8 +57,8 @@ Result<void> set(SimParameters& parameters, const NumberKey& number, std::string
   if (!fits || (number.whole && target != std::floor(target)))
     return schema::fail(
         ErrorKind::usage, fmt::format("'{}' is out of range", text), where(number.key),
-        fmt::format("from {} to {}{}", shown(number.least, number.dimension),
-                    shown(number.most, number.dimension), number.whole ? ", whole numbers" : ""));
+        fmt::format("give a value from {} to {}{}", shown(number.least, number.dimension),
+                    shown(number.most, number.dimension), number.whole ? ", a whole number" : ""));
   number.store(parameters, target);
   return {};
 }
@@ -67,8 +67,8 @@ Result<void> set(SimParameters& parameters, const WordKey& word, std::string_vie
   bool fits = word.choices.empty() && !text.empty();
   for (const std::string_view choice : word.choices) fits = fits || choice == text;
   if (!fits)
-    return schema::fail(ErrorKind::usage, fmt::format("'{}' is no value for it", text), where(word.key),
-                        fmt::format("it is: {}", word.meaning));
+    return schema::fail(ErrorKind::usage, fmt::format("'{}' is not a possible value", text), where(word.key),
+                        fmt::format("possible values: {}", word.meaning));
   word.store(parameters, text);
   return {};
 }
@@ -79,7 +79,7 @@ Result<void> set_pair(SimParameters& parameters, std::string_view pair, std::set
     return schema::fail(ErrorKind::usage, fmt::format("'{}' is not key=value", pair),
                         "sim:", "the keys are: " + keys());
   const std::string_view key = pair.substr(0, equals), value = pair.substr(equals + 1);
-  if (!seen.insert(key).second) return schema::fail(ErrorKind::usage, "the key comes twice", where(key));
+  if (!seen.insert(key).second) return schema::fail(ErrorKind::usage, "the key is given twice", where(key));
   for (const NumberKey& number : sim_number_keys())
     if (number.key == key) return set(parameters, number, value);
   for (const WordKey& word : sim_word_keys())
@@ -89,7 +89,7 @@ Result<void> set_pair(SimParameters& parameters, std::string_view pair, std::set
                       "sim:", "the keys are: " + keys());
 }
 
-// Keys that say more of something which another key asks for.
+// Keys that are only valid together with another key.
 struct Detail {
   std::string_view prefix;
   bool (*asked)(const SimParameters& p);
@@ -112,7 +112,7 @@ Result<void> check_details(const SimParameters& parameters, const std::set<std::
   for (const std::string_view key : seen)
     for (const Detail& detail : kDetails)
       if (key.starts_with(detail.prefix) && !detail.asked(parameters))
-        return schema::fail(ErrorKind::usage, "the key means nothing here", where(key),
+        return schema::fail(ErrorKind::usage, "the key needs another key", where(key),
                             std::string(detail.remedy));
   return {};
 }
@@ -121,12 +121,13 @@ Result<void> check_force(const SimParameters& p) {
   if (!p.known_force || p.force.shape == ForceShape::release) return {};
   const bool sine = p.force.shape == ForceShape::sine;
   if (!sine && p.force.low_hz > p.force.high_hz)
-    return schema::fail(ErrorKind::usage, "the force's band is upside down", where("force_low"),
-                        "give a force_high that is not below it");
+    return schema::fail(ErrorKind::usage, "the lower frequency of the force is above the higher one",
+                        where("force_low"), "give a force_high of at least force_low");
   if ((sine ? p.force.low_hz : p.force.high_hz) < p.sample_rate_hz / 2) return {};
-  return schema::fail(ErrorKind::usage, "the force goes beyond half the rate",
-                      where(sine ? "force_low" : "force_high"),
-                      fmt::format("below {}", shown(p.sample_rate_hz / 2, Dimension::frequency)));
+  return schema::fail(
+      ErrorKind::usage, "the frequency of the force is above half the rate",
+      where(sine ? "force_low" : "force_high"),
+      fmt::format("give a frequency below {}", shown(p.sample_rate_hz / 2, Dimension::frequency)));
 }
 
 }  // namespace
@@ -147,10 +148,11 @@ Result<void> check_against(const SimParameters& p, const schema::Transducer& tra
   if (p.has_second_mode && p.second_mode.frequency_hz < least_hz)
     return schema::fail(ErrorKind::usage, "the second mode is not above the tray's resonance",
                         where("second_mode"),
-                        fmt::format("from {} on", shown(least_hz, Dimension::frequency)));
+                        fmt::format("give at least {}", shown(least_hz, Dimension::frequency)));
   if (p.has_lvdt && surface_length_m > p.lvdt.range_m)
-    return schema::fail(ErrorKind::usage, "the LVDT does not reach over the surface", where("lvdt_range"),
-                        fmt::format("from {} on", shown(surface_length_m, Dimension::length)));
+    return schema::fail(ErrorKind::usage, "the range of the LVDT is shorter than the surface",
+                        where("lvdt_range"),
+                        fmt::format("give at least {}", shown(surface_length_m, Dimension::length)));
   return {};
 }
 

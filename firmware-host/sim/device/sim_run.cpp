@@ -23,15 +23,15 @@ enum Stream : std::uint64_t {
 constexpr double kNormalRangeN = 17;
 constexpr double kTangentialRangeN = 12;
 
-// A quartz cell such as goes into a shaker's stinger: its own resonance lies far above the band, its noise
-// below a code. Ours, for what the slow load cell can't see.
+// A quartz cell as in the stinger of a shaker: its resonance is far above the band, its noise below a code.
+// Our choice, as the reference for the slow load cell.
 constexpr int kReferenceBits = 24;
 constexpr double kReferenceRangeN = 10;
 
-constexpr double kLoadKnotS = 0.25;  // ours: a hand's load wanders below about 1 Hz
-constexpr double kLeastLoad = 0.2;   // of the load: a finger that is down stays down
+constexpr double kLoadKnotS = 0.25;  // ours: the load of a hand wanders below about 1 Hz
+constexpr double kLeastLoad = 0.2;   // of the load: a finger in contact stays in contact
 
-// Keeps the whole patch, jitter included, on the surface.
+// Keeps the whole patch, including the jitter, on the surface.
 constexpr double kMarginM = 0.3e-3;
 
 StrokePlan plan_on(const HeightProfile& profile, const SimParameters& parameters) {
@@ -41,8 +41,8 @@ StrokePlan plan_on(const HeightProfile& profile, const SimParameters& parameters
   return plan;
 }
 
-// A floor of n newtons per root hertz, white up to half the rate, as volts at the output. The paper gives it
-// as a force; the flat middle of the band is where force and output are the same thing.
+// A noise floor in newtons per root hertz, white up to half the rate, converted to volts at the output. The
+// paper gives it as a force; in the flat middle of the band, output and force are proportional.
 double noise_rms_v(const SimParameters& parameters, const schema::Transducer& transducer) {
   if (!parameters.noise) return 0;
   return transducer.noise_n_per_sqrt_hz * SensorMotion(transducer).middle_gain_v_per_n() *

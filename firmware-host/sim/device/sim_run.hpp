@@ -18,23 +18,23 @@
 
 namespace tacto::firmware_host {
 
-/// The bench (a finger on a surface, or a known force) and what reads it: the piezo's converter with the
-/// noise floor before it, the encoder or LVDT, the load cell's axes, and in the pull of a known force a cell
-/// that is as fast as the converter. Frame i is of (i + 1) / rate seconds.
+/// The bench (a finger on a surface, or a known force) and its instruments: the piezo's converter with the
+/// noise floor before it, the encoder or LVDT, the load cell's axes, and with a known force a cell that is as
+/// fast as the converter. Frame i is at (i + 1) / rate seconds.
 class SimRun final : public FrameSource {
  public:
   SimRun(const SimParameters& parameters, const schema::Transducer& transducer, const HeightProfile& profile);
 
-  /// Codes of tangential_force, position, normal_force, net_force, and applied_force where it is known. False
-  /// where the simulated motion has diverged.
+  /// Codes of tangential_force, position, normal_force, net_force, and applied_force if it is known. False if
+  /// the simulated motion has diverged.
   bool next(std::span<std::int32_t> frame) override;
   std::int32_t encoder_count() const override { return count_; }
   const LoadCell& normal_cell() const { return normal_cell_; }
   const LoadCell& net_cell() const { return net_cell_; }
   const Converter& converter() const { return converter_; }
-  /// Null where a finger pulls.
+  /// Null with a finger.
   const Converter* reference_cell() const { return reference_cell_ ? &*reference_cell_ : nullptr; }
-  /// Null where the encoder gives the position.
+  /// Null if the encoder measures the position.
   const Lvdt* lvdt() const { return lvdt_ ? &*lvdt_ : nullptr; }
 
  private:

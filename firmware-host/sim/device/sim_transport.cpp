@@ -8,7 +8,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-constexpr double kLongestNapS = 10e-3;  // half of what capture writes at a time
+constexpr double kLongestNapS = 10e-3;  // half of the block that capture writes at once
 
 }  // namespace
 
@@ -23,14 +23,14 @@ void SimTransport::tick() {
   board_.poll();
 }
 
-// Where nothing ticks, nothing will come: the rest of the time is over at once.
+// Without ticks no bytes can arrive, so that the rest of the time passes at once.
 void SimTransport::pass_time(double until_s) {
   while (board_.to_host().empty() && now_s_ < until_s && board_.ticking()) tick();
   if (board_.to_host().empty()) now_s_ = std::max(now_s_, until_s);
   if (pacer_) pacer_->wait_until(now_s_);
 }
 
-// All ticks that are due, whether or not somebody reads; then sleep while the link fills by a little.
+// Computes all ticks that are due, also if nothing is read; then sleeps while the link fills a little.
 void SimTransport::pass_real_time(double until_s) {
   const double nap_s = std::min(kLongestNapS, *link_buffer_s_ / 4);
   board_.set_link_bytes(static_cast<std::size_t>(*link_buffer_s_ * board_.stream_bytes_per_s()));
@@ -50,7 +50,7 @@ schema::Result<std::size_t> SimTransport::read(std::span<std::uint8_t> bytes, do
   return take_first(board_.to_host(), bytes);
 }
 
-// A device at rest has no time to catch up with when it is woken.
+// A device that was at rest does not catch up when a command arrives.
 schema::Result<void> SimTransport::write(std::span<const std::uint8_t> bytes, double) {
   if (pacer_ && !board_.ticking()) now_s_ = std::max(now_s_, pacer_->now_s());
   board_.from_host().insert(board_.from_host().end(), bytes.begin(), bytes.end());

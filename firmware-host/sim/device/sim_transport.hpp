@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cable to the emulated device: bytes through memory, and time that goes on while somebody waits.
+// The cable to the emulated device: bytes through memory, and emulated time that passes while the host waits.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace tacto::firmware_host {
 
-/// Emulated time passes in read(), until there is something to read: as fast as it can, or paced by the
-/// clock. now_s() is emulated time, so timeouts are exact and cost nothing. Paced with a link that holds a
-/// limited time of the stream, the device does not wait for a late reader: it ticks as often as it had to,
-/// and loses what neither link nor ring hold. The board outlives it.
+/// Emulated time passes in read(), until there is something to read: at full speed, or paced by the clock.
+/// now_s() is emulated time, so timeouts are exact and cause no delay. If paced with a link of limited time,
+/// the device does not wait for a late reader: it runs all ticks that are due, and loses what neither link
+/// nor ring can hold. The board must outlive this object.
 class SimTransport final : public Transport {
  public:
   SimTransport(SimBoard& board, bool paced, std::optional<double> link_buffer_s = std::nullopt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The instrument that sees the driven tray move: what identification needs.
+// The instrument that measures the motion of the driven tray, for identification.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace tacto::firmware_host {
 
-/// A vibrometer as fast as the stream, with white noise, 16 bits over +-200 um: twice the displacement that
-/// the paper's transducer is allowed. One sample a tick, of where the tray is when the tick's drive begins.
+/// A vibrometer as fast as the stream, with white noise, 16 bits over +-200 um: twice the permitted
+/// displacement of the paper's transducer. One sample per tick, at the position of the tray when the tick's
+/// drive begins.
 class TraySensor {
  public:
   explicit TraySensor(const SimParameters& parameters)

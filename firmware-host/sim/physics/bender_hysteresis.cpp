@@ -12,7 +12,7 @@ double followed(double play, double u, double threshold) {
 
 }  // namespace
 
-// On the loop between +-A, play i ends at +-(A - r_i) and stands apart by 2 min(r_i, A - r_i) at u = 0.
+// On the loop between +-A, play i ends at +-(A - r_i), and its opening at u = 0 is 2 min(r_i, A - r_i).
 BenderHysteresis::BenderHysteresis(double opening, double amplitude)
     : on_(opening > 0), spacing_(amplitude / kPlays) {
   double ends = 0, apart = 0;

@@ -7,10 +7,10 @@
 namespace tacto::firmware_host {
 namespace {
 
-// A hand's speed and load wander slowly: below about 1 Hz. Ours.
+// A hand's speed and load wander slowly: below about 1 Hz. Our choice.
 constexpr double kWanderKnotS = 0.25;
 constexpr double kSlowestFactor = 0.2;   // a wandering finger does not stop or turn
-constexpr double kFullPressSpeed = 0.6;  // of the plan's speed: from there on the load is whole
+constexpr double kFullPressSpeed = 0.6;  // of the plan's speed: from there on the load is the full load
 constexpr double kArrivedM = 0.1e-6;
 
 }  // namespace
@@ -23,7 +23,7 @@ FingerPath::FingerPath(const StrokePlan& plan, double step_s, Random random)
       rest_left_s_(plan.rest_s),
       place_{plan.from_m, 0, plan.resting_press} {}
 
-// The brake's square root is what lets the finger stop where the stroke ends.
+// The square root limits the speed so that the finger can stop at the end of the stroke.
 double FingerPath::target_speed_mps(double remaining_m) {
   const double factor = std::max(kSlowestFactor, 1 + plan_.wander * wander_.at(time_s_));
   return std::min(plan_.speed_mps * factor, std::sqrt(2 * acceleration_mps2_ * remaining_m));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the finger's bone moves along the surface.
+// The motion of the finger's bone along the surface.
 #pragma once
 
 #include "firmware-host/sim/physics/spline_noise.hpp"
 
 namespace tacto::firmware_host {
 
-/// Strokes there and back between two places, with rests before, between and after. A hand that rests or
-/// turns eases its load; with the full load the pulp would stick until it breaks away with a jump that clips
-/// the transducer.
+/// Strokes there and back between two places, with rests before, between and after. A finger at rest or at a
+/// turning point has a reduced load; with the full load the pulp would stick until it breaks away with a jump
+/// that clips the transducer.
 struct StrokePlan {
   double from_m = 0;
   double to_m = 0;
@@ -16,8 +16,8 @@ struct StrokePlan {
   int strokes = 2;             ///< odd ones go from `from_m` to `to_m`, even ones back
   double wander = 0.1;         ///< RMS of the speed about its mean, as a fraction
   double rest_s = 0.1;         ///< before the first stroke and between two
-  double ramp_m = 2e-3;        ///< distance over which the finger comes to speed
-  double resting_press = 0.1;  ///< part of the load that is left where the finger stands
+  double ramp_m = 2e-3;        ///< distance of the acceleration to full speed
+  double resting_press = 0.1;  ///< the fraction of the load on a resting finger
 };
 
 struct FingerPlace {
@@ -26,12 +26,12 @@ struct FingerPlace {
   double press = 1;      ///< part of the full load
 };
 
-/// The path of a plan, step by step. Never leaves [from_m, to_m]; after the last stroke the finger stays.
+/// The path of a plan, step by step. It stays within [from_m, to_m]; after the last stroke the finger rests.
 class FingerPath {
  public:
   FingerPath(const StrokePlan& plan, double step_s, Random random);
 
-  /// The place one step later.
+  /// Returns the place one step later.
   FingerPlace step();
   FingerPlace place() const { return place_; }
   bool finished() const { return strokes_done_ == plan_.strokes; }

@@ -7,8 +7,8 @@
 namespace tacto::firmware_host {
 namespace {
 
-// 1 pm: far below anything felt, far above rounding, so that a sine whose last bit depends on the processor
-// does not make two machines differ.
+// 1 pm: far below any perceptible height and far above rounding errors, so that the last bit of a sine, which
+// depends on the processor, makes no difference between machines.
 constexpr double kHeightStepM = 1e-12;
 
 double rounded(double height_m) {
@@ -21,7 +21,7 @@ double slope_at(const std::vector<double>& heights, double pitch_m, std::size_t 
   return (heights[after] - heights[before]) / (static_cast<double>(after - before) * pitch_m);
 }
 
-// Mean over 2 reach + 1 neighbours, the ends held.
+// Mean over 2 reach + 1 neighbours; the end values are repeated beyond the ends.
 std::vector<double> running_mean(const std::vector<double>& values, std::size_t reach) {
   const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
   const auto r = static_cast<std::ptrdiff_t>(reach);

@@ -13,7 +13,7 @@ struct SurfacePoint {
   double slope = 0;
 };
 
-/// Heights on an even grid that begins at x = 0, linear in between, level beyond both ends.
+/// Heights on an even grid that begins at x = 0, linear between samples, constant beyond both ends.
 class HeightProfile {
  public:
   /// At least two heights, in metres, `pitch_m` apart.
@@ -38,8 +38,7 @@ class HeightProfile {
   std::vector<SurfacePoint> points_;
 };
 
-/// What a soft body feels of a profile: its mean under a bell made of three running means, each `width_m`
-/// wide.
+/// The profile as a soft body follows it: smoothed by three running means, each `width_m` wide.
 HeightProfile softened(const HeightProfile& profile, double width_m);
 
 }  // namespace tacto::firmware_host

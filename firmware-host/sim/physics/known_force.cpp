@@ -8,7 +8,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-// The last bit of a power depends on the machine; a microhertz does not.
+// The last bit of a power depends on the machine, so frequencies are rounded to a microhertz.
 constexpr double kFrequencyStepHz = 1e-6;
 
 double tone_hz(const ForcePlan& plan, int k) {
@@ -19,7 +19,7 @@ double tone_hz(const ForcePlan& plan, int k) {
 
 }  // namespace
 
-// Folded to a quarter turn; its Taylor series, whose next term there is 3e-16.
+// Reduced to a quarter turn; Taylor series, with a next term of 3e-16.
 double sine_of_turns(double turns) {
   const double part = turns - std::floor(turns + 0.5);
   const double quarter = part > 0.25 ? 0.5 - part : part < -0.25 ? -0.5 - part : part;
@@ -34,7 +34,8 @@ KnownForce::KnownForce(const ForcePlan& plan) : plan_(plan) {
   for (int k = 0; k < tones; ++k) tones_.push_back({tone_hz(plan, k), k * k / (2.0 * tones)});
 }
 
-// Each way takes sweep_s and (low + high) / 2 x sweep_s turns; the way back is the way there, mirrored.
+// Each direction takes sweep_s and (low + high) / 2 x sweep_s turns; the second is the mirror image of the
+// first.
 double KnownForce::chirp_turns(double time_s) const {
   const double growth_hz = (plan_.high_hz - plan_.low_hz) / plan_.sweep_s;
   const double ways = std::floor(time_s / plan_.sweep_s), s = time_s - ways * plan_.sweep_s;
@@ -44,7 +45,7 @@ double KnownForce::chirp_turns(double time_s) const {
   return before + s * (begin_hz + (back ? -growth_hz : growth_hz) * s / 2);
 }
 
-// Hung so slowly that the sensor, which forgets what is below 8 Hz, hears the cut alone.
+// The rise is so slow that the sensor, with its high-pass at 8 Hz, responds only to the cut.
 double KnownForce::pull_n(double time_s) const {
   if (time_s >= plan_.sweep_s) return 0;
   const double hung = std::min(1.0, time_s / (0.75 * plan_.sweep_s));

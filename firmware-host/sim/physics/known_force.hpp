@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A force that is known at every moment, to hold the sensor's path against.
+// A force that is known at every time, for comparison with the sensor's output.
 #pragma once
 
 #include <vector>
@@ -14,17 +14,17 @@ struct ForcePlan {
   double low_hz = 15;         ///< of Wiertlewski 2011's band; a sine's frequency
   double high_hz = 500;
   int tones = 16;      ///< of a multisine
-  double sweep_s = 1;  ///< of a chirp: from low to high, then back, and so on; of a release: until it
+  double sweep_s = 1;  ///< of a chirp: from low to high, then back, and so on; of a release: time of the cut
 };
 
-/// sin(2 pi turns), to 1e-15 and the same on every machine to the bit (libm's is not).
+/// sin(2 pi turns), to 1e-15, with the same bits on every machine (unlike libm).
 double sine_of_turns(double turns);
 
 /// Newtons along +x:
 ///   sine       a sin(2 pi low t)
 ///   multisine  sum over k = 0 ... n - 1 of a sin(2 pi f_k t + pi k^2 / n), f_k = low (high / low)^(k / (n -
-///              1)), to the microhertz (phases after Schroeder 1970: a low crest)
-///   chirp      a sin(2 pi phi(t)), phi' going evenly from low to high in sweep_s, and back
+///              1)), to the microhertz (phases after Schroeder 1970: a low crest factor)
+///   chirp      a sin(2 pi phi(t)), phi' linear from low to high in sweep_s, and back
 ///   release    a weight on a thread: rises to a by a raised cosine over the first three quarters of sweep_s,
 ///              and is cut at sweep_s.
 class KnownForce {

@@ -11,7 +11,7 @@ namespace {
 constexpr int kLoadCellBits = 16;
 constexpr double kNoiseN = 1.0 / 320;   // ATI Nano17, SI-12-0.12: resolution
 constexpr double kNativeRateHz = 1000;  // ours
-constexpr double kCutoffHz = 200;       // ours: well under half of the native rate
+constexpr double kCutoffHz = 200;       // ours: well below half of the native rate
 
 }  // namespace
 

@@ -10,8 +10,8 @@
 namespace tacto::firmware_host {
 
 /// After the ATI Nano17 of Wiertlewski 2011, section III-D (calibration SI-12-0.12: 12 N tangentially, 17 N
-/// normally, resolution 1/320 N): slow, and noisier than the piezo by far. A first-order low-pass, noise of
-/// the resolution's size, 16 bits; read about 1000 times a second and held in between.
+/// normally, resolution 1/320 N): slow, and much noisier than the piezo. A first-order low-pass, noise of the
+/// size of the resolution, 16 bits; sampled about 1000 times per second and held in between.
 class LoadCell {
  public:
   LoadCell(double range_n, double sample_rate_hz, bool noise, Random random);

@@ -13,10 +13,10 @@ struct LugreFriction {
   double bristle_rate_mps = 0;  ///< d(bristle)/dt
 };
 
-/// Friction at a slip speed with the bristles bent by `bristle_m`. Equations (1) to (3) of the paper,
-/// normalised by the load: dz/dt = v - s0 |v| z / g(v), mu = s0 z + s1 dz/dt. Its g has exp(-(v/v_s)^2) for
-/// how the static excess fades with speed; here it is 1 / (1 + (v/v_s)^2), the same on every machine to the
-/// bit.
+/// Friction at a slip speed with a bristle deflection of `bristle_m`. Equations (1) to (3) of the paper,
+/// normalised by the load: dz/dt = v - s0 |v| z / g(v), mu = s0 z + s1 dz/dt. In the paper the static excess
+/// in g decreases with exp(-(v/v_s)^2); here with 1 / (1 + (v/v_s)^2), which has the same bits on every
+/// machine.
 inline LugreFriction lugre_friction(const FingerParameters& finger, double bristle_m, double slip_mps) {
   const double ratio = slip_mps / finger.stribeck_mps;
   const double limit = finger.friction * (1 + (finger.static_ratio - 1) / (1 + ratio * ratio));

@@ -4,7 +4,7 @@
 namespace tacto::firmware_host {
 namespace {
 
-// 2^64 over the golden ratio: neighbouring streams and seeds start far apart.
+// 2^64 over the golden ratio, so that the states of neighbouring streams and seeds differ widely.
 constexpr std::uint64_t kStreamStep = 0x9E3779B97F4A7C15U;
 
 int sum_of_halves(std::uint64_t word) {

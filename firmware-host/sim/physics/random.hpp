@@ -7,16 +7,16 @@
 
 namespace tacto::firmware_host {
 
-/// A seeded stream of random numbers; streams of one seed are independent of each other. std::mt19937_64 is
-/// defined to the bit by the standard, its distributions are not; and libm's logarithm differs in the last
-/// bit between processors. So both transforms here use exact arithmetic only.
+/// A seeded stream of random numbers; streams of one seed are independent of each other. The standard defines
+/// the bits of std::mt19937_64, but not those of the distributions, and the last bit of libm's logarithm
+/// depends on the processor. So both transforms here use exact arithmetic only.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint64_t stream);
 
-  /// Even in [0, 1), 53 bits.
+  /// Uniform in [0, 1), 53 bits.
   double uniform();
-  /// Mean 0, variance 1: the sum of twelve even numbers of 16 bits (Irwin-Hall). Never beyond 6;
+  /// Mean 0, variance 1: the sum of twelve uniform numbers of 16 bits (Irwin-Hall). Magnitude at most 6;
   /// kurtosis 2.9.
   double normal();
 

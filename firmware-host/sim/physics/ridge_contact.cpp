@@ -29,7 +29,8 @@ RidgeContact::RidgeContact(const FingerParameters& finger, const HeightProfile& 
       under_(offsets_m_.size()) {}
 
 // Newton's method on the load as a function of the base's height, which is piecewise linear, convex and
-// falling: from the second step on it comes from below and ends exactly, after at most one step a ridge.
+// decreasing: from the second step on it approaches from below and ends exactly, after at most one step per
+// ridge.
 double RidgeContact::base_height_m(double load_n) const {
   double base_m = base_m_;
   for (std::size_t step = 0; step <= under_.size() + 1; ++step) {

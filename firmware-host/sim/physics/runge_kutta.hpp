@@ -18,9 +18,9 @@ OdeState<N> advanced(const OdeState<N>& a, double h, const OdeState<N>& b) {
   return sum;
 }
 
-/// The state one step of `h` seconds later, where rate(state, fraction) gives d(state)/dt at a fraction (0,
-/// 1/2, 1) of the step. For a mode of angular frequency w its relative error is (w h)^4 / 120 per radian:
-/// 2e-8 at 600 Hz and h = 12.5 us. Stable while w h < 2.8.
+/// The state after one step of `h` seconds; rate(state, fraction) returns d(state)/dt at a fraction (0, 1/2,
+/// 1) of the step. For a mode of angular frequency w the relative error is (w h)^4 / 120 per radian: 2e-8 at
+/// 600 Hz and h = 12.5 us. Stable while w h < 2.8.
 template <std::size_t N, class Rate>
 OdeState<N> runge_kutta_step(const OdeState<N>& state, double h, Rate&& rate) {
   const OdeState<N> k1 = rate(state, 0.0);

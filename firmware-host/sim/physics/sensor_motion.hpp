@@ -10,15 +10,15 @@ namespace tacto::firmware_host {
 struct SensorState {
   double tray_m = 0;        ///< x
   double tray_mps = 0;      ///< dx/dt
-  double charge_lag_n = 0;  ///< the bender's force k_p x, seen through R_s and C_p
+  double charge_lag_n = 0;  ///< the bender's force k_p x after the low-pass of R_s and C_p
   double inner_m = 0;       ///< of the second mode
   double inner_mps = 0;
 };
 
 /// Wiertlewski 2011, equations (1) to (3). A force f on the tray bends the piezo bender, m x'' + b_r x' +
-/// (k_r + k_p) x = f; its force k_p x makes a charge that leaks through the load resistors, u' = (k_p x - u)
-/// / (2 R_s C_p); and the amplifier gives V_s = -G_s (beta / C_p) (k_p x - u) x sensor_scale. On request the
-/// mass has a second mode.
+/// (k_r + k_p) x = f. The charge from its force k_p x leaks through the load resistors, u' = (k_p x - u) / (2
+/// R_s C_p), and the amplifier gives V_s = -G_s (beta / C_p) (k_p x - u) x sensor_scale. Optionally the mass
+/// has a second mode.
 class SensorMotion {
  public:
   explicit SensorMotion(const schema::Transducer& transducer,
@@ -33,7 +33,7 @@ class SensorMotion {
   double output_v(const SensorState& state) const {
     return -output_v_per_n_ * (bender_n_per_m_ * state.tray_m - state.charge_lag_n);
   }
-  /// Volts for a newton in the middle of the band, where neither resonance nor leak matter (sign left out).
+  /// Volts per newton in the middle of the band, where resonance and leak are negligible (without sign).
   double middle_gain_v_per_n() const {
     return output_v_per_n_ * bender_n_per_m_ / mechanics_.stiffness_n_per_m();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smooth random curves: band-limited wander of a hand, long waves of a surface.
+// Smooth random curves: the slow wander of a hand, the long waves of a surface.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ class SplineNoise {
  public:
   SplineNoise(Random random, double knot_spacing);
 
-  /// The curve at `place`, in the unit of the spacing. Places must not decrease from call to call, nor be
-  /// negative.
+  /// The curve at `place`, in the unit of the spacing. Places must not be negative, nor decrease from call to
+  /// call.
   double at(double place);
 
  private:

@@ -9,7 +9,7 @@
 
 #include "data-schema/base/quantity.hpp"
 #include "data-schema/texture/texture.hpp"
-#include "firmware-host/sim/physics/table_two.hpp"
+#include "firmware-host/sim/physics/paper_surfaces.hpp"
 
 namespace tacto::firmware_host {
 namespace {
@@ -21,9 +21,9 @@ using schema::for_people;
 constexpr double kPitchM = 2e-6;
 constexpr double kDefaultPeriodM = 1.0e-3;  // the grating of Wiertlewski 2011, Figure 1
 constexpr double kDefaultDepthM = 0.1e-3;   // the same
-constexpr double kSquareWallM = 20e-6;      // a wall needs some width on a grid
+constexpr double kSquareWallM = 20e-6;      // a wall on a grid needs some width
 constexpr double kShortestPeriodM = 50e-6;
-constexpr double kShortestM = 10e-3;  // a patch of 4.4 mm has to fit and to travel
+constexpr double kShortestM = 10e-3;  // a patch of 4.4 mm needs room to move
 constexpr double kLongestM = 1;
 
 struct Sample {
@@ -60,9 +60,9 @@ constexpr Grating kGratings[] = {{"sine", sine}, {"triangle", triangle}, {"squar
 
 schema::Result<void> check_sizes(const SurfaceChoice& choice) {
   if (!(choice.length_m >= kShortestM && choice.length_m <= kLongestM))
-    return schema::fail(ErrorKind::usage, "the surface is not between 10 mm and 1 m long", "length");
+    return schema::fail(ErrorKind::usage, "the length of the surface is not between 10 mm and 1 m", "length");
   if (choice.period_m && !(*choice.period_m >= kShortestPeriodM))
-    return schema::fail(ErrorKind::usage, "the grating's period is under 50 um", "period");
+    return schema::fail(ErrorKind::usage, "the grating's period is below 50 um", "period");
   if (choice.depth_m && !(*choice.depth_m >= 0 && *choice.depth_m <= 1e-3))
     return schema::fail(ErrorKind::usage, "the grating's depth is not between 0 and 1 mm", "depth");
   return {};
@@ -87,13 +87,13 @@ Surface make_grating(const Grating& grating, const SurfaceChoice& choice) {
 
 constexpr std::string_view kProfilePrefix = "profile:";
 constexpr double kCoarsestM = 0.1e-3;  // the width of a skin ridge's contact: FingerParameters
-constexpr double kTallestM = 1e-3;     // as of the gratings
+constexpr double kTallestM = 1e-3;     // as the gratings
 
 tl::unexpected<schema::Error> no_profile(const std::string& name, std::string what, std::string remedy) {
   return schema::fail(ErrorKind::unsuitable, std::move(what), name, std::move(remedy));
 }
 
-// A texture of heights is not softened or resampled: it is touched as it was measured.
+// A measured texture of heights is used without smoothing or resampling.
 schema::Result<Surface> measured_surface(const std::string& name) {
   const auto texture = schema::read_texture(name);
   TACTO_TRY(texture);
@@ -102,20 +102,21 @@ schema::Result<Surface> measured_surface(const std::string& name) {
                       "make one with 'tactograph import' of a height profile");
   const double pitch_m = texture->signal.pitch_m, length_m = texture->signal.length_m();
   if (!(length_m >= kShortestM && length_m <= kLongestM))
-    return no_profile(name, "is not between 10 mm and 1 m long", "give a longer or shorter profile");
+    return no_profile(name, "has a length that is not between 10 mm and 1 m",
+                      "use a longer or shorter profile");
   const Heights& heights = texture->signal.values;
   const auto [low, high] = std::ranges::minmax_element(heights);
   if (!(pitch_m <= kCoarsestM) || *high - *low > kTallestM)
     return no_profile(name, "its heights are more than 0.1 mm apart, or differ by more than 1 mm",
-                      "a finger does not follow that");
+                      "use a smoother profile: a finger cannot follow it");
   const std::string words = texture->surface.empty() ? name : texture->surface;
   return Surface{HeightProfile(pitch_m, heights), fmt::format("profile of {}", words)};
 }
 
 schema::Result<Surface> make_fixed(const SurfaceChoice& choice) {
   if (choice.period_m || choice.depth_m)
-    return schema::fail(ErrorKind::usage, fmt::format("surface {} has its own shape", choice.name),
-                        "period, depth", "give period and depth with sine, triangle or square");
+    return schema::fail(ErrorKind::usage, fmt::format("surface {} has a fixed shape", choice.name),
+                        "period, depth", "use period and depth with sine, triangle or square only");
   for (const Sample& sample : kSamples)
     if (sample.name == choice.name)
       return Surface{HeightProfile(kPitchM, sample.heights(grid_points(choice), kPitchM, choice.seed)),

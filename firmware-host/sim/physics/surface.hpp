@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surfaces that the emulated device can hold: the five samples of the paper's Table II, and plain
-// gratings.
+// The surfaces of the emulated device: the five samples of the paper's Table II, and plain gratings.
 #pragma once
 
 #include <cstdint>
@@ -29,10 +28,10 @@ struct Surface {
 /// "A, B, C, D, E, flat, sine, triangle, square".
 std::string surface_names();
 
-/// The surface on a grid of 2 um; the same seed gives the same heights.
-/// Errors: usage: a name that does not exist (with those that do), a period or depth where the surface has
-/// its own, a period under 50 um, a length that is not 10 mm ... 1 m; unsuitable: a profile that is not of
-/// heights, coarser than 0.1 mm, over 1 mm tall, or not 10 mm ... 1 m long; of read_texture().
+/// The surface on a grid of 2 um; the same seed gives the same heights. Errors: usage: a name that does not
+/// exist (with those that do), a period or depth for a surface with its own, a period under 50 um, a length
+/// that is not 10 mm ... 1 m; unsuitable: a profile that is not of heights, coarser than 0.1 mm, over 1 mm
+/// tall, or not 10 mm ... 1 m long; as read_texture().
 schema::Result<Surface> make_surface(const SurfaceChoice& choice);
 
 }  // namespace tacto::firmware_host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The moving part of the transducer: what accelerates under a force.
+// The moving part of the transducer: its acceleration under a force.
 #pragma once
 
 #include "data-schema/transducer/transducer.hpp"
@@ -14,13 +14,13 @@ struct TrayMotion {
 
 /// m x'' + b_r x' + (k_r + k_p) x = f, Wiertlewski 2011, equation (1). With a second mode, a share of m is an
 /// inner mass at y, and
-///   m_1 x'' = f - b_r x' - (k_r + k_p) x + k_2 (y - x) + c_2 (y' - x'),   m_2 y'' = -k_2 (y - x) - c_2 (y' -
-///   x'),
-/// where k_2 = m_2 w^2 (k - m_1 w^2) / (k - m w^2) puts the second undamped natural frequency at w (exact).
-/// With a finger's load, its mass, damper and spring add to those of the tray.
+///   m_1 x'' = f - b_r x' - (k_r + k_p) x + k_2 (y - x) + c_2 (y' - x'),
+///   m_2 y'' = -k_2 (y - x) - c_2 (y' - x'),
+/// where k_2 = m_2 w^2 (k - m_1 w^2) / (k - m w^2) sets the second undamped natural frequency to w (exact).
+/// With a finger's load, its mass, damper and spring are added to those of the tray.
 class TrayMechanics {
  public:
-  /// Precondition: a second mode lies above the resonance of what is left of the mass.
+  /// Precondition: the second mode is above the resonance of the remaining mass.
   explicit TrayMechanics(const schema::Transducer& transducer, const TrayPhysics& physics = {});
 
   double tray_mps2(const TrayMotion& s, double force_n) const {
@@ -41,8 +41,8 @@ class TrayMechanics {
   double inner_n_per_m_ = 0, inner_n_s_per_m_ = 0, per_inner_mass_kg_ = 0;
 };
 
-/// The lowest second frequency that a share of the mass can be given, in Hz: 5 % above the tray's resonance
-/// without that share.
+/// The lowest second frequency that is possible with this share of the mass, in Hz: 5 % above the tray's
+/// resonance without that share.
 double least_second_mode_hz(const schema::Transducer& transducer, const SecondMode& mode);
 
 }  // namespace tacto::firmware_host

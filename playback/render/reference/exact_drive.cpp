@@ -20,9 +20,9 @@ PaddedSpectrum modelled(const PaddedSpectrum& drive, const Chain& chain) {
   return through(drive, [&](double frequency_hz) { return chain_response(chain, frequency_hz); });
 }
 
-// The model is linear: of a bender with hysteresis it is told what that makes of the drive.
-PaddedSpectrum felt_by_bender(const PaddedSpectrum& drive, const std::vector<double>& drive_v,
-                              const Chain& chain) {
+// The model is linear, so it gets the drive behind the bender's hysteresis.
+PaddedSpectrum linear_drive_spectrum(const PaddedSpectrum& drive, const std::vector<double>& drive_v,
+                                     const Chain& chain) {
   const schema::Transducer& t = chain.transducer;
   if (!t.hysteresis) return drive;
   const auto linear_v =
@@ -38,7 +38,7 @@ ExactDrive played(std::vector<double> drive_v, const PaddedSpectrum& target, con
                   std::size_t oversampling) {
   round_to_float(drive_v);
   const auto drive = spectrum_of(drive_v, target.rate_hz, target.period);
-  const auto displacement = modelled(felt_by_bender(drive, drive_v, chain), chain);
+  const auto displacement = modelled(linear_drive_spectrum(drive, drive_v, chain), chain);
   const auto fine_m = signal_of(displacement, oversampling);
   const auto fine_v = oversampling > 1 ? signal_of(drive, oversampling) : drive_v;
   const double fine_rate_hz = target.rate_hz * static_cast<double>(oversampling);
@@ -62,7 +62,7 @@ ExactDrive exact_drive(const PaddedSpectrum& target, const spatial::Band& band, 
   return played(inverted(target, chain, inverse), target, chain, static_cast<std::size_t>(oversampling));
 }
 
-ExactDrive moved_by(std::vector<double> drive_v, const PaddedSpectrum& target, const Chain& chain) {
+ExactDrive modelled_from(std::vector<double> drive_v, const PaddedSpectrum& target, const Chain& chain) {
   return played(std::move(drive_v), target, chain, 1);
 }
 
@@ -78,7 +78,7 @@ schema::Result<ExactDrive> clipped_drive(const PaddedSpectrum& target, const spa
   }
   return schema::fail(schema::ErrorKind::unsuitable,
                       "the displacement stays above its limit even where it is clipped", {},
-                      "take a smaller --gain");
+                      "use a smaller --gain");
 }
 
 }  // namespace tacto::playback

@@ -16,7 +16,7 @@ double ramped(double level, bool raise, double rise_ticks, double fall_ticks) {
                     1.0);
 }
 
-// The kernel's own measure of speed, which is a choice (core::half_octaves), here in double.
+// The kernel's approximate measure of speed (core::half_octaves), here in double precision.
 double coarseness_of(double ratio) {
   if (!(ratio > 1)) return 0;
   int exponent = 0;
@@ -162,7 +162,7 @@ double ExactKernel::sectioned(double value) {
   return value;
 }
 
-// The root is followed by Newton's step, which is its definition: the exact one would be reached at once.
+// One Newton step per tick defines the root; the exact root would respond at once.
 double ExactKernel::energy_limited(double value) {
   const double limit_v = prepared_.energy_rms_v;
   if (!(limit_v > 0)) return value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The texture's kernel again, in double precision: what single precision costs is measured against it.
+// The texture's kernel in double precision: the reference for the rounding error of single precision.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace tacto::playback {
 
-/// drive = slew(amplitude(energy(envelope x gate x sections(plays(taps(gain x levels(place))))))), as
-/// core::TickKernel states it, written from those formulas and not from its source: places as doubles, fmod
-/// for the ends, the filter by its sum. The samples are the rounded ones. What a kernel may choose is chosen
-/// alike: the tracker's gains and thresholds, the measure of speed by which levels fade, Newton's step a
-/// tick. Slow; not for the tick.
+/// drive = slew(amplitude(energy(envelope x gate x sections(plays(taps(gain x levels(place))))))), the
+/// formulas of core::TickKernel, implemented from those formulas and not from its source: places as doubles,
+/// fmod for the ends, the filter as a sum. The samples are the rounded ones. What is a free choice of the
+/// kernel is the same here: the tracker's gains and thresholds, the measure of speed for the fade between
+/// levels, one Newton step per tick. Slow; not for the tick.
 class ExactKernel {
  public:
   explicit ExactKernel(const Prepared& prepared);
@@ -23,7 +23,7 @@ class ExactKernel {
     std::int64_t count = 0;
     double gain = 0;
     bool raise = false;
-    double normal_force_n = 0;  ///< looked at where the setup is gated
+    double normal_force_n = 0;  ///< used if the setup has a contact gate
   };
   double tick(const Input& input);
 
@@ -42,17 +42,17 @@ class ExactKernel {
   const Prepared& prepared_;
   double rate_hz_;
   std::vector<std::size_t> first_;
-  // The finger.
+  // State of the finger's tracker.
   bool begun_ = false;
   std::int64_t count_ = 0;
   double offset_ = 0, speed_ = 0, since_ = 0, place_ = 0;
   int seen_ = 0;
-  // Gain, filter, limits.
+  // State of gain, filter and limits.
   bool gained_ = false;
   double gain_ = 0, gain_aim_ = 0, gain_step_ = 0;
   int gain_left_ = 0;
   std::vector<double> past_, plays_;
-  std::vector<std::array<double, 4>> sections_;  // x_-1, x_-2, y_-1, y_-2 of each
+  std::vector<std::array<double, 4>> sections_;  // x_-1, x_-2, y_-1, y_-2 of each section
   double mean_square_ = 0, root_v_ = 0, level_ = 0, gate_ = 0, last_v_ = 0;
   bool touching_ = false;
 };

@@ -26,14 +26,14 @@ double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Over `onset` readings from rest to what is read.
+// Fades from rest to the readings over `onset` readings.
 template <class Iterator>
 void soften(Iterator first, std::size_t onset, double rest) {
   for (std::size_t i = 0; i < onset; ++i, ++first)
     *first = rest + (*first - rest) * rising(static_cast<double>(i) / static_cast<double>(onset));
 }
 
-// From the rest at the end back to that at the start, over the padding: slow enough to hold nothing inside
+// Fills the padding with a transition from the end's rest to the start's, so slow that it has no content in
 // the band.
 void fill_padding(std::span<double> padding, double from, double to) {
   const auto steps = static_cast<double>(padding.size());
@@ -41,7 +41,7 @@ void fill_padding(std::span<double> padding, double from, double to) {
     padding[i] = from + (to - from) * rising((static_cast<double>(i) + 0.5) / steps);
 }
 
-// Readings of the path, `count` of them, then of the padding.
+// The first `count` readings are of the path, the others are padding.
 void settle_ends(std::span<double> readings, std::size_t count, std::size_t onset, std::size_t longest_period,
                  const Rests& rests) {
   const std::size_t averaged = std::min(count, longest_period);
@@ -53,8 +53,8 @@ void settle_ends(std::span<double> readings, std::size_t count, std::size_t onse
   fill_padding(readings.subspan(count), end, start);
 }
 
-// Bins of the readings up to half the result's rate, scaled to the result's length: exact decimation of what
-// the band keeps.
+// Bins of the readings up to half the result's rate, scaled to the result's length: exact decimation of the
+// band.
 PaddedSpectrum decimated(const PaddedSpectrum& fine, const ReadingGrid& grid) {
   PaddedSpectrum coarse{grid.rate_hz, grid.samples, grid.period, fine.bins};
   coarse.bins.resize(grid.period / 2 + 1);
@@ -67,7 +67,7 @@ PaddedSpectrum decimated(const PaddedSpectrum& fine, const ReadingGrid& grid) {
 ReadingGrid reading_grid(double duration_s, double rate_hz, const spatial::Band& band, double finest_hz) {
   ReadingGrid grid;
   grid.rate_hz = rate_hz;
-  // A path of 2 s at 10 kHz has 20,001 samples although 2.0 * 10e3 may fall short by a rounding.
+  // A path of 2 s at 10 kHz has 20,001 samples, although rounding may make 2.0 * 10e3 smaller.
   grid.samples = static_cast<std::size_t>(std::floor(duration_s * rate_hz * (1 + 1e-12))) + 1;
   const double padding_s = std::max(kLeastPaddingS, kPaddingPeriods / band.low_hz);
   grid.period = spatial::fast_length(grid.samples + static_cast<std::size_t>(padding_s * rate_hz));

@@ -26,7 +26,7 @@ PaddedSpectrum spectrum_of(std::span<const double> values, double rate_hz, std::
 std::vector<double> signal_of(const PaddedSpectrum& spectrum, std::size_t oversampling) {
   spatial::RealFft fft(spectrum.period * oversampling);
   auto bins = spectrum.bins;
-  // What stood at half the rate once is now two bins, one of each sign.
+  // The bin at half the old rate becomes two bins, one of each sign.
   if (oversampling > 1 && spectrum.period % 2 == 0) bins.back() /= 2;
   for (auto& bin : bins) bin *= static_cast<double>(oversampling);
   bins.resize(fft.bins());

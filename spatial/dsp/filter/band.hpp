@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pass-band in time.
+// A pass band in time.
 #pragma once
 
 namespace tacto::spatial {
 
-/// Passes low_hz <= f <= high_hz, both ends included. The default is the transducer's useful band
+/// Passes low_hz <= f <= high_hz, both limits included. The default is the transducer's useful band
 /// (Wiertlewski 2011).
 struct Band {
   double low_hz = 15;

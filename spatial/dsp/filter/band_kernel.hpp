@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The band-pass that the treated Fourier filter is: the ideal kernel under a window, so that it ends.
+// The kernel of the Fourier band-pass with treated ends: the ideal kernel under a window, so that its length
+// is finite.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +17,11 @@ inline constexpr double kFlatShare = 0.3;
 /// continuous derivatives.
 double kernel_window(double share);
 
-/// Taps 0 ... reach of the symmetric kernel k(n) = w(n / reach) (2 h sinc(2 h n) - 2 l sinc(2 l n)), h and l
-/// the edges over the sample rate. What lies at 0 Hz passes whole (from 0 Hz) or not at all; an edge at half
-/// the rate passes everything below it. The band's edges are as wide as the window makes them: what lies
-/// further from an edge than 2.5 sample_rate_hz / reach passes or is stopped to 1e-3, than 8 sample_rate_hz /
-/// reach to 1e-6. At least 2 taps.
+/// Taps 0 ... reach of the symmetric kernel k(n) = w(n / reach) (2 h sinc(2 h n) - 2 l sinc(2 l n)), with the
+/// edges h and l over the sample rate. 0 Hz passes completely if the band begins there, otherwise not at all;
+/// an edge at half the rate passes everything below it. The window determines the width of the transitions:
+/// at a distance from an edge of more than 2.5 sample_rate_hz / reach the gain is exact to 1e-3, of more than
+/// 8 sample_rate_hz / reach to 1e-6. At least 2 taps.
 std::vector<double> band_kernel(Band band, double sample_rate_hz, std::size_t reach);
 
 }  // namespace tacto::spatial

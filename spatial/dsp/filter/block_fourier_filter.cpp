@@ -19,10 +19,9 @@ namespace tacto::spatial {
 namespace {
 
 constexpr std::size_t kLongestReach = 32768;
-// The ends of a record are treated for the lowest frequency, but for no lower one than this share of the
-// highest.
+// The ends of a record are treated for the lowest frequency, but for none below this share of the highest.
 constexpr double kLowestTreated = 1.0 / 512;
-// With a gain the kernel is so much longer, for the gain's impulse response.
+// With a gain the kernel is longer by this factor, for the gain's impulse response.
 constexpr double kRoomForGain = 1.25;
 constexpr std::size_t kFrame = 8192, kFewestPerFrame = 64;
 constexpr double kNothing = 1e-9;
@@ -39,14 +38,14 @@ std::size_t reach_of(double low_hz, double rate_hz) {
   return static_cast<std::size_t>(std::clamp(samples, 1.0, static_cast<double>(kLongestReach)));
 }
 
-// About as much again as the kernel takes: longer blocks cost the same per value.
+// Blocks about as long as the kernel; longer blocks cost the same per value.
 std::size_t block_length(std::size_t reach, std::size_t longest) {
   const std::size_t usual = std::bit_ceil(std::max<std::size_t>(7 * reach / 2, 1024));
   const bool shorter = longest < usual - 2 * reach;
   return shorter ? fast_length(longest + 2 * reach) : usual;
 }
 
-// The gain's impulse response beyond the kernel is tapered to its end, and what lies further is left out.
+// Tapers the gain's impulse response beyond the kernel down to zero, and omits the rest.
 std::vector<double> shortened(std::vector<double> circle, std::size_t reach, std::size_t longer) {
   const std::size_t length = circle.size();
   for (std::size_t k = reach; k <= length - reach; ++k) {
@@ -70,14 +69,14 @@ KernelSpectrum with_gain(KernelSpectrum kernel, double rate_hz, const SpectralGa
   return kernel;
 }
 
-// What a band's kernel is made of; the same numbers make the same kernel to the bit.
+// The parameters of a band's kernel; equal parameters give the same kernel to the bit.
 struct KernelDesign {
   double low_hz, high_hz, rate_hz;
   std::size_t reach, length;
   bool operator==(const KernelDesign&) const = default;
 };
 
-// A folder of recordings asks for one band at one rate again and again: the last kernels are kept.
+// Caches the last kernels, because a folder of recordings needs the same band and rate many times.
 KernelSpectrum band_spectrum(const KernelDesign& target) {
   constexpr std::size_t kMost = 4, kLongest = std::size_t{1} << 17;  // 1 MB each
   static std::mutex mutex;
@@ -151,12 +150,12 @@ class BlockFourierFilter::State {
 
  private:
   double factor() const { return static_cast<double>(chain_.factor()); }
-  // Zeros before the record, so that what the chain remembers of them is true.
+  // Zeros before the record that fill the memory of the chain, so that its state is defined.
   std::size_t lead() const { return chain_.memory() / chain_.factor() * chain_.factor(); }
-  // Values that come out before the record's first.
+  // Number of output values before the first of the record.
   std::size_t late() const { return lead() + chain_.delay() + extended_.padding(); }
 
-  // How many values of the lower rate the longest record takes, with what is beyond its ends.
+  // Number of values at the lower rate for the longest record and its continuation beyond the ends.
   std::size_t lower_count(std::size_t longest, Band band, double sample_rate_hz) const {
     const EndTreatment ends = EndTreatment::for_lowest(lowest_treated(band, sample_rate_hz), sample_rate_hz,
                                                        std::max<std::size_t>(longest, 2));
@@ -180,7 +179,7 @@ class BlockFourierFilter::State {
     };
   }
 
-  // Leaves out what is before the record and beyond its end.
+  // Omits what is before the record and beyond its end.
   void give(std::span<const double> values, std::vector<double>& out) {
     const std::size_t begin = passed_, end = passed_ + values.size();
     passed_ = end;
@@ -192,7 +191,8 @@ class BlockFourierFilter::State {
       for (double& value : std::span(out).last(target.size())) value += level;
   }
 
-  // After its end the record stays level: once the chain knows nothing else, the lower rate has that level.
+  // After its end the record has a constant level. When the chain's memory holds only that level, its
+  // output at the lower rate is that level, too.
   void finish_record(std::vector<double>& out) {
     extended_.finish(waiting_);
     const std::size_t size = waiting_.size() + chain_.memory();
@@ -207,7 +207,7 @@ class BlockFourierFilter::State {
   std::size_t frame_;
   OverlapSave convolution_;
   double reach_s_;
-  double level_gain_;  // of a record's level, which is taken out of it
+  double level_gain_;  // gain of a record's level, which is subtracted first
   std::vector<double> waiting_;
   std::size_t taken_ = 0, passed_ = 0;
   double first_ = 0;

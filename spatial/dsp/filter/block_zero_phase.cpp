@@ -24,7 +24,7 @@ void BlockZeroPhase::reset() {
   begun_ = false;
 }
 
-// As extend_odd() goes on before the record.
+// The same continuation before the record as extend_odd().
 void BlockZeroPhase::begin(std::size_t padding) {
   padding_ = to_skip_ = padding;
   begun_ = true;
@@ -40,7 +40,7 @@ void BlockZeroPhase::append(std::span<const double> values) {
   forwards_.run(std::span(ahead_).last(values.size()));
 }
 
-// Of what lies ahead the first `seen` values are run backwards, and `size` of them given.
+// Runs backwards over the first `seen` values ahead and appends `size` of them to `out`.
 void BlockZeroPhase::run_block(std::size_t size, std::size_t seen, std::vector<double>& out) {
   scratch_.assign(ahead_.begin(), ahead_.begin() + static_cast<std::ptrdiff_t>(seen));
   backwards_.settle(scratch_.back());
@@ -54,7 +54,7 @@ void BlockZeroPhase::run_block(std::size_t size, std::size_t seen, std::vector<d
 
 void BlockZeroPhase::push(std::span<const double> values, std::vector<double>& out) {
   while (!values.empty()) {
-    // Blocks end where they would in chunks of any size.
+    // Blocks end at the same places for chunks of any size.
     const auto chunk = values.first(std::min(values.size(), block_ + fading_ - ahead_.size()));
     values = values.subspan(chunk.size());
     held_.insert(held_.end(), chunk.begin(), chunk.end());

@@ -10,9 +10,9 @@
 namespace tacto::spatial {
 namespace {
 
-// A bin that lies on the band's edge stays, whatever the rounding of its frequency.
+// A bin at the band's edge passes in spite of the rounding of its frequency.
 constexpr double kOnTheEdge = 1e-12;
-// How much of a bin passes: all or nothing of each, as the paper truncates.
+// The share of a bin that passes: all or nothing, as the paper truncates.
 struct WholeBins {
   Band inclusive;
   explicit WholeBins(Band band)

@@ -26,7 +26,7 @@ OverlapSave::OverlapSave(KernelSpectrum kernel)
   reset();
 }
 
-// A block begins `reach` before the first value that it gives.
+// A block begins `reach` before the first value of its output.
 void OverlapSave::reset() {
   std::ranges::fill(block_, 0.0);
   filled_ = kernel_.reach;

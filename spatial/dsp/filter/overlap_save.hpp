@@ -26,11 +26,11 @@ class OverlapSave {
   using Sink = std::function<void(std::span<const double>)>;
   explicit OverlapSave(KernelSpectrum kernel);
 
-  /// Takes more of the signal, which was 0 before its first value; gives to `sink`, in order and as soon as
-  /// they are known, the values of the convolution at the signal's own indices.
+  /// Continues the signal, which was 0 before its first value. `sink` receives the values of the convolution
+  /// at the signal's own indices, in order and as soon as they are known.
   void push(std::span<const double> values, const Sink& sink);
-  /// The signal goes on with `level` for ever: gives values until `count` were given since the start. Then it
-  /// is as new.
+  /// The signal continues with a constant `level`; outputs values until there are `count` since the start.
+  /// Then the object is ready for the next signal.
   void finish(double level, std::size_t count, const Sink& sink);
   void reset();
 

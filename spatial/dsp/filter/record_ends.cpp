@@ -11,16 +11,16 @@ namespace {
 
 constexpr double kPaddingPeriods = 8;
 constexpr double kBaselinePeriods = 2;
-// What is no longer needed is left where it is until there is so much of it.
+// Consumed values are erased only when there are this many of them.
 constexpr std::size_t kLeastErased = 8192;
 
-// A straight line by least squares through values[0 ... count), level at index 0.
+// Least-squares straight line through values[0 ... count); `level` is at index 0.
 struct Line {
   double level = 0, slope = 0;
   double at(double index) const { return level + slope * index; }
 };
 
-// `value(k)` is the k-th sample counted inwards from an end.
+// `value(k)` is the k-th sample from an end inwards.
 template <class Value>
 Line fit_line(const Value& value, std::size_t count) {
   const double n = static_cast<double>(count), middle = (n - 1) / 2;

@@ -11,9 +11,9 @@
 namespace tacto::spatial {
 namespace {
 
-// What runs at once: four sections are enough to keep the processor busy, and few enough for its registers.
+// Sections that run at once: four are enough to use the processor fully, and their state fits its registers.
 constexpr std::size_t kAtOnce = 4;
-// Longer chains pass over so many values at a time, which stay in the cache.
+// Longer chains process so many values at a time, which stay in the cache.
 constexpr std::size_t kSectionBlock = 2048;
 
 double slowest_pole(const Section& s) {
@@ -105,7 +105,7 @@ std::size_t SectionChain::memory(double share) const {
   double slowest = 0;
   for (const Section& s : sections_) slowest = std::max(slowest, slowest_pole(s));
   if (slowest <= 0) return 2 * sections_.size();
-  // Poles of several sections that lie close together fall off later than one of them.
+  // Close poles of several sections decay more slowly together than one of them.
   const double samples = std::log(share) / std::log(std::min(slowest, 1 - 1e-12));
   return static_cast<std::size_t>(1.5 * samples) + 2 * sections_.size();
 }

@@ -6,13 +6,15 @@
 #include <cmath>
 #include <cstddef>
 
+#include "spatial/dsp/fourier/simd_clones.hpp"
+
 namespace tacto::spatial {
 namespace {
 
-// Sums side by side: one alone would wait for each addition to end before the next.
+// Independent partial sums: in a single sum each addition would wait for the one before.
 constexpr std::size_t kTrendLanes = 8;
 
-double total(const double (&sums)[kTrendLanes]) {
+TACTO_SIMD_INLINE double total(const double (&sums)[kTrendLanes]) {
   double sum = 0;
   for (const double each : sums) sum += each;
   return sum;
@@ -20,6 +22,7 @@ double total(const double (&sums)[kTrendLanes]) {
 
 }  // namespace
 
+TACTO_SIMD_CLONES
 double sum_above(std::span<const double> values, double level) {
   double sums[kTrendLanes] = {};
   std::size_t i = 0;
@@ -29,6 +32,7 @@ double sum_above(std::span<const double> values, double level) {
   return total(sums);
 }
 
+TACTO_SIMD_CLONES
 Trend trend_of(std::span<const double> values) {
   assert(values.size() >= 2);
   const auto count = static_cast<double>(values.size());
@@ -51,12 +55,15 @@ Trend trend_of(std::span<const double> values) {
   return trend;
 }
 
-void take_off_line(std::span<const double> values, double level, double slope, double scale,
+TACTO_SIMD_CLONES
+void subtract_line(std::span<const double> values, double level, double slope, double scale,
                    std::span<float> out) {
   assert(values.size() == out.size());
-  double position = 0;
-  for (std::size_t i = 0; i < values.size(); ++i, ++position)
-    out[i] = static_cast<float>((values[i] - level - slope * position) * scale);
+  const double* __restrict in = values.data();
+  float* __restrict result = out.data();
+  const auto count = static_cast<int>(values.size());  // an int becomes a number in one instruction
+  for (int i = 0; i < count; ++i)
+    result[i] = static_cast<float>((in[i] - level - slope * static_cast<double>(i)) * scale);
 }
 
 }  // namespace tacto::spatial

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The straight line that fits a stretch of samples best, and how far they lie from their mean.
+// The least-squares straight line of a stretch of samples, and their largest distance from the mean.
 #pragma once
 
 #include <span>
@@ -8,19 +8,19 @@ namespace tacto::spatial {
 
 struct Trend {
   double mean = 0;
-  double slope = 0;    ///< a sample, by least squares
-  double largest = 0;  ///< |x - mean| at most
+  double slope = 0;    ///< per sample, by least squares
+  double largest = 0;  ///< largest |x - mean|
 };
 
-/// Precondition: at least two values. Sums are taken over the first value, so that a strong baseline costs no
+/// Precondition: at least two values. Sums are relative to the first value, so that a large baseline costs no
 /// digits.
 Trend trend_of(std::span<const double> values);
 
 /// sum (x - level).
 double sum_above(std::span<const double> values, double level);
 
-/// out_i = (x_i - level - slope i) scale, in double precision but for the result. Sizes are equal.
-void take_off_line(std::span<const double> values, double level, double slope, double scale,
+/// out_i = (x_i - level - slope i) scale, in double precision except for the result. Sizes are equal.
+void subtract_line(std::span<const double> values, double level, double slope, double scale,
                    std::span<float> out);
 
 }  // namespace tacto::spatial

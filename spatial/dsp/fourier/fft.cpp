@@ -24,8 +24,8 @@ using Plan = std::shared_ptr<std::remove_pointer_t<fftw_plan>>;
 
 enum class Direction { to_spectrum, to_time };
 
-// Planning computes tables of sines that take longer than a transform, and a folder of recordings asks for
-// the same few lengths: the last plans are kept. A plan works on any aligned buffers, from any thread.
+// Caches the last plans, because planning computes tables of sines, which takes longer than a transform, and
+// a folder of recordings needs few lengths. A plan can be used with any aligned buffers, from any thread.
 class RecentPlans {
  public:
   Plan find(Direction direction, std::size_t length) {
@@ -35,7 +35,7 @@ class RecentPlans {
     const auto found = std::ranges::find_if(kept_, target);
     return found == kept_.end() ? nullptr : found->plan;
   }
-  // Gives back the plan that had to go: it may only be destroyed without the planner's lock.
+  // Returns the plan that was removed: it must not be destroyed while the planner's lock is held.
   Plan keep(Direction direction, std::size_t length, const Plan& plan) {
     if (length > kLongest) return nullptr;
     kept_.push_front({direction, length, plan});
@@ -56,7 +56,7 @@ class RecentPlans {
 };
 
 RecentPlans& recent_plans() {
-  static RecentPlans& plans = *new RecentPlans;  // FFTW's own tables may go first at the process's end
+  static RecentPlans& plans = *new RecentPlans;  // not destroyed: FFTW's tables may go first at exit
   return plans;
 }
 
@@ -97,7 +97,7 @@ struct RealFft::State {
   std::size_t length;
   AlignedBuffer<double> time;
   AlignedBuffer<fftw_complex> spectrum;
-  Plan to_spectrum, to_time;  // planned on first use: most owners go one way only
+  Plan to_spectrum, to_time;  // planned on first use, because most owners need one direction
 };
 
 RealFft::RealFft(std::size_t length) : state_(std::make_unique<State>(length)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real Fourier transforms: the only door to FFTW. Offline use; planning takes a lock, so not safe in the
-// tick.
+// Real Fourier transforms; the interface to FFTW. Offline use; planning locks a mutex, so it is not safe in
+// the tick.
 #pragma once
 
 #include <complex>

@@ -43,7 +43,7 @@ bool read_wisdom(const std::string& path) {
 template <class Real>
 bool write_wisdom(const std::string& path) {
   if (path.empty()) return false;
-  read_wisdom<Real>(path);  // another process may have learned since
+  read_wisdom<Real>(path);  // another process may have added to it since
   const std::unique_ptr<char, void (*)(void*)> text(Fftw<Real>::wisdom(), Fftw<Real>::free);
   if (!text) return false;
   std::error_code ignored;

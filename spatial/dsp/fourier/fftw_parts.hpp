@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every door to FFTW needs: its two precisions under one name, aligned buffers, and the lock around its
+// Common parts of the users of FFTW: its two precisions under one name, aligned buffers, and the lock of its
 // planner. Internal to this folder.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace tacto::spatial {
 
-/// FFTW's planners (of all precisions) keep global tables; only execution may run beside itself.
+/// FFTW's planners (of all precisions) share global tables; only execution is thread-safe.
 std::mutex& planner_mutex();
 
 template <class Real>
@@ -58,8 +58,8 @@ struct FreeBuffer {
 template <class T>
 using AlignedBuffer = std::unique_ptr<T[], FreeBuffer>;
 
-/// Room for `count` elements, not initialised, aligned to a cache line: enough for any SIMD unit FFTW uses.
-/// Throws bad_alloc.
+/// Memory for `count` elements, not initialised, aligned to a cache line, which is enough for any SIMD unit
+/// that FFTW uses. Throws bad_alloc.
 template <class T>
 AlignedBuffer<T> aligned_buffer(std::size_t count) {
   constexpr std::size_t kAlignment = 64;

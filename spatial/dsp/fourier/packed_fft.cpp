@@ -22,7 +22,7 @@ struct DestroyPlan {
 template <class Real>
 using PackedPlan = std::unique_ptr<std::remove_pointer_t<typename Fftw<Real>::Plan>, DestroyPlan<Real>>;
 
-// By an estimated plan in single precision, at the 2e10 operations a second that such plans reach.
+// With an estimated plan in single precision, at 2e10 operations per second.
 double job_s(std::size_t length, std::size_t expected) {
   const auto n = static_cast<double>(length);
   return static_cast<double>(expected) * 5 * n * std::log2(std::max(n, 2.0)) / 2e10;
@@ -43,7 +43,7 @@ struct Buffers {
   }
 };
 
-// Stopped at the limit, FFTW goes on with what it has.
+// At the time limit FFTW continues with the best plan so far.
 template <class Real>
 typename Fftw<Real>::Plan measured(const Buffers<Real>& buffers, double limit_s) {
   Fftw<Real>::limit_planning(limit_s);
@@ -59,8 +59,8 @@ typename Fftw<Real>::Plan planned(const Buffers<Real>& buffers, std::size_t expe
   read_wisdom_once<Real>();
   if (const auto known = buffers.plan(FFTW_MEASURE | FFTW_WISDOM_ONLY)) return known;
   const auto length = static_cast<std::size_t>(buffers.length);
-  return measuring_pays(length, expected) ? measured(buffers, job_s(length, expected))
-                                          : buffers.plan(FFTW_ESTIMATE);
+  return measuring_saves_time(length, expected) ? measured(buffers, job_s(length, expected))
+                                                : buffers.plan(FFTW_ESTIMATE);
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ struct PackedFft<Real>::State {
         in(aligned_buffer<Complex>(n)),
         out(aligned_buffer<Complex>(n)),
         plan(planned(Buffers<Real>{static_cast<int>(n), in.get(), out.get()}, expected)) {
-    std::fill_n(&in[0][0], 2 * n, Real{0});  // planning writes on the buffers
+    std::fill_n(&in[0][0], 2 * n, Real{0});  // planning overwrites the buffers
   }
 
   std::size_t length;
@@ -115,11 +115,11 @@ void PackedFft<Real>::transform() {
 template class PackedFft<float>;
 template class PackedFft<double>;
 
-bool measuring_pays(std::size_t length, std::size_t expected) {
+bool measuring_saves_time(std::size_t length, std::size_t expected) {
   return job_s(length, expected) > 0.05 + 16e-6 * static_cast<double>(length);
 }
 
-bool take_a_moment(std::size_t length, std::size_t expected) {
+bool is_short_job(std::size_t length, std::size_t expected) {
   return job_s(length, expected) < 0.05;
 }
 

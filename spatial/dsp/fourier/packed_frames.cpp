@@ -4,17 +4,20 @@
 #include <cassert>
 #include <cstddef>
 
+#include "spatial/dsp/fourier/simd_clones.hpp"
+
 namespace tacto::spatial {
 namespace {
 
-// A complex array as plain numbers, which compilers vectorise; std::complex is laid out so.
+// A complex array as plain numbers, which compilers can vectorise; std::complex has the same layout.
 template <class Real>
 const Real* numbers(PackedSpectrum<Real> z) {
   return reinterpret_cast<const Real*>(z.data());
 }
 
 template <class Real>
-void pack_level(const Frame& a, const Frame& b, std::span<const float> window, Real* __restrict out) {
+TACTO_SIMD_CLONES void pack_level(const Frame& a, const Frame& b, std::span<const float> window,
+                                  Real* __restrict out) {
   const float* __restrict w = window.data();
   const float* __restrict x = a.samples;
   const float* __restrict y = b.samples;
@@ -27,10 +30,11 @@ void pack_level(const Frame& a, const Frame& b, std::span<const float> window, R
 }
 
 template <class Real>
-void pack_sloping(const Frame& a, const Frame& b, std::span<const float> window, Real* __restrict out) {
+TACTO_SIMD_CLONES void pack_sloping(const Frame& a, const Frame& b, std::span<const float> window,
+                                    Real* __restrict out) {
   const auto level_a = static_cast<Real>(a.level), level_b = static_cast<Real>(b.level);
   const auto slope_a = static_cast<Real>(a.slope), slope_b = static_cast<Real>(b.slope);
-  const auto count = static_cast<int>(window.size());  // an int becomes a number in one instruction
+  const auto count = static_cast<int>(window.size());  // converts to a float in one instruction
   for (int n = 0; n < count; ++n) {
     const auto at = static_cast<Real>(n);
     const Real weight = window[n];
@@ -54,7 +58,7 @@ void pack_frames(const Frame& a, const Frame& b, std::span<const float> window,
 }
 
 template <class Real>
-void unpack_powers(PackedSpectrum<Real> z, std::span<float> a, std::span<float> b) {
+TACTO_SIMD_CLONES void unpack_powers(PackedSpectrum<Real> z, std::span<float> a, std::span<float> b) {
   assert(a.size() == b.size() && a.size() <= z.size() / 2 + 1);
   if (a.empty()) return;
   const Real* __restrict up = numbers(z);

@@ -12,8 +12,8 @@
 namespace tacto::spatial {
 namespace {
 
-constexpr double kMargin = 50;  // of leakage, in 1 / window
-constexpr double kRoom = 3;     // 1 / factor over pass: a third of the band for the filter's slope
+constexpr double kMargin = 50;  // range of leakage beyond the last bin, in 1 / window
+constexpr double kRoom = 3;  // smallest 1 / factor over pass: a third of the band for the filter's transition
 constexpr std::size_t kDeepest = 4096;
 
 std::size_t largest_divisor(std::size_t of, std::size_t most) {
@@ -22,7 +22,7 @@ std::size_t largest_divisor(std::size_t of, std::size_t most) {
   return 1;
 }
 
-// Multiplications and additions for one row: a transform of two rows at 16 a cycle, a filter's at 8.
+// Multiplications and additions for one row: 16 per cycle in a transform of two rows, 8 in a filter.
 double transform_cost(double length, double window) {
   return 5 * length * std::log2(length) / 2 / 2 + window;
 }
@@ -53,7 +53,7 @@ Decimation decimation_for(const FrameShape& shape) {
   const double highest = static_cast<double>(shape.bins - 1) / static_cast<double>(shape.padded);
   const double pass = highest + kMargin / static_cast<double>(shape.window);
   const double most = std::floor(1 / (kRoom * pass) * (1 + 1e-9));
-  if (most < 2) return d;  // the band that is asked for takes the whole grid
+  if (most < 2) return d;  // the requested band needs full resolution
   d.factor = largest_divisor(shape.padded, static_cast<std::size_t>(most));
   d.grid = std::gcd(shape.hop, d.factor);
   d.pass = pass;
@@ -62,8 +62,8 @@ Decimation decimation_for(const FrameShape& shape) {
     return {.whole_because =
                 fmt::format("no number from 2 to {} divides the {} padded samples", most, shape.padded)};
   if (!pays(shape, d))
-    return {.whole_because =
-                fmt::format("with a hop of {} samples a filter would cost more than it saves", shape.hop)};
+    return {.whole_because = fmt::format(
+                "with a hop of {} samples the filter would need more time than it saves", shape.hop)};
   return d;
 }
 

@@ -6,42 +6,43 @@
 #include <cmath>
 #include <cstring>
 
+#include "spatial/dsp/fourier/simd_clones.hpp"
 #include "spatial/dsp/resample/low_pass.hpp"
 
 namespace tacto::spatial {
 namespace {
 
-// Four numbers in one register on every machine that we build for (GCC's and Clang's vector extension).
-using Quad = float __attribute__((vector_size(16)));
-constexpr std::size_t kQuads = 8;  // at a time: their sums stay in registers
-constexpr std::size_t kLane = 4 * kQuads;
-
-Quad quad_at(const float* values) {
-  Quad quad;
-  std::memcpy(&quad, values, sizeof quad);
-  return quad;
-}
+// Numbers side by side (GCC's and Clang's vector extension): two registers of SSE2, or one of AVX2.
+using Eight = float __attribute__((vector_size(32)));
+constexpr std::size_t kEights = 4;  // at a time: their sums stay in registers
+constexpr std::size_t kLane = 8 * kEights;
 
 std::vector<float> single(const std::vector<double>& values) {
   return {values.begin(), values.end()};
 }
 
-void sum_lane(std::span<const Tap> taps, std::size_t at, float* out) {
-  Quad sums[kQuads] = {};
+TACTO_SIMD_INLINE void sum_lane(std::span<const Tap> taps, std::size_t at, float* out) {
+  Eight sums[kEights] = {};
   for (const Tap& tap : taps) {
-    const float* source = tap.source + at;
-    for (std::size_t i = 0; i < kQuads; ++i) sums[i] += tap.weight * quad_at(source + 4 * i);
+    const float* const source = tap.source + at;
+    for (std::size_t i = 0; i < kEights; ++i) {
+      Eight values;
+      std::memcpy(&values, source + 8 * i, sizeof values);
+      sums[i] += tap.weight * values;
+    }
   }
   std::memcpy(out, sums, sizeof sums);
 }
 
-// Small weights first: what is added while the sum is small is rounded little (9 dB on the whole).
+// Small weights first: terms that are added while the sum is small have small rounding errors (in total 9 dB
+// less).
 void order(std::vector<Tap>& taps) {
   std::ranges::sort(taps, {}, [](const Tap& tap) { return std::abs(tap.weight); });
 }
 
 // The usual case, in a form that compilers vectorise.
-void deal_to_four(std::span<const float> values, std::vector<std::vector<float>>& hands) {
+TACTO_SIMD_CLONES
+void deinterleave_4(std::span<const float> values, std::vector<std::vector<float>>& hands) {
   const std::size_t rounds = values.size() / 4;
   const float* __restrict from = values.data();
   float* __restrict first = hands[0].data();
@@ -58,13 +59,14 @@ void deal_to_four(std::span<const float> values, std::vector<std::vector<float>>
 
 void deal(std::span<const float> values, std::vector<std::vector<float>>& hands) {
   const std::size_t players = hands.size(), rounds = values.size() / players;
-  if (players == 4) return deal_to_four(values, hands);
+  if (players == 4) return deinterleave_4(values, hands);
   for (std::size_t player = 0; player < players; ++player)
     for (std::size_t i = 0; i < rounds; ++i) hands[player][i] = values[i * players + player];
 }
 
 }  // namespace
 
+TACTO_SIMD_CLONES
 void weighted_sum(std::span<const Tap> taps, std::span<float> out) {
   std::size_t at = 0;
   for (; at + kLane <= out.size(); at += kLane) sum_lane(taps, at, out.data() + at);
@@ -89,8 +91,8 @@ Decimator::Decimator(const Decimation& d, std::size_t longest_block)
   phase_.assign(phases_, std::vector<float>(gridded / phases_ + 1));
 }
 
-// gridded[i] = sum_u coarse[u] samples[grid i + u]; with u = grid a + q, sample grid (i + a) + q is the
-// (i + a)-th of start q.
+// gridded[i] = sum_u coarse[u] samples[grid i + u]. With u = grid a + q, sample grid (i + a) + q is number i
+// + a of the sequence that starts at q.
 void Decimator::to_grid(std::span<const float> samples, std::size_t count) {
   deal(samples, split_);
   taps_.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Low-passes a block and keeps every `grid`-th sample, dealt out to the phases that frames read.
+// Low-passes a block, keeps every `grid`-th sample, and distributes these to the phases that frames read.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace tacto::spatial {
 
-/// sum_t weight_t source_t[i] into out[i], in single precision. Every source has as many values as `out`.
+/// A term of sum_t weight_t source_t[i], in single precision. Every source has as many values as the output.
 struct Tap {
   const float* source = nullptr;
   float weight = 0;
@@ -23,11 +23,12 @@ class Decimator {
   /// Precondition: decimation.factor > 1. Throws bad_alloc.
   Decimator(const Decimation& decimation, std::size_t longest_block);
 
-  /// Samples needed before the block; after it there must be as many, and `grid` more.
+  /// Number of samples needed before the block; after it the same number and `grid` more are needed.
   std::size_t reach() const { return grid_ * fine_reach_ + coarse_reach_; }
-  /// `samples`: reach() before the block, its `length`, reach() + grid behind it.
+  /// `samples`: reach() before the block, its `length`, reach() + grid after it.
   void run(std::span<const float> samples, std::size_t length);
-  /// Every factor-th sample of the filtered block from `offset` on, a multiple of `grid`. Valid until run().
+  /// Every factor-th sample of the filtered block from `offset` on, a multiple of `grid`. Valid until the
+  /// next run().
   const float* from(std::size_t offset) const;
 
  private:

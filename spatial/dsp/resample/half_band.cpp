@@ -14,7 +14,8 @@
 namespace tacto::spatial {
 namespace {
 
-// Kaiser's formulas for a window's shape and for the taps it needs over `width` cycles per sample.
+// Kaiser's formulas for the shape of a window and for its number of taps for a transition of `width` cycles
+// per sample.
 double kaiser_shape(double attenuation_db) {
   return 0.1102 * (attenuation_db - 8.7);
 }
@@ -23,7 +24,7 @@ double kaiser_taps(double attenuation_db, double width) {
   return (attenuation_db - 8) / (2.285 * 2 * std::numbers::pi * width);
 }
 
-// Four values side by side.
+// A vector of four values.
 using Lanes [[gnu::vector_size(32)]] = double;
 constexpr std::size_t kHalfBandLanes = 4, kTile = 4 * kHalfBandLanes;
 
@@ -34,8 +35,8 @@ TACTO_SIMD_INLINE void add_pair(Lanes& sum, double tap, const double* before, co
   sum += tap * (low + high);
 }
 
-// out[j] = sum over k of taps[k] (before[j - k] + after[j + k]), for kTile values. In so many words, since
-// compilers else spread the sums over k and shuffle.
+// out[j] = sum over k of taps[k] (before[j - k] + after[j + k]), for kTile values. Written with explicit
+// vectors, because compilers otherwise vectorise over k and shuffle.
 TACTO_SIMD_INLINE void tile_sum(const double* before, const double* after, const double* taps,
                                 std::size_t count, double* out) {
   Lanes sum0 = {}, sum1 = {}, sum2 = {}, sum3 = {};
@@ -87,7 +88,7 @@ void interleave(const double* even, const double* odd, std::size_t pairs, double
   }
 }
 
-// Keeps the last `kept` values as the first.
+// Moves the last `kept` values to the front.
 void keep_last(std::vector<double>& values, std::size_t kept, std::size_t used) {
   std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(used), kept, values.begin());
 }

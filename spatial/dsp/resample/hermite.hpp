@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Piecewise cubic Hermite interpolation that keeps monotone data monotone (Fritsch and Carlson 1980; slopes
-// as in Fritsch and Butland 1984, the same as SciPy's PchipInterpolator). It is S_x and S_f of Wiertlewski
-// 2011.
+// of Fritsch and Butland 1984, the same as SciPy's PchipInterpolator). It is S_x and S_f of Wiertlewski 2011.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +15,7 @@ std::vector<double> hermite_slopes(std::span<const double> x, std::span<const do
 /// The same for knots `step` > 0 apart; at least 2 values.
 std::vector<double> hermite_slopes_uniform(double step, std::span<const double> y);
 
-/// Both, written where the caller has room for y.size() slopes.
+/// Both, written into the caller's memory for y.size() slopes.
 void hermite_slopes(std::span<const double> x, std::span<const double> y, std::span<double> slopes);
 void hermite_slopes_uniform(double step, std::span<const double> y, std::span<double> slopes);
 
@@ -26,7 +25,7 @@ struct HermiteSegment {
   double m0, m1;  ///< slopes at the ends, times h
 
   double value(double u) const { return y0 + rise(u); }
-  /// value(u) - y0, without losing the digits that a large y0 takes.
+  /// value(u) - y0, without the rounding errors of a large y0.
   double rise(double u) const {
     const double dy = y1 - y0;
     return u * (m0 + u * (3 * dy - 2 * m0 - m1 + u * (m0 + m1 - 2 * dy)));
@@ -38,14 +37,15 @@ struct HermiteSegment {
   }
 };
 
-/// The interpolant through knots. Copies nothing: the spans must outlive it.
+/// The interpolant through knots. It copies nothing: the spans must outlive it.
 class HermiteCurve {
  public:
-  /// As hermite_slopes() asks.
+  /// Preconditions: those of hermite_slopes().
   HermiteCurve(std::span<const double> x, std::span<const double> y);
-  /// Value at x; outside the knots the end segments go on (check the range where that is not wanted).
+  /// Value at x; outside the knots the end segments are extrapolated (check the range if that is not
+  /// acceptable).
   double operator()(double x) const;
-  /// Values at positions that grow: a single walk over the knots, no search.
+  /// Values at increasing positions: one pass over the knots, no search.
   void evaluate_sorted(std::span<const double> at, std::span<double> out) const;
   HermiteSegment segment(std::size_t i) const;
 
@@ -54,12 +54,13 @@ class HermiteCurve {
   std::vector<double> slopes_;
 };
 
-/// The interpolant through evenly spaced knots start + i step: no search at all. The span must outlive it.
+/// The interpolant through evenly spaced knots start + i step, which needs no search. The span must outlive
+/// it.
 class UniformHermiteCurve {
  public:
-  /// As hermite_slopes_uniform() asks.
+  /// Preconditions: those of hermite_slopes_uniform().
   UniformHermiteCurve(double start, double step, std::span<const double> y);
-  /// Value at x; outside the knots the end segments go on.
+  /// Value at x; outside the knots the end segments are extrapolated.
   double operator()(double x) const;
   HermiteSegment segment(std::size_t i) const;
 

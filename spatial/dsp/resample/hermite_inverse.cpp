@@ -8,8 +8,8 @@
 namespace tacto::spatial {
 namespace {
 
-// Newton ends within 6 steps on smooth strokes; at a triple root it gains a factor 2/3 a step, 60 steps in
-// all.
+// On smooth strokes Newton's method needs at most 6 steps. At a triple root the error falls by a factor of
+// 2/3 per step, which needs 60.
 constexpr int kMostSteps = 100;
 constexpr double kSmallestStep = 1e-10;
 

@@ -12,14 +12,14 @@
 namespace tacto::spatial {
 namespace {
 
-// Halley's two steps from the secant gain 12 digits while a segment's slopes at its ends stay within this
-// factor of its secant.
+// Two of Halley's steps from the secant are accurate to 12 digits if the slopes at the ends of a segment are
+// within this factor of its secant.
 constexpr double kSteepest = 1.5;
-// Places that are solved side by side, and how many of one segment are written at once: a little more than a
-// usual segment has, since writing too many costs less than counting them.
+// Number of places that are solved together, and number of places of one segment that are written at once: a
+// little more than a usual segment has, because writing too many costs less than counting them.
 constexpr std::size_t kBlock = 256, kLanes = 8;
 
-// c1 u + c2 u^2 + c3 u^3, and c0 more where it is a value.
+// c1 u + c2 u^2 + c3 u^3; plus c0 for a value.
 struct Cubic {
   double c0, c1, c2, c3;
 };
@@ -29,7 +29,8 @@ TACTO_SIMD_INLINE Cubic cubic_of(const HermiteSegment& s) {
   return {s.y0, s.m0, 3 * dy - 2 * s.m0 - s.m1, s.m0 + s.m1 - 2 * dy};
 }
 
-// What is solved side by side: the cubic of each place's segment, 0 to 1 along it, and of the values there.
+// Places that are solved together: for each its fraction of the height of its segment, and the cubics of
+// position and value.
 struct Block {
   using Column = double[kBlock + kLanes];
   Column target, c1, c2, c3, value0, value1, value2, value3;
@@ -54,7 +55,7 @@ TACTO_SIMD_INLINE void fill(double* lanes, double value) {
   for (std::size_t k = 0; k < kLanes; ++k) lanes[k] = value;
 }
 
-// The lanes that were written beyond a full block are the first of the next.
+// The lanes that were written beyond a full block become the first of the next one.
 TACTO_SIMD_INLINE void carry_over(Block& block) {
   for (double* column :
        {block.target, block.c1, block.c2, block.c3, block.value0, block.value1, block.value2, block.value3})
@@ -62,7 +63,7 @@ TACTO_SIMD_INLINE void carry_over(Block& block) {
   block.begin += kBlock;
 }
 
-// Everything that the walk reads.
+// The inputs of walk().
 struct Curves {
   std::span<const double> t, x, x_slopes, values, value_slopes;
   double margin;
@@ -81,7 +82,7 @@ struct Curves {
   }
 };
 
-// One segment of S_x, made 1 wide and 1 high, with the segment of S_f that lies over it.
+// One segment of S_x, scaled to width 1 and height 1, with the segment of S_f at the same time.
 struct Piece {
   Cubic way, value;
   double per_x;
@@ -94,14 +95,15 @@ TACTO_SIMD_INLINE Piece piece_of(const Curves& curves, std::size_t i) {
   const double place = curves.t[i] + curves.margin;
   const auto k = std::min(static_cast<std::size_t>(place), curves.values.size() - 2);
   const auto gentle = [](double m) { return m * kSteepest > 1 && m < kSteepest; };
-  // The end segments may have places a rounding outside the knots, which are clamped one by one.
+  // A rounding error can move places of the end segments outside the knots; these are solved and clamped one
+  // by one.
   const bool inner = i > 0 && i + 2 < curves.t.size();
   const bool one_sample = static_cast<double>(k) == place && curves.t[i + 1] - curves.t[i] == 1;
   return {cubic_of({0, 1, m0, m1}), cubic_of(curves.value(k)), per_x,
           inner && one_sample && gentle(m0) && gentle(m1)};
 }
 
-// `target` is the first place's share of the segment, `step` from place to place.
+// `target` is the fraction of the segment's height at the first place, `step` the distance between places.
 TACTO_SIMD_INLINE void write_lanes(Block& block, std::size_t at, const Piece& piece, double target,
                                    double step) {
   for (std::size_t k = 0; k < kLanes; ++k) block.target[at + k] = target + static_cast<double>(k) * step;
@@ -114,16 +116,16 @@ TACTO_SIMD_INLINE void write_lanes(Block& block, std::size_t at, const Piece& pi
   fill(block.value3 + at, piece.value.c3);
 }
 
-// The first place beyond x, give or take a rounding: at a knot either segment will do.
+// The first place beyond x, except for rounding: at a knot both segments give the same value.
 TACTO_SIMD_INLINE std::size_t places_up_to(double x, const EvenPlaces& places, double per_pitch) {
   const double last = x * per_pitch - places.first;
   if (!(last >= 0)) return 0;
   return last < static_cast<double>(places.count) ? static_cast<std::size_t>(last) + 1 : places.count;
 }
 
-// Solves all but what it adds to `hard`.
+// Solves all places except those that it adds to `hard`.
 TACTO_SIMD_CLONES
-void walk(const Curves& curves, const EvenPlaces& places, double* out, std::vector<HardPlaces>& hard) {
+void walk(const Curves& curves, const EvenPlaces& places, double* out, std::vector<IterativePlaces>& hard) {
   const double per_pitch = 1 / places.pitch;
   const std::size_t last = curves.t.size() - 2;
   Block block;

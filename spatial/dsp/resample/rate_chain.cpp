@@ -7,7 +7,7 @@ namespace tacto::spatial {
 namespace {
 
 constexpr double kError = 1e-8;
-// The last half-band filter then has a tenth of its higher rate to fall in: 27 taps to each side.
+// The transition of the last half-band filter is then a tenth of its higher rate: 27 taps on each side.
 constexpr double kLeastRate = 2.5;
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace tacto::spatial {
 namespace {
 
-// The filter's middle lies on values[at].
+// The filter's middle is at values[at].
 double filtered_at(std::span<const double> values, std::ptrdiff_t at, std::span<const double> filter) {
   const auto reach = static_cast<std::ptrdiff_t>(filter.size() / 2);
   const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fewer samples of a signal, without folding.
+// Decimation of a signal without aliasing.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace tacto::spatial {
 
-/// Cycles a kept sample up to which thinned() keeps everything.
+/// Pass band of thinned(), in cycles per sample of the output.
 inline constexpr double kThinnedPass = 0.4;
 
-/// The first of the values and every n-th after it (n >= 1), low-passed: all is kept to 2.5e-7 up to
-/// kThinnedPass, and what would fold back under that is suppressed by 132 dB. Beyond the ends the ends' own
-/// values go on.
+/// The first of the values and every n-th after it (n >= 1), low-passed: the gain is 1 to within 2.5e-7 up to
+/// kThinnedPass, and what would alias below that is suppressed by 132 dB. The first and last values continue
+/// beyond the ends.
 std::vector<double> thinned(std::span<const double> values, std::size_t n);
 
 }  // namespace tacto::spatial

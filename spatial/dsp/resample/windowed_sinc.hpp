@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Band-limited interpolation of even samples: the sum over sinc(t - n) under a Kaiser window (Smith, "Digital
-// Audio Resampling", 1984).
+// Band-limited interpolation of evenly spaced samples: the sum over sinc(t - n) under a Kaiser window (Smith,
+// "Digital Audio Resampling", 1984).
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace tacto::spatial {
 
-/// 32 samples around each place, a window for -100 dB. Error re the amplitude of a tone: below 1e-6 up to 0.3
-/// of the sample rate, 1e-5 at 0.4; above that it falls off (windowed_sinc_test). A constant comes back
-/// exactly.
+/// 32 samples around each place, with a window for -100 dB. Error re the amplitude of a tone: below 1e-6 up
+/// to 0.3 of the sample rate, 1e-5 at 0.4; above that the gain falls (windowed_sinc_test). A constant is
+/// reproduced exactly.
 class WindowedSinc {
  public:
-  /// Samples that it looks at on each side; beyond the record's ends it takes the end's value.
+  /// Samples that are used on each side; beyond the record's ends the end's value continues.
   static constexpr std::size_t kReach = 16;
 
   WindowedSinc();
@@ -22,7 +22,7 @@ class WindowedSinc {
   double operator()(std::span<const double> values, double place) const;
 
  private:
-  // Row p holds the weights of the samples around a place p / kPhases beyond one.
+  // Row p holds the weights of the samples around a place that is p / kPhases after a sample.
   static constexpr std::size_t kTaps = 2 * kReach, kPhases = 512;
   std::vector<double> weights_;
 };

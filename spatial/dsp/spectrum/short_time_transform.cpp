@@ -10,11 +10,11 @@
 namespace tacto::spatial {
 namespace {
 
-// A block spans this many windows beside its first: long enough that few samples are prepared twice, short
-// enough that the level of a drifting signal is the level of its windows too.
+// A block spans this many windows after its first one: long enough that few samples are prepared twice, short
+// enough that the level of a drifting signal is close to that of each window.
 constexpr std::size_t kWindowsPerBlock = 3;
 
-// Sizes between these squares of which stay in single precision are left as they are.
+// Magnitudes from 2^-20 to 2^20 are not scaled, because their squares fit single precision.
 constexpr int kUsualExponent = 20;
 constexpr int kSmallestExponent = -1000;
 
@@ -39,8 +39,7 @@ using EitherFft = std::variant<PackedFft<float>, PackedFft<double>>;
 
 EitherFft fft_for(const FrameShape& shape, const Decimation& decimation, std::size_t rows) {
   const std::size_t length = shape.padded / decimation.factor, transforms = (rows + 1) / 2;
-  if (decimation.factor > 1 || take_a_moment(length, transforms))
-    return PackedFft<double>(length, transforms);
+  if (decimation.factor > 1 || is_short_job(length, transforms)) return PackedFft<double>(length, transforms);
   return PackedFft<float>(length, transforms);
 }
 
@@ -74,7 +73,7 @@ std::size_t ShortTimeTransform::rows_of(std::size_t samples) const {
   return samples < shape_.window ? 0 : 1 + (samples - shape_.window) / shape_.hop;
 }
 
-// Without detrending the level is part of the answer, and sets its scale.
+// Without detrending the level is part of the result, so the scale has to include it.
 ShortTimeTransform::Block ShortTimeTransform::block_at(std::span<const double> signal, std::size_t first_row,
                                                        std::size_t rows) const {
   Block block{first_row, std::min(rows_per_block_, rows - first_row), first_row * shape_.hop};
@@ -88,8 +87,8 @@ ShortTimeTransform::Block ShortTimeTransform::block_at(std::span<const double> s
   return block;
 }
 
-// The block's samples in single precision. Beyond the signal's ends the last value goes on: the window all
-// but leaves it out.
+// Converts the block's samples to single precision. Beyond the signal's ends the last value continues; the
+// window almost excludes it.
 void ShortTimeTransform::load(std::span<const double> signal, const Block& block) {
   const std::size_t reach = decimator_ ? decimator_->reach() : 0;
   const std::size_t count = block.length + (decimator_ ? 2 * reach + decimation_.grid : 0);
@@ -99,14 +98,14 @@ void ShortTimeTransform::load(std::span<const double> signal, const Block& block
   const std::size_t inside = std::min(count - before, signal.size() - begin);
   const double at_begin = block.level - block.slope * static_cast<double>(block.start - begin);
   const auto values = std::span(samples_).first(count);
-  take_off_line(signal.subspan(begin, inside), at_begin, block.slope, scale, values.subspan(before, inside));
+  subtract_line(signal.subspan(begin, inside), at_begin, block.slope, scale, values.subspan(before, inside));
   std::ranges::fill(values.first(before), values[before]);
   std::ranges::fill(values.subspan(before + inside), values[before + inside - 1]);
   if (decimator_) decimator_->run(values, block.length);
 }
 
-// Each row's mean over the block's line at the row's start; a row's sum comes from its neighbour's where they
-// share most samples.
+// Each row's mean minus the block's line at the row's start. If neighbouring rows share most samples, a row's
+// sum is updated from the one before.
 void ShortTimeTransform::find_means(std::span<const double> signal, const Block& block) {
   const std::size_t hop = shape_.hop, window = shape_.window;
   const double scale = std::ldexp(1.0, -block.exponent);

@@ -7,11 +7,11 @@
 
 namespace tacto::spatial {
 
-/// Blackman's window as SciPy has it for spectra (periodic):
+/// Blackman's window, periodic as SciPy's default for spectra:
 /// w_n = 0.42 - 0.5 cos(2 pi n / length) + 0.08 cos(4 pi n / length), n < length.
 std::vector<double> blackman(std::size_t length);
 
-/// Its mean: a sine of amplitude A gives A / 2 times this and the window's length.
+/// Mean of the window: a sine of amplitude A gives A / 2 times this and the window's length.
 inline constexpr double kBlackmanMean = 0.42;
 
 }  // namespace tacto::spatial

@@ -25,7 +25,7 @@ TextStyle label_style(Side side) {
   return style;
 }
 
-// Labels of neighbouring ticks that would touch are left out, the later one.
+// A row of tick labels; a label that would touch the one before it is left out.
 class LabelRow {
  public:
   LabelRow(Canvas& canvas, const Box& box, Side side) : canvas_(canvas), box_(box), side_(side) {}

@@ -15,7 +15,7 @@ enum class Side { left, right, bottom };
 inline constexpr double kTickLabelSize = 10;
 inline constexpr double kCaptionSize = 11;
 
-/// Ticks outside the box with their labels; the caption stands `caption_gap` points from the box.
+/// Draws ticks outside the box with their labels; the caption is `caption_gap` points from the box.
 void draw_axis(Canvas& canvas, const Box& box, Side side, const Axis& axis, const std::vector<Tick>& ticks);
 void draw_caption(Canvas& canvas, const Box& box, Side side, const std::string& caption, double gap);
 

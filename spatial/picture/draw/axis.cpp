@@ -9,7 +9,7 @@
 namespace tacto::spatial {
 namespace {
 
-// The smallest of 1, 2, 5 times a power of ten that is not under the span's part for one tick.
+// The smallest of 1, 2, 5 times a power of ten that is at least span / target.
 double step_of(double span, int target) {
   const double raw = span / target;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -18,7 +18,7 @@ double step_of(double span, int target) {
   return 10 * power;
 }
 
-// With the minus sign that print uses (U+2212), and an exponent where digits would not fit.
+// With a typographic minus sign (U+2212), and an exponent if there would be too many digits.
 std::string label_of(double value, double largest, double step) {
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
   const int digits = 1 + static_cast<int>(std::ceil(std::log10(largest / step)));
@@ -34,7 +34,7 @@ std::vector<Tick> linear_ticks(const Axis& axis, int target) {
   const double largest = std::max({std::abs(axis.low), std::abs(axis.high), step});
   std::vector<Tick> ticks;
   for (double n = std::ceil((axis.low - slack) / step); n * step <= axis.high + slack; ++n) {
-    const double value = n == 0 ? 0 : n * step;  // no "-0"
+    const double value = n == 0 ? 0 : n * step;  // avoids "-0"
     ticks.push_back({value, label_of(value, largest, step)});
   }
   return ticks;

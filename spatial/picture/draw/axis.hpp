@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Axes: from a value to its place on the page, and the round values to mark.
+// Axes: the mapping from a value to its place on the page, and the round values of the ticks.
 #pragma once
 
 #include <string>
@@ -25,13 +25,13 @@ struct Tick {
   std::string label;  ///< empty for a minor tick
 };
 
-/// Ticks at 1, 2 or 5 times a power of ten, about `wanted` of them, labelled with as many decimals as they
-/// need; on a logarithmic axis a tick at each multiple of a power of ten, of which the powers of ten are
-/// labelled, and where there are few of them 2 and 5 too.
+/// Ticks at 1, 2 or 5 times a power of ten, about `target` of them, labelled with as many decimals as they
+/// need. On a logarithmic axis there is a tick at each multiple of a power of ten; the powers of ten are
+/// labelled and, if there are few of them, also 2 and 5 times these.
 std::vector<Tick> ticks_of(const Axis& axis, int target);
 
-/// An axis a little longer than the data, so that no curve touches its frame. Values that are all alike get
-/// room on both sides.
+/// An axis a little longer than the data, so that no curve touches its frame. If all values are equal, it has
+/// a margin on both sides.
 Axis roomy_axis(double low, double high);
 
 }  // namespace tacto::spatial

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Units as print writes them: with the prefix that suits the numbers, and raised exponents.
+// Units for print: with a prefix that suits the numbers, and raised exponents.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@ namespace tacto::spatial {
 
 struct DisplayUnit {
   std::string text;   ///< "mN"
-  double factor = 1;  ///< from the SI value to it
+  double factor = 1;  ///< from the SI value to this unit
 };
 
-/// For values up to `largest`: 0.02 N is shown in mN. Units made of several stay as they are.
+/// For values up to `largest`: 0.02 N is shown in mN. Compound units are not changed.
 DisplayUnit display_unit(const std::string& si_unit, double largest);
 
 /// "N^2 mm" as "N² mm", "um" as "µm".

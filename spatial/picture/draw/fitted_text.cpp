@@ -10,8 +10,8 @@ bool begins_letter(char byte) {
   return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;
 }
 
-// Bytes of the longest start of `text` that fits: up to a space where there is one, else whole letters, one
-// at least.
+// Length in bytes of the longest start of `text` that fits: up to a space if there is one, otherwise whole
+// letters, at least one.
 std::size_t bytes_that_fit(Canvas& canvas, const std::string& text, const TextStyle& style, double width) {
   if (canvas.text_size(text, style).width <= width) return text.size();
   std::size_t at_space = 0, at_letter = 0;
@@ -41,7 +41,7 @@ void draw_fitted(Canvas& canvas, Point at, std::string text, TextStyle style, do
   constexpr double kSmallest = 5;
   const double wide = canvas.text_size(text, style).width;
   if (wide > width) style.size = std::max(kSmallest, style.size * width / wide);
-  // Cuts whole UTF-8 letters until the text and its ellipsis fit.
+  // Removes whole UTF-8 letters until the text and its ellipsis fit.
   bool cut = false;
   while (text.size() > 1 && canvas.text_size(text + (cut ? "\u2026" : ""), style).width > 1.001 * width) {
     while (!begins_letter(text.back())) text.pop_back();

@@ -24,7 +24,7 @@ void draw_hatch(Canvas& canvas, std::span<const Point> polygon) {
   if (polygon.empty()) return;
   canvas.polygon(polygon, kVeil);
   canvas.clip(polygon);
-  // Lines x + y = n * spacing: the same on the whole page, wherever the polygon lies.
+  // Lines x + y = n * spacing, which are the same on the whole page for any polygon.
   const Box box = bounds_of(polygon);
   const double first = std::ceil((box.x + box.y) / kSpacing) * kSpacing;
   std::vector<Segment> lines;

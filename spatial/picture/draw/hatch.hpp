@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hatching: what a picture does not know, so that it cannot be taken for a measured shade.
+// Hatching of the parts of a picture without data, so that they do not look like a measured shade.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace tacto::spatial {
 
-/// Veils the polygon and hatches it with thin slanting lines; they are in register all over the page.
+/// Veils the polygon and hatches it with thin slanting lines, which are aligned over the whole page.
 void draw_hatch(Canvas& canvas, std::span<const Point> polygon);
 
-/// A sample of it, for a legend.
+/// A sample of the hatching, for a legend.
 void draw_hatch(Canvas& canvas, const Box& box);
 
 }  // namespace tacto::spatial

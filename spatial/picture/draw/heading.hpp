@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The head of a figure: title, the facts below it, and the badge of simulated data. All of it is shown: texts
-// that are too long for a line wrap, and the head grows.
+// The head of a figure: title, subtitle, and the badge of simulated data. All of it is shown: texts that are
+// too long for a line wrap and make the head higher.
 #pragma once
 
 #include <string>
@@ -10,20 +10,21 @@
 
 namespace tacto::spatial {
 
-/// Height of a head whose texts each fit on their line, in points.
+/// Height in points of a head with one line for each text.
 inline constexpr double kHeadingHeight = 42;
 
 struct Heading {
   std::vector<std::string> title, subtitle, badge;  ///< lines
-  bool badge_beside = false;                        ///< the badge stands right of the title, else above it
+  bool badge_beside = false;  ///< the badge is to the right of the title, otherwise above it
   double width = 0;
 
   double height() const;
-  /// How much higher than kHeadingHeight.
+  /// Height in excess of kHeadingHeight.
   double extra() const { return height() - kHeadingHeight; }
 };
 
-/// Breaks the texts into lines for a head of that width. `simulated` says by what; empty: no badge.
+/// Breaks the texts into lines for a head of that width. `simulated` names the source of simulated data;
+/// empty: no badge.
 Heading heading_of(const std::string& title, const std::string& subtitle, const std::string& simulated,
                    double width);
 

@@ -10,13 +10,13 @@
 namespace tacto::spatial {
 namespace {
 
-// A middle part of the values, between two percentiles; what reaches over `squashed` times its span hides it,
-// and is cut off `beside` spans from it.
+// A middle part of the values, without `tail` of them on each side. If all values span more than `max_ratio`
+// times its width, the axis shows it with a margin of `beside` widths on each side.
 struct Middle {
-  double tail, squashed, beside;
+  double tail, max_ratio, beside;
 };
 constexpr Middle kWithoutOutliers{0.005, 3, 0.25}, kWithoutOnsets{0.1, 5, 1};
-constexpr double kRests = 20;
+constexpr double kRestRatio = 20;
 
 double quantile(std::vector<double>& values, double part) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
@@ -39,10 +39,10 @@ Span shown_of(std::vector<double>& values, const Span& all) {
     return {std::max(all.low, span.low - room), std::min(all.high, span.high + room)};
   };
   const Span most = middle_of(values, kWithoutOutliers), body = middle_of(values, kWithoutOnsets);
-  if (most.width() > 0 && all.width() > kWithoutOutliers.squashed * most.width())
+  if (most.width() > 0 && all.width() > kWithoutOutliers.max_ratio * most.width())
     return part(most, kWithoutOutliers);
-  const bool rests = most.width() > kRests * body.width();
-  return !rests && all.width() > kWithoutOnsets.squashed * body.width() ? part(body, kWithoutOnsets) : all;
+  const bool rests = most.width() > kRestRatio * body.width();
+  return !rests && all.width() > kWithoutOnsets.max_ratio * body.width() ? part(body, kWithoutOnsets) : all;
 }
 
 }  // namespace
@@ -65,10 +65,10 @@ ShownRange shown_range(std::span<const double> values) {
   return range;
 }
 
-std::string beyond_words(const ShownRange& range, const std::string& unit) {
+std::string out_of_range_text(const ShownRange& range, const std::string& unit) {
   const double percent = 100 * static_cast<double>(range.beyond) / static_cast<double>(range.values);
-  return fmt::format("{:.2g} % of the values are beyond the axis, as far as {:.3g} {}", percent,
-                     range.furthest, unit);
+  return fmt::format("{:.2g} % of the values are beyond the axis, up to {:.3g} {}", percent, range.furthest,
+                     unit);
 }
 
 }  // namespace tacto::spatial

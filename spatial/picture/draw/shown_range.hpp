@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The part of a signal's values that an axis shows, so that one spike does not squash all the rest.
+// The part of a signal's values that an axis shows, so that a single spike does not compress the rest.
 #pragma once
 
 #include <cstddef>
@@ -10,24 +10,22 @@ namespace tacto::spatial {
 
 struct ShownRange {
   double low = 0, high = 0;
-  std::size_t beyond = 0, values = 0;  ///< how many values lie beyond it, of how many
-  double furthest = 0;                 ///< the one of these that is furthest from zero
+  std::size_t beyond = 0, values = 0;  ///< number of values beyond it, and of all
+  double furthest = 0;                 ///< the value beyond it that is furthest from zero
 };
 
-/// All finite values, except where few of them would squash the rest:
-/// - brief outliers: where all reach over more than three times the span of the middle 99 %, that span and a
-/// quarter
-///   of it on either side;
-/// - onsets: where all reach over more than five times the span of the middle 80 %, that span once more on
-/// either
-///   side. Not where the middle 80 % is 20 times narrower than the middle 99 %: that is a signal that mostly
-///   rests.
-/// A million values of Gaussian noise reach over 1.9 and 3.9 times these spans, emulated textures over at
-/// most 1.6 and 4.7, recordings with onsets over 5.3 to 11 times the second: noise and textures are shown
-/// whole.
+/// All finite values, unless a few of them would compress the rest:
+/// - brief outliers: if all values span more than three times the middle 99 %, the axis shows that part and a
+///   quarter of its width on each side;
+/// - onsets: if all values span more than five times the middle 80 %, the axis shows that part and its width
+///   on each side. Not if the middle 80 % is 20 times narrower than the middle 99 %, which means a signal
+///   that mostly rests.
+/// The spans relative to these parts are 1.9 and 3.9 for a million values of Gaussian noise, at most 1.6 and
+/// 4.7 for emulated textures, and 5.3 to 11 (the second) for recordings with onsets. So noise and textures
+/// are shown completely.
 ShownRange shown_range(std::span<const double> values);
 
-/// "0.4 % beyond the axis, to 812 mN": what the picture says where it does not show all.
-std::string beyond_words(const ShownRange& range, const std::string& unit);
+/// "0.4 % beyond the axis, to 812 mN": the text in a picture that does not show all values.
+std::string out_of_range_text(const ShownRange& range, const std::string& unit);
 
 }  // namespace tacto::spatial

@@ -14,10 +14,10 @@ constexpr std::string_view kPath = " d=\"";
 
 void append_rounded(double value, std::string& out) {
   const double rounded = std::round(value * 100) / 100;
-  fmt::format_to(std::back_inserter(out), "{}", rounded == 0 ? 0.0 : rounded);  // no "-0"
+  fmt::format_to(std::back_inserter(out), "{}", rounded == 0 ? 0.0 : rounded);  // avoids "-0"
 }
 
-// The path data up to the quote that ends it: commands stay, numbers are rounded.
+// Appends the path data up to the closing quote: commands are unchanged, numbers are rounded.
 void append_path(std::string_view data, std::string& out) {
   while (!data.empty()) {
     double value = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The layer of text in an SVG. Cairo writes letters as outlines only; this keeps the words beside them.
+// The text layer of an SVG. Cairo writes letters only as outlines; the layer adds the words as text.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tacto::spatial {
 
-/// A text as it was drawn: `start` is its baseline's left end, seen from `at` after turning.
+/// A text that was drawn: `start` is the left end of its baseline, relative to `at` after rotation.
 struct PlacedText {
   std::string text;
   Point at, start;
@@ -21,7 +21,7 @@ struct PlacedText {
 std::string svg_text(const PlacedText& placed);
 
 /// The SVG with the elements in a group before its end: transparent, over letters that are drawn as outlines,
-/// or `visible`, in place of them.
+/// or `visible`, instead of them.
 std::string with_text_layer(std::string svg, std::string_view elements, bool visible);
 
 }  // namespace tacto::spatial

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Start-up, semihosting, and the four functions that compilers call unasked.
+// Start-up, semihosting, and the four functions that compilers call implicitly.
 #include "tests/firmware-host/cortex_m4/board.hpp"
 
 #include <stddef.h>
@@ -9,7 +9,7 @@ extern uint32_t stack_top, data_begin, data_end, data_source, bss_begin, bss_end
 extern void (*init_begin[])();
 extern void (*init_end[])();
 
-// no_builtin: or the loops would become calls of themselves.
+// no_builtin: otherwise the compiler would replace the loops by calls of these functions.
 [[clang::no_builtin]] void* memcpy(void* to, const void* from, size_t size) {
   for (size_t i = 0; i < size; ++i) static_cast<char*>(to)[i] = static_cast<const char*>(from)[i];
   return to;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernel's bits and its cost, and the whole firmware's: playing a profile through eight sections while it
-// streams samples and ticks.
+// The kernel's bits and its cost, and the cost of the complete firmware: it plays a profile through eight
+// sections while it streams samples and ticks.
 #include "firmware-host/core/firmware/firmware.hpp"
 #include "firmware-host/core/wire/crc32c.hpp"
 #include "tests/firmware-host/cortex_m4/board.hpp"
@@ -51,7 +51,7 @@ bool count_kernel() {
   return sections == tests::kWorkloadFingerprint && levels == tests::kTextureFingerprint;
 }
 
-// While one texture goes over into another, both are read; the first tick of it takes the change too.
+// During a change of texture both are read; its first tick also starts the change.
 void count_change() {
   Cost cost;
   for (uint32_t i = 0; i < kChangeTicks; ++i) {
@@ -171,7 +171,7 @@ bool count_firmware() {
   return firmware.drive_state() == wire::DriveState::playing && link.drive_v != 0;
 }
 
-// A loop of two instructions: what a count is worth.
+// A loop of two instructions gives the instructions per count.
 void calibrate() {
   uint32_t left = 5000;
   const uint32_t before = counter();

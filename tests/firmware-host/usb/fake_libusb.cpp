@@ -10,7 +10,7 @@
 namespace tacto::tests {
 namespace {
 
-constexpr int kMostCompletionsInATurn = 3;  // so that the caller has to come again
+constexpr int kMostCompletionsInATurn = 3;  // so that the caller has to call again
 
 std::vector<libusb_transfer*>& cancelled() {
   static std::vector<libusb_transfer*> list;
@@ -43,7 +43,7 @@ void wrong(const char* what) {
   fake_usb().faults.emplace_back(what);
 }
 
-// The first one under way ends; what it was told to say is forgotten with it.
+// Ends the first transfer under way and discards its remaining events.
 void complete(FakeUsbDevice& device, bool in, libusb_transfer_status status, std::size_t bytes) {
   auto& list = under_way(device, in);
   libusb_transfer* const transfer = list.front();
@@ -90,7 +90,7 @@ void complete_all(FakeUsbDevice& device, libusb_transfer_status status) {
     for (std::size_t left = under_way(device, in).size(); left > 0; --left) complete(device, in, status, 0);
 }
 
-// Of one endpoint; true where something happened. An OUT endpoint to which nothing is told takes everything.
+// Advances one endpoint; true if something happened. An OUT endpoint without events accepts everything.
 bool advance(FakeUsbDevice& device, bool in) {
   auto& events = in ? device.in : device.out;
   bool& halted = in ? device.in_halted : device.out_halted;

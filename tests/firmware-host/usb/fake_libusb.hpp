@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A USB bus that does what a test says, behind libusb's own functions: linked before the library, it takes
-// its place. It watches how it is used: what is lent and not given back, transfers freed or devices closed
-// while something is under way, endpoints cleared while they are in use.
+// A simulated USB bus behind libusb's functions: linked before the library, it replaces it. It also detects
+// wrong use: objects that are not returned, transfers freed or devices closed while a transfer is under way,
+// endpoints cleared while they are in use.
 #pragma once
 
 #include <libusb.h>
@@ -13,19 +13,19 @@
 
 namespace tacto::tests {
 
-/// What happens next at an endpoint.
+/// The next event at an endpoint.
 struct UsbEvent {
   enum Kind {
-    data,      ///< bytes come, or are taken
-    halt,      ///< it stalls until it is cleared
-    error,     ///< a packet that nobody understands
+    data,      ///< bytes arrive, or are accepted
+    halt,      ///< the endpoint stalls until it is cleared
+    error,     ///< a corrupted packet
     overflow,  ///< a packet too long
-    reset,     ///< another program resets the device: what is under way ends as if the device were gone
+    reset,     ///< another program resets the device: transfers under way end as if the device were unplugged
     unplug,
-    silence,  ///< of an OUT endpoint: it takes some bytes, and then none until the timeout
+    silence,  ///< for an OUT endpoint: it accepts some bytes, and then none until the timeout
   };
   Kind kind = data;
-  std::vector<std::uint8_t> bytes = {};  ///< that came, also before an error
+  std::vector<std::uint8_t> bytes = {};  ///< that arrived, also before an error
 };
 
 struct FakeUsbDevice {
@@ -37,7 +37,7 @@ struct FakeUsbDevice {
   int open_code = 0, claim_code = 0;
 
   std::deque<UsbEvent> in, out;
-  std::vector<std::uint8_t> taken;  ///< what the host sent
+  std::vector<std::uint8_t> taken;  ///< bytes from the host
   bool plugged = true, in_halted = false, out_halted = false, claimed = false;
   std::deque<libusb_transfer*> in_under_way, out_under_way;
 };
@@ -47,7 +47,7 @@ struct FakeUsb {
   int init_code = 0;
   int lent = 0;  ///< contexts, references, handles, descriptors, transfers
   int cleared = 0;
-  std::vector<std::string> faults;  ///< how it was used wrongly
+  std::vector<std::string> faults;  ///< wrong uses
 };
 
 FakeUsb& fake_usb();

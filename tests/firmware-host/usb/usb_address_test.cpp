@@ -25,7 +25,7 @@ TEST(UsbAddress, IsRefusedWhereItNamesNothing) {
   }
 }
 
-// Each URI leads back to the device that it was made of.
+// Each URI identifies the device from which it was made.
 TEST(UsbAddress, AnUriTellsADeviceFromAllOthers) {
   const std::vector<UsbName> twins = {{"A7", "1-1"}, {"A7", "1-2"}, {"C", "1-3"}};
   for (const auto& names : {kThree, twins})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The transport on a bus that does what it is told. Whatever that is: bytes come in order or not at all, what
-// fails is said, and nothing is left under way, lent or claimed.
+// The transport on a simulated bus with faults. In every case bytes arrive in order or not at all, failures
+// are reported, and no transfer, object or claim is left.
 #include "firmware-host/usb/usb_transport.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ Bytes counting(std::size_t size, std::uint8_t first = 0) {
   return bytes;
 }
 
-// Reads until there is nothing more, or an error.
+// Reads until there are no more bytes, or an error.
 struct Heard {
   Bytes bytes;
   std::optional<schema::Error> error;
@@ -133,7 +133,7 @@ TEST_F(UsbTransportTest, AResetByAnotherProgramGoesOn) {
 TEST_F(UsbTransportTest, TroubleWithoutEndIsAnErrorAfterTheBytes) {
   for (const auto& [kind, words] : {std::pair{UsbEvent::halt, "stalls, 6 times in a row"},
                                     std::pair{UsbEvent::overflow, "longer packets than it announced"},
-                                    std::pair{UsbEvent::error, "is not understood"}}) {
+                                    std::pair{UsbEvent::error, "sends unreadable transfers"}}) {
     usb().devices.clear();
     FakeUsbDevice& device = add();
     device.in.assign(20 * UsbInflow::kTransfers, {kind});
@@ -186,7 +186,7 @@ TEST_F(UsbTransportTest, ADeviceThatAlwaysRefusesIsAnError) {
   const auto cable = transport();
   const auto written = cable->write(counting(30), kTimeoutS);
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().what, "the device refused what it was sent, 3 times");
+  EXPECT_EQ(written.error().what, "the device refused the sent data 3 times");
 }
 
 TEST_F(UsbTransportTest, ADeviceThatTakesNothingIsAnError) {
@@ -243,7 +243,7 @@ TEST_F(UsbTransportTest, WhyItCannotBeOpenedIsSaid) {
   }
   device.open_code = 0;
   device.claim_code = LIBUSB_ERROR_BUSY;
-  EXPECT_EQ(UsbConnection::open({}).error().what, "another program has the device");
+  EXPECT_EQ(UsbConnection::open({}).error().what, "another program uses the device");
   usb().init_code = LIBUSB_ERROR_OTHER;
   EXPECT_EQ(usb_uris().error().kind, ErrorKind::device);
 }
@@ -252,7 +252,7 @@ TEST_F(UsbTransportTest, ADeviceThatAnswersNothingIsRefusedInItsTime) {
   add();
   const auto device = open_device("usb:");
   ASSERT_FALSE(device);
-  EXPECT_NE(device.error().what.find("did not answer hello, asked 3 times in 1.5 s"), std::string::npos);
+  EXPECT_NE(device.error().what.find("did not answer hello (sent 3 times in 1.5 s"), std::string::npos);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes resample.txt: strokes taken to a grid by NumPy and SciPy. Run: /usr/bin/python3 make_resample.py
+"""Writes resample.txt: strokes resampled to a grid by NumPy and SciPy. Run: /usr/bin/python3 make_resample.py
 
-A stroke is a line of positions (counts of 1 um, forth or back), one of forces, and one line a method.
+A stroke is a line of positions (counts of 1 um, ahead or back), one of forces, and one line per method.
 """
 import pathlib
 
@@ -40,7 +40,7 @@ for direction in (1, -1):
         "linear": np.interp(when["linear"], t, force),
         "swapped": PchipInterpolator(t, force)(when["swapped"]),
     }
-    # Back: the same way run through with falling counts, so that the grid meets it from its end.
+    # Back: the same path with decreasing counts, so that the grid meets it from its end.
     out.append(line(counts if direction > 0 else -counts))
     out.append(line(force))
     for method in ("hermite", "linear", "swapped"):

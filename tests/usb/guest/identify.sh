@@ -16,8 +16,8 @@ for attempt in 1 2 3 4 5 6; do
     break
   fi
   cat "$R/identify.err"
-  grep -q "the drive came too late" "$R/identify.err" || fail "identify failed for another reason"
+  grep -q "it arrived too late" "$R/identify.err" || fail "identify failed for another reason"
   [ ! -e found.transducer.json ] || fail "a transducer was written all the same"
 done
-[ -e "$R/found.transducer.json" ] || fail "the drive came too late each time"
+[ -e "$R/found.transducer.json" ] || fail "it arrived too late each time"
 stop_gadget

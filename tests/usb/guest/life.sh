@@ -32,7 +32,7 @@ echo $UDC >"$CONFIG/tactograph-$UDC/UDC"
 within 30 host_sees
 records reopened
 say "a second one on the same port"
-refused "runs on $UDC already" "$GADGET" --board sim: --udc $UDC
+refused "already uses $UDC" "$GADGET" --board sim: --udc $UDC
 say "ended"
 stop_gadget
 [ -z "$(ls $CONFIG)" ] || fail "something is left in configfs: $(ls $CONFIG)"
@@ -52,11 +52,11 @@ start_gadget --board "replay:$SOURCE"
 records restarted
 stop_gadget
 say "refusals"
-refused "is no board" "$GADGET" --board piezo:
+refused "is not a known board" "$GADGET" --board piezo:
 refused "there is no option" "$GADGET" --bord sim:
 refused "needs a value" "$GADGET" --board
-refused "there is no fault" "$GADGET" --fault melt-every=3
-refused "is no number" "$GADGET" --fault drop-every=0
+refused "is not a known fault" "$GADGET" --fault melt-every=3
+refused "is not a number" "$GADGET" --fault drop-every=0
 refused "there is no device port" "$GADGET" --udc nowhere
 refused "nothing" "$GADGET" --board replay:nothing
 refused "run as root" setpriv --reuid 65534 --clear-groups "$GADGET" --board sim:
@@ -64,4 +64,4 @@ refused "run as root" setpriv --reuid 65534 --clear-groups "$GADGET" --board sim
 refused "no USB device port" "$GADGET"
 /bin/busybox insmod "$KERNEL/dummy_hcd.ko"
 umount /sys/kernel/config
-refused "no USB gadgets" "$GADGET"
+refused "no USB gadget support" "$GADGET"

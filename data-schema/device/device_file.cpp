@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "data-schema/device/device.hpp"
+#include "data-schema/json/json_document.hpp"
+#include "data-schema/json/json_schema.hpp"
+#include "data-schema/json/known_members.hpp"
+#include "data-schema/json/named_document.hpp"
+
+namespace tacto::schema {
+namespace {
+
+constexpr std::string_view kDeviceKind = "device";
+
+DeviceAxis axis_from(const Json& body) {
+  DeviceAxis axis;
+  axis.name = body["name"];
+  axis.mass_kg = body["mass_kg"];
+  axis.viscous_n_s_per_m = body["viscous_n_s_per_m"];
+  axis.coulomb_n = body["coulomb_n"];
+  axis.encoder_step_m = body["encoder_step_m"];
+  axis.travel_from_m = body["travel_m"][0];
+  axis.travel_to_m = body["travel_m"][1];
+  axis.peak_force_n = body["peak_force_n"];
+  axis.continuous_force_n = body["continuous_force_n"];
+  axis.extra_json = unknown_parts((*schema_of(kDeviceKind))["properties"]["axes"]["items"], body);
+  return axis;
+}
+
+Json axis_body(const DeviceAxis& axis) {
+  Json body = {{"name", axis.name},
+               {"mass_kg", axis.mass_kg},
+               {"viscous_n_s_per_m", axis.viscous_n_s_per_m},
+               {"coulomb_n", axis.coulomb_n},
+               {"encoder_step_m", axis.encoder_step_m},
+               {"travel_m", {axis.travel_from_m, axis.travel_to_m}},
+               {"peak_force_n", axis.peak_force_n},
+               {"continuous_force_n", axis.continuous_force_n}};
+  add_unknown_parts(body, axis.extra_json);
+  return body;
+}
+
+Device device_from(const Document& document) {
+  const Json& body = document.body;
+  Device device;
+  device.name = body["name"];
+  for (const Json& axis : body["axes"]) device.axes.push_back(axis_from(axis));
+  device.peak_force_n = body["peak_force_n"];
+  device.continuous_force_n = body["continuous_force_n"];
+  device.slew_n_per_s = body["slew_n_per_s"];
+  device.delay_s = body["delay_s"];
+  device.rates_hz = body["rates_hz"].get<std::vector<double>>();
+  device.transducer = text_or(body, "transducer");
+  device.source = text_or(body, "source");
+  device.notes = text_or(body, "notes");
+  device.extra_json = unknown_members(body, kDeviceKind);
+  device.newer_version = document.newer_version;
+  return device;
+}
+
+Json device_body(const Device& device) {
+  Json body = Json::object();
+  put_text(body, "version", device.newer_version);
+  body["name"] = device.name;
+  body["axes"] = Json::array();
+  for (const DeviceAxis& axis : device.axes) body["axes"].push_back(axis_body(axis));
+  body["peak_force_n"] = device.peak_force_n;
+  body["continuous_force_n"] = device.continuous_force_n;
+  body["slew_n_per_s"] = device.slew_n_per_s;
+  body["delay_s"] = device.delay_s;
+  body["rates_hz"] = device.rates_hz;
+  put_text(body, "transducer", device.transducer);
+  put_text(body, "source", device.source);
+  put_text(body, "notes", device.notes);
+  return body;
+}
+
+}  // namespace
+
+std::vector<std::string_view> device_preset_names() {
+  return preset_names(kDeviceKind);
+}
+
+Result<Device> read_device(const std::string& name) {
+  const auto found = open_named(kDeviceKind, name);
+  TACTO_TRY(found);
+  TACTO_TRY(check_document_known(found->document, kDeviceKind, found->where));
+  Device device = device_from(found->document);
+  TACTO_TRY(check_device(device, found->where));
+  return device;
+}
+
+Result<void> write_device(const std::string& stem, const Device& device) {
+  TACTO_TRY(check_device(device, path_of_kind(kDeviceKind, stem)));
+  return write_named(kDeviceKind, stem, device_body(device), device.extra_json);
+}
+
+}  // namespace tacto::schema

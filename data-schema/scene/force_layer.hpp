@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Layers that give a force on the hand from its place and speed in a plane (Minsky 1990).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data-schema/base/one_of.hpp"
+
+namespace tacto::schema {
+
+/// The range in which a number may be changed while the scene is played.
+struct SliderRange {
+  double from = 0, to = 0;
+  bool operator==(const SliderRange&) const = default;
+};
+
+/// A number of a layer, and its slider if it has one. In the file: 3, or {"value": 3, "slider": {"from": 1,
+/// "to": 5}}.
+struct LayerNumber {
+  double value = 0;
+  std::optional<SliderRange> slider = std::nullopt;
+  bool operator==(const LayerNumber&) const = default;
+};
+
+// Lengths and directions are in the patch's axes, from its centre; a direction is an angle from the patch's x
+// axis towards its y axis. kappa_n is the force on a slope of 1: force = -kappa grad h. `extra_json` has the
+// members of a newer version.
+
+/// A measured or computed relief.
+struct HeightMapLayer {
+  std::string file;  ///< stem or NAME.height.nc, from the scene's folder
+  LayerNumber kappa_n;
+  std::string extra_json;
+};
+
+enum class GrooveProfile { sine, triangle, square };
+
+/// Parallel grooves; depth_m is from top to bottom.
+struct GroovesLayer {
+  GrooveProfile profile = GrooveProfile::sine;
+  LayerNumber period_m, depth_m, kappa_n;
+  LayerNumber direction_deg;  ///< across the grooves
+  /// Sigma of the Gaussian filter that smooths the profile in advance; none: computed from the device's limit
+  /// ("auto" in the file).
+  std::optional<LayerNumber> filter_m = std::nullopt;
+  LayerNumber filter_margin{1.5};  ///< factor on the computed sigma
+  std::string extra_json;
+};
+
+/// Perlin's improved noise, in octaves; `roughness` is the factor from the amplitude of one to the next.
+struct NoiseLayer {
+  LayerNumber period_m;    ///< of the lowest octave
+  LayerNumber octaves{1};  ///< a whole number
+  LayerNumber roughness{0.5};
+  LayerNumber seed;  ///< a whole number
+  LayerNumber depth_m, kappa_n;
+  std::string extra_json;
+};
+
+/// A recorded texture, across a direction. Its forces are multiplied by the gain.
+struct TextureForceLayer {
+  std::string file;           ///< stem or file name of the texture, from the scene's folder
+  LayerNumber direction_deg;  ///< along which the texture's position grows
+  LayerNumber gain{1};        ///< 1; its sign may invert the texture
+  std::string extra_json;
+};
+
+/// A spring to a place.
+struct SpringLayer {
+  LayerNumber stiffness_n_per_m;
+  LayerNumber centre_x_m, centre_y_m;  ///< where its force is 0
+  std::string extra_json;
+};
+
+/// A viscous medium: soup (large damping), ice (small damping, on a patch above soup).
+struct DamperLayer {
+  LayerNumber damping_n_s_per_m;
+  std::string extra_json;
+};
+
+/// A mass that is added to the hand's.
+struct MassLayer {
+  LayerNumber mass_kg;
+  std::string extra_json;
+};
+
+/// A brick: a mass with dry friction on its base, coupled to the hand by a spring and a damper.
+struct BodyLayer {
+  LayerNumber mass_kg, stiffness_n_per_m;
+  LayerNumber damping_n_s_per_m;
+  LayerNumber static_friction_n;   ///< below this force it does not start to move
+  LayerNumber kinetic_friction_n;  ///< against its motion; at most the static friction
+  std::string extra_json;
+};
+
+/// A mass on a spring that only pulls: its force is 0 up to length_m.
+struct LassoLayer {
+  LayerNumber mass_kg, stiffness_n_per_m, length_m;
+  std::string extra_json;
+};
+
+/// An object that moves by itself and drags the hand: force = damping (speed of the object - speed of the
+/// hand).
+struct MoverLayer {
+  LayerNumber speed_mps, damping_n_s_per_m;
+  LayerNumber direction_deg;
+  std::string extra_json;
+};
+
+/// Forces that were computed in advance, on a grid.
+struct ForceMapLayer {
+  std::string file;  ///< stem or NAME.force.nc, from the scene's folder
+  LayerNumber gain{1};
+  std::string extra_json;
+};
+
+/// The field of atoms (Lennard-Jones and Coulomb) in a plane through them.
+struct FieldLayer {
+  std::string file;  ///< CSV of atoms, from the scene's folder (atoms.hpp)
+  LayerNumber z_m;   ///< of the section in which the hand moves
+  std::string extra_json;
+};
+
+/// One layer of a patch, of one kind. Code that reads a layer handles every kind of it, or does not compile.
+using ForceLayer =
+    OneOf<HeightMapLayer, GroovesLayer, NoiseLayer, TextureForceLayer, SpringLayer, DamperLayer, MassLayer,
+          BodyLayer, LassoLayer, MoverLayer, ForceMapLayer, FieldLayer>;
+
+/// "sine", "triangle", "square".
+std::string_view to_string(GrooveProfile profile);
+
+/// The layer's `type` in the file: "height_map", "grooves", ...
+std::string_view type_of(const ForceLayer& layer);
+
+/// All types, in the order of ForceLayer.
+std::vector<std::string> force_layer_types();
+
+/// A number of a layer under its name in the file.
+struct NamedLayerNumber {
+  std::string_view name;
+  LayerNumber number;
+};
+
+/// The numbers of a layer, in the order of the file. `filter_m` is absent where it is "auto".
+std::vector<NamedLayerNumber> numbers_of(const ForceLayer& layer);
+
+/// The file that a layer names; empty for a kind without one.
+std::string file_of(const ForceLayer& layer);
+
+/// The members of a newer version, as an object's text.
+const std::string& extra_of(const ForceLayer& layer);
+
+}  // namespace tacto::schema

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware-host/core/scene/relief.hpp"
+
+namespace tacto::core {
+namespace {
+
+// Weights of the four coefficients around a place, and their derivatives (Unser 1999, table 1, degree 3).
+struct SplineWeights {
+  float value[4], slope[4];
+
+  explicit SplineWeights(float t) noexcept {
+    const float r = 1 - t, tt = t * t, rr = r * r;
+    value[0] = rr * r * (1.0F / 6);
+    value[1] = (4 - 6 * tt + 3 * tt * t) * (1.0F / 6);
+    value[2] = (4 - 6 * rr + 3 * rr * r) * (1.0F / 6);
+    value[3] = tt * t * (1.0F / 6);
+    slope[0] = -0.5F * rr;
+    slope[1] = t * (1.5F * t - 2);
+    slope[2] = -r * (1.5F * r - 2);
+    slope[3] = 0.5F * tt;
+  }
+};
+
+uint32_t held_within(int64_t index, uint32_t count) noexcept {
+  if (index < 0) return 0;
+  return index < static_cast<int64_t>(count) ? static_cast<uint32_t>(index) : count - 1;
+}
+
+}  // namespace
+
+ReliefSample relief_at(const ReliefLevel& level, Q32 x_place, Q32 y_place) noexcept {
+  const LatticePlace x = lattice_place(x_place), y = lattice_place(y_place);
+  const SplineWeights along_x(x.part), along_y(y.part);
+  ReliefSample sample;
+  for (int j = 0; j < 4; ++j) {
+    const uint32_t row = held_within(static_cast<int64_t>(y.cell) - 1 + j, level.rows);
+    const float* c = level.coefficients + static_cast<uint64_t>(row) * level.columns;
+    float value = 0, slope = 0;
+    for (int i = 0; i < 4; ++i) {
+      const float coefficient = c[held_within(static_cast<int64_t>(x.cell) - 1 + i, level.columns)];
+      value += along_x.value[i] * coefficient;
+      slope += along_x.slope[i] * coefficient;
+    }
+    sample.value += along_y.value[j] * value;
+    sample.by_x += along_y.value[j] * slope;
+    sample.by_y += along_y.slope[j] * value;
+  }
+  return sample;
+}
+
+ReliefSample mixed_relief(const ReliefSample& fine, const ReliefSample& coarse, float ratio,
+                          float fade) noexcept {
+  const float per_sample = 1 / ratio;
+  return {fine.value + fade * (coarse.value - fine.value),
+          fine.by_x + fade * (coarse.by_x * per_sample - fine.by_x),
+          fine.by_y + fade * (coarse.by_y * per_sample - fine.by_y)};
+}
+
+}  // namespace tacto::core

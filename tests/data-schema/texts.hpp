@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texts of files that tests change and write.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "data-schema/files/files.hpp"
+
+namespace tacto::schema {
+
+/// With the one place of `from` replaced.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+inline void write_text(const std::string& path, const std::string& text) {
+  PendingFiles files;
+  ASSERT_TRUE(files.write(path, text));
+  ASSERT_TRUE(files.commit());
+}
+
+}  // namespace tacto::schema
