@@ -15,6 +15,7 @@
 #include "data-schema/command/man_page.hpp"
 #include "data-schema/command/option_headings.hpp"
 #include "data-schema/files/files.hpp"
+#include "data-schema/report/progress.hpp"
 #include "data-schema/report/report_entries.hpp"
 #include "data-schema/report/report_text.hpp"
 #include "data-schema/report/warnings.hpp"
@@ -190,6 +191,8 @@ int run_command(Verbs verbs, int argc, const char* const* argv, Topics topics) {
   for (const Verb* verb : verbs) {
     entries.push_back(std::make_unique<Entry>(declare(app, *verb)));
     entries.back()->app->add_flag("--json", entries.back()->json, "Print results and errors as JSON");
+    entries.back()->app->add_flag_callback("--progress", show_progress_lines,
+                                           "Print progress on stderr also if it is not a terminal");
     put_below_headings(verb->name, *entries.back()->app);
   }
   CLI::App* help = app.add_subcommand("help", "Show help on a verb or a topic: sim, units, exit-codes");

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Remains of a killed run are removed: by the next run with its name, by `recover`, by `doctor`."""
-import os
 import pathlib
+import resource
 import signal
 import subprocess
-import time
 
 import numpy as np
 
@@ -24,31 +23,31 @@ def table():
     np.savetxt("long.csv", rows, fmt="%.9f", delimiter=",", header="f,x", comments="")
 
 
-def size_of(name):
-    """0 if the import has renamed or removed the file since it was listed."""
-    try:
-        return os.path.getsize(name)
-    except FileNotFoundError:
-        return 0
-
-
-def begun(name):
-    """An import that has begun to write its samples, and is blocked there."""
-    process = subprocess.Popen([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT],
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    while process.poll() is None and not any(one.startswith(f".{name}.wav") and size_of(one) > 1000 for one in hidden()):
-        time.sleep(0.0002)
-    process.send_signal(signal.SIGSTOP)
-    assert process.poll() is None, "the import was over before it could be killed"
-    return process
-
-
 def killed(name):
-    process = begun(name)
-    process.send_signal(signal.SIGKILL)
-    process.wait()
+    """An import that a signal ends while it writes its samples: at 100 kB the kernel sends SIGXFSZ."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)  # Python ignores it, and a child inherits that
+    done = subprocess.run([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT], capture_output=True, preexec_fn=limit)
+    assert done.returncode == -signal.SIGXFSZ, done
     assert hidden(), "nothing was left to remove"
     assert not pathlib.Path(f"{name}.wav").exists()
+
+
+def stopped(name):
+    """An import that has begun to write its samples, and is stopped there."""
+    for _ in range(10):
+        process = subprocess.Popen([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT, "--force"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while process.poll() is None and not any(one.startswith(f".{name}.wav") for one in hidden()):
+            pass
+        process.send_signal(signal.SIGSTOP)
+        if process.poll() is None and hidden():
+            return process
+        process.send_signal(signal.SIGCONT)
+        process.wait()
+    raise AssertionError("in ten attempts the import ended before it could be stopped")
 
 
 def the_next_run_of_that_name_removes_it():
@@ -79,7 +78,7 @@ def doctor_removes_and_says_it():
 
 def what_runs_is_left_alone():
     table()
-    process = begun("oak")
+    process = stopped("oak")
     before = hidden()
     tacto.run("recover", "oak", code=3)
     tacto.run("doctor", "-d", "sim:finger=up")

@@ -14,9 +14,7 @@ def printed(*arguments, code=0):
     """All lines that a user sees on stdout and stderr."""
     done = subprocess.run([tacto.COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=600)
     assert done.returncode == code, (arguments, done)
-    lines = (done.stdout + done.stderr).splitlines()
-    # On a terminal the progress of long work is redrawn in place.
-    return [line for line in lines if not line.rstrip().endswith(" %")]
+    return (done.stdout + done.stderr).splitlines()
 
 
 def make_strokes():
