@@ -16,7 +16,9 @@ namespace {
 bool shows_lines = false;
 }
 
-void show_progress_lines() { shows_lines = true; }
+void show_progress_lines() {
+  shows_lines = true;
+}
 
 Progress::Progress(std::string task)
     : task_(std::move(task)),

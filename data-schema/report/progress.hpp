@@ -7,8 +7,8 @@
 
 namespace tacto::cli {
 
-/// Shows "recording  42 %" on a terminal once a second has passed, redrawn in place. Elsewhere it prints nothing, or
-/// with show_progress_lines() a line every 5 s.
+/// Shows "recording  42 %" on a terminal once a second has passed, redrawn in place. Elsewhere it prints
+/// nothing, or with show_progress_lines() a line every 5 s.
 class Progress {
  public:
   explicit Progress(std::string task);
@@ -27,7 +27,8 @@ class Progress {
   Clock::time_point next_;
 };
 
-/// For the option --progress: progress is also printed where stderr is no terminal. Call it before the work begins.
+/// For the option --progress: progress is also printed where stderr is no terminal. Call it before the work
+/// begins.
 void show_progress_lines();
 
 }  // namespace tacto::cli

@@ -57,8 +57,8 @@ void tick_batches(benchmark::State& state, const core::KernelSetup& setup) {
       kTicks * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// A chain of sections that rings out after full scale: denormals would make a tick 10 to 100 times slower on processors
-/// that trap them.
+/// A chain of sections that rings out after full scale: denormals would make a tick 10 to 100 times slower on
+/// processors that trap them.
 void section_chain(benchmark::State& state, float input) {
   const auto sections = eight_sections();
   core::SectionChain chain;
