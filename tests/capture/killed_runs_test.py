@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Remains of a killed run are removed: by the next run with its name, by `recover`, by `doctor`."""
+import os
 import pathlib
-import resource
 import signal
 import subprocess
 
@@ -23,31 +23,34 @@ def table():
     np.savetxt("long.csv", rows, fmt="%.9f", delimiter=",", header="f,x", comments="")
 
 
-def killed(name):
-    """An import that a signal ends while it writes its samples: at 100 kB the kernel sends SIGXFSZ."""
-    def limit():
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
-        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)  # Python ignores it, and a child inherits that
-    done = subprocess.run([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT], capture_output=True, preexec_fn=limit)
-    assert done.returncode == -signal.SIGXFSZ, done
-    assert hidden(), "nothing was left to remove"
-    assert not pathlib.Path(f"{name}.wav").exists()
+def written(name):
+    return any(one.startswith(f".{name}.wav") for one in hidden())
 
 
 def stopped(name):
     """An import that has begun to write its samples, and is stopped there."""
-    for _ in range(10):
-        process = subprocess.Popen([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT, "--force"],
+    for _ in range(20):
+        process = subprocess.Popen([tacto.COMMAND, "import", "long.csv", "-o", name, *IMPORT],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        while process.poll() is None and not any(one.startswith(f".{name}.wav") for one in hidden()):
+        while process.poll() is None and not written(name):
             pass
         process.send_signal(signal.SIGSTOP)
-        if process.poll() is None and hidden():
-            return process
-        process.send_signal(signal.SIGCONT)
+        if os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT).si_code == os.CLD_STOPPED:
+            if written(name):
+                return process
+            process.send_signal(signal.SIGCONT)
         process.wait()
-    raise AssertionError("in ten attempts the import ended before it could be stopped")
+        for ending in (".wav", ".json"):  # the import ended before it was stopped: again
+            pathlib.Path(name + ending).unlink(missing_ok=True)
+    raise AssertionError("in 20 attempts the import ended before it could be stopped")
+
+
+def killed(name):
+    process = stopped(name)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert hidden(), "nothing was left to remove"
+    assert not pathlib.Path(f"{name}.wav").exists()
 
 
 def the_next_run_of_that_name_removes_it():
