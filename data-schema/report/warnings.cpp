@@ -2,9 +2,13 @@
 #include "data-schema/report/warnings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <map>
 #include <mutex>
 
@@ -31,16 +35,19 @@ void keep(const std::string& text) {
   kept().warnings.push_back(text);
 }
 
-constexpr std::size_t kWarningColumns = 120, kWarningIndent = 4;
-
+// On a terminal it wraps, with further lines indented. A file or pipe gets one line for each warning.
 void print_wrapped(const std::string& text) {
-  const auto lines =
-      wrapped_text("tactograph: warning: " + on_one_line(text), kWarningColumns - kWarningIndent);
+  constexpr std::size_t kIndent = 4;
+  winsize size{};
+  const bool wraps =
+      isatty(STDERR_FILENO) == 1 && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 2 * kIndent;
+  const auto lines = wrapped_text("tactograph: warning: " + on_one_line(text),
+                                  wraps ? size.ws_col - kIndent : std::numeric_limits<std::size_t>::max());
   {
     const std::lock_guard lock(kept().mutex);
     kept().printed += lines.size();
   }
-  write_message(fmt::format("{}\n", fmt::join(lines, "\n" + std::string(kWarningIndent, ' '))));
+  write_message(fmt::format("{}\n", fmt::join(lines, "\n" + std::string(kIndent, ' '))));
 }
 
 struct Group {

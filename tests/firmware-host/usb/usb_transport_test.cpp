@@ -114,6 +114,10 @@ TEST_P(Recovered, BytesBeforeAndBehindItCome) {
   const Heard heard = listen(*cable, 153);
   EXPECT_FALSE(heard.error);
   EXPECT_EQ(heard.bytes, counting(153));
+  // The transfers are sent again while the host reads.
+  Bytes room(8);
+  for (int i = 0; i < 1000 && device.in_under_way.size() < UsbInflow::kTransfers; ++i)
+    EXPECT_EQ(cable->read(room, 0.01).value_or(1), 0U);
   EXPECT_EQ(usb().cleared, 1);
   EXPECT_EQ(device.in_under_way.size(), UsbInflow::kTransfers);
 }
