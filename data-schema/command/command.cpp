@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -30,9 +32,6 @@ constexpr std::string_view kFooter =
     "5 data that cannot be used for this, 6 file of a newer version, 7 cannot write, 8 device failed.\n"
     "Quantities have a unit: 10mm, 15Hz, 0.5um, 4.5s, 15/mm, 50mm/s, 1mm/N.";
 
-// A verb that writes its results to files prints at most half a screen. Warnings are among these lines.
-constexpr std::size_t kLinesBesideFiles = 15, kFewestLines = 6;
-
 using Verbs = std::span<const Verb* const>;
 using Topics = std::span<const HelpTopic* const>;
 
@@ -40,7 +39,16 @@ struct Entry {
   CLI::App* app = nullptr;
   Action action;
   bool json = false;
+  std::string rows;
 };
+
+// "all", or a number of rows.
+std::string is_row_count(const std::string& text) {
+  const bool number = !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == text.npos;
+  return text == "all" || (number && std::stoul(text) > 0)
+             ? ""
+             : "'" + text + "' is neither a number of rows nor all";
+}
 
 Entry declare(CLI::App& parent, const Verb& verb) {
   Entry entry;
@@ -50,20 +58,28 @@ Entry declare(CLI::App& parent, const Verb& verb) {
   return entry;
 }
 
-bool writes_files(const Entry& entry) {
-  const CLI::Option* output = entry.app->get_option_no_throw("--output");
-  return output != nullptr && (output->count() > 0 || !output->get_default_str().empty());
-}
-
 bool has_key(const Report& report, const std::string& key) {
   return std::ranges::any_of(ReportPrinter::entries(report),
                              [&](const auto& entry) { return entry.first == key; });
 }
 
+// On a terminal, tables stop at its height, less the line of the next prompt. In a file or pipe all is
+// printed.
+TextLimits limits_of(const Entry& entry) {
+  TextLimits limits;
+  winsize size{};
+  if (isatty(STDOUT_FILENO) == 1 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 1) {
+    limits.columns = size.ws_col;
+    limits.lines = size.ws_row - 1U;
+  }
+  if (entry.rows.empty()) return limits;
+  limits.lines = 0;
+  if (entry.rows != "all") limits.rows = std::stoul(entry.rows);
+  return limits;
+}
+
 std::string printed(Report report, const Entry& entry) {
-  const std::size_t lines =
-      kLinesBesideFiles - std::min(printed_warnings(), kLinesBesideFiles - kFewestLines);
-  if (!entry.json) return text_of(report, {.lines = writes_files(entry) ? lines : 0});
+  if (!entry.json) return text_of(report, limits_of(entry));
   if (const auto warnings = all_warnings(); !warnings.empty() && !has_key(report, "warnings"))
     report.add("warnings", warnings);
   return report.json();
@@ -193,6 +209,12 @@ int run_command(Verbs verbs, int argc, const char* const* argv, Topics topics) {
     entries.back()->app->add_flag("--json", entries.back()->json, "Print results and errors as JSON");
     entries.back()->app->add_flag_callback("--progress", show_progress_lines,
                                            "Print progress on stderr also if it is not a terminal");
+    entries.back()
+        ->app
+        ->add_option("--rows", entries.back()->rows,
+                     "Rows of each table to print; default: on a terminal as many as fit, else all")
+        ->type_name("N|all")
+        ->check(is_row_count);
     put_below_headings(verb->name, *entries.back()->app);
   }
   CLI::App* help = app.add_subcommand("help", "Show help on a verb or a topic: sim, units, exit-codes");

@@ -22,7 +22,6 @@ namespace {
 struct Kept {
   std::mutex mutex;
   std::vector<std::string> warnings;
-  std::size_t printed = 0;
 };
 
 Kept& kept() {
@@ -43,10 +42,6 @@ void print_wrapped(const std::string& text) {
       isatty(STDERR_FILENO) == 1 && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 2 * kIndent;
   const auto lines = wrapped_text("tactograph: warning: " + on_one_line(text),
                                   wraps ? size.ws_col - kIndent : std::numeric_limits<std::size_t>::max());
-  {
-    const std::lock_guard lock(kept().mutex);
-    kept().printed += lines.size();
-  }
   write_message(fmt::format("{}\n", fmt::join(lines, "\n" + std::string(kIndent, ' '))));
 }
 
@@ -115,11 +110,6 @@ void warn_grouped(std::span<const std::string> sentences) {
 std::vector<std::string> all_warnings() {
   const std::lock_guard lock(kept().mutex);
   return kept().warnings;
-}
-
-std::size_t printed_warnings() {
-  const std::lock_guard lock(kept().mutex);
-  return kept().printed;
 }
 
 void print_warning(const std::string& text) {
